@@ -1,0 +1,6 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""``python -m mdanim_lammps``."""
+
+from .cli import main
+
+main()

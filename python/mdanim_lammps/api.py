@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The Python interface: load a scene, ask what it calls for, run it."""
+
+from __future__ import annotations
+
+import sys
+from functools import cached_property
+from pathlib import Path
+
+from .certificate import Certificate
+from .driver.manifest import manifest
+from .driver.prepare import Prepared, prepare
+from .driver.run import Result, simulate, write_inputs
+from .effects import Verdict
+from .errors import RefusedError
+from .results.files import open_folder, write_json
+from .scene.parse import load_scene
+from .scene.scene import Scene as SceneRecord
+
+
+class Scene:
+    """A scene that was read and found valid."""
+
+    def __init__(self, record: SceneRecord):
+        self.record = record
+        """The scene as plain frozen records in SI units."""
+
+    @classmethod
+    def load(cls, path: str | Path, *, strict: bool = False, **overrides: float | str) -> "Scene":
+        """Read a scene file; keyword arguments override its ``let`` names, as ``--set`` does.
+
+        Raises SceneError with all problems in ``.problems``.
+        """
+        return cls(load_scene(path, overrides=overrides, strict=strict))
+
+    @cached_property
+    def prepared(self) -> Prepared:
+        """Models, effects, certificate and LAMMPS plan. Raises SceneError, RefusedError."""
+        return prepare(self.record)
+
+    def effects(self) -> dict[str, Verdict]:
+        """Every effect with whether it is on, and why. Raises SceneError, RefusedError."""
+        return dict(self.prepared.verdicts)
+
+    def certificate(self) -> Certificate:
+        """The certified time step and what sets it. Raises SceneError, RefusedError."""
+        return self.prepared.certificate
+
+    def run(self, folder: str | Path | None = None, *, executors: int = 1, force: bool = False, movie: bool = False,
+            watch=None) -> Result:
+        """Simulate into ``folder`` (default: ``NAME.out`` beside the scene); returns ledger, outcomes and cost.
+
+        ``watch`` is called with a Progress after every frame. Raises SceneError, RefusedError, DivergedError, OutputError.
+        """
+        refuse_executors(executors)
+        ready = self.prepared
+        folder = Path(folder) if folder is not None else default_folder(self.record)
+        open_folder(folder, force=force)
+        write_json(folder / "manifest.json", manifest(self.record, sys.argv))
+        write_inputs(ready, folder)
+        result = simulate(ready, folder, watch=watch)
+        if movie:
+            from .picture.movie import render_movie
+
+            render_movie(folder, self.record.render, folder / "movie.mp4")
+        return result
+
+
+def default_folder(record: SceneRecord) -> Path:
+    """``SCENE.out`` beside the scene file."""
+    return (record.path.parent if record.path else Path.cwd()) / f"{record.name}.out"
+
+
+def refuse_executors(executors: int) -> None:
+    """Runs on several executors are not built yet. Raises RefusedError."""
+    if executors != 1:
+        raise RefusedError(
+            f"{executors} executors were asked for, but runs of several executors are not built yet; run with one, or "
+            "'mdanim-lammps build SCENE' and then 'mpiexec -n N lmp -in in.NAME', which gives the same frames on any N")

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The certified time step: a rigorous bound from springs, dashpots, contact and walls, what sets it, and the step chosen.
+
+Leap-frog with lagged dashpots is stable while dt^2 K + 2 dt C < 4 M (energy argument in docs/physics-solids.md). With
+K <= 2 blockdiag(D_i) and C <= 2 blockdiag(D'_i) this holds when dt^2 a_i + 2 dt b_i <= 4 for every particle, where
+a_i = 2 lambda_max(D_i)/m_i and b_i = 2 lambda_max(D'_i)/m_i. Implicit drag only helps.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from .effects import EFFECTS, Verdict
+from .effects.damping import Damping
+from .errors import Problem, RefusedError, SceneError, Span
+from .model.system import System
+from .scene.scene import Scene
+
+FRACTION = 0.5
+"""``timestep auto`` over the bound: the bound is linear, motion at a tenth of the wave speed needs this margin."""
+
+
+@dataclass(frozen=True, slots=True)
+class Certificate:
+    """What is certified before step 0."""
+
+    timestep: float
+    """[s]"""
+    bound: float
+    """Largest stable time step [s]."""
+    object: str
+    """Object that sets the bound."""
+    cause: str
+    """Effect that contributes most there."""
+    share: float
+    """Its share in the bound there [-]."""
+    steps_per_frame: int
+    frames: int
+    """Whole frames after the one at t = 0."""
+    last_steps: int
+    """Steps of a last, shorter frame; 0 when ``time`` is a whole number of frames."""
+    span: Span | None
+    """Scene line of what sets the bound."""
+
+    @property
+    def steps(self) -> int:
+        """Steps of the whole run."""
+        return self.steps_per_frame * self.frames + self.last_steps
+
+    @property
+    def fraction(self) -> float:
+        """Time step over bound."""
+        return self.timestep / self.bound
+
+    def to_json(self) -> dict:
+        """Plain data for certificate.json."""
+        return {**asdict(self), "span": str(self.span) if self.span else None, "steps": self.steps,
+                "fraction": self.fraction}
+
+    def __str__(self) -> str:
+        return (f"dt {self.timestep:.3g} s = {self.fraction:.2f} of the bound {self.bound:.3g} s   "
+                f"set by: {self.object}, {self.cause}")
+
+
+def certify(scene: Scene, system: System, verdicts: dict[str, Verdict], *, allow_unstable: bool = False) -> Certificate:
+    """Bound the time step of a scene and choose one that fits its frames.
+
+    Raises RefusedError when ``control timestep`` is above the bound (unless ``allow_unstable``), and SceneError when
+    ``time`` and ``frames`` cannot be met by one time step.
+    """
+    on = {e.name: e for e in EFFECTS if verdicts[e.name].on}
+    rates = {name: r for name, e in on.items() if (r := e.rate(scene, system)) is not None}
+    stiff = sum(rates.values(), np.zeros(system.particles))
+    drag = Damping.drag_rate(system) if "damping" in on else np.zeros(system.particles)
+    free = ~system.held
+    if not free.any() or not (stiff + drag)[free].any():
+        # Nothing vibrates: any step integrates free fall exactly; one step per frame, or what the scene says.
+        bound, worst = math.inf, 0
+    else:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            limit = np.where(stiff > 0.0, (np.sqrt(drag**2 + 4.0 * stiff) - drag) / stiff, 2.0 / drag)
+        limit[~free] = np.inf
+        worst = int(np.argmin(limit))
+        bound = float(limit[worst])
+    causes = {name: r[worst] for name, r in rates.items()}
+    if "damping" in on and math.isfinite(bound):
+        causes["damping"] = 2.0 * drag[worst] / bound
+    total = sum(causes.values())
+    cause = max(causes, key=causes.get) if total else "nothing"
+    name = system.names[system.object[worst]] if system.particles else "nothing"
+    solid = next((s for s in scene.solids if s.name == name), None)
+
+    asked = scene.control.timestep
+    if asked is not None and asked > bound * (1.0 + 1e-12) and not allow_unstable:
+        problem = Problem(
+            scene.control.spans.get("timestep"),
+            f"timestep {asked:.4g} s is above the certified bound {bound:.4g} s, set by {name} ({cause})",
+            f"write 'timestep auto' ({FRACTION * bound:.3g} s), or insist with --allow-unstable",
+        )
+        raise RefusedError(str(problem))
+    per_frame, frames, last = fit_steps(scene, FRACTION * bound if asked is None else asked)
+    return Certificate(
+        timestep=1.0 / (scene.control.frames * per_frame),
+        bound=bound,
+        object=name,
+        cause=cause,
+        share=float(causes[cause] / total) if total else 0.0,
+        steps_per_frame=per_frame,
+        frames=frames,
+        last_steps=last,
+        span=solid.spans.get("elasticity") if solid else None,
+    )
+
+
+def fit_steps(scene: Scene, longest: float) -> tuple[int, int, int]:
+    """Steps per frame, whole frames, and steps of a last shorter frame, so that one dt <= ``longest`` meets them all.
+
+    ``time * frames`` = p/q in lowest terms asks for a multiple of q steps per frame. Raises SceneError when q is so large
+    that it would shorten the step by more than a factor of four.
+    """
+    control = scene.control
+    least = max(1, math.ceil(1.0 / (control.frames * longest) * (1.0 - 1e-12))) if longest < math.inf else 1
+    ratio = Fraction(control.time * control.frames).limit_denominator(10_000)
+    if abs(float(ratio) - control.time * control.frames) > 1e-9 * float(ratio or 1) or ratio.denominator > 4 * least + 100:
+        whole = max(1, round(control.time * control.frames))
+        raise SceneError([Problem(
+            control.spans.get("time"),
+            f"time {control.time:g} s is {control.time * control.frames:.6g} frames at {control.frames:g} fps: "
+            "no time step fits both",
+            f"try 'time {whole / control.frames:.6g} s' ({whole} frames)",
+        )])
+    q = ratio.denominator
+    per_frame = q * math.ceil(least / q)
+    frames, rest = divmod(ratio.numerator, q)
+    return per_frame, frames, rest * per_frame // q

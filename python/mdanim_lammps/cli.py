@@ -1,0 +1,366 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The command line: ``mdanim-lammps SCENE`` and its subcommands (docs/command-line.md)."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import sys
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import App, CycloptsError, Parameter
+
+from . import __version__
+from .errors import ExitCode, MdanimError, RefusedError, SceneError
+
+app = App(
+    name="mdanim-lammps",
+    help="Physically simulated animation of elastic objects, on top of LAMMPS.",
+    version=__version__,
+    version_flags=["--version"],
+)
+
+Set = Annotated[tuple[str, ...], Parameter(name="--set", help="Override a 'let': --set NAME=VALUE.", negative=(), consume_multiple=False)]
+Accuracy = Annotated[Literal["preview", "balanced", "reference"] | None, Parameter(help="Cells across the thinnest part: 2, 4, 8.")]
+Strict = Annotated[bool, Parameter(negative=(), help="Bare numbers need a unit.")]
+AllowUnstable = Annotated[bool, Parameter(negative=(), help="Insist on a time step above the certified bound.")]
+Quiet = Annotated[bool, Parameter(name=["-q", "--quiet"], negative=(), help="Print errors only.")]
+Verbose = Annotated[bool, Parameter(name=["-v", "--verbose"], negative=(), help="Print every effect with its reason.")]
+Out = Annotated[Path | None, Parameter(name=["-o", "--out"], help="Output folder; default SCENE.out beside the scene.")]
+Force = Annotated[bool, Parameter(negative=(), help="Overwrite an output folder of an earlier run.")]
+
+
+@app.default
+def run(scene: Path, /, *, executors: Annotated[int, Parameter(name=["-n", "--executors"])] = 1, out: Out = None,
+        control: Literal["central", "peers"] | None = None, accuracy: Accuracy = None, set_: Set = (), force: Force = False,
+        movie: bool = True, allow_unstable: AllowUnstable = False, quiet: Quiet = False, verbose: Verbose = False) -> None:
+    """Check, build and run a scene; leave a movie, a trajectory and a summary.
+
+    Parameters
+    ----------
+    scene
+        The scene file.
+    executors
+        Number of executors.
+    control
+        Who assigns objects to executors.
+    movie
+        Make movie.mp4 at the end.
+    """
+    from .api import default_folder, refuse_executors
+    from .driver.manifest import manifest
+    from .driver.run import write_inputs
+    from .results.files import open_folder, write_json
+
+    refuse_executors(executors)
+    if control is not None:
+        raise RefusedError("--control chooses between kinds of runs on several executors, which are not built yet; leave it out")
+    ready = _prepare(scene, set_, accuracy, allow_unstable=allow_unstable)
+    folder = out or default_folder(ready.scene)
+    _announce(ready, quiet, verbose)
+    open_folder(folder, force=force)
+    write_json(folder / "manifest.json", manifest(ready.scene, sys.argv))
+    write_inputs(ready, folder)
+    _simulate_and_render(ready, folder, quiet=quiet, movie=movie)
+
+
+@app.command
+def check(scene: Path, /, *, set_: Set = (), accuracy: Accuracy = None, strict: Strict = False,
+          allow_unstable: AllowUnstable = False, format: Literal["text", "json"] = "text") -> None:
+    """Say what a scene calls for and certify its time step; nothing is run.
+
+    Parameters
+    ----------
+    scene
+        The scene file.
+    format
+        Text for people, JSON for programs.
+    """
+    from .report import certificate_line, check_json, effect_line, scene_line
+    from .results.trajectory import trajectory_bytes
+
+    ready = _prepare(scene, set_, accuracy, strict=strict, allow_unstable=allow_unstable)
+    if format == "json":
+        print(json.dumps(check_json(ready), indent=1, ensure_ascii=False))
+        return
+    _warn(ready)
+    print(scene_line(ready))
+    print(certificate_line(ready))
+    control = ready.scene.control
+    size = trajectory_bytes(ready.models, ready.certificate.frames + 1, control.save, control.single)
+    print(f"output   trajectory of {size / 1e6:.3g} MB")
+    print("effects")
+    for verdict in ready.verdicts.values():
+        print(effect_line(verdict))
+
+
+@app.command
+def build(scene: Path, /, *, out: Out = None, set_: Set = (), accuracy: Accuracy = None, force: Force = False,
+          allow_unstable: AllowUnstable = False, quiet: Quiet = False, verbose: Verbose = False) -> None:
+    """Write data.NAME and in.NAME only; 'lmp -in in.NAME' then runs without Python.
+
+    Parameters
+    ----------
+    scene
+        The scene file.
+    """
+    from .api import default_folder
+    from .driver.manifest import manifest
+    from .driver.run import write_inputs
+    from .results.files import open_folder, write_json
+
+    ready = _prepare(scene, set_, accuracy, allow_unstable=allow_unstable)
+    folder = out or default_folder(ready.scene)
+    _announce(ready, quiet, verbose)
+    open_folder(folder, force=force)
+    write_json(folder / "manifest.json", manifest(ready.scene, sys.argv))
+    write_inputs(ready, folder)
+    if not quiet:
+        print(f"built    cd {folder} && lmp -in in.{ready.plan.name}")
+
+
+@app.command
+def resume(folder: Path, /, *, movie: bool = True, allow_unstable: AllowUnstable = False, quiet: Quiet = False) -> None:
+    """Go on from the last checkpoint of an output folder, bit for bit as if it had never stopped.
+
+    Parameters
+    ----------
+    folder
+        The output folder of a run that was stopped.
+    movie
+        Make movie.mp4 at the end.
+    """
+    from .results.checkpoint import Checkpoint
+
+    scene = _stored_scene(folder)
+    if (folder / "summary.json").exists():
+        raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
+    checkpoint = Checkpoint.read(folder / "checkpoint")
+    ready = _prepare_record(scene, allow_unstable=allow_unstable)
+    _announce(ready, quiet, False)
+    _simulate_and_render(ready, folder, quiet=quiet, movie=movie, checkpoint=checkpoint)
+
+
+@app.command
+def render(folder: Path, /, *, size: tuple[int, int] | None = None, fps: float | None = None,
+           out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
+           frames: Annotated[bool, Parameter(negative=())] = False,
+           scene: Path | None = None, quiet: Quiet = False) -> None:
+    """Draw the movie of an output folder again, with another size, rate or camera.
+
+    Parameters
+    ----------
+    folder
+        The output folder of a run.
+    size
+        Width and height in pixels.
+    fps
+        Pictures per second of the movie.
+    out
+        The movie's file; default movie.mp4 in the folder.
+    frames
+        Write every picture to frames/ in the folder too.
+    scene
+        Take the render block (camera, background) of this scene file instead.
+    """
+    record = _stored_scene(folder) if scene is None else _load(scene, ())
+    _render(folder, record, out or folder / "movie.mp4", quiet=quiet, size=size, fps=fps,
+            frames=folder / "frames" if frames else None)
+
+
+@app.command
+def compare(a: Path, b: Path, /) -> None:
+    """Say where two runs part: first frame and object, in metres. Ends with 6 when they differ.
+
+    Parameters
+    ----------
+    a
+        An output folder.
+    b
+        Another.
+    """
+    from .results.compare import compare as compare_runs
+
+    difference = compare_runs(a, b)
+    print(difference)
+    if not difference.equal:
+        raise SystemExit(ExitCode.DIVERGED)
+
+
+@app.command
+def study(scene: Path, /) -> None:
+    """What accuracy costs in time (not built yet).
+
+    Parameters
+    ----------
+    scene
+        The scene file.
+    """
+    raise RefusedError("'study' is not built yet; compare --accuracy preview, balanced and reference by hand")
+
+
+# --- what the commands share ------------------------------------------------------------------------------------------
+
+def _load(path: Path, overrides: tuple[str, ...], *, strict: bool = False):
+    from .scene.parse import load_scene
+
+    pairs = {}
+    for text in overrides:
+        name, equals, value = text.partition("=")
+        if not equals or not name.strip():
+            raise MdanimError(f"--set {text}: expected NAME=VALUE, e.g. --set rho=0.8")
+        pairs[name.strip()] = value.strip()
+    return load_scene(path, overrides=pairs, strict=strict)
+
+
+def _prepare(path: Path, overrides: tuple[str, ...], accuracy: str | None, *, strict: bool = False, allow_unstable: bool = False):
+    from dataclasses import replace
+
+    from .scene.scene import Accuracy as AccuracyClass
+
+    scene = _load(path, overrides, strict=strict)
+    if accuracy is not None:
+        scene = replace(scene, control=replace(scene.control, accuracy=AccuracyClass(accuracy)))
+    return _prepare_record(scene, allow_unstable=allow_unstable)
+
+
+def _prepare_record(scene, *, allow_unstable: bool):
+    from .driver.prepare import prepare
+
+    return prepare(scene, allow_unstable=allow_unstable)
+
+
+def _stored_scene(folder: Path):
+    """The scene of an output folder, under its own name."""
+    from dataclasses import replace
+
+    from .results.files import read_json
+
+    manifest = read_json(folder / "manifest.json")
+    scene = _load(folder / "scene.lock.txt", ())
+    return replace(scene, name=Path(manifest["scene"]).stem if manifest.get("scene") else folder.stem)
+
+
+def _warn(ready) -> None:
+    for warning in ready.warnings:
+        print(warning, file=sys.stderr)
+
+
+def _announce(ready, quiet: bool, verbose: bool) -> None:
+    from .report import certificate_line, effect_line, scene_line
+
+    if quiet:
+        return
+    _warn(ready)
+    print(scene_line(ready))
+    if verbose:
+        for verdict in ready.verdicts.values():
+            print(effect_line(verdict))
+    print(certificate_line(ready), flush=True)
+
+
+def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, checkpoint=None) -> None:
+    from .driver.run import simulate
+    from .report import cost_line, progress_line
+
+    with _bar("run", quiet) as bar:
+        result = simulate(ready, folder, resume=checkpoint,
+                          watch=lambda p: bar(p.frame, p.frames, progress_line(p)))
+    if movie:
+        _render(folder, ready.scene, folder / "movie.mp4", quiet=quiet)
+    if not quiet:
+        print(cost_line(result, ready.certificate.steps * ready.certificate.timestep))
+        print(f"ledger   energy residual {result.ledger.residual:.2e}   {folder / 'ledger.csv'}")
+        for outcome in result.outcomes:
+            if outcome.met:
+                print(outcome)
+        print(f"movie    {folder / 'movie.mp4'}" if movie else f"output   {folder}")
+    for outcome in result.missed:
+        print(outcome, file=sys.stderr)
+    if result.missed:
+        raise SystemExit(ExitCode.DIVERGED)
+
+
+def _render(folder: Path, scene, path: Path, *, quiet: bool, **options) -> None:
+    from .picture.movie import render_movie
+
+    with _bar("movie", quiet) as bar:
+        render_movie(folder, scene.render, path, progress=lambda done, total: bar(done, total, f"frame {done}/{total}"), **options)
+
+
+class _bar:
+    """A progress bar on stderr: moving on a terminal, a line now and then elsewhere."""
+
+    def __init__(self, name: str, quiet: bool):
+        self.name, self.quiet = name, quiet
+
+    def __enter__(self):
+        if self.quiet:
+            return lambda done, total, text: None
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+
+        console = Console(stderr=True)
+        if not console.is_terminal:
+            return self._line
+        self.progress = Progress(TextColumn(f"{self.name:<8}"), BarColumn(bar_width=24), TaskProgressColumn(),
+                                 TextColumn("{task.description}"), console=console)
+        self.progress.start()
+        self.task = self.progress.add_task("", total=None)
+        return lambda done, total, text: self.progress.update(self.task, completed=done, total=total, description=text)
+
+    def __exit__(self, *_):
+        if hasattr(self, "progress"):
+            self.progress.stop()
+
+    def _line(self, done: int, total: int, text: str) -> None:
+        if done * 10 // total != (done - 1) * 10 // total:
+            print(f"{self.name:<8} {100 * done // total:3d}%  {text}", file=sys.stderr, flush=True)
+
+
+def _suggest(arguments: list[str]) -> str | None:
+    """A message for a mistyped subcommand: the first word is neither a file nor a command, but close to one."""
+    if not arguments or arguments[0].startswith("-") or Path(arguments[0]).exists():
+        return None
+    commands = [name for name in app if not name.startswith("-")]
+    if arguments[0] in commands:
+        return None
+    close = difflib.get_close_matches(arguments[0], commands, n=1)
+    if close:
+        return f"no scene file and no command is called '{arguments[0]}'; did you mean '{close[0]}'?"
+    return None
+
+
+def main(argv: list[str] | None = None) -> None:
+    """Run the command line and exit with one of the documented codes."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    debug = "--debug" in arguments
+    arguments = [a for a in arguments if a != "--debug"]
+    if (message := _suggest(arguments)) is not None:
+        print(f"mdanim-lammps: error: {message}", file=sys.stderr)
+        raise SystemExit(ExitCode.USAGE)
+    if not arguments:
+        app.help_print([])
+        raise SystemExit(ExitCode.USAGE)
+    try:
+        app(arguments, exit_on_error=False, print_error=False)
+    except CycloptsError as error:
+        print(f"mdanim-lammps: error: {' '.join(str(error).split())}; see 'mdanim-lammps --help'", file=sys.stderr)
+        raise SystemExit(ExitCode.USAGE) from None
+    except MdanimError as error:
+        if debug:
+            raise
+        print(error if isinstance(error, (SceneError, RefusedError)) and ": error: " in str(error)
+              else f"mdanim-lammps: error: {error}", file=sys.stderr)
+        raise SystemExit(error.exit_code) from None
+    except KeyboardInterrupt:
+        print("mdanim-lammps: interrupted", file=sys.stderr)
+        raise SystemExit(ExitCode.INTERRUPTED) from None
+    except BrokenPipeError:
+        raise SystemExit(ExitCode.DONE) from None
+    except OSError as error:
+        if debug:
+            raise
+        print(f"mdanim-lammps: error: {error}", file=sys.stderr)
+        raise SystemExit(ExitCode.IO) from None

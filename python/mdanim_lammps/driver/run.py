@@ -1,0 +1,290 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The sequential program (Wcislo 1999, fig. 11): frames of a plan, one after the other, and what they leave behind."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ..effects.contact import REACH
+from ..engine.commands import input_script
+from ..engine.data_file import write_data
+from ..engine.instance import Instance
+from ..errors import DivergedError, ExitCode, MdanimError
+from ..results.checkpoint import Checkpoint
+from ..results.expect import Measured, Outcome, evaluate, largest_strain, strained
+from ..results.files import write_json, write_whole
+from ..results.ledger import Ledger
+from ..results.trajectory import Trajectory, TrajectoryWriter
+from ..scene.lock import lock_text
+from .prepare import Prepared
+
+CHECKPOINT_SECONDS = 10.0
+"""Wall time between checkpoints: a killed run loses at most this much, and a fast one does not write all the time."""
+BLOWN_UP = 0.5
+"""An energy residual above this is no animation any more: the run stops and keeps the last good frame."""
+
+
+@dataclass
+class Progress:
+    """Where a run is; handed to the watcher after every frame."""
+
+    frame: int
+    frames: int
+    step: int
+    steps: int
+    time: float
+    """Simulated [s]."""
+    residual: float
+    seconds: float
+    """Wall time of the simulation so far."""
+
+
+@dataclass
+class Result:
+    """What a run has left."""
+
+    folder: Path
+    ledger: Ledger
+    outcomes: list[Outcome] = field(default_factory=list)
+    cost: dict[str, float] = field(default_factory=dict)
+    """Seconds per effect and per other piece of work."""
+
+    @property
+    def missed(self) -> list[Outcome]:
+        return [o for o in self.outcomes if not o.met]
+
+
+class Interrupted(MdanimError):
+    """Ctrl-C: the frame was finished and a checkpoint written."""
+
+    exit_code = ExitCode.INTERRUPTED
+
+
+def write_inputs(ready: Prepared, folder: Path) -> None:
+    """Write scene.lock.txt, certificate.json, ``data.NAME`` and ``in.NAME``. Raises OutputError."""
+    plan = ready.plan
+    write_whole(folder / "scene.lock.txt", lock_text(ready.scene))
+    write_json(folder / "certificate.json", ready.certificate.to_json())
+    write_whole(folder / f"data.{plan.name}", lambda part: write_data(plan, part))
+    write_whole(folder / f"in.{plan.name}", input_script(plan))
+
+
+def simulate(ready: Prepared, folder: Path, *, watch: Callable[[Progress], None] | None = None,
+             resume: Checkpoint | None = None) -> Result:
+    """Run all frames (or go on from a checkpoint), leaving trajectory.h5, ledger.csv, checkpoint and summary.json in ``folder``.
+
+    Raises DivergedError with the last good frame kept, Interrupted after Ctrl-C, OutputError when the disk is full.
+    """
+    run = _Run(ready, folder, resume)
+    return run.go(watch or (lambda progress: None))
+
+
+class _Run:
+    """The state of one run; only its methods know the order of things."""
+
+    def __init__(self, ready: Prepared, folder: Path, resume: Checkpoint | None):
+        self.ready, self.folder, self.resume = ready, folder, resume
+        self.certificate = ready.certificate
+        self.effects = ready.plan.effects
+        self.fixes = [e.fix for e in self.effects if e.fix and e.fix != "gravity"]
+        self.seconds = {"setup": 0.0, "simulation": 0.0, "output": 0.0}
+        self.carried = dict(resume.carried) if resume else {}
+        terms = ("kinetic", *dict.fromkeys(e.ledger for e in self.effects if e.ledger))
+        self.strained = strained(ready.scene.expects)
+        self.ledger = Ledger(terms, tuple(f"strain.{name}" for name in self.strained))
+
+    # --- the order of things ----------------------------------------------------------------------------------------
+
+    def go(self, watch: Callable[[Progress], None]) -> Result:
+        c = self.certificate
+        lengths = [c.steps_per_frame] * c.frames + ([c.last_steps] if c.last_steps else [])
+        start = time.perf_counter()
+        with Instance(self.ready.plan) as self.instance, self._stop_on_interrupt() as stopped, self._open_trajectory() as out:
+            if self.resume:
+                self.instance.restore(self.resume.step, self.resume.x, self.resume.v, self.resume.f)
+                self._reread_ledger(self.resume.frame)
+                frame = self.resume.frame
+            else:
+                self.instance.setup()
+                frame = 0
+                self._record(out)
+            self.seconds["setup"] += time.perf_counter() - start
+            saved = time.perf_counter()
+            if not self.resume:
+                self._checkpoint(0)
+            try:
+                for frame in range(frame + 1, len(lengths) + 1):
+                    with self._clock("simulation"):
+                        self.instance.run(lengths[frame - 1])
+                    with self._clock("output"):
+                        row = self._record(out)
+                        if time.perf_counter() - saved > CHECKPOINT_SECONDS or frame == len(lengths) or stopped.is_set():
+                            out.flush()
+                            self._checkpoint(frame)
+                            saved = time.perf_counter()
+                    watch(Progress(frame, len(lengths), self.instance.step, c.steps, row["time"], row["residual"],
+                                   self.seconds["simulation"]))
+                    if stopped.is_set() and frame < len(lengths):
+                        raise Interrupted(f"interrupted at t = {row['time']:.4g} s; go on with: "
+                                          f"mdanim-lammps resume {self.folder}")
+            finally:
+                self._close_ledger()
+            self._collect_cost()
+            penetration = self._penetration()
+        return self._finish(penetration)
+
+    def _finish(self, penetration: float) -> Result:
+        with self._clock("output"):
+            with Trajectory(self.folder) as trajectory:
+                outcomes = evaluate(self.ready.scene.expects, Measured(
+                    trajectory.names, trajectory.times, trajectory.centers, trajectory.center_velocities,
+                    self.ledger.array("residual"),
+                    {name: self.ledger.array(f"strain.{name}") for name in self.strained}, penetration))
+        result = Result(self.folder, self.ledger, outcomes, dict(self.seconds))
+        write_json(self.folder / "cost.json", {"seconds": self.seconds, "steps": self.certificate.steps,
+                                               "particles": self.ready.system.particles})
+        write_json(self.folder / "summary.json", self._summary(outcomes, penetration))
+        return result
+
+    def _summary(self, outcomes: list[Outcome], penetration: float) -> dict:
+        scene, c = self.ready.scene, self.certificate
+        return {
+            "title": scene.title, "scene": scene.name, "done": True,
+            "objects": len(self.ready.system.names), "particles": self.ready.system.particles,
+            "springs": len(self.ready.system.spring), "time": c.steps * c.timestep, "timestep": c.timestep,
+            "steps": c.steps, "frames": len(self.ledger.rows),
+            "effects": [e.name for e in self.effects],
+            "energy_residual": self.ledger.residual, "penetration": penetration,
+            "seconds": sum(self.seconds.values()),
+            "expect": [{"what": f"{o.expect.subject}.{o.expect.quantity}", "time": o.expect.time, "value": o.expect.value,
+                        "tolerance": o.expect.tolerance, "found": o.found, "met": o.met} for o in outcomes],
+        }
+
+    # --- recording --------------------------------------------------------------------------------------------------
+
+    def _open_trajectory(self) -> TrajectoryWriter:
+        path, c = self.folder / "trajectory.h5", self.certificate
+        if self.resume:
+            return TrajectoryWriter.append(path, self.ready.scene, self.ready.models, after_step=self.resume.step)
+        return TrajectoryWriter(path, self.ready.scene, self.ready.models, dt=c.timestep, steps_per_frame=c.steps_per_frame)
+
+    def _record(self, out: TrajectoryWriter) -> dict[str, float]:
+        """Check the state, then append it to ledger and trajectory. Raises DivergedError before anything bad is written."""
+        instance, system = self.instance, self.ready.system
+        step = instance.step
+        when = step * self.certificate.timestep
+        x, v = instance.array("x"), instance.array("v")
+        if not (np.isfinite(x).all() and np.isfinite(v).all()):
+            bad = system.names[system.object[np.argmin(np.isfinite(x).all(1) & np.isfinite(v).all(1))]]
+            raise self._diverged(f"step {step}, t = {when:.4g} s: positions of {bad} are no numbers any more")
+        strain = {f"strain.{n}": largest_strain(system, system.names.index(n), x) for n in self.strained}
+        row = self.ledger.add(when, self._energies(x, v) | strain)
+        if not abs(row["residual"]) <= BLOWN_UP:
+            del self.ledger.rows[-1]
+            raise self._diverged(f"step {step}, t = {when:.4g} s: the energies do not add up (residual {row['residual']:.3g})")
+        out.write(step, when, x, v)
+        return row
+
+    def _diverged(self, what: str) -> DivergedError:
+        c = self.certificate
+        return DivergedError(
+            f"{what}; the step is {c.fraction:.2f} of the bound, set by {c.object} ({c.cause}): objects are probably hit or "
+            "squeezed harder than their lattice stands (try a lower speed, a stiffer object or a smaller timestep). "
+            f"The last good frame is kept in {self.folder}")
+
+    def _energies(self, x: np.ndarray, v: np.ndarray) -> dict[str, float]:
+        """Energy of every term of the ledger [J]."""
+        system, instance = self.ready.system, self.instance
+        names = {e.name for e in self.effects}
+        energies = {"kinetic": 0.5 * float(system.mass @ np.einsum("id,id->i", v, v))}
+        if "springs" in names:
+            energies["elastic"] = instance.elastic_energy()
+        if "gravity" in names:
+            energies["gravity"] = -float(system.mass @ (x @ np.array(self.ready.scene.gravity)))
+        if "contact" in names:
+            energies["contact"] = instance.fix_scalar("contact")
+        if names & {"ground", "walls"}:
+            energies["wall"] = sum(instance.fix_scalar(n) for n in ("ground", "walls") if n in names)
+        for term, value in (("drag_loss", lambda: instance.fix_scalar("leapfrog")),
+                            ("damping_loss", instance.damping_loss)):
+            if term in self.ledger.terms:
+                energies[term] = value() + self.carried.get(term, 0.0)
+        return energies
+
+    def _penetration(self) -> float:
+        """Deepest that a boundary particle has been below a surface in this run [m]."""
+        depths = [self.carried.get("penetration", 0.0)]
+        names = {e.name for e in self.effects}
+        if "contact" in names:
+            depths.append((1.0 / REACH - self.instance.fix_value("contact", 3)) * REACH * float(self.ready.system.spacing.max()))
+        depths += [self.instance.fix_value(n, 4) for n in ("ground", "walls") if n in names]
+        return max(depths)
+
+    def _checkpoint(self, frame: int) -> None:
+        carried = {t: self.ledger.rows[-1][t] for t in self.ledger.terms if t.endswith("_loss")}
+        carried["penetration"] = self._penetration()
+        Checkpoint(self.instance.step, frame, *(self.instance.array(a) for a in "xvf"), carried).write(
+            self.folder / "checkpoint")
+        self._close_ledger()
+
+    def _reread_ledger(self, frame: int) -> None:
+        """Take the rows up to the checkpoint's frame."""
+        stored = Ledger.read(self.folder / "ledger.csv")
+        for row in stored.rows[: frame + 1]:
+            self.ledger.add(row["time"], row)
+
+    def _close_ledger(self) -> None:
+        write_whole(self.folder / "ledger.csv", self.ledger.write)
+
+    # --- time and signals -------------------------------------------------------------------------------------------
+
+    def _clock(self, what: str):
+        return _Clock(self.seconds, what)
+
+    def _collect_cost(self) -> None:
+        """Split the simulation's time by effect: every style times itself."""
+        own = {fix: self.instance.fix_seconds(fix) for fix in (*self.fixes, "leapfrog")}
+        if any(e.name == "springs" for e in self.effects):
+            own["springs"] = self.instance.bond_seconds()
+        rest = self.seconds.pop("simulation") - sum(own.values())
+        self.seconds = {**own, "rest of the step": max(0.0, rest), **self.seconds}
+
+    @staticmethod
+    def _stop_on_interrupt() -> "_Interrupt":
+        return _Interrupt()
+
+
+class _Clock:
+    """Adds the wall seconds of a ``with`` block to an account."""
+
+    def __init__(self, account: dict[str, float], what: str):
+        self.account, self.what = account, what
+
+    def __enter__(self) -> None:
+        self.start = time.perf_counter()
+
+    def __exit__(self, *_) -> None:
+        self.account[self.what] = self.account.get(self.what, 0.0) + time.perf_counter() - self.start
+
+
+class _Interrupt:
+    """Turns Ctrl-C and SIGTERM into an event, so that a frame is finished before the run stops."""
+
+    def __enter__(self) -> threading.Event:
+        event = threading.Event()
+        self.old = {}
+        if threading.current_thread() is threading.main_thread():
+            for number in (signal.SIGINT, signal.SIGTERM):
+                self.old[number] = signal.signal(number, lambda *_: event.set())
+        return event
+
+    def __exit__(self, *_) -> None:
+        for number, handler in self.old.items():
+            signal.signal(number, handler)

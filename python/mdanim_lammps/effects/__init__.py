@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The effects, in the order in which their forces are summed. Adding one: a file here, a row in this table."""
+
+from .air_drag import AirDrag
+from .boundaries import Ground, Walls
+from .contact import Contact
+from .damping import Damping
+from .effect import Effect, Verdict, decide
+from .gravity import Gravity
+from .springs import Springs
+
+EFFECTS: tuple[Effect, ...] = (Springs(), Damping(), Gravity(), Contact(), Ground(), Walls(), AirDrag())
+
+__all__ = ["EFFECTS", "Effect", "Verdict", "decide"]

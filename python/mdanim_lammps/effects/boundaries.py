@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Ground and walls: what leaves them is pushed back in proportion to its depth."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .effect import Effect, Verdict
+
+
+class Boundary(Effect):
+    """What ground and walls have in common: a region, and a fix that pushes back whatever leaves it."""
+
+    ledger = "wall"
+
+    def columns(self, scene, system):
+        return {"stiffness": system.contact_stiffness}
+
+    def region(self, scene) -> str:
+        """The region command's style and arguments."""
+        raise NotImplementedError
+
+    def commands(self, scene, system):
+        return [
+            f"region {self.fix} {self.region(scene)}",
+            f"fix {self.fix} mobile mdanim/wall {self.fix} d_stiffness",
+        ]
+
+    def rate(self, scene, system):
+        # A wall does not move, so D_i alone bounds it, without the factor 2 of a pair.
+        return np.where(system.held, 0.0, system.contact_stiffness / system.mass)
+
+
+class Ground(Boundary):
+    name = fix = "ground"
+    lost = "objects fall for ever"
+
+    def called_for(self, scene):
+        if scene.ground is None:
+            return Verdict(self.name, False, "no ground in the scene")
+        return Verdict(self.name, True, f"ground at z = {scene.ground:g} m", scene.spans.get("ground"))
+
+    def region(self, scene):
+        return f"plane 0 0 {scene.ground!r} 0 0 1"
+
+
+class Walls(Boundary):
+    name = fix = "walls"
+    lost = "objects leave the scene"
+
+    def called_for(self, scene):
+        if scene.walls is None:
+            return Verdict(self.name, False, "no walls in the scene")
+        return Verdict(self.name, True, "walls around the scene", scene.spans.get("walls"))
+
+    def region(self, scene):
+        low, high = scene.walls.low, scene.walls.high
+        return "block " + " ".join(f"{a!r} {b!r}" for a, b in zip(low, high))

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Contact: a barrier between boundary and inner particles of objects whose boxes meet, Wcislo 1999, sec. 3.3."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from .effect import Effect, Verdict
+from .springs import all_held
+
+REACH = 1.6
+"""Reach of the barrier over the spacing: the flattest of the forms measured (docs/physics-contact.md)."""
+THIN = 0.75
+"""Reach of a thin object's own boundary over REACH: 1.2 spacings."""
+
+
+@lru_cache(maxsize=16)
+def plane_stiffness(reach: float) -> float:
+    """Largest curvature that a particle meets over a square plane of barrier particles, in units of the pair's k.
+
+    ``reach`` is the reach over the spacing of that plane. The Hessian of U = k rc^2/3 (1 - r/rc)^3, summed over the plane and
+    the layer below it, is scanned over all lateral offsets and over heights from 0.25 spacings up; deeper than that the
+    object is crushed anyway. Gives 1.61 at a reach of 1.6.
+    """
+    around = np.arange(-3, 4)
+    plane = np.stack(np.meshgrid(around, around, [0, -1], indexing="ij"), -1).reshape(-1, 3)
+    offsets = np.linspace(0.0, 0.5, 6)
+    heights = np.linspace(0.25, 1.2, 20)
+    probe = np.stack(np.meshgrid(offsets, offsets, heights, indexing="ij"), -1).reshape(-1, 1, 3)
+    d = probe - plane
+    r = np.linalg.norm(d, axis=-1)
+    depth = np.maximum(0.0, 1.0 - r / reach)
+    second, first = 2.0 * depth, -reach * depth**2 / r
+    n = d / r[..., None]
+    hessian = np.einsum("pa,pai,paj->pij", second - first, n, n) + first.sum(1)[:, None, None] * np.eye(3)
+    return float(np.linalg.eigvalsh(hessian)[:, -1].max())
+
+
+class Contact(Effect):
+    name = "contact"
+    fix = "contact"
+    ledger = "contact"
+    lost = "objects pass through each other"
+
+    def called_for(self, scene):
+        moving = [s for s in scene.solids if not all_held(s)]
+        if len(scene.solids) < 2:
+            return Verdict(self.name, False, "one object" if scene.solids else "no objects")
+        if not moving:
+            return Verdict(self.name, False, "every object is held")
+        return Verdict(self.name, True, f"{len(scene.solids)} objects that may meet", scene.solids[1].spans.get("object"))
+
+    def columns(self, scene, system):
+        return {"stiffness": system.contact_stiffness, "reach": REACH * system.spacing[system.object]}
+
+    def commands(self, scene, system):
+        thin = f" thin thin {THIN!r}" if (system.layer == 4).any() else ""
+        return [f"fix contact mobile mdanim/barrier boundary inner d_stiffness d_reach{thin}"]
+
+    def rate(self, scene, system):
+        s = system.contact_stiffness
+        largest = np.full(len(system.names), 0.0)
+        np.maximum.at(largest, system.object, s)
+        # The stiffest partner is in another object: the largest of all, or the second largest for the largest itself.
+        order = np.argsort(largest)
+        partner = np.full(len(largest), largest[order[-1]])
+        partner[order[-1]] = largest[order[-2]]
+        k = 2.0 * s * partner[system.object] / (s + partner[system.object])
+        reach = REACH * system.spacing.max() / np.cbrt(system.cell_volume.min())
+        return 2.0 * plane_stiffness(round(float(reach), 3)) * k / system.mass

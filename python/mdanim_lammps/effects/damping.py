@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Internal damping: a dashpot along every spring of a solid with ``damping``; it needs no command of its own."""
+
+from __future__ import annotations
+
+from .effect import Effect, Verdict
+from .springs import all_held, spring_norm
+
+
+class Damping(Effect):
+    name = "damping"
+    ledger = "damping_loss"
+    lost = "damped objects ring for ever"
+
+    def called_for(self, scene):
+        for solid in scene.solids:
+            if solid.damping and not all_held(solid):
+                return Verdict(self.name, True, f"damping of {solid.name}", solid.spans.get("damping"))
+        return Verdict(self.name, False, "no object has damping")
+
+    @staticmethod
+    def drag_rate(system):
+        """2 lambda_max(C_i)/m_i of the dashpots [1/s], shape (N,): the second term of the bound dt^2 a + 2 dt b <= 4."""
+        return 2.0 * spring_norm(system, system.damping) / system.mass

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What an effect is: when a scene calls for it, what it writes into LAMMPS's input, what it adds to the ledger and to the bound."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import Problem, Span
+from ..model.system import System
+from ..scene.scene import Scene, Switch
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether an effect is on, and why; shown by ``check`` with the scene line."""
+
+    name: str
+    on: bool
+    reason: str
+    span: Span | None = None
+
+
+class Effect:
+    """One physical effect. A subclass is one file in this folder and says everything that is to be said about it.
+
+    An effect that is off leaves no trace: no column, no command, no term.
+    """
+
+    name = ""
+    """As in ``effects { name off }``; also its name in the cost table."""
+    fix = ""
+    """ID of its LAMMPS fix, which times itself; empty when it has none."""
+    ledger = ""
+    """Its energy column in ledger.csv; empty when it has none."""
+    lost = ""
+    """What looks wrong when a scene needs the effect and it is switched off."""
+
+    def called_for(self, scene: Scene) -> Verdict:
+        """Whether the scene, by itself, calls for the effect."""
+        raise NotImplementedError
+
+    def columns(self, scene: Scene, system: System) -> dict[str, np.ndarray]:
+        """Per-particle properties that its commands name as ``d_NAME``, each of shape (N,)."""
+        return {}
+
+    def commands(self, scene: Scene, system: System) -> list[str]:
+        """LAMMPS commands; groups ``mobile``, ``boundary``, ``inner``, ``sub``, ``thin`` exist by then."""
+        return []
+
+    def rate(self, scene: Scene, system: System) -> np.ndarray | None:
+        """Its share in the bound on the squared frequency of each particle, 2 lambda_max(D_i)/m_i [1/s^2], shape (N,)."""
+        return None
+
+
+def decide(effects: tuple[Effect, ...], scene: Scene) -> tuple[dict[str, Verdict], list[Problem]]:
+    """Verdict of each effect, by name, with the scene's own switches applied; and warnings about needed ones switched off."""
+    verdicts: dict[str, Verdict] = {}
+    warnings: list[Problem] = []
+    for effect in effects:
+        own = effect.called_for(scene)
+        switch = scene.effects.get(effect.name, Switch.AUTO)
+        span = scene.spans.get(f"effects.{effect.name}")
+        if switch is Switch.OFF and own.on:
+            warnings.append(Problem(
+                span,
+                f"{effect.name} is switched off, but the scene calls for it ({own.reason})",
+                effect.lost,
+                severity="warning",
+            ))
+            own = Verdict(effect.name, False, f"switched off; {effect.lost}", span)
+        elif switch is Switch.ON and not own.on:
+            warnings.append(Problem(
+                span,
+                f"{effect.name} cannot be switched on: {own.reason}",
+                "effects are called for by what stands in the scene",
+                severity="warning",
+            ))
+        verdicts[effect.name] = own
+    return verdicts, warnings

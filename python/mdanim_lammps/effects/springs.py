@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Springs between neighbours in a solid, Wcislo 1999, eq. (3.6), (3.7), and their dashpots where a solid is damped."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..scene.scene import HoldAll
+from .effect import Effect, Verdict
+
+
+def all_held(solid) -> bool:
+    """Whether no particle of the solid ever moves."""
+    return any(isinstance(h, HoldAll) for h in solid.hold)
+
+
+def block_norm(pair: np.ndarray, weight: np.ndarray, direction: np.ndarray, particles: int) -> np.ndarray:
+    """Largest eigenvalue of D_i = sum over i's bonds of w n n^T, for every particle; shape (N,), unit of ``weight``.
+
+    ``pair`` (S, 2), ``weight`` (S,), ``direction`` unit vectors (S, 3). K <= 2 blockdiag(D_i) makes the bound rigorous.
+    """
+    block = np.empty((particles, 3, 3))
+    for a in range(3):
+        for b in range(a, 3):
+            term = weight * direction[:, a] * direction[:, b]
+            total = np.bincount(pair[:, 0], term, particles) + np.bincount(pair[:, 1], term, particles)
+            block[:, a, b] = block[:, b, a] = total
+    norm = np.empty(particles)
+    for start in range(0, particles, 1 << 18):  # eigvalsh copies its input: keep the copy small
+        part = slice(start, start + (1 << 18))
+        norm[part] = np.linalg.eigvalsh(block[part])[:, -1]
+    return norm
+
+
+class Springs(Effect):
+    name = "springs"
+    ledger = "elastic"
+    lost = "solids fall apart into loose particles"
+
+    def called_for(self, scene):
+        for solid in scene.solids:
+            if not all_held(solid):
+                return Verdict(self.name, True, f"{solid.name} can move and deform", solid.spans.get("elasticity"))
+        return Verdict(self.name, False, "every object is held" if scene.solids else "no objects")
+
+    def rate(self, scene, system):
+        return 2.0 * spring_norm(system, system.stiffness) / system.mass
+
+
+def spring_norm(system, weight: np.ndarray) -> np.ndarray:
+    """``block_norm`` of the springs of a system with these weights; shape (N,)."""
+    if not len(system.spring):
+        return np.zeros(system.particles)
+    i, j = system.spring.T
+    direction = system.position[i] - system.position[j]
+    direction /= np.linalg.norm(direction, axis=1)[:, None]
+    return block_norm(system.spring, weight, direction, system.particles)

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A plan as LAMMPS commands: the one source for ``in.*`` files and for live instances."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .plan import HELD, Plan
+
+SKIN = 0.75
+"""Neighbour skin over the spacing: lists are rebuilt when a particle has moved half of it."""
+GHOST = 3.0
+"""Least communication cutoff over the spacing: a bonded partner is found while its spring is stretched less than twice."""
+
+
+def harmonic_coeff(k: float) -> float:
+    """LAMMPS's K for a spring constant k: bond_style harmonic is K (r - r0)^2, eq. (3.6) is k/2 (r - r0)^2."""
+    return 0.5 * k
+
+
+def bond_coeffs(plan: Plan) -> list[str]:
+    """``TYPE K r0 [c]`` for every bond type, in digits that keep every bit."""
+    rows = []
+    for kind, (k, r0, c) in enumerate(plan.coefficients.tolist(), start=1):
+        rows.append(f"{kind} {harmonic_coeff(k)!r} {r0!r}" + (f" {c!r}" if plan.damped else ""))
+    return rows
+
+
+def box(plan: Plan) -> np.ndarray:
+    """Bounds of the simulation box at the start [m], shape (2, 3); LAMMPS shrinks and grows it with the particles."""
+    margin = plan.system.spacing.max()
+    return np.array([plan.system.position.min(0) - margin, plan.system.position.max(0) + margin])
+
+
+def prelude(plan: Plan) -> list[str]:
+    """Commands before the particles exist."""
+    spacing = float(plan.system.spacing.max())
+    skin = SKIN * spacing
+    reach = float(plan.columns["reach"].max()) if "reach" in plan.columns else 0.0
+    velocities = " vel yes" if plan.damped else ""
+    columns = "".join(f" d_{name}" for name in plan.columns)
+    return [
+        "units si",
+        "atom_style bond",
+        "atom_modify map array sort 0 0",
+        "newton off",
+        "boundary s s s",
+        "comm_style tiled",
+        f"comm_modify cutoff {max(GHOST * spacing, 1.001 * (reach + skin))!r}{velocities}",
+        f"neighbor {skin!r} bin",
+        "neigh_modify every 1 delay 0 check yes",
+        "pair_style none",
+        "special_bonds lj/coul 1 1 1",
+        *(["bond_style mdanim/harmonic"] if len(plan.bonds) else []),
+        f"fix model all property/atom rmass{columns} ghost yes",
+    ]
+
+
+def physics(plan: Plan) -> list[str]:
+    """Commands after the particles exist: groups, effects, integrator, time step."""
+    names = {e.name for e in plan.effects}
+    groups = [f"group mobile type 1:{HELD}"]
+    if "contact" in names:
+        groups += ["group inner type 1 2 5 6", "group boundary type 3 4 7 8", "group thin type 4 8"]
+    effects = [c for e in plan.effects for c in e.commands(plan.scene, plan.system)]
+    drag = " lambda d_lambda" if "lambda" in plan.columns else ""
+    return [
+        "mass * 1.0",  # wanted by atom_style bond; the particles' own masses (rmass) are what counts
+        *groups,
+        *effects,
+        f"fix leapfrog mobile mdanim/leapfrog{drag}",
+        f"timestep {plan.certificate.timestep!r}",
+    ]
+
+
+def input_script(plan: Plan) -> str:
+    """The text of ``in.NAME``: runs alone with ``lmp -in in.NAME``, on any number of ranks, to the same bits."""
+    c = plan.certificate
+    energy = "".join(f" f_{e.fix}" for e in plan.effects if e.fix and e.fix != "gravity")
+    when = f"{c.steps_per_frame}"
+    variable, modify = [], []
+    if c.last_steps:
+        # Frames are every n steps, and the last one at the end of the run.
+        n, end = c.steps_per_frame, c.steps
+        variable = [f"variable frame equal (step+{n})*(step+{n}<={end})+{end}*(step+{n}>{end}&&step<{end})+1e15*(step>={end})"]
+        modify = ["dump_modify trajectory every v_frame first yes"]
+    return "\n".join([
+        f"# {plan.scene.title or plan.name}: written by mdanim-lammps; run it here with 'lmp -in in.{plan.name}'",
+        f"# or 'mpiexec -n 4 lmp -in in.{plan.name}'. Needs the styles of the mdanim-lammps package (pip install).",
+        f"# Effects: {', '.join(e.name for e in plan.effects) or 'none'}.",
+        "",
+        *prelude(plan),
+        f"read_data data.{plan.name} fix model NULL Model",
+        "",
+        *physics(plan),
+        "",
+        "# Several ranks: cut space so that every rank has the same share; changes no bit of the result.",
+        "balance 1.0 rcb",
+        "fix balance all balance 1000 1.1 rcb",
+        "",
+        f"thermo {c.steps_per_frame}",
+        f"thermo_style custom step time ke pe{' ebond' if len(plan.bonds) else ''}{energy}",
+        "thermo_modify norm no flush yes",
+        *variable,
+        f"dump trajectory all custom {when} {plan.name}.lammpstrj id mol type x y z vx vy vz",
+        "dump_modify trajectory sort id format float %.17g",
+        *modify,
+        f"run {c.steps}",
+        "",
+    ])

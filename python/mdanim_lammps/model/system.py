@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""All solids of a scene in one set of arrays, in the order of the scene: what effects, certificate and engine read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .model import Layer, Model
+
+
+@dataclass(frozen=True)
+class System:
+    """M solids as N particles and S springs; particle ``i`` has the LAMMPS tag ``i + 1``, solid ``m`` the molecule ``m + 1``."""
+
+    names: tuple[str, ...]
+    first: np.ndarray
+    """First particle of each solid, and N at the end, int64, shape (M + 1,)."""
+    position: np.ndarray
+    """[m], shape (N, 3)."""
+    velocity: np.ndarray
+    """[m/s], shape (N, 3)."""
+    mass: np.ndarray
+    """[kg], shape (N,)."""
+    share: np.ndarray
+    """Filled share of the cells around a particle [-], shape (N,)."""
+    layer: np.ndarray
+    """Layer of each particle, int32, shape (N,)."""
+    held: np.ndarray
+    """Particles that never move, bool, shape (N,)."""
+    spring: np.ndarray
+    """Neighbour pairs i < j, sorted, int32, shape (S, 2)."""
+    stiffness: np.ndarray
+    """k of each spring, eq. (3.6) [N/m], shape (S,)."""
+    rest: np.ndarray
+    """Rest length of each spring [m], shape (S,)."""
+    damping: np.ndarray | None
+    """Dashpot of each spring [N*s/m], shape (S,); None when no solid is damped."""
+    drag: np.ndarray | None
+    """lambda of each particle [N*s/m], shape (N,); None when no solid has air drag."""
+    young: np.ndarray
+    """Young's modulus of each solid [Pa], shape (M,)."""
+    spacing: np.ndarray
+    """Longest cell edge of each solid [m], shape (M,)."""
+    cell_volume: np.ndarray
+    """Volume of a lattice cell of each solid [m^3], shape (M,)."""
+
+    @property
+    def particles(self) -> int:
+        return len(self.position)
+
+    @cached_property
+    def object(self) -> np.ndarray:
+        """Solid of each particle, 0-based, int32, shape (N,)."""
+        return np.repeat(np.arange(len(self.names), dtype=np.int32), np.diff(self.first))
+
+    @cached_property
+    def boundary(self) -> np.ndarray:
+        """Particles on a surface, bool, shape (N,)."""
+        return self.layer >= Layer.BOUNDARY
+
+    @cached_property
+    def contact_stiffness(self) -> np.ndarray:
+        """Stiffness that a particle offers to barriers and walls [N/m], shape (N,).
+
+        E h of its solid, less where few cells stand behind it: min(1, 2 n/8), one half on an edge, a quarter in a corner
+        (docs/physics-contact.md). Two of them in series make a pair's k: 2 s_i s_j / (s_i + s_j).
+        """
+        full = self.young * np.cbrt(self.cell_volume)
+        return full[self.object] * np.minimum(1.0, 2.0 * self.share)
+
+    @cached_property
+    def mass_of(self) -> np.ndarray:
+        """Mass of each solid [kg], shape (M,)."""
+        return np.add.reduceat(self.mass, self.first[:-1])
+
+    def center_of_mass(self, position: np.ndarray) -> np.ndarray:
+        """Mass-weighted mean of each solid for particle vectors of shape (N, 3); shape (M, 3), same unit."""
+        weighted = np.add.reduceat(self.mass[:, None] * position, self.first[:-1], axis=0)
+        return weighted / self.mass_of[:, None]
+
+    def spans(self) -> list[slice]:
+        """The particles of each solid."""
+        return [slice(a, b) for a, b in zip(self.first[:-1].tolist(), self.first[1:].tolist())]
+
+
+def assemble(models: Sequence[Model]) -> System:
+    """Join the models of a scene, in order, into one System."""
+    first = np.concatenate([[0], np.cumsum([len(m.position) for m in models])]).astype(np.int64)
+
+    def join(arrays):
+        # A single large solid is passed through: no second copy of a million particles.
+        return arrays[0] if len(arrays) == 1 else np.concatenate(arrays)
+
+    def join_optional(name: str, length):
+        arrays = [getattr(m, name) for m in models]
+        if all(a is None for a in arrays):
+            return None
+        return join([np.zeros(length(m)) if a is None else a for a, m in zip(arrays, models)])
+
+    offsets = first[:-1].astype(np.int32)
+    return System(
+        names=tuple(m.name for m in models),
+        first=first,
+        position=join([m.position for m in models]),
+        velocity=join([m.velocity for m in models]),
+        mass=join([m.mass for m in models]),
+        share=join([m.share for m in models]),
+        layer=join([m.layer for m in models]),
+        held=join([m.held for m in models]),
+        spring=join([m.spring + o if o else m.spring for m, o in zip(models, offsets)]),
+        stiffness=join([m.stiffness for m in models]),
+        rest=join([m.rest for m in models]),
+        damping=join_optional("damping", lambda m: len(m.spring)),
+        drag=join_optional("drag", lambda m: len(m.position)),
+        young=np.array([m.young for m in models]),
+        spacing=np.array([m.spacing for m in models]),
+        cell_volume=np.array([np.prod(m.cell) for m in models]),
+    )

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The checkpoint: everything that is needed to go on bit for bit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import OutputError
+from .files import write_whole
+
+VERSION = 1
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """The state at a frame."""
+
+    step: int
+    frame: int
+    x: np.ndarray
+    """[m], shape (N, 3)."""
+    v: np.ndarray
+    """[m/s], shape (N, 3)."""
+    f: np.ndarray
+    """Forces [N], shape (N, 3): dashpots see half-step velocities that x and v do not hold."""
+    carried: dict[str, float]
+    """What fixes had summed up by then: energies lost, deepest penetration."""
+
+    def write(self, path: Path) -> None:
+        """Write atomically: the last good checkpoint is never lost. Raises OutputError."""
+        def save(part: Path) -> None:
+            with open(part, "wb") as file:
+                np.savez(file, version=VERSION, step=self.step, frame=self.frame, x=self.x, v=self.v, f=self.f,
+                         keys=np.array(list(self.carried)), values=np.array(list(self.carried.values()), float))
+        write_whole(path, save)
+
+    @classmethod
+    def read(cls, path: Path) -> "Checkpoint":
+        """Read a checkpoint. Raises OutputError when it is missing, broken or of another version."""
+        try:
+            with np.load(path) as data:
+                if int(data["version"]) != VERSION:
+                    raise OutputError(f"{path} is of version {int(data['version'])}, this program writes {VERSION}; "
+                                      "run the scene again with --force")
+                return cls(int(data["step"]), int(data["frame"]), data["x"], data["v"], data["f"],
+                           dict(zip(data["keys"].tolist(), data["values"].tolist())))
+        except (OSError, ValueError, KeyError) as error:
+            raise OutputError(f"{path} cannot be read ({error}): nothing to resume from") from error

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Where two runs part: the first frame and object whose bits differ, and by how many metres."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import OutputError
+from .trajectory import Trajectory
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """What `compare` found."""
+
+    frames: int
+    """Frames compared."""
+    frame: int | None = None
+    """First frame that differs."""
+    time: float = 0.0
+    """[s]"""
+    object: str = ""
+    """Object that differs most there."""
+    distance: float = 0.0
+    """By how much [m]; 0 when only velocities differ."""
+    largest: float = 0.0
+    """Largest distance in any frame [m]."""
+
+    @property
+    def equal(self) -> bool:
+        return self.frame is None
+
+    def __str__(self) -> str:
+        if self.equal:
+            return f"equal    {self.frames} frames, every bit"
+        return (f"differ   first at frame {self.frame} (t = {self.time:.4g} s): {self.object} by {self.distance:.3g} m; "
+                f"largest in {self.frames} frames {self.largest:.3g} m")
+
+
+def compare(a: Path, b: Path) -> Difference:
+    """Compare all frames of two output folders. Raises OutputError when they do not hold the same objects or frames."""
+    with Trajectory(a) as first, Trajectory(b) as second:
+        if first.names != second.names or first.position(0).shape != second.position(0).shape:
+            raise OutputError(f"{a} and {b} hold different objects or resolutions: there is nothing to compare")
+        if len(first) != len(second) or not np.array_equal(first.times, second.times):
+            raise OutputError(f"{a} has {len(first)} frames and {b} {len(second)}, or their times differ: "
+                              "run both scenes with the same control block")
+        found = None
+        largest = 0.0
+        for i in range(len(first)):
+            x, y = first.position(i), second.position(i)
+            same = np.array_equal(x, y) and np.array_equal(first.velocity(i), second.velocity(i))
+            if same:
+                continue
+            distance = np.linalg.norm(x - y, axis=1)
+            largest = max(largest, float(distance.max()))
+            if found is None:
+                worst = int(distance.argmax())
+                found = (i, float(first.times[i]), first.object_of(worst), float(distance[worst]))
+        if found is None:
+            return Difference(len(first))
+        return Difference(len(first), *found, largest)

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The energy ledger: where the energy of a scene is at every frame, and how well it adds up."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import OutputError
+from .files import disk_errors
+
+LOST = ("drag_loss", "damping_loss")
+"""Columns that only grow: energy that has left the scene so far."""
+
+
+@dataclass
+class Ledger:
+    """One row per frame: time [s], one energy per effect that is on [J], and the residual.
+
+    residual = (total now - total at the start) / (largest energy in play so far). The total is the sum of all columns,
+    losses included; the energy in play is the sum of the columns' absolute values, gravity's counted from its lowest value
+    so far (its zero is arbitrary).
+    """
+
+    terms: tuple[str, ...]
+    """Energy columns, ``kinetic`` first."""
+    extras: tuple[str, ...] = ()
+    """Further columns that are no energies, such as ``strain.NAME`` where an ``expect`` asks for it."""
+    rows: list[dict[str, float]] = field(default_factory=list)
+    _peak: float = 0.0
+    _lowest: float = 0.0
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        return ("time", *self.terms, "residual", *self.extras)
+
+    def add(self, time: float, values: Mapping[str, float]) -> dict[str, float]:
+        """Append a row with these energies and extras; returns it."""
+        row = {"time": time, **{t: float(values[t]) for t in (*self.terms, *self.extras)}}
+        first = self.rows[0] if self.rows else row
+        gravity = row.get("gravity", 0.0)
+        in_play = sum(abs(row[t]) for t in self.terms if t != "gravity") + gravity
+        self._lowest = min(self._lowest, gravity) if self.rows else gravity
+        self._peak = max(self._peak, in_play) if self.rows else in_play
+        change = sum(row[t] - first[t] for t in self.terms)
+        scale = self._peak - self._lowest
+        row["residual"] = change / scale if scale else 0.0
+        self.rows.append(row)
+        return row
+
+    @property
+    def residual(self) -> float:
+        """Largest absolute residual so far [-]."""
+        return max((abs(r["residual"]) for r in self.rows), default=0.0)
+
+    def array(self, column: str) -> np.ndarray:
+        """One column, shape (F,)."""
+        return np.array([r[column] for r in self.rows])
+
+    def write(self, path: Path) -> None:
+        """Write the ledger as CSV, floats in digits that keep every bit. Raises OutputError."""
+        with disk_errors(path), open(path, "w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(self.columns)
+            writer.writerows([repr(r[c]) for c in self.columns] for r in self.rows)
+
+    @classmethod
+    def read(cls, path: Path) -> "Ledger":
+        """Read a ledger.csv back. Raises OutputError."""
+        try:
+            with open(path, newline="", encoding="utf-8") as file:
+                reader = csv.DictReader(file)
+                columns = list(reader.fieldnames or ())
+                middle = columns.index("residual")
+                ledger = cls(tuple(columns[1:middle]), tuple(columns[middle + 1:]))
+                for row in reader:
+                    ledger.add(float(row["time"]), {c: float(row[c]) for c in columns})
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise OutputError(f"{path} cannot be read: {error}") from error
+        return ledger

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Fixtures that every test may use: small scenes from text, prepared and run."""
+
+from pathlib import Path
+
+import pytest
+
+SCENES = Path(__file__).parent.parent / "scenes"
+
+
+@pytest.fixture(scope="session")
+def scenes() -> Path:
+    """The folder of scenes."""
+    return SCENES
+
+
+@pytest.fixture
+def prepared(tmp_path):
+    """Make a prepared scene from text."""
+    def make(text: str, name: str = "small"):
+        from mdanim_lammps.driver.prepare import prepare
+        from mdanim_lammps.scene.parse import load_scene
+
+        path = tmp_path / f"{name}.txt"
+        path.write_text(text, encoding="utf-8")
+        return prepare(load_scene(path))
+    return make

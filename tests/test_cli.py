@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The command line: exit codes, messages, and what goes where."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+GOOD = """
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+object cube {
+  shape box (10, 10, 10) cm
+  position (0, 0, 6) cm
+  density 1000 kg/m^3
+  elasticity 100 kPa
+}
+control {
+  time 0.1 s
+  resolution 5 cm
+}
+"""
+
+
+def run(*arguments, cwd=None):
+    """Run the program as a user would."""
+    return subprocess.run([sys.executable, "-m", "mdanim_lammps", *map(str, arguments)], capture_output=True, text=True, cwd=cwd,
+                          timeout=200)
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """Make a scene file."""
+    def make(text=GOOD, name="cube.txt"):
+        (tmp_path / name).write_text(text)
+        return tmp_path / name
+    return make
+
+
+def test_run_leaves_a_movie(scene):
+    """Run a scene as is: lines on stdout, progress on stderr, a movie at the end."""
+    path = scene()
+    done = run(path)
+    assert done.returncode == 0, done.stderr
+    words = [line.split()[0] for line in done.stdout.splitlines()]
+    assert words == ["scene", "certify", "cost", "ledger", "movie"]
+    assert (path.parent / "cube.out" / "movie.mp4").stat().st_size > 1000
+    assert done.stdout.strip().endswith("movie.mp4")
+    assert run(path).returncode == 7, "an existing folder is not overwritten"
+    assert run(path, "--force", "--no-movie", "-q").stdout == ""
+
+
+def test_check_text_and_json(scene):
+    """Say the same in text and in JSON, and run nothing."""
+    path = scene()
+    text = run("check", path)
+    assert text.returncode == 0 and "certify" in text.stdout and "contact" in text.stdout
+    data = json.loads(run("check", path, "--format", "json").stdout)
+    assert data["effects"]["gravity"]["on"] and not data["effects"]["contact"]["on"]
+    assert data["certificate"]["object"] == "cube"
+    assert [p.name for p in path.parent.iterdir()] == ["cube.txt"]
+
+
+def test_build_writes_two_files_for_lammps(scene):
+    """Write data and input files and no trajectory."""
+    path = scene()
+    assert run("build", path).returncode == 0
+    names = {p.name for p in (path.parent / "cube.out").iterdir()}
+    assert {"data.cube", "in.cube"} <= names and "trajectory.h5" not in names
+
+
+def test_compare_and_render_use_an_output_folder(scene):
+    """Draw again smaller, compare a run with itself and with another."""
+    path = scene()
+    folder = path.parent / "cube.out"
+    assert run(path, "--no-movie", "-q").returncode == 0
+    assert run("render", folder, "--size", 320, 180, "-q").returncode == 0
+    assert (folder / "movie.mp4").exists()
+    assert run("compare", folder, folder).stdout.startswith("equal")
+    assert run(path, "--no-movie", "-q", "-o", path.parent / "b.out").returncode == 0
+    assert run("compare", folder, path.parent / "b.out").returncode == 0
+
+
+@pytest.mark.parametrize(("arguments", "code", "words"), [
+    pytest.param(["chekc", "cube.txt"], 2, ["did you mean 'check'"], id="mistyped command"),
+    pytest.param(["cube.txt", "--frobnicate"], 2, ["frobnicate"], id="unknown option"),
+    pytest.param(["missing.txt"], 3, ["missing.txt"], id="no such scene"),
+    pytest.param(["bad.txt"], 3, ["bad.txt:6:14: error", "'kgg'", "did you mean", "^"], id="scene error"),
+    pytest.param(["liquid.txt"], 3, ["liquid is not built yet"], id="liquid"),
+    pytest.param(["fast.txt"], 4, ["certified bound", "cube", "timestep auto"], id="step above the bound"),
+    pytest.param(["cube.txt", "-n", "4"], 4, ["executors", "mpiexec"], id="several executors"),
+    pytest.param(["study", "cube.txt"], 4, ["not built yet"], id="study"),
+    pytest.param(["resume", "nowhere.out"], 7, ["nowhere.out"], id="nothing to resume"),
+    pytest.param(["cube.txt", "--set", "nonsense"], 2, ["NAME=VALUE"], id="set without value"),
+    pytest.param(["wrong.txt", "--no-movie"], 6, ["MISSED"], id="missed expectation"),
+])
+def test_exit_codes(scene, arguments, code, words):
+    """End with the documented code and a message that says how to go on; never with a traceback."""
+    directory = scene().parent
+    scene(GOOD.replace("density 1000 kg/m^3", "mass   1.5 kgg").replace("  mass", "  mass"), "bad.txt")
+    scene(GOOD + "liquid water {\n basin from (-1,-1,-1) m to (1,1,1) m\n density 1000 kg/m^3\n level 0 m\n}\n", "liquid.txt")
+    scene(GOOD.replace("time 0.1 s", "time 0.1 s\n  timestep 1 s"), "fast.txt")
+    scene(GOOD + "expect cube.position.z at 0.1 s = 9 m +- 1 m\n", "wrong.txt")
+    done = run(*arguments, cwd=directory)
+    assert done.returncode == code, done.stdout + done.stderr
+    assert "Traceback" not in done.stderr
+    for word in words:
+        assert word in done.stderr
+
+
+def test_help_lists_every_command():
+    """Show the commands and the options."""
+    text = run("--help").stdout
+    for word in ("check", "build", "resume", "render", "compare", "--executors", "--force", "--set"):
+        assert word in text
+
+
+def test_check_is_quick(scenes):
+    """Import neither pyvista nor MDAnalysis to check a scene of boxes."""
+    code = ("import sys; from mdanim_lammps.cli import main\n"
+            f"try: main(['check', {str(scenes / 'beam.txt')!r}])\n"
+            "except SystemExit: pass\n"
+            "print(sorted({m.split('.')[0] for m in sys.modules} & {'pyvista', 'vtk', 'MDAnalysis', 'vtkmodules', 'h5py', 'lammps'}))")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.stdout.splitlines()[-1] == "[]", done.stdout

