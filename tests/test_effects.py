@@ -5,7 +5,7 @@ import pytest
 
 from mdanim_lammps.effects import EFFECTS, decide
 from mdanim_lammps.effects.contact import plane_stiffness
-from mdanim_lammps.scene.parse import parse_scene
+from mdanim_lammps.scene.load import parse_scene
 
 FULL = """gravity (0, 0, -9.81)
 ground z 0

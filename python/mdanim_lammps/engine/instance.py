@@ -12,7 +12,7 @@ from .commands import bond_coeffs, box, physics, prelude
 from .plan import Plan
 from .plugin import open_lammps
 
-GLOBAL, SCALAR, VECTOR = 0, 0, 1  # LAMMPS's constants for extract_fix
+GLOBAL, SCALAR, VECTOR, SIZE_VECTOR = 0, 0, 1, 3  # LAMMPS's constants for extract_fix
 
 
 class Instance:
@@ -21,6 +21,9 @@ class Instance:
     def __init__(self, plan: Plan):
         self.plan = plan
         self._lmp, self._library = open_lammps()
+        self._handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p)
+        for function in (self._library.mdanim_bond_lost, self._library.mdanim_bond_seconds):
+            function.restype, function.argtypes = ctypes.c_double, [ctypes.c_void_p]
         try:
             self._fill()
         except BaseException:
@@ -73,7 +76,7 @@ class Instance:
             (system.velocity, np.float64), (system.mass, np.float64))]
         error = ctypes.create_string_buffer(1024)
         status = self._library.mdanim_insert(
-            ctypes.c_void_p(self._lmp.lmp if isinstance(self._lmp.lmp, int) else self._lmp.lmp.value), ctypes.c_int(n),
+            self._handle, ctypes.c_int(n),
             *(_pointer(a) for a in arrays),
             ctypes.c_int(len(names)), (ctypes.c_char_p * max(1, len(names)))(*(c.encode() for c in names)),
             _pointer(properties), _pointer(first), _pointer(partner), _pointer(kind), error, ctypes.c_int(len(error)),
@@ -137,6 +140,18 @@ class Instance:
     def elastic_energy(self) -> float:
         """Energy of all springs [J], at the last step of a `run` or after `setup`."""
         return float(self._lmp.get_thermo("ebond")) if len(self.plan.bonds) else 0.0
+
+    def fix_seconds(self, fix: str) -> float:
+        """Wall seconds of one of our fixes so far: the last entry of its vector."""
+        return self.fix_value(fix, int(self._lmp.extract_fix(fix, GLOBAL, SIZE_VECTOR)) - 1)
+
+    def bond_seconds(self) -> float:
+        """Wall seconds of the springs so far."""
+        return float(self._library.mdanim_bond_seconds(self._handle))
+
+    def damping_loss(self) -> float:
+        """Energy that dashpots have taken so far [J]."""
+        return float(self._library.mdanim_bond_lost(self._handle))
 
 
 def _pointer(array: np.ndarray) -> ctypes.c_void_p:

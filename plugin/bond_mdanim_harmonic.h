@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// bond_style mdanim/harmonic: springs whose forces do not depend on the order of particles or on the number of ranks.
+
+#ifndef LMP_BOND_MDANIM_HARMONIC_H
+#define LMP_BOND_MDANIM_HARMONIC_H
+
+#include "bond.h"
+#include "loss.h"
+#include "spring.h"
+#include "vec3.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class BondMdanimHarmonic : public Bond {
+ public:
+  explicit BondMdanimHarmonic(class LAMMPS *);
+  ~BondMdanimHarmonic() override;
+
+  void init_style() override;
+  void compute(int eflag, int vflag) override;
+  void coeff(int, char **) override;
+  double equilibrium_distance(int) override;
+  void write_restart(FILE *) override;
+  void read_restart(FILE *) override;
+  void write_data(FILE *) override;
+  double single(int, double, int, int, double &) override;
+  double memory_usage() override;
+  void *extract(const char *, int &) override;
+
+ private:
+  // Row i holds the bonds [first[i], first[i+1]) of local particle i, partners ascending by tag.
+  struct Rows {
+    std::vector<int> first, partner, type;    // partner: local or ghost index
+    bool upper_only = false;                  // only partners of a higher tag, see sum_halves()
+  };
+  // What the rows were made from; while it is unchanged they are kept.
+  struct Source {
+    std::vector<tagint> tag, partner;
+    std::vector<int> count, type;
+  };
+  // The bonds of a few rows, one array per quantity, for the vector units.
+  struct Stretch {
+    std::vector<double> x, y, z;    // r_ij, then F_i
+    std::vector<double> K, r0;
+  };
+
+  void allocate();
+  bool source_changed();
+  void make_rows();
+  bool halves_suffice() const;
+  void forces(int begin, int end);
+  void sum_rows(int begin, int end);
+  void sum_halves(int begin, int end);
+  double dashpot_power(int begin, int end);
+  void tally();
+
+  std::vector<mdanim::Spring> spring;    // by bond type
+  bool damped = false;                   // some spring has a dashpot
+  Rows rows;
+  Source source;
+  Stretch stretch;
+  std::vector<mdanim::Vec3> received;    // from lower partners so far, for sum_halves()
+
+  mdanim::Loss loss;       // to dashpots, on this rank
+  double seconds = 0.0;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

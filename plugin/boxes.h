@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Boxes of objects, and which of them meet.
+// Wcislo 1999, eq. (3.14): S(A) = axis-aligned bounding box of the particles of A; (3.15): S(A) and S(B) intersect.
+
+#ifndef MDANIM_BOXES_H
+#define MDANIM_BOXES_H
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace mdanim {
+
+// Negated upper corners, so that one MPI_MIN over all six numbers unites boxes.
+struct Box {
+  double bound[6] = {FAR, FAR, FAR, FAR, FAR, FAR};    // xlo ylo zlo -xhi -yhi -zhi; empty at first
+
+  double low(int d) const { return bound[d]; }
+  double high(int d) const { return -bound[3 + d]; }
+  bool empty() const { return bound[0] == FAR; }
+  double edge() const { return std::max({high(0) - low(0), high(1) - low(1), high(2) - low(2)}); }
+
+  void include(const double *x)
+  {
+    for (int d = 0; d < 3; ++d) {
+      bound[d] = std::min(bound[d], x[d]);
+      bound[3 + d] = std::min(bound[3 + d], -x[d]);
+    }
+  }
+  void unite(const Box &b)
+  {
+    for (int k = 0; k < 6; ++k) bound[k] = std::min(bound[k], b.bound[k]);
+  }
+  Box grown(double by) const
+  {
+    Box b = *this;
+    for (double &side : b.bound) side -= by;
+    return b;
+  }
+  bool contains(const double *x) const
+  {
+    return x[0] >= low(0) && x[0] <= high(0) && x[1] >= low(1) && x[1] <= high(1) && x[2] >= low(2) && x[2] <= high(2);
+  }
+
+  static constexpr double FAR = std::numeric_limits<double>::max();
+};
+
+// Eq. (3.15) for boxes that are both grown by half of `gap`.
+inline bool meet(const Box &a, const Box &b, double gap)
+{
+  for (int d = 0; d < 3; ++d)
+    if (a.low(d) - b.high(d) > gap || b.low(d) - a.high(d) > gap) return false;
+  return true;
+}
+
+inline Box intersection(const Box &a, const Box &b)
+{
+  Box c;
+  for (int k = 0; k < 6; ++k) c.bound[k] = std::max(a.bound[k], b.bound[k]);
+  return c;
+}
+
+// A grid of cubic cells over a set of points, each cell listing its points. Cells are never smaller than asked, and never
+// many more than points.
+class Grid {
+ public:
+  template <class Points> Grid(const Points &points, int n, double cell) : cell(cell), next(n, -1)
+  {
+    Box all;
+    for (int i = 0; i < n; ++i) all.include(points(i));
+    if (n == 0) return;
+    for (;;) {
+      double cells = 1.0;
+      for (int d = 0; d < 3; ++d) {
+        origin[d] = all.low(d);
+        const double across = std::floor((all.high(d) - all.low(d)) / this->cell) + 1.0;
+        count[d] = static_cast<int>(std::min(across, 1e9));
+        cells *= across;
+      }
+      if (cells <= 4.0 * n + 64.0) break;
+      this->cell *= 1.5;
+    }
+    head.assign(static_cast<size_t>(count[0]) * count[1] * count[2], -1);
+    for (int i = n - 1; i >= 0; --i) {    // backwards: lists are then in ascending order
+      const size_t c = index(place(points(i), 0), place(points(i), 1), place(points(i), 2));
+      next[i] = head[c];
+      head[c] = i;
+    }
+  }
+
+  // Calls visit(j) for every point in the 27 cells around x.
+  template <class Visit> void around(const double *x, Visit visit) const
+  {
+    if (head.empty()) return;
+    const int p[3] = {place(x, 0), place(x, 1), place(x, 2)};
+    for (int a = std::max(0, p[0] - 1); a <= std::min(count[0] - 1, p[0] + 1); ++a)
+      for (int b = std::max(0, p[1] - 1); b <= std::min(count[1] - 1, p[1] + 1); ++b)
+        for (int c = std::max(0, p[2] - 1); c <= std::min(count[2] - 1, p[2] + 1); ++c)
+          for (int j = head[index(a, b, c)]; j >= 0; j = next[j]) visit(j);
+  }
+
+ private:
+  int place(const double *x, int d) const
+  {
+    const double p = std::floor((x[d] - origin[d]) / cell);
+    return static_cast<int>(std::min(std::max(p, 0.0), count[d] - 1.0));
+  }
+  size_t index(int a, int b, int c) const { return (static_cast<size_t>(a) * count[1] + b) * count[2] + c; }
+
+  double cell, origin[3] = {0.0, 0.0, 0.0};
+  int count[3] = {0, 0, 0};
+  std::vector<int> head, next;
+};
+
+// All pairs (a < b) of boxes that meet. Up to FEW boxes every pair is tried. Beyond that, boxes of usual size are sorted into
+// a grid by their lower corner, cells as wide as the largest of them and the gap, so that a partner lies in one of the 27
+// cells around; boxes much larger than the median (a floor, a pool) are tried against all.
+inline std::vector<std::pair<int, int>> meeting_pairs(const std::vector<Box> &boxes, double gap)
+{
+  constexpr int FEW = 200;
+  constexpr double LARGE = 4.0;
+  std::vector<std::pair<int, int>> pairs;
+  const auto check = [&](int a, int b) {
+    if (meet(boxes[a], boxes[b], gap)) pairs.emplace_back(std::min(a, b), std::max(a, b));
+  };
+
+  std::vector<int> present;
+  for (int a = 0; a < static_cast<int>(boxes.size()); ++a)
+    if (!boxes[a].empty()) present.push_back(a);
+
+  if (present.size() <= FEW) {
+    for (size_t a = 0; a < present.size(); ++a)
+      for (size_t b = a + 1; b < present.size(); ++b) check(present[a], present[b]);
+    return pairs;
+  }
+
+  std::vector<double> edges;
+  for (const int a : present) edges.push_back(boxes[a].edge());
+  std::nth_element(edges.begin(), edges.begin() + edges.size() / 2, edges.end());
+  const double limit = LARGE * edges[edges.size() / 2] + gap;
+
+  std::vector<int> usual, large;
+  double cell = 0.0;
+  for (const int a : present) {
+    const double reach = boxes[a].edge() + gap;
+    (boxes[a].edge() > limit ? large : usual).push_back(a);
+    if (boxes[a].edge() <= limit) cell = std::max(cell, reach);
+  }
+  const auto corner = [&](int i) { return boxes[usual[i]].bound; };
+  const Grid grid(corner, static_cast<int>(usual.size()), cell);
+  for (size_t a = 0; a < usual.size(); ++a)
+    grid.around(boxes[usual[a]].bound, [&](int b) {
+      if (b > static_cast<int>(a)) check(usual[a], usual[b]);
+    });
+  for (size_t a = 0; a < large.size(); ++a) {
+    for (size_t b = a + 1; b < large.size(); ++b) check(large[a], large[b]);
+    for (const int b : usual) check(large[a], b);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}    // namespace mdanim
+
+#endif

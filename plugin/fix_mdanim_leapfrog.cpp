@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/leapfrog: loops over the particles; the half steps are in leapfrog.h.
+
+#include "fix_mdanim_leapfrog.h"
+
+#include "leapfrog.h"
+#include "stopwatch.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace mdanim;
+
+static constexpr int RESTART_VERSION = 1;
+
+FixMdanimLeapfrog::FixMdanimLeapfrog(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  time_integrate = 1;
+  dynamic_group_allow = 1;
+  restart_global = 1;
+  scalar_flag = 1;
+  extscalar = 1;
+  energy_global_flag = 1;
+  vector_flag = 1;
+  size_vector = 2;
+  extvector = 0;
+  global_freq = 1;
+
+  int drag_word = 0;
+  for (int iarg = 3; iarg < narg; iarg += 2) {
+    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/leapfrog {}", arg[iarg]), error);
+    if (strcmp(arg[iarg], "lambda") == 0) {
+      lambda = ParticleValue(lmp, "fix mdanim/leapfrog: lambda", iarg + 1, arg[iarg + 1]);
+      has_drag = true;
+    } else if (strcmp(arg[iarg], "drag") == 0) {
+      drag_word = iarg;
+      if (strcmp(arg[iarg + 1], "exp") == 0) exponential = true;
+      else if (strcmp(arg[iarg + 1], "implicit") == 0) exponential = false;
+      else error->all(FLERR, iarg + 1, "fix mdanim/leapfrog: drag must be implicit or exp, got {}", arg[iarg + 1]);
+    } else {
+      error->all(FLERR, iarg, "fix mdanim/leapfrog: unknown keyword {}; it knows lambda and drag", arg[iarg]);
+    }
+  }
+  if (drag_word && !has_drag)
+    error->all(FLERR, drag_word, "fix mdanim/leapfrog: drag says how lambda is used, but there is no lambda; add one");
+}
+
+int FixMdanimLeapfrog::setmask() { return INITIAL_INTEGRATE | FINAL_INTEGRATE; }
+
+void FixMdanimLeapfrog::init()
+{
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, "fix mdanim/leapfrog: run_style respa is not supported; use run_style verlet");
+  if (domain->dimension != 3)
+    error->all(FLERR, "fix mdanim/leapfrog: dimension must be 3, got {}", domain->dimension);
+  lambda.init(lmp);
+  reset_dt();
+  largest_phi = 0.0;
+}
+
+// (1-phi)/(1+phi) changes sign at phi = 1: strongly damped particles then jitter instead of creeping.
+void FixMdanimLeapfrog::setup(int)
+{
+  if (!has_drag || exponential) return;
+  double here = largest_phi_here(), phi = 0.0;
+  MPI_Allreduce(&here, &phi, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (phi > 0.5 && comm->me == 0)
+    error->warning(FLERR, "fix {} mdanim/leapfrog: phi = lambda dt/2m reaches {:.3g}; above 0.5 use drag exp or a "
+                   "smaller time step", id, phi);
+}
+
+void FixMdanimLeapfrog::reset_dt() { half_dt = 0.5 * update->dt * force->ftm2v; }
+
+double FixMdanimLeapfrog::largest_phi_here() const
+{
+  const double *own = lambda.values(lmp);
+  double largest = 0.0;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (atom->mask[i] & groupbit)
+      largest = std::max(largest, (own ? own[i] : lambda.number) * half_dt / mass_of(atom->rmass, atom->mass, atom->type, i));
+  return largest;
+}
+
+// Without drag both halves are v <- v + dt/2m F.
+template <class Half> void FixMdanimLeapfrog::half_step(Half half)
+{
+  const Lap lap(seconds);
+  if (!has_drag) {
+    double *const *v = atom->v, *const *f = atom->f;
+    const double *rmass = atom->rmass, *mass = atom->mass;
+    const int *mask = atom->mask, *type = atom->type, nlocal = atom->nlocal;
+    for (int i = 0; i < nlocal; ++i) {
+      if (!(mask[i] & groupbit)) continue;
+      add_to(v[i], half_dt / mass_of(rmass, mass, type, i) * vec3(f[i]));
+    }
+  } else if (exponential) {
+    half_step_with_drag<Exponential>(half);
+  } else {
+    half_step_with_drag<Implicit>(half);
+  }
+}
+
+template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Half half)
+{
+  double *const *v = atom->v, *const *f = atom->f;
+  const double *rmass = atom->rmass, *mass = atom->mass, *own = lambda.values(lmp);
+  const int *mask = atom->mask, *type = atom->type, nlocal = atom->nlocal;
+  double loss = 0.0;
+  for (int i = 0; i < nlocal; ++i) {
+    if (!(mask[i] & groupbit)) continue;
+    const double m = mass_of(rmass, mass, type, i), kick = half_dt / m;
+    const double phi = (own ? own[i] : lambda.number) * kick;
+    const Vec3 before = vec3(v[i]), push = vec3(f[i]);
+    const Vec3 after = half(Drag{phi, kick}, before, push);
+    v[i][0] = after.x;
+    v[i][1] = after.y;
+    v[i][2] = after.z;
+    loss += half_step_loss(before, after, push, m, kick);
+    largest_phi = std::max(largest_phi, phi);
+  }
+  lost += force->mvv2e * loss;
+}
+
+// v^n -> v^{n+1/2}, then r^{n+1} = r^n + dt v^{n+1/2}: the end of eq. (3.12).
+void FixMdanimLeapfrog::initial_integrate(int)
+{
+  half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.first_half(v, f); });
+  drift();
+}
+
+void FixMdanimLeapfrog::drift()
+{
+  const Lap lap(seconds);
+  double *const *x = atom->x, *const *v = atom->v;
+  const int *mask = atom->mask, nlocal = atom->nlocal;
+  const double dt = update->dt;
+  for (int i = 0; i < nlocal; ++i)
+    if (mask[i] & groupbit) add_to(x[i], dt * vec3(v[i]));
+}
+
+// v^{n-1/2} -> v^n, eq. (3.10).
+void FixMdanimLeapfrog::final_integrate()
+{
+  half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.final_half(v, f); });
+}
+
+double FixMdanimLeapfrog::compute_scalar()
+{
+  double total = 0.0;
+  MPI_Allreduce(&lost, &total, 1, MPI_DOUBLE, MPI_SUM, world);
+  return total;
+}
+
+// 1: largest phi in this run; 2: wall seconds of the slowest rank
+double FixMdanimLeapfrog::compute_vector(int n)
+{
+  double here = n == 0 ? largest_phi : seconds, largest = 0.0;
+  MPI_Allreduce(&here, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
+  return largest;
+}
+
+void FixMdanimLeapfrog::write_restart(FILE *fp)
+{
+  const double list[2] = {RESTART_VERSION, compute_scalar()};
+  if (comm->me != 0) return;
+  const int size = sizeof list;
+  fwrite(&size, sizeof size, 1, fp);
+  fwrite(list, sizeof list, 1, fp);
+}
+
+void FixMdanimLeapfrog::restart(char *buffer)
+{
+  double list[2];
+  memcpy(list, buffer, sizeof list);
+  if (list[0] != RESTART_VERSION)
+    error->all(FLERR, "fix mdanim/leapfrog: restart state has version {}, {} is needed", list[0], RESTART_VERSION);
+  lost = comm->me == 0 ? list[1] : 0.0;
+}

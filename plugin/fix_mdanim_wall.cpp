@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/wall: asks the region for the nearest point of its surface; the law is in wall.h.
+
+#include "fix_mdanim_wall.h"
+
+#include "stopwatch.h"
+#include "wall.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "error.h"
+#include "neighbor.h"
+#include "region.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace mdanim;
+
+static constexpr double ANY_DEPTH = 1.0e20;    // as large as LAMMPS's INF
+
+// fix ID group mdanim/wall REGION k
+FixMdanimWall::FixMdanimWall(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  scalar_flag = 1;
+  extscalar = 1;
+  energy_global_flag = 1;
+  vector_flag = 1;
+  size_vector = 6;
+  static int extensive[] = {1, 1, 1, 1, 0, 0};
+  extvector = -1;
+  extlist = extensive;
+  global_freq = 1;
+  dynamic_group_allow = 1;
+
+  if (narg < 5) utils::missing_cmd_args(FLERR, "fix mdanim/wall", error);
+  if (narg > 5) error->all(FLERR, 5, "fix mdanim/wall: region and k are all it takes, got also {}", arg[5]);
+  region_id = arg[3];
+  region = domain->get_region_by_id(region_id);
+  if (!region) error->all(FLERR, 3, "fix mdanim/wall: there is no region {}; make it before this fix", arg[3]);
+  if (region->openflag)
+    error->all(FLERR, 3, "fix mdanim/wall: region {} has open faces, it has no inside; use INF for a face that shall not "
+               "be there", arg[3]);
+  if (strcmp(region->style, "union") == 0 || strcmp(region->style, "intersect") == 0)
+    error->all(FLERR, 3, "fix mdanim/wall: region style {} cannot tell its nearest surface; use one fix per part",
+               region->style);
+  stiffness = ParticleValue(lmp, "fix mdanim/wall: k", 4, arg[4]);
+}
+
+int FixMdanimWall::setmask() { return POST_NEIGHBOR | POST_FORCE; }
+
+void FixMdanimWall::init()
+{
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, "fix {} mdanim/wall: run_style respa is not supported; use run_style verlet", id);
+  region = domain->get_region_by_id(region_id);
+  if (!region) error->all(FLERR, "fix {} mdanim/wall: region {} has been deleted", id, region_id);
+  stiffness.init(lmp);
+  // Lists are then rebuilt as soon as a particle has moved by half the skin.
+  watching = !region->dynamic_check() && neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once;
+}
+
+// Whether x lies outside the region's own side, and if so the vector to it from the nearest point of the surface. A region
+// tells surface points to particles on its own side only, so for this question it is turned inside out.
+bool FixMdanimWall::behind(const double *x, Vec3 &d)
+{
+  if (region->match(x[0], x[1], x[2])) return false;
+  region->interior = !region->interior;
+  const int contacts = region->surface(x[0], x[1], x[2], ANY_DEPTH);
+  region->interior = !region->interior;
+  if (contacts == 0) return false;    // on the surface itself, or on an axis or centre, where no point is the nearest
+  const Region::Contact *nearest = region->contact;
+  for (int n = 1; n < contacts; ++n)
+    if (region->contact[n].r < nearest->r) nearest = &region->contact[n];
+  d = {nearest->delx, nearest->dely, nearest->delz};
+  return true;
+}
+
+void FixMdanimWall::setup_post_neighbor() { post_neighbor(); }
+
+void FixMdanimWall::post_neighbor()
+{
+  if (!watching) return;
+  const Lap lap(seconds);
+  watched.clear();
+  region->prematch();
+  const double far = 0.5 * neighbor->skin;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const double *x = atom->x[i];
+    if (!region->match(x[0], x[1], x[2]) || region->surface(x[0], x[1], x[2], far) > 0) watched.push_back(i);
+  }
+}
+
+void FixMdanimWall::setup(int vflag)
+{
+  deepest = 0.0;
+  post_force(vflag);
+}
+
+void FixMdanimWall::post_force(int)
+{
+  energy = particles_behind = 0.0;
+  on_wall = Vec3();
+  if (watching && watched.empty()) return;
+
+  const Lap lap(seconds);
+  region->prematch();
+  const double *k = stiffness.values(lmp);
+  if (watching) {
+    for (const int i : watched) push_back(i, k);
+  } else {
+    for (int i = 0; i < atom->nlocal; ++i)
+      if (atom->mask[i] & groupbit) push_back(i, k);
+  }
+}
+
+void FixMdanimWall::push_back(int i, const double *k)
+{
+  Vec3 d;
+  if (!behind(atom->x[i], d)) return;
+  const double own = k ? k[i] : stiffness.number;
+  const Vec3 force = wall_force(own, d);
+  add_to(atom->f[i], force);
+  on_wall -= force;
+  energy += wall_energy(own, d);
+  particles_behind += 1.0;
+  deepest = std::max(deepest, std::sqrt(dot(d, d)));
+}
+
+double FixMdanimWall::compute_scalar()
+{
+  double all = 0.0;
+  MPI_Allreduce(&energy, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+// 1-3: force on the wall; 4: particles behind it; 5: deepest in this run; 6: wall seconds of the slowest rank
+double FixMdanimWall::compute_vector(int n)
+{
+  double here[] = {on_wall.x, on_wall.y, on_wall.z, particles_behind, deepest, seconds}, all = 0.0;
+  MPI_Allreduce(&here[n], &all, 1, MPI_DOUBLE, n < 4 ? MPI_SUM : MPI_MAX, world);
+  return all;
+}
+
+double FixMdanimWall::memory_usage() { return watched.capacity() * sizeof(int); }

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/wall: pushes back what leaves a region, however deep and fast. A stock wall stops the run instead.
+
+#ifndef LMP_FIX_MDANIM_WALL_H
+#define LMP_FIX_MDANIM_WALL_H
+
+#include "fix.h"
+#include "particle_value.h"
+#include "vec3.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixMdanimWall : public Fix {
+ public:
+  FixMdanimWall(class LAMMPS *, int, char **);
+
+  int setmask() override;
+  void init() override;
+  void setup_post_neighbor() override;
+  void setup(int) override;
+  void post_neighbor() override;
+  void post_force(int) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+
+ private:
+  bool behind(const double *x, mdanim::Vec3 &d);
+  void push_back(int i, const double *k);
+
+  std::string region_id;
+  class Region *region = nullptr;
+  mdanim::ParticleValue stiffness;
+
+  bool watching = false;       // only particles in `watched` can be behind before the next rebuild
+  std::vector<int> watched;
+
+  double energy = 0.0;         // all on this rank
+  mdanim::Vec3 on_wall;
+  double particles_behind = 0.0;
+  double deepest = 0.0;        // in this run
+  double seconds = 0.0;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The two half steps of a velocity under force and friction.
+// Wcislo 1999, eq. (3.3), (3.10), (3.12), (3.13); symbols as there: phi = lambda dt / 2m.
+
+#ifndef MDANIM_LEAPFROG_H
+#define MDANIM_LEAPFROG_H
+
+#include "vec3.h"
+
+#include <cstdint>
+#include <cstring>
+
+namespace mdanim {
+
+// Friction taken implicitly. Wcislo 1999, eq. (3.12) in two halves that meet in v^n, which is (3.10):
+//   v^n       = (v^{n-1/2} + k F) / (1 + phi),   v^{n+1/2} = (1 - phi) v^n + k F,   k = dt / 2m
+struct Implicit {
+  double phi;     // [-], eq. (3.13)
+  double kick;    // dt / 2m [velocity/force]
+  Vec3 first_half(const Vec3 &v, const Vec3 &f) const
+  {
+    const double keep = 1.0 - phi;
+    return {keep * v.x + kick * f.x, keep * v.y + kick * f.y, keep * v.z + kick * f.z};
+  }
+  Vec3 final_half(const Vec3 &v, const Vec3 &f) const
+  {
+    const double share = 1.0 + phi;
+    return {(v.x + kick * f.x) / share, (v.y + kick * f.y) / share, (v.z + kick * f.z) / share};
+  }
+};
+
+// 2^-n for n >= 0, exactly; 0 below the normal range.
+inline double power_of_half(int n)
+{
+  if (n > 1022) return 0.0;
+  const std::uint64_t bits = static_cast<std::uint64_t>(1023 - n) << 52;
+  double value;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+// e = exp(-phi) and g = (1 - e) / phi for phi >= 0, to 2 ulp, by + - * / alone: libm may round differently from one CPU to
+// the next. phi = n ln2 + r with |r| <= ln2 / 2; then g(r) = sum (-r)^j / (j+1)! and exp(-r) = 1 - r g(r).
+inline void exponential_decay(double phi, double &e, double &g)
+{
+  if (!(phi < 700.0)) {    // exp(-phi) is nothing beside 1
+    e = 0.0;
+    g = 1.0 / phi;
+    return;
+  }
+  constexpr double LN2_HIGH = 0x1.62e42feep-1, LN2_LOW = 0x1.a39ef35793c76p-33;    // the high part times n is exact
+  const int n = static_cast<int>(phi * 0x1.71547652b82fep+0 + 0.5);
+  const double r = (phi - n * LN2_HIGH) - n * LN2_LOW;
+  double series = 1.0;
+  for (int j = 15; j >= 1; --j) series = 1.0 - series * r / (j + 1);
+  e = (1.0 - r * series) * power_of_half(n);
+  g = n == 0 ? series : (1.0 - e) / phi;
+}
+
+// Friction exact for a force that is constant over the half step: v <- e v + (1-e)/phi k F, e = exp(-phi), in both halves.
+// Same terminal velocity as `Implicit`, no change of sign at phi > 1.
+struct Exponential {
+  double e, g, kick;
+  Exponential(double phi, double kick) : kick(kick) { exponential_decay(phi, e, g); }
+  Vec3 first_half(const Vec3 &v, const Vec3 &f) const
+  {
+    const double push = g * kick;
+    return {e * v.x + push * f.x, e * v.y + push * f.y, e * v.z + push * f.z};
+  }
+  Vec3 final_half(const Vec3 &v, const Vec3 &f) const { return first_half(v, f); }
+};
+
+// Energy that friction took in a half step from va to vb: the work of F less the gain in kinetic energy,
+// (va + vb)/2 . (F dt/2 - m (vb - va)). For `Implicit`, over a whole step, it is lambda dt v_n^2.
+inline double half_step_loss(const Vec3 &va, const Vec3 &vb, const Vec3 &f, double mass, double kick)
+{
+  return 0.5 * mass * dot(va + vb, kick * f - (vb - va));
+}
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// A style's argument that is one number for all particles or, as d_NAME, a custom property of each particle.
+
+#ifndef MDANIM_PARTICLE_VALUE_H
+#define MDANIM_PARTICLE_VALUE_H
+
+#include "pointers.h"
+
+#include <string>
+
+namespace mdanim {
+
+class ParticleValue {
+ public:
+  ParticleValue() = default;
+  // `what` names the argument in messages, e.g. "fix mdanim/wall: k"; `iarg` is its place, for the caret.
+  ParticleValue(LAMMPS_NS::LAMMPS *lmp, const char *what, int iarg, const char *word);
+
+  bool constant() const { return name.empty(); }
+  // Look the property up again (it may have moved). Raises a LAMMPS error when it is gone or holds a negative value.
+  void init(LAMMPS_NS::LAMMPS *lmp);
+  // Values of all local particles, or nullptr when constant; valid until particles are added or moved.
+  const double *values(LAMMPS_NS::LAMMPS *lmp) const;
+  double number = 0.0;
+
+ private:
+  int find(LAMMPS_NS::LAMMPS *lmp) const;
+  std::string what, name;
+  int index = -1;
+};
+
+// Mass of a local particle: its own where particles have one, else that of its type.
+inline double mass_of(const double *rmass, const double *mass, const int *type, int i)
+{
+  return rmass ? rmass[i] : mass[type[i]];
+}
+
+}    // namespace mdanim
+
+#endif

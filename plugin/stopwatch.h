@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Own wall time of a style: LAMMPS lumps all fixes into one line of its timing.
+
+#ifndef MDANIM_STOPWATCH_H
+#define MDANIM_STOPWATCH_H
+
+#include <chrono>
+
+namespace mdanim {
+
+// Adds the lifetime of the object to `seconds`.
+class Lap {
+ public:
+  explicit Lap(double &seconds) : seconds(seconds), start(Clock::now()) {}
+  ~Lap() { seconds += std::chrono::duration<double>(Clock::now() - start).count(); }
+  Lap(const Lap &) = delete;
+  Lap &operator=(const Lap &) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double &seconds;
+  Clock::time_point start;
+};
+
+}    // namespace mdanim
+
+#endif

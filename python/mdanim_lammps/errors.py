@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Problems that know their place, and the few exceptions of this package, each with its exit code."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+_WINDOW = 100
+
+
+class ExitCode(IntEnum):
+    """Exit codes of the command line (docs/command-line.md)."""
+
+    DONE = 0
+    USAGE = 2
+    SCENE = 3
+    REFUSED = 4
+    ENVIRONMENT = 5
+    DIVERGED = 6
+    IO = 7
+    INTERRUPTED = 130
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """A stretch of text on one line of a scene file; line and column count from 1."""
+
+    file: str
+    line: int
+    column: int
+    width: int = 1
+    text: str = ""
+    """The whole source line, for the caret picture; empty where there is no text (``--set``)."""
+    included_from: tuple["Span", ...] = ()
+    """The ``include`` lines that lead to this file, outermost first."""
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One thing that is wrong (or doubtful) in a scene: where, why, what was found, and a way out."""
+
+    span: Span | None
+    message: str
+    """The cause with the value found, e.g. ``mass must be > 0, found -2 kg``."""
+    hint: str = ""
+    """The way out, e.g. ``did you mean 'kg'?``."""
+    severity: str = "error"
+    """``error`` or ``warning``."""
+
+    @property
+    def file(self) -> str:
+        """Name of the scene file; the empty string where the problem has no place."""
+        return self.span.file if self.span else ""
+
+    @property
+    def line(self) -> int:
+        """Line, counted from 1; 0 without a place."""
+        return self.span.line if self.span else 0
+
+    @property
+    def column(self) -> int:
+        """Column, counted from 1; 0 without a place."""
+        return self.span.column if self.span else 0
+
+    def __str__(self) -> str:
+        """The message, the source line, a caret below the bad word with the way out beside it, the include chain."""
+        place = f"{self.span}: " if self.span else ""
+        head = f"{place}{self.severity}: {self.message}"
+        if self.span is None or not self.span.text:
+            return head + (f"\n  {self.hint}" if self.hint else "")
+        text, start = _window(self.span.text, self.span.column - 1)
+        gutter = f"{self.span.line:>5} | "
+        # Tabs are kept so that the caret stays below its word in any terminal.
+        pad = "".join(c if c == "\t" else " " for c in text[:start])
+        caret = "^" + "~" * (min(max(1, self.span.width), max(1, len(text) - start)) - 1)
+        picture = f"{gutter}{text}\n{' ' * (len(gutter) - 2)}| {pad}{caret}"
+        hint = f"  {self.hint}" if self.hint else ""
+        chain = "".join(f"\n        included from {s}" for s in reversed(self.span.included_from))
+        return f"{head}\n{picture}{hint}{chain}"
+
+
+def _window(text: str, start: int) -> tuple[str, int]:
+    """Cut a long line down to the part around offset ``start``; returns it with the offset moved along."""
+    text = "".join(c if c.isprintable() or c == "\t" else "\N{REPLACEMENT CHARACTER}" for c in text.rstrip())
+    if len(text) <= _WINDOW:
+        return text, start
+    first = max(0, start - _WINDOW // 2)
+    left = "..." if first else ""
+    right = "..." if first + _WINDOW < len(text) else ""
+    return left + text[first : first + _WINDOW] + right, start - first + len(left)
+
+
+class MdanimError(Exception):
+    """Base of all errors that end the program with one message and an exit code."""
+
+    exit_code = ExitCode.USAGE
+
+
+class SceneError(MdanimError):
+    """A scene cannot be used; ``problems`` holds everything found in one pass."""
+
+    exit_code = ExitCode.SCENE
+
+    def __init__(self, problems: list[Problem]):
+        self.problems = list(problems)
+        super().__init__("\n".join(map(str, self.problems)))
+
+
+class RefusedError(MdanimError):
+    """The run is refused before step 0, e.g. for a time step above the certified bound."""
+
+    exit_code = ExitCode.REFUSED
+
+
+class SetupError(MdanimError):
+    """LAMMPS, MPI or the plugin is missing, of another version, or cannot be loaded."""
+
+    exit_code = ExitCode.ENVIRONMENT
+
+
+class DivergedError(MdanimError):
+    """The run diverged, the ledger broke or an ``expect`` was missed; the last good state is kept."""
+
+    exit_code = ExitCode.DIVERGED
+
+
+class OutputError(MdanimError):
+    """Disk full, output folder in the way, file not readable."""
+
+    exit_code = ExitCode.IO

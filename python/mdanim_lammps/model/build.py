@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""From a scene to its models (Wcislo 1999, sec. 5.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache, singledispatch
+
+import numpy as np
+
+from ..errors import Problem, SceneError
+from ..scene.scene import HoldAll, HoldFaces, HoldWithin, Scene, Shape, Solid, SpringConstant, Young
+from . import shapes
+from .cells import TooThin, fill_cells
+from .embed import make_surface
+from .lattice import Lattice, make_lattice
+from .mesh import MeshError
+from .model import Model, Surface
+from .spacing import plan_spacing
+from .springs import dashpots, equivalent_modulus, rest_lengths, stiffness
+from .wording import length
+
+
+def build_models(scene: Scene, progress: Callable[[int, int], None] | None = None) -> tuple[Model, ...]:
+    """Make the model of every solid, in the order of the scene, all with one particle spacing.
+
+    ``progress(done, total)`` is called after each solid. Objects of equal shape, elasticity and mass share their
+    arrays of springs, masses, layers and surface, which are read-only; positions, velocities and held are their own.
+
+    Raises SceneError with all problems of all solids in one pass: those of plan_spacing, a body that falls apart at
+    this spacing, a ``hold`` that catches nothing.
+    """
+    h = plan_spacing(scene).h
+    workshop = _Workshop(h)
+    models, problems = [], []
+    for done, solid in enumerate(scene.solids, 1):
+        try:
+            models.append(_make_model(solid, workshop))
+        except TooThin:
+            problems.append(_falls_apart(solid, h))
+        except MeshError as error:
+            problems.append(Problem(solid.spans.get("shape"), f"{solid.name}: {error}", error.hint))
+        except _NothingHeld as error:
+            problems.append(Problem(solid.spans.get("hold"), f"{solid.name}: {error}", error.hint))
+        if progress is not None:
+            progress(done, len(scene.solids))
+    if problems:
+        raise SceneError(problems)
+    return tuple(models)
+
+
+# --- what equal objects share -----------------------------------------------------------------------------------
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Body:
+    """A lattice and its surface, body frame."""
+
+    lattice: Lattice
+    surface: Surface
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Fabric:
+    """Masses and springs of a body made of something."""
+
+    mass: np.ndarray
+    spring: np.ndarray
+    stiffness: np.ndarray
+    rest: np.ndarray
+    damping: np.ndarray | None
+    young: float
+
+
+class _Workshop:
+    """Makes every body and fabric of one scene once; lives as long as one call of build_models."""
+
+    def __init__(self, h: float):
+        self.body = lru_cache(maxsize=None)(lambda shape: _make_body(shape, h))
+        self.fabric = lru_cache(maxsize=None)(_make_fabric)
+
+
+def _make_body(shape: Shape, h: float) -> _Body:
+    lattice = make_lattice(fill_cells(shape, h))
+    surface = make_surface(shape, lattice)
+    _freeze(lattice.position, lattice.share, lattice.layer, lattice.spring, lattice.hexahedron)
+    _freeze(surface.triangle, surface.index, surface.weight)
+    return _Body(lattice, surface)
+
+
+def _make_fabric(
+    lattice: Lattice, mass: float, elasticity: Young | SpringConstant, damping: float, rigid: bool
+) -> _Fabric:
+    """Masses [kg] in proportion to the filled cells around a particle; no springs in a body that is all held."""
+    m = lattice.share * (mass / lattice.share.sum())
+    m *= mass / m.sum()
+    edge = lattice.cells.edge
+    spring, kind, holders = lattice.spring, lattice.kind, lattice.holders
+    if rigid:
+        spring, kind, holders = spring[:0], kind[:0], holders[:0]
+    k = stiffness(kind, holders, edge, elasticity)
+    fabric = _Fabric(
+        mass=m, spring=spring, stiffness=k, rest=rest_lengths(edge)[kind],
+        damping=dashpots(damping, k, m, spring) if damping > 0 else None,
+        young=equivalent_modulus(edge, elasticity),
+    )
+    _freeze(fabric.mass, fabric.stiffness, fabric.rest, *([] if fabric.damping is None else [fabric.damping]))
+    return fabric
+
+
+def _freeze(*arrays: np.ndarray) -> None:
+    for array in arrays:
+        array.setflags(write=False)
+
+
+# --- one object -------------------------------------------------------------------------------------------------
+
+def _make_model(solid: Solid, workshop: _Workshop) -> Model:
+    body = workshop.body(solid.shape)
+    lattice = body.lattice
+    held = _held(solid, lattice)
+    mass = solid.mass if solid.mass is not None else solid.density * shapes.volume(solid.shape)
+    fabric = workshop.fabric(lattice, mass, solid.elasticity, solid.damping, bool(held.all()))
+    arm = _rotated(solid, lattice.position)
+    velocity = np.array(solid.velocity) + np.cross(solid.spin, arm) if any(solid.spin) else np.tile(
+        np.array(solid.velocity, float), (len(arm), 1))
+    velocity[held] = 0.0
+    return Model(
+        name=solid.name, position=arm + solid.position, velocity=velocity, mass=fabric.mass, share=lattice.share,
+        layer=lattice.layer, held=held, spring=fabric.spring, stiffness=fabric.stiffness, rest=fabric.rest,
+        damping=fabric.damping, hexahedron=lattice.hexahedron, cell=tuple(lattice.cells.edge.tolist()),
+        young=fabric.young, drag=fabric.mass * (solid.drag / mass) if solid.drag > 0 else None, surface=body.surface,
+    )
+
+
+def _rotated(solid: Solid, points: np.ndarray) -> np.ndarray:
+    """Body-frame points [m], shape (N, 3), as arms from the centre of mass in the world frame."""
+    return points @ np.array(solid.rotation).T
+
+
+class _NothingHeld(Exception):
+    def __init__(self, message: str, hint: str):
+        super().__init__(message)
+        self.hint = hint
+
+
+def _held(solid: Solid, lattice: Lattice) -> np.ndarray:
+    """Particles that some ``hold`` of the solid catches, bool, shape (N,); raise where one catches none."""
+    held = np.zeros(len(lattice.position), bool)
+    for hold in solid.hold:
+        caught = _caught(hold, solid, lattice)
+        if not caught.any():
+            raise _NothingHeld(*_missed(hold, solid, lattice))
+        held |= caught
+    return held
+
+
+@singledispatch
+def _caught(hold, solid: Solid, lattice: Lattice) -> np.ndarray:
+    raise TypeError(f"no rule for {hold!r}")
+
+
+@_caught.register
+def _(hold: HoldAll, solid: Solid, lattice: Lattice) -> np.ndarray:
+    return np.ones(len(lattice.position), bool)
+
+
+@_caught.register
+def _(hold: HoldFaces, solid: Solid, lattice: Lattice) -> np.ndarray:
+    """The outermost layer of particles; for a cuboid exactly those on the face."""
+    caught = np.zeros(len(lattice.position), bool)
+    for side in hold.sides:
+        sign, axis = (-1 if side.value[0] == "-" else 1), "xyz".index(side.value[1])
+        out = sign * lattice.position[:, axis]
+        caught |= out > out.max() - 0.5 * lattice.cells.edge[axis]
+    return caught
+
+
+@_caught.register
+def _(hold: HoldWithin, solid: Solid, lattice: Lattice) -> np.ndarray:
+    position = _rotated(solid, lattice.position) + solid.position
+    # Particles that stand on the border in the scene's round numbers belong to the box.
+    hair = 1e-9 * (lattice.cells.edge.max() + np.abs(solid.position).max())
+    return ((position >= np.array(hold.low) - hair) & (position <= np.array(hold.high) + hair)).all(axis=1)
+
+
+def _missed(hold: HoldWithin, solid: Solid, lattice: Lattice) -> tuple[str, str]:
+    position = _rotated(solid, lattice.position) + solid.position
+    low, high = (", ".join(f"{x:.4g}" for x in side) for side in (position.min(axis=0), position.max(axis=0)))
+    return (
+        "hold within this box catches no particle",
+        f"the object reaches from ({low}) to ({high}) m, its particles are {length(lattice.cells.edge.max())} apart",
+    )
+
+
+def _falls_apart(solid: Solid, h: float) -> Problem:
+    """Say which resolution would do, by trying finer ones."""
+    # Two digits, so that the resolution which is tried is the one that is told.
+    for trial in [float(f"{finer:.2g}") for finer in h * 0.8 ** np.arange(1, 6)]:
+        try:
+            fill_cells(solid.shape, trial)
+        except TooThin:
+            continue
+        return Problem(
+            solid.spans.get("shape"),
+            f"{solid.name}: thinner than the spacing allows, its cells of {length(h)} are not in one piece",
+            f"write resolution {length(trial)} in control, or make its thin parts thicker",
+        )
+    return Problem(
+        solid.spans.get("shape"),
+        f"{solid.name}: its cells are not in one piece, at {length(h)} nor at {length(trial)}",
+        "it has separate bodies or parts that touch in a point: make them separate objects",
+    )

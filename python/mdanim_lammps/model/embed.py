@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The drawable surface of a body, tied to its particles."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..scene.scene import Box, Shape
+from . import shapes
+from .lattice import CORNERS, Lattice
+from .model import Surface
+
+FACES = np.array([
+    (0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7),
+])
+"""Corners of the faces -x, +x, -y, +y, -z, +z of a VTK hexahedron, counter-clockwise seen from outside."""
+
+
+def make_surface(shape: Shape, lattice: Lattice) -> Surface:
+    """A cuboid is drawn by its boundary particles; any other shape by its true surface, embedded in the cells."""
+    if isinstance(shape, Box):
+        return _faces(lattice)
+    points, triangles = shapes.surface(shape, float(lattice.cells.edge.min()))
+    return _embedded(points, triangles, lattice)
+
+
+def _faces(lattice: Lattice) -> Surface:
+    """Two triangles for every face of a cell that has no filled cell behind it (Wcislo 1999, sec. 5.2)."""
+    filled = lattice.cells.filled
+    padded = np.pad(filled, 1)
+    nz, ny, nx = filled.shape
+    quads = []
+    for face, (x, y, z) in zip(FACES, ((0, 1, 1), (2, 1, 1), (1, 0, 1), (1, 2, 1), (1, 1, 0), (1, 1, 2))):
+        behind = padded[z : z + nz, y : y + ny, x : x + nx][filled]
+        quads.append(lattice.hexahedron[~behind][:, face])
+    quads = np.concatenate(quads)
+    used = np.zeros(len(lattice.position), bool)
+    used[quads] = True
+    vertex = (np.cumsum(used) - 1).astype(np.int32)[quads]
+    triangle = np.concatenate([vertex[:, [0, 1, 2]], vertex[:, [0, 2, 3]]])
+    index = np.flatnonzero(used).astype(np.int32)[:, None]
+    return Surface(triangle, index, np.ones((len(index), 1)))
+
+
+def _embedded(points: np.ndarray, triangles: np.ndarray, lattice: Lattice) -> Surface:
+    """Carry each point (V, 3) by the eight corners of the nearest filled cell, with trilinear weights.
+
+    At rest the weighted sums are the points themselves. Points up to about a cell outside are extrapolated.
+    """
+    from scipy.spatial import cKDTree
+
+    cells = lattice.cells
+    # A point on the true surface has a cell on the outside of the lattice as its nearest one.
+    outer = np.flatnonzero((lattice.share[lattice.hexahedron] < 1).any(axis=1))
+    low = lattice.position[lattice.hexahedron[outer, 0]]
+    _, near = cKDTree(low + cells.edge / 2).query(points)
+    t = ((points - low[near]) / cells.edge)[:, None, :]
+    weight = np.where(CORNERS == 1, t, 1 - t).prod(axis=2)
+    return Surface(np.asarray(triangles, np.int32), lattice.hexahedron[outer[near]], weight)

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""From filled cells to particles and springs: numbering, neighbour pairs, layers; whole arrays, body frame.
+
+Wcislo 1999, sec. 3.1 and 5.2; formulas in docs/physics-solids.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from .model import Layer
+
+OFFSETS = np.array([
+    (1, 0, 0),
+    (-1, 1, 0), (0, 1, 0), (1, 1, 0),
+    (0, -1, 1), (-1, 0, 1), (0, 0, 1), (1, 0, 1), (0, 1, 1),
+])
+"""Steps (x, y, z) from a particle to its neighbours of higher number: 3 edges and 6 face diagonals of a cell.
+
+They stand in the order of the neighbours' numbers, so springs written particle by particle come out sorted.
+"""
+
+CORNERS = np.array([
+    (0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1),
+])
+"""Corners (x, y, z) of a cell in the order of a VTK hexahedron."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cells:
+    """Which cells of a regular grid a body fills."""
+
+    filled: np.ndarray
+    """bool, shape (nz, ny, nx)."""
+    low: np.ndarray
+    """Lower corner of the grid, body frame [m], shape (3,)."""
+    high: np.ndarray
+    """Upper corner of the grid, body frame [m], shape (3,)."""
+
+    @property
+    def count(self) -> np.ndarray:
+        """Cells along x, y, z, shape (3,)."""
+        return np.array(self.filled.shape[::-1])
+
+    @property
+    def edge(self) -> np.ndarray:
+        """Cell edges along x, y, z [m], shape (3,).
+
+        Rounded to 13 digits: 0.3 / 12 and 0.1 / 4 are one length, so that equal cells of different objects have equal
+        springs to the last bit.
+        """
+        return np.array([float(f"{edge:.13g}") for edge in (self.high - self.low) / self.count])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lattice:
+    """N particles, S springs and C cells of a body whose centre of mass is the origin."""
+
+    position: np.ndarray
+    """Body frame [m], shape (N, 3)."""
+    share: np.ndarray
+    """n/8 for n filled cells around a particle [-], shape (N,)."""
+    layer: np.ndarray
+    """Layer of each particle, int32, shape (N,)."""
+    spring: np.ndarray
+    """Neighbour pairs i < j, sorted, int32, shape (S, 2)."""
+    kind: np.ndarray
+    """Row of OFFSETS of each spring, uint8, shape (S,)."""
+    holders: np.ndarray
+    """Number of filled cells that hold a spring, uint8, shape (S,)."""
+    hexahedron: np.ndarray
+    """Corner particles of each filled cell, VTK order, int32, shape (C, 8)."""
+    cells: Cells
+    """The cells, moved with the particles."""
+
+
+def make_lattice(cells: Cells) -> Lattice:
+    """Put a particle on every corner of a filled cell and tie the 18 nearest neighbours that share a cell.
+
+    Particles are numbered row by row (z slowest, x fastest).
+    """
+    around = _cells_around(cells.filled)
+    present = np.flatnonzero(around)
+    number = np.full(around.size, -1, np.int32)
+    number[present] = np.arange(len(present), dtype=np.int32)
+    number = number.reshape(around.shape)
+    share = around.ravel()[present] / 8.0
+    position = _corner_positions(cells, present)
+    centre = share @ position / share.sum()
+    moved = Cells(cells.filled, cells.low - centre, cells.high - centre)
+    spring, kind, holders = _springs(cells.filled, number, present)
+    return Lattice(
+        position=position - centre, share=share, layer=_layers(around).ravel()[present],
+        spring=spring, kind=kind, holders=holders, hexahedron=_hexahedra(cells.filled, number), cells=moved,
+    )
+
+
+def _cells_around(filled: np.ndarray) -> np.ndarray:
+    """Count the filled cells at each corner of the grid, uint8, shape (nz + 1, ny + 1, nx + 1)."""
+    padded = np.pad(filled, 1).astype(np.uint8)
+    return _window_sum(padded, product((0, 1), repeat=3))
+
+
+def _window_sum(padded: np.ndarray, starts) -> np.ndarray:
+    """Sum the views of the padded cells that start at (z, y, x); each is as large as the grid of corners."""
+    corners = np.array(padded.shape) - 1
+    total = np.zeros(corners, np.uint8)
+    for z, y, x in starts:
+        total += padded[z : z + corners[0], y : y + corners[1], x : x + corners[2]]
+    return total
+
+
+def _corner_positions(cells: Cells, present: np.ndarray) -> np.ndarray:
+    """Positions [m], shape (N, 3), of the corners with these flat numbers."""
+    nx, ny, nz = cells.count + 1
+    # linspace ends exactly on the faces; low + n * edge need not.
+    x, y, z = (np.linspace(a, b, n) for a, b, n in zip(cells.low, cells.high, (nx, ny, nz)))
+    position = np.empty((len(present), 3))
+    position[:, 0] = x[present % nx]
+    position[:, 1] = y[present // nx % ny]
+    position[:, 2] = z[present // (nx * ny)]
+    return position
+
+
+def _springs(filled: np.ndarray, number: np.ndarray, present: np.ndarray):
+    """Pairs (S, 2), rows of OFFSETS (S,) and numbers of holding cells (S,), sorted by pair."""
+    padded = np.pad(filled, 1).astype(np.uint8)
+    _, rows, columns = number.shape
+    flat = number.ravel()
+    other = np.zeros((len(present), len(OFFSETS)), np.int32)
+    holders = np.zeros((len(present), len(OFFSETS)), np.uint8)
+    # A corner lies between two cells of each axis: a step of +1 runs along the upper one, a step of -1 along the
+    # lower one, and a spring with no step along an axis is held by both.
+    sides = {0: (0, 1), 1: (1,), -1: (0,)}
+    for o, (x, y, z) in enumerate(OFFSETS.tolist()):
+        holders[:, o] = _window_sum(padded, product(sides[z], sides[y], sides[x])).ravel()[present]
+        held = np.flatnonzero(holders[:, o])
+        other[held, o] = flat[present[held] + (z * rows + y) * columns + x]
+    exists = holders > 0
+    spring = np.empty((np.count_nonzero(exists), 2), np.int32)
+    spring[:, 0] = np.repeat(np.arange(len(present), dtype=np.int32), np.count_nonzero(exists, axis=1))
+    spring[:, 1] = other[exists]
+    kind = np.broadcast_to(np.arange(len(OFFSETS), dtype=np.uint8), exists.shape)[exists]
+    return spring, kind, holders[exists]
+
+
+def _layers(around: np.ndarray) -> np.ndarray:
+    """Layer of each corner of the grid (0 where there is no particle), int32.
+
+    A boundary particle is THIN where none of the 26 lattice neighbours is off the boundary. The corner of a solid
+    block is not: the particle one body diagonal further in guards it, as in all measurements of the barrier.
+    """
+    inner = around == 8
+    boundary = (around > 0) & ~inner
+    layer = np.zeros(around.shape, np.int32)
+    layer[inner] = Layer.INNER
+    layer[inner & _near(boundary, diagonals=2)] = Layer.SUB_BOUNDARY
+    layer[boundary] = Layer.THIN
+    layer[boundary & _near(inner, diagonals=3)] = Layer.BOUNDARY
+    return layer
+
+
+def _near(mask: np.ndarray, diagonals: int) -> np.ndarray:
+    """True where a neighbour at most one step away along at most ``diagonals`` axes is in the mask."""
+    padded = np.pad(mask, 1)
+    near = np.zeros_like(mask)
+    nz, ny, nx = mask.shape
+    for z, y, x in product((0, 1, 2), repeat=3):
+        if 0 < sum(step != 1 for step in (z, y, x)) <= diagonals:
+            near |= padded[z : z + nz, y : y + ny, x : x + nx]
+    return near
+
+
+def _hexahedra(filled: np.ndarray, number: np.ndarray) -> np.ndarray:
+    """Corner particles of the filled cells, int32, shape (C, 8)."""
+    nz, ny, nx = filled.shape
+    corners = np.empty((np.count_nonzero(filled), 8), np.int32)
+    for c, (x, y, z) in enumerate(CORNERS.tolist()):
+        corners[:, c] = number[z : z + nz, y : y + ny, x : x + nx][filled]
+    return corners

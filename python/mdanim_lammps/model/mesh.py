@@ -1,0 +1,270 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Closed triangle meshes from files: reading, checking, volume, inside or not, thickness.
+
+pyvista (VTK) is needed only here and only for scenes that name a mesh; it is imported inside the functions.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from ..scene.scene import Mesh
+
+SUFFIXES = (".stl", ".obj", ".ply")
+
+
+class MeshError(Exception):
+    """A mesh file that cannot become a solid; ``hint`` is the way out."""
+
+    def __init__(self, message: str, hint: str):
+        super().__init__(message)
+        self.hint = hint
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Triangles:
+    """A closed surface around one solid, in metres, centre of mass (uniform density) at the origin."""
+
+    points: np.ndarray
+    """[m], shape (V, 3)."""
+    triangles: np.ndarray
+    """Counter-clockwise seen from outside, int32, shape (T, 3)."""
+    volume: float
+    """[m^3]"""
+    thickness: float
+    """Thickness of the thinnest part, an estimate [m]."""
+
+
+def load(shape: Mesh) -> Triangles:
+    """Read the file of a mesh shape once; raise MeshError where it is missing, unreadable or not closed."""
+    path = Path(shape.path)
+    if path.suffix.lower() not in SUFFIXES:
+        raise MeshError(f"mesh {path.name}: unknown kind of file {path.suffix!r}", "use STL, OBJ or PLY")
+    try:
+        stamp = path.stat()
+    except OSError as error:
+        raise MeshError(f"mesh {path}: {error.strerror}", "paths count from the folder of the scene file") from None
+    return _load(path, shape.scale, stamp.st_mtime_ns, stamp.st_size)
+
+
+@lru_cache(maxsize=64)
+def _load(path: Path, scale: float, changed: int, size: int) -> Triangles:
+    points, triangles = _read(path)
+    triangles = _outward(points, triangles, path.name)
+    volume, centre = _volume_and_centre(points, triangles)
+    points = (points - centre) * scale
+    return Triangles(points, triangles, volume * scale**3, _thickness(points, triangles, volume * scale**3))
+
+
+def _read(path: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Points in units of the file (V, 3), equal ones merged, and triangles (T, 3)."""
+    import pyvista
+
+    try:
+        # VTK's own warnings name its readers; the message below names the file.
+        with warnings.catch_warnings(action="ignore"), pyvista.vtk_verbosity("off"):
+            surface = pyvista.read(path).triangulate().clean(tolerance=1e-7, absolute=False)
+        triangles = np.asarray(surface.faces).reshape(-1, 4)[:, 1:].astype(np.int32)
+        points = np.asarray(surface.points, float)
+    except (OSError, ValueError, AttributeError, RuntimeError) as error:
+        raise MeshError(f"mesh {path.name}: cannot be read ({error})", "export it again as STL, OBJ or PLY") from None
+    corners = np.sort(triangles, axis=1)
+    triangles = triangles[(corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2])]
+    if not len(triangles):
+        raise MeshError(f"mesh {path.name}: holds no triangle", "export a surface, not points or lines")
+    if not np.isfinite(points).all():
+        raise MeshError(f"mesh {path.name}: holds coordinates that are not finite", "export it again")
+    return points, triangles
+
+
+def _edges(triangles: np.ndarray) -> np.ndarray:
+    """Directed edges, shape (3 T, 2)."""
+    return triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+
+
+def _outward(points: np.ndarray, triangles: np.ndarray, name: str) -> np.ndarray:
+    """Turn triangles so that all face outward; raise MeshError where the surface is not closed."""
+    _, uses = np.unique(np.sort(_edges(triangles), axis=1), axis=0, return_counts=True)
+    if (uses == 1).any():
+        raise MeshError(
+            f"mesh {name}: not closed, {np.count_nonzero(uses == 1)} edges belong to one triangle only",
+            "fill its holes in a mesh editor (Blender: Select > Non Manifold, then Fill)",
+        )
+    if (uses > 2).any():
+        raise MeshError(
+            f"mesh {name}: {np.count_nonzero(uses > 2)} edges belong to more than two triangles",
+            "remove inner faces and doubled triangles in a mesh editor",
+        )
+    if not _consistent(triangles):
+        triangles = _reorient(points, triangles)
+    if not _consistent(triangles):
+        raise MeshError(f"mesh {name}: has no inside and outside", "a one-sided surface cannot be a solid")
+    volume, _ = _volume_and_centre(points, triangles)
+    size = np.ptp(points, axis=0).max()
+    if abs(volume) <= 1e-9 * size**3:
+        raise MeshError(f"mesh {name}: encloses no volume", "export a body, not a sheet")
+    return triangles if volume > 0 else triangles[:, ::-1].copy()
+
+
+def _consistent(triangles: np.ndarray) -> bool:
+    """Whether neighbours run along their common edge in opposite directions."""
+    edges = _edges(triangles)
+    return len(np.unique(edges, axis=0)) == len(edges)
+
+
+def _reorient(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    import pyvista
+
+    surface = pyvista.PolyData.from_regular_faces(points, triangles).compute_normals(
+        consistent_normals=True, auto_orient_normals=True, split_vertices=False, non_manifold_traversal=False
+    )
+    return np.asarray(surface.faces).reshape(-1, 4)[:, 1:].astype(np.int32)
+
+
+def _volume_and_centre(points: np.ndarray, triangles: np.ndarray) -> tuple[float, np.ndarray]:
+    """Signed volume and centre of mass, by summing the tetrahedra from one point to each triangle."""
+    origin = points.mean(axis=0)
+    a, b, c = np.moveaxis((points - origin)[triangles], 1, 0)
+    six = np.einsum("td,td->t", a, np.cross(b, c))
+    volume = six.sum() / 6
+    if volume == 0:
+        return 0.0, origin
+    return float(volume), origin + (six[:, None] * (a + b + c)).sum(axis=0) / (24 * volume)
+
+
+def _thickness(points: np.ndarray, triangles: np.ndarray, volume: float) -> float:
+    """Estimate the thickness of the thinnest part [m].
+
+    From points spread evenly over the surface a ray goes straight inward; its length is the thickness there: exact
+    for balls, slabs, rods and rings. Next to a sharp edge rays are as short as one likes, so not the shortest but
+    the one that 10 % of the surface falls below is taken. No body is thicker than 6 V / A, which a ball reaches.
+    """
+    import pyvista
+
+    corners = points[triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.linalg.norm(normal, axis=1) / 2
+    rays = 300
+    chosen = np.searchsorted(area.cumsum(), (np.arange(rays) + 0.5) / rays * area.sum())
+    chosen = chosen.clip(max=len(area) - 1)
+    # Even spots inside large triangles: barycentric weights from two low-discrepancy sequences.
+    u, v = (np.arange(rays)[:, None] * [0.7548776662466927, 0.5698402909980532] % 1).T
+    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+    a, b, c = np.moveaxis(corners[chosen], 1, 0)
+    start = a + u[:, None] * (b - a) + v[:, None] * (c - a)
+    inward = -normal[chosen] / np.linalg.norm(normal[chosen], axis=1)[:, None]
+    size = np.linalg.norm(np.ptp(points, axis=0))
+    surface = pyvista.PolyData.from_regular_faces(points, triangles)
+    lengths = []
+    for origin, direction in zip(start, inward):
+        hits, _ = surface.ray_trace(origin + 1e-6 * size * direction, origin + size * direction)
+        if len(hits):
+            lengths.append(np.linalg.norm(hits - origin, axis=1).min())
+    bound = 6 * volume / float(area.sum())
+    return min(float(np.percentile(lengths, 10)), bound) if lengths else bound
+
+
+# --- inside or not ----------------------------------------------------------------------------------------------
+
+def contains(mesh: Triangles, points: np.ndarray) -> np.ndarray:
+    """Whether points [m], shape (N, 3), are inside, bool, shape (N,): an odd number of triangles lies below."""
+    points = np.asarray(points, float).reshape(-1, 3)
+    below = np.zeros(len(points), np.int64)
+    for line, z in _crossings(mesh, points[:, :2]):
+        below += np.bincount(line[z < points[line, 2]], minlength=len(points))
+    return below % 2 == 1
+
+
+def fill(mesh: Triangles, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Whether the points of the grid x (nx,), y (ny,), z (nz,) [m] are inside, bool, shape (nz, ny, nx)."""
+    lines = np.stack([np.tile(x, len(y)), np.repeat(y, len(x))], axis=1)
+    toggles = np.zeros((len(z) + 1, len(lines)), np.uint8)
+    for line, height in _crossings(mesh, lines):
+        where = np.searchsorted(z, height) * len(lines) + line
+        toggles += np.bincount(where, minlength=toggles.size).astype(np.uint8).reshape(toggles.shape)
+    inside = np.add.accumulate(toggles[:-1], axis=0, dtype=np.uint8) & 1
+    return inside.astype(bool).reshape(len(z), len(y), len(x))
+
+
+def depth(mesh: Triangles, points: np.ndarray) -> np.ndarray:
+    """Distance of points [m], shape (N, 3), to the surface [m], shape (N,); negative outside."""
+    import pyvista
+
+    surface = pyvista.PolyData.from_regular_faces(mesh.points, mesh.triangles)
+    cloud = pyvista.PolyData(np.asarray(points, float)).compute_implicit_distance(surface)
+    return np.where(contains(mesh, points), 1.0, -1.0) * abs(np.asarray(cloud["implicit_distance"]))
+
+
+def _crossings(mesh: Triangles, lines: np.ndarray, batch: int = 2_000_000) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Where vertical lines at (x, y) [m], shape (L, 2), pass through triangles: (line numbers, heights), in batches.
+
+    A line through a common edge counts for exactly one of its two triangles: both ask on which side of the edge it
+    passes, in the same arithmetic.
+    """
+    if not len(lines):
+        return
+    low, high = mesh.points[:, :2].min(axis=0), mesh.points[:, :2].max(axis=0)
+    # A hair aside, so that a line does not hit a vertex that stands on a lattice of round numbers.
+    lines = lines + 1e-9 * np.array([0.5772156649, 0.3819660113]) * (high - low)
+    bins = int(np.clip(np.sqrt(len(lines)), 1, 1024))
+    to_bin = bins / np.maximum(high - low, np.finfo(float).tiny)
+    column, row = (((lines - low) * to_bin).clip(0, bins - 1).astype(np.int64)).T
+    order = np.argsort(row * bins + column, kind="stable")
+    first = np.searchsorted((row * bins + column)[order], np.arange(bins * bins + 1))
+
+    corners = mesh.points[mesh.triangles][:, :, :2]
+    c0, r0 = ((corners.min(axis=1) - low) * to_bin).clip(0, bins - 1).astype(np.int64).T
+    c1, r1 = ((corners.max(axis=1) - low) * to_bin).clip(0, bins - 1).astype(np.int64).T
+    # The bins of one row that a triangle may touch are one stretch of the sorted lines.
+    triangle, row = _ranges(r0, r1 + 1)
+    start, stop = first[row * bins + c0[triangle]], first[row * bins + c1[triangle] + 1]
+    cuts = np.searchsorted(np.cumsum(stop - start), np.arange(0, (stop - start).sum() + batch, batch))
+    for a, b in zip(cuts[:-1], np.append(cuts[1:-1], len(start))):
+        stretch, at = _ranges(start[a:b], stop[a:b])
+        yield _hits(mesh, lines, order[at], triangle[a:b][stretch])
+
+
+def _ranges(start: np.ndarray, stop: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Write out the ranges start[k] .. stop[k] - 1: the number k of each element, and the element."""
+    length = stop - start
+    owner = np.repeat(np.arange(len(start)), length)
+    return owner, np.arange(len(owner)) - np.repeat(np.cumsum(length) - length - start, length)
+
+
+def _hits(mesh: Triangles, lines: np.ndarray, line: np.ndarray, triangle: np.ndarray):
+    """Those of the pairs (line, triangle) that meet: line numbers and heights [m]."""
+    corner = mesh.triangles[triangle]
+    px, py = lines[line].T
+    sides = []
+    for i, j in ((0, 1), (1, 2), (2, 0)):
+        a, b = corner[:, i], corner[:, j]
+        u, v = mesh.points[np.minimum(a, b)], mesh.points[np.maximum(a, b)]
+        left = (v[:, 0] - u[:, 0]) * (py - u[:, 1]) >= (v[:, 1] - u[:, 1]) * (px - u[:, 0])
+        sides.append(left == (a < b))
+    meets = (sides[0] == sides[1]) & (sides[1] == sides[2])
+    line, corner, px, py = line[meets], corner[meets], px[meets], py[meets]
+    a, b, c = np.moveaxis(mesh.points[corner], 1, 0)
+    n = np.cross(b - a, c - a)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        z = a[:, 2] - (n[:, 0] * (px - a[:, 0]) + n[:, 1] * (py - a[:, 1])) / n[:, 2]
+    heights = np.stack([a[:, 2], b[:, 2], c[:, 2]])
+    # An almost vertical triangle has no exact height; any one between its corners will do.
+    return line, np.where(np.isfinite(z), z, a[:, 2]).clip(heights.min(axis=0), heights.max(axis=0))
+
+
+def refined_surface(mesh: Triangles, size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Points [m] (V, 3) and triangles (T, 3) of the surface, with no edge much longer than ``size`` [m]."""
+    import pyvista
+
+    edge = mesh.points[_edges(mesh.triangles)]
+    if np.linalg.norm(edge[:, 0] - edge[:, 1], axis=1).max() <= 2 * size:
+        return mesh.points, mesh.triangles
+    surface = pyvista.PolyData.from_regular_faces(mesh.points, mesh.triangles)
+    fine = surface.subdivide_adaptive(max_edge_len=2 * size, max_n_passes=12).clean(tolerance=1e-9)
+    return np.asarray(fine.points, float), np.asarray(fine.faces).reshape(-1, 4)[:, 1:].astype(np.int32)

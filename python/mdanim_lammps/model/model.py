@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""One solid as particles, springs and a drawable surface: frozen records of arrays, with unit and shape."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+
+class Layer(IntEnum):
+    """Where a particle lies in its object (Wcislo 1999, sec. 3.3.2); these are also the LAMMPS atom types."""
+
+    INNER = 1
+    """Not on the boundary and no neighbour there."""
+    SUB_BOUNDARY = 2
+    """Not on the boundary, at least one neighbour there."""
+    BOUNDARY = 3
+    """On the surface: not all eight cells around it are filled."""
+    THIN = 4
+    """On the boundary with no inner neighbour within 1.5 spacings: guards itself (docs/physics.md, thin objects)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """Triangles for pictures; each vertex is a weighted sum of particle positions, so it deforms with them."""
+
+    triangle: np.ndarray
+    """Vertex indices, counter-clockwise seen from outside, int32, shape (T, 3)."""
+    index: np.ndarray
+    """Particles that carry a vertex, int32, shape (V, K); K is 1 for boxes, 8 for surfaces embedded in cells."""
+    weight: np.ndarray
+    """Their weights, rows sum to 1, shape (V, K)."""
+
+    def vertices(self, position: np.ndarray) -> np.ndarray:
+        """Vertex positions [m], shape (V, 3), for particle positions [m], shape (N, 3)."""
+        return np.einsum("vk,vkd->vd", self.weight, position[self.index])
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """One solid as N point particles, S springs and a surface. Particles are numbered row by row (x fastest)."""
+
+    name: str
+    position: np.ndarray
+    """Initial positions, world frame [m], shape (N, 3); the mass-weighted mean is the solid's ``position``."""
+    velocity: np.ndarray
+    """Initial velocities [m/s], shape (N, 3); zero for held particles."""
+    mass: np.ndarray
+    """[kg], shape (N,); sums to the solid's mass."""
+    share: np.ndarray
+    """Filled share of the eight cells around a particle, n/8 [-], shape (N,)."""
+    layer: np.ndarray
+    """Layer of each particle, int32, shape (N,)."""
+    held: np.ndarray
+    """Particles that never move, bool, shape (N,)."""
+    spring: np.ndarray
+    """Neighbour pairs i < j, 0-based, sorted by (i, j), int32, shape (S, 2)."""
+    stiffness: np.ndarray
+    """k of each spring, eq. (3.6) [N/m], shape (S,)."""
+    rest: np.ndarray
+    """Rest length r0 of each spring [m], shape (S,)."""
+    damping: np.ndarray | None
+    """Dashpot of each spring [N*s/m], shape (S,); None where the object has no internal damping."""
+    hexahedron: np.ndarray
+    """Corners of every filled cell, particle indices in VTK order, int32, shape (C, 8)."""
+    cell: tuple[float, float, float]
+    """Cell edges along the body axes [m]."""
+    young: float
+    """Young's modulus [Pa]; for ``elasticity spring k`` the modulus that a uniform lattice of this k would have."""
+    drag: np.ndarray | None
+    """lambda of each particle, in proportion to its mass [N*s/m], shape (N,); None without air drag."""
+    surface: Surface
+
+    @property
+    def spacing(self) -> float:
+        """Longest cell edge [m]; sets the reach of the contact barrier."""
+        return max(self.cell)

@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The shapes of the scene language as geometry: volume, thickness, extent, inside or not, surface.
+
+Body frame: origin in the centre of mass, axes of revolution along z. One class of formulas per shape; the public
+functions look it up, so a new shape is one more class here and one row in ``LAWS``.
+"""
+
+from __future__ import annotations
+
+from math import ceil, hypot, pi
+
+import numpy as np
+
+from ..scene import scene as kinds
+from . import mesh
+from .tessellate import ellipsoid, grid_box, revolve
+
+# Facets that keep a round silhouette smooth in a picture, however coarse the particles are.
+ROUND = 48
+
+
+class _Box:
+    @staticmethod
+    def volume(s):
+        return float(np.prod(s.size))
+
+    @staticmethod
+    def thickness(s):
+        return min(s.size)
+
+    @staticmethod
+    def extent(s):
+        half = np.array(s.size) / 2
+        return -half, half
+
+    @staticmethod
+    def depth(s, x, y, z):
+        a, b, c = np.array(s.size) / 2
+        return np.minimum(np.minimum(a - abs(x), b - abs(y)), c - abs(z))
+
+    @staticmethod
+    def surface(s, size):
+        return grid_box(s.size, size)
+
+
+class _Ellipsoid:
+    @staticmethod
+    def volume(s):
+        return 4 / 3 * pi * float(np.prod(_radii(s)))
+
+    @staticmethod
+    def thickness(s):
+        return 2 * min(_radii(s))
+
+    @staticmethod
+    def extent(s):
+        return -_radii(s), _radii(s)
+
+    @staticmethod
+    def depth(s, x, y, z):
+        a, b, c = _radii(s)
+        f = np.sqrt((x / a) ** 2 + (y / b) ** 2 + (z / c) ** 2)
+        # Exact along the thinnest axis. The ellipsoid shrunk by f, widened by (1 - f) min, still lies inside.
+        return (1 - f) * min(a, b, c)
+
+    @staticmethod
+    def surface(s, size):
+        return ellipsoid(_radii(s), _facets(2 * pi * max(_radii(s)), size))
+
+
+def _radii(s) -> np.ndarray:
+    return np.array(s.radii) if isinstance(s, kinds.Ellipsoid) else np.full(3, s.radius)
+
+
+class _Cylinder:
+    @staticmethod
+    def volume(s):
+        return pi * s.radius**2 * s.height
+
+    @staticmethod
+    def thickness(s):
+        return min(2 * s.radius, s.height)
+
+    @staticmethod
+    def extent(s):
+        high = np.array([s.radius, s.radius, s.height / 2])
+        return -high, high
+
+    @staticmethod
+    def depth(s, x, y, z):
+        return np.minimum(s.radius - np.hypot(x, y), s.height / 2 - abs(z))
+
+    @staticmethod
+    def surface(s, size):
+        r, h = s.radius, s.height
+        profile = _polyline([(0, -h / 2), (r, -h / 2), (r, h / 2), (0, h / 2)], size)
+        return revolve(profile, _facets(2 * pi * r, size))
+
+
+class _Cone:
+    @staticmethod
+    def volume(s):
+        return pi * s.radius**2 * s.height / 3
+
+    @staticmethod
+    def thickness(s):
+        # The tip has no thickness; the largest ball that fits inside says how fine the cells must be.
+        return 2 * s.radius * s.height / (s.radius + hypot(s.radius, s.height))
+
+    @staticmethod
+    def extent(s):
+        r, h = s.radius, s.height
+        return np.array([-r, -r, -h / 4]), np.array([r, r, 3 * h / 4])
+
+    @staticmethod
+    def depth(s, x, y, z):
+        r, h = s.radius, s.height
+        slant = (r * (3 * h / 4 - z) - h * np.hypot(x, y)) / hypot(r, h)
+        return np.minimum(slant, z + h / 4)
+
+    @staticmethod
+    def surface(s, size):
+        r, h = s.radius, s.height
+        return revolve(_polyline([(0, -h / 4), (r, -h / 4), (0, 3 * h / 4)], size), _facets(2 * pi * r, size))
+
+
+class _Torus:
+    @staticmethod
+    def volume(s):
+        return 2 * pi**2 * s.major * s.minor**2
+
+    @staticmethod
+    def thickness(s):
+        return 2 * s.minor
+
+    @staticmethod
+    def extent(s):
+        high = np.array([s.major + s.minor, s.major + s.minor, s.minor])
+        return -high, high
+
+    @staticmethod
+    def depth(s, x, y, z):
+        return s.minor - np.hypot(np.hypot(x, y) - s.major, z)
+
+    @staticmethod
+    def surface(s, size):
+        n = _facets(2 * pi * s.minor, size, least=24)
+        angle = 2 * pi * np.arange(n) / n
+        profile = np.stack([s.major + s.minor * np.cos(angle), s.minor * np.sin(angle)], axis=1)
+        return revolve(profile, _facets(2 * pi * (s.major + s.minor), size), closed=True)
+
+
+class _Mesh:
+    @staticmethod
+    def volume(s):
+        return mesh.load(s).volume
+
+    @staticmethod
+    def thickness(s):
+        return mesh.load(s).thickness
+
+    @staticmethod
+    def extent(s):
+        points = mesh.load(s).points
+        return points.min(axis=0), points.max(axis=0)
+
+    @staticmethod
+    def depth(s, x, y, z):
+        points = np.stack(np.broadcast_arrays(x, y, z), axis=-1)
+        return mesh.depth(mesh.load(s), points.reshape(-1, 3)).reshape(points.shape[:-1])
+
+    @staticmethod
+    def surface(s, size):
+        return mesh.refined_surface(mesh.load(s), size)
+
+
+LAWS = {
+    kinds.Box: _Box,
+    kinds.Sphere: _Ellipsoid,
+    kinds.Ellipsoid: _Ellipsoid,
+    kinds.Cylinder: _Cylinder,
+    kinds.Cone: _Cone,
+    kinds.Torus: _Torus,
+    kinds.Mesh: _Mesh,
+}
+
+
+def volume(shape: kinds.Shape) -> float:
+    """Volume [m^3]. Raises mesh.MeshError for a mesh that encloses none."""
+    return LAWS[type(shape)].volume(shape)
+
+
+def area(shape: kinds.Shape) -> float:
+    """Surface area [m^2], of the triangles that are drawn (1 % below the true one for round shapes)."""
+    points, triangles = surface(shape, thickness(shape))
+    a, b, c = np.moveaxis(points[triangles], 1, 0)
+    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
+
+
+def thickness(shape: kinds.Shape) -> float:
+    """Thickness of the thinnest part [m]; for a mesh an estimate, for a cone the largest ball inside."""
+    return LAWS[type(shape)].thickness(shape)
+
+
+def extent(shape: kinds.Shape) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper corner of the bounding box, body frame [m], each of shape (3,)."""
+    return LAWS[type(shape)].extent(shape)
+
+
+def depth(shape: kinds.Shape, points: np.ndarray) -> np.ndarray:
+    """How deep points [m], shape (N, 3), lie below the surface [m], shape (N,); negative outside.
+
+    The sign is exact. Inside, the value is the distance to the surface (of ellipsoids a lower bound).
+    """
+    x, y, z = np.asarray(points, float).T
+    return LAWS[type(shape)].depth(shape, x, y, z)
+
+
+def contains(shape: kinds.Shape, points: np.ndarray) -> np.ndarray:
+    """Whether points [m], shape (N, 3), are inside, bool, shape (N,)."""
+    if isinstance(shape, kinds.Mesh):
+        return mesh.contains(mesh.load(shape), points)
+    return depth(shape, points) > 0
+
+
+def fill(shape: kinds.Shape, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Whether the points of the grid x (nx,), y (ny,), z (nz,) [m] are inside, bool, shape (nz, ny, nx)."""
+    if isinstance(shape, kinds.Mesh):
+        return mesh.fill(mesh.load(shape), x, y, z)
+    return LAWS[type(shape)].depth(shape, x[None, None, :], y[None, :, None], z[:, None, None]) > 0
+
+
+def surface(shape: kinds.Shape, size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Points [m], shape (V, 3), and triangles, int32, shape (T, 3), of a closed surface that faces outward.
+
+    Facets are about ``size`` [m] long, and fine enough to look round.
+    """
+    return LAWS[type(shape)].surface(shape, size)
+
+
+def _facets(length: float, size: float, least: int = ROUND) -> int:
+    """Facets around a circle of this length [m]; a multiple of 4, so that extremes are vertices."""
+    return 4 * ceil(max(least, length / size) / 4)
+
+
+def _polyline(corners, size: float) -> np.ndarray:
+    """Points (r, z) [m], shape (P, 2), along straight lines between corners, at most ``size`` apart."""
+    corners = np.asarray(corners, float)
+    parts = [
+        a + np.linspace(0, 1, max(1, ceil(np.linalg.norm(b - a) / size)), endpoint=False)[:, None] * (b - a)
+        for a, b in zip(corners[:-1], corners[1:])
+    ]
+    return np.concatenate([*parts, corners[-1:]])

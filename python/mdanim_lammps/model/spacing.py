@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""One particle spacing for all objects (Wcislo 1999, sec. 5.2), and whether the scene fits in memory."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import Problem, SceneError
+from ..scene.scene import Accuracy, Box, HoldAll, Scene, Shape, Solid
+from . import shapes
+from .mesh import MeshError
+from .wording import length
+
+BYTES_PER_PARTICLE = 1500.0
+"""Arrays of the model and of LAMMPS together; a particle inside a body has 18 springs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Spacing:
+    """The spacing of a scene, who asked for it, and what it costs."""
+
+    h: float
+    """Particle spacing [m]."""
+    set_by: str
+    """Name of the solid with the thinnest part, ``resolution``, or the liquid's name where there is no solid."""
+    particles: tuple[int, ...]
+    """Estimated number of particles of each solid, in the order of the scene."""
+    memory: float
+    """Estimated memory of all solids [bytes]."""
+    available: float
+    """Memory that this machine has free [bytes]."""
+
+    @property
+    def total(self) -> int:
+        """Estimated number of particles in all."""
+        return sum(self.particles)
+
+
+def plan_spacing(scene: Scene) -> Spacing:
+    """Choose the spacing: ``resolution``, else the thinnest part of all solids over the cells that accuracy asks.
+
+    Raises SceneError, with a problem for every solid that is thinner than the spacing, whose mesh is no body, and
+    where the particles would not fit in memory.
+    """
+    problems = []
+    thin = []
+    for solid in scene.solids:
+        try:
+            thin.append(shapes.thickness(solid.shape))
+        except MeshError as error:
+            problems.append(Problem(_span(solid), f"{solid.name}: {error}", error.hint))
+    if problems:
+        raise SceneError(problems)
+    h, set_by = _choose(scene, thin)
+    for solid, t in zip(scene.solids, thin):
+        if h > t * (1 + 1e-9):
+            problems.append(Problem(
+                _span(solid),
+                f"{solid.name}: thinner than the spacing allows, {length(t)} at its thinnest, spacing {length(h)}",
+                f"write resolution {length(t / 2)} in control, or make it thicker",
+            ))
+    if problems:
+        raise SceneError(problems)
+    particles = tuple(estimate_particles(solid.shape, h) for solid in scene.solids)
+    plan = Spacing(h, set_by, particles, sum(particles) * BYTES_PER_PARTICLE, available_memory())
+    if plan.memory > plan.available:
+        raise SceneError([_too_large(scene, plan)])
+    return plan
+
+
+def cells_across(accuracy: Accuracy | float) -> int:
+    """Cells across the thinnest part for an accuracy class.
+
+    A target error (``accuracy error p %``) is treated as ``balanced`` so far: turning an error into a number of
+    cells needs the measured ladder of ``mdanim-lammps study``.
+    """
+    return accuracy.cells if isinstance(accuracy, Accuracy) else Accuracy.BALANCED.cells
+
+
+def _cells_needed(solid: Solid, accuracy: Accuracy | float) -> int:
+    """A body that never moves need not bend, so two cells, the least that have an inside, are enough."""
+    wanted = cells_across(accuracy)
+    return min(wanted, 2) if any(isinstance(h, HoldAll) for h in solid.hold) else wanted
+
+
+def _choose(scene: Scene, thin: list[float]) -> tuple[float, str]:
+    control = scene.control
+    if control.resolution is not None:
+        return control.resolution, "resolution"
+    if thin:
+        wanted = [t / _cells_needed(s, control.accuracy) for s, t in zip(scene.solids, thin)]
+        k = int(np.argmin(wanted))
+        return wanted[k], scene.solids[k].name
+    if scene.liquid is not None:
+        # No solid to go by: 8 cells to each one of a solid, so that a balanced basin is 32 cells wide.
+        side = min(b - a for a, b in zip(scene.liquid.low[:2], scene.liquid.high[:2]))
+        return side / (8 * cells_across(control.accuracy)), scene.liquid.name
+    raise SceneError([Problem(None, "the scene has no object and no liquid", "add an object block")])
+
+
+@lru_cache(maxsize=4096)
+def estimate_particles(shape: Shape, h: float) -> int:
+    """Estimated number of particles of a shape at spacing h [m]: exact for a cuboid that h divides.
+
+    A cell has one particle of its own, and a face on the surface half of one more. The staircase of a surface that
+    is turned every way is 3/2 as large as the surface.
+    """
+    if isinstance(shape, Box):
+        return int(np.prod(np.rint(np.array(shape.size) / h) + 1))
+    return int(shapes.volume(shape) / h**3 + 0.5 * 1.5 * shapes.area(shape) / h**2) + 8
+
+
+def available_memory() -> float:
+    """Memory free for this process [bytes]: of the machine, or of its container where that has less."""
+    free = [float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")]
+    try:
+        lines = Path("/proc/meminfo").read_text().splitlines()
+        free += [1024.0 * int(line.split()[1]) for line in lines if line.startswith("MemAvailable")]
+        limit, used = (Path("/sys/fs/cgroup", f"memory.{name}").read_text() for name in ("max", "current"))
+        free += [float(limit) - float(used)] if limit.strip() != "max" else []
+    except OSError:
+        pass  # not Linux, or no container: what was found so far counts
+    return min(free)
+
+
+def _too_large(scene: Scene, plan: Spacing) -> Problem:
+    gigabytes = 1e-9
+    found = (
+        f"about {plan.total:,} particles at a spacing of {length(plan.h)} need {plan.memory * gigabytes:.1f} GB, "
+        f"{plan.available * gigabytes:.1f} GB are free"
+    )
+    # Particles go with 1/h^3; a tenth on top, because surfaces go with 1/h^2 only.
+    coarser = plan.h * 1.1 * (plan.memory / plan.available) ** (1 / 3)
+    if plan.set_by == "resolution":
+        return Problem(scene.control.spans.get("resolution"), found, f"try resolution {length(coarser)}")
+    solid = next(s for s in scene.solids if s.name == plan.set_by)
+    return Problem(
+        _span(solid), f"{solid.name} sets the spacing: {found}",
+        f"make it thicker, use fewer objects or a lower accuracy, or try resolution {length(coarser)}",
+    )
+
+
+def _span(solid: Solid):
+    return solid.spans.get("shape") or solid.spans.get("object")

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Where the camera stands: automatically, so that the whole action is in the picture, or along the scene's path."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..results.trajectory import Trajectory
+from ..scene.scene import Camera
+
+FIELD_OF_VIEW = 30.0
+"""Vertical angle of view [degrees]."""
+MARGIN = 0.88
+"""Share of the picture, across, that the action may fill."""
+_BOXES = 50_000
+
+
+@dataclass(frozen=True)
+class View:
+    """A camera at one moment."""
+
+    eye: np.ndarray
+    """[m], shape (3,)."""
+    look: np.ndarray
+    """[m], shape (3,)."""
+    up: np.ndarray
+    """shape (3,)."""
+
+
+@dataclass(frozen=True)
+class Action:
+    """Where things happen, over all frames."""
+
+    low: np.ndarray
+    """Lower corner of each object in each stretch of frames [m], shape (W, O, 3)."""
+    high: np.ndarray
+    """Upper corner [m], shape (W, O, 3)."""
+    bounds: tuple[np.ndarray, np.ndarray]
+    """Corners of the box that the picture shows [m]; objects that fly far off are left out of it."""
+    escaped: bool
+    """Whether some object leaves that box."""
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the box [m]."""
+        return float(np.linalg.norm(self.bounds[1] - self.bounds[0]))
+
+    @property
+    def centre(self) -> np.ndarray:
+        """[m], shape (3,)."""
+        return (self.bounds[0] + self.bounds[1]) / 2
+
+
+def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
+    """Bounds of all objects in all frames.
+
+    Centres are taken from every frame, extents about them from ``samples`` frames, so that a long trajectory need
+    not be read whole. An object may go as far from where the objects started as four times their common size (below
+    them, where there is no ground to stop it: once); what lies beyond is not part of the picture.
+    """
+    catalogue, centers = trajectory.catalogue, trajectory.centers
+    frames = np.unique(np.linspace(0, len(trajectory) - 1, samples).astype(int))
+    below = np.zeros(centers.shape[1:])
+    above = np.zeros(centers.shape[1:])
+    for frame in frames:
+        vertices = catalogue.skin.vertices(trajectory.position(frame))
+        first = np.searchsorted(catalogue.skin.object_of_vertex, np.arange(len(catalogue.names)))
+        np.minimum(below, np.minimum.reduceat(vertices, first) - centers[frame], out=below)
+        np.maximum(above, np.maximum.reduceat(vertices, first) - centers[frame], out=above)
+    # A stretch is one frame, unless that makes more boxes than are worth looking at.
+    stretches = np.array_split(np.arange(len(centers)), min(len(centers), max(1, _BOXES // len(catalogue.names))))
+    low = np.array([centers[s].min(axis=0) + below for s in stretches])
+    high = np.array([centers[s].max(axis=0) + above for s in stretches])
+    start_low, start_high = (centers[0] + below).min(axis=0), (centers[0] + above).max(axis=0)
+    size = max(np.linalg.norm(start_high - start_low), np.finfo(float).tiny)
+    if catalogue.ground is not None:
+        start_low[2] = min(start_low[2], max(catalogue.ground, start_low[2] - 4 * size))
+    far_low, far_high = start_low - 4 * size, start_high + 4 * size
+    far_low[2] = start_low[2] - (size if catalogue.ground is None else 0.0)
+    all_low, all_high = low.min(axis=(0, 1)), high.max(axis=(0, 1))
+    escaped = bool((all_low[:2] < far_low[:2]).any() or (all_high > far_high).any()
+                   or (catalogue.ground is None and all_low[2] < far_low[2]))
+    # On the ground objects dip a little below it, elastic as they are.
+    bounds = np.maximum(all_low, far_low if catalogue.ground is None else far_low - [0, 0, 0.02 * size])
+    return Action(low, high, (bounds, np.minimum(all_high, far_high)), escaped)
+
+
+def automatic_view(action: Action, aspect: float, walls=None) -> View:
+    """A three-quarter view from slightly above that holds the whole action; the same for all frames.
+
+    Args:
+        action: what must be seen.
+        aspect: width of the picture over its height.
+        walls: corners of the scene's walls, shown too unless they are far larger than the action.
+    """
+    low, high = action.bounds
+    extent = high - low
+    flat = np.clip(1.0 - extent[2] / max(extent[:2].max(), np.finfo(float).tiny), 0.0, 1.0)
+    elevation = np.radians(16.0 + 14.0 * flat)
+    # The longer horizontal side lies across the picture.
+    turn = np.radians(-65.0 if extent[0] >= extent[1] else -25.0)
+    back = np.array([np.cos(elevation) * np.cos(turn), np.cos(elevation) * np.sin(turn), np.sin(elevation)])
+    points = _corners(np.clip(action.low, low, high), np.clip(action.high, low, high))
+    if walls is not None and np.linalg.norm(np.subtract(*walls)) < 2.0 * action.size:
+        points = np.concatenate([points, _corners(*np.array(walls, dtype=float)[:, None])])
+    return fit_view(points, -back, aspect)
+
+
+def fit_view(points: np.ndarray, forward: np.ndarray, aspect: float) -> View:
+    """The nearest eye that looks along ``forward`` and sees all points inside the margin.
+
+    A point (a, b, c) along right, up and forward is inside the picture of an eye (x, y, z) where
+    ``|a - x| <= tx (c - z)`` and ``|b - y| <= ty (c - z)``; both give x, y and the largest z in closed form.
+
+    Args:
+        points: [m], shape (P, 3).
+        forward: direction of view, unit length, not vertical.
+        aspect: width over height.
+    """
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    up = np.cross(right, forward)
+    tangent = MARGIN * np.tan(np.radians(FIELD_OF_VIEW / 2)) * np.array([aspect, 1.0])
+    a, c = points @ np.stack([right, up], axis=1), points @ forward
+    plus = (a - tangent * c[:, None]).max(axis=0)
+    minus = (-a - tangent * c[:, None]).max(axis=0)
+    across = (plus - minus) / 2
+    depth = (-(plus + minus) / (2 * tangent)).min()
+    middle = (c.min() + c.max()) / 2
+    # A single point has no size to stand back from.
+    depth = min(depth, middle - 1e-3)
+    eye = across[0] * right + across[1] * up + depth * forward
+    return View(eye, eye + (middle - depth) * forward, np.array([0.0, 0.0, 1.0]))
+
+
+class CameraPath:
+    """The scene's cameras as a smooth path in time.
+
+    Between two of them eye, look and up follow a cubic Hermite curve whose slopes are those of the neighbours
+    (Catmull-Rom); before the first and after the last the camera stands still. ``look NAME`` follows the object.
+
+    Args:
+        cameras: at least one; without a time: 0 s.
+        trajectory: for the centres of objects that are followed.
+    """
+
+    def __init__(self, cameras: Sequence[Camera], trajectory: Trajectory):
+        order = sorted(cameras, key=lambda camera: camera.time or 0.0)
+        self._times = np.array([camera.time or 0.0 for camera in order])
+        self._eye = np.array([camera.eye for camera in order], dtype=float)
+        self._up = np.array([camera.up for camera in order], dtype=float)
+        self._look = [camera.look for camera in order]
+        self._trajectory = trajectory
+
+    def at(self, time: float) -> View:
+        """The view at a simulated time [s]."""
+        weight = hermite_weights(self._times, time)
+        look = np.array([self._target(look, time) for look in self._look])
+        return View(weight @ self._eye, weight @ look, weight @ self._up)
+
+    def _target(self, look, time: float) -> np.ndarray:
+        if not isinstance(look, str):
+            return np.asarray(look, dtype=float)
+        track = self._trajectory.objects[look].center_of_mass
+        return np.array([np.interp(time, self._trajectory.times, track[:, k]) for k in range(3)])
+
+
+def hermite_weights(times: np.ndarray, time: float) -> np.ndarray:
+    """How much each point of a path counts at a time: a smooth curve through all points, shape (K,).
+
+    Args:
+        times: of the points, ascending [s], shape (K,).
+        time: [s]; outside of ``times`` the nearest end counts.
+    """
+    count = len(times)
+    unit = np.eye(count)
+    time = float(np.clip(time, times[0], times[-1]))
+    i = int(np.clip(np.searchsorted(times, time, side="right") - 1, 0, max(count - 2, 0)))
+    if count == 1 or times[i + 1] == times[i]:
+        return unit[i]
+    # Slopes at the ends are zero: the camera starts and stops gently.
+    slope = np.zeros((count, count))
+    for k in range(1, count - 1):
+        span = times[k + 1] - times[k - 1]
+        if span > 0.0:
+            slope[k] = (unit[k + 1] - unit[k - 1]) / span
+    h = times[i + 1] - times[i]
+    s = (time - times[i]) / h
+    return ((1 + 2 * s) * (1 - s) ** 2 * unit[i] + s * (1 - s) ** 2 * h * slope[i]
+            + s**2 * (3 - 2 * s) * unit[i + 1] - s**2 * (1 - s) * h * slope[i + 1])
+
+
+def _corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """The eight corners of each box, shape (8 n, 3)."""
+    box = np.stack([low.reshape(-1, 3), high.reshape(-1, 3)])
+    x, y, z = np.meshgrid([0, 1], [0, 1], [0, 1])
+    return np.stack([box[x.ravel(), :, 0], box[y.ravel(), :, 1], box[z.ravel(), :, 2]], axis=-1).reshape(-1, 3)

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Colours of objects, floor and background."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+# Twelve colours of one family: saturated enough to tell apart, light enough to show shading; neighbours differ in hue.
+OBJECTS = (
+    "#e8743b", "#3b8fc4", "#f2b134", "#4fae7b", "#d3557a", "#7a6fc9",
+    "#54b8b3", "#c9884a", "#9bbf4a", "#e58aa8", "#5f86d6", "#b5654f",
+)
+STILL = "#a3a9b0"
+"""Objects that are held as a whole."""
+LOW, HIGH = "#dfe5ea", "#f8fafb"
+"""Background, at the bottom and at the top."""
+
+
+def rgb(color: str) -> np.ndarray:
+    """``#rrggbb`` as three numbers from 0 to 1."""
+    return np.frombuffer(bytes.fromhex(color.lstrip("#")), dtype=np.uint8) / 255.0
+
+
+def object_colors(chosen: Sequence[str], still: np.ndarray) -> np.ndarray:
+    """Colour of each object, uint8, shape (O, 3): the scene's own, grey for what is held, else by index.
+
+    Args:
+        chosen: ``#rrggbb`` or empty, one per object.
+        still: objects that never move, bool, shape (O,).
+    """
+    free = np.cumsum(~np.asarray(still, dtype=bool)) - 1
+    names = [
+        color or (STILL if held else OBJECTS[index % len(OBJECTS)])
+        for color, held, index in zip(chosen, still, free)
+    ]
+    return np.array([np.round(255 * rgb(name)) for name in names], dtype=np.uint8).reshape(-1, 3)
+
+
+def background_colors(chosen: str | None) -> tuple[np.ndarray, np.ndarray]:
+    """Colours at the bottom and at the top of the picture; a colour of the scene's own gets a gentle gradient too."""
+    if chosen is None:
+        return rgb(LOW), rgb(HIGH)
+    base = rgb(chosen)
+    return 0.94 * base, np.minimum(1.0, base + 0.03)
+
+
+def is_dark(color: np.ndarray) -> bool:
+    """Whether light writing reads better on this colour (relative luminance below one half)."""
+    return float(color @ [0.2126, 0.7152, 0.0722]) < 0.5

@@ -1,0 +1,379 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""One frame of a trajectory as a picture, drawn off screen with VTK."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+
+import numpy as np
+
+from ..errors import SetupError
+from ..results.trajectory import Trajectory
+from ..scene.scene import Render
+from . import shading
+from .camera import FIELD_OF_VIEW, Action, CameraPath, View, action_of, automatic_view
+from .palette import background_colors, is_dark, object_colors, rgb
+from .surfaces import shaded_mesh
+
+LAMP = np.array([-0.45, -0.55, 1.15]) / np.linalg.norm([-0.45, -0.55, 1.15])
+"""Direction to the key light, world frame."""
+SHADOW_PIXELS = 1024
+SHADOW_SAMPLES = 12
+
+
+class Painter:
+    """Draws frames of one trajectory, all with the same lamp, floor and, unless the scene moves it, camera.
+
+    Args:
+        trajectory: what is drawn.
+        render: the scene's ``render`` block; ``Render()`` chooses everything.
+        size: width and height in pixels; None takes that of ``render``.
+        action: bounds over all frames, if known already; None finds them.
+
+    Raises:
+        SetupError: this host cannot draw off screen.
+    """
+
+    def __init__(
+        self,
+        trajectory: Trajectory,
+        render: Render = Render(),
+        *,
+        size: tuple[int, int] | None = None,
+        action: Action | None = None,
+    ):
+        self.trajectory = trajectory
+        self.size = tuple(size or render.size)
+        self.action = action or action_of(trajectory)
+        self._mesh = shaded_mesh(trajectory.catalogue, trajectory.position(0))
+        self._path = CameraPath(render.camera, trajectory) if render.camera else None
+        walls = trajectory.catalogue.walls
+        self._still = None if self._path else automatic_view(self.action, self.size[0] / self.size[1], walls)
+        self._build(render)
+
+    def view(self, time: float) -> View:
+        """Where the camera is at a simulated time [s]."""
+        return self._path.at(time) if self._path else self._still
+
+    def frame(self, index: int) -> np.ndarray:
+        """Picture of a frame, uint8 RGB, shape (height, width, 3), first row on top."""
+        vertices = self._mesh.vertices(self.trajectory.position(index))
+        time = float(self.trajectory.times[index])
+        if not np.isfinite(vertices).all():
+            # Diverged particles cannot be drawn; what hangs on them is left out, the rest of the picture is right.
+            vertices = np.where(np.isfinite(vertices), vertices, np.nan_to_num(self.action.centre))
+        self._points[:] = vertices
+        self._normals[:] = self._mesh.normals(vertices)
+        self._surface.GetPoints().Modified()
+        self._surface.GetPointData().GetNormals().Modified()
+        self._surface.Modified()
+        self._stamp.SetInput(f"t = {time:.2f} s")
+        self._aim(self.view(time))
+        self._cast_shadow()
+        self._window.Render()
+        return self._pixels()
+
+    def close(self) -> None:
+        """Give the windows back."""
+        for window in (self._window, self._shadow):
+            window.Finalize()
+
+    def __enter__(self) -> "Painter":
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+    # --- the stage ----------------------------------------------------------------------------------------------
+
+    def _build(self, render: Render) -> None:
+        import vtkmodules.vtkInteractionStyle  # noqa: F401  (VTK finds its renderer by these imports)
+        import vtkmodules.vtkRenderingFreeType  # noqa: F401
+        import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
+        from vtkmodules.vtkRenderingCore import vtkRenderer
+
+        low, high = background_colors(render.background)
+        self._renderer = vtkRenderer()
+        self._renderer.SetBackground(low)
+        self._renderer.SetBackground2(high)
+        self._renderer.GradientBackgroundOn()
+        self._renderer.SetUseHiddenLineRemoval(False)
+        camera = self._renderer.GetActiveCamera()
+        camera.SetViewAngle(FIELD_OF_VIEW)
+
+        self._surface = self._make_surface()
+        self._actors = [self._make_actor(self._surface, shading.FRAGMENT_SOLID)]
+        floor = self._floor_height()
+        if floor is not None:
+            self._actors.append(self._make_floor(floor, low, high))
+        for actor in self._actors:
+            self._renderer.AddActor(actor)
+        if self.trajectory.catalogue.walls is not None:
+            self._renderer.AddActor(_wall_edges(self.trajectory.catalogue.walls, 0.8 if is_dark(low) else 0.35))
+        self._write(render, low)
+
+        with _silent():
+            self._window = _window(self._renderer, self.size, samples=8)
+            self._shadow, self._depth, texture = self._make_shadow()
+        self._share_shadow(texture)
+
+    def _make_surface(self):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkCommonCore import vtkFloatArray, vtkPoints
+        from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+        mesh, catalogue = self._mesh, self.trajectory.catalogue
+        count = mesh.carry.shape[0]
+        points, normals = vtkPoints(), vtkFloatArray()
+        points.SetDataTypeToFloat()
+        points.SetNumberOfPoints(count)
+        normals.SetNumberOfComponents(3)
+        normals.SetNumberOfTuples(count)
+        surface = vtkPolyData()
+        surface.SetPoints(points)
+        surface.SetPolys(_cells(mesh.triangle))
+        surface.GetPointData().SetNormals(normals)
+        self._colors = object_colors(catalogue.colors, catalogue.still)[mesh.object_of_vertex]
+        surface.GetPointData().SetScalars(_bytes(self._colors))
+        self._points, self._normals = vtk_to_numpy(points.GetData()), vtk_to_numpy(normals)
+        return surface
+
+    def _make_actor(self, data, light: str):
+        from vtkmodules.vtkRenderingCore import vtkActor
+        from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
+
+        mapper = vtkOpenGLPolyDataMapper()
+        mapper.SetInputData(data)
+        # Positions reach the shader as they are, in metres.
+        mapper.SetVBOShiftScaleMethod(0)
+        actor = vtkActor()
+        actor.SetMapper(mapper)
+        shader = actor.GetShaderProperty()
+        for mark, code in shading.VERTEX.items():
+            shader.AddVertexShaderReplacement(mark, True, code, False)
+        for mark, code in shading.FRAGMENT_HEAD.items():
+            code = code.replace("SAMPLES", str(SHADOW_SAMPLES))
+            shader.AddFragmentShaderReplacement(mark, True, code, False)
+        shader.AddFragmentShaderReplacement("//VTK::Light::Impl", True, light, False)
+        return actor
+
+    def _floor_height(self) -> float | None:
+        """The ground; without one the lowest point of the action, unless something falls through there."""
+        ground = self.trajectory.catalogue.ground
+        if ground is not None:
+            return ground
+        return None if self.action.escaped else float(self.action.bounds[0][2])
+
+    def _make_floor(self, height: float, low: np.ndarray, high: np.ndarray):
+        from vtkmodules.vtkFiltersSources import vtkPlaneSource
+
+        centre, size = self.action.centre, self.action.size
+        reach = 5.0 * size
+        plane = vtkPlaneSource()
+        x, y, z = centre[0] - reach, centre[1] - reach, height - 1e-4 * size
+        plane.SetOrigin(x, y, z)
+        plane.SetPoint1(x + 2 * reach, y, z)
+        plane.SetPoint2(x, y + 2 * reach, z)
+        plane.Update()
+        # With texture coordinates VTK would paint the lamp's depth picture on the floor.
+        plane.GetOutput().GetPointData().SetTCoords(None)
+        actor = self._make_actor(plane.GetOutput(), shading.FRAGMENT_FLOOR)
+        dark = is_dark(low)
+        uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
+        uniforms.SetUniformf("gridSpacing", grid_spacing(size))
+        uniforms.SetUniformf("pictureHeight", float(self.size[1]))
+        uniforms.SetUniform3f("floorCentre", [centre[0], centre[1], reach])
+        uniforms.SetUniform3f("floorColor", list(np.minimum(1.0, low * 1.02) if not dark else low * 1.25 + 0.03))
+        uniforms.SetUniform3f("gridColor", list(low * 0.72 if not dark else low + 0.22))
+        uniforms.SetUniform3f("lowColor", list(low))
+        uniforms.SetUniform3f("highColor", list(high))
+        return actor
+
+    def _write(self, render: Render, background: np.ndarray) -> None:
+        from vtkmodules.vtkRenderingCore import vtkTextActor
+
+        height = self.size[1]
+        color = (0.93, 0.94, 0.95) if is_dark(background) else (0.20, 0.23, 0.27)
+        margin = round(0.035 * height)
+
+        def text(words: str, at: tuple[int, int], share: float, right: bool = False):
+            actor = vtkTextActor()
+            actor.SetInput(words)
+            actor.SetPosition(*at)
+            look = actor.GetTextProperty()
+            look.SetFontFamilyToArial()
+            look.SetFontSize(max(9, round(share * height)))
+            look.SetColor(color)
+            look.SetOpacity(0.85)
+            look.SetJustificationToRight() if right else look.SetJustificationToLeft()
+            self._renderer.AddViewProp(actor)
+            return actor
+
+        text(self.trajectory.catalogue.title, (margin, margin), 0.032)
+        self._stamp = text("", (self.size[0] - margin, margin), 0.028, right=True)
+
+    # --- the shadow ---------------------------------------------------------------------------------------------
+
+    def _make_shadow(self):
+        """A depth picture of all objects, seen from the lamp along parallel rays."""
+        from vtkmodules.vtkCommonCore import vtkFloatArray
+        from vtkmodules.vtkCommonDataModel import vtkImageData
+        from vtkmodules.vtkRenderingCore import (
+            vtkActor,
+            vtkPolyDataMapper,
+            vtkRenderer,
+            vtkTexture,
+        )
+
+        centre, radius = self.action.centre, 0.5 * self.action.size
+        mapper, actor, renderer = vtkPolyDataMapper(), vtkActor(), vtkRenderer()
+        mapper.SetInputData(self._surface)
+        mapper.ScalarVisibilityOff()
+        actor.SetMapper(mapper)
+        actor.GetProperty().LightingOff()
+        renderer.AddActor(actor)
+        camera = renderer.GetActiveCamera()
+        camera.ParallelProjectionOn()
+        camera.SetFocalPoint(centre)
+        camera.SetPosition(centre + 2 * radius * LAMP)
+        camera.SetViewUp(0.0, 1.0, 0.0)
+        camera.SetParallelScale(radius * 1.02)
+        camera.SetClippingRange(0.9 * radius, 3.1 * radius)
+        window = _window(renderer, (SHADOW_PIXELS, SHADOW_PIXELS), samples=0)
+        depth = vtkFloatArray()
+        depth.SetNumberOfTuples(SHADOW_PIXELS**2)
+        image = vtkImageData()
+        image.SetDimensions(SHADOW_PIXELS, SHADOW_PIXELS, 1)
+        image.GetPointData().SetScalars(depth)
+        texture = vtkTexture()
+        texture.SetInputData(image)
+        texture.SetColorModeToDirectScalars()
+        texture.InterpolateOff()
+        texture.RepeatOff()
+        texture.EdgeClampOn()
+        return window, image, texture
+
+    def _cast_shadow(self) -> None:
+        """Take the depth picture; apart from the main picture, for only one window can be drawn into at a time."""
+        self._shadow.Render()
+        last = SHADOW_PIXELS - 1
+        depth = self._depth.GetPointData().GetScalars()
+        self._shadow.GetZbufferData(0, 0, last, last, depth)
+        depth.Modified()
+        self._depth.Modified()
+
+    def _share_shadow(self, texture) -> None:
+        camera = self._shadow.GetRenderers().GetFirstRenderer().GetActiveCamera()
+        to_clip = camera.GetCompositeProjectionTransformMatrix(1.0, 0.0, 1.0)
+        matrix = np.array([[to_clip.GetElement(i, j) for j in range(4)] for i in range(4)])
+        # x and y from -1 .. 1 to the texture's 0 .. 1; z is 0 .. 1 already.
+        matrix[:2] = 0.5 * matrix[:2] + 0.5 * matrix[3]
+        width = 2 * camera.GetParallelScale()
+        texel = width / SHADOW_PIXELS
+        near, far = camera.GetClippingRange()
+        from vtkmodules.vtkCommonMath import vtkMatrix4x4
+
+        lamp_matrix = vtkMatrix4x4()
+        # VTK hands its matrices to OpenGL as they lie in memory, and OpenGL reads columns first.
+        lamp_matrix.DeepCopy(matrix.T.ravel())
+        for actor in self._actors:
+            actor.GetProperty().SetTexture("lampDepth", texture)
+            uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
+            uniforms.SetUniformMatrix("lampMatrix", lamp_matrix)
+            uniforms.SetUniformf("lampTexel", texel)
+            uniforms.SetUniformf("lampBlur", 5.0 / SHADOW_PIXELS)
+            uniforms.SetUniformf("lampBias", 2.5 * texel / (far - near))
+            uniforms.SetUniform3f("lamp", list(LAMP))
+            uniforms.SetUniform3f("eye", [0.0, 0.0, 0.0])
+
+    # --- one picture --------------------------------------------------------------------------------------------
+
+    def _aim(self, view: View) -> None:
+        camera = self._renderer.GetActiveCamera()
+        camera.SetPosition(view.eye)
+        camera.SetFocalPoint(view.look)
+        camera.SetViewUp(view.up)
+        self._renderer.ResetCameraClippingRange()
+        for actor in self._actors:
+            actor.GetShaderProperty().GetFragmentCustomUniforms().SetUniform3f("eye", list(view.eye))
+
+    def _pixels(self) -> np.ndarray:
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
+
+        width, height = self.size
+        data = vtkUnsignedCharArray()
+        self._window.GetPixelData(0, 0, width - 1, height - 1, 0, data, 0)
+        return vtk_to_numpy(data).reshape(height, width, 3)[::-1].copy()
+
+
+def grid_spacing(size: float) -> float:
+    """Distance of the floor's lines: 1, 2 or 5 times a power of ten, about a twentieth of the action [m]."""
+    exponent = np.floor(np.log10(size / 20.0))
+    fraction = size / 20.0 / 10.0**exponent
+    return float((1.0 if fraction < 1.5 else 2.0 if fraction < 3.5 else 5.0 if fraction < 7.5 else 10.0) * 10.0**exponent)
+
+
+def _window(renderer, size: tuple[int, int], samples: int):
+    """An off-screen window, or SetupError with what is missing."""
+    from vtkmodules.vtkRenderingCore import vtkRenderWindow
+
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetSize(*size)
+    window.SetMultiSamples(samples)
+    window.AddRenderer(renderer)
+    window.Initialize()
+    if not window.SupportsOpenGL():
+        raise SetupError(
+            f"pictures need OpenGL 3.2, and {window.GetClassName()} found none on this host; install Mesa "
+            "(Debian: apt install libegl1 libosmesa6), or run with --no-movie and `render` the folder elsewhere"
+        )
+    return window
+
+
+@contextmanager
+def _silent():
+    """VTK tries an X server first and says so when there is none, which is of no concern off screen."""
+    from vtkmodules.vtkCommonCore import vtkLogger
+
+    before = vtkLogger.GetCurrentVerbosityCutoff()
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    try:
+        yield
+    finally:
+        vtkLogger.SetStderrVerbosity(before)
+
+
+def _cells(triangle: np.ndarray):
+    from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
+    from vtkmodules.vtkCommonDataModel import vtkCellArray
+
+    cells = vtkCellArray()
+    flat = np.ascontiguousarray(triangle, dtype=np.int64).ravel()
+    cells.SetData(3, numpy_to_vtkIdTypeArray(flat, deep=1))
+    return cells
+
+
+def _bytes(array: np.ndarray):
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+
+    return numpy_to_vtk(np.ascontiguousarray(array, dtype=np.uint8), deep=1)
+
+
+def _wall_edges(walls, grey: float):
+    from vtkmodules.vtkFiltersSources import vtkOutlineSource
+    from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
+
+    (x0, y0, z0), (x1, y1, z1) = walls
+    outline = vtkOutlineSource()
+    outline.SetBounds(x0, x1, y0, y1, z0, z1)
+    mapper, actor = vtkPolyDataMapper(), vtkActor()
+    mapper.SetInputConnection(outline.GetOutputPort())
+    actor.SetMapper(mapper)
+    look = actor.GetProperty()
+    look.LightingOff()
+    look.SetColor(grey, grey, grey)
+    look.SetOpacity(0.45)
+    look.SetLineWidth(1.5)
+    return actor

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What never changes during a run: which particle belongs to which object, and how surfaces hang on particles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..model.model import Layer, Model, Surface
+from ..scene.scene import Save, Scene, Vector
+
+
+@dataclass(frozen=True)
+class Catalogue:
+    """Objects, stored particles and surfaces of one trajectory; O objects, N stored particles, U different surfaces."""
+
+    title: str
+    names: tuple[str, ...]
+    """Object names, in particle order."""
+    colors: tuple[str, ...]
+    """``#rrggbb``, or empty where the renderer chooses."""
+    still: np.ndarray
+    """Objects that are held as a whole, bool, shape (O,)."""
+    object_mass: np.ndarray
+    """Mass of each whole object, stored or not [kg], shape (O,)."""
+    first: np.ndarray
+    """First stored particle of each object, and N at the end, int64, shape (O + 1,)."""
+    total: int
+    """Particles of the simulation, stored or not."""
+    id: np.ndarray
+    """1-based tag of each stored particle, as in the LAMMPS data file, int64, shape (N,)."""
+    mass: np.ndarray
+    """[kg], shape (N,)."""
+    layer: np.ndarray
+    """``Layer`` of each stored particle, int8, shape (N,)."""
+    held: np.ndarray
+    """Particles that never move, bool, shape (N,)."""
+    bond: np.ndarray
+    """Springs between stored particles as pairs of tags (1-based), int32, shape (B, 2)."""
+    surfaces: tuple[Surface, ...]
+    """Different surfaces; ``index`` counts from an object's first stored particle."""
+    surface_of: np.ndarray
+    """Which of ``surfaces`` each object wears, int64, shape (O,)."""
+    ground: float | None = None
+    """Height of the ground plane [m]."""
+    walls: tuple[Vector, Vector] | None = None
+    """Lower and upper corner of the box that objects never leave [m]."""
+    save: Save = Save.ALL
+    single: bool = False
+    """Positions and velocities in single precision."""
+    scene_text: str = ""
+    """The expanded scene (``scene.lock.txt``)."""
+
+    @property
+    def object_of(self) -> np.ndarray:
+        """Object index of each stored particle, int32, shape (N,)."""
+        return np.repeat(np.arange(len(self.names), dtype=np.int32), np.diff(self.first))
+
+    @cached_property
+    def skin(self) -> "Skin":
+        """All surfaces as one mesh."""
+        return merge_surfaces(self)
+
+
+@dataclass(frozen=True)
+class Skin:
+    """The surfaces of all objects as one mesh of V vertices and T triangles."""
+
+    carry: object
+    """Weights of particles in vertices, ``scipy.sparse.csr_array``, shape (V, N)."""
+    triangle: np.ndarray
+    """Vertex indices, counter-clockwise seen from outside, int32, shape (T, 3)."""
+    object_of_triangle: np.ndarray
+    """int32, shape (T,)."""
+    object_of_vertex: np.ndarray
+    """int32, shape (V,)."""
+
+    def vertices(self, position: np.ndarray) -> np.ndarray:
+        """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3)."""
+        return self.carry @ np.asarray(position, dtype=np.float64)
+
+
+def stored_particles(model: Model, save: Save) -> np.ndarray:
+    """Particles of one object that the trajectory holds, bool, shape (N,).
+
+    With ``save boundary`` these are the boundary particles and whatever else the surface hangs on.
+    """
+    if save is Save.ALL:
+        return np.ones(len(model.position), dtype=bool)
+    stored = np.asarray(model.layer) >= Layer.BOUNDARY
+    stored[model.surface.index[model.surface.weight != 0.0]] = True
+    return stored
+
+
+def catalogue_of(scene: Scene, models: Sequence[Model], scene_text: str = "") -> Catalogue:
+    """Collect what a trajectory of these models must know; objects in the order of ``models``.
+
+    Args:
+        scene: for title, colours, ground, walls and ``control save``.
+        models: one per solid, named like the solids.
+        scene_text: the expanded scene, kept so that pictures need nothing but the trajectory.
+    """
+    solids = {solid.name: solid for solid in scene.solids}
+    worn = [solids[model.name] for model in models]
+    stored = [stored_particles(model, scene.control.save) for model in models]
+    offsets = np.cumsum([0] + [len(model.position) for model in models])
+    surfaces, surface_of = distinct_surfaces(models, stored)
+    bonds = [m.spring[kept[m.spring].all(axis=1)] + (o + 1) for m, kept, o in zip(models, stored, offsets)]
+    everywhere = _joined(stored, bool)
+    return Catalogue(
+        title=scene.title,
+        names=tuple(model.name for model in models),
+        colors=tuple(solid.color or "" for solid in worn),
+        still=np.array([bool(model.held.all()) for model in models], dtype=bool),
+        object_mass=np.array([model.mass.sum() for model in models], dtype=np.float64),
+        first=np.cumsum([0] + [int(kept.sum()) for kept in stored]),
+        total=int(offsets[-1]),
+        id=np.flatnonzero(everywhere) + 1,
+        mass=_joined([m.mass for m in models], np.float64)[everywhere],
+        layer=_joined([m.layer for m in models], np.int8)[everywhere],
+        held=_joined([m.held for m in models], bool)[everywhere],
+        bond=np.concatenate([np.zeros((0, 2), np.int32), *bonds]).astype(np.int32),
+        surfaces=surfaces,
+        surface_of=surface_of,
+        ground=scene.ground,
+        walls=(scene.walls.low, scene.walls.high) if scene.walls else None,
+        save=scene.control.save,
+        single=scene.control.single,
+        scene_text=scene_text,
+    )
+
+
+def distinct_surfaces(models: Sequence[Model], stored: Sequence[np.ndarray]) -> tuple[tuple[Surface, ...], np.ndarray]:
+    """The different surfaces among the models, in stored particles, and which of them each model wears."""
+    kinds: dict[bytes, int] = {}
+    surfaces: list[Surface] = []
+    worn = []
+    for model, kept in zip(models, stored):
+        surface = _within(model.surface, kept)
+        kind = kinds.setdefault(_fingerprint(surface), len(surfaces))
+        if kind == len(surfaces):
+            surfaces.append(surface)
+        worn.append(kind)
+    return tuple(surfaces), np.array(worn, dtype=np.int64)
+
+
+def merge_surfaces(catalogue: Catalogue) -> Skin:
+    """Put the surfaces of all objects into one mesh; done once, so that a frame is one matrix product."""
+    from scipy.sparse import csr_array
+
+    worn = [catalogue.surfaces[kind] for kind in catalogue.surface_of]
+    vertices = np.array([len(surface.index) for surface in worn], dtype=np.int64)
+    triangles = np.array([len(surface.triangle) for surface in worn], dtype=np.int64)
+    corners = np.repeat([surface.index.shape[1] for surface in worn], vertices)
+    first_vertex = np.cumsum(vertices) - vertices
+    shape = (int(vertices.sum()), int(catalogue.first[-1]))
+    carry = csr_array(
+        (
+            _joined([surface.weight.ravel() for surface in worn], np.float64),
+            _joined([surface.index.ravel() + first for surface, first in zip(worn, catalogue.first)], np.int64),
+            np.concatenate([[0], np.cumsum(corners)]),
+        ),
+        shape=shape,
+    )
+    carry.eliminate_zeros()
+    objects = np.arange(len(worn), dtype=np.int32)
+    triangle = [surface.triangle + first for surface, first in zip(worn, first_vertex)]
+    return Skin(
+        carry=carry,
+        triangle=np.concatenate([np.zeros((0, 3), np.int32), *triangle]).astype(np.int32),
+        object_of_triangle=np.repeat(objects, triangles),
+        object_of_vertex=np.repeat(objects, vertices),
+    )
+
+
+def _within(surface: Surface, kept: np.ndarray) -> Surface:
+    """The surface with particles counted among the kept ones; corners without weight move to a kept particle."""
+    rank = np.cumsum(kept) - 1
+    index = np.where(surface.weight != 0.0, rank[surface.index], 0)
+    return Surface(
+        triangle=np.ascontiguousarray(surface.triangle, dtype=np.int32),
+        index=index.astype(np.int32),
+        weight=np.ascontiguousarray(surface.weight, dtype=np.float64),
+    )
+
+
+def _fingerprint(surface: Surface) -> bytes:
+    import hashlib
+
+    digest = hashlib.blake2b(digest_size=16)
+    for array in (surface.triangle, surface.index, surface.weight):
+        digest.update(str(array.shape).encode())
+        digest.update(array)
+    return digest.digest()
+
+
+def _joined(arrays, dtype) -> np.ndarray:
+    """The arrays end to end; also right when there are none."""
+    return np.concatenate([np.zeros(0, dtype), *arrays]).astype(dtype, copy=False)

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The way in: a scene file, or its text, to a Scene."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+from ..errors import Problem, SceneError
+from .build import build
+from .expand import Expander
+from .statements import parse, read_text
+from .scene import Scene
+from .source import Problems, Source
+
+Overrides = Mapping[str, str | float]
+
+
+def load_scene(path: str | os.PathLike, overrides: Overrides | None = None, strict: bool = False) -> Scene:
+    """Read a scene file.
+
+    ``overrides`` are the values of ``--set name=value``: numbers, or text such as ``"12 cm"``. ``strict`` refuses
+    numbers that have a dimension but no unit. Raises SceneError with every problem of the file.
+    """
+    shown = os.fspath(path)
+    try:
+        file = Path(shown).absolute()
+        text = read_text(file)
+    except ValueError as e:
+        raise SceneError([Problem(None, f"{shown} {e}")]) from None
+    except OSError as e:
+        raise SceneError([Problem(None, f"{shown} cannot be read: {e.strerror}")]) from None
+    return _scene(Source(shown, text, file.resolve()), Path(shown).stem, overrides, strict)
+
+
+def parse_scene(
+    text: str,
+    name: str = "scene",
+    overrides: Overrides | None = None,
+    strict: bool = False,
+    folder: str | os.PathLike | None = None,
+) -> Scene:
+    """Read a scene from a text; ``folder`` is where its includes and meshes are (default: the current one).
+
+    Raises SceneError with every problem of the text; ``name`` stands in for the file name.
+    """
+    return _scene(Source(name, text, folder=Path(folder) if folder is not None else None), name, overrides, strict)
+
+
+def _scene(source: Source, name: str, overrides: Overrides | None, strict: bool) -> Scene:
+    problems = Problems()
+    problems.begin(source)
+    if not source.text.strip():
+        raise SceneError([Problem(None, f"{source.name} is empty", "a scene has at least an object and a control block")])
+    body, shared = parse(source, problems)
+    out = Expander(shared, overrides, strict).scene(body)
+    scene = build(out, problems, name, source) if out is not None else None
+    problems.stop()
+    return scene

@@ -1,0 +1,548 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""From text to statements: walks the blocks, reads each setting as words.py says, and goes on after a bad line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import count
+from pathlib import Path
+
+from lark import Token
+
+from .expressions import RESERVED, Node
+from .reader import ODD, Reader, found
+from .source import Fault, Problems, Source
+from .words import (
+    BLOCKS, GLOBALS, KEYWORDS, STATEMENTS, Keyword, Literal, Optional, Slot, alternatives, did_you_mean, example, literals, nearest,
+)  # fmt: skip
+
+DEEPEST_REPEAT = 16
+DEEPEST_INCLUDE = 16
+MOST_FILES = 1000
+LARGEST_FILE = 64 * 2**20
+
+
+# --- statements -------------------------------------------------------------------------------------------------
+
+@dataclass(slots=True, eq=False)
+class Name:
+    """``ball`` or ``ball[index]``."""
+
+    token: Token
+    last: Token
+    index: Node | None = None
+
+
+@dataclass(slots=True, eq=False)
+class Value:
+    """What stands in one slot of a setting."""
+
+    slot: Slot
+    first: Token
+    last: Token
+    node: Node | None = None
+    """Numbers and vectors."""
+    text: str = ""
+    """Texts, choices, colours, and the quantity of an expect."""
+    name: Name | None = None
+    """Object names."""
+
+
+@dataclass(slots=True, eq=False)
+class Let:
+    source: Source
+    token: Token
+    node: Node
+
+
+@dataclass(slots=True, eq=False)
+class Repeat:
+    source: Source
+    token: Token
+    variable: Token
+    low: Node
+    high: Node
+    body: list
+
+
+@dataclass(slots=True, eq=False)
+class Entry:
+    """One setting."""
+
+    source: Source
+    token: Token
+    keyword: Keyword
+    words: tuple[str, ...]
+    """The literal words found, e.g. ``("axis", "angle")``."""
+    values: tuple[Value | None, ...]
+    """In the order of the form; None for what was left out."""
+    known: tuple | None = None
+    """The values, once worked out, if they are the same in every repeat."""
+
+    @property
+    def constant(self) -> bool:
+        """Whether no variable is looked at."""
+        return all(v is None or (v.node is None or v.node.constant) and v.name is None for v in self.values)
+
+
+@dataclass(slots=True, eq=False)
+class Group:
+    """One block."""
+
+    source: Source
+    token: Token
+    block: str
+    name: Name | None
+    body: list
+
+
+@dataclass(slots=True, eq=False)
+class Broken:
+    """A setting or block that could not be read; keeps checks from complaining that it is missing."""
+
+    word: str
+
+
+class Unclosed(Exception):
+    """A word that can only stand further out: a closing brace is missing before it."""
+
+    def __init__(self, token: Token):
+        self.token = token
+
+
+@dataclass(eq=False)
+class Shared:
+    """What the files of one scene have in common."""
+
+    problems: Problems
+    sites: Iterator[int] = field(default_factory=count)
+    lets: dict[str, int] = field(default_factory=dict)
+    """Names given by let so far, and the line."""
+    names: set[str] = field(default_factory=set)
+    """Names given by let or repeat so far."""
+    files: int = 0
+
+
+# --- files ------------------------------------------------------------------------------------------------------
+
+def read_text(path: Path) -> str:
+    """Read a UTF-8 text file; raises ValueError with a message for people, or OSError."""
+    if path.is_dir():
+        raise ValueError("is a folder, not a scene file")
+    if not path.is_file():
+        raise ValueError("is not there" if not path.exists() else "is not an ordinary file")
+    if path.stat().st_size > LARGEST_FILE:
+        raise ValueError(f"is larger than {LARGEST_FILE >> 20} MB: this is hardly a scene")
+    data = path.read_bytes()
+    if b"\0" in data:
+        raise ValueError("is a binary file, not a text")
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as e:
+        line = data.count(b"\n", 0, e.start) + 1
+        raise ValueError(f"is not UTF-8 text (byte 0x{data[e.start]:02x} in line {line}); save it as UTF-8") from None
+
+
+def parse(source: Source, problems: Problems) -> tuple[list, Shared]:
+    """All statements of a scene, includes spliced in; what is wrong goes into ``problems``."""
+    shared = Shared(problems)
+    return Parser(source, shared).body("", None, 0), shared
+
+
+def parse_override(source: Source, problems: Problems) -> Node | None:
+    """The value of ``--set name=value``; None after a problem."""
+    parser = Parser(source, Shared(problems, sites=count(2**32)))
+    try:
+        node = parser.expression(Slot("let", ""), frozenset())
+        if parser.peek.type not in ("END", "NEWLINE"):
+            raise Fault(parser.peek, f"{found(parser.peek)} cannot follow the value")
+        return node
+    except Fault as fault:
+        problems.fault(source, fault)
+        return None
+
+
+# --- the walk ---------------------------------------------------------------------------------------------------
+
+class Parser(Reader):
+    """Reads one file into statements."""
+
+    def __init__(self, source: Source, shared: Shared, chain: tuple[Path, ...] = ()):
+        super().__init__(source, shared.names, shared.sites)
+        self.shared = shared
+        self.chain = (*chain, source.path) if source.path else chain
+        self.start = 0
+        """Where the current statement begins."""
+
+    def problem(self, fault: Fault) -> None:
+        self.shared.problems.fault(self.source, fault)
+
+    # -- blocks
+
+    def body(self, block: str, opened: Token | None, repeats: int, title: str = "") -> list:
+        """Statements up to the closing brace of ``opened``, or up to the end of the file."""
+        result = []
+        while True:
+            self.skip_newlines()
+            t = self.peek
+            if t.type == "END":
+                if opened is not None:
+                    self.problem(Fault(opened, f"{title}, opened at line {opened.line}, is never closed",
+                                       "add a } where it ends"))
+                return result
+            if t.type == "RBRACE":
+                self.take()
+                if opened is not None:
+                    return result
+                self.problem(Fault(t, "this } closes nothing", "remove it, or look for a missing { above"))
+                continue
+            start = self.start = self.at
+            try:
+                result += self.statement(block, opened, repeats)
+            except Fault as fault:
+                self.problem(fault)
+                word = self.tokens[start]
+                self.skip_statement(start, block)
+                result.append(Broken(nearest(str(word), [*KEYWORDS[block], *BLOCKS]) or str(word)))
+            except Unclosed as trouble:
+                self.at = start
+                if opened is None:
+                    raise
+                self.problem(Fault(opened, f"{title}, opened at line {opened.line}, is not closed before "
+                                   f"'{trouble.token}' at line {trouble.token.line}", "add a } between them"))
+                return result
+
+    def skip_statement(self, start: int, block: str) -> None:
+        """Go on after a bad statement: behind its line, or behind the block that it opens."""
+        self.at = start
+        depth = braces = 0
+        while True:
+            t = self.take()
+            if t.type == "END":
+                break
+            if t.type == "LBRACE":
+                braces += 1
+            elif t.type == "RBRACE":
+                braces -= 1
+                if braces < 0:
+                    self.at -= 1
+                    break
+                if braces == 0:
+                    break
+            elif braces == 0:
+                depth += (t.type == "LPAR") - (t.type == "RPAR")
+                if t.type == "NEWLINE":
+                    n = self.peek
+                    if depth <= 0 or n.type in ("RBRACE", "NEWLINE", "END") or str(n) in KEYWORDS[block] or str(n) in BLOCKS:
+                        break
+        self.at = max(self.at, start + 1)
+
+    def word(self) -> Token:
+        """A word, hyphens included (``air-drag``)."""
+        first = last = self.take()
+        while (self.peek.type == "MINUS" and self.peek.start_pos == last.end_pos
+               and self.ahead(1).type == "NAME" and self.ahead(1).start_pos == self.peek.end_pos):
+            self.take()
+            last = self.take()
+        if last is first:
+            return first
+        text = self.source.text[first.start_pos : last.end_pos]
+        return Token("NAME", text, first.start_pos, first.line, first.column, last.end_line, last.end_column, last.end_pos)
+
+    def opens_block(self) -> bool:
+        """Whether the next tokens look like the head of a block."""
+        return self.peek.type == "LBRACE" or self.peek.type == "NAME" and self.ahead(1).type in ("LBRACE", "LSQB")
+
+    def statement(self, block: str, opened: Token | None, repeats: int) -> list:
+        t = self.peek
+        if t.type == "LBRACE":
+            raise Fault(t, "this { belongs to no block", "a block begins with a word, e.g. object NAME {")
+        if t.type != "NAME":
+            hint = ODD.get(str(t), "")
+            raise Fault(t, f"a word of the language is expected here, found {found(t)}", hint)
+        word = self.word()
+        if word == "let":
+            return [self.let(word)]
+        if word == "repeat":
+            return [self.repeat(word, block, repeats)]
+        if word == "include":
+            return self.include(word, block, repeats)
+        if word in BLOCKS and (not block or self.opens_block()):
+            if block:
+                raise Unclosed(word)
+            return [self.group(word, str(word), repeats)]
+        if word in KEYWORDS[block]:
+            return [self.entry(word, KEYWORDS[block][word], repeats)]
+        return self.unknown(word, block, opened, repeats)
+
+    def unknown(self, word: Token, block: str, opened: Token | None, repeats: int) -> list:
+        """A word that has no meaning here: tell it, and read on with what was most likely meant."""
+        here = [*KEYWORDS[block], *(() if block else (*BLOCKS, *STATEMENTS))]
+        homes = [b for b in KEYWORDS if word in KEYWORDS[b]]
+        if "" in homes and opened is not None and self._first_on_line(word) and word.column <= opened.column:
+            raise Unclosed(word)
+        guess = nearest(str(word), here)
+        if homes and not guess:
+            place = " or ".join(f"{b} {{ }}" if b else "the outermost level" for b in homes)
+            inside = f"inside {block} {{ }}" if block else "outside of all blocks"
+            raise Fault(word, f"'{word}' cannot stand {inside}", f"it belongs {'in' if homes[0] else 'on'} {place}")
+        kind = f"a setting of {block}" if block else "a word of the scene language"
+        owner = next((k for k in KEYWORDS[block].values() if word in literals(k.form)), None)
+        hint = did_you_mean(str(word), here)
+        if self.peek.type == "EQUAL":
+            hint = f"write let {word} = ..."
+        elif owner is not None and not guess:
+            hint = f"it belongs to {owner.name}: write {owner.name} {word} ..."
+        self.problem(Fault(word, f"'{word}' is not {kind}", hint))
+        if guess in BLOCKS and self.opens_block() and not block:
+            return [self.group(word, guess, repeats)]
+        if guess in KEYWORDS[block] and not self.opens_block():
+            return [self.entry(word, KEYWORDS[block][guess], repeats)]
+        self.skip_statement(self.start, block)
+        return [Broken(guess or str(word))]
+
+    def _first_on_line(self, t: Token) -> bool:
+        return not self.source.lines[t.line - 1][: t.column - 1].strip()
+
+    def brace(self, after: str) -> Token:
+        """The { of a block; it may stand on the next line."""
+        at = self.at
+        self.skip_newlines()
+        if self.peek.type != "LBRACE":
+            self.at = at
+            raise Fault(self.peek, f"a {{ is missing after {after}, found {found(self.peek)}", "a block stands in braces")
+        return self.take()
+
+    def group(self, word: Token, block: str, repeats: int) -> Group:
+        if repeats and block != "object":
+            raise Fault(word, f"{block} cannot stand in a repeat", "only objects, expect lines and lets are repeated")
+        name = None
+        if BLOCKS[block].head:
+            if self.peek.type != "NAME":
+                raise Fault(self.peek, f"a name is missing after {block}, found {found(self.peek)}", f"e.g. {block} ball {{")
+            name = self.name()
+            if name.index is not None and block != "object":
+                raise Fault(name.token, f"only objects have an index, found {block} {name.token}[...]", last=name.last)
+        elif self.peek.type == "NAME":
+            raise Fault(self.peek, f"{block} has no name, found {found(self.peek)}", f"write {block} {{ ... }}")
+        title = f"{block} {name.token}" if name else block
+        self.brace(title)
+        return Group(self.source, word, block, name, self.body(block, word, 0, title))
+
+    def name(self) -> Name:
+        """NAME or NAME[index]."""
+        token = last = self.take()
+        if self.peek.type != "LSQB":
+            return Name(token, last)
+        self.take()
+        index = self.expression(Slot("number", "index"), frozenset())
+        last = self.peek
+        if last.type != "RSQB":
+            raise Fault(last, f"a ] is missing after the index of {token}, found {found(last)}", f"write {token}[1]")
+        self.take()
+        return Name(token, last, index)
+
+    # -- let, repeat, include
+
+    def new_name(self, what: str) -> Token:
+        t = self.peek
+        if t.type not in ("NAME", "MOD"):
+            raise Fault(t, f"a name is missing after {what}, found {found(t)}", f"e.g. {STATEMENTS[what][0]}")
+        if t in RESERVED:
+            raise Fault(t, f"'{t}' is a word of the language and cannot be a name", "take another name")
+        self.shared.names.add(str(t))
+        return self.take()
+
+    def let(self, word: Token) -> Let:
+        name = self.new_name("let")
+        self.shared.lets.setdefault(str(name), name.line)
+        if self.peek.type != "EQUAL":
+            raise Fault(self.peek, f"an = is missing after let {name}, found {found(self.peek)}", f"write let {name} = 3")
+        self.take()
+        node = self.expression(Slot("let", str(name)), frozenset())
+        self.end_of_statement("let", ())
+        return Let(self.source, name, node)
+
+    def repeat(self, word: Token, block: str, repeats: int) -> Repeat:
+        if repeats == DEEPEST_REPEAT:
+            raise Fault(word, f"more than {DEEPEST_REPEAT} repeats stand inside each other")
+        variable = self.new_name("repeat")
+        if self.peek != "in":
+            raise Fault(self.peek, f"'in' is missing after repeat {variable}, found {found(self.peek)}",
+                        f"write repeat {variable} in 1 .. 10 {{")
+        self.take()
+        low = self.expression(Slot("number", "first"), frozenset())
+        if self.peek.type != "DOTS":
+            raise Fault(self.peek, f"'..' is missing in repeat {variable}, found {found(self.peek)}",
+                        f"write repeat {variable} in 1 .. 10 {{")
+        self.take()
+        high = self.expression(Slot("number", "last"), frozenset())
+        title = f"repeat {variable}"
+        self.brace(title)
+        return Repeat(self.source, word, variable, low, high, self.body(block, word, repeats + 1, title))
+
+    def include(self, word: Token, block: str, repeats: int) -> list:
+        t = self.text("include", '"file"')
+        self.end_of_statement("include", ())
+        file = str(t)[1:-1]
+        path = (self.source.folder / file).resolve() if "\0" not in file else Path()
+        if path in self.chain:
+            loop = [p.name for p in self.chain[self.chain.index(path):]] + [path.name]
+            raise Fault(t, f"this include goes round in a circle: {' -> '.join(loop)}", "remove one of them")
+        self.shared.files += 1
+        if len(self.chain) > DEEPEST_INCLUDE:
+            names = " -> ".join(p.name for p in (*self.chain, path))
+            raise Fault(t, f"includes go more than {DEEPEST_INCLUDE} levels deep: {names}")
+        if self.shared.files > MOST_FILES:
+            raise Fault(t, f"more than {MOST_FILES} files are included")
+        try:
+            text = read_text(path)
+        except (ValueError, OSError) as e:
+            reason = e.strerror if isinstance(e, OSError) else str(e)
+            raise Fault(t, f"cannot include {t}: {path} {reason}", "the name is relative to this file") from None
+        shown = str(Path(self.source.name).parent / file)
+        inner = Source(shown, text, path, (*self.source.included_from, self.source.span(word, t)))
+        parser = Parser(inner, self.shared, self.chain)
+        try:
+            return parser.body(block, None, repeats)
+        except Unclosed as trouble:
+            parser.problem(Fault(trouble.token, f"'{trouble.token}' cannot stand inside {block} {{ }}"))
+            return []
+
+    # -- settings
+
+    def entry(self, word: Token, keyword: Keyword, repeats: int) -> Entry:
+        if repeats and not keyword.many:
+            raise Fault(word, f"{keyword.name} cannot stand in a repeat", "it is given once")
+        if self.peek.type == "EQUAL" or self.peek == ":":
+            raise Fault(self.peek, f"no '{self.peek}' is needed after {keyword.name}", example(keyword))
+        parts = self.choose(word, keyword)
+        words, values = [], []
+        self.match(parts, keyword, words, values)
+        self.end_of_statement(keyword.name, KEYWORDS[keyword.block])
+        return Entry(self.source, word, keyword, tuple(words), tuple(values))
+
+    def choose(self, word: Token, keyword: Keyword) -> tuple:
+        """The alternative of the form that the next word calls for."""
+        t = self.peek
+        options = alternatives(keyword.form)
+        for parts in options:
+            if isinstance(parts[0], Literal) and parts[0].text == t:
+                return parts
+        starts = [p[0].text for p in options if isinstance(p[0], Literal)]
+        free = [p for p in options if not isinstance(p[0], Literal)]
+        mistyped = t.type == "NAME" and t not in self.shared.names and (nearest(str(t), starts) or not free)
+        if not free or mistyped:
+            if t.type in ("NEWLINE", "END", "RBRACE"):
+                self._missing(word, t, keyword)
+            hint = did_you_mean(str(t), starts) if len(starts) > 1 or mistyped else example(keyword)
+            raise Fault(t, f"{keyword.name} cannot be followed by {found(t)}", hint)
+        return free[0]
+
+    def _missing(self, word: Token, t: Token, keyword: Keyword) -> None:
+        rest = self.source.lines[word.line - 1][word.end_column - 1 :].strip()
+        hint = example(keyword)
+        if rest.startswith("#") and "color" in keyword.form:
+            hint = "'#' starts a comment: put the colour in quotes, \"#rrggbb\""
+        raise Fault(word, f"nothing follows {word}", hint)
+
+    def match(self, parts: tuple, keyword: Keyword, words: list, values: list) -> None:
+        """Read the parts of one alternative."""
+        for n, part in enumerate(parts):
+            t = self.peek
+            if isinstance(part, Literal):
+                if part.text != t and not (part.text == "+-" and t.type == "PLUS_MINUS"):
+                    raise Fault(t, f"'{part.text}' is missing in {keyword.name}, found {found(t)}",
+                                example(keyword))
+                words.append(str(self.take()))
+            elif isinstance(part, Optional):
+                first = part.parts[0]
+                if isinstance(first, Literal):
+                    present = first.text == t or first.text == "+-" and t.type == "PLUS_MINUS"
+                else:
+                    following = parts[n + 1].text if n + 1 < len(parts) else None
+                    present = t.type not in ("NEWLINE", "END", "RBRACE") and t != following
+                    present = present and not (following is None and str(t) in KEYWORDS[keyword.block])
+                if present:
+                    self.match(part.parts, keyword, words, values)
+                else:
+                    values += [None] * sum(isinstance(p, Slot) for p in part.parts)
+            else:
+                if t.type in ("NEWLINE", "END", "RBRACE"):
+                    self._missing(self.tokens[self.at - 1], t, keyword)
+                more = n + 1 < len(parts) and isinstance(parts[n + 1], Slot)
+                values.append(self.value(part, keyword, more))
+
+    def value(self, slot: Slot, keyword: Keyword, more: bool) -> Value:
+        t = self.peek
+        if slot.kind == "text":
+            token = self.text(keyword.name, slot.text)
+            return Value(slot, token, token, text=str(token)[1:-1])
+        if slot.kind == "choice":
+            return self.choice(slot, keyword)
+        if slot.kind == "color":
+            if t.type == "STRING":
+                self.take()
+                return Value(slot, t, t, text=str(t)[1:-1])
+            if t.type != "NAME":
+                raise Fault(t, f"{keyword.name} needs a colour, found {found(t)}", 'write a name such as red, or "#rrggbb"')
+            self.take()
+            return Value(slot, t, t, text=str(t))
+        if slot.kind == "check":
+            return self.check(slot, keyword)
+        if slot.kind == "place" and t.type == "NAME":
+            name = self.name()
+            return Value(slot, name.token, name.last, name=name)
+        stops = literals(keyword.form) | KEYWORDS[keyword.block].keys() | STATEMENTS.keys()
+        node = self.expression(slot, stops, more)
+        return Value(slot, node.first, node.last, node)
+
+    def text(self, what: str, shown: str) -> Token:
+        t = self.peek
+        if t.type == "BAD_STRING":
+            raise Fault(t, "this text is never closed", 'add a " at its end')
+        if t.type != "STRING":
+            hint = ODD.get(str(t)) or f"write {what} {shown}"
+            raise Fault(t, f"{what} needs a text in quotes, found {found(t)}", hint)
+        return self.take()
+
+    def choice(self, slot: Slot, keyword: Keyword) -> Value:
+        first = last = self.take()
+        text = str(first)
+        if first.type in ("PLUS", "MINUS") and self.peek.type == "NAME":
+            last = self.take()
+            text += str(last)
+        if text not in slot.choices:
+            raise Fault(first, f"'{text.strip()}' is not one of the choices of {keyword.name}", did_you_mean(text, slot.choices), last)
+        return Value(slot, first, last, text=text)
+
+    def check(self, slot: Slot, keyword: Keyword) -> Value:
+        """NAME.QUANTITY of an expect."""
+        if self.peek.type != "NAME":
+            raise Fault(self.peek, f"expect needs NAME.QUANTITY, found {found(self.peek)}",
+                        f"NAME is an object, or one of {', '.join(GLOBALS)}")
+        name, words = self.name(), []
+        while self.peek.type == "DOT":
+            self.take()
+            if self.peek.type != "NAME":
+                raise Fault(self.peek, f"the quantity is missing after {name.token}., found {found(self.peek)}")
+            words.append(self.take())
+        if not words:
+            raise Fault(name.token, f"expect {name.token} names no quantity", f"e.g. {name.token}.position.z", name.last)
+        return Value(slot, name.token, words[-1], text=".".join(words), name=name)
+
+    def end_of_statement(self, what: str, settings) -> None:
+        t = self.peek
+        if t.type in ("NEWLINE", "RBRACE", "END") or t.type == "NAME" and (str(t) in settings or str(t) in STATEMENTS):
+            return
+        hint = ODD.get(str(t), "")
+        if t.type == "COMMA":
+            hint = "a decimal number is written with a point"
+        elif t.type == "RPAR":
+            hint = "this ) closes nothing"
+        elif t.type == "NAME":
+            hint = "one setting per line"
+        elif t.type == "LBRACE":
+            hint = f"{what} is a setting, not a block"
+        raise Fault(t, f"{found(t)} cannot follow here; {what} is complete", hint)

@@ -1,0 +1,308 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Units and dimensions: what ``kg*m/s^2`` is worth in SI, and which quantities may be added to which."""
+
+from __future__ import annotations
+
+import math
+import operator
+from dataclasses import dataclass
+from difflib import get_close_matches
+from fractions import Fraction
+from functools import lru_cache
+
+Dim = tuple
+"""Exponents of (metre, kilogram, second, radian). The angle is kept apart so that ``mass 20 deg`` is an error."""
+
+NONE: Dim = (0, 0, 0, 0)
+
+
+class DimensionError(ValueError):
+    """Two quantities that cannot be combined; ``hint`` is the way out."""
+
+    def __init__(self, message: str, hint: str = ""):
+        super().__init__(message)
+        self.hint = hint
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """One unit as a ratio, so that 7 cm is 7/100 rounded once, not 7 times a rounded 0.01."""
+
+    text: str
+    over: float
+    under: float
+    dim: Dim
+
+    def times(self, other: Unit, power: int = 1) -> Unit:
+        """This unit multiplied by ``other**power``."""
+        over, under = (other.over, other.under) if power >= 0 else (other.under, other.over)
+        dim = tuple(a + power * b for a, b in zip(self.dim, other.dim))
+        return Unit(self.text, self.over * over ** abs(power), self.under * under ** abs(power), dim)
+
+
+ONE = Unit("1", 1.0, 1.0, NONE)
+
+_TABLE = """
+m 1 1 m | mm 1 1000 m | cm 1 100 m | km 1000 1 m | l 1 1000 m3
+s 1 1 s | ms 1 1000 s | min 60 1 s | Hz 1 1 s-1 | fps 1 1 s-1
+kg 1 1 kg | g 1 1000 kg | t 1000 1 kg
+N 1 1 m,kg,s-2 | kN 1000 1 m,kg,s-2 | J 1 1 m2,kg,s-2
+Pa 1 1 m-1,kg,s-2 | kPa 1e3 1 m-1,kg,s-2 | MPa 1e6 1 m-1,kg,s-2 | GPa 1e9 1 m-1,kg,s-2
+rad 1 1 rad | deg pi 180 rad | rpm pi 30 rad,s-1
+"""
+_BASE = ("m", "kg", "s", "rad")
+
+
+def _dim(text: str) -> Dim:
+    exponent = dict.fromkeys(_BASE, 0)
+    for part in text.split(","):
+        name = part.rstrip("-0123456789")
+        exponent[name] = int(part[len(name):] or 1)
+    return tuple(exponent.values())
+
+
+def _number(text: str) -> float:
+    return math.pi if text == "pi" else float(text)
+
+
+UNITS: dict[str, Unit] = {
+    name: Unit(name, _number(over), _number(under), _dim(dim))
+    for name, over, under, dim in (row.split() for line in _TABLE.split("\n") if line for row in line.split("|"))
+}
+"""Every unit that may stand alone."""
+
+HOUR = Unit("h", 3600.0, 1.0, UNITS["s"].dim)
+"""Only below a fraction bar (``km/h``): alone, ``h`` is too good a name for a height."""
+
+
+@lru_cache(maxsize=None)
+def unit(text: str) -> Unit:
+    """The unit written as ``N*s/m``; raises KeyError for a word that is none."""
+    result, sign, rest = ONE, 1, text
+    while rest:
+        end = min((rest.index(c) for c in "*/" if c in rest), default=len(rest))
+        name, _, power = rest[:end].partition("^")
+        factor = ONE if name == "1" else HOUR if name == "h" and sign < 0 else UNITS[name]
+        result = result.times(factor, sign * int(power or 1))
+        sign = -1 if rest[end : end + 1] == "/" else 1
+        rest = rest[end + 1 :]
+    return Unit(text, result.over, result.under, result.dim)
+
+
+NAMES: dict[Dim, tuple[str, str]] = {
+    unit(text).dim: (text, name)
+    for text, name in (
+        ("m", "a length"), ("kg", "a mass"), ("s", "a time"), ("m^2", "an area"), ("m^3", "a volume"),
+        ("m/s", "a speed"), ("m/s^2", "an acceleration"), ("N", "a force"), ("Pa", "a pressure"),
+        ("kg/m^3", "a density"), ("N/m", "a spring constant"), ("N*s/m", "a drag coefficient"),
+        ("Pa*s", "a viscosity"), ("rad", "an angle"), ("rad/s", "an angular speed"), ("1/s", "a rate"),
+        ("J", "an energy"),
+    )
+}
+"""Dimensions that have a name, with the SI unit they are shown in."""
+
+LISTED = (
+    ("length", "m mm cm km"), ("time", "s ms min"), ("mass", "kg g t"), ("force", "N kN"),
+    ("pressure", "Pa kPa MPa GPa"), ("speed", "m/s km/h"), ("acceleration", "m/s^2"),
+    ("density", "kg/m^3 g/cm^3"), ("spring constant", "N/m"), ("drag", "N*s/m"), ("viscosity", "Pa*s"),
+    ("volume", "m^3 l"), ("angle", "deg rad"), ("angular speed", "rad/s rpm"), ("rate", "1/s Hz fps"),
+    ("energy", "J"),
+)
+"""The units people use, by kind; products and quotients of them are allowed too."""
+
+
+def symbol(dim: Dim) -> str:
+    """The SI unit of a dimension, e.g. ``kg/m^3``."""
+    if dim in NAMES:
+        return NAMES[dim][0]
+    parts = [f"{b}^{e}" if e != 1 else b for b, e in zip(_BASE, dim) if e]
+    return "*".join(parts)
+
+
+def describe(dim: Dim) -> str:
+    """A dimension in words: ``a mass``, ``a plain number``, ``a quantity in m*kg``."""
+    if dim == NONE:
+        return "a plain number"
+    return NAMES[dim][1] if dim in NAMES else f"a quantity in {symbol(dim)}"
+
+
+def units_of(dim: Dim) -> list[str]:
+    """The listed units of a dimension, the SI one among them."""
+    found = [text for _, texts in LISTED for text in texts.split() if unit(text).dim == dim]
+    return found or ([symbol(dim)] if dim != NONE else [])
+
+
+def suggest_unit(word: str, dim: Dim | None = None) -> str:
+    """``did you mean 'kg'?`` for a mistyped unit; units of the dimension that is wanted come first."""
+    choice = units_of(dim) if dim is not None else list(UNITS)
+    close = [u for u in choice if u.lower() == word.lower()] or get_close_matches(word, choice, 1, 0.5)
+    if close:
+        return f"did you mean '{close[0]}'?"
+    return f"{'units that fit' if dim is not None else 'known units'}: {' '.join(choice)}"
+
+
+# --- arithmetic: a bare number is a float, everything with a dimension a Quantity, a vector a tuple of them --------
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number in SI units together with its dimension, which is not NONE."""
+
+    value: float
+    dim: Dim
+
+
+Scalar = float | Quantity
+
+
+def magnitude(x: Scalar) -> float:
+    """The number in SI units."""
+    return x.value if isinstance(x, Quantity) else x
+
+
+def dimension(x: Scalar) -> Dim:
+    """The dimension; NONE for a bare number."""
+    return x.dim if isinstance(x, Quantity) else NONE
+
+
+def quantity(value: float, dim: Dim) -> Scalar:
+    """A Quantity, or a float where nothing of the dimension is left."""
+    return value if dim == NONE else Quantity(value, dim)
+
+
+def show(x: object) -> str:
+    """A value for messages: ``0.12 m``, ``(0, 0, 1) m/s``."""
+    if isinstance(x, tuple):
+        dims = {dimension(c) for c in x}
+        if len(dims) == 1:
+            return f"({', '.join(f'{magnitude(c):.6g}' for c in x)}) {symbol(dims.pop())}".rstrip()
+        return f"({', '.join(map(show, x))})"
+    return f"{magnitude(x):.6g} {symbol(dimension(x))}".rstrip()
+
+
+def _same(x: Scalar, y: Scalar, doing: str) -> Dim:
+    """The common dimension of two values; a bare number takes the other's SI unit."""
+    a, b = dimension(x), dimension(y)
+    if a != b and a != NONE and b != NONE:
+        raise DimensionError(
+            f"cannot {doing} {describe(a)} and {describe(b)} ({show(x)}, {show(y)})", "both need the same kind of unit"
+        )
+    return a if a != NONE else b
+
+
+def _scalars(*values: object) -> None:
+    if any(isinstance(v, tuple) for v in values):
+        raise DimensionError("a number is needed here, found a vector (x, y, z)")
+
+
+def _pairwise(function, x: object, y: object):
+    if isinstance(x, tuple) and isinstance(y, tuple):
+        if len(x) != len(y):
+            raise DimensionError(f"these vectors have {len(x)} and {len(y)} numbers")
+        return tuple(map(function, x, y))
+    if isinstance(x, tuple) or isinstance(y, tuple):
+        raise DimensionError("a vector and a number cannot be added", "write the number as a vector (x, y, z)")
+    return function(x, y)
+
+
+def add(x, y):
+    """x + y of two numbers or two vectors."""
+    return _pairwise(lambda a, b: quantity(magnitude(a) + magnitude(b), _same(a, b, "add")), x, y)
+
+
+def subtract(x, y):
+    """x - y of two numbers or two vectors."""
+    return _pairwise(lambda a, b: quantity(magnitude(a) - magnitude(b), _same(a, b, "subtract")), x, y)
+
+
+def multiply(x, y):
+    """x * y; one of the two may be a vector."""
+    if isinstance(x, tuple) != isinstance(y, tuple):
+        return tuple(multiply(a, y) for a in x) if isinstance(x, tuple) else tuple(multiply(x, b) for b in y)
+    _scalars(x, y)
+    return quantity(magnitude(x) * magnitude(y), tuple(a + b for a, b in zip(dimension(x), dimension(y))))
+
+
+def divide(x, y):
+    """x / y; x may be a vector."""
+    if isinstance(x, tuple):
+        return tuple(divide(a, y) for a in x)
+    _scalars(x, y)
+    return quantity(magnitude(x) / magnitude(y), tuple(a - b for a, b in zip(dimension(x), dimension(y))))
+
+
+def modulo(x, y):
+    """The remainder of x / y, with the sign of y."""
+    _scalars(x, y)
+    return quantity(operator.mod(magnitude(x), magnitude(y)), _same(x, y, "take mod of"))
+
+
+def power(x, y):
+    """x ^ y for a plain number y."""
+    _scalars(x, y)
+    if dimension(y) != NONE:
+        raise DimensionError(f"an exponent is a plain number, found {show(y)}")
+    result = magnitude(x) ** magnitude(y)
+    if isinstance(result, complex):
+        raise DimensionError(f"({show(x)}) ^ ({show(y)}) is not a real number")
+    exponent = Fraction(magnitude(y)).limit_denominator(12)
+    return quantity(result, tuple(e * exponent for e in dimension(x)))
+
+
+def negate(x):
+    """-x of a number or a vector."""
+    return tuple(map(negate, x)) if isinstance(x, tuple) else quantity(-magnitude(x), dimension(x))
+
+
+def with_unit(x, u: Unit):
+    """A number or vector measured in ``u``."""
+    if isinstance(x, tuple):
+        return tuple(with_unit(c, u) for c in x)
+    if isinstance(x, Quantity):
+        raise DimensionError(
+            f"the value has a unit already: it is {describe(x.dim)}, {show(x)}", f"leave out '{u.text}'"
+        )
+    return quantity(x * u.over / u.under, u.dim)
+
+
+def _angle(x) -> float:
+    """A plain number or an angle, in radians."""
+    _scalars(x)
+    if dimension(x) not in (NONE, UNITS["rad"].dim):
+        raise DimensionError(f"an angle is needed here, found {describe(dimension(x))}, {show(x)}")
+    return magnitude(x)
+
+
+def root(x):
+    """Square root; halves the dimension."""
+    _scalars(x)
+    if magnitude(x) < 0.0:
+        raise DimensionError(f"sqrt needs a number >= 0, found {show(x)}")
+    return quantity(math.sqrt(magnitude(x)), tuple(Fraction(e) / 2 for e in dimension(x)))
+
+
+def _extreme(choose):
+    def function(*values):
+        _scalars(*values)
+        dim = NONE
+        for v in values:
+            dim = _same(quantity(1.0, dim), v, "compare")
+        return quantity(choose(map(magnitude, values)), dim)
+
+    return function
+
+
+def _absolute(x):
+    _scalars(x)
+    return quantity(abs(magnitude(x)), dimension(x))
+
+
+FUNCTIONS = {
+    "sqrt": (1, 1, root),
+    "sin": (1, 1, lambda x: math.sin(_angle(x))),
+    "cos": (1, 1, lambda x: math.cos(_angle(x))),
+    "tan": (1, 1, lambda x: math.tan(_angle(x))),
+    "min": (1, 99, _extreme(min)),
+    "max": (1, 99, _extreme(max)),
+    "abs": (1, 1, _absolute),
+}
+"""Functions of the language: fewest arguments, most arguments, function. ``rand`` is apart: it needs its place."""

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Small elastic bodies as arrays, and LAMMPS instances filled with them, for the tests of the plugin.
+
+Units: spacing h = density = Young's modulus = 1 (docs/physics.md), so the wave speed is sqrt(1.2).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+import plugin_path
+
+WAVE_SPEED = 1.2**0.5
+BOUND = 2.0 / 8.0**0.5
+"""Largest stable time step by w_b of a box, 2.83 sqrt(E/rho)/h."""
+
+
+@dataclass(frozen=True)
+class Body:
+    """Particles and springs of one or more objects."""
+
+    x: np.ndarray
+    v: np.ndarray
+    mass: np.ndarray
+    molecule: np.ndarray
+    boundary: np.ndarray
+    """Whether a particle lies on the surface, bool, shape (N,)."""
+    bond: np.ndarray
+    """Pairs i < j, 0-based, sorted, shape (S, 2)."""
+    k: np.ndarray
+    r0: np.ndarray
+
+
+def block(cells, corner=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0)) -> Body:
+    """A box of cells with springs along edges and face diagonals, k = 0.4 n/4 and 0.4 n/2 by the n cells that share them."""
+    nx, ny, nz = cells
+    index = np.arange((nx + 1) * (ny + 1) * (nz + 1)).reshape(nz + 1, ny + 1, nx + 1)
+    x = np.stack(np.meshgrid(np.arange(nz + 1), np.arange(ny + 1), np.arange(nx + 1), indexing="ij"), -1)[..., ::-1]
+    share = np.zeros(index.size)
+    stiffness: dict[tuple[int, int], float] = {}
+    for c in product(range(nz), range(ny), range(nx)):
+        corners = [(index[c[0] + a, c[1] + b, c[2] + d], (a, b, d)) for a, b, d in product((0, 1), repeat=3)]
+        for i, p in corners:
+            share[i] += 1.0 / 8.0
+            for j, q in corners:
+                apart = sum(a != b for a, b in zip(p, q))
+                if i < j and apart in (1, 2):
+                    stiffness[i, j] = stiffness.get((i, j), 0.0) + 0.4 / (4.0 if apart == 1 else 2.0)
+    bond = np.array(sorted(stiffness))
+    x = x.reshape(-1, 3).astype(float) + corner
+    n = len(x)
+    return Body(x, np.tile(np.asarray(velocity, float), (n, 1)), share, np.ones(n, int), share < 0.999, bond,
+                np.array([stiffness[i, j] for i, j in bond]), np.linalg.norm(x[bond[:, 0]] - x[bond[:, 1]], axis=1))
+
+
+def particles(x, molecule=None, boundary=None, v=None, mass=None) -> Body:
+    """Loose particles."""
+    x = np.asarray(x, float)
+    n = len(x)
+    return Body(x, np.zeros((n, 3)) if v is None else np.asarray(v, float),
+                np.ones(n) if mass is None else np.asarray(mass, float),
+                np.arange(1, n + 1) if molecule is None else np.asarray(molecule),
+                np.ones(n, bool) if boundary is None else np.asarray(boundary),
+                np.empty((0, 2), int), np.empty(0), np.empty(0))
+
+
+def join(*bodies: Body) -> Body:
+    """Several bodies as one system; molecules are numbered on."""
+    first = np.cumsum([0] + [len(b.x) for b in bodies])
+    object_ = np.cumsum([0] + [b.molecule.max() for b in bodies])
+    return Body(*(np.concatenate([getattr(b, name) for b in bodies]) for name in ("x", "v", "mass")),
+                np.concatenate([b.molecule + o for b, o in zip(bodies, object_)]),
+                np.concatenate([b.boundary for b in bodies]),
+                np.concatenate([b.bond + f for b, f in zip(bodies, first)]),
+                *(np.concatenate([getattr(b, name) for b in bodies]) for name in ("k", "r0")))
+
+
+def shaken(body: Body, amount: float, seed: int = 1) -> Body:
+    """The same body with random displacements and velocities."""
+    random = np.random.default_rng(seed)
+    return replace(body, x=body.x + amount * random.standard_normal(body.x.shape),
+                   v=body.v + amount * random.standard_normal(body.v.shape))
+
+
+def bond_types(body: Body) -> tuple[np.ndarray, np.ndarray]:
+    """Distinct (k, r0) and the type of each spring, from 1."""
+    table, kind = np.unique(np.stack([body.k, body.r0], 1), axis=0, return_inverse=True)
+    return table, kind.reshape(-1) + 1
+
+
+def write_data(body: Body, path: Path, order=None, columns: dict | None = None) -> None:
+    """A LAMMPS data file; ``order`` is the order of the lines, tags stay what they are. Atom type 1 inner, 2 boundary."""
+    columns = {"rmass": body.mass, **(columns or {})}
+    order = np.arange(len(body.x)) if order is None else order
+    table, kind = bond_types(body)
+    low, high = body.x.min(0) - 1.0, body.x.max(0) + 1.0
+    text = ["test", "", f"{len(body.x)} atoms", f"{len(body.bond)} bonds", "2 atom types",
+            f"{max(1, len(table))} bond types", ""]
+    text += [f"{a!r} {b!r} {n}lo {n}hi" for a, b, n in zip(low.tolist(), high.tolist(), "xyz")]
+    text += ["", "Atoms # bond", ""]
+    text += [f"{i + 1} {body.molecule[i]} {1 + body.boundary[i]} " + " ".join(map(repr, body.x[i].tolist())) for i in order]
+    text += ["", "Velocities", ""] + [f"{i + 1} " + " ".join(map(repr, body.v[i].tolist())) for i in order]
+    text += ["", "Model", ""] + [f"{i + 1} " + " ".join(repr(float(c[i])) for c in columns.values()) for i in order]
+    if len(body.bond):
+        text += ["", "Bonds", ""]
+        text += [f"{n + 1} {t} {i + 1} {j + 1}" for n, (t, (i, j)) in enumerate(zip(kind, body.bond))]
+    path.write_text("\n".join(text) + "\n")
+
+
+def prelude(columns=(), newton="off", skin=0.4, cutoff=3.0, velocities=False) -> list[str]:
+    """Commands before the particles are read."""
+    return [
+        "units lj", "atom_style bond", "atom_modify map array sort 0 0", f"newton {newton}", "boundary s s s",
+        f"comm_modify cutoff {cutoff}" + (" vel yes" if velocities else ""), f"neighbor {skin} bin",
+        "neigh_modify every 1 delay 0 check yes", "pair_style none", "special_bonds lj/coul 1 1 1",
+        "fix model all property/atom rmass" + "".join(f" d_{c}" for c in columns) + " ghost yes",
+    ]
+
+
+def springs(body: Body, style="mdanim/harmonic", c=None) -> list[str]:
+    """bond_style and its coefficients; LAMMPS's K is k/2."""
+    if not len(body.bond):
+        return ["bond_style zero", "bond_coeff * 1"]
+    table, _ = bond_types(body)
+    dashpot = "" if c is None else f" {c!r}"
+    return [f"bond_style {style}"] + [f"bond_coeff {t} {0.5 * k!r} {r0!r}{dashpot}"
+                                      for t, (k, r0) in enumerate(table.tolist(), 1)]
+
+
+def load(body: Body, folder: Path, commands=(), order=None, style="mdanim/harmonic", newton="off", c=None, columns=None,
+         **options):
+    """A LAMMPS instance with this body in it; ``commands`` follow."""
+    path = folder / "data.test"
+    write_data(body, path, order, columns)
+    lmp = plugin_path.lammps()
+    script = [*prelude(columns or (), newton, **options), f"read_data {path} fix model NULL Model", "mass * 1.0",
+              *springs(body, style, c), "group inner type 1", "group boundary type 2", "thermo_modify norm no",
+              *commands]
+    try:
+        for command in script:
+            lmp.command(command)
+            if command.startswith("thermo_style"):  # which forgets thermo_modify
+                lmp.command("thermo_modify norm no")
+    except BaseException:
+        lmp.close()
+        raise
+    return lmp
+
+
+def by_tag(lmp, name: str) -> np.ndarray:
+    """Copy of a per-atom array of a one-rank instance, in tag order."""
+    n = lmp.get_natoms()
+    tag = lmp.numpy.extract_atom("id")[: int(n)]
+    return lmp.numpy.extract_atom(name)[: int(n)][np.argsort(tag)].copy()
+
+
+def kinetic(body: Body, v: np.ndarray) -> float:
+    """Kinetic energy for velocities v."""
+    return float(0.5 * (body.mass * (v**2).sum(1)).sum())

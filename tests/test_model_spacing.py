@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""One spacing for all objects, division of cuboids, cells of other shapes, and what does not fit."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from model_samples import MESHES, SHAPES, model, scene, shape_id, solid
+
+from mdanim_lammps.errors import SceneError
+from mdanim_lammps.model import build_models, plan_spacing, shapes, spacing
+from mdanim_lammps.model.cells import box_counts, fill_cells
+from mdanim_lammps.model.springs import MAX_ASPECT
+from mdanim_lammps.scene.scene import Accuracy, Box, Cylinder, HoldAll, Liquid, Mesh, Sphere
+
+BEAM = Box((1.2, 0.3, 0.1))
+
+
+@pytest.mark.parametrize(("accuracy", "h"), [
+    (Accuracy.PREVIEW, 0.05),
+    (Accuracy.BALANCED, 0.025),
+    (Accuracy.REFERENCE, 0.0125),
+    pytest.param(0.02, 0.025, id="target error: as balanced"),
+])
+def test_accuracy_is_the_number_of_cells_across_the_thinnest_part(accuracy, h):
+    """Divide the thinnest part of all solids, and name the solid that has it."""
+    plan = plan_spacing(scene(solid(Sphere(0.3), "ball"), solid(BEAM, "beam"), accuracy=accuracy))
+    assert plan.h == pytest.approx(h)
+    assert plan.set_by == "beam"
+    assert plan.total == sum(plan.particles)
+    assert plan.memory == 1500 * plan.total
+
+
+def test_resolution_overrides_accuracy():
+    """Take the spacing that the scene asks for."""
+    plan = plan_spacing(scene(solid(BEAM), resolution=0.02))
+    assert (plan.h, plan.set_by) == (0.02, "resolution")
+
+
+def test_a_held_obstacle_needs_two_cells_only():
+    """Do not let a thin plate that never moves make everything fine."""
+    plate = solid(Box((2.0, 2.0, 0.1)), "plate", hold=(HoldAll(),))
+    assert plan_spacing(scene(plate, solid(Sphere(0.5), "ball"))).h == pytest.approx(0.05)
+    assert plan_spacing(scene(plate, solid(Sphere(0.05), "ball"))).h == pytest.approx(0.025)
+
+
+def test_a_liquid_alone_is_32_cells_wide():
+    """Go by the basin where there is no solid."""
+    water = Liquid("water", (-1, -2, 0), (1, 2, 1), 1000.0, level=0.5)
+    plan = plan_spacing(scene(liquid=water))
+    assert (plan.h, plan.set_by, plan.total) == (2 / 32, "water", 0)
+
+
+def test_a_solid_thinner_than_the_resolution_is_refused():
+    """Point at every solid that is too thin, with the resolution that would do, which then does."""
+    thin = [solid(BEAM, "beam"), solid(Sphere(0.5), "ball"), solid(Cylinder(0.5, 0.05), "disc")]
+    with pytest.raises(SceneError) as caught:
+        plan_spacing(scene(*thin, resolution=0.11))
+    beam, disc = caught.value.problems
+    assert beam.message == "beam: thinner than the spacing allows, 10 cm at its thinnest, spacing 11 cm"
+    assert "resolution 5 cm" in beam.hint and "resolution 2.5 cm" in disc.hint
+    assert beam.span is thin[0].spans["shape"]
+    assert len(build_models(scene(*thin, resolution=0.025))) == 3
+
+
+def test_what_does_not_fit_in_memory_is_refused(monkeypatch):
+    """Refuse with the estimate before anything is built, and offer a resolution that does fit."""
+    monkeypatch.setattr(spacing, "available_memory", lambda: 2e6)
+    with pytest.raises(SceneError) as caught:
+        plan_spacing(scene(solid(BEAM), resolution=0.025))
+    (problem,) = caught.value.problems
+    assert problem.line == 9
+    assert "about 3,185 particles at a spacing of 2.5 cm need 0.0 GB" in problem.message
+    coarser = float(problem.hint.split()[-2]) / 100
+    assert 0.025 < coarser < 0.06
+    plan_spacing(scene(solid(BEAM), resolution=coarser))
+    with pytest.raises(SceneError, match="beam sets the spacing"):
+        plan_spacing(scene(solid(BEAM, "beam"), accuracy=Accuracy.BALANCED))
+
+
+def test_an_absurd_resolution_is_refused_at_once():
+    """Estimate 10^24 particles of every shape without making any."""
+    for shape in SHAPES:
+        with pytest.raises(SceneError, match="are free"):
+            plan_spacing(scene(solid(shape), resolution=1e-8))
+
+
+def test_available_memory_is_that_of_a_machine():
+    """Find between 10 MB and 100 TB."""
+    assert 1e7 < spacing.available_memory() < 1e14
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=shape_id)
+def test_particles_are_estimated_well(shape):
+    """Stay within a quarter of the true number at 3 to 10 cells across."""
+    for cells in (3, 5, 10):
+        h = shapes.thickness(shape) / cells
+        assert spacing.estimate_particles(shape, h) == pytest.approx(len(model(shape, h).position), rel=0.25)
+
+
+@pytest.mark.parametrize(("size", "h", "count"), [
+    pytest.param((1.2, 0.3, 0.1), 0.025, (48, 12, 4), id="cubes"),
+    pytest.param((1.0, 1.0, 1.0), 0.3, (3, 3, 3), id="spacing grows to divide a cube"),
+    pytest.param((1.0, 1.0, 1.0), 1.0, (1, 1, 1), id="one cell"),
+    pytest.param((0.9, 0.6, 0.31), 0.1, (9, 6, 3), id="slightly long cells along z"),
+    pytest.param((10.0, 1.0, 0.101), 0.1, (100, 10, 1), id="plate"),
+])
+def test_cuboids_are_divided_into_near_cubes(size, h, count):
+    """Find the division that has nearly cubic cells near the spacing."""
+    assert box_counts(size, h) == count
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.tuples(*[st.floats(1.0, 12.0)] * 3))
+def test_every_cuboid_can_be_divided(size):
+    """Keep the aspect up to 1.2 and the mean edge within 25 % for any cuboid two cells thick or more."""
+    edge = np.divide(size, box_counts(size, 0.5))
+    assert edge.max() / edge.min() <= MAX_ASPECT * (1 + 1e-6)
+    assert abs(np.log(np.prod(edge) ** (1 / 3) / 0.5)) < np.log(1.25)
+
+
+@pytest.mark.parametrize("shape", [s for s in SHAPES if not isinstance(s, Box)], ids=shape_id)
+@pytest.mark.parametrize(("cells", "error"), [(3, 0.06), (4, 0.03), (8, 0.01)])
+def test_filled_cells_have_nearly_the_volume(shape, cells, error):
+    """Fill the volume within a few per cent with cubes near the spacing, in one piece."""
+    from scipy import ndimage
+
+    h = shapes.thickness(shape) / cells
+    filled = fill_cells(shape, h)
+    assert filled.filled.sum() * np.prod(filled.edge) == pytest.approx(shapes.volume(shape), rel=error)
+    np.testing.assert_allclose(filled.edge, filled.edge[0], rtol=1e-12)
+    assert abs(filled.edge[0] / h - 1) <= (0.04 if cells == 8 else 0.12) + 1e-9
+    assert ndimage.label(filled.filled)[1] == 1
+
+
+@pytest.mark.parametrize("shape", [Sphere(0.5), Cylinder(0.4, 1.0)], ids=shape_id)
+def test_cells_are_as_symmetric_as_the_shape(shape):
+    """Mirror the cells of a ball and of a rod in every plane, and turn them about z."""
+    filled = fill_cells(shape, 0.13).filled
+    for axis in range(3):
+        np.testing.assert_array_equal(filled, np.flip(filled, axis))
+    np.testing.assert_array_equal(filled, np.swapaxes(filled, 1, 2))
+
+
+def test_a_body_that_falls_apart_is_refused():
+    """Refuse two blocks on a thin neck when cells miss the neck, and name a resolution that catches it."""
+    dumbbell = Mesh(MESHES / "dumbbell.obj", 0.1)
+    with pytest.raises(SceneError) as caught:
+        model(dumbbell, 0.1)
+    (problem,) = caught.value.problems
+    assert "not in one piece" in problem.message and problem.line == 2
+    number, unit = problem.hint.split()[2:4]
+    assert len(model(dumbbell, float(number) * {"cm": 0.01, "mm": 0.001}[unit]).position) > 600
+
+
+def test_two_bodies_in_one_file_are_refused():
+    """Say that separate bodies want separate objects."""
+    with pytest.raises(SceneError, match="separate"):
+        model(Mesh(MESHES / "two-parts.obj"), 0.5)
+
+
+def test_all_problems_come_in_one_pass():
+    """Report the missing mesh and the broken one together, each at its shape."""
+    bodies = [solid(Mesh(MESHES / name), name) for name in ("missing.stl", "open.obj", "cuboid.obj")]
+    with pytest.raises(SceneError) as caught:
+        plan_spacing(scene(*bodies))
+    assert [p.message.split(":")[0] for p in caught.value.problems] == ["missing.stl", "open.obj"]
+    assert all(p.line == 2 and p.hint for p in caught.value.problems)

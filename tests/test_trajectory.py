@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The trajectory file: what is written comes back, MDAnalysis reads it, and a killed run loses no flushed frame."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from picture_samples import ball, falling, slab_scene, write
+
+from mdanim_lammps.errors import OutputError
+from mdanim_lammps.model.model import Layer
+from mdanim_lammps.results.trajectory import Trajectory, TrajectoryWriter, part_of, trajectory_bytes
+from mdanim_lammps.scene.scene import Save, Walls
+
+FRAMES = 6
+
+
+@pytest.fixture(scope="module")
+def slab():
+    scene, models = slab_scene()
+    return scene, models, list(falling(models, FRAMES))
+
+
+def stored(scene, **control):
+    return replace(scene, control=replace(scene.control, **control))
+
+
+@pytest.mark.parametrize("single", [False, True])
+def test_frames_come_back(slab, tmp_path, single):
+    """Read what was written: to the bit in double precision, to float32 in single."""
+    scene, models, frames = slab
+    with Trajectory(write(tmp_path / "trajectory.h5", stored(scene, single=single), models, frames)) as t:
+        assert len(t) == FRAMES and t.names == ("slab", "cube", "ball")
+        real = np.float32 if single else np.float64
+        for i, (step, time, position, velocity) in enumerate(frames):
+            assert (t.steps[i], t.times[i]) == (step, time)
+            np.testing.assert_array_equal(t.position(i), position.astype(real))
+            np.testing.assert_array_equal(t.velocity(i), velocity.astype(real))
+
+
+def test_object_is_its_own_particles(slab, tmp_path):
+    """An object's slice holds its particles, its centre is their mass-weighted mean."""
+    scene, models, frames = slab
+    with Trajectory(write(tmp_path / "trajectory.h5", scene, models, frames)) as t:
+        first = len(models[0].position)
+        cube, track = models[1], t.objects["cube"]
+        assert track.particles == slice(first, first + len(cube.position))
+        assert track.mass == pytest.approx(2.0)
+        for i, (_, _, position, velocity) in enumerate(frames):
+            mine = position[first: first + len(cube.position)]
+            np.testing.assert_array_equal(track.position(i), mine)
+            # Sums of some hundred terms in another order: a few hundred units in the last place.
+            np.testing.assert_allclose(track.center_of_mass[i], cube.mass @ mine / 2.0, rtol=0, atol=1e-13)
+            np.testing.assert_allclose(track.velocity[i], velocity[first], rtol=0, atol=1e-12)
+
+
+def test_boundary_only_keeps_surface_and_centre(tmp_path):
+    """With ``save boundary`` the surface and the centre of mass are those of the whole object."""
+    scene, models = slab_scene()
+    # A fine ball, so that it has an inside worth leaving out.
+    models = [models[0], models[1], ball("ball", 0.2, 0.03, (0.35, 0, 1.0))]
+    frames = list(falling(models, 3))
+    whole = Trajectory(write(tmp_path / "all.h5", scene, models, frames))
+    part = Trajectory(write(tmp_path / "boundary.h5", stored(scene, save=Save.BOUNDARY), models, frames))
+    with whole, part:
+        assert len(part.position(0)) < 0.8 * len(whole.position(0))
+        assert part.catalogue.save is Save.BOUNDARY
+        boundary = np.concatenate([m.layer for m in models]) >= Layer.BOUNDARY
+        assert set(np.flatnonzero(boundary) + 1) <= set(part.catalogue.id)
+        np.testing.assert_array_equal(part.position(2), whole.position(2)[part.catalogue.id - 1])
+        np.testing.assert_array_equal(part.centers, whole.centers)
+        np.testing.assert_allclose(part.surface(2).points, whole.surface(2).points, rtol=0, atol=1e-15)
+
+
+def test_file_alone_is_enough(slab, tmp_path):
+    """Title, colours, ground, walls, masses and the scene's text come back from the file."""
+    scene, models, _ = slab
+    scene = replace(scene, walls=Walls((-1.0, -2.0, 0.0), (1.0, 2.0, 3.0)),
+                    solids=(replace(scene.solids[0], color="#102030"), *scene.solids[1:]))
+    text = "title \"A cube — and a ball\"\n" * 3000
+    with TrajectoryWriter(tmp_path / "t.h5", scene, models, dt=0.01, steps_per_frame=10, scene_text=text) as out:
+        out.write(0, 0.0, *falling_frame(models))
+    with Trajectory(tmp_path / "t.h5") as t:
+        c = t.catalogue
+        assert (c.title, c.scene_text, c.ground, c.walls) == (scene.title, text, 0.0, ((-1, -2, 0), (1, 2, 3)))
+        assert c.colors == ("#102030", "", "") and c.still.tolist() == [True, False, False]
+        assert (t.dt, t.steps_per_frame) == (0.01, 10)
+        np.testing.assert_array_equal(c.held, np.concatenate([m.held for m in models]))
+        for m, kind in zip(models, c.surface_of):
+            np.testing.assert_array_equal(c.surfaces[kind].triangle, m.surface.triangle)
+        np.testing.assert_array_equal(t.surface(0).cell_data["color"][0], [0x10, 0x20, 0x30])
+
+
+def falling_frame(models):
+    return next(iter(falling(models, 1)))[2:]
+
+
+def test_equal_surfaces_are_stored_once(tmp_path):
+    """A crowd of equal balls costs one surface, and every ball is drawn where it is."""
+    models = [ball(f"ball[{i}]", 0.2, 0.1, (i, 0, 0)) for i in range(5)]
+    scene, _ = slab_scene()
+    solids = tuple(replace(scene.solids[0], name=m.name) for m in models)
+    path = tmp_path / "crowd.h5"
+    with TrajectoryWriter(path, replace(scene, solids=solids), models, dt=1.0, steps_per_frame=1) as out:
+        out.write(0, 0.0, np.concatenate([m.position for m in models]), np.concatenate([m.velocity for m in models]))
+    with Trajectory(path) as t:
+        assert len(t.catalogue.surfaces) == 1
+        mesh = t.surface(0)
+        expected = np.concatenate([m.surface.vertices(m.position) for m in models])
+        np.testing.assert_allclose(mesh.points, expected, rtol=0, atol=1e-6)  # pyvista may keep float32
+        assert np.bincount(mesh.cell_data["object"]).tolist() == [len(m.surface.triangle) for m in models]
+
+
+def test_mdanalysis_reads_it(slab, tmp_path):
+    """MDAnalysis gives positions and velocities in metres and seconds, to float32."""
+    scene, models, frames = slab
+    with Trajectory(write(tmp_path / "trajectory.h5", scene, models, frames)) as t:
+        universe = t.universe
+        assert universe.trajectory.n_frames == FRAMES
+        for ts, (step, time, position, velocity) in zip(universe.trajectory, frames):
+            assert (ts.data["step"], ts.time, ts.dimensions) == (step, time, None)
+            np.testing.assert_array_equal(ts.positions, position.astype(np.float32))
+            np.testing.assert_array_equal(ts.velocities, velocity.astype(np.float32))
+            cube = universe.select_atoms("resname cube")
+            # Centre from float32 positions of about 1 m: their rounding, 6e-8.
+            np.testing.assert_allclose(cube.center_of_mass(), t.objects["cube"].center_of_mass[ts.frame], atol=2e-7)
+        assert len(universe.bonds) == sum(len(m.spring) for m in models)
+        assert universe.trajectory.dt == pytest.approx(0.1)
+
+
+def test_bonds_are_tags_of_springs(slab, tmp_path):
+    """Pairs in the file are 1-based tags, as H5MD asks where particles have an id."""
+    scene, models, frames = slab
+    path = write(tmp_path / "trajectory.h5", scene, models, frames[:1])
+    with h5py.File(path) as file:
+        assert file["h5md"].attrs["version"].tolist() == [1, 1]
+        offsets = np.cumsum([0] + [len(m.position) for m in models])
+        expected = np.concatenate([m.spring + o + 1 for m, o in zip(models, offsets)])
+        np.testing.assert_array_equal(file["connectivity/bonds"][:], expected)
+        assert file[file["connectivity/bonds"].attrs["particles_group"]].name == "/particles/all"
+
+
+def test_name_appears_when_whole(slab, tmp_path):
+    """Nothing is called ``trajectory.h5`` before it is finished; an unfinished one is still readable."""
+    scene, models, frames = slab
+    path = tmp_path / "trajectory.h5"
+    writer = TrajectoryWriter(path, scene, models, dt=0.01, steps_per_frame=10)
+    writer.write(*frames[0])
+    writer.flush()
+    writer.write(*frames[1])
+    assert not path.exists()
+    with Trajectory(tmp_path) as live:
+        assert len(live) == 1
+    assert writer.close(finished=False) == part_of(path) and not path.exists()
+    with Trajectory(tmp_path) as ended:
+        assert len(ended) == 2
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+from picture_samples import falling, slab_scene
+from mdanim_lammps.results.trajectory import TrajectoryWriter
+scene, models = slab_scene()
+writer = TrajectoryWriter(Path(sys.argv[2]) / "trajectory.h5", scene, models, dt=0.01, steps_per_frame=10)
+flushed = 0
+for i, frame in enumerate(falling(models, 1000)):
+    writer.write(*frame)
+    if i % 3 == 2:
+        writer.flush()
+        flushed = i + 1
+        print(flushed, flush=True)
+"""
+
+
+@pytest.mark.parametrize("after", [3, 60])
+def test_killed_writer_loses_no_flushed_frame(slab, tmp_path, after):
+    """Kill -9 a writer at no particular moment: all frames it had flushed are there and right."""
+    _, models, _ = slab
+    writer = subprocess.Popen([sys.executable, "-c", KILLED, str(Path(__file__).parent), str(tmp_path)],
+                              stdout=subprocess.PIPE, text=True)
+    for line in writer.stdout:
+        if int(line) >= after:
+            break
+    os.kill(writer.pid, signal.SIGKILL)
+    said = [int(line) for line in writer.stdout.read().split()]
+    writer.wait()
+    with Trajectory(tmp_path) as t:
+        # One more flush may have ended between its last write and the line that says so.
+        assert len(t) in (max([after, *said]), max([after, *said]) + 3)
+        for i, (step, time, position, velocity) in enumerate(falling(models, len(t))):
+            assert (t.steps[i], t.times[i]) == (step, time)
+            np.testing.assert_array_equal(t.position(i), position)
+            np.testing.assert_array_equal(t.velocity(i), velocity)
+        assert t.universe.trajectory.n_frames >= len(t)
+
+
+def test_append_goes_on_after_a_kill(slab, tmp_path):
+    """Resume from step 20 of a killed run: later frames are cut and written anew, and the end is whole."""
+    scene, models, frames = slab
+    path = tmp_path / "trajectory.h5"
+    code = KILLED.replace("1000", "5").replace("i % 3 == 2", "True") + "os.kill(os.getpid(), signal.SIGKILL)\n"
+    died = subprocess.run([sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)], capture_output=True)
+    assert died.returncode == -signal.SIGKILL
+    with TrajectoryWriter.append(path, scene, models, after_step=20) as out:
+        with pytest.raises(ValueError, match="found 20"):
+            out.write(*frames[2])
+        for frame in frames[3:]:
+            out.write(*frame)
+    assert sorted(os.listdir(tmp_path)) == ["trajectory.h5"]
+    whole = write(tmp_path / "whole.h5", scene, models, frames)
+    with Trajectory(path) as t, Trajectory(whole) as w:
+        np.testing.assert_array_equal(t.steps, w.steps)
+        np.testing.assert_array_equal(t.times, w.times)
+        np.testing.assert_array_equal(t.centers, w.centers)
+        for i in range(FRAMES):
+            np.testing.assert_array_equal(t.position(i), w.position(i))
+
+
+def test_append_refuses_another_scene(slab, tmp_path):
+    """Frames of other objects are never mixed in."""
+    scene, models, frames = slab
+    path = write(tmp_path / "trajectory.h5", scene, models, frames[:1])
+    with pytest.raises(OutputError, match="not this scene's"):
+        TrajectoryWriter.append(path, scene, models[:2], after_step=0)
+
+
+@pytest.mark.parametrize(("save", "single"), [(Save.ALL, False), (Save.BOUNDARY, True)])
+def test_size_is_known_before(slab, tmp_path, save, single):
+    """The estimate is what the disk then says, to a tenth."""
+    scene, models, _ = slab
+    frames = list(falling(models, 60))
+    path = write(tmp_path / "t.h5", stored(scene, save=save, single=single), models, frames)
+    assert trajectory_bytes(models, 60, save, single) == pytest.approx(path.stat().st_size, rel=0.15)
+
+
+def test_full_disk_is_an_output_error(slab, tmp_path):
+    """A file that may not grow gives the cause and the way out, and what was flushed stays readable."""
+    code = KILLED.replace("scene, models = slab_scene()", "scene, models = slab_scene()\nimport resource\n"
+                          "resource.setrlimit(resource.RLIMIT_FSIZE, (800_000, 800_000))")
+    died = subprocess.run([sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)],
+                          capture_output=True, text=True, timeout=60)
+    assert died.returncode == 1
+    assert "OutputError" in died.stderr and "File too large; make room" in died.stderr.replace("'", "")
+    with Trajectory(tmp_path) as t:
+        assert len(t) == int(died.stdout.split()[-1]) > 0
+
+
+@pytest.mark.parametrize("make", [lambda p: None, lambda p: (p / "trajectory.h5").write_text("not HDF5")])
+def test_no_trajectory_there(tmp_path, make):
+    """A folder without one, or a file that is none, is an error with its path."""
+    make(tmp_path)
+    with pytest.raises(OutputError, match="trajectory.h5"):
+        Trajectory(tmp_path)
+
+
+def test_frame_number_out_of_range(slab, tmp_path):
+    """Frames count from 0, or from the end with a minus; any other is an IndexError."""
+    scene, models, frames = slab
+    with Trajectory(write(tmp_path / "t.h5", scene, models, frames)) as t:
+        np.testing.assert_array_equal(t.position(-1), t.position(FRAMES - 1))
+        with pytest.raises(IndexError, match="6 frames"):
+            t.position(FRAMES)

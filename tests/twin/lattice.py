@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Naive twins of the modelling: lattices cell by cell from the definitions, linear elasticity of any spring network,
+and the beam of the textbook."""
+
+from itertools import combinations, product
+from math import cosh, cos
+
+import numpy as np
+
+
+def lattice(filled):
+    """Everything by definition, in plain loops, for filled cells (z, y, x).
+
+    Returns nodes {(z, y, x): filled cells around it} and springs {(node, node): filled cells that hold both}.
+    """
+    nodes, springs = {}, {}
+    for cell in zip(*np.nonzero(filled)):
+        corners = [tuple(int(c) + d for c, d in zip(cell, step)) for step in product((0, 1), repeat=3)]
+        for corner in corners:
+            nodes[corner] = nodes.get(corner, 0) + 1
+        for a, b in combinations(corners, 2):
+            if sum(p != q for p, q in zip(a, b)) <= 2:
+                springs[min(a, b), max(a, b)] = springs.get((min(a, b), max(a, b)), 0) + 1
+    return nodes, springs
+
+
+def layers(nodes, springs):
+    """Wcislo 1999, sec. 3.3.2: {node: 'boundary' | 'thin' | 'sub' | 'inner'}."""
+    boundary = {n for n, cells in nodes.items() if cells < 8}
+    touching = {a for a, b in springs if b in boundary} | {b for a, b in springs if a in boundary}
+    result = {}
+    for n in nodes:
+        around = [tuple(c + d for c, d in zip(n, step)) for step in product((-1, 0, 1), repeat=3)]
+        guarded = any(m in nodes and m not in boundary for m in around)
+        if n in boundary:
+            result[n] = "boundary" if guarded else "thin"
+        else:
+            result[n] = "sub" if n in touching else "inner"
+    return result
+
+
+def stiffness_matrix(position, spring, k):
+    """K of the linearised network, (3 N, 3 N) sparse: k n n^T for every spring, n its direction at rest."""
+    from scipy.sparse import coo_matrix
+
+    rows, columns, values = [], [], []
+    d = position[spring[:, 1]] - position[spring[:, 0]]
+    n = d / np.sqrt((d**2).sum(axis=1))[:, None]
+    for a, b in product(range(3), repeat=2):
+        block = k * n[:, a] * n[:, b]
+        for p, q, sign in ((0, 0, 1), (1, 1, 1), (0, 1, -1), (1, 0, -1)):
+            rows.append(3 * spring[:, p].astype(int) + a)
+            columns.append(3 * spring[:, q].astype(int) + b)
+            values.append(sign * block)
+    size = 3 * len(position)
+    return coo_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), (size, size)).tocsc()
+
+
+# --- Timoshenko's cantilever, square cross section --------------------------------------------------------------
+
+def shear_coefficient(nu):
+    """Cowper 1966, rectangle."""
+    return 10 * (1 + nu) / (12 + 11 * nu)
+
+
+def tip_deflection(force, length, side, young, nu):
+    """Under a force at the tip: F L^3 / 3 E I + F L / kappa G A."""
+    inertia, area, shear = side**4 / 12, side**2, young / (2 * (1 + nu))
+    return force * length**3 / (3 * young * inertia) + force * length / (shear_coefficient(nu) * shear * area)
+
+
+def first_frequency(length, side, young, nu, density):
+    """First angular frequency, from the beam's four equations: w' = phi - ..., clamped at 0, free at the length."""
+    from scipy.linalg import expm
+    from scipy.optimize import brentq
+
+    inertia, area, shear = side**4 / 12, side**2, young / (2 * (1 + nu))
+    bending, shearing = young * inertia, shear_coefficient(nu) * shear * area
+
+    def free_end(omega):
+        # State (w, phi, M, Q): w' = phi + Q/kGA, phi' = M/EI, M' = -Q - rho I omega^2 phi, Q' = -rho A omega^2 w.
+        a = np.array([
+            [0, 1, 0, 1 / shearing],
+            [0, 0, 1 / bending, 0],
+            [0, -density * inertia * omega**2, 0, -1],
+            [-density * area * omega**2, 0, 0, 0],
+        ])
+        # M and Q at the free end must vanish for some M and Q at the clamp.
+        return np.linalg.det(expm(a * length)[2:, 2:])
+
+    slender = brentq(lambda b: 1 + cosh(b) * cos(b), 1.5, 2.0) ** 2 * np.sqrt(bending / (density * area * length**4))
+    return brentq(free_end, 0.8 * slender, 1.05 * slender, xtol=1e-12 * slender)
