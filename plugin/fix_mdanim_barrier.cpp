@@ -269,9 +269,11 @@ void FixMdanimBarrier::post_force(int)
       energy += share * barrier_energy(power, pair.stiffness, pair.reach, q);
       if (damping > 0.0) {
         const double approach = dot(vec3(v[i]) - vec3(v[j]), normal);
-        const double brake = damping * reduced_mass(own[i].mass, own[j].mass) * q * approach / force->ftm2v;
-        push -= brake;
-        power_lost += share * brake * approach;
+        const double rate = damping * reduced_mass(own[i].mass, own[j].mass) / force->ftm2v;
+        push -= rate * q * approach;
+        // This velocity belongs to the way from step n-1, where the depth was still q before, to here: see loss.h.
+        const double before = std::max(0.0, q + update->dt * approach / pair.reach);
+        power_lost += share * rate * (0.75 * q + 0.25 * before) * approach * approach;
       }
       total += push * normal;
       touching += share;

@@ -14,6 +14,7 @@ from mdanim_lammps.errors import RefusedError, SceneError
 BOX = """
 object a {{
   shape box ({size}, {size}, {size}) cm
+  position (0, 0, 0) m
   density 1000
   elasticity {young} kPa
   {extra}

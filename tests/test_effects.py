@@ -5,7 +5,7 @@ import pytest
 
 from mdanim_lammps.effects import EFFECTS, decide
 from mdanim_lammps.effects.contact import plane_stiffness
-from mdanim_lammps.scene.load import parse_scene
+from mdanim_lammps.scene.parse import parse_scene
 
 FULL = """gravity (0, 0, -9.81)
 ground z 0
@@ -26,7 +26,7 @@ object b {
 }
 control { time 1 }
 """
-BARE = "object a {\n shape sphere 0.1\n mass 1\n elasticity 1e5\n}\ncontrol { time 1 }\n"
+BARE = "object a {\n shape sphere 0.1\n position (0, 0, 0)\n mass 1\n elasticity 1e5\n}\ncontrol { time 1 }\n"
 LINES = {"springs": 8, "damping": 9, "gravity": 1, "contact": 12, "ground": 2, "walls": 3, "air-drag": 10}
 
 
@@ -73,6 +73,6 @@ def test_held_objects_need_no_springs(text):
 
 
 def test_plane_stiffness_bounds_every_depth():
-    """Be at least the curvature of a particle at the surface (1.18) and at a quarter of a spacing above a plane particle."""
+    """Be at least the curvature of a particle at the surface (1.18) and below twice the pair's stiffness."""
     assert 1.5 < plane_stiffness(1.6) < 1.75
     assert plane_stiffness(1.9) > plane_stiffness(1.6)

@@ -32,10 +32,6 @@ def two(gap, words=f"1.5 {RC}", boundary=(True, False), molecule=(1, 2), v=None,
     return body, [f"fix contact {group} mdanim/barrier boundary inner {words}", "fix run all mdanim/leapfrog", "run 0"]
 
 
-def close_to(text, expected):
-    return text == pytest.approx(expected, rel=1e-14, abs=1e-300)
-
-
 @pytest.mark.parametrize(("gap", "words", "force", "energy"), [
     pytest.param(2.0, "1.5 1.6", 0.0, 0.0, id="beyond reach"),
     pytest.param(1.6, "1.5 1.6", 0.0, 0.0, id="exactly at reach: nothing yet"),
@@ -45,7 +41,8 @@ def close_to(text, expected):
 ])
 def test_force_of_one_pair(tmp_path, gap, words, force, energy):
     """Push both particles apart along the line of centres, by hand-made numbers."""
-    lmp = lab.load(*[(b := two(gap, words))[0]], tmp_path, b[1])
+    body, commands = two(gap, words)
+    lmp = lab.load(body, tmp_path, commands)
     f = lab.by_tag(lmp, "f")
     assert f[1] == pytest.approx([force, 0.0, 0.0], rel=1e-14)
     assert np.array_equal(f[0], -f[1])
@@ -139,7 +136,7 @@ def test_a_flight_through_others_equals_brute_force_on_the_way(tmp_path):
         force, _ = barrier_forces(lab.by_tag(lmp, "x"), body.molecule, body.boundary, ~body.boundary, STIFFNESS, REACH)
         assert np.abs(lab.by_tag(lmp, "f") - force).max() < 1e-14
         touched.append((force != 0.0).any(1).sum())
-    assert min(touched) > 50
+    assert min(touched) > 20
     lmp.close()
 
 
@@ -166,7 +163,7 @@ def test_blocks_head_on_rebound(tmp_path, speed, drift):
                                     "fix run all mdanim/leapfrog", f"timestep {dt}", "thermo_style custom step etotal",
                                     "run 0"])
     start = lmp.get_thermo("etotal")
-    lmp.command(f"run {int((12.0 / speed + 3.0) / dt)}")
+    lmp.command(f"run {int((8.0 / speed + 25.0) / dt)}")
     x, v = lab.by_tag(lmp, "x"), lab.by_tag(lmp, "v")
     left = body.molecule == 1
     centre = [body.mass[s] @ x[s] / body.mass[s].sum() for s in (left, ~left)]
@@ -196,9 +193,6 @@ def test_order_of_particles_changes_no_bit(tmp_path, damp):
     assert np.array_equal(*found)
 
     # damp sees half-step velocities, which a setup does not know: whoever takes up a state puts its forces back too.
-    lmp = lab.load(body, tmp_path, [*commands, "run 60", "run 0"])
-    force = None
-    lmp.close()
     lmp = lab.load(body, tmp_path, [*commands, "run 60"])
     force = lmp.numpy.extract_atom("f").copy()
     lmp.command("run 0")
@@ -211,15 +205,15 @@ def test_order_of_particles_changes_no_bit(tmp_path, damp):
 def test_damp_loss_is_the_energy_that_is_missing(tmp_path):
     """Energy and loss together stay what they were, and much is lost."""
     body = head_on(0.2)
-    lmp = lab.load(body, tmp_path, [f"fix contact all mdanim/barrier boundary inner 1.0 {RC} damp 2.0",
-                                    "fix_modify contact energy yes", "fix run all mdanim/leapfrog", "timestep 0.1",
+    lmp = lab.load(body, tmp_path, [f"fix contact all mdanim/barrier boundary inner 1.0 {RC} damp 0.5",
+                                    "fix_modify contact energy yes", "fix run all mdanim/leapfrog", "timestep 0.05",
                                     "thermo_style custom step etotal", "run 0"])
     start = lmp.get_thermo("etotal")
-    lmp.command("run 400")
+    lmp.command("run 800")
     lost = lmp.extract_fix("contact", 0, 1, 4)
-    assert lost > 0.1 * start
+    assert lost > 0.03 * start
     # Both the leap-frog's energy and the loss are of second order in dt.
-    assert lmp.get_thermo("etotal") + lost == pytest.approx(start, rel=1e-3)
+    assert lmp.get_thermo("etotal") + lost == pytest.approx(start, abs=2e-3 * lost)
     lmp.close()
 
 

@@ -14,7 +14,7 @@ from .driver.run import Result, simulate, write_inputs
 from .effects import Verdict
 from .errors import RefusedError
 from .results.files import open_folder, write_json
-from .scene.load import load_scene
+from .scene.parse import load_scene
 from .scene.scene import Scene as SceneRecord
 
 

@@ -203,7 +203,7 @@ def study(scene: Path, /) -> None:
 # --- what the commands share ------------------------------------------------------------------------------------------
 
 def _load(path: Path, overrides: tuple[str, ...], *, strict: bool = False):
-    from .scene.load import load_scene
+    from .scene.parse import load_scene
 
     pairs = {}
     for text in overrides:

@@ -17,7 +17,7 @@ def film(path: Path) -> np.ndarray:
     """Positions [m] and velocities [m/s] of every frame of a scene, shape (F, 2, N, 3)."""
     from mdanim_lammps.driver.prepare import prepare
     from mdanim_lammps.engine.instance import Instance
-    from mdanim_lammps.scene.load import load_scene
+    from mdanim_lammps.scene.parse import load_scene
 
     ready = prepare(load_scene(path))
     with Instance(ready.plan) as instance:

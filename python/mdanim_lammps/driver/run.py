@@ -118,7 +118,7 @@ class _Run:
             self.seconds["setup"] += time.perf_counter() - start
             saved = time.perf_counter()
             if not self.resume:
-                self._checkpoint(0)
+                self._save(out, 0)
             try:
                 for frame in range(frame + 1, len(lengths) + 1):
                     with self._clock("simulation"):
@@ -126,8 +126,7 @@ class _Run:
                     with self._clock("output"):
                         row = self._record(out)
                         if time.perf_counter() - saved > CHECKPOINT_SECONDS or frame == len(lengths) or stopped.is_set():
-                            out.flush()
-                            self._checkpoint(frame)
+                            self._save(out, frame)
                             saved = time.perf_counter()
                     watch(Progress(frame, len(lengths), self.instance.step, c.steps, row["time"], row["residual"],
                                    self.seconds["simulation"]))
@@ -227,12 +226,14 @@ class _Run:
         depths += [self.instance.fix_value(n, 4) for n in ("ground", "walls") if n in names]
         return max(depths)
 
-    def _checkpoint(self, frame: int) -> None:
+    def _save(self, out: TrajectoryWriter, frame: int) -> None:
+        """Make everything up to this frame safe; the checkpoint last, so that it never is ahead of the trajectory."""
+        out.flush()
+        self._close_ledger()
         carried = {t: self.ledger.rows[-1][t] for t in self.ledger.terms if t.endswith("_loss")}
         carried["penetration"] = self._penetration()
         Checkpoint(self.instance.step, frame, *(self.instance.array(a) for a in "xvf"), carried).write(
             self.folder / "checkpoint")
-        self._close_ledger()
 
     def _reread_ledger(self, frame: int) -> None:
         """Take the rows up to the checkpoint's frame."""

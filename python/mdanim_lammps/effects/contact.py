@@ -21,13 +21,13 @@ def plane_stiffness(reach: float) -> float:
     """Largest curvature that a particle meets over a square plane of barrier particles, in units of the pair's k.
 
     ``reach`` is the reach over the spacing of that plane. The Hessian of U = k rc^2/3 (1 - r/rc)^3, summed over the plane and
-    the layer below it, is scanned over all lateral offsets and over heights from 0.25 spacings up; deeper than that the
-    object is crushed anyway. Gives 1.61 at a reach of 1.6.
+    the layer below it, is scanned over all lateral offsets and over heights from 0.3 spacings up (surfaces 0.7 deep in each
+    other); deeper than that the object is crushed anyway. Gives 1.61 at a reach of 1.6.
     """
     around = np.arange(-3, 4)
     plane = np.stack(np.meshgrid(around, around, [0, -1], indexing="ij"), -1).reshape(-1, 3)
     offsets = np.linspace(0.0, 0.5, 6)
-    heights = np.linspace(0.25, 1.2, 20)
+    heights = np.linspace(0.3, 1.2, 19)
     probe = np.stack(np.meshgrid(offsets, offsets, heights, indexing="ij"), -1).reshape(-1, 1, 3)
     d = probe - plane
     r = np.linalg.norm(d, axis=-1)

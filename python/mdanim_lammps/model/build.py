@@ -37,8 +37,8 @@ def build_models(scene: Scene, progress: Callable[[int, int], None] | None = Non
     for done, solid in enumerate(scene.solids, 1):
         try:
             models.append(_make_model(solid, workshop))
-        except TooThin:
-            problems.append(_falls_apart(solid, h))
+        except TooThin as error:
+            problems.append(_too_thin(solid, h, error))
         except MeshError as error:
             problems.append(Problem(solid.spans.get("shape"), f"{solid.name}: {error}", error.hint))
         except _NothingHeld as error:
@@ -193,7 +193,7 @@ def _missed(hold: HoldWithin, solid: Solid, lattice: Lattice) -> tuple[str, str]
     )
 
 
-def _falls_apart(solid: Solid, h: float) -> Problem:
+def _too_thin(solid: Solid, h: float, error: TooThin) -> Problem:
     """Say which resolution would do, by trying finer ones."""
     # Two digits, so that the resolution which is tried is the one that is told.
     for trial in [float(f"{finer:.2g}") for finer in h * 0.8 ** np.arange(1, 6)]:
@@ -203,11 +203,10 @@ def _falls_apart(solid: Solid, h: float) -> Problem:
             continue
         return Problem(
             solid.spans.get("shape"),
-            f"{solid.name}: thinner than the spacing allows, its cells of {length(h)} are not in one piece",
+            f"{solid.name}: thinner than the spacing allows, {error} at {length(h)}",
             f"write resolution {length(trial)} in control, or make its thin parts thicker",
         )
     return Problem(
-        solid.spans.get("shape"),
-        f"{solid.name}: its cells are not in one piece, at {length(h)} nor at {length(trial)}",
-        "it has separate bodies or parts that touch in a point: make them separate objects",
+        solid.spans.get("shape"), f"{solid.name}: {error}, neither at {length(h)} nor at {length(trial)}",
+        "make separate bodies, and parts that touch in a point, separate objects",
     )

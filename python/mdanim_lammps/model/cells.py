@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from itertools import product
-from math import ceil, log
+from math import ceil
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from .springs import MAX_ASPECT
 
 
 class TooThin(Exception):
-    """The shape has a part that no cells of this size can fill."""
+    """No cells near this size make the shape; the message says what goes wrong with them."""
 
 
 def fill_cells(shape: Shape, spacing: float) -> Cells:
@@ -30,37 +30,35 @@ def fill_cells(shape: Shape, spacing: float) -> Cells:
 def box_counts(size, spacing: float) -> tuple[int, int, int]:
     """Cells along each edge so that they are nearly cubes with edges near the spacing [m].
 
-    The flattest range around the spacing that has an answer is searched: first within 5 %, then further out.
-    Among all divisions with an aspect up to MAX_ASPECT the one nearest to cubes wins, then the nearest spacing.
+    The narrowest range around the spacing that has an answer counts: first within 5 %, then further out; more than
+    25 % is needed only by cuboids one or two cells thick with awkward edges. Among the divisions in range with an
+    aspect up to MAX_ASPECT the one nearest to cubes wins, then the nearest spacing. Raises TooThin.
     """
     size = np.asarray(size, float)
-    for reach in (1.05, 1.12, 1.25, 1.5):
-        candidates = {tuple(np.maximum(1, np.rint(size / h)).astype(int)) for h in _trial_spacings(size, spacing, reach)}
-        fitting = [(_aspect(size, n), abs(log(_mean_edge(size, n) / spacing)), n) for n in candidates]
-        fitting = [c for c in fitting if c[0] <= MAX_ASPECT * (1 + 1e-9) and c[1] <= log(reach) + 1e-9]
-        if fitting:
-            # Two divisions whose aspects differ by less than a hair are equally cubic.
-            return min(fitting, key=lambda c: (round(c[0], 6), c[1], c[2]))[2]
-    raise TooThin
+    for reach in (1.05, 1.12, 1.25, 1.4, 1.6, 1.8, 2.0):
+        counts = _trial_counts(size, spacing, reach)
+        edge = size / counts
+        aspect = edge.max(axis=1) / edge.min(axis=1)
+        off = abs(np.log(np.prod(edge, axis=1) ** (1 / 3) / spacing))
+        fits = (aspect <= MAX_ASPECT * (1 + 1e-9)) & (off <= np.log(reach) + 1e-9)
+        if fits.any():
+            # Aspects that differ by less than a hair are equally cubic.
+            best = np.lexsort((off[fits], aspect[fits].round(6)))[0]
+            return tuple(counts[fits][best].tolist())
+    raise TooThin("its edges cannot be divided into nearly equal cells")
 
 
-def _trial_spacings(size: np.ndarray, spacing: float, reach: float) -> list[float]:
-    """The spacing itself, and all within the reach that divide one edge exactly."""
-    exact = [
+def _trial_counts(size: np.ndarray, spacing: float, reach: float) -> np.ndarray:
+    """Divisions worth a look, shape (n, 3): edges next to the spacing and to all lengths in reach that fit one side."""
+    near = [
         length / n
         for length in size
         for n in range(max(1, ceil(length / (spacing * reach))), int(length * reach / spacing) + 1)
     ]
-    return [spacing, *exact]
-
-
-def _aspect(size: np.ndarray, counts) -> float:
-    edge = size / counts
-    return float(edge.max() / edge.min())
-
-
-def _mean_edge(size: np.ndarray, counts) -> float:
-    return float(np.prod(size / counts) ** (1 / 3))
+    cells = size / np.array([spacing, *near])[:, None]
+    down, up = np.floor(cells + 1e-9), np.ceil(cells - 1e-9)
+    trials = [np.where(choice, up, down) for choice in product((False, True), repeat=3)]
+    return np.maximum(1, np.concatenate(trials)).astype(int)
 
 
 def _box_cells(shape: Box, counts) -> Cells:
@@ -101,7 +99,7 @@ def _voxels(shape: Shape, spacing: float) -> Cells:
         if best_error <= GOOD_VOLUME:
             break
     if best is None:
-        raise TooThin
+        raise TooThin("its cells are not in one piece")
     return best
 
 

@@ -19,7 +19,7 @@ class Layer(IntEnum):
     BOUNDARY = 3
     """On the surface: not all eight cells around it are filled."""
     THIN = 4
-    """On the boundary with no inner neighbour within 1.5 spacings: guards itself (docs/physics.md, thin objects)."""
+    """On the boundary, and so are all its lattice neighbours: guards itself (docs/physics-solids.md, layers)."""
 
 
 @dataclass(frozen=True, slots=True)

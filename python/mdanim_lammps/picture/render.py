@@ -59,9 +59,6 @@ class Painter:
         """Picture of a frame, uint8 RGB, shape (height, width, 3), first row on top."""
         vertices = self._mesh.vertices(self.trajectory.position(index))
         time = float(self.trajectory.times[index])
-        if not np.isfinite(vertices).all():
-            # Diverged particles cannot be drawn; what hangs on them is left out, the rest of the picture is right.
-            vertices = np.where(np.isfinite(vertices), vertices, np.nan_to_num(self.action.centre))
         self._points[:] = vertices
         self._normals[:] = self._mesh.normals(vertices)
         self._surface.GetPoints().Modified()
@@ -113,7 +110,7 @@ class Painter:
         self._write(render, low)
 
         with _silent():
-            self._window = _window(self._renderer, self.size, samples=8)
+            self._window = _window(self._renderer, self.size, samples=4)
             self._shadow, self._depth, texture = self._make_shadow()
         self._share_shadow(texture)
 
@@ -231,6 +228,8 @@ class Painter:
         mapper.ScalarVisibilityOff()
         actor.SetMapper(mapper)
         actor.GetProperty().LightingOff()
+        # Of closed objects the far side throws the same shadow, and the near side cannot shade itself by rounding.
+        actor.GetProperty().FrontfaceCullingOn()
         renderer.AddActor(actor)
         camera = renderer.GetActiveCamera()
         camera.ParallelProjectionOn()
@@ -308,9 +307,9 @@ class Painter:
 
 
 def grid_spacing(size: float) -> float:
-    """Distance of the floor's lines: 1, 2 or 5 times a power of ten, about a twentieth of the action [m]."""
-    exponent = np.floor(np.log10(size / 20.0))
-    fraction = size / 20.0 / 10.0**exponent
+    """Distance of the floor's lines: 1, 2 or 5 times a power of ten, about a twelfth of the action [m]."""
+    exponent = np.floor(np.log10(size / 12.0))
+    fraction = size / 12.0 / 10.0**exponent
     return float((1.0 if fraction < 1.5 else 2.0 if fraction < 3.5 else 5.0 if fraction < 7.5 else 10.0) * 10.0**exponent)
 
 

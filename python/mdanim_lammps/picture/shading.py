@@ -25,12 +25,10 @@ in vec3 worldNormal;
     # The first mark after VTK's own declaration of the texture.
     "//VTK::Picking::Dec": """//VTK::Picking::Dec
 // Samples on a disc, turned by the golden angle: even cover with few of them.
-float shadow(vec3 where, vec3 normal, vec3 toLamp)
+float shadow(vec3 where, vec3 normal)
 {
-  // Start a little off the surface, more so where light grazes it, or it would shade itself.
-  float slope = clamp(1.0 - dot(normal, toLamp), 0.0, 1.0);
-  vec3 start = where + normal * lampTexel * (1.0 + 2.0 * slope);
-  vec3 p = (lampMatrix * vec4(start, 1.0)).xyz;
+  // Start a little off the surface, or it would shade itself where light grazes it.
+  vec3 p = (lampMatrix * vec4(where + normal * lampTexel, 1.0)).xyz;
   if (any(lessThan(p.xy, vec2(0.0))) || any(greaterThan(p.xy, vec2(1.0)))) return 1.0;
   float lit = 0.0;
   for (int i = 0; i < SAMPLES; i++) {
@@ -53,7 +51,7 @@ FRAGMENT_SOLID = """//VTK::Light::Impl
   vec3 toEye = normalize(eye - worldPosition);
   vec3 toLamp = normalize(lamp);
   float facing = max(dot(n, toLamp), 0.0);
-  float lit = facing > 0.0 ? shadow(worldPosition, n, toLamp) : 0.0;
+  float lit = facing > 0.0 ? shadow(worldPosition, n) : 0.0;
   vec3 base = linear(diffuseColor);
   // Light from the sky above, a little thrown back from the floor below, and from behind the watcher.
   vec3 sky = mix(vec3(0.20, 0.19, 0.18), vec3(0.50, 0.54, 0.60), 0.5 + 0.5 * n.z);
@@ -67,8 +65,7 @@ FRAGMENT_SOLID = """//VTK::Light::Impl
 
 FRAGMENT_FLOOR = """//VTK::Light::Impl
 {
-  vec3 toLamp = normalize(lamp);
-  float lit = shadow(worldPosition, vec3(0.0, 0.0, 1.0), toLamp);
+  float lit = shadow(worldPosition, vec3(0.0, 0.0, 1.0));
   // Lines as wide as a pixel and a half, whatever the distance; they fade where they would crowd.
   vec2 fine = worldPosition.xy / gridSpacing;
   vec2 coarse = fine / 5.0;
@@ -77,8 +74,8 @@ FRAGMENT_FLOOR = """//VTK::Light::Impl
   vec2 c = abs(fract(coarse - 0.5) - 0.5) / (w / 5.0);
   float thin = (1.0 - smoothstep(0.3, 1.2, min(f.x, f.y))) * (1.0 - smoothstep(0.1, 0.4, max(w.x, w.y)));
   float bold = (1.0 - smoothstep(0.5, 1.5, min(c.x, c.y))) * (1.0 - smoothstep(0.5, 2.0, max(w.x, w.y)));
-  vec3 color = floorColor * mix(1.0, 0.58, 1.0 - lit);
-  color = mix(color, gridColor, max(0.35 * thin, 0.6 * bold));
+  vec3 color = floorColor * mix(vec3(0.58, 0.62, 0.68), vec3(1.0), lit);
+  color = mix(color, gridColor, max(0.22 * thin, 0.55 * bold));
   float away = length(worldPosition.xy - floorCentre.xy) / floorCentre.z;
   vec3 behind = mix(lowColor, highColor, clamp(gl_FragCoord.y / pictureHeight, 0.0, 1.0));
   fragOutput0 = vec4(mix(color, behind, smoothstep(0.25, 1.0, away)), 1.0);

@@ -59,7 +59,7 @@ def compare(a: Path, b: Path) -> Difference:
             largest = max(largest, float(distance.max()))
             if found is None:
                 worst = int(distance.argmax())
-                found = (i, float(first.times[i]), first.object_of(worst), float(distance[worst]))
+                found = (i, float(first.times[i]), first.names[first.catalogue.object_of[worst]], float(distance[worst]))
         if found is None:
             return Difference(len(first))
         return Difference(len(first), *found, largest)

@@ -93,7 +93,7 @@ class Builder:
         effects = self.effects()
         render = self.render(control)
         expects = self.expects(control)
-        if not solids and not liquids and "object" not in self.out.broken and not self.problems.errors:
+        if not solids and not liquids and not self.out.excused("object") and not self.problems.errors:
             self.problem(self.top, f"the scene has neither an object nor a liquid: there is nothing to compute",
                          "write object NAME { ... }", key="empty")
         if self.problems.errors or control is None:
@@ -139,7 +139,7 @@ class Builder:
 
     def gravity_fits(self, liquids: list[Filled]) -> None:
         """A liquid lies flat only under gravity along -z."""
-        if not liquids or "gravity" in self.out.broken:
+        if not liquids or self.out.excused("gravity"):
             return
         given = self.out.first("gravity")
         g = given.values[0] if given else (0.0, 0.0, 0.0)
@@ -165,12 +165,12 @@ class Builder:
         title = f"{block.block} {block.name}".rstrip()
         for word, keyword in KEYWORDS[block.block].items():
             key = ("missing", id(block.group), keyword.one_of or word)
-            if keyword.needed and word not in block.settings and word not in block.broken:
+            if keyword.needed and word not in block.settings and not block.excused(word):
                 self.problem(self.head(block), f"{title} has no {word}{block.where}", example(keyword), key=key)
                 good = False
             if keyword.one_of and keyword.one_of[0] == word:
                 given = [w for w in keyword.one_of if w in block.settings]
-                if not given and not block.broken & set(keyword.one_of):
+                if not given and not block.excused(*keyword.one_of):
                     this = " or ".join(keyword.one_of)
                     self.problem(self.head(block), f"{title} has no {this}{block.where}",
                                  example(keyword), key=key)
@@ -300,7 +300,7 @@ class Builder:
     def control(self) -> records.Control | None:
         found = self.blocks("control")
         if not found:
-            if "control" not in self.out.broken:
+            if not self.out.excused("control"):
                 self.problem(self.top, "the scene has no control block: how long is it?", "write control { time 3 s }", key="control")
             return None
         block = found[0]
@@ -383,7 +383,7 @@ class Builder:
     def known_object(self, name: str, span: Span) -> bool:
         """Whether an object has this name; tells it if not."""
         names = [b.name for b in self.blocks("object")]
-        if name in names or "object" in self.out.broken:
+        if name in names or self.out.excused("object"):
             return name in names
         hint = did_you_mean(name, names[:2000])
         self.problem(span, f"no object is called {name}", hint if names else "the scene has no object")
@@ -402,7 +402,7 @@ class Builder:
         if (kind, quantity) not in QUANTITIES:
             self.problem(s.span(0), f"{quantity} is no quantity of {subject} that expect can check", did_you_mean(quantity, known))
             return None
-        if (kind == "liquid" or quantity == "draft") and not self.blocks("liquid"):
+        if (kind == "liquid" or quantity == "draft") and not self.blocks("liquid") and not self.out.excused("liquid"):
             self.problem(s.span(0), f"{subject}.{quantity} needs a liquid, and the scene has none")
         if time is not None and (time < 0.0 or control is not None and time > control.time * (1.0 + 1e-9)):
             end = f", which ends at {control.time:.6g} s" if control else ""
@@ -433,7 +433,7 @@ class Builder:
         names = [b.name for b in self.blocks("object")]
         if subject in names:
             return True
-        if "object" not in self.out.broken:
+        if not self.out.excused("object"):
             hint = did_you_mean(subject, [*names[:2000], *GLOBALS])
             self.problem(span, f"no object is called {subject}", hint)
         return False

@@ -46,9 +46,13 @@ class Filled:
     settings: dict[str, list[Setting]] = field(default_factory=dict)
     blocks: list[Filled] = field(default_factory=list)
     broken: set[str] = field(default_factory=set)
-    """Words whose setting could not be used; that was told already."""
+    """Words whose statement could not be used; that was told already."""
     where: str = ""
     """``(i = 1, j = 2)``, in a repeat."""
+
+    def excused(self, *words: str) -> bool:
+        """Whether these words may be missing because something could not be read."""
+        return not self.broken.isdisjoint((*words, "include", "repeat"))
 
     def first(self, word: str) -> Setting | None:
         """The setting of a keyword, if there is one."""
@@ -77,8 +81,7 @@ class Expander:
 
     def scene(self, body: list) -> Filled | None:
         """Everything of a scene, the seed first: rand needs it wherever it stands. None for a scene without measure."""
-        env = Env({}, seed=1, strict=self.strict, later=self.shared.lets)
-        env.seed = self.seed(body)
+        env = Env({}, (), self.seed(body), self.strict, self.shared.lets, self.shared.incomplete)
         self.check_overrides()
         if not self.estimate(body, env):
             return None
@@ -142,7 +145,7 @@ class Expander:
                 if high < low:
                     continue
                 n = high - low + 1.0
-                inner = Env({**env.values, str(s.variable): float(low + (high - low) // 2)}, env.loops, env.seed)
+                inner = env.child({**env.values, str(s.variable): float(low + (high - low) // 2)})
                 o, r = self.count(s.body, inner, worst)
                 if n * max(o, 1.0) > MOST_OBJECTS or n * (1.0 + r) > MOST_ROUNDS:
                     worst.append(s)
@@ -169,6 +172,8 @@ class Expander:
                 self.repeat(s, env, out)
             elif isinstance(s, Broken):
                 out.broken.add(s.word)
+                if s.name:
+                    env.values.setdefault(s.name, SPOILED)
             elif s.token in env.values:
                 first = own.get(str(s.token))
                 place = f"first given at {first.source.span(first.token)}" if first else "it is known outside already"
@@ -253,8 +258,7 @@ class Expander:
                 self.problems.add(s.source.span(s.token, s.variable), "this scene repeats without measure: more than "
                                   f"{MOST_OBJECTS} objects or {MOST_ROUNDS} rounds", "repeat less often", key="objects")
                 break
-            inner = Env({**env.values, name: float(i)}, (*env.loops, i), env.seed, env.strict, env.later)
-            self.run(s.body, inner, out)
+            self.run(s.body, env.child({**env.values, name: float(i)}, (*env.loops, i)), out)
         self.loop_names = outer
 
     def group(self, s: Group, env: Env, out: Filled) -> None:
@@ -267,7 +271,7 @@ class Expander:
             return
         filled = Filled(s.block, s, name, where=self.where(env))
         self.objects += 1
-        self.run(s.body, Env(dict(env.values), env.loops, env.seed, env.strict, env.later), filled)
+        self.run(s.body, env.child(dict(env.values)), filled)
         out.blocks.append(filled)
 
     def name(self, name: Name, env: Env) -> str:
@@ -290,6 +294,9 @@ class Expander:
             self.problems.add(s.source.span(s.token), f"{word} is given twice" + (f" in {out.block} {out.name}".rstrip()),
                               f"first given at {first.source.span(first.token)}")
             return
+        if word == "seed":
+            env = env.child(env.values)
+            env.seed = None
         try:
             values = s.known if s.known is not None else self.values(s, env)
         except Fault as fault:

@@ -39,6 +39,13 @@ class Env:
     strict: bool = False
     later: dict = field(default_factory=dict)
     """Names that some ``let`` of the scene defines, and the line where."""
+    incomplete: bool = False
+    """A part of the scene could not be read: a name without a value is no news."""
+
+    def child(self, values: dict, loops: tuple[int, ...] | None = None) -> Env:
+        """The same surroundings with other variables."""
+        loops = self.loops if loops is None else loops
+        return Env(values, loops, self.seed, self.strict, self.later, self.incomplete)
 
 
 class Rand(Token):
@@ -50,10 +57,12 @@ class Rand(Token):
 class Node:
     """A compiled expression."""
 
-    __slots__ = ("run", "constant", "depth", "first", "last")
+    __slots__ = ("run", "constant", "depth", "first", "last", "terms")
 
     def __init__(self, run, parts, first, last, constant=True):
         self.run = run
+        self.terms = ((None, self),)
+        """Of a sum that is not in brackets: its terms, each with the sign before it."""
         self.first, self.last = first, last
         self.constant = constant and all(p.constant for p in parts)
         self.depth = 1 + max((p.depth for p in parts), default=0)
@@ -95,9 +104,11 @@ _BINARY = {
 }
 
 
-def _mixed(x, y) -> bool:
-    """Whether a bare number stands beside a quantity."""
-    return units.dimension(x) != units.dimension(y) and units.NONE in (units.dimension(x), units.dimension(y))
+def combine(env: Env, token: Token, x, y):
+    """x + y, or x - y; strict mode wants both with units or both without."""
+    if env.strict and not isinstance(x, tuple) and not isinstance(y, tuple) and (type(x) is float) != (type(y) is float):
+        raise Fault(token, "a bare number meets a quantity, and strict mode wants units", "write both with units")
+    return guarded(token, units.subtract if token.type == "MINUS" else units.add, x, y)
 
 
 @v_args(inline=True)
@@ -132,7 +143,7 @@ class Compiler(Transformer):
         """Two floats take the short way; everything else asks units.py."""
         fast, slow = _BINARY[token.type]
         f, g = x.run, y.run
-        careful = token.type in ("PLUS", "MINUS")
+        summing = token.type in ("PLUS", "MINUS")
 
         def run(env):
             a, b = f(env), g(env)
@@ -141,11 +152,12 @@ class Compiler(Transformer):
                     return fast(a, b)
                 except ArithmeticError:
                     pass
-            if careful and env.strict and not isinstance(a, tuple) and not isinstance(b, tuple) and _mixed(a, b):
-                raise Fault(token, "a bare number meets a quantity, and strict mode wants units", "write both with units")
-            return guarded(token, slow, a, b)
+            return combine(env, token, a, b) if summing else guarded(token, slow, a, b)
 
-        return Node(run, (x, y), x.first, y.last)
+        node = Node(run, (x, y), x.first, y.last)
+        if summing:
+            node.terms = (*x.terms, (token, y))
+        return node
 
     def negative(self, token, x):
         """-x"""
@@ -158,8 +170,9 @@ class Compiler(Transformer):
         return x
 
     def bracket(self, left, x, right):
-        """Brackets only change the place."""
+        """Brackets change the place, and make one term of a sum."""
         x.first, x.last = left, right
+        x.terms = ((None, x),)
         return x
 
     def vector(self, left, *rest):
@@ -230,12 +243,21 @@ class Compiler(Transformer):
         return factors[-1][1][2], units.Unit(text, result.over, result.under, result.dim)
 
     def with_unit(self, x, u):
-        """A value measured in a unit."""
+        """A value measured in a unit. In a sum the unit goes to every term that has none: ``a + 1 kg`` with a = 500 g."""
         last, unit = u
-        f = x.run
+        f, terms = x.run, x.terms
         over, under, dim = unit.over, unit.under, unit.dim
 
         def run(env):
+            if len(terms) > 1:
+                values = [node.run(env) for _, node in terms]
+                bare = [_bare(v) for v in values]
+                if any(bare) and not all(bare):
+                    values = [guarded(last, units.with_unit, v, unit) if b else v for v, b in zip(values, bare)]
+                    total = values[0]
+                    for (token, _), v in zip(terms[1:], values[1:]):
+                        total = combine(env, token, total, v)
+                    return total
             value = f(env)
             if type(value) is float and dim != units.NONE:
                 return Quantity(value * over / under, dim)
@@ -245,16 +267,23 @@ class Compiler(Transformer):
 
     def joined(self, x, tail):
         """``1 m - 20 cm``: the tail carries its sign."""
-        f, g, token = x.run, tail.run, tail.first
-        return Node(lambda env: guarded(token, units.add, f(env), g(env)), (x, tail), x.first, tail.last)
+        f, g = x.run, tail.run
+        plus = Token.new_borrow_pos("PLUS", "+", tail.first)
+        return Node(lambda env: combine(env, plus, f(env), g(env)), (x, tail), x.first, tail.last)
 
     def joined_with_unit(self, x, tail, u):
         """``1 m - 20 cm`` with the unit of the tail."""
         return self.joined(x, self.with_unit(tail, u))
 
 
+def _bare(x) -> bool:
+    return all(type(c) is float for c in x) if isinstance(x, tuple) else type(x) is float
+
+
 def _unknown(token: Token, env: Env) -> Fault:
     name = str(token)
+    if env.incomplete:
+        return Silent(token, "")
     if name in env.later:
         return Fault(token, f"'{name}' is used before its let", f"it stands at line {env.later[name]}; move it up")
     if name in units.UNITS:

@@ -42,7 +42,8 @@ control {
   goes from right to left; `-2^2` is -4; `mod` has the sign of the divisor.
 - A vector is `(x, y, z)`. Vectors can be added, and multiplied by a number.
 - A unit may follow any number, vector or bracket. It belongs to everything before it, up to a bracket, a comma, or the sign
-  after the last unit: `rho*a*a kg` is (rho a a) kg, and `1 m + 20 cm` is 1.2 m.
+  after the last unit: `rho*a*a kg` is (rho a a) kg, and `1 m + 20 cm` is 1.2 m. Terms of a sum that have a unit already keep theirs:
+  `gap + 20 cm` with `let gap = 5 mm` is 20.5 cm.
 - Bare numbers are SI: metres, kilograms, seconds, radians. `check --strict` refuses bare numbers where a unit belongs.
 - Dimensions are checked: `mass 3 m` is an error, and so is the sum of a length and a time. An angle is not a plain number:
   write `spin (0, 0, 2) rad/s`, not `1/s`.

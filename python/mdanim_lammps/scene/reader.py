@@ -108,7 +108,7 @@ class Reader:
                 if fraction and after != "unit" and not (more and not inside and str(self.ahead(2)) not in units.UNITS):
                     push(t, "ONE")
                     after = "unit"
-                elif more and not inside:
+                elif not inside and (more or after == "bracket" or ".." in stops):
                     break
                 else:
                     hint = f"write {slot.text}, with commas" if "," in slot.text else "an operator or a comma is missing"

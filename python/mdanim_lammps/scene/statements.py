@@ -99,9 +99,11 @@ class Group:
 
 @dataclass(slots=True, eq=False)
 class Broken:
-    """A setting or block that could not be read; keeps checks from complaining that it is missing."""
+    """A statement that could not be read; keeps checks from complaining that something is missing."""
 
     word: str
+    name: str = ""
+    """What a broken let would have named."""
 
 
 class Unclosed(Exception):
@@ -122,6 +124,8 @@ class Shared:
     names: set[str] = field(default_factory=set)
     """Names given by let or repeat so far."""
     files: int = 0
+    incomplete: bool = False
+    """A file or a repeat could not be read, so that names may be missing that are not to blame."""
 
 
 # --- files ------------------------------------------------------------------------------------------------------
@@ -135,6 +139,8 @@ def read_text(path: Path) -> str:
     if path.stat().st_size > LARGEST_FILE:
         raise ValueError(f"is larger than {LARGEST_FILE >> 20} MB: this is hardly a scene")
     data = path.read_bytes()
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise ValueError("is UTF-16 text; save it as UTF-8")
     if b"\0" in data:
         raise ValueError("is a binary file, not a text")
     try:
@@ -202,9 +208,11 @@ class Parser(Reader):
                 result += self.statement(block, opened, repeats)
             except Fault as fault:
                 self.problem(fault)
-                word = self.tokens[start]
+                self.shared.incomplete |= self.tokens[start] in ("include", "repeat")
+                word, name = self.tokens[start], self.tokens[min(start + 1, len(self.tokens) - 1)]
                 self.skip_statement(start, block)
-                result.append(Broken(nearest(str(word), [*KEYWORDS[block], *BLOCKS]) or str(word)))
+                known = [*KEYWORDS[block], *BLOCKS, *STATEMENTS]
+                result.append(Broken(nearest(str(word), known) or str(word), str(name) if word == "let" else ""))
             except Unclosed as trouble:
                 self.at = start
                 if opened is None:
@@ -305,14 +313,19 @@ class Parser(Reader):
     def _first_on_line(self, t: Token) -> bool:
         return not self.source.lines[t.line - 1][: t.column - 1].strip()
 
-    def brace(self, after: str) -> Token:
-        """The { of a block; it may stand on the next line."""
+    def brace(self, after: str, settings=()) -> None:
+        """The { of a block; it may stand on the next line. If a setting stands there, the block goes on without it."""
         at = self.at
         self.skip_newlines()
-        if self.peek.type != "LBRACE":
+        if self.peek.type == "LBRACE":
+            self.take()
+            return
+        missing = Fault(self.tokens[at], f"a {{ is missing after {after}, found {found(self.tokens[at])}",
+                        "a block stands in braces")
+        if str(self.peek) not in settings:
             self.at = at
-            raise Fault(self.peek, f"a {{ is missing after {after}, found {found(self.peek)}", "a block stands in braces")
-        return self.take()
+            raise missing
+        self.problem(missing)
 
     def group(self, word: Token, block: str, repeats: int) -> Group:
         if repeats and block != "object":
@@ -327,7 +340,7 @@ class Parser(Reader):
         elif self.peek.type == "NAME":
             raise Fault(self.peek, f"{block} has no name, found {found(self.peek)}", f"write {block} {{ ... }}")
         title = f"{block} {name.token}" if name else block
-        self.brace(title)
+        self.brace(title, KEYWORDS[block])
         return Group(self.source, word, block, name, self.body(block, word, 0, title))
 
     def name(self) -> Name:
@@ -372,7 +385,7 @@ class Parser(Reader):
             raise Fault(self.peek, f"'in' is missing after repeat {variable}, found {found(self.peek)}",
                         f"write repeat {variable} in 1 .. 10 {{")
         self.take()
-        low = self.expression(Slot("number", "first"), frozenset())
+        low = self.expression(Slot("number", "first"), frozenset([".."]))
         if self.peek.type != "DOTS":
             raise Fault(self.peek, f"'..' is missing in repeat {variable}, found {found(self.peek)}",
                         f"write repeat {variable} in 1 .. 10 {{")
@@ -383,7 +396,7 @@ class Parser(Reader):
         return Repeat(self.source, word, variable, low, high, self.body(block, word, repeats + 1, title))
 
     def include(self, word: Token, block: str, repeats: int) -> list:
-        t = self.text("include", '"file"')
+        t = self.text("include", 'e.g. include "rubber.txt"')
         self.end_of_statement("include", ())
         file = str(t)[1:-1]
         path = (self.source.folder / file).resolve() if "\0" not in file else Path()
@@ -477,7 +490,7 @@ class Parser(Reader):
     def value(self, slot: Slot, keyword: Keyword, more: bool) -> Value:
         t = self.peek
         if slot.kind == "text":
-            token = self.text(keyword.name, slot.text)
+            token = self.text(keyword.name, example(keyword))
             return Value(slot, token, token, text=str(token)[1:-1])
         if slot.kind == "choice":
             return self.choice(slot, keyword)
@@ -498,12 +511,12 @@ class Parser(Reader):
         node = self.expression(slot, stops, more)
         return Value(slot, node.first, node.last, node)
 
-    def text(self, what: str, shown: str) -> Token:
+    def text(self, what: str, hint: str) -> Token:
         t = self.peek
         if t.type == "BAD_STRING":
             raise Fault(t, "this text is never closed", 'add a " at its end')
         if t.type != "STRING":
-            hint = ODD.get(str(t)) or f"write {what} {shown}"
+            hint = ODD.get(str(t)) or hint
             raise Fault(t, f"{what} needs a text in quotes, found {found(t)}", hint)
         return self.take()
 
@@ -533,9 +546,13 @@ class Parser(Reader):
         return Value(slot, name.token, words[-1], text=".".join(words), name=name)
 
     def end_of_statement(self, what: str, settings) -> None:
-        t = self.peek
-        if t.type in ("NEWLINE", "RBRACE", "END") or t.type == "NAME" and (str(t) in settings or str(t) in STATEMENTS):
+        t, at = self.peek, self.at
+        if t.type in ("NEWLINE", "RBRACE", "END"):
             return
+        if t.type == "NAME":
+            word, self.at = str(self.word()), at
+            if word in settings or word in STATEMENTS:
+                return
         hint = ODD.get(str(t), "")
         if t.type == "COMMA":
             hint = "a decimal number is written with a point"

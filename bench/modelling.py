@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What modelling costs and how good its bodies are: prints the figures of docs/physics-solids.md.
+
+python bench/modelling.py cost       seconds and peak memory of a large box, ball and mesh, and of 10 000 objects
+python bench/modelling.py physics    stiffness of bars, cantilevers against Timoshenko
+python bench/modelling.py shapes     how well cells fill round bodies
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import resource
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT / "tests"))
+
+from model_samples import SHAPES, model, scene, shape_id, solid  # noqa: E402
+
+from mdanim_lammps.model import build_models, check_geometry, shapes  # noqa: E402
+from mdanim_lammps.scene.scene import Box, Mesh, Sphere  # noqa: E402
+
+
+def many(shape, step, count=10_000):
+    """Objects on a cubic grid."""
+    place = np.stack(np.unravel_index(np.arange(count), (22, 22, 22)), axis=1) * step
+    return [solid(shape, f"body[{i}]", position=tuple(p)) for i, p in enumerate(place)]
+
+
+COSTS = {
+    "one box, 99^3 cells": lambda: ([solid(Box((0.99, 0.99, 0.99)))], 0.01),
+    "one ball of 10^6 particles": lambda: ([solid(Sphere(0.615))], 0.01),
+    "duck of 6.6 10^5 particles": lambda: ([solid(Mesh(ROOT / "scenes/meshes/duck.stl", 0.01))], 0.0008),
+    "10 000 boxes of 27 particles": lambda: (many(Box((0.2, 0.2, 0.2)), 0.25), 0.1),
+    "10 000 balls of 6 cells across": lambda: (many(Sphere(0.12), 0.25), 0.04),
+}
+
+
+def measure(name: str) -> None:
+    """Print one row; runs in a process of its own, so that the peak memory is its own."""
+    solids, h = COSTS[name]()
+    case = scene(*solids, resolution=h)
+    start = time.perf_counter()
+    models = build_models(case)
+    built = time.perf_counter()
+    check_geometry(case, models)
+    checked = time.perf_counter()
+    particles, springs = (sum(len(getattr(m, field)) for m in models) for field in ("position", "spring"))
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
+    print(f"| {name} | {particles:,} | {springs:,} | {built - start:.2f} | {checked - built:.2f} | {peak:.2f} |")
+
+
+def cost() -> None:
+    print("| scene | particles | springs | build_models [s] | check_geometry [s] | peak memory [GB] |\n|---|---|---|---|---|---|")
+    sys.stdout.flush()
+    for name in COSTS:
+        process = multiprocessing.get_context("spawn").Process(target=measure, args=(name,))
+        process.start()
+        process.join()
+
+
+def physics() -> None:
+    from test_model_springs import cantilever, stretched
+
+    print("| cells thick | E / E asked | nu | deflection | frequency |\n|---|---|---|---|---|")
+    for cells in (1, 2, 3, 4, 6, 8):
+        young, nu = stretched(model(Box((12.0, cells, cells)), 1.0))
+        deflection, frequency = cantilever(cells)
+        print(f"| {cells} | {young:.6f} | {nu:.4f} | {deflection:.3f} | {frequency:.3f} |")
+
+
+def round_bodies() -> None:
+    print("| shape | cells across | edge / spacing | volume of cells / true | particles |\n|---|---|---|---|---|")
+    for shape in SHAPES[1:]:
+        for cells in (2, 3, 4, 6, 8):
+            h = shapes.thickness(shape) / cells
+            body = model(shape, h)
+            volume = len(body.hexahedron) * np.prod(body.cell) / shapes.volume(shape)
+            print(f"| {shape_id(shape)} | {cells} | {body.cell[0] / h:.3f} | {volume:.4f} | {len(body.position)} |")
+
+
+if __name__ == "__main__":
+    parts = {"cost": cost, "physics": physics, "shapes": round_bodies}
+    for part in sys.argv[1:] or parts:
+        parts[part]()
+        print()
