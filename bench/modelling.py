@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What modelling costs and how good its bodies are: prints the figures of docs/physics-solids.md.
 
-python bench/modelling.py cost       seconds and peak memory of a large box, ball and mesh, and of 10 000 objects
-python bench/modelling.py physics    stiffness of bars, cantilevers against Timoshenko
+python bench/modelling.py cost       seconds and peak memory of a large box, ball and mesh, and of 10 000
+objects python bench/modelling.py physics    stiffness of bars, cantilevers against Timoshenko
 python bench/modelling.py shapes     how well cells fill round bodies
 """
 
@@ -51,11 +51,13 @@ def measure(name: str) -> None:
     checked = time.perf_counter()
     particles, springs = (sum(len(getattr(m, field)) for m in models) for field in ("position", "spring"))
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
-    print(f"| {name} | {particles:,} | {springs:,} | {built - start:.2f} | {checked - built:.2f} | {peak:.2f} |")
+    build, check = built - start, checked - built
+    print(f"| {name} | {particles:,} | {springs:,} | {build:.2f} | {check:.2f} | {peak:.2f} |")
 
 
 def cost() -> None:
-    print("| scene | particles | springs | build_models [s] | check_geometry [s] | peak memory [GB] |\n|---|---|---|---|---|---|")
+    print("| scene | particles | springs | build_models [s] | check_geometry [s] | peak memory [GB] |")
+    print("|---|---|---|---|---|---|")
     sys.stdout.flush()
     for name in COSTS:
         process = multiprocessing.get_context("spawn").Process(target=measure, args=(name,))
@@ -74,13 +76,15 @@ def physics() -> None:
 
 
 def round_bodies() -> None:
-    print("| shape | cells across | edge / spacing | volume of cells / true | particles |\n|---|---|---|---|---|")
+    print("| shape | cells across | edge / spacing | volume of cells / true | particles |")
+    print("|---|---|---|---|---|")
     for shape in SHAPES[1:]:
         for cells in (2, 3, 4, 6, 8):
             h = shapes.thickness(shape) / cells
             body = model(shape, h)
             volume = len(body.hexahedron) * np.prod(body.cell) / shapes.volume(shape)
-            print(f"| {shape_id(shape)} | {cells} | {body.cell[0] / h:.3f} | {volume:.4f} | {len(body.position)} |")
+            edge, particles = body.cell[0] / h, len(body.position)
+            print(f"| {shape_id(shape)} | {cells} | {edge:.3f} | {volume:.4f} | {particles} |")
 
 
 if __name__ == "__main__":

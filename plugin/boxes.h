@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Boxes of objects, and which of them meet.
-// Wcislo 1999, eq. (3.14): S(A) = axis-aligned bounding box of the particles of A; (3.15): S(A) and S(B) intersect.
+// Wcislo 1999, eq. (3.14): S(A) = axis-aligned bounding box of the particles of A; (3.15): S(A) and S(B)
+// intersect.
 
 #ifndef MDANIM_BOXES_H
 #define MDANIM_BOXES_H
@@ -41,7 +42,8 @@ struct Box {
   }
   bool contains(const double *x) const
   {
-    return x[0] >= low(0) && x[0] <= high(0) && x[1] >= low(1) && x[1] <= high(1) && x[2] >= low(2) && x[2] <= high(2);
+    return x[0] >= low(0) && x[0] <= high(0) && x[1] >= low(1) && x[1] <= high(1) && x[2] >= low(2) &&
+        x[2] <= high(2);
   }
 
   static constexpr double FAR = std::numeric_limits<double>::max();
@@ -62,8 +64,8 @@ inline Box intersection(const Box &a, const Box &b)
   return c;
 }
 
-// A grid of cubic cells over a set of points, each cell listing its points. Cells are never smaller than asked, and never
-// many more than points.
+// A grid of cubic cells over a set of points, each cell listing its points. Cells are never smaller than
+// asked, and never many more than points.
 class Grid {
  public:
   template <class Points> Grid(const Points &points, int n, double cell) : cell(cell), next(n, -1)
@@ -114,9 +116,10 @@ class Grid {
   std::vector<int> head, next;
 };
 
-// All pairs (a < b) of boxes that meet. Up to FEW boxes every pair is tried. Beyond that, boxes of usual size are sorted into
-// a grid by their lower corner, cells as wide as the largest of them and the gap, so that a partner lies in one of the 27
-// cells around; boxes much larger than the median (a floor, a pool) are tried against all.
+// All pairs (a < b) of boxes that meet. Up to FEW boxes every pair is tried. Beyond that, boxes of usual size
+// are sorted into a grid by their lower corner, cells as wide as the largest of them and the gap, so that a
+// partner lies in one of the 27 cells around; boxes much larger than the median (a floor, a pool) are tried
+// against all.
 inline std::vector<std::pair<int, int>> meeting_pairs(const std::vector<Box> &boxes, double gap)
 {
   constexpr int FEW = 200;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// fix mdanim/barrier. When LAMMPS rebuilds its lists: boxes of objects, those that meet, particles where they meet, pairs.
-// Every step: each particle sums its pairs in the order of its partners' tags, so that the bits of a force depend on neither
-// the order of particles nor the ranks that hold them.
+// fix mdanim/barrier. When LAMMPS rebuilds its lists: boxes of objects, those that meet, particles where they
+// meet, pairs. Every step: each particle sums its pairs in the order of its partners' tags, so that the bits
+// of a force depend on neither the order of particles nor the ranks that hold them.
 
 #include "fix_mdanim_barrier.h"
 
@@ -26,7 +26,7 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
-// --- the command ---------------------------------------------------------------------------------------------------------
+// --- the command ---
 
 // fix ID group mdanim/barrier BOUNDARY BARRIER k rc [thin GROUP ratio] [damp gn] [power 2|3]
 FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
@@ -50,7 +50,8 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
 
   for (int iarg = 7; iarg < narg;) {
     const int words = strcmp(arg[iarg], "thin") == 0 ? 2 : 1;
-    if (iarg + words >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/barrier {}", arg[iarg]), error);
+    if (iarg + words >= narg)
+      utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/barrier {}", arg[iarg]), error);
     if (strcmp(arg[iarg], "thin") == 0) {
       thin_bit = group_bit(iarg + 1, arg[iarg + 1]);
       thin_ratio = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
@@ -65,7 +66,8 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
       if (power != 2 && power != 3)
         error->all(FLERR, iarg + 1, "fix mdanim/barrier: power must be 2 or 3, got {}", arg[iarg + 1]);
     } else {
-      error->all(FLERR, iarg, "fix mdanim/barrier: unknown keyword {}; it knows thin, damp and power", arg[iarg]);
+      error->all(FLERR, iarg, "fix mdanim/barrier: unknown keyword {}; it knows thin, damp and power",
+                 arg[iarg]);
     }
     iarg += 1 + words;
   }
@@ -74,7 +76,8 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
 int FixMdanimBarrier::group_bit(int iarg, const char *word)
 {
   const int index = group->find(word);
-  if (index < 0) error->all(FLERR, iarg, "fix mdanim/barrier: there is no group {}; make it before this fix", word);
+  if (index < 0)
+    error->all(FLERR, iarg, "fix mdanim/barrier: there is no group {}; make it before this fix", word);
   return group->bitmask[index];
 }
 
@@ -83,16 +86,19 @@ int FixMdanimBarrier::setmask() { return POST_NEIGHBOR | POST_FORCE; }
 void FixMdanimBarrier::init()
 {
   const auto refuse = [this](const char *why) { error->all(FLERR, "fix {} mdanim/barrier: {}", id, why); };
-  if (utils::strmatch(update->integrate_style, "^respa")) refuse("run_style respa is not supported; use run_style verlet");
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    refuse("run_style respa is not supported; use run_style verlet");
   if (domain->dimension != 3) refuse("the box has 2 dimensions, 3 are needed; use 'dimension 3'");
   if (domain->triclinic) refuse("the box is triclinic; use an orthogonal one");
   if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
     refuse("the box is periodic; put 'boundary s s s' (or f) before the box is made");
   if (!atom->molecule_flag)
     refuse("objects are told apart by molecule IDs; use 'atom_style bond' or 'fix ID all property/atom mol'");
-  if (atom->map_style == Atom::MAP_NONE) refuse("needs an atom map; put 'atom_modify map array' before the box is made");
+  if (atom->map_style == Atom::MAP_NONE)
+    refuse("needs an atom map; put 'atom_modify map array' before the box is made");
   if (neighbor->every != 1 || neighbor->delay != 0 || neighbor->build_once)
-    refuse("a pair may come into reach between two rebuilds; use 'neigh_modify every 1 delay 0 check yes once no'");
+    refuse("a pair may come into reach between two rebuilds; use 'neigh_modify every 1 delay 0 check yes "
+           "once no'");
   if (damping > 0.0 && comm->nprocs > 1 && !comm->ghost_velocity)
     refuse("damp needs the velocities of particles of other ranks; use 'comm_modify vel yes'");
   stiffness.init(lmp);
@@ -100,11 +106,14 @@ void FixMdanimBarrier::init()
 
   for (int i = 0; i < atom->nlocal; ++i)
     if (role(i) != NONE && atom->molecule[i] <= 0)
-      error->one(FLERR, "fix {} mdanim/barrier: particle {} belongs to no object, its molecule ID is {}; give it one > 0 "
-                 "('set group … mol …')", id, atom->tag[i], atom->molecule[i]);
+      error->one(
+          FLERR,
+          "fix {} mdanim/barrier: particle {} belongs to no object, its molecule ID is {}; give it one > 0 "
+          "('set group … mol …')",
+          id, atom->tag[i], atom->molecule[i]);
 }
 
-// --- candidates, when LAMMPS rebuilds ------------------------------------------------------------------------------------
+// --- candidates, when LAMMPS rebuilds ---
 
 int FixMdanimBarrier::role(int i) const
 {
@@ -147,7 +156,8 @@ int FixMdanimBarrier::pack_forward_comm(int n, int *list, double *buf, int, int 
 
 void FixMdanimBarrier::unpack_forward_comm(int n, int start, double *buf)
 {
-  for (int i = start; i < start + n; ++i, buf += 4) own[i] = {buf[0], buf[1], buf[2], static_cast<tagint>(buf[3])};
+  for (int i = start; i < start + n; ++i, buf += 4)
+    own[i] = {buf[0], buf[1], buf[2], static_cast<tagint>(buf[3])};
 }
 
 // The longest reach of any pair.
@@ -174,7 +184,8 @@ std::vector<Box> FixMdanimBarrier::object_boxes()
   return all;
 }
 
-// Until the next rebuild no particle moves by more than half the skin, so pairs within reach + skin are enough.
+// Until the next rebuild no particle moves by more than half the skin, so pairs within reach + skin are
+// enough.
 void FixMdanimBarrier::find_candidates()
 {
   row.clear();
@@ -185,15 +196,19 @@ void FixMdanimBarrier::find_candidates()
   const double range = largest_reach() + neighbor->skin;
   const double ghosts = std::min({comm->cutghost[0], comm->cutghost[1], comm->cutghost[2]});
   if (comm->nprocs > 1 && ghosts < range)
-    error->all(FLERR, "fix {} mdanim/barrier: particles of other ranks are seen up to {:.6g}, reach and skin need {:.6g}; "
-               "use 'comm_modify cutoff {:.6g}'", id, ghosts, range, 1.001 * range);
+    error->all(
+        FLERR,
+        "fix {} mdanim/barrier: particles of other ranks are seen up to {:.6g}, reach and skin need {:.6g}; "
+        "use 'comm_modify cutoff {:.6g}'",
+        id, ghosts, range, 1.001 * range);
 
   const std::vector<Box> boxes = object_boxes();
   const auto meeting = meeting_pairs(boxes, range);
   meeting_objects = static_cast<bigint>(meeting.size());
   if (meeting.empty()) return;
 
-  // Only particles within range of a partner's box can be in a pair: for each object, the box around all such places.
+  // Only particles within range of a partner's box can be in a pair: for each object, the box around all such
+  // places.
   std::vector<Box> zone(boxes.size());
   for (const auto &[a, b] : meeting) {
     zone[a].unite(intersection(boxes[a], boxes[b].grown(range)));
@@ -220,7 +235,8 @@ void FixMdanimBarrier::find_candidates_near(const std::vector<Box> &zone, double
     grid.around(x[i], [&](int n) {
       const int j = near[n];
       if (own[j].object == own[i].object) return;
-      const double pair_reach = reach_factor(role_i, role(j), thin_ratio) * std::max(own[i].reach, own[j].reach);
+      const double pair_reach =
+          reach_factor(role_i, role(j), thin_ratio) * std::max(own[i].reach, own[j].reach);
       if (pair_reach == 0.0) return;
       const Vec3 d = vec3(x[i]) - vec3(x[j]);
       if (dot(d, d) >= (pair_reach + skin) * (pair_reach + skin)) return;
@@ -237,7 +253,7 @@ void FixMdanimBarrier::find_candidates_near(const std::vector<Box> &zone, double
   for (const Candidate &c : candidate) pairs += c.in_group ? 0.5 : 1.0;
 }
 
-// --- forces --------------------------------------------------------------------------------------------------------------
+// --- forces ---
 
 void FixMdanimBarrier::setup(int vflag)
 {
@@ -271,7 +287,8 @@ void FixMdanimBarrier::post_force(int)
         const double approach = dot(vec3(v[i]) - vec3(v[j]), normal);
         const double rate = damping * reduced_mass(own[i].mass, own[j].mass) / force->ftm2v;
         push -= rate * q * approach;
-        // This velocity belongs to the way from step n-1, where the depth was still q before, to here: see loss.h.
+        // This velocity belongs to the way from step n-1, where the depth was still q before, to here: see
+        // loss.h.
         const double before = std::max(0.0, q + update->dt * approach / pair.reach);
         power_lost += share * rate * (0.75 * q + 0.25 * before) * approach * approach;
       }
@@ -285,7 +302,7 @@ void FixMdanimBarrier::post_force(int)
   else loss.step(power_lost, update->dt);
 }
 
-// --- output --------------------------------------------------------------------------------------------------------------
+// --- output ---
 
 double FixMdanimBarrier::sum(double here)
 {
@@ -296,18 +313,18 @@ double FixMdanimBarrier::sum(double here)
 
 double FixMdanimBarrier::compute_scalar() { return sum(energy); }
 
-// 1: pairs of objects whose boxes meet; 2: pairs of particles tried; 3: pairs in touch; 4: smallest r/reach in this run;
-// 5: energy lost to damp; 6: wall seconds of the slowest rank
+// 1: pairs of objects whose boxes meet; 2: pairs of particles tried; 3: pairs in touch; 4: smallest r/reach
+// in this run; 5: energy lost to damp; 6: wall seconds of the slowest rank
 double FixMdanimBarrier::compute_vector(int n)
 {
   double all = 0.0;
   switch (n) {
-    case 0: return static_cast<double>(meeting_objects);
-    case 1: return sum(pairs);
-    case 2: return sum(touching);
-    case 3: MPI_Allreduce(&deepest, &all, 1, MPI_DOUBLE, MPI_MIN, world); return all;
-    case 4: return sum(loss.total);
-    default: MPI_Allreduce(&seconds, &all, 1, MPI_DOUBLE, MPI_MAX, world); return all;
+  case 0: return static_cast<double>(meeting_objects);
+  case 1: return sum(pairs);
+  case 2: return sum(touching);
+  case 3: MPI_Allreduce(&deepest, &all, 1, MPI_DOUBLE, MPI_MIN, world); return all;
+  case 4: return sum(loss.total);
+  default: MPI_Allreduce(&seconds, &all, 1, MPI_DOUBLE, MPI_MAX, world); return all;
   }
 }
 

@@ -55,16 +55,16 @@ class FixMdanimBarrier : public Fix {
   int power = 3;
   mdanim::ParticleValue stiffness, reach;
 
-  std::vector<Own> own;         // local and ghost particles
-  std::vector<int> row;         // local particles that have candidates,
-  std::vector<int> first;       // theirs are [first[n], first[n+1]), ascending by tag
+  std::vector<Own> own;      // local and ghost particles
+  std::vector<int> row;      // local particles that have candidates,
+  std::vector<int> first;    // theirs are [first[n], first[n+1]), ascending by tag
   std::vector<Candidate> candidate;
 
-  bigint meeting_objects = 0;                       // pairs of objects whose boxes meet
-  double pairs = 0.0, touching = 0.0;               // on this rank; a pair counts half at either end
+  bigint meeting_objects = 0;            // pairs of objects whose boxes meet
+  double pairs = 0.0, touching = 0.0;    // on this rank; a pair counts half at either end
   double energy = 0.0;
-  mdanim::Loss loss;            // to damp
-  double deepest = 1.0;                             // smallest r/reach in this run
+  mdanim::Loss loss;       // to damp
+  double deepest = 1.0;    // smallest r/reach in this run
   double seconds = 0.0;
 };
 

@@ -38,7 +38,8 @@ FixMdanimLeapfrog::FixMdanimLeapfrog(LAMMPS *lmp, int narg, char **arg) : Fix(lm
 
   int drag_word = 0;
   for (int iarg = 3; iarg < narg; iarg += 2) {
-    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/leapfrog {}", arg[iarg]), error);
+    if (iarg + 1 >= narg)
+      utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/leapfrog {}", arg[iarg]), error);
     if (strcmp(arg[iarg], "lambda") == 0) {
       lambda = ParticleValue(lmp, "fix mdanim/leapfrog: lambda", iarg + 1, arg[iarg + 1]);
       has_drag = true;
@@ -46,13 +47,16 @@ FixMdanimLeapfrog::FixMdanimLeapfrog(LAMMPS *lmp, int narg, char **arg) : Fix(lm
       drag_word = iarg;
       if (strcmp(arg[iarg + 1], "exp") == 0) exponential = true;
       else if (strcmp(arg[iarg + 1], "implicit") == 0) exponential = false;
-      else error->all(FLERR, iarg + 1, "fix mdanim/leapfrog: drag must be implicit or exp, got {}", arg[iarg + 1]);
+      else
+        error->all(FLERR, iarg + 1, "fix mdanim/leapfrog: drag must be implicit or exp, got {}",
+                   arg[iarg + 1]);
     } else {
       error->all(FLERR, iarg, "fix mdanim/leapfrog: unknown keyword {}; it knows lambda and drag", arg[iarg]);
     }
   }
   if (drag_word && !has_drag)
-    error->all(FLERR, drag_word, "fix mdanim/leapfrog: drag says how lambda is used, but there is no lambda; add one");
+    error->all(FLERR, drag_word,
+               "fix mdanim/leapfrog: drag says how lambda is used, but there is no lambda; add one");
 }
 
 int FixMdanimLeapfrog::setmask() { return INITIAL_INTEGRATE | FINAL_INTEGRATE; }
@@ -75,8 +79,10 @@ void FixMdanimLeapfrog::setup(int)
   double here = largest_phi_here(), phi = 0.0;
   MPI_Allreduce(&here, &phi, 1, MPI_DOUBLE, MPI_MAX, world);
   if (phi > 0.5 && comm->me == 0)
-    error->warning(FLERR, "fix {} mdanim/leapfrog: phi = lambda dt/2m reaches {:.3g}; above 0.5 use drag exp or a "
-                   "smaller time step", id, phi);
+    error->warning(FLERR,
+                   "fix {} mdanim/leapfrog: phi = lambda dt/2m reaches {:.3g}; above 0.5 use drag exp or a "
+                   "smaller time step",
+                   id, phi);
 }
 
 void FixMdanimLeapfrog::reset_dt() { half_dt = 0.5 * update->dt * force->ftm2v; }
@@ -87,7 +93,9 @@ double FixMdanimLeapfrog::largest_phi_here() const
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; ++i)
     if (atom->mask[i] & groupbit)
-      largest = std::max(largest, (own ? own[i] : lambda.number) * half_dt / mass_of(atom->rmass, atom->mass, atom->type, i));
+      largest = std::max(largest,
+                         (own ? own[i] : lambda.number) * half_dt /
+                             mass_of(atom->rmass, atom->mass, atom->type, i));
   return largest;
 }
 
@@ -183,6 +191,7 @@ void FixMdanimLeapfrog::restart(char *buffer)
   double list[2];
   memcpy(list, buffer, sizeof list);
   if (list[0] != RESTART_VERSION)
-    error->all(FLERR, "fix mdanim/leapfrog: restart state has version {}, {} is needed", list[0], RESTART_VERSION);
+    error->all(FLERR, "fix mdanim/leapfrog: restart state has version {}, {} is needed", list[0],
+               RESTART_VERSION);
   lost = comm->me == 0 ? list[1] : 0.0;
 }

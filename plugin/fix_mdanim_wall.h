@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// fix mdanim/wall: pushes back what leaves a region, however deep and fast. A stock wall stops the run instead.
+// fix mdanim/wall: pushes back what leaves a region, however deep and fast. A stock wall stops the run
+// instead.
 
 #ifndef LMP_FIX_MDANIM_WALL_H
 #define LMP_FIX_MDANIM_WALL_H
@@ -35,13 +36,13 @@ class FixMdanimWall : public Fix {
   class Region *region = nullptr;
   mdanim::ParticleValue stiffness;
 
-  bool watching = false;       // only particles in `watched` can be behind before the next rebuild
+  bool watching = false;    // only particles in `watched` can be behind before the next rebuild
   std::vector<int> watched;
 
-  double energy = 0.0;         // all on this rank
+  double energy = 0.0;    // all on this rank
   mdanim::Vec3 on_wall;
   double particles_behind = 0.0;
-  double deepest = 0.0;        // in this run
+  double deepest = 0.0;    // in this run
   double seconds = 0.0;
 };
 

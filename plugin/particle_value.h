@@ -17,7 +17,8 @@ class ParticleValue {
   ParticleValue(LAMMPS_NS::LAMMPS *lmp, const char *what, int iarg, const char *word);
 
   bool constant() const { return name.empty(); }
-  // Look the property up again (it may have moved). Raises a LAMMPS error when it is gone or holds a negative value.
+  // Look the property up again (it may have moved). Raises a LAMMPS error when it is gone or holds a negative
+  // value.
   void init(LAMMPS_NS::LAMMPS *lmp);
   // Values of all local particles, or nullptr when constant; valid until particles are added or moved.
   const double *values(LAMMPS_NS::LAMMPS *lmp) const;
@@ -31,9 +32,7 @@ class ParticleValue {
 
 // Mass of a local particle: its own where particles have one, else that of its type.
 inline double mass_of(const double *rmass, const double *mass, const int *type, int i)
-{
-  return rmass ? rmass[i] : mass[type[i]];
-}
+{ return rmass ? rmass[i] : mass[type[i]]; }
 
 }    // namespace mdanim
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Where LAMMPS enters: one row per style, registered only in the LAMMPS version whose headers we were compiled with.
+// Where LAMMPS enters: one row per style, registered only in the LAMMPS version whose headers we were
+// compiled with.
 
 #include "abi.h"
 #include "bond_mdanim_harmonic.h"
@@ -20,18 +21,16 @@ namespace {
 template <class Style> void *make_bond(void *lmp) { return new Style(static_cast<LAMMPS *>(lmp)); }
 
 template <class Style> void *make_fix(void *lmp, int narg, char **arg)
-{
-  return new Style(static_cast<LAMMPS *>(lmp), narg, arg);
-}
+{ return new Style(static_cast<LAMMPS *>(lmp), narg, arg); }
 
-PluginRecord bond(const char *name, const char *info, void *(*creator)(void *))
+PluginRecord bond(const char *name, const char *info, void *(*creator)(void *) )
 {
   PluginRecord row{nullptr, "bond", name, info, "mdanim-lammps", {}, nullptr};
   row.creator.without_arguments = creator;
   return row;
 }
 
-PluginRecord fix(const char *name, const char *info, void *(*creator)(void *, int, char **))
+PluginRecord fix(const char *name, const char *info, void *(*creator)(void *, int, char **) )
 {
   PluginRecord row{nullptr, "fix", name, info, "mdanim-lammps", {}, nullptr};
   row.creator.with_arguments = creator;
@@ -42,15 +41,20 @@ PluginRecord fix(const char *name, const char *info, void *(*creator)(void *, in
 
 MDANIM_EXPORT int mdanim_abi() { return mdanim::ABI; }
 
-// A C++ class of another LAMMPS version may have another layout, and LAMMPS itself loads such a plugin without complaint.
+// The LAMMPS version whose headers we were compiled with, as lammps_version() counts.
+extern "C" __attribute__((visibility("default"))) int mdanim_built_for;
+int mdanim_built_for = MDANIM_LAMMPS_VERSION;
+
+// A C++ class of another LAMMPS version may have another layout, and LAMMPS itself loads such a plugin
+// without complaint.
 MDANIM_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *register_style)
 {
   const int found = lammps_version(lmp);
-  if (found != MDANIM_LAMMPS_VERSION) {
+  if (found != mdanim_built_for) {
     fprintf(stderr,
             "mdanimplugin.so was built for LAMMPS version %d and is not loaded into version %d: "
             "reinstall mdanim-lammps beside this LAMMPS\n",
-            MDANIM_LAMMPS_VERSION, found);
+            mdanim_built_for, found);
     return;
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // A spring between two particles, and the dashpot beside it.
-// Wcislo 1999, eq. (3.6), (3.7) with the sign set right: V(r) = k/2 (r - r0)^2 = K (r - r0)^2 with LAMMPS's K = k/2,
+// Wcislo 1999, eq. (3.6), (3.7) with the sign set right: V(r) = k/2 (r - r0)^2 = K (r - r0)^2 with LAMMPS's K
+// = k/2,
 //   F_i = -2K (r - r0) n,  n = (r_i - r_j) / r.
 
 #ifndef MDANIM_SPRING_H

@@ -7,7 +7,9 @@ import numpy as np
 
 from mdanim_lammps.errors import Span
 from mdanim_lammps.model import build_models
-from mdanim_lammps.scene.scene import Box, Cone, Control, Cylinder, Ellipsoid, Mesh, Scene, Solid, Sphere, Torus, Young
+from mdanim_lammps.scene.scene import (
+    Box, Cone, Control, Cylinder, Ellipsoid, Mesh, Scene, Solid, Sphere, Torus, Young,
+)
 
 MESHES = Path(__file__).parent / "meshes"
 UPRIGHT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -30,7 +32,8 @@ def shape_id(shape) -> str:
 
 def solid(shape, name="body", **rest) -> Solid:
     """A solid with a place for every keyword."""
-    spans = {word: Span("test.txt", line, 3) for line, word in enumerate(("object", "shape", "position", "hold"), 1)}
+    words = ("object", "shape", "position", "hold")
+    spans = {word: Span("test.txt", line, 3) for line, word in enumerate(words, 1)}
     given = dict(position=(0.0, 0.0, 0.0), rotation=UPRIGHT, elasticity=Young(1.0), mass=1.0, spans=spans)
     return Solid(name=name, shape=shape, **{**given, **rest})
 
@@ -39,8 +42,8 @@ def scene(*solids, ground=None, walls=None, liquid=None, **control) -> Scene:
     """A scene of these solids."""
     spans = {"resolution": Span("test.txt", 9, 3)}
     return Scene(
-        name="test", control=Control(time=1.0, spans=spans, **control), solids=solids, ground=ground, walls=walls,
-        liquid=liquid,
+        name="test", control=Control(time=1.0, spans=spans, **control), solids=solids,
+        ground=ground, walls=walls, liquid=liquid,
     )
 
 

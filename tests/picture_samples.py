@@ -13,12 +13,14 @@ IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def lattice(size, cells, inside=None):
-    """Corners [m] (x fastest) and filled cells of a box of ``cells`` cells around the origin; unused corners go."""
+    """Corners [m] (x fastest) and filled cells of a box of cells around the origin; unused corners go."""
     cells = np.array(cells)
     n = cells + 1
     grid = np.stack(np.meshgrid(*(np.arange(k) for k in n), indexing="ij"), axis=-1).transpose(2, 1, 0, 3)
     points = grid.reshape(-1, 3) / cells * size - np.array(size) / 2
-    corner = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)])
+    corner = np.array(
+        [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    )
     low = np.stack(np.meshgrid(*(np.arange(k) for k in cells), indexing="ij"), axis=-1).reshape(-1, 3)
     hexahedron = ((low[:, None] + corner) @ [1, n[0], n[0] * n[1]]).astype(np.int32)
     if inside is not None:
@@ -38,18 +40,32 @@ def outer_quads(hexahedron):
 
 
 def model(name, points, hexahedron, position, surface, held=None, mass=1.0):
-    """A model of the given lattice; springs along cell edges only, which is all that the trajectory looks at."""
+    """A model of the given lattice; springs along cell edges only, enough for a trajectory."""
     n = len(points)
-    edges = hexahedron[:, [(0, 1), (1, 2), (3, 2), (0, 3), (4, 5), (5, 6), (7, 6), (4, 7), (0, 4), (1, 5), (2, 6), (3, 7)]]
+    edges = hexahedron[
+        :, [(0, 1), (1, 2), (3, 2), (0, 3), (4, 5), (5, 6), (7, 6), (4, 7), (0, 4), (1, 5), (2, 6), (3, 7)]
+    ]
     spring = np.unique(np.sort(edges.reshape(-1, 2), axis=1), axis=0).astype(np.int32)
     share = np.bincount(hexahedron.ravel(), minlength=n) / 8
     layer = np.where(share < 1, Layer.BOUNDARY, Layer.SUB_BOUNDARY).astype(np.int32)
     where = points + np.array(position)
     return Model(
-        name=name, position=where, velocity=np.zeros((n, 3)), mass=mass * share / share.sum(), share=share,
-        layer=layer, held=np.zeros(n, bool) if held is None else held, spring=spring,
-        stiffness=np.ones(len(spring)), rest=np.linalg.norm(points[spring[:, 0]] - points[spring[:, 1]], axis=1),
-        damping=None, hexahedron=hexahedron, cell=(0.1, 0.1, 0.1), young=1e5, drag=None, surface=surface,
+        name=name,
+        position=where,
+        velocity=np.zeros((n, 3)),
+        mass=mass * share / share.sum(),
+        share=share,
+        layer=layer,
+        held=np.zeros(n, bool) if held is None else held,
+        spring=spring,
+        stiffness=np.ones(len(spring)),
+        rest=np.linalg.norm(points[spring[:, 0]] - points[spring[:, 1]], axis=1),
+        damping=None,
+        hexahedron=hexahedron,
+        cell=(0.1, 0.1, 0.1),
+        young=1e5,
+        drag=None,
+        surface=surface,
     )
 
 
@@ -69,32 +85,51 @@ def ball(name, radius, spacing, position, rings=24, **options):
     import pyvista as pv
 
     half = int(np.ceil(radius / spacing))
-    points, hexahedron = lattice((2 * half * spacing,) * 3, (2 * half,) * 3,
-                                 lambda p: np.linalg.norm(p, axis=-1) < radius)
+    points, hexahedron = lattice(
+        (2 * half * spacing,) * 3, (2 * half,) * 3, lambda p: np.linalg.norm(p, axis=-1) < radius
+    )
     skin = pv.Sphere(radius=radius, theta_resolution=2 * rings, phi_resolution=rings)
     vertices, triangle = np.array(skin.points, float), skin.faces.reshape(-1, 4)[:, 1:].astype(np.int32)
     centre = points[hexahedron].mean(axis=1)
     nearest = np.array([np.abs(centre - v).max(axis=1).argmin() for v in vertices])
     r, s, t = (((vertices - centre[nearest]) / spacing) + 0.5).T
-    weight = np.stack([(1-r)*(1-s)*(1-t), r*(1-s)*(1-t), r*s*(1-t), (1-r)*s*(1-t),
-                       (1-r)*(1-s)*t, r*(1-s)*t, r*s*t, (1-r)*s*t], axis=1)
+    weight = np.stack(
+        [
+            (1 - r) * (1 - s) * (1 - t),
+            r * (1 - s) * (1 - t),
+            r * s * (1 - t),
+            (1 - r) * s * (1 - t),
+            (1 - r) * (1 - s) * t,
+            r * (1 - s) * t,
+            r * s * t,
+            (1 - r) * s * t,
+        ],
+        axis=1,
+    )
     surface = Surface(triangle, hexahedron[nearest], weight)
     return model(name, points, hexahedron, position, surface, **options)
 
 
 def solid(m, position, color=None):
     """The scene record of a model; its shape is of no concern to pictures."""
-    return records.Solid(m.name, records.Sphere(1.0), position, IDENTITY, records.Young(1e5), mass=1.0, color=color)
+    return records.Solid(
+        m.name, records.Sphere(1.0), position, IDENTITY, records.Young(1e5), mass=1.0, color=color
+    )
 
 
 def slab_scene(**control):
     """A held slab, a cube and a ball above it, and the ground below."""
     slab = box("slab", (1.6, 1.0, 0.1), (16, 10, 1), (0, 0, 0.25), mass=20.0)
     slab = _all_held(slab)
-    models = [slab, box("cube", (0.3, 0.3, 0.3), (3, 3, 3), (-0.35, 0, 0.9), mass=2.0),
-              ball("ball", 0.2, 0.08, (0.35, 0, 1.0), mass=1.0)]
+    models = [
+        slab,
+        box("cube", (0.3, 0.3, 0.3), (3, 3, 3), (-0.35, 0, 0.9), mass=2.0),
+        ball("ball", 0.2, 0.08, (0.35, 0, 1.0), mass=1.0),
+    ]
     scene = records.Scene(
-        name="slab", title="A cube and a ball fall on a slab", ground=0.0,
+        name="slab",
+        title="A cube and a ball fall on a slab",
+        ground=0.0,
         control=records.Control(time=1.0, frames=10.0, **control),
         solids=tuple(solid(m, tuple(m.position.mean(axis=0))) for m in models),
     )
@@ -108,12 +143,13 @@ def _all_held(m):
 
 
 def falling(models, frames, dt=0.1, floor=0.3, g=9.81):
-    """Frames (step, time, position, velocity): what is not held falls, bounces, and is squashed on landing."""
+    """Frames (step, time, position, velocity): what is free and above the floor falls, bounces,
+    and is squashed on landing."""
     rest = [m.position for m in models]
     for i in range(frames):
         t, position, velocity = i * dt, [], []
         for m, x in zip(models, rest):
-            if m.held.all():
+            if m.held.all() or x[:, 2].min() <= floor:
                 position.append(x)
                 velocity.append(np.zeros_like(x))
                 continue
@@ -121,7 +157,7 @@ def falling(models, frames, dt=0.1, floor=0.3, g=9.81):
             period = 2 * np.sqrt(2 * height / g)
             phase = (t + period / 2) % period - period / 2
             fall = 0.5 * g * phase**2
-            squash = 1 - 0.25 * np.exp(-((abs(phase) - period / 2) / 0.05) ** 2)
+            squash = 1 - 0.25 * np.exp(-(((abs(phase) - period / 2) / 0.05) ** 2))
             y = x.copy()
             low = x[:, 2].min()
             y[:, 2] = low + (x[:, 2] - low) * squash - fall

@@ -35,10 +35,12 @@ class Body:
 
 
 def block(cells, corner=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0)) -> Body:
-    """A box of cells with springs along edges and face diagonals, k = 0.4 n/4 and 0.4 n/2 by the n cells that share them."""
+    """A box of cells; springs on edges and face diagonals, k = 0.4 n/4 and 0.4 n/2 if n cells share them."""
     nx, ny, nz = cells
     index = np.arange((nx + 1) * (ny + 1) * (nz + 1)).reshape(nz + 1, ny + 1, nx + 1)
-    x = np.stack(np.meshgrid(np.arange(nz + 1), np.arange(ny + 1), np.arange(nx + 1), indexing="ij"), -1)[..., ::-1]
+    x = np.stack(np.meshgrid(np.arange(nz + 1), np.arange(ny + 1), np.arange(nx + 1), indexing="ij"), -1)[
+        ..., ::-1
+    ]
     share = np.zeros(index.size)
     stiffness: dict[tuple[int, int], float] = {}
     for c in product(range(nz), range(ny), range(nx)):
@@ -52,37 +54,55 @@ def block(cells, corner=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0)) -> Body:
     bond = np.array(sorted(stiffness))
     x = x.reshape(-1, 3).astype(float) + corner
     n = len(x)
-    return Body(x, np.tile(np.asarray(velocity, float), (n, 1)), share, np.ones(n, int), share < 0.999, bond,
-                np.array([stiffness[i, j] for i, j in bond]), np.linalg.norm(x[bond[:, 0]] - x[bond[:, 1]], axis=1))
+    return Body(
+        x,
+        np.tile(np.asarray(velocity, float), (n, 1)),
+        share,
+        np.ones(n, int),
+        share < 0.999,
+        bond,
+        np.array([stiffness[i, j] for i, j in bond]),
+        np.linalg.norm(x[bond[:, 0]] - x[bond[:, 1]], axis=1),
+    )
 
 
 def particles(x, molecule=None, boundary=None, v=None, mass=None) -> Body:
     """Loose particles."""
     x = np.asarray(x, float)
     n = len(x)
-    return Body(x, np.zeros((n, 3)) if v is None else np.asarray(v, float),
-                np.ones(n) if mass is None else np.asarray(mass, float),
-                np.arange(1, n + 1) if molecule is None else np.asarray(molecule),
-                np.ones(n, bool) if boundary is None else np.asarray(boundary),
-                np.empty((0, 2), int), np.empty(0), np.empty(0))
+    return Body(
+        x,
+        np.zeros((n, 3)) if v is None else np.asarray(v, float),
+        np.ones(n) if mass is None else np.asarray(mass, float),
+        np.arange(1, n + 1) if molecule is None else np.asarray(molecule),
+        np.ones(n, bool) if boundary is None else np.asarray(boundary),
+        np.empty((0, 2), int),
+        np.empty(0),
+        np.empty(0),
+    )
 
 
 def join(*bodies: Body) -> Body:
     """Several bodies as one system; molecules are numbered on."""
     first = np.cumsum([0] + [len(b.x) for b in bodies])
     object_ = np.cumsum([0] + [b.molecule.max() for b in bodies])
-    return Body(*(np.concatenate([getattr(b, name) for b in bodies]) for name in ("x", "v", "mass")),
-                np.concatenate([b.molecule + o for b, o in zip(bodies, object_)]),
-                np.concatenate([b.boundary for b in bodies]),
-                np.concatenate([b.bond + f for b, f in zip(bodies, first)]),
-                *(np.concatenate([getattr(b, name) for b in bodies]) for name in ("k", "r0")))
+    return Body(
+        *(np.concatenate([getattr(b, name) for b in bodies]) for name in ("x", "v", "mass")),
+        np.concatenate([b.molecule + o for b, o in zip(bodies, object_)]),
+        np.concatenate([b.boundary for b in bodies]),
+        np.concatenate([b.bond + f for b, f in zip(bodies, first)]),
+        *(np.concatenate([getattr(b, name) for b in bodies]) for name in ("k", "r0")),
+    )
 
 
 def shaken(body: Body, amount: float, seed: int = 1) -> Body:
     """The same body with random displacements and velocities."""
     random = np.random.default_rng(seed)
-    return replace(body, x=body.x + amount * random.standard_normal(body.x.shape),
-                   v=body.v + amount * random.standard_normal(body.v.shape))
+    return replace(
+        body,
+        x=body.x + amount * random.standard_normal(body.x.shape),
+        v=body.v + amount * random.standard_normal(body.v.shape),
+    )
 
 
 def bond_types(body: Body) -> tuple[np.ndarray, np.ndarray]:
@@ -92,30 +112,49 @@ def bond_types(body: Body) -> tuple[np.ndarray, np.ndarray]:
 
 
 def write_data(body: Body, path: Path, order=None, columns: dict | None = None) -> None:
-    """A LAMMPS data file; ``order`` is the order of the lines, tags stay what they are. Atom type 1 inner, 2 boundary."""
+    """A LAMMPS data file, its lines in this ``order``, tags as they are. Atom type 1 inner, 2 boundary."""
     columns = {"rmass": body.mass, **(columns or {})}
     order = np.arange(len(body.x)) if order is None else order
     table, kind = bond_types(body)
     low, high = body.x.min(0) - 1.0, body.x.max(0) + 1.0
-    text = ["test", "", f"{len(body.x)} atoms", f"{len(body.bond)} bonds", "2 atom types",
-            f"{max(1, len(table))} bond types", ""]
+    text = [
+        "test",
+        "",
+        f"{len(body.x)} atoms",
+        f"{len(body.bond)} bonds",
+        "2 atom types",
+        f"{max(1, len(table))} bond types",
+        "",
+    ]
     text += [f"{a!r} {b!r} {n}lo {n}hi" for a, b, n in zip(low.tolist(), high.tolist(), "xyz")]
     text += ["", "Atoms # bond", ""]
-    text += [f"{i + 1} {body.molecule[i]} {1 + body.boundary[i]} " + " ".join(map(repr, body.x[i].tolist())) for i in order]
+    text += [
+        f"{i + 1} {body.molecule[i]} {1 + body.boundary[i]} " + " ".join(map(repr, body.x[i].tolist()))
+        for i in order
+    ]
     text += ["", "Velocities", ""] + [f"{i + 1} " + " ".join(map(repr, body.v[i].tolist())) for i in order]
-    text += ["", "Model", ""] + [f"{i + 1} " + " ".join(repr(float(c[i])) for c in columns.values()) for i in order]
+    text += ["", "Model", ""] + [
+        f"{i + 1} " + " ".join(repr(float(c[i])) for c in columns.values()) for i in order
+    ]
     if len(body.bond):
         text += ["", "Bonds", ""]
         text += [f"{n + 1} {t} {i + 1} {j + 1}" for n, (t, (i, j)) in enumerate(zip(kind, body.bond))]
     path.write_text("\n".join(text) + "\n")
 
 
-def prelude(columns=(), newton="off", skin=0.4, cutoff=3.0, velocities=False) -> list[str]:
+def prelude(columns=(), newton="off", skin=0.4, cutoff=3.0, velocities=False, special="1 1 1") -> list[str]:
     """Commands before the particles are read."""
     return [
-        "units lj", "atom_style bond", "atom_modify map array sort 0 0", f"newton {newton}", "boundary s s s",
-        f"comm_modify cutoff {cutoff}" + (" vel yes" if velocities else ""), f"neighbor {skin} bin",
-        "neigh_modify every 1 delay 0 check yes", "pair_style none", "special_bonds lj/coul 1 1 1",
+        "units lj",
+        "atom_style bond",
+        "atom_modify map array sort 0 0",
+        f"newton {newton}",
+        "boundary s s s",
+        f"comm_modify cutoff {cutoff}" + (" vel yes" if velocities else ""),
+        f"neighbor {skin} bin",
+        "neigh_modify every 1 delay 0 check yes",
+        "pair_style none",
+        f"special_bonds lj/coul {special}",
         "fix model all property/atom rmass" + "".join(f" d_{c}" for c in columns) + " ghost yes",
     ]
 
@@ -126,19 +165,36 @@ def springs(body: Body, style="mdanim/harmonic", c=None) -> list[str]:
         return ["bond_style zero", "bond_coeff * 1"]
     table, _ = bond_types(body)
     dashpot = "" if c is None else f" {c!r}"
-    return [f"bond_style {style}"] + [f"bond_coeff {t} {0.5 * k!r} {r0!r}{dashpot}"
-                                      for t, (k, r0) in enumerate(table.tolist(), 1)]
+    return [f"bond_style {style}"] + [
+        f"bond_coeff {t} {0.5 * k!r} {r0!r}{dashpot}" for t, (k, r0) in enumerate(table.tolist(), 1)
+    ]
 
 
-def load(body: Body, folder: Path, commands=(), order=None, style="mdanim/harmonic", newton="off", c=None, columns=None,
-         **options):
+def load(
+    body: Body,
+    folder: Path,
+    commands=(),
+    order=None,
+    style="mdanim/harmonic",
+    newton="off",
+    c=None,
+    columns=None,
+    **options,
+):
     """A LAMMPS instance with this body in it; ``commands`` follow."""
     path = folder / "data.test"
     write_data(body, path, order, columns)
     lmp = plugin_path.lammps()
-    script = [*prelude(columns or (), newton, **options), f"read_data {path} fix model NULL Model", "mass * 1.0",
-              *springs(body, style, c), "group inner type 1", "group boundary type 2", "thermo_modify norm no",
-              *commands]
+    script = [
+        *prelude(columns or (), newton, **options),
+        f"read_data {path} fix model NULL Model",
+        "mass * 1.0",
+        *springs(body, style, c),
+        "group inner type 1",
+        "group boundary type 2",
+        "thermo_modify norm no",
+        *commands,
+    ]
     try:
         for command in script:
             lmp.command(command)

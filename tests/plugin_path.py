@@ -28,7 +28,9 @@ def lammps(*arguments: str):
 
 
 def lmp(script: Path, ranks: int = 1, *arguments: str, timeout: float = 120.0) -> subprocess.CompletedProcess:
-    """Run an input script with the ``lmp`` executable in the script's folder; never raises for a failed run."""
+    """Run an input script with ``lmp`` in the script's folder; a failed run does not raise."""
     start = [str(BIN / "mpiexec"), "-n", str(ranks)] if ranks > 1 else []
     command = [*start, str(BIN / "lmp"), "-in", script.name, "-log", "none", "-nocite", *arguments]
-    return subprocess.run(command, cwd=script.parent, env=environment(), capture_output=True, text=True, timeout=timeout)
+    return subprocess.run(
+        command, cwd=script.parent, env=environment(), capture_output=True, text=True, timeout=timeout
+    )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""bond_style mdanim/harmonic against its naive twin, against stock bond_style harmonic, and bit for bit against itself."""
+"""bond_style mdanim/harmonic against its naive twin, the stock style, and bit for bit itself."""
 
 from dataclasses import replace
 
@@ -31,17 +31,32 @@ def test_forces_equal_the_naive_twin(tmp_path, c):
     lmp.close()
 
 
-def test_stock_style_gives_the_same_forces_energy_and_virial(tmp_path):
-    """Run 0 with bond_style harmonic and with ours."""
+@pytest.mark.parametrize("shuffled", [False, True], ids=["in tag order", "shuffled"])
+def test_stock_style_gives_the_same_forces_energy_and_virial(tmp_path, shuffled):
+    """Run 0 with bond_style harmonic and with ours, by halves and in gather form."""
+    order = np.random.default_rng(6).permutation(len(BODY.x)) if shuffled else None
     found = []
     for style in ("harmonic", "mdanim/harmonic"):
-        lmp = lab.load(BODY, tmp_path, [
-            "compute u all pe/atom bond", "compute s all stress/atom NULL bond", "compute total all reduce sum c_u c_s[*]",
-            "compute p all pressure NULL bond", "fix run all mdanim/leapfrog",
-            "thermo_style custom step ebond press c_total[*] c_p c_p[*]", "run 0"], style=style)
+        lmp = lab.load(
+            BODY,
+            tmp_path,
+            [
+                "compute u all pe/atom bond",
+                "compute s all stress/atom NULL bond",
+                "compute total all reduce sum c_u c_s[*]",
+                "compute p all pressure NULL bond",
+                "fix run all mdanim/leapfrog",
+                "thermo_style custom step ebond press c_total[*] c_p c_p[*]",
+                "run 0",
+            ],
+            style=style,
+            order=order,
+        )
         total = [lmp.numpy.extract_compute("total", 0, 1), lmp.numpy.extract_compute("p", 0, 1)]
         per_atom = [lmp.numpy.extract_compute("u", 1, 1), *lmp.numpy.extract_compute("s", 1, 2).T]
-        found.append([lab.by_tag(lmp, "f").ravel(), [lmp.get_thermo("ebond")], *map(np.copy, total + per_atom)])
+        found.append(
+            [lab.by_tag(lmp, "f").ravel(), [lmp.get_thermo("ebond")], *map(np.copy, total + per_atom)]
+        )
         lmp.close()
     for stock, ours in zip(*found):
         # Same terms, another order: a few roundings of the largest of them.
@@ -58,6 +73,28 @@ def test_order_of_particles_changes_no_bit(tmp_path, c):
     assert np.array_equal(straight, final_state(BODY, tmp_path, commands, order=order, c=c))
 
 
+def test_springs_reach_through_a_periodic_boundary(tmp_path):
+    """A body laid across the edge of a periodic box feels what stock springs make it feel."""
+    found = []
+    for style in ("harmonic", "mdanim/harmonic"):
+        lmp = lab.load(
+            BODY,
+            tmp_path,
+            [
+                "change_box all boundary p p p x final 0.0 9.0 y final -2.0 6.0 z final -2.0 6.0",
+                "displace_atoms all move 7.3 0 0",
+                "fix run all mdanim/leapfrog",
+                "run 0",
+            ],
+            style=style,
+        )
+        assert np.ptp(lab.by_tag(lmp, "x")[BODY.molecule == 1][:, 0]) > 7.0
+        found.append(lab.by_tag(lmp, "f"))
+        lmp.close()
+    assert np.abs(found[0]).max() > 0.1
+    assert np.abs(found[1] - found[0]).max() < 1e-13
+
+
 def test_rebuilding_lists_changes_no_bit(tmp_path):
     """Rebuild in every step instead of when needed, and cut the run in pieces."""
     fast = replace(BODY, v=BODY.v + [0.3, 0.0, 0.0])
@@ -71,11 +108,41 @@ def test_rebuilding_lists_changes_no_bit(tmp_path):
 
 def test_bonds_cut_between_runs_are_noticed(tmp_path):
     """Delete all bonds of the second object between two runs: its particles feel nothing any more."""
-    lmp = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog", "run 0", "group second molecule 2",
-                                    "delete_bonds second multi remove", "run 0"])
+    lmp = lab.load(
+        BODY,
+        tmp_path,
+        [
+            "fix run all mdanim/leapfrog",
+            "run 0",
+            "group second molecule 2",
+            "delete_bonds second multi remove",
+            "run 0",
+        ],
+    )
     force = lab.by_tag(lmp, "f")
     assert np.all(force[BODY.molecule == 2] == 0.0)
     assert np.all(np.abs(force[BODY.molecule == 1]).max(1) > 0.0)
+    lmp.close()
+
+
+def test_bonds_cut_during_a_run_are_noticed(tmp_path):
+    """Let stock fix bond/break take the longer of two springs in the middle of a run."""
+    chain = replace(
+        lab.particles([[0.0, 0, 0], [1.5, 0, 0], [3.0, 0, 0], [6.0, 0, 0]], molecule=[1, 1, 1, 1]),
+        bond=np.array([[0, 1], [2, 3]]),
+        k=np.full(2, 0.1),
+        r0=np.full(2, 1.0),
+    )
+    lmp = lab.load(
+        chain,
+        tmp_path,
+        ["fix run all mdanim/leapfrog", "fix break all bond/break 5 1 2.5", "timestep 0.01", "run 7"],
+        special="0 1 1",
+        cutoff=6.0,
+    )
+    force = lab.by_tag(lmp, "f")[:, 0]
+    assert force[0] == -force[1] == pytest.approx(0.05, rel=1e-2)
+    assert np.all(force[2:] == 0.0)
     lmp.close()
 
 
@@ -91,8 +158,12 @@ def test_internal_forces_cancel_and_momentum_stays(tmp_path):
 
 def test_two_particles_in_one_place_feel_no_spring(tmp_path):
     """A spring of length zero has no direction: force zero, no NaN."""
-    pair = replace(lab.particles([[0.0, 0, 0], [0.0, 0, 0]], molecule=[1, 1]), bond=np.array([[0, 1]]),
-                   k=np.array([1.0]), r0=np.array([1.0]))
+    pair = replace(
+        lab.particles([[0.0, 0, 0], [0.0, 0, 0]], molecule=[1, 1]),
+        bond=np.array([[0, 1]]),
+        k=np.array([1.0]),
+        r0=np.array([1.0]),
+    )
     lmp = lab.load(pair, tmp_path, ["fix run all mdanim/leapfrog", "run 0"], c=0.5)
     assert np.all(lab.by_tag(lmp, "f") == 0.0)
     lmp.close()
@@ -103,8 +174,13 @@ def test_dashpot_loss_is_the_energy_that_is_missing(tmp_path):
     import ctypes
 
     import plugin_path
-    lmp = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog", "timestep 0.02", "thermo_style custom step etotal"],
-                   c=0.1)
+
+    lmp = lab.load(
+        BODY,
+        tmp_path,
+        ["fix run all mdanim/leapfrog", "timestep 0.02", "thermo_style custom step etotal"],
+        c=0.1,
+    )
     lmp.command("run 0")
     start = lmp.get_thermo("etotal")
     lmp.command("run 2000")
@@ -118,22 +194,45 @@ def test_dashpot_loss_is_the_energy_that_is_missing(tmp_path):
 
 
 def test_single_restart_and_data_file_keep_the_coefficients(tmp_path):
-    """Write a restart and a data file, read both back: the same forces to the bit; compute bond/local asks single()."""
-    lmp = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog", "compute e all bond/local engpot force", "run 0",
-                                    f"write_restart {tmp_path}/r", f"write_data {tmp_path}/d"], c=0.125)
+    """Write a restart and a data file and read both back; compute bond/local asks single()."""
+    lmp = lab.load(
+        BODY,
+        tmp_path,
+        [
+            "fix run all mdanim/leapfrog",
+            "compute e all bond/local engpot force",
+            "run 0",
+            f"write_restart {tmp_path}/r",
+            f"write_data {tmp_path}/d",
+        ],
+        c=0.125,
+    )
     force = lab.by_tag(lmp, "f")
     local = lmp.numpy.extract_compute("e", 2, 2)
     assert local[:, 0].sum() == pytest.approx(lmp.get_thermo("ebond"), rel=1e-12)
     lmp.close()
 
     import plugin_path
-    for read in (["atom_modify map array sort 0 0", "newton off", f"read_restart {tmp_path}/r"],
-                 [*lab.prelude()[:-1], "fix model all property/atom rmass", "bond_style mdanim/harmonic",
-                  f"read_data {tmp_path}/d fix model NULL model"]):
+
+    for read in (
+        ["atom_modify map array sort 0 0", "newton off", f"read_restart {tmp_path}/r"],
+        [
+            *lab.prelude()[:-1],
+            "fix model all property/atom rmass",
+            "bond_style mdanim/harmonic",
+            f"read_data {tmp_path}/d fix model NULL model",
+        ],
+    ):
         other = plugin_path.lammps()
-        for command in (["fix model all property/atom rmass"] if "read_restart" in read[-1] else []):
+        for command in ["fix model all property/atom rmass"] if "read_restart" in read[-1] else []:
             read = [*read, command]
-        for command in [*read, "pair_style none", "comm_modify cutoff 3", "fix run all mdanim/leapfrog", "run 0"]:
+        for command in [
+            *read,
+            "pair_style none",
+            "comm_modify cutoff 3",
+            "fix run all mdanim/leapfrog",
+            "run 0",
+        ]:
             other.command(command)
         again = lab.by_tag(other, "f")
         other.close()
@@ -144,16 +243,33 @@ def test_single_restart_and_data_file_keep_the_coefficients(tmp_path):
             assert np.abs(again - force).max() < 1e-14
 
 
-@pytest.mark.parametrize(("commands", "options", "message"), [
-    pytest.param(["run 0"], {"newton": "on"}, "put 'newton off'", id="newton on"),
-    pytest.param(["bond_coeff 1 -1.0 1.0"], {}, "K must be >= 0, got -1.0", id="negative K"),
-    pytest.param(["bond_coeff 1 1.0 -2"], {}, "r0 must be >= 0, got -2", id="negative rest length"),
-    pytest.param(["bond_coeff 1 1.0 1.0 -3"], {}, "c must be >= 0, got -3", id="negative dashpot"),
-    pytest.param(["bond_coeff 1 1.0 1.0 1.0 1.0"], {}, "coefficients are K r0 [c], got 4 words", id="too many words"),
-    pytest.param(["thermo_modify lost/bond ignore", "set group all x 0.0", "group gone id 1",
-                  "delete_atoms group gone compress no bond no", "run 0"], {},
-                 "has lost its bond partner 1 at step 0", id="partner lost"),
-])
+@pytest.mark.parametrize(
+    ("commands", "options", "message"),
+    [
+        pytest.param(["run 0"], {"newton": "on"}, "put 'newton off'", id="newton on"),
+        pytest.param(["bond_coeff 1 -1.0 1.0"], {}, "K must be >= 0, got -1.0", id="negative K"),
+        pytest.param(["bond_coeff 1 1.0 -2"], {}, "r0 must be >= 0, got -2", id="negative rest length"),
+        pytest.param(["bond_coeff 1 1.0 1.0 -3"], {}, "c must be >= 0, got -3", id="negative dashpot"),
+        pytest.param(
+            ["bond_coeff 1 1.0 1.0 1.0 1.0"],
+            {},
+            "coefficients are K r0 [c], got 4 words",
+            id="too many words",
+        ),
+        pytest.param(
+            [
+                "thermo_modify lost/bond ignore",
+                "set group all x 0.0",
+                "group gone id 1",
+                "delete_atoms group gone compress no bond no",
+                "run 0",
+            ],
+            {},
+            "has lost its bond partner 1 at step 0",
+            id="partner lost",
+        ),
+    ],
+)
 def test_mistakes_are_refused_with_the_cure(tmp_path, commands, options, message):
     """Give one wrong word or setting."""
     with pytest.raises(Exception, match=None) as caught:

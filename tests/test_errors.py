@@ -2,7 +2,6 @@
 """How a problem is printed: place, message, source line, caret, way out, include chain."""
 
 import pytest
-
 from mdanim_lammps.errors import ExitCode, MdanimError, Problem, SceneError, Span
 
 LINE = "      mass       1.5 kgg"

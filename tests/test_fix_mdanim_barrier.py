@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""fix mdanim/barrier: two particles by hand, many against the naive twin, blocks head on, identity of bits."""
+"""fix mdanim/barrier: two particles by hand, many against the naive twin, blocks head on, bits."""
 
 from dataclasses import replace
 
@@ -17,8 +17,13 @@ def cloud(seed=3, objects=12, each=40):
     centre = random.uniform(0.0, 9.0, (objects, 3))
     x = (centre[:, None] + random.uniform(-1.3, 1.3, (objects, each, 3))).reshape(-1, 3)
     n = len(x)
-    return lab.particles(x, molecule=np.repeat(np.arange(1, objects + 1), each), boundary=random.random(n) < 0.5,
-                         v=0.1 * random.standard_normal((n, 3)), mass=random.uniform(0.5, 2.0, n))
+    return lab.particles(
+        x,
+        molecule=np.repeat(np.arange(1, objects + 1), each),
+        boundary=random.random(n) < 0.5,
+        v=0.1 * random.standard_normal((n, 3)),
+        mass=random.uniform(0.5, 2.0, n),
+    )
 
 
 CLOUD = cloud()
@@ -29,16 +34,23 @@ REACH = np.random.default_rng(5).uniform(0.6, 0.9, len(CLOUD.x))
 def two(gap, words=f"1.5 {RC}", boundary=(True, False), molecule=(1, 2), v=None, group="all", mass=None):
     """Body and commands of two particles that far apart along x, the first of them at the origin."""
     body = lab.particles([[0.0, 0, 0], [gap, 0, 0]], molecule=molecule, boundary=boundary, v=v, mass=mass)
-    return body, [f"fix contact {group} mdanim/barrier boundary inner {words}", "fix run all mdanim/leapfrog", "run 0"]
+    return body, [
+        f"fix contact {group} mdanim/barrier boundary inner {words}",
+        "fix run all mdanim/leapfrog",
+        "run 0",
+    ]
 
 
-@pytest.mark.parametrize(("gap", "words", "force", "energy"), [
-    pytest.param(2.0, "1.5 1.6", 0.0, 0.0, id="beyond reach"),
-    pytest.param(1.6, "1.5 1.6", 0.0, 0.0, id="exactly at reach: nothing yet"),
-    pytest.param(0.8, "1.5 1.6", 1.5 * 1.6 / 4, 1.5 * 1.6**2 / 24, id="half way in: a quarter of k rc"),
-    pytest.param(0.0, "1.5 1.6", 1.5 * 1.6, 1.5 * 1.6**2 / 3, id="in one place: the full force, along x"),
-    pytest.param(0.8, "1.5 1.6 power 2", 1.5 * 0.8, 1.5 * 0.64 / 2, id="power 2 is a spring"),
-])
+@pytest.mark.parametrize(
+    ("gap", "words", "force", "energy"),
+    [
+        pytest.param(2.0, "1.5 1.6", 0.0, 0.0, id="beyond reach"),
+        pytest.param(1.6, "1.5 1.6", 0.0, 0.0, id="exactly at reach: nothing yet"),
+        pytest.param(0.8, "1.5 1.6", 1.5 * 1.6 / 4, 1.5 * 1.6**2 / 24, id="half way in: a quarter of k rc"),
+        pytest.param(0.0, "1.5 1.6", 1.5 * 1.6, 1.5 * 1.6**2 / 3, id="in one place: the full force, along x"),
+        pytest.param(0.8, "1.5 1.6 power 2", 1.5 * 0.8, 1.5 * 0.64 / 2, id="power 2 is a spring"),
+    ],
+)
 def test_force_of_one_pair(tmp_path, gap, words, force, energy):
     """Push both particles apart along the line of centres, by hand-made numbers."""
     body, commands = two(gap, words)
@@ -52,13 +64,16 @@ def test_force_of_one_pair(tmp_path, gap, words, force, energy):
     lmp.close()
 
 
-@pytest.mark.parametrize(("boundary", "molecule", "acts"), [
-    pytest.param((True, False), (1, 2), True, id="boundary against inner"),
-    pytest.param((False, True), (1, 2), True, id="inner against boundary"),
-    pytest.param((True, True), (1, 2), False, id="boundary against boundary"),
-    pytest.param((False, False), (1, 2), False, id="inner against inner"),
-    pytest.param((True, False), (2, 2), False, id="same object"),
-])
+@pytest.mark.parametrize(
+    ("boundary", "molecule", "acts"),
+    [
+        pytest.param((True, False), (1, 2), True, id="boundary against inner"),
+        pytest.param((False, True), (1, 2), True, id="inner against boundary"),
+        pytest.param((True, True), (1, 2), False, id="boundary against boundary"),
+        pytest.param((False, False), (1, 2), False, id="inner against inner"),
+        pytest.param((True, False), (2, 2), False, id="same object"),
+    ],
+)
 def test_who_acts_on_whom(tmp_path, boundary, molecule, acts):
     """Boundary of one object against the inner particles of the other, and nothing else."""
     body, commands = two(0.8, boundary=boundary, molecule=molecule)
@@ -79,15 +94,18 @@ def test_particles_outside_the_group_push_but_are_not_pushed(tmp_path):
     lmp.close()
 
 
-@pytest.mark.parametrize("options", [
-    pytest.param({}, id="power 3"),
-    pytest.param({"power": 2}, id="power 2"),
-    pytest.param({"thin": True, "ratio": 0.75}, id="thin"),
-    pytest.param({"damp": 0.3}, id="damped"),
-    pytest.param({"thin": True, "ratio": 1.3, "damp": 0.2, "power": 2}, id="everything"),
-])
+@pytest.mark.parametrize(
+    "options",
+    [
+        pytest.param({}, id="power 3"),
+        pytest.param({"power": 2}, id="power 2"),
+        pytest.param({"thin": True, "ratio": 0.75}, id="thin"),
+        pytest.param({"damp": 0.3}, id="damped"),
+        pytest.param({"thin": True, "ratio": 1.3, "damp": 0.2, "power": 2}, id="everything"),
+    ],
+)
 def test_a_cloud_equals_the_naive_twin(tmp_path, options):
-    """Twelve overlapping objects with a stiffness and a reach of every particle's own: all pairs, one at a time."""
+    """Twelve overlapping objects, each particle with its own stiffness and reach: all pairs, one by one."""
     words = "d_k d_rc"
     thin = None
     if options.get("thin"):
@@ -96,16 +114,36 @@ def test_a_cloud_equals_the_naive_twin(tmp_path, options):
     for name in ("damp", "power"):
         words += f" {name} {options[name]}" if name in options else ""
     ids = " ".join(map(str, np.flatnonzero(thin) + 1)) if thin is not None else "1"
-    lmp = lab.load(CLOUD, tmp_path, [f"group thin id {ids}", f"fix contact all mdanim/barrier boundary inner {words}",
-                                     "fix run all mdanim/leapfrog", "run 0"], columns={"k": STIFFNESS, "rc": REACH})
-    force, energy = barrier_forces(CLOUD.x, CLOUD.molecule, CLOUD.boundary, ~CLOUD.boundary, STIFFNESS, REACH,
-                                   v=CLOUD.v, mass=CLOUD.mass, **{**options, "thin": thin})
+    lmp = lab.load(
+        CLOUD,
+        tmp_path,
+        [
+            f"group thin id {ids}",
+            f"fix contact all mdanim/barrier boundary inner {words}",
+            "fix run all mdanim/leapfrog",
+            "run 0",
+        ],
+        columns={"k": STIFFNESS, "rc": REACH},
+    )
+    force, energy = barrier_forces(
+        CLOUD.x,
+        CLOUD.molecule,
+        CLOUD.boundary,
+        ~CLOUD.boundary,
+        STIFFNESS,
+        REACH,
+        v=CLOUD.v,
+        mass=CLOUD.mass,
+        **{**options, "thin": thin},
+    )
     assert np.abs(force).max() > 0.3 and (np.abs(force).max(1) > 0.0).sum() > 100
     # Sums of some ten terms of size 1.
     assert np.abs(lab.by_tag(lmp, "f") - force).max() < 1e-14
     assert lmp.extract_fix("contact", 0, 0) == pytest.approx(energy, rel=1e-13)
     low, high = boxes(CLOUD.x, CLOUD.molecule)
-    assert lmp.extract_fix("contact", 0, 1, 0) == meeting(low, high, REACH.max() * max(1.0, options.get("ratio", 0)) + 0.4)
+    assert lmp.extract_fix("contact", 0, 1, 0) == meeting(
+        low, high, REACH.max() * max(1.0, options.get("ratio", 0)) + 0.4
+    )
     lmp.close()
 
 
@@ -118,8 +156,11 @@ def test_many_boxes_are_paired_like_one_by_one(tmp_path, large):
     if large:
         pair = np.concatenate([pair, [[[0.0, 0, 0], [30, 30, 0]], [[0.0, 0, 0], [0, 30, 30]]]])
     body = lab.particles(pair.reshape(-1, 3), molecule=np.repeat(np.arange(1, len(pair) + 1), 2))
-    lmp = lab.load(body, tmp_path, ["fix contact all mdanim/barrier boundary inner 1 0.5", "fix run all mdanim/leapfrog",
-                                    "run 0"])
+    lmp = lab.load(
+        body,
+        tmp_path,
+        ["fix contact all mdanim/barrier boundary inner 1 0.5", "fix run all mdanim/leapfrog", "run 0"],
+    )
     expected = meeting(*boxes(body.x, body.molecule), 0.5 + 0.4)
     assert lmp.extract_fix("contact", 0, 1, 0) == expected > 1500
     lmp.close()
@@ -128,12 +169,23 @@ def test_many_boxes_are_paired_like_one_by_one(tmp_path, large):
 def test_a_flight_through_others_equals_brute_force_on_the_way(tmp_path):
     """Lists that are rebuilt on demand lose no pair while objects fly through each other."""
     body = replace(CLOUD, v=np.random.default_rng(7).standard_normal((12, 3)).repeat(40, 0))
-    lmp = lab.load(body, tmp_path, ["fix contact all mdanim/barrier boundary inner d_k d_rc", "fix run all mdanim/leapfrog",
-                                    "timestep 0.02", "run 0"], columns={"k": STIFFNESS, "rc": REACH})
+    lmp = lab.load(
+        body,
+        tmp_path,
+        [
+            "fix contact all mdanim/barrier boundary inner d_k d_rc",
+            "fix run all mdanim/leapfrog",
+            "timestep 0.02",
+            "run 0",
+        ],
+        columns={"k": STIFFNESS, "rc": REACH},
+    )
     touched = []
     for _ in range(6):
         lmp.command("run 37 pre no post no")
-        force, _ = barrier_forces(lab.by_tag(lmp, "x"), body.molecule, body.boundary, ~body.boundary, STIFFNESS, REACH)
+        force, _ = barrier_forces(
+            lab.by_tag(lmp, "x"), body.molecule, body.boundary, ~body.boundary, STIFFNESS, REACH
+        )
         assert np.abs(lab.by_tag(lmp, "f") - force).max() < 1e-14
         touched.append((force != 0.0).any(1).sum())
     assert min(touched) > 20
@@ -151,17 +203,28 @@ def test_it_sleeps_while_no_boxes_meet(tmp_path):
 def head_on(speed, offset=(0.0, 0.0)):
     """Two blocks of 5^3 cells that close in at ``speed`` wave speeds."""
     half = 0.5 * speed * lab.WAVE_SPEED
-    return lab.join(lab.block((5, 5, 5), velocity=(half, 0.0, 0.0)),
-                    lab.block((5, 5, 5), (6.7, *offset), (-half, 0.0, 0.0)))
+    return lab.join(
+        lab.block((5, 5, 5), velocity=(half, 0.0, 0.0)),
+        lab.block((5, 5, 5), (6.7, *offset), (-half, 0.0, 0.0)),
+    )
 
 
 @pytest.mark.parametrize(("speed", "drift"), [(0.05, 1e-3), (0.2, 1e-3), (0.5, 1e-3), (0.8, 5e-3)])
 def test_blocks_head_on_rebound(tmp_path, speed, drift):
     """They do not pass, momentum stays, and energy does at a time step of 0.3 of the bound."""
     body, dt = head_on(speed), 0.3 * lab.BOUND
-    lmp = lab.load(body, tmp_path, [f"fix contact all mdanim/barrier boundary inner 1.0 {RC}", "fix_modify contact energy yes",
-                                    "fix run all mdanim/leapfrog", f"timestep {dt}", "thermo_style custom step etotal",
-                                    "run 0"])
+    lmp = lab.load(
+        body,
+        tmp_path,
+        [
+            f"fix contact all mdanim/barrier boundary inner 1.0 {RC}",
+            "fix_modify contact energy yes",
+            "fix run all mdanim/leapfrog",
+            f"timestep {dt}",
+            "thermo_style custom step etotal",
+            "run 0",
+        ],
+    )
     start = lmp.get_thermo("etotal")
     lmp.command(f"run {int((8.0 / speed + 25.0) / dt)}")
     x, v = lab.by_tag(lmp, "x"), lab.by_tag(lmp, "v")
@@ -183,7 +246,11 @@ def test_order_of_particles_changes_no_bit(tmp_path, damp):
     """A bounce with offset, in tag order and shuffled, in one run and in pieces with the forces put back."""
     body, found = head_on(0.4, (0.3, 0.2)), []
     words = f"1.0 {RC}" + (f" damp {damp}" if damp else "")
-    commands = [f"fix contact all mdanim/barrier boundary inner {words}", "fix run all mdanim/leapfrog", "timestep 0.2"]
+    commands = [
+        f"fix contact all mdanim/barrier boundary inner {words}",
+        "fix run all mdanim/leapfrog",
+        "timestep 0.2",
+    ]
     order = np.random.default_rng(1).permutation(len(body.x))
     for case in ({}, {"order": order}):
         lmp = lab.load(body, tmp_path, [*commands, "run 120"], **case)
@@ -192,7 +259,8 @@ def test_order_of_particles_changes_no_bit(tmp_path, damp):
         lmp.close()
     assert np.array_equal(*found)
 
-    # damp sees half-step velocities, which a setup does not know: whoever takes up a state puts its forces back too.
+    # damp sees half-step velocities, which a setup does not know: whoever takes up a state puts its forces
+    # back too.
     lmp = lab.load(body, tmp_path, [*commands, "run 60"])
     force = lmp.numpy.extract_atom("f").copy()
     lmp.command("run 0")
@@ -205,9 +273,18 @@ def test_order_of_particles_changes_no_bit(tmp_path, damp):
 def test_damp_loss_is_the_energy_that_is_missing(tmp_path):
     """Energy and loss together stay what they were, and much is lost."""
     body = head_on(0.2)
-    lmp = lab.load(body, tmp_path, [f"fix contact all mdanim/barrier boundary inner 1.0 {RC} damp 0.5",
-                                    "fix_modify contact energy yes", "fix run all mdanim/leapfrog", "timestep 0.05",
-                                    "thermo_style custom step etotal", "run 0"])
+    lmp = lab.load(
+        body,
+        tmp_path,
+        [
+            f"fix contact all mdanim/barrier boundary inner 1.0 {RC} damp 0.5",
+            "fix_modify contact energy yes",
+            "fix run all mdanim/leapfrog",
+            "timestep 0.05",
+            "thermo_style custom step etotal",
+            "run 0",
+        ],
+    )
     start = lmp.get_thermo("etotal")
     lmp.command("run 800")
     lost = lmp.extract_fix("contact", 0, 1, 4)
@@ -217,18 +294,21 @@ def test_damp_loss_is_the_energy_that_is_missing(tmp_path):
     lmp.close()
 
 
-@pytest.mark.parametrize(("words", "message"), [
-    ("nobody inner 1 1.6", "no group nobody"),
-    ("boundary inner -1 1.6", "k must be >= 0, got -1"),
-    ("boundary inner 1 -2", "rc must be >= 0, got -2"),
-    ("boundary inner 1", "missing argument"),
-    ("boundary inner d_none 1.6", "no per-particle property d_none"),
-    ("boundary inner 1 1.6 thin boundary 0", "thin ratio must be > 0, got 0"),
-    ("boundary inner 1 1.6 thin", "missing argument"),
-    ("boundary inner 1 1.6 damp -3", "damp must be >= 0, got -3"),
-    ("boundary inner 1 1.6 power 4", "power must be 2 or 3, got 4"),
-    ("boundary inner 1 1.6 friction 0.5", "unknown keyword friction"),
-])
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("nobody inner 1 1.6", "no group nobody"),
+        ("boundary inner -1 1.6", "k must be >= 0, got -1"),
+        ("boundary inner 1 -2", "rc must be >= 0, got -2"),
+        ("boundary inner 1", "missing argument"),
+        ("boundary inner d_none 1.6", "no per-particle property d_none"),
+        ("boundary inner 1 1.6 thin boundary 0", "thin ratio must be > 0, got 0"),
+        ("boundary inner 1 1.6 thin", "missing argument"),
+        ("boundary inner 1 1.6 damp -3", "damp must be >= 0, got -3"),
+        ("boundary inner 1 1.6 power 4", "power must be 2 or 3, got 4"),
+        ("boundary inner 1 1.6 friction 0.5", "unknown keyword friction"),
+    ],
+)
 def test_mistakes_are_refused_with_the_word(tmp_path, words, message):
     """Give one wrong word."""
     with pytest.raises(Exception) as caught:
@@ -236,14 +316,17 @@ def test_mistakes_are_refused_with_the_word(tmp_path, words, message):
     assert message in str(caught.value)
 
 
-@pytest.mark.parametrize(("command", "cure"), [
-    ("neigh_modify every 2", "neigh_modify every 1 delay 0 check yes"),
-    ("neigh_modify delay 5", "neigh_modify every 1 delay 0 check yes"),
-    ("set group all mol 0", "give it one > 0"),
-    ("change_box all boundary p p p", "boundary s s s"),
-    ("change_box all boundary f f f triclinic", "use an orthogonal one"),
-    ("run_style respa 2 2", "use run_style verlet"),
-])
+@pytest.mark.parametrize(
+    ("command", "cure"),
+    [
+        ("neigh_modify every 2", "neigh_modify every 1 delay 0 check yes"),
+        ("neigh_modify delay 5", "neigh_modify every 1 delay 0 check yes"),
+        ("set group all mol 0", "give it one > 0"),
+        ("change_box all boundary p p p", "boundary s s s"),
+        ("change_box all boundary f f f triclinic", "use an orthogonal one"),
+        ("run_style respa 2 2", "use run_style verlet"),
+    ],
+)
 def test_settings_that_lose_contacts_are_refused(tmp_path, command, cure):
     """Change one setting; the message names the cure."""
     body, commands = two(1.0)

@@ -18,16 +18,22 @@ def force(x):
 
 def run(folder, fix, steps=50, dt=0.2, **options):
     """x, v in tag order, the fix's scalar and its vector after a run."""
-    lmp = lab.load(BODY, folder, [f"fix run all mdanim/leapfrog {fix}", f"timestep {dt}", f"run {steps}"], **options)
-    result = (lab.by_tag(lmp, "x"), lab.by_tag(lmp, "v"), lmp.extract_fix("run", 0, 0),
-              [lmp.extract_fix("run", 0, 1, n) for n in range(2)])
+    lmp = lab.load(
+        BODY, folder, [f"fix run all mdanim/leapfrog {fix}", f"timestep {dt}", f"run {steps}"], **options
+    )
+    result = (
+        lab.by_tag(lmp, "x"),
+        lab.by_tag(lmp, "v"),
+        lmp.extract_fix("run", 0, 0),
+        [lmp.extract_fix("run", 0, 1, n) for n in range(2)],
+    )
     lmp.close()
     return result
 
 
 @pytest.mark.parametrize("drag", [0.0, 0.3, 40.0], ids=["no drag", "phi up to 0.24", "phi above 1"])
 def test_equals_the_scheme_as_printed(tmp_path, drag):
-    """Advance half-step velocities by (3.12) and compare positions, whole-step velocities (3.10) and the loss."""
+    """Advance half-step velocities by (3.12); compare positions, whole-step velocities (3.10), loss."""
     x, v, lost, _ = run(tmp_path, f"lambda {drag}" if drag else "")
     x0, v0, lost0 = leapfrog(BODY.x, BODY.v, force, BODY.mass, np.full(len(BODY.x), drag), 0.2, 50)
     # Two ways to round 50 steps; a spring system does not amplify much.
@@ -60,9 +66,16 @@ def test_exponential_drag_equals_exp(tmp_path, drag):
 @pytest.mark.parametrize("kind", ["implicit", "exp"])
 def test_terminal_velocity(tmp_path, kind):
     """A falling particle ends at m g / lambda, whatever the scheme."""
-    lmp = lab.load(lab.particles([[0.0, 0, 0]], mass=[2.0]), tmp_path, [
-        f"fix run all mdanim/leapfrog lambda 0.5 drag {kind}", "fix g all gravity 3.0 vector 0 0 -1", "timestep 0.5",
-        "run 400"])
+    lmp = lab.load(
+        lab.particles([[0.0, 0, 0]], mass=[2.0]),
+        tmp_path,
+        [
+            f"fix run all mdanim/leapfrog lambda 0.5 drag {kind}",
+            "fix g all gravity 3.0 vector 0 0 -1",
+            "timestep 0.5",
+            "run 400",
+        ],
+    )
     # e^-50 of the start is left.
     assert lab.by_tag(lmp, "v")[0] == pytest.approx([0.0, 0.0, -2.0 * 3.0 / 0.5], rel=1e-12)
     lmp.close()
@@ -71,8 +84,17 @@ def test_terminal_velocity(tmp_path, kind):
 @pytest.mark.parametrize("kind", ["implicit", "exp"])
 def test_energy_with_the_loss_is_constant(tmp_path, kind):
     """Kinetic + elastic + scalar: what drag takes is accounted for; drag takes most of it."""
-    lmp = lab.load(BODY, tmp_path, [f"fix run all mdanim/leapfrog lambda 0.05 drag {kind}", "fix_modify run energy yes",
-                                    "timestep 0.05", "thermo_style custom step etotal f_run", "run 0"])
+    lmp = lab.load(
+        BODY,
+        tmp_path,
+        [
+            f"fix run all mdanim/leapfrog lambda 0.05 drag {kind}",
+            "fix_modify run energy yes",
+            "timestep 0.05",
+            "thermo_style custom step etotal f_run",
+            "run 0",
+        ],
+    )
     start, off = lmp.get_thermo("etotal"), []
     for _ in range(20):
         lmp.command("run 50 pre no post no")
@@ -98,6 +120,7 @@ def test_only_the_group_moves(tmp_path):
     lmp = lab.load(BODY, tmp_path, ["group some id 1:9", "fix run some mdanim/leapfrog lambda 0.1", "run 20"])
     x = lab.by_tag(lmp, "x")
     assert np.array_equal(x[9:], BODY.x[9:])
+    assert np.array_equal(lab.by_tag(lmp, "v")[9:], BODY.v[9:])
     assert np.all(np.abs(x[:9] - BODY.x[:9]).max(1) > 0.0)
     lmp.close()
 
@@ -105,11 +128,25 @@ def test_only_the_group_moves(tmp_path):
 def test_mass_by_type_and_a_changed_time_step(tmp_path):
     """Without rmass the mass of the type counts; a new time step takes effect between runs."""
     import plugin_path
+
     lmp = plugin_path.lammps()
-    for command in ["units lj", "atom_style atomic", "boundary s s s", "region r block -1 1 -1 1 -1 1", "create_box 1 r",
-                    "create_atoms 1 single 0 0 0", "mass 1 4.0", "velocity all set 1 0 0", "pair_style none",
-                    "comm_modify cutoff 1", "fix run all mdanim/leapfrog lambda 2.0", "timestep 0.1", "run 1",
-                    "timestep 0.4", "run 1"]:
+    for command in [
+        "units lj",
+        "atom_style atomic",
+        "boundary s s s",
+        "region r block -1 1 -1 1 -1 1",
+        "create_box 1 r",
+        "create_atoms 1 single 0 0 0",
+        "mass 1 4.0",
+        "velocity all set 1 0 0",
+        "pair_style none",
+        "comm_modify cutoff 1",
+        "fix run all mdanim/leapfrog lambda 2.0",
+        "timestep 0.1",
+        "run 1",
+        "timestep 0.4",
+        "run 1",
+    ]:
         lmp.command(command)
     phi = [2.0 * dt / 8.0 for dt in (0.1, 0.4)]
     assert lab.by_tag(lmp, "v")[0, 0] == pytest.approx(np.prod([(1 - p) / (1 + p) for p in phi]), rel=1e-14)
@@ -120,13 +157,22 @@ def test_mass_by_type_and_a_changed_time_step(tmp_path):
 def test_restart_keeps_the_energy_account(tmp_path):
     """The loss goes on counting after a restart."""
     import plugin_path
+
     fix = "fix run all mdanim/leapfrog lambda 0.1"
     lmp = lab.load(BODY, tmp_path, [fix, "timestep 0.1", "run 20", f"write_restart {tmp_path}/r"])
     lost = lmp.extract_fix("run", 0, 0)
     lmp.close()
     other = plugin_path.lammps()
-    for command in ["atom_modify map array sort 0 0", "newton off", f"read_restart {tmp_path}/r",
-                    "fix model all property/atom rmass", "pair_style none", "comm_modify cutoff 3", fix, "run 0"]:
+    for command in [
+        "atom_modify map array sort 0 0",
+        "newton off",
+        f"read_restart {tmp_path}/r",
+        "fix model all property/atom rmass",
+        "pair_style none",
+        "comm_modify cutoff 3",
+        fix,
+        "run 0",
+    ]:
         other.command(command)
     assert other.extract_fix("run", 0, 0) == lost > 0.0
     other.close()
@@ -135,22 +181,28 @@ def test_restart_keeps_the_energy_account(tmp_path):
 def test_warns_when_drag_makes_velocities_change_sign(tmp_path, capfd):
     """phi above 0.5 is reported once, with the number."""
     import plugin_path
+
     script = tmp_path / "in.drag"
-    script.write_text("units lj\natom_style atomic\nboundary s s s\nregion r block -1 1 -1 1 -1 1\ncreate_box 1 r\n"
-                      "create_atoms 1 single 0 0 0\nmass 1 1.0\npair_style none\ncomm_modify cutoff 1\ntimestep 0.1\n"
-                      "fix run all mdanim/leapfrog lambda 14 drag ${kind}\nrun 1\n")
+    script.write_text(
+        "units lj\natom_style atomic\nboundary s s s\nregion r block -1 1 -1 1 -1 1\ncreate_box 1 r\n"
+        "create_atoms 1 single 0 0 0\nmass 1 1.0\npair_style none\ncomm_modify cutoff 1\ntimestep 0.1\n"
+        "fix run all mdanim/leapfrog lambda 14 drag ${kind}\nrun 1\n"
+    )
     assert "reaches 0.7" in plugin_path.lmp(script, 1, "-var", "kind", "implicit").stdout
     assert "reaches" not in plugin_path.lmp(script, 1, "-var", "kind", "exp").stdout
 
 
-@pytest.mark.parametrize(("words", "message"), [
-    ("lambda -0.5", "lambda must be >= 0, got -0.5"),
-    ("lambda d_nothing", "no per-particle property d_nothing"),
-    ("lambda", "lambda"),
-    ("lambda 0.1 drag paper", "drag must be implicit or exp, got paper"),
-    ("drag exp", "there is no lambda"),
-    ("gamma 0.1", "unknown keyword gamma"),
-])
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("lambda -0.5", "lambda must be >= 0, got -0.5"),
+        ("lambda d_nothing", "no per-particle property d_nothing"),
+        ("lambda", "lambda"),
+        ("lambda 0.1 drag paper", "drag must be implicit or exp, got paper"),
+        ("drag exp", "there is no lambda"),
+        ("gamma 0.1", "unknown keyword gamma"),
+    ],
+)
 def test_mistakes_are_refused_with_the_word(tmp_path, words, message):
     """Give one wrong word."""
     with pytest.raises(Exception) as caught:

@@ -37,8 +37,12 @@ SHAPES = {
 def test_every_shape_equals_the_naive_twin(tmp_path, region):
     """Force, energy and vector for 200 particles at any depth."""
     d = SHAPES[region](SCATTERED.x)
-    lmp = lab.load(SCATTERED, tmp_path, [f"region r {region}", "fix w all mdanim/wall r d_k", "fix run all mdanim/leapfrog",
-                                         "run 0"], columns={"k": STIFFNESS})
+    lmp = lab.load(
+        SCATTERED,
+        tmp_path,
+        [f"region r {region}", "fix w all mdanim/wall r d_k", "fix run all mdanim/leapfrog", "run 0"],
+        columns={"k": STIFFNESS},
+    )
     force = -STIFFNESS[:, None] * d
     assert (d != 0.0).any(1).sum() > 10
     # One product of numbers up to 20.
@@ -49,14 +53,31 @@ def test_every_shape_equals_the_naive_twin(tmp_path, region):
     lmp.close()
 
 
-@pytest.mark.parametrize("region", ["plane 0 0 0 0 0 1", "block -50 50 -50 50 0 300", "sphere 1.5 1.5 60 60",
-                                    "cone z 1.5 1.5 40 60 0 300", "ellipsoid 1.5 1.5 80 60 60 80",
-                                    "prism -40 40 -40 40 0 300 10 0 0"])
+@pytest.mark.parametrize(
+    "region",
+    [
+        "plane 0 0 0 0 0 1",
+        "block -50 50 -50 50 0 300",
+        "sphere 1.5 1.5 60 60",
+        "cone z 1.5 1.5 40 60 0 300",
+        "ellipsoid 1.5 1.5 80 60 60 80",
+        "prism -40 40 -40 40 0 300 10 0 0",
+    ],
+)
 def test_a_fast_block_comes_back(tmp_path, region):
     """Five wave speeds into a wall as stiff as the block: no abort, it leaves again."""
     body = lab.block((3, 3, 3), (0.0, 0.0, 0.5), (0.0, 0.0, -5.0 * lab.WAVE_SPEED))
-    lmp = lab.load(body, tmp_path, [f"region r {region}", "fix w all mdanim/wall r 1.0", "fix run all mdanim/leapfrog",
-                                    f"timestep {0.1 * lab.BOUND}", "run 300"])
+    lmp = lab.load(
+        body,
+        tmp_path,
+        [
+            f"region r {region}",
+            "fix w all mdanim/wall r 1.0",
+            "fix run all mdanim/leapfrog",
+            f"timestep {0.1 * lab.BOUND}",
+            "run 300",
+        ],
+    )
     v = body.mass @ lab.by_tag(lmp, "v") / body.mass.sum()
     assert v[2] > 2.0
     assert lmp.extract_fix("w", 0, 1, 3) == 0.0
@@ -66,29 +87,51 @@ def test_a_fast_block_comes_back(tmp_path, region):
 
 def test_energy_of_a_bounce(tmp_path):
     """One particle on a floor under gravity: kinetic, potential and wall energy add up over many bounces."""
-    lmp = lab.load(lab.particles([[0.0, 0, 2.0]]), tmp_path, [
-        "region r plane 0 0 0 0 0 1", "fix w all mdanim/wall r 50.0", "fix_modify w energy yes",
-        "fix g all gravity 1.0 vector 0 0 -1", "fix_modify g energy yes", "fix run all mdanim/leapfrog",
-        "timestep 0.005", "thermo_style custom step etotal",
-        "compute_modify thermo_temp extra/dof 0", "run 0"])
+    lmp = lab.load(
+        lab.particles([[0.0, 0, 2.0]]),
+        tmp_path,
+        [
+            "region r plane 0 0 0 0 0 1",
+            "fix w all mdanim/wall r 50.0",
+            "fix_modify w energy yes",
+            "fix g all gravity 1.0 vector 0 0 -1",
+            "fix_modify g energy yes",
+            "fix run all mdanim/leapfrog",
+            "timestep 0.005",
+            "thermo_style custom step etotal",
+            "compute_modify thermo_temp extra/dof 0",
+            "run 0",
+        ],
+    )
     start, off = lmp.get_thermo("etotal"), []
     for _ in range(50):
         lmp.command("run 97 pre no post no")
         off.append(lmp.get_thermo("etotal"))
-    # Where the force has its kink a step may start or end anywhere: w dt = 0.035 squared, summed over five bounces.
+    # Where the force has its kink a step may start or end anywhere: w dt = 0.035 squared, summed over five
+    # bounces.
     assert np.abs(np.array(off) / start - 1.0).max() < 2e-3
     assert lmp.extract_fix("w", 0, 1, 4) > 0.2
     lmp.close()
 
 
 def test_only_watched_particles_cost_but_none_is_missed(tmp_path):
-    """A wall that looks at its watch list only gives the bits of one that looks at all particles in every step."""
+    """Looking at the watch list only gives the bits of looking at all particles in every step."""
     body = lab.block((3, 3, 3), (0.0, 0.0, 3.0), (0.1, 0.0, -0.8))
     found = []
     # With delay 1 lists may be late, so the wall does not rely on them.
     for neigh in ("neigh_modify every 1 delay 0 check yes", "neigh_modify every 1 delay 1 check yes"):
-        lmp = lab.load(body, tmp_path, [neigh, "region r plane 0 0 0 0 0 1", "fix w all mdanim/wall r 1.0",
-                                        "fix run all mdanim/leapfrog", "timestep 0.2", "run 80"])
+        lmp = lab.load(
+            body,
+            tmp_path,
+            [
+                neigh,
+                "region r plane 0 0 0 0 0 1",
+                "fix w all mdanim/wall r 1.0",
+                "fix run all mdanim/leapfrog",
+                "timestep 0.2",
+                "run 80",
+            ],
+        )
         assert lmp.extract_fix("w", 0, 1, 4) > 0.1
         found.append(np.concatenate([lab.by_tag(lmp, "x"), lab.by_tag(lmp, "v")]))
         lmp.close()
@@ -97,9 +140,18 @@ def test_only_watched_particles_cost_but_none_is_missed(tmp_path):
 
 def test_a_moving_floor_lifts_a_particle(tmp_path):
     """A region that moves is asked where it is now."""
-    lmp = lab.load(lab.particles([[0.0, 0, 0.5]]), tmp_path, [
-        "timestep 0.01", "variable up equal step*dt*0.5", "region r plane 0 0 0 0 0 1 move NULL NULL v_up",
-        "fix w all mdanim/wall r 100.0", "fix run all mdanim/leapfrog", "run 300"])
+    lmp = lab.load(
+        lab.particles([[0.0, 0, 0.5]]),
+        tmp_path,
+        [
+            "timestep 0.01",
+            "variable up equal step*dt*0.5",
+            "region r plane 0 0 0 0 0 1 move NULL NULL v_up",
+            "fix w all mdanim/wall r 100.0",
+            "fix run all mdanim/leapfrog",
+            "run 300",
+        ],
+    )
     # Hit by a floor at 0.5 it leaves at twice that.
     assert lab.by_tag(lmp, "v")[0, 2] == pytest.approx(1.0, rel=1e-3)
     lmp.close()
@@ -107,33 +159,62 @@ def test_a_moving_floor_lifts_a_particle(tmp_path):
 
 def test_only_the_group_is_held(tmp_path):
     """Particles outside the group pass."""
-    lmp = lab.load(SCATTERED, tmp_path, ["group some id 1:100", "region r plane 0 0 0 0 0 1", "fix w some mdanim/wall r 1.0",
-                                         "fix run all mdanim/leapfrog", "run 0"])
+    lmp = lab.load(
+        SCATTERED,
+        tmp_path,
+        [
+            "group some id 1:100",
+            "region r plane 0 0 0 0 0 1",
+            "fix w some mdanim/wall r 1.0",
+            "fix run all mdanim/leapfrog",
+            "run 0",
+        ],
+    )
     f = lab.by_tag(lmp, "f")
     assert np.array_equal(f[:, 2] != 0.0, (SCATTERED.x[:, 2] < 0.0) & (np.arange(200) < 100))
     lmp.close()
 
 
-@pytest.mark.parametrize(("region", "words", "message"), [
-    ("plane 0 0 0 0 0 1", "nowhere 1.0", "no region nowhere"),
-    ("plane 0 0 0 0 0 1", "r -1.0", "k must be >= 0, got -1.0"),
-    ("plane 0 0 0 0 0 1", "r", "missing argument"),
-    ("plane 0 0 0 0 0 1", "r 1.0 2.0", "got also 2.0"),
-    ("plane 0 0 0 0 0 1", "r d_none", "no per-particle property d_none"),
-    ("block -1 1 -1 1 -1 1 open 6", "r 1.0", "has open faces"),
-    ("union 2 a b", "r 1.0", "style union cannot tell its nearest surface"),
-    ("intersect 2 a b", "r 1.0", "style intersect cannot tell its nearest surface"),
-])
+@pytest.mark.parametrize(
+    ("region", "words", "message"),
+    [
+        ("plane 0 0 0 0 0 1", "nowhere 1.0", "no region nowhere"),
+        ("plane 0 0 0 0 0 1", "r -1.0", "k must be >= 0, got -1.0"),
+        ("plane 0 0 0 0 0 1", "r", "missing argument"),
+        ("plane 0 0 0 0 0 1", "r 1.0 2.0", "got also 2.0"),
+        ("plane 0 0 0 0 0 1", "r d_none", "no per-particle property d_none"),
+        ("block -1 1 -1 1 -1 1 open 6", "r 1.0", "has open faces"),
+        ("union 2 a b", "r 1.0", "style union cannot tell its nearest surface"),
+        ("intersect 2 a b", "r 1.0", "style intersect cannot tell its nearest surface"),
+    ],
+)
 def test_mistakes_are_refused_with_the_word(tmp_path, region, words, message):
     """Give one wrong word or a region without a nearest surface."""
     with pytest.raises(Exception) as caught:
-        lab.load(SCATTERED, tmp_path, ["region a sphere 0 0 0 2", "region b sphere 1 0 0 2", f"region r {region}",
-                                       f"fix w all mdanim/wall {words}"]).close()
+        lab.load(
+            SCATTERED,
+            tmp_path,
+            [
+                "region a sphere 0 0 0 2",
+                "region b sphere 1 0 0 2",
+                f"region r {region}",
+                f"fix w all mdanim/wall {words}",
+            ],
+        ).close()
     assert message in str(caught.value)
 
 
 def test_a_deleted_region_is_noticed(tmp_path):
     """Delete the region between fix and run."""
     with pytest.raises(Exception, match="region r has been deleted"):
-        lab.load(SCATTERED, tmp_path, ["region r plane 0 0 0 0 0 1", "fix w all mdanim/wall r 1.0",
-                                       "fix run all mdanim/leapfrog", "region r delete", "run 0"])
+        lab.load(
+            SCATTERED,
+            tmp_path,
+            [
+                "region r plane 0 0 0 0 0 1",
+                "fix w all mdanim/wall r 1.0",
+                "fix run all mdanim/leapfrog",
+                "region r delete",
+                "run 0",
+            ],
+        )

@@ -36,7 +36,8 @@ def test_what_holds_for_every_body(shape, cells, mass, position, angles, velocit
     n = len(body.position)
     # A sum of n terms in pairs is exact to a few units in the last place.
     assert body.mass.sum() == pytest.approx(mass, rel=1e-15)
-    np.testing.assert_allclose(body.mass @ body.position / mass, position, atol=1e-14 * (1 + np.abs(position).max()))
+    hair = 1e-14 * (1 + np.abs(position).max())
+    np.testing.assert_allclose(body.mass @ body.position / mass, position, atol=hair)
     np.testing.assert_allclose(body.mass @ body.velocity / mass, velocity, atol=1e-13)
     np.testing.assert_allclose(body.velocity - velocity, np.cross(spin, body.position - position), atol=1e-12)
 
@@ -77,7 +78,7 @@ def test_turning_a_solid_turns_its_model(shape):
 
 @every_shape
 def test_the_drawn_surface_is_the_shape_itself(shape):
-    """Embed the true surface: closed, weights that sum to 1, vertices on the shape although cells are a staircase."""
+    """Embed the true surface: closed, weights that sum to 1, vertices on the shape, not on the staircase."""
     h = shapes.thickness(shape) / 4
     body = model(shape, h)
     assert_closed(body.surface.triangle)
@@ -89,7 +90,7 @@ def test_the_drawn_surface_is_the_shape_itself(shape):
 
 @pytest.mark.parametrize("cells", [3, 4, 6, 10])
 def test_surface_of_a_sphere_stays_with_its_particles(cells):
-    """Draw a ball within 0.6 h of the ball also when it is stretched evenly: the embedding is exact for that."""
+    """Draw a ball within 0.6 h of the ball, also stretched evenly: the embedding is exact for that."""
     radius = 0.5
     h = 2 * radius / cells
     body = model(Sphere(radius), h)
@@ -139,7 +140,7 @@ def test_damping_and_drag_are_absent_unless_asked_for():
     np.testing.assert_allclose(both.damping, 0.2 * np.sqrt(both.stiffness * reduced))
 
 
-# --- hold -------------------------------------------------------------------------------------------------------
+# --- hold ---------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize(("hold", "count"), [
     pytest.param(HoldFaces((Side.MINUS_X,)), 5 * 4, id="one face"),
@@ -150,7 +151,7 @@ def test_damping_and_drag_are_absent_unless_asked_for():
     pytest.param(HoldAll(), 7 * 5 * 4, id="all"),
 ])
 def test_hold_catches_exactly_these_particles(hold, count):
-    """Hold particles on faces, or within a box of the world, of a cuboid of 6 x 4 x 3 cells, and stop them."""
+    """Hold particles of 6 x 4 x 3 cells on faces, or within a box of the world, and stop them."""
     body = model(Box((6.0, 4.0, 3.0)), 1.0, hold=(hold,), velocity=(1.0, 0.5, 0), spin=(0, 2.0, 0))
     assert body.held.sum() == count
     assert (body.velocity[body.held] == 0).all()
@@ -192,18 +193,19 @@ def test_a_hold_that_catches_nothing_is_a_problem():
     assert "from (-0.5, -0.5, -0.5) to (0.5, 0.5, 0.5) m" in problem.hint
 
 
-# --- many objects -----------------------------------------------------------------------------------------------
+# --- many objects -------------------------------------------------------------------------------------------
 
 def test_equal_objects_share_what_cannot_change():
     """Make the springs of a thousand equal cubes once, read-only; give each its own positions."""
     cubes = [solid(Box((0.2, 0.2, 0.2)), f"cube[{i}]", position=(0.3 * i, 0, 0)) for i in range(1000)]
     seen = []
-    models = build_models(scene(*cubes, resolution=0.1), progress=lambda done, total: seen.append((done, total)))
+    models = build_models(scene(*cubes, resolution=0.1), progress=lambda *count: seen.append(count))
     assert [m.name for m in models] == [c.name for c in cubes]
     assert all(m.spring is models[0].spring and m.mass is models[0].mass for m in models)
     assert not models[0].spring.flags.writeable and not models[0].mass.flags.writeable
     assert models[0].position.flags.writeable and not np.shares_memory(models[0].position, models[1].position)
-    np.testing.assert_allclose(models[-1].position - models[0].position, [(299.7, 0, 0)] * 27, rtol=1e-13, atol=1e-13)
+    apart = models[-1].position - models[0].position
+    np.testing.assert_allclose(apart, [(299.7, 0, 0)] * 27, rtol=1e-13, atol=1e-13)
     assert seen[-1] == (1000, 1000) and len(seen) == 1000
 
 

@@ -36,8 +36,8 @@ def test_lattice_equals_its_naive_twin(filled):
     np.testing.assert_array_equal(lattice.layer, [LAYER[layers[n]] for n in order])
     expected = sorted((number[a], number[b], held) for (a, b), held in springs.items())
     assert np.column_stack([lattice.spring, lattice.holders]).tolist() == [list(e) for e in expected]
-    np.testing.assert_allclose(
-        lattice.position - lattice.position[0], np.array(order)[:, ::-1] - np.array(order[0])[::-1], atol=1e-12)
+    steps = (np.array(order) - order[0])[:, ::-1]
+    np.testing.assert_allclose(lattice.position - lattice.position[0], steps, atol=1e-12)
 
 
 @settings(max_examples=50, deadline=None)
@@ -49,7 +49,8 @@ def test_spring_kinds_and_hexahedra_are_steps_of_the_lattice(filled):
     step = lattice.position[lattice.spring[:, 1]] - lattice.position[lattice.spring[:, 0]]
     np.testing.assert_allclose(step, OFFSETS[lattice.kind] * edge, atol=1e-12)
     corners = lattice.position[lattice.hexahedron]
-    np.testing.assert_allclose(corners - corners[:, :1], np.broadcast_to(CORNERS * edge, corners.shape), atol=1e-12)
+    expected = np.broadcast_to(CORNERS * edge, corners.shape)
+    np.testing.assert_allclose(corners - corners[:, :1], expected, atol=1e-12)
     assert len(corners) == filled.sum()
 
 

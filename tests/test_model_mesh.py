@@ -67,8 +67,15 @@ def test_a_changed_file_is_read_again(tmp_path):
     assert mesh.load(Mesh(path)).volume == pytest.approx(36)
 
 
+def test_the_origin_is_the_centre_of_mass_not_of_the_corners():
+    """Weigh two blocks of 24 and 12 with centres at 2 and 7: their common centre is at 3 2/3."""
+    body = mesh.load(Mesh(MESHES / "two-parts.obj"))
+    np.testing.assert_allclose(body.points.min(axis=0), [-11 / 3, -1.5, -1.0], rtol=1e-9)
+
+
 @pytest.mark.parametrize("suffix", [".stl", ".ply"])
-@pytest.mark.parametrize("shape", [Sphere(0.5), Torus(0.5, 0.2), Box((1.0, 0.5, 0.3))], ids=["ball", "ring", "box"])
+@pytest.mark.parametrize(
+    "shape", [Sphere(0.5), Torus(0.5, 0.2), Box((1.0, 0.5, 0.3))], ids=["ball", "ring", "box"])
 def test_a_mesh_of_a_shape_is_that_shape(tmp_path, shape, suffix):
     """Find volume, thickness and inside of a shape that comes from a file (facets cost up to 1.5 %)."""
     made = written(tmp_path, shape, suffix=suffix)
@@ -111,18 +118,18 @@ def test_rays_agree_with_vtk():
 def test_batches_do_not_change_the_answer():
     """Cut the work into small batches: same crossings."""
     body = mesh.load(Mesh(MESHES / "knot.ply", 0.01))
-    lines = np.random.default_rng(4).uniform(-0.6, 0.6, (500, 2))
+    lines = np.random.default_rng(4).uniform(-0.6, 0.6, (200, 2))
 
     def sorted_hits(batch):
         pairs = np.concatenate([np.stack(h) for h in mesh._crossings(body, lines, batch)], axis=1)
         return pairs[:, np.lexsort(pairs)]
 
-    np.testing.assert_array_equal(sorted_hits(50), sorted_hits(10**6))
-    assert sorted_hits(50).shape[1] > 100
+    np.testing.assert_array_equal(sorted_hits(1), sorted_hits(10**6))
+    assert sorted_hits(50).shape[1] > 40
 
 
 def test_large_triangles_are_divided_for_drawing():
-    """Divide a face of two triangles until no edge is longer than twice the size, without opening the surface."""
+    """Divide two triangles until no edge is longer than twice the size, without opening the surface."""
     points, triangles = shapes.surface(Mesh(MESHES / "cuboid.obj"), 0.3)
     assert_closed(triangles)
     edges = points[triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)]

@@ -68,7 +68,8 @@ def test_surface_is_closed_and_faces_outward(shape):
     # 48 facets around: 1 - sin(7.5 deg)/7.5 deg = 0.3 % less in a plane, 1.2 % for a ring of 24.
     assert enclosed_volume(points, triangles) == pytest.approx(shapes.volume(shape), rel=0.015)
     low, high = shapes.extent(shape)
-    np.testing.assert_allclose([points.min(axis=0), points.max(axis=0)], [low, high], atol=1e-6 * (high - low).max())
+    found = [points.min(axis=0), points.max(axis=0)]
+    np.testing.assert_allclose(found, [low, high], atol=1e-6 * (high - low).max())
 
 
 @every_shape

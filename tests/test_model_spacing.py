@@ -104,6 +104,8 @@ def test_particles_are_estimated_well(shape):
     pytest.param((1.0, 1.0, 1.0), 1.0, (1, 1, 1), id="one cell"),
     pytest.param((0.9, 0.6, 0.31), 0.1, (9, 6, 3), id="slightly long cells along z"),
     pytest.param((10.0, 1.0, 0.101), 0.1, (100, 10, 1), id="plate"),
+    pytest.param((1.2, 2.1, 2.1), 0.5, (2, 4, 4), id="fewer, longer cells where more would be further off"),
+    pytest.param((1.25, 1.25, 1.0), 0.5, (3, 3, 2), id="near the spacing: 4 x 4 x 3 are nearer to cubes"),
 ])
 def test_cuboids_are_divided_into_near_cubes(size, h, count):
     """Find the division that has nearly cubic cells near the spacing."""
@@ -114,7 +116,7 @@ def test_cuboids_are_divided_into_near_cubes(size, h, count):
 @given(st.tuples(*[st.floats(1.0, 12.0)] * 3))
 @example((1.0, 2.0, 1.25))
 def test_every_cuboid_can_be_divided(size):
-    """Keep the aspect up to 1.2 for any cuboid two cells thick or more, and the mean edge within a factor of 2."""
+    """Keep the aspect up to 1.2 from two cells thickness on, and the mean edge within a factor of 2."""
     edge = np.divide(size, box_counts(size, 0.5))
     assert edge.max() / edge.min() <= MAX_ASPECT * (1 + 1e-6)
     # Three cells leave room enough (measured: at most 1.24).

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Mutilated scenes: whatever is done to a text, it gives a Scene or a SceneError, soon, and never a traceback."""
+"""Mutilated scenes: whatever is done to a text, it soon gives a Scene or a SceneError, never a traceback."""
 
 import re
 import time
@@ -7,19 +7,43 @@ from pathlib import Path
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import load_scene, parse_scene
 
 SCENES = Path(__file__).parent.parent / "scenes"
 BAD = Path(__file__).parent / "scenes_bad"
-TEXTS = [p.read_text(encoding="utf-8") for p in (*(SCENES / f"{n}.txt" for n in ("beam", "float", "crowd")), BAD / "many.txt")]
+FILES = (SCENES / "beam.txt", SCENES / "float.txt", SCENES / "crowd.txt", BAD / "many.txt")
+TEXTS = [p.read_text(encoding="utf-8") for p in FILES]
 TEXTS.append(lock_text(load_scene(SCENES / "float.txt")))
 TOKENS = [re.findall(r"\s+|\w+|.", text) for text in TEXTS]
-SPICE = ["{", "}", "(", ")", "[", "]", ",", "..", "=", "+-", "-", "^", "*", "/", '"', "#", "\n", " ", "\t", "\0", "é", "\u2028", "1e308",
-         "1e-320", "m", "kg", "1/s", "let", "repeat", "i in 1 .. 3 {", "include", "object", "control", "expect", "mod", "rand(0, 1)",
-         "9^9^9", "0", "nan", "inf", "auto", "all", "title", "let a = 1\n", "camera", "matrix"]  # fmt: skip
+SPICE = [
+    *'{}()[],=-^*/"# \n\t\0é\u2028',
+    "..",
+    "+-",
+    "1e308",
+    "1e-320",
+    "0",
+    "nan",
+    "inf",
+    "9^9^9",
+    "rand(0, 1)",
+    "mod",
+]
+SPICE += [
+    "m",
+    "kg",
+    "1/s",
+    "let",
+    "let a = 1\n",
+    "repeat",
+    "i in 1 .. 3 {",
+    "include",
+    "object",
+    "control",
+    "expect",
+]
+SPICE += ["auto", "all", "title", "camera", "matrix"]
 
 # A scene takes milliseconds; a hundred times that is a hang.
 LONGEST = 5.0

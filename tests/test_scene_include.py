@@ -4,7 +4,6 @@
 import os
 
 import pytest
-
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.scene import scene as records
 from mdanim_lammps.scene.parse import load_scene, parse_scene
@@ -16,6 +15,7 @@ BALL = "object ball { shape sphere r position (0, 0, 0) m mass 1 kg elasticity 1
 @pytest.fixture
 def write(tmp_path):
     """Write files below a folder; returns the path of the first."""
+
     def make(**files: str):
         for name, text in files.items():
             path = tmp_path / f"{name.replace('__', '/')}.txt"
@@ -35,37 +35,52 @@ def problems(path) -> list:
 
 def test_include_is_relative_to_its_file(write):
     """Read a file beside the one that includes it, in its place."""
-    path = write(main='include "parts/a.txt"\n' + CONTROL, parts__a='include "b.txt"\n' + BALL, parts__b="let r = 2 m\n")
+    path = write(
+        main='include "parts/a.txt"\n' + CONTROL,
+        parts__a='include "b.txt"\n' + BALL,
+        parts__b="let r = 2 m\n",
+    )
     assert load_scene(path).solids[0].shape == records.Sphere(2.0)
 
 
 def test_include_inside_a_block(write):
     """Settings may come from another file."""
-    path = write(main="object a { shape sphere 1 m position (0, 0, 0) m\n include \"rubber.txt\"\n }\n" + CONTROL,
-                 rubber="mass 1 kg\nelasticity 3 MPa\n")
+    path = write(
+        main='object a { shape sphere 1 m position (0, 0, 0) m\n include "rubber.txt"\n }\n' + CONTROL,
+        rubber="mass 1 kg\nelasticity 3 MPa\n",
+    )
     assert load_scene(path).solids[0].elasticity == records.Young(3e6)
 
 
 def test_problem_in_an_included_file_shows_the_chain(write, tmp_path):
     """Point at the line in the included file, and at the includes that lead there."""
-    (problem,) = problems(write(main='\ninclude "a.txt"\n' + BALL + CONTROL, a='include "b.txt"\n', b="\nlet r = 2 mn\n"))
+    (problem,) = problems(
+        write(main='\ninclude "a.txt"\n' + BALL + CONTROL, a='include "b.txt"\n', b="\nlet r = 2 mn\n")
+    )
     assert problem.file == str(tmp_path / "b.txt")
     assert (problem.line, problem.column) == (2, 11)
-    assert str(problem).endswith(f"included from {tmp_path}/a.txt:1:1\n        included from {tmp_path}/main.txt:2:1")
+    assert str(problem).endswith(
+        f"included from {tmp_path}/a.txt:1:1\n        included from {tmp_path}/main.txt:2:1"
+    )
 
 
 def test_circle_of_includes_is_shown(write):
     """Refuse a file that includes itself through others, and show the round."""
     path = write(main='include "a.txt"\n' + CONTROL, a='include "b.txt"\n', b='include "a.txt"\n' + BALL)
-    assert "a.txt -> b.txt -> a.txt" in problems(path)[0].message
-    assert "own.txt -> own.txt" in problems(write(own='include "own.txt"\n'))[0].message
+    assert "goes round in a circle: a.txt -> b.txt -> a.txt" in problems(path)[0].message
+    alone = problems(write(own='include "own.txt"\n'))[0]
+    assert "goes round in a circle: own.txt -> own.txt" in alone.message
 
 
 def test_sixteen_levels_of_includes(write):
     """Read sixteen levels, refuse seventeen."""
-    files = {f"f{n}": f'include "f{n + 1}.txt"\n' for n in range(16)} | {"f16": "let r = 1\n" + BALL + CONTROL}
+    files = {f"f{n}": f'include "f{n + 1}.txt"\n' for n in range(16)} | {
+        "f16": "let r = 1\n" + BALL + CONTROL
+    }
     assert len(load_scene(write(**files)).solids) == 1
-    files = {f"f{n}": f'include "f{n + 1}.txt"\n' for n in range(17)} | {"f17": "let r = 1\n" + BALL + CONTROL}
+    files = {f"f{n}": f'include "f{n + 1}.txt"\n' for n in range(17)} | {
+        "f17": "let r = 1\n" + BALL + CONTROL
+    }
     assert "more than 16 levels deep: f0.txt -> f1.txt" in problems(write(**files))[0].message
 
 
@@ -76,8 +91,10 @@ def test_flood_of_includes_is_stopped(write):
 
 
 @pytest.mark.parametrize(("content", "words"), [
-    (b"", "is empty"), (b" \n\t\n", "is empty"), (b"object\0a", "is a binary file"), (b"title \"\xff\"\n", "is not UTF-8 text (byte 0xff in line 1)"),
-    ("title".encode("utf-16"), "is UTF-16 text; save it as UTF-8"), (b"\x89PNG\r\n\x1a\n\0\0", "is a binary file"),
+    (b"", "is empty"), (b" \n\t\n", "is empty"), (b"object\0a", "is a binary file"),
+    (b"title \"\xff\"\n", "is not UTF-8 text (byte 0xff in line 1)"),
+    ("title".encode("utf-16"), "is UTF-16 text; save it as UTF-8"),
+    (b"\x89PNG\r\n\x1a\n\0\0", "is a binary file"),
 ])  # fmt: skip
 def test_file_that_is_no_scene(tmp_path, content, words):
     """Say what is wrong with a file that cannot be read as text."""
@@ -103,16 +120,23 @@ def test_missing_include(write):
 
 def test_mesh_is_found_beside_its_scene(write, tmp_path):
     """Store the absolute path of a mesh; the scale is metres per unit."""
-    path = write(main='include "parts/a.txt"\nlet r = 1\n' + CONTROL,
-                 parts__a='object m { shape mesh "duck.STL" scale 1/1000 position (0, 0, 0) m mass 1 kg elasticity 1 MPa }\n')
+    path = write(
+        main='include "parts/a.txt"\nlet r = 1\n' + CONTROL,
+        parts__a='object m { shape mesh "duck.STL" scale 1/1000\n'
+        "position (0, 0, 0) m mass 1 kg elasticity 1 MPa }\n",
+    )
     (tmp_path / "parts" / "duck.STL").write_bytes(b"solid")
-    assert load_scene(path).solids[0].shape == records.Mesh((tmp_path / "parts" / "duck.STL").resolve(), 0.001)
+    assert load_scene(path).solids[0].shape == records.Mesh(
+        (tmp_path / "parts" / "duck.STL").resolve(), 0.001
+    )
 
 
 def test_text_finds_its_files_in_a_folder(write, tmp_path):
     """A scene from a text reads its includes from a folder that is told."""
     write(size="let r = 3 m\n")
-    assert parse_scene('include "size.txt"\n' + BALL + CONTROL, folder=tmp_path).solids[0].shape == records.Sphere(3.0)
+    assert parse_scene('include "size.txt"\n' + BALL + CONTROL, folder=tmp_path).solids[
+        0
+    ].shape == records.Sphere(3.0)
     with pytest.raises(SceneError, match="is not there"):
         parse_scene('include "size.txt"\n' + BALL + CONTROL, folder=tmp_path / "other")
 

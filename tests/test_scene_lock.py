@@ -7,17 +7,18 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-
 from mdanim_lammps.scene import scene as records
-from mdanim_lammps.scene.build import departure, rotation_about, rotation_euler
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import load_scene, parse_scene
-from mdanim_lammps.scene.words import BLOCKS, KEYWORDS, QUANTITIES, GLOBALS, STATEMENTS
+from mdanim_lammps.scene.rotation import departure, rotation_about, rotation_euler
+from mdanim_lammps.scene.words import BLOCKS, GLOBALS, KEYWORDS, QUANTITIES, STATEMENTS
 
 SCENES = Path(__file__).parent.parent / "scenes"
 
 # Fixed examples, so that every run of the tests is the same run.
-steady = settings(max_examples=150, derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+steady = settings(
+    max_examples=150, derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
 
 
 @pytest.mark.parametrize("name", ["beam", "float", "crowd"])
@@ -30,16 +31,20 @@ def test_scene_of_the_house(name):
     assert lock_text(again) == lock_text(scene)
 
 
-# --- scenes drawn at random: any floats that the rules allow ------------------------------------------------------
+# --- scenes drawn at random: any floats that the rules allow ----------------------------------------------
 
 numbers = st.floats(-1e6, 1e6)
 positive = st.floats(1e-9, 1e9)
 vectors = st.tuples(numbers, numbers, numbers)
 sizes = st.tuples(positive, positive, positive)
 colors = st.none() | st.from_regex(r"#[0-9a-f]{6}", fullmatch=True)
-texts = st.text(st.characters(blacklist_characters='"\n\r\ufeff\0', blacklist_categories=("Cs",)), max_size=20)
+texts = st.text(
+    st.characters(blacklist_characters='"\n\r\ufeff\0', blacklist_categories=("Cs",)), max_size=20
+)
 words = st.from_regex(r"[a-zA-Z_][a-zA-Z0-9_]{0,8}", fullmatch=True)
-names = st.builds(lambda w, i: w if i is None else f"{w}[{i}]", words, st.none() | st.integers(-5, 10**6)).filter(lambda n: n not in GLOBALS)
+names = st.builds(
+    lambda w, i: w if i is None else f"{w}[{i}]", words, st.none() | st.integers(-5, 10**6)
+).filter(lambda n: n not in GLOBALS)
 
 
 @st.composite
@@ -60,15 +65,21 @@ def rotations(draw):
 
 
 shapes = st.one_of(
-    st.builds(records.Box, sizes), st.builds(records.Sphere, positive), st.builds(records.Ellipsoid, sizes),
-    st.builds(records.Cylinder, positive, positive), st.builds(records.Cone, positive, positive),
+    st.builds(records.Box, sizes),
+    st.builds(records.Sphere, positive),
+    st.builds(records.Ellipsoid, sizes),
+    st.builds(records.Cylinder, positive, positive),
+    st.builds(records.Cone, positive, positive),
     st.builds(lambda r, t: records.Torus(r, r * t), positive, st.floats(0.1, 0.9)),
-)  # fmt: skip
+)
 holds = st.one_of(
-    st.builds(records.HoldAll), boxes(records.HoldWithin),
-    st.sampled_from([records.HoldFaces((records.Side(f"-{a}"), records.Side(f"+{a}"))) for a in "xyz"]
-                    + [records.HoldFaces((side,)) for side in records.Side]),
-)  # fmt: skip
+    st.builds(records.HoldAll),
+    boxes(records.HoldWithin),
+    st.sampled_from(
+        [records.HoldFaces((records.Side(f"-{a}"), records.Side(f"+{a}"))) for a in "xyz"]
+        + [records.HoldFaces((side,)) for side in records.Side]
+    ),
+)
 
 
 @st.composite
@@ -77,22 +88,35 @@ def solids(draw, name):
     by_mass = draw(st.booleans())
     amount = draw(positive)
     return records.Solid(
-        name=name, shape=draw(shapes), position=draw(vectors), rotation=draw(rotations()),
+        name=name,
+        shape=draw(shapes),
+        position=draw(vectors),
+        rotation=draw(rotations()),
         elasticity=draw(st.builds(records.Young, positive) | st.builds(records.SpringConstant, positive)),
-        mass=amount if by_mass else None, density=None if by_mass else amount, damping=draw(st.floats(0, 2)),
-        velocity=draw(vectors), spin=draw(vectors), drag=draw(st.floats(0, 1e3)), hold=tuple(draw(st.lists(holds, max_size=2))),
+        mass=amount if by_mass else None,
+        density=None if by_mass else amount,
+        damping=draw(st.floats(0, 2)),
+        velocity=draw(vectors),
+        spin=draw(vectors),
+        drag=draw(st.floats(0, 1e3)),
+        hold=tuple(draw(st.lists(holds, max_size=2))),
         color=draw(colors),
-    )  # fmt: skip
+    )
 
 
 @st.composite
 def scenes(draw):
     """A whole valid scene."""
     control = records.Control(
-        time=draw(st.floats(1, 1e3)), frames=draw(st.floats(2, 1e3)), timestep=draw(st.none() | positive),
-        resolution=draw(st.none() | positive), accuracy=draw(st.sampled_from(records.Accuracy) | st.floats(1e-6, 0.9)),
-        seed=draw(st.integers(0, 2**53 - 1)), save=draw(st.sampled_from(records.Save)), single=draw(st.booleans()),
-    )  # fmt: skip
+        time=draw(st.floats(1, 1e3)),
+        frames=draw(st.floats(2, 1e3)),
+        timestep=draw(st.none() | positive),
+        resolution=draw(st.none() | positive),
+        accuracy=draw(st.sampled_from(records.Accuracy) | st.floats(1e-6, 0.9)),
+        seed=draw(st.integers(0, 2**53 - 1)),
+        save=draw(st.sampled_from(records.Save)),
+        single=draw(st.booleans()),
+    )
     bodies = tuple(draw(solids(n)) for n in draw(st.lists(names, min_size=1, max_size=3, unique=True)))
     wet = draw(st.booleans())
     liquid = None
@@ -103,12 +127,27 @@ def scenes(draw):
         share = draw(st.floats(0.1, 0.9))
         taken = {b.name for b in bodies}
         liquid = records.Liquid(
-            name=draw(words.filter(lambda w: w not in taken)), low=basin.low, high=basin.high, density=draw(positive),
-            volume=room * share if by_volume else None, level=None if by_volume else basin.low[2] + share * (basin.high[2] - basin.low[2]),
-            drag=draw(st.none() | st.floats(0, 100)), model=draw(st.sampled_from(records.LiquidModel)),
+            name=draw(words.filter(lambda w: w not in taken)),
+            low=basin.low,
+            high=basin.high,
+            density=draw(positive),
+            volume=room * share if by_volume else None,
+            level=None if by_volume else basin.low[2] + share * (basin.high[2] - basin.low[2]),
+            drag=draw(st.none() | st.floats(0, 100)),
+            model=draw(st.sampled_from(records.LiquidModel)),
             sweeps=draw(st.none() | st.integers(1, 100)),
-        )  # fmt: skip
-    cameras = draw(st.lists(st.builds(records.Camera, vectors, vectors | st.sampled_from([b.name for b in bodies]), up=vectors.filter(any)), max_size=1))
+        )
+    cameras = draw(
+        st.lists(
+            st.builds(
+                records.Camera,
+                vectors,
+                vectors | st.sampled_from([b.name for b in bodies]),
+                up=vectors.filter(any),
+            ),
+            max_size=1,
+        )
+    )
     cameras = tuple(c for c in cameras if c.eye != c.look)
     expects = []
     for kind, quantity in draw(st.lists(st.sampled_from(sorted(QUANTITIES)), max_size=3)):
@@ -117,12 +156,27 @@ def scenes(draw):
             time = draw(st.none() | st.floats(0, control.time))
             expects.append(records.Expect(subject, quantity, draw(numbers), draw(st.floats(0, 1e3)), time))
     return records.Scene(
-        name="scene", control=control, title=draw(texts), gravity=(0.0, 0.0, -draw(positive)) if wet else draw(vectors), solids=bodies,
-        liquid=liquid, ground=draw(st.none() | numbers), walls=draw(st.none() | st.just(records.Walls((-2e6,) * 3, (2e6,) * 3))),
-        effects=draw(st.dictionaries(st.sampled_from(sorted(KEYWORDS["effects"])), st.sampled_from(records.Switch), max_size=3)),
-        render=records.Render(size=draw(st.tuples(*[st.integers(1, 4000)] * 2)), movie=draw(st.none() | texts), background=draw(colors), camera=cameras),
+        name="scene",
+        control=control,
+        title=draw(texts),
+        gravity=(0.0, 0.0, -draw(positive)) if wet else draw(vectors),
+        solids=bodies,
+        liquid=liquid,
+        ground=draw(st.none() | numbers),
+        walls=draw(st.none() | st.just(records.Walls((-2e6,) * 3, (2e6,) * 3))),
+        effects=draw(
+            st.dictionaries(
+                st.sampled_from(sorted(KEYWORDS["effects"])), st.sampled_from(records.Switch), max_size=3
+            )
+        ),
+        render=records.Render(
+            size=draw(st.tuples(*[st.integers(1, 4000)] * 2)),
+            movie=draw(st.none() | texts),
+            background=draw(colors),
+            camera=cameras,
+        ),
         expects=tuple(expects),
-    )  # fmt: skip
+    )
 
 
 @steady
@@ -135,14 +189,16 @@ def test_any_scene_survives(scene):
 @steady
 @given(rotations())
 def test_rotations_are_rotations(rows):
-    """Every turn is orthonormal and right-handed to rounding: products of three matrices, each entry off by some 1e-16."""
+    """Every turn is orthonormal and right-handed to rounding (three matrices, 1e-16 each)."""
     assert departure(rows) < 1e-14
 
 
 def test_names_that_are_words_of_the_language_survive():
     """An object may be called mass, box, or repeat."""
-    text = "".join(f"object {w} {{ shape sphere 1 m position (0, 0, 0) m mass 1 kg elasticity 1 MPa }}\n"
-                   for w in ("mass", "box", "auto", *(set(BLOCKS) - set(GLOBALS)), *STATEMENTS))
+    text = "".join(
+        f"object {w} {{ shape sphere 1 m position (0, 0, 0) m mass 1 kg elasticity 1 MPa }}\n"
+        for w in ("mass", "box", "auto", *(set(BLOCKS) - set(GLOBALS)), *STATEMENTS)
+    )
     scene = parse_scene(text + "control { time 1 s }")
     assert parse_scene(lock_text(scene)) == scene
 
@@ -150,7 +206,8 @@ def test_names_that_are_words_of_the_language_survive():
 def test_mesh_path_is_absolute(tmp_path):
     """A mesh is found from anywhere."""
     (tmp_path / "a b.stl").write_bytes(b"solid")
-    text = 'object a { shape mesh "a b.stl" scale 0.001 position (0, 0, 0) m mass 1 kg elasticity 1 MPa }\ncontrol { time 1 s }'
+    shape = 'shape mesh "a b.stl" scale 0.001'
+    text = f"object a {{ {shape} position (0, 0, 0) m mass 1 kg elasticity 1 MPa }}\ncontrol {{ time 1 s }}"
     scene = parse_scene(text, folder=tmp_path)
     assert parse_scene(lock_text(scene)) == scene
 

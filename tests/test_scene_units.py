@@ -4,7 +4,6 @@
 import math
 
 import pytest
-
 from mdanim_lammps.scene import units
 from mdanim_lammps.scene.units import DimensionError, Quantity
 
@@ -63,8 +62,8 @@ KG = Quantity(3.0, (0, 1, 0, 0))
     pytest.param(units.power, (Quantity(4.0, (2, 0, 0, 0)), 0.5), M, id="half power"),
     pytest.param(units.modulo, (7.0, 3.0), 1.0, id="mod"),
     pytest.param(units.modulo, (-1.0, 3.0), 2.0, id="mod has the sign of the divisor"),
-    pytest.param(units.multiply, ((1.0, 2.0, 3.0), M), tuple(Quantity(2.0 * x, (1, 0, 0, 0)) for x in (1, 2, 3)),
-                 id="number times vector"),
+    pytest.param(units.multiply, ((1.0, 2.0, 3.0), M),
+                 tuple(Quantity(2.0 * x, (1, 0, 0, 0)) for x in (1, 2, 3)), id="number times vector"),
     pytest.param(units.add, ((1.0, 2.0, 3.0), (1.0, 1.0, 1.0)), (2.0, 3.0, 4.0), id="vectors"),
 ])  # fmt: skip
 def test_arithmetic(function, arguments, result):
@@ -79,8 +78,8 @@ def test_arithmetic(function, arguments, result):
     pytest.param(units.root, (-1.0,), "sqrt needs a number >= 0, found -1", id="root"),
     pytest.param(units.FUNCTIONS["sin"][2], (M,), "an angle is needed here, found a length", id="sine"),
     pytest.param(units.FUNCTIONS["max"][2], (M, KG), "cannot compare", id="maximum"),
-    pytest.param(units.add, ((1.0, 2.0), 1.0), "a vector and a number cannot be added", id="vector and number"),
-    pytest.param(units.multiply, ((1.0,), (1.0,)), "a number is needed here, found a vector", id="two vectors"),
+    pytest.param(units.add, ((1.0, 2.0), 1.0), "a vector and a number cannot be added", id="unlike shapes"),
+    pytest.param(units.multiply, ((1.0,), (1.0,)), "a number is needed here, found a vector", id="vectors"),
     pytest.param(units.with_unit, (M, units.unit("m")), "has a unit already", id="two units"),
 ])  # fmt: skip
 def test_refused_arithmetic(function, arguments, words):

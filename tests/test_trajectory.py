@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The trajectory file: what is written comes back, MDAnalysis reads it, and a killed run loses no flushed frame."""
+"""The trajectory file: what is written comes back, to MDAnalysis too, and a killed run loses no frame."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_object_is_its_own_particles(slab, tmp_path):
         assert track.particles == slice(first, first + len(cube.position))
         assert track.mass == pytest.approx(2.0)
         for i, (_, _, position, velocity) in enumerate(frames):
-            mine = position[first: first + len(cube.position)]
+            mine = position[first : first + len(cube.position)]
             np.testing.assert_array_equal(track.position(i), mine)
             # Sums of some hundred terms in another order: a few hundred units in the last place.
             np.testing.assert_allclose(track.center_of_mass[i], cube.mass @ mine / 2.0, rtol=0, atol=1e-13)
@@ -83,14 +83,24 @@ def test_boundary_only_keeps_surface_and_centre(tmp_path):
 def test_file_alone_is_enough(slab, tmp_path):
     """Title, colours, ground, walls, masses and the scene's text come back from the file."""
     scene, models, _ = slab
-    scene = replace(scene, walls=Walls((-1.0, -2.0, 0.0), (1.0, 2.0, 3.0)),
-                    solids=(replace(scene.solids[0], color="#102030"), *scene.solids[1:]))
-    text = "title \"A cube — and a ball\"\n" * 3000
-    with TrajectoryWriter(tmp_path / "t.h5", scene, models, dt=0.01, steps_per_frame=10, scene_text=text) as out:
+    scene = replace(
+        scene,
+        walls=Walls((-1.0, -2.0, 0.0), (1.0, 2.0, 3.0)),
+        solids=(replace(scene.solids[0], color="#102030"), *scene.solids[1:]),
+    )
+    text = 'title "A cube — and a ball"\n' * 3000
+    with TrajectoryWriter(
+        tmp_path / "t.h5", scene, models, dt=0.01, steps_per_frame=10, scene_text=text
+    ) as out:
         out.write(0, 0.0, *falling_frame(models))
     with Trajectory(tmp_path / "t.h5") as t:
         c = t.catalogue
-        assert (c.title, c.scene_text, c.ground, c.walls) == (scene.title, text, 0.0, ((-1, -2, 0), (1, 2, 3)))
+        assert (c.title, c.scene_text, c.ground, c.walls) == (
+            scene.title,
+            text,
+            0.0,
+            ((-1, -2, 0), (1, 2, 3)),
+        )
         assert c.colors == ("#102030", "", "") and c.still.tolist() == [True, False, False]
         assert (t.dt, t.steps_per_frame) == (0.01, 10)
         np.testing.assert_array_equal(c.held, np.concatenate([m.held for m in models]))
@@ -110,7 +120,9 @@ def test_equal_surfaces_are_stored_once(tmp_path):
     solids = tuple(replace(scene.solids[0], name=m.name) for m in models)
     path = tmp_path / "crowd.h5"
     with TrajectoryWriter(path, replace(scene, solids=solids), models, dt=1.0, steps_per_frame=1) as out:
-        out.write(0, 0.0, np.concatenate([m.position for m in models]), np.concatenate([m.velocity for m in models]))
+        out.write(
+            0, 0.0, np.concatenate([m.position for m in models]), np.concatenate([m.velocity for m in models])
+        )
     with Trajectory(path) as t:
         assert len(t.catalogue.surfaces) == 1
         mesh = t.surface(0)
@@ -131,7 +143,9 @@ def test_mdanalysis_reads_it(slab, tmp_path):
             np.testing.assert_array_equal(ts.velocities, velocity.astype(np.float32))
             cube = universe.select_atoms("resname cube")
             # Centre from float32 positions of about 1 m: their rounding, 6e-8.
-            np.testing.assert_allclose(cube.center_of_mass(), t.objects["cube"].center_of_mass[ts.frame], atol=2e-7)
+            np.testing.assert_allclose(
+                cube.center_of_mass(), t.objects["cube"].center_of_mass[ts.frame], atol=2e-7
+            )
         assert len(universe.bonds) == sum(len(m.spring) for m in models)
         assert universe.trajectory.dt == pytest.approx(0.1)
 
@@ -164,6 +178,19 @@ def test_name_appears_when_whole(slab, tmp_path):
         assert len(ended) == 2
 
 
+def test_number_vouches_for_data(slab, tmp_path, monkeypatch):
+    """The data of a frame are handed to the disk before its number is."""
+    scene, models, frames = slab
+    with TrajectoryWriter(tmp_path / "t.h5", scene, models, dt=0.01, steps_per_frame=10) as writer:
+        numbered = []
+        real = writer._file.flush
+        monkeypatch.setattr(writer._file, "flush", lambda: (numbered.append(len(writer._step)), real()))
+        writer.write(*frames[0])
+        writer.write(*frames[1])
+        writer.flush()
+        assert numbered == [0, 2]
+
+
 KILLED = """
 import os, signal, sys
 from pathlib import Path
@@ -186,8 +213,11 @@ for i, frame in enumerate(falling(models, 1000)):
 def test_killed_writer_loses_no_flushed_frame(slab, tmp_path, after):
     """Kill -9 a writer at no particular moment: all frames it had flushed are there and right."""
     _, models, _ = slab
-    writer = subprocess.Popen([sys.executable, "-c", KILLED, str(Path(__file__).parent), str(tmp_path)],
-                              stdout=subprocess.PIPE, text=True)
+    writer = subprocess.Popen(
+        [sys.executable, "-c", KILLED, str(Path(__file__).parent), str(tmp_path)],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
     for line in writer.stdout:
         if int(line) >= after:
             break
@@ -208,8 +238,12 @@ def test_append_goes_on_after_a_kill(slab, tmp_path):
     """Resume from step 20 of a killed run: later frames are cut and written anew, and the end is whole."""
     scene, models, frames = slab
     path = tmp_path / "trajectory.h5"
-    code = KILLED.replace("1000", "5").replace("i % 3 == 2", "True") + "os.kill(os.getpid(), signal.SIGKILL)\n"
-    died = subprocess.run([sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)], capture_output=True)
+    code = (
+        KILLED.replace("1000", "5").replace("i % 3 == 2", "True") + "os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    died = subprocess.run(
+        [sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)], capture_output=True
+    )
     assert died.returncode == -signal.SIGKILL
     with TrajectoryWriter.append(path, scene, models, after_step=20) as out:
         with pytest.raises(ValueError, match="found 20"):
@@ -245,10 +279,17 @@ def test_size_is_known_before(slab, tmp_path, save, single):
 
 def test_full_disk_is_an_output_error(slab, tmp_path):
     """A file that may not grow gives the cause and the way out, and what was flushed stays readable."""
-    code = KILLED.replace("scene, models = slab_scene()", "scene, models = slab_scene()\nimport resource\n"
-                          "resource.setrlimit(resource.RLIMIT_FSIZE, (800_000, 800_000))")
-    died = subprocess.run([sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)],
-                          capture_output=True, text=True, timeout=60)
+    code = KILLED.replace(
+        "scene, models = slab_scene()",
+        "scene, models = slab_scene()\nimport resource\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (800_000, 800_000))",
+    )
+    died = subprocess.run(
+        [sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)],
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
     assert died.returncode == 1
     assert "OutputError" in died.stderr and "File too large; make room" in died.stderr.replace("'", "")
     with Trajectory(tmp_path) as t:

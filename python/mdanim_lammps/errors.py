@@ -32,7 +32,7 @@ class Span:
     width: int = 1
     text: str = ""
     """The whole source line, for the caret picture; empty where there is no text (``--set``)."""
-    included_from: tuple["Span", ...] = ()
+    included_from: tuple[Span, ...] = ()
     """The ``include`` lines that lead to this file, outermost first."""
 
     def __str__(self) -> str:
@@ -67,7 +67,7 @@ class Problem:
         return self.span.column if self.span else 0
 
     def __str__(self) -> str:
-        """The message, the source line, a caret below the bad word with the way out beside it, the include chain."""
+        """The message, the source line, a caret below the bad word, the way out beside it, the includes."""
         place = f"{self.span}: " if self.span else ""
         head = f"{place}{self.severity}: {self.message}"
         if self.span is None or not self.span.text:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Make duck.stl, a plump bath duck: smoothly joined ellipsoids, contoured and thinned out to a small closed mesh.
+"""Make duck.stl, a plump bath duck: smoothly joined ellipsoids, contoured and thinned out to a small closed
+mesh.
 
 Run ``python make_meshes.py`` in this folder; needs only what mdanim-lammps needs. Units are centimetres.
 """
@@ -47,4 +48,5 @@ if __name__ == "__main__":
     mesh = duck()
     path = Path(__file__).with_name("duck.stl")
     mesh.save(path, binary=True)
-    print(f"{path.name}: {mesh.n_cells} triangles, open edges {mesh.n_open_edges}, {path.stat().st_size} bytes")
+    size = path.stat().st_size
+    print(f"{path.name}: {mesh.n_cells} triangles, open edges {mesh.n_open_edges}, {size} bytes")

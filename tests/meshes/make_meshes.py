@@ -11,7 +11,8 @@ HERE = Path(__file__).parent
 
 def write_obj(name, points, faces):
     """A text mesh; faces count from 0 here."""
-    lines = [f"v {x:g} {y:g} {z:g}" for x, y, z in points] + ["f " + " ".join(str(i + 1) for i in f) for f in faces]
+    lines = [f"v {x:g} {y:g} {z:g}" for x, y, z in points]
+    lines += ["f " + " ".join(str(i + 1) for i in f) for f in faces]
     (HERE / name).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
@@ -39,7 +40,8 @@ if __name__ == "__main__":
     write_obj("dumbbell.obj", [(*p, z) for z in (0, 3) for p in outline],
               [tuple(range(n))[::-1], tuple(range(n, 2 * n)), *sides])
     u = np.linspace(0, 2 * np.pi, 90, endpoint=False)
-    centre = np.stack([np.sin(u) + 2 * np.sin(2 * u), np.cos(u) - 2 * np.cos(2 * u), -np.sin(3 * u)], axis=1) * 20
+    x, y, z = np.sin(u) + 2 * np.sin(2 * u), np.cos(u) - 2 * np.cos(2 * u), -np.sin(3 * u)
+    centre = np.stack([x, y, z], axis=1) * 20
     tangent = np.roll(centre, -1, 0) - np.roll(centre, 1, 0)
     tangent /= np.linalg.norm(tangent, axis=1)[:, None]
     side = np.cross(tangent, (0.0, 0.0, 1.0))

@@ -4,9 +4,10 @@
 import numpy as np
 
 
-def barrier_forces(x, molecule, boundary, inner, stiffness, reach, thin=None, ratio=0.0, power=3, v=None, mass=None,
-                   damp=0.0):
-    """Forces (N, 3) and energy. ``boundary``, ``inner``, ``thin`` are bool (N,); ``stiffness``, ``reach`` (N,)."""
+def barrier_forces(
+    x, molecule, boundary, inner, stiffness, reach, thin=None, ratio=0.0, power=3, v=None, mass=None, damp=0.0
+):
+    """Forces (N, 3), energy; ``boundary``, ``inner``, ``thin`` bool (N,); ``stiffness``, ``reach`` (N,)."""
     thin = np.zeros(len(x), bool) if thin is None else thin
     force, energy = np.zeros_like(x), 0.0
     for i in range(len(x)):
@@ -40,10 +41,16 @@ def barrier_forces(x, molecule, boundary, inner, stiffness, reach, thin=None, ra
 def boxes(x, molecule):
     """Lower and upper corners of every object's box, eq. (3.14), each (M, 3)."""
     objects = np.unique(molecule)
-    return (np.array([x[molecule == m].min(0) for m in objects]), np.array([x[molecule == m].max(0) for m in objects]))
+    return (
+        np.array([x[molecule == m].min(0) for m in objects]),
+        np.array([x[molecule == m].max(0) for m in objects]),
+    )
 
 
 def meeting(low, high, gap):
-    """Number of pairs of boxes no further apart than ``gap`` along each axis, eq. (3.15), by trying all pairs."""
-    return sum(bool((low[a] - high[b] <= gap).all() and (low[b] - high[a] <= gap).all())
-               for a in range(len(low)) for b in range(a + 1, len(low)))
+    """Number of pairs of boxes at most ``gap`` apart along each axis, eq. (3.15), by trying all pairs."""
+    return sum(
+        bool((low[a] - high[b] <= gap).all() and (low[b] - high[a] <= gap).all())
+        for a in range(len(low))
+        for b in range(a + 1, len(low))
+    )

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Naive twins of the modelling: lattices cell by cell from the definitions, linear elasticity of any spring network,
-and the beam of the textbook."""
+"""Naive twins of the modelling: lattices cell by cell from the definitions, linear elasticity of any spring
+network, and the beam of the textbook."""
 
 from itertools import combinations, product
 from math import cosh, cos
@@ -53,10 +53,11 @@ def stiffness_matrix(position, spring, k):
             columns.append(3 * spring[:, q].astype(int) + b)
             values.append(sign * block)
     size = 3 * len(position)
-    return coo_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), (size, size)).tocsc()
+    where = np.concatenate(rows), np.concatenate(columns)
+    return coo_matrix((np.concatenate(values), where), (size, size)).tocsc()
 
 
-# --- Timoshenko's cantilever, square cross section --------------------------------------------------------------
+# --- Timoshenko's cantilever, square cross section ----------------------------------------------------------
 
 def shear_coefficient(nu):
     """Cowper 1966, rectangle."""
@@ -70,7 +71,7 @@ def tip_deflection(force, length, side, young, nu):
 
 
 def first_frequency(length, side, young, nu, density):
-    """First angular frequency, from the beam's four equations: w' = phi - ..., clamped at 0, free at the length."""
+    """First angular frequency, from the beam's four equations; clamped at 0, free at the length."""
     from scipy.linalg import expm
     from scipy.optimize import brentq
 
@@ -78,7 +79,8 @@ def first_frequency(length, side, young, nu, density):
     bending, shearing = young * inertia, shear_coefficient(nu) * shear * area
 
     def free_end(omega):
-        # State (w, phi, M, Q): w' = phi + Q/kGA, phi' = M/EI, M' = -Q - rho I omega^2 phi, Q' = -rho A omega^2 w.
+        # State (w, phi, M, Q): w' = phi + Q/kGA, phi' = M/EI,
+        # M' = -Q - rho I omega^2 phi, Q' = -rho A omega^2 w.
         a = np.array([
             [0, 1, 0, 1 / shearing],
             [0, 0, 1 / bending, 0],
@@ -88,5 +90,7 @@ def first_frequency(length, side, young, nu, density):
         # M and Q at the free end must vanish for some M and Q at the clamp.
         return np.linalg.det(expm(a * length)[2:, 2:])
 
-    slender = brentq(lambda b: 1 + cosh(b) * cos(b), 1.5, 2.0) ** 2 * np.sqrt(bending / (density * area * length**4))
+    # The slender beam of Euler and Bernoulli is a few per cent higher.
+    beta = brentq(lambda b: 1 + cosh(b) * cos(b), 1.5, 2.0)
+    slender = beta**2 * np.sqrt(bending / (density * area * length**4))
     return brentq(free_end, 0.8 * slender, 1.05 * slender, xtol=1e-12 * slender)

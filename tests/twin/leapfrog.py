@@ -8,8 +8,8 @@ def leapfrog(x, v, force, mass, drag, dt, steps):
     """Positions and whole-step velocities (3.10) after so many steps, and the energy that drag took.
 
     ``force(x)`` gives (N, 3); ``mass``, ``drag`` (lambda) are (N,). Starts from whole-step velocities.
-    Drag takes lambda dt v_n^2 in a whole step; half a step before or after a whole-step velocity takes lambda dt/2 v_n times
-    the mean of v_n and the half-step velocity.
+    Drag takes lambda dt v_n^2 in a whole step; in the half step before or after v_n it takes lambda dt/2 v_n
+    times the mean of v_n and the half-step velocity.
     """
     taken = lambda a, b: 0.5 * dt * (drag * (a * 0.5 * (a + b)).sum(1)).sum()
     phi = (drag * dt / (2.0 * mass))[:, None]

@@ -5,7 +5,7 @@ import numpy as np
 
 
 def spring_forces(x, v, bond, k, r0, c=0.0):
-    """Forces (N, 3) and energy of springs k/2 (r - r0)^2 with dashpots -c (v_ij . n) n; pairs 0-based, shape (S, 2)."""
+    """Forces (N, 3) and energy of springs k/2 (r - r0)^2 with dashpots -c (v_ij . n) n; 0-based pairs."""
     force, energy = np.zeros_like(x), 0.0
     for (i, j), ks, rest in zip(bond, k, r0):
         r = np.linalg.norm(x[i] - x[j])

@@ -25,11 +25,12 @@ from .wording import length
 def build_models(scene: Scene, progress: Callable[[int, int], None] | None = None) -> tuple[Model, ...]:
     """Make the model of every solid, in the order of the scene, all with one particle spacing.
 
-    ``progress(done, total)`` is called after each solid. Objects of equal shape, elasticity and mass share their
-    arrays of springs, masses, layers and surface, which are read-only; positions, velocities and held are their own.
+    ``progress(done, total)`` is called after each solid. Objects of equal shape, elasticity and mass share
+    their arrays of springs, masses, layers and surface, which are read-only; positions, velocities and held
+    are their own.
 
-    Raises SceneError with all problems of all solids in one pass: those of plan_spacing, a body that falls apart at
-    this spacing, a ``hold`` that catches nothing.
+    Raises SceneError with all problems of all solids in one pass: those of plan_spacing, a body that falls
+    apart at this spacing, a ``hold`` that catches nothing.
     """
     h = plan_spacing(scene).h
     workshop = _Workshop(h)
@@ -50,7 +51,7 @@ def build_models(scene: Scene, progress: Callable[[int, int], None] | None = Non
     return tuple(models)
 
 
-# --- what equal objects share -----------------------------------------------------------------------------------
+# --- what equal objects share -------------------------------------------------------------------------------
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Body:
@@ -91,7 +92,7 @@ def _make_body(shape: Shape, h: float) -> _Body:
 def _make_fabric(
     lattice: Lattice, mass: float, elasticity: Young | SpringConstant, damping: float, rigid: bool
 ) -> _Fabric:
-    """Masses [kg] in proportion to the filled cells around a particle; no springs in a body that is all held."""
+    """Masses in proportion to the filled cells around a particle; no springs in a body that is all held."""
     m = lattice.share * (mass / lattice.share.sum())
     m *= mass / m.sum()
     edge = lattice.cells.edge
@@ -113,7 +114,7 @@ def _freeze(*arrays: np.ndarray) -> None:
         array.setflags(write=False)
 
 
-# --- one object -------------------------------------------------------------------------------------------------
+# --- one object ---------------------------------------------------------------------------------------------
 
 def _make_model(solid: Solid, workshop: _Workshop) -> Model:
     body = workshop.body(solid.shape)
@@ -122,14 +123,14 @@ def _make_model(solid: Solid, workshop: _Workshop) -> Model:
     mass = solid.mass if solid.mass is not None else solid.density * shapes.volume(solid.shape)
     fabric = workshop.fabric(lattice, mass, solid.elasticity, solid.damping, bool(held.all()))
     arm = _rotated(solid, lattice.position)
-    velocity = np.array(solid.velocity) + np.cross(solid.spin, arm) if any(solid.spin) else np.tile(
-        np.array(solid.velocity, float), (len(arm), 1))
+    velocity = solid.velocity + np.cross(solid.spin, arm)
     velocity[held] = 0.0
     return Model(
-        name=solid.name, position=arm + solid.position, velocity=velocity, mass=fabric.mass, share=lattice.share,
-        layer=lattice.layer, held=held, spring=fabric.spring, stiffness=fabric.stiffness, rest=fabric.rest,
-        damping=fabric.damping, hexahedron=lattice.hexahedron, cell=tuple(lattice.cells.edge.tolist()),
-        young=fabric.young, drag=fabric.mass * (solid.drag / mass) if solid.drag > 0 else None, surface=body.surface,
+        name=solid.name, position=arm + solid.position, velocity=velocity,
+        mass=fabric.mass, share=lattice.share, layer=lattice.layer, held=held,
+        spring=fabric.spring, stiffness=fabric.stiffness, rest=fabric.rest, damping=fabric.damping,
+        drag=fabric.mass * (solid.drag / mass) if solid.drag > 0 else None, young=fabric.young,
+        hexahedron=lattice.hexahedron, cell=tuple(lattice.cells.edge.tolist()), surface=body.surface,
     )
 
 
@@ -189,7 +190,8 @@ def _missed(hold: HoldWithin, solid: Solid, lattice: Lattice) -> tuple[str, str]
     low, high = (", ".join(f"{x:.4g}" for x in side) for side in (position.min(axis=0), position.max(axis=0)))
     return (
         "hold within this box catches no particle",
-        f"the object reaches from ({low}) to ({high}) m, its particles are {length(lattice.cells.edge.max())} apart",
+        f"the object reaches from ({low}) to ({high}) m, "
+        f"its particles are {length(lattice.cells.edge.max())} apart",
     )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Which cells a shape fills: cuboids are divided exactly, every other shape becomes cubic cells that fit its volume."""
+"""Which cells a shape fills: cuboids are divided exactly, other shapes become cubes that fit their volume."""
 
 from __future__ import annotations
 
@@ -25,14 +25,15 @@ def fill_cells(shape: Shape, spacing: float) -> Cells:
     return _voxels(shape, spacing)
 
 
-# --- cuboids ----------------------------------------------------------------------------------------------------
+# --- cuboids ------------------------------------------------------------------------------------------------
 
 def box_counts(size, spacing: float) -> tuple[int, int, int]:
     """Cells along each edge so that they are nearly cubes with edges near the spacing [m].
 
-    The narrowest range around the spacing that has an answer counts: first within 5 %, then further out; more than
-    25 % is needed only by cuboids one or two cells thick with awkward edges. Among the divisions in range with an
-    aspect up to MAX_ASPECT the one nearest to cubes wins, then the nearest spacing. Raises TooThin.
+    The narrowest range around the spacing that has an answer counts: first within 5 %, then further out; more
+    than 25 % is needed only by cuboids one or two cells thick with awkward edges. Among the divisions in
+    range with an aspect up to MAX_ASPECT the one nearest to cubes wins, then the nearest spacing. Raises
+    TooThin.
     """
     size = np.asarray(size, float)
     for reach in (1.05, 1.12, 1.25, 1.4, 1.6, 1.8, 2.0):
@@ -49,7 +50,7 @@ def box_counts(size, spacing: float) -> tuple[int, int, int]:
 
 
 def _trial_counts(size: np.ndarray, spacing: float, reach: float) -> np.ndarray:
-    """Divisions worth a look, shape (n, 3): edges next to the spacing and to all lengths in reach that fit one side."""
+    """Divisions worth a look, shape (n, 3): near the spacing, or fitting one side and in reach."""
     near = [
         length / n
         for length in size
@@ -66,20 +67,21 @@ def _box_cells(shape: Box, counts) -> Cells:
     return Cells(np.ones(counts[::-1], bool), -half, half)
 
 
-# --- all other shapes -------------------------------------------------------------------------------------------
+# --- all other shapes ---------------------------------------------------------------------------------------
 
 SEARCH = 4_000_000
 """Cells looked at in one round of the search: small bodies get all trials, large ones fit well without."""
 
 GOOD_VOLUME = 0.05
-"""Relative error of the volume that ends the search; balls two or three cells thick need an edge further off."""
+"""Error of the volume that ends the search; balls two or three cells thick need an edge further off."""
 
 
 def _voxels(shape: Shape, spacing: float) -> Cells:
-    """Cubic cells whose centre is inside; edge and alignment are chosen for the volume nearest to the true one.
+    """Cubic cells whose centre is inside, with the edge and alignment whose volume is nearest the true one.
 
-    The edge stays within 4 % of the spacing where that gives a good volume, else within 12 %, else 20 %. Along each
-    axis either a corner or the centre of a cell falls on the middle of the shape. Only fillings in one piece count.
+    The edge stays within 4 % of the spacing where that gives a good volume, else within 12 %, else 20 %.
+    Along each axis either a corner or the centre of a cell falls on the middle of the shape. Only fillings in
+    one piece count.
     """
     volume, (low, high) = shapes.volume(shape), shapes.extent(shape)
     trials = SEARCH / max(1.0, float(np.prod((high - low) / spacing)))

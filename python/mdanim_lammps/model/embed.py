@@ -17,7 +17,7 @@ FACES = np.array([
 
 
 def make_surface(shape: Shape, lattice: Lattice) -> Surface:
-    """A cuboid is drawn by its boundary particles; any other shape by its true surface, embedded in the cells."""
+    """Draw a cuboid by its boundary particles, any other shape by its true surface, embedded in the cells."""
     if isinstance(shape, Box):
         return _faces(lattice)
     points, triangles = shapes.surface(shape, float(lattice.cells.edge.min()))

@@ -49,8 +49,8 @@ class Cells:
     def edge(self) -> np.ndarray:
         """Cell edges along x, y, z [m], shape (3,).
 
-        Rounded to 13 digits: 0.3 / 12 and 0.1 / 4 are one length, so that equal cells of different objects have equal
-        springs to the last bit.
+        Rounded to 13 digits: 0.3 / 12 and 0.1 / 4 are one length, so that equal cells of different objects
+        have equal springs to the last bit.
         """
         return np.array([float(f"{edge:.13g}") for edge in (self.high - self.low) / self.count])
 
@@ -132,8 +132,8 @@ def _springs(filled: np.ndarray, number: np.ndarray, present: np.ndarray):
     flat = number.ravel()
     other = np.zeros((len(present), len(OFFSETS)), np.int32)
     holders = np.zeros((len(present), len(OFFSETS)), np.uint8)
-    # A corner lies between two cells of each axis: a step of +1 runs along the upper one, a step of -1 along the
-    # lower one, and a spring with no step along an axis is held by both.
+    # A corner lies between two cells of each axis: a step of +1 runs along the upper one, a step of -1 along
+    # the lower one, and a spring with no step along an axis is held by both.
     sides = {0: (0, 1), 1: (1,), -1: (0,)}
     for o, (x, y, z) in enumerate(OFFSETS.tolist()):
         holders[:, o] = _window_sum(padded, product(sides[z], sides[y], sides[x])).ravel()[present]
@@ -150,8 +150,9 @@ def _springs(filled: np.ndarray, number: np.ndarray, present: np.ndarray):
 def _layers(around: np.ndarray) -> np.ndarray:
     """Layer of each corner of the grid (0 where there is no particle), int32.
 
-    A boundary particle is THIN where none of the 26 lattice neighbours is off the boundary. The corner of a solid
-    block is not: the particle one body diagonal further in guards it, as in all measurements of the barrier.
+    A boundary particle is THIN where none of the 26 lattice neighbours is off the boundary. The corner of a
+    solid block is not: the particle one body diagonal further in guards it, as in all measurements of the
+    barrier.
     """
     inner = around == 8
     boundary = (around > 0) & ~inner

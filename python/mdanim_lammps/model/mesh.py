@@ -49,7 +49,8 @@ def load(shape: Mesh) -> Triangles:
     try:
         stamp = path.stat()
     except OSError as error:
-        raise MeshError(f"mesh {path}: {error.strerror}", "paths count from the folder of the scene file") from None
+        hint = "paths count from the folder of the scene file"
+        raise MeshError(f"mesh {path}: {error.strerror}", hint) from None
     return _load(path, shape.scale, stamp.st_mtime_ns, stamp.st_size)
 
 
@@ -68,12 +69,14 @@ def _read(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
     try:
         # VTK's own warnings name its readers; the message below names the file.
-        with warnings.catch_warnings(action="ignore"), pyvista.vtk_verbosity("off"):
+        with warnings.catch_warnings(), pyvista.vtk_verbosity("off"):
+            warnings.simplefilter("ignore")
             surface = pyvista.read(path).triangulate().clean(tolerance=1e-7, absolute=False)
         triangles = np.asarray(surface.faces).reshape(-1, 4)[:, 1:].astype(np.int32)
         points = np.asarray(surface.points, float)
     except (OSError, ValueError, AttributeError, RuntimeError) as error:
-        raise MeshError(f"mesh {path.name}: cannot be read ({error})", "export it again as STL, OBJ or PLY") from None
+        hint = "export it again as STL, OBJ or PLY"
+        raise MeshError(f"mesh {path.name}: cannot be read ({error})", hint) from None
     corners = np.sort(triangles, axis=1)
     triangles = triangles[(corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2])]
     if not len(triangles):
@@ -141,9 +144,10 @@ def _volume_and_centre(points: np.ndarray, triangles: np.ndarray) -> tuple[float
 def _thickness(points: np.ndarray, triangles: np.ndarray, volume: float) -> float:
     """Estimate the thickness of the thinnest part [m].
 
-    From points spread evenly over the surface a ray goes straight inward; its length is the thickness there: exact
-    for balls, slabs, rods and rings. Next to a sharp edge rays are as short as one likes, so not the shortest but
-    the one that 10 % of the surface falls below is taken. No body is thicker than 6 V / A, which a ball reaches.
+    From points spread evenly over the surface a ray goes straight inward; its length is the thickness there:
+    exact for balls, slabs, rods and rings. Next to a sharp edge rays are as short as one likes, so not the
+    shortest but the one that 10 % of the surface falls below is taken. No body is thicker than 6 V / A, which
+    a ball reaches.
     """
     import pyvista
 
@@ -170,10 +174,10 @@ def _thickness(points: np.ndarray, triangles: np.ndarray, volume: float) -> floa
     return min(float(np.percentile(lengths, 10)), bound) if lengths else bound
 
 
-# --- inside or not ----------------------------------------------------------------------------------------------
+# --- inside or not ------------------------------------------------------------------------------------------
 
 def contains(mesh: Triangles, points: np.ndarray) -> np.ndarray:
-    """Whether points [m], shape (N, 3), are inside, bool, shape (N,): an odd number of triangles lies below."""
+    """Whether points [m], shape (N, 3), are inside, bool, shape (N,): an odd number of triangles is below."""
     points = np.asarray(points, float).reshape(-1, 3)
     below = np.zeros(len(points), np.int64)
     for line, z in _crossings(mesh, points[:, :2]):
@@ -201,11 +205,13 @@ def depth(mesh: Triangles, points: np.ndarray) -> np.ndarray:
     return np.where(contains(mesh, points), 1.0, -1.0) * abs(np.asarray(cloud["implicit_distance"]))
 
 
-def _crossings(mesh: Triangles, lines: np.ndarray, batch: int = 2_000_000) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Where vertical lines at (x, y) [m], shape (L, 2), pass through triangles: (line numbers, heights), in batches.
+def _crossings(
+    mesh: Triangles, lines: np.ndarray, batch: int = 2_000_000
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Where vertical lines at (x, y) [m], shape (L, 2), meet triangles: (line numbers, heights), in batches.
 
-    A line through a common edge counts for exactly one of its two triangles: both ask on which side of the edge it
-    passes, in the same arithmetic.
+    A line through a common edge counts for exactly one of its two triangles: both ask on which side of the
+    edge it passes, in the same arithmetic.
     """
     if not len(lines):
         return
@@ -224,8 +230,9 @@ def _crossings(mesh: Triangles, lines: np.ndarray, batch: int = 2_000_000) -> It
     # The bins of one row that a triangle may touch are one stretch of the sorted lines.
     triangle, row = _ranges(r0, r1 + 1)
     start, stop = first[row * bins + c0[triangle]], first[row * bins + c1[triangle] + 1]
-    cuts = np.searchsorted(np.cumsum(stop - start), np.arange(0, (stop - start).sum() + batch, batch))
-    for a, b in zip(cuts[:-1], np.append(cuts[1:-1], len(start))):
+    pairs = np.cumsum(stop - start)
+    cuts = np.searchsorted(pairs, np.arange(0, pairs[-1], batch))
+    for a, b in zip(cuts, np.append(cuts[1:], len(pairs))):
         stretch, at = _ranges(start[a:b], stop[a:b])
         yield _hits(mesh, lines, order[at], triangle[a:b][stretch])
 

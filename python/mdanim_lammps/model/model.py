@@ -19,17 +19,17 @@ class Layer(IntEnum):
     BOUNDARY = 3
     """On the surface: not all eight cells around it are filled."""
     THIN = 4
-    """On the boundary, and so are all its lattice neighbours: guards itself (docs/physics-solids.md, layers)."""
+    """On the boundary, and so are all its lattice neighbours: guards itself (docs/physics-solids.md)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """Triangles for pictures; each vertex is a weighted sum of particle positions, so it deforms with them."""
+    """Triangles for pictures; a vertex is a weighted sum of particle positions, so it deforms with them."""
 
     triangle: np.ndarray
     """Vertex indices, counter-clockwise seen from outside, int32, shape (T, 3)."""
     index: np.ndarray
-    """Particles that carry a vertex, int32, shape (V, K); K is 1 for boxes, 8 for surfaces embedded in cells."""
+    """Particles that carry a vertex, int32, shape (V, K); K is 1 for boxes, 8 for embedded surfaces."""
     weight: np.ndarray
     """Their weights, rows sum to 1, shape (V, K)."""
 
@@ -40,11 +40,11 @@ class Surface:
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """One solid as N point particles, S springs and a surface. Particles are numbered row by row (x fastest)."""
+    """One solid as N particles, S springs and a surface; particles are numbered row by row, x fastest."""
 
     name: str
     position: np.ndarray
-    """Initial positions, world frame [m], shape (N, 3); the mass-weighted mean is the solid's ``position``."""
+    """At the start, world frame [m], shape (N, 3); the mass-weighted mean is the solid's ``position``."""
     velocity: np.ndarray
     """Initial velocities [m/s], shape (N, 3); zero for held particles."""
     mass: np.ndarray
@@ -68,7 +68,7 @@ class Model:
     cell: tuple[float, float, float]
     """Cell edges along the body axes [m]."""
     young: float
-    """Young's modulus [Pa]; for ``elasticity spring k`` the modulus that a uniform lattice of this k would have."""
+    """Young's modulus [Pa]; for ``elasticity spring k`` that of an endless lattice of this k."""
     drag: np.ndarray | None
     """lambda of each particle, in proportion to its mass [N*s/m], shape (N,); None without air drag."""
     surface: Surface

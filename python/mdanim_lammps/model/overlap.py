@@ -20,8 +20,9 @@ HAIR = 1e-6
 def check_geometry(scene: Scene, models: tuple[Model, ...]) -> list[Problem]:
     """Find every object that starts in another one, below the ground, or outside walls or basin.
 
-    Each problem stands at the position of the (second) object and tells how deep it is in and which move frees it.
-    Objects that are held entirely may overlap each other and stick out: they are the scene's architecture.
+    Each problem stands at the position of the (second) object and tells how deep it is in and which move
+    frees it. Objects that are held entirely may overlap each other and stick out: they are the scene's
+    architecture.
     """
     problems = []
     if not models:
@@ -46,8 +47,13 @@ class _Bodies:
         self.fixed = np.array([bool(m.held.all()) for m in models])
         self.hair = HAIR * max(m.spacing for m in models)
 
+    def cells(self, i: int) -> np.ndarray:
+        """Centres of the cells of one body [m], shape (C, 3)."""
+        model = self.models[i]
+        return (model.position[model.hexahedron[:, 0]] + model.position[model.hexahedron[:, 6]]) / 2
 
-# --- ground, walls, basin ---------------------------------------------------------------------------------------
+
+# --- ground, walls, basin -----------------------------------------------------------------------------------
 
 _MOVES = {(0, 1): "to +x", (0, -1): "to -x", (1, 1): "to +y", (1, -1): "to -y", (2, 1): "up", (2, -1): "down"}
 
@@ -92,7 +98,7 @@ def _outside(scene: Scene, bodies: _Bodies) -> list[Problem]:
     return problems
 
 
-# --- pairs ------------------------------------------------------------------------------------------------------
+# --- pairs --------------------------------------------------------------------------------------------------
 
 def _candidates(scene: Scene, bodies: _Bodies) -> tuple[np.ndarray, np.ndarray]:
     """Pairs i < j whose bounding boxes overlap and whose bounding balls do: sort and sweep along one axis."""
@@ -109,7 +115,8 @@ def _candidates(scene: Scene, bodies: _Bodies) -> tuple[np.ndarray, np.ndarray]:
         a = np.repeat(here, count)
         b = a + 1 + np.arange(len(a)) - np.repeat(np.cumsum(count) - count, count)
         i, j = order[a], order[b]
-        meet = (low[i] < high[j]).all(axis=1) & (low[j] < high[i]).all(axis=1) & ~(bodies.fixed[i] & bodies.fixed[j])
+        meet = (low[i] < high[j]).all(axis=1) & (low[j] < high[i]).all(axis=1)
+        meet &= ~(bodies.fixed[i] & bodies.fixed[j])
         i, j = i[meet], j[meet]
         near = np.linalg.norm(centre[i] - centre[j], axis=1) < radius[i] + radius[j]
         found_i.append(np.minimum(i, j)[near])
@@ -121,7 +128,15 @@ def _candidates(scene: Scene, bodies: _Bodies) -> tuple[np.ndarray, np.ndarray]:
 
 def _pair(scene: Scene, bodies: _Bodies, i: int, j: int) -> Problem | None:
     first, second = scene.solids[i], scene.solids[j]
-    deepest = max(_deepest(bodies, i, j, second), _deepest(bodies, j, i, first))
+    # Vertices of the true surfaces find most overlaps; two bars that cross share no vertex but the centres of
+    # cells. Those of the body with fewer cells do, and spare a large floor from being looked through for
+    # every pebble.
+    small, large = (i, j) if len(bodies.models[i].hexahedron) <= len(bodies.models[j].hexahedron) else (j, i)
+    deepest = max(
+        _deepest(bodies.vertices[i], bodies, j, second),
+        _deepest(bodies.vertices[j], bodies, i, first),
+        _deepest(bodies.cells(small), bodies, large, scene.solids[large]),
+    )
     if deepest <= bodies.hair:
         return None
     direction, step = _way_out(scene, bodies, i, j)
@@ -131,29 +146,26 @@ def _pair(scene: Scene, bodies: _Bodies, i: int, j: int) -> Problem | None:
     )
 
 
-def _deepest(bodies: _Bodies, guest: int, host: int, solid: Solid) -> float:
-    """How deep points of one object lie in another one [m]; 0 where none does.
-
-    Points are the vertices of the true surface and the centres of cells, which also find two bars that cross.
-    """
-    model = bodies.models[guest]
-    cells = (model.position[model.hexahedron[:, 0]] + model.position[model.hexahedron[:, 6]]) / 2
-    points = np.concatenate([bodies.vertices[guest], cells])
+def _deepest(points: np.ndarray, bodies: _Bodies, host: int, solid: Solid) -> float:
+    """How deep the deepest of points [m], shape (N, 3), lies in an object [m]; 0 where all are outside."""
     points = points[((points > bodies.low[host]) & (points < bodies.high[host])).all(axis=1)]
+    if not len(points):
+        return 0.0
     points = (points - solid.position) @ np.array(solid.rotation)
     points = points[shapes.contains(solid.shape, points)]
     return float(shapes.depth(solid.shape, points).max()) if len(points) else 0.0
 
 
 def _way_out(scene: Scene, bodies: _Bodies, i: int, j: int) -> tuple[str, float]:
-    """Direction and step [m] that part the bounding boxes by moving object j; the shortest that stays inside."""
+    """Direction and step [m] of object j that part the bounding boxes; the shortest that stays inside."""
     limits = _limits(scene)
     ways = []
     for (axis, sign), name in _MOVES.items():
-        step = bodies.high[i, axis] - bodies.low[j, axis] if sign > 0 else bodies.high[j, axis] - bodies.low[i, axis]
-        edge = bodies.high if sign > 0 else bodies.low
+        ahead, behind = (bodies.high, bodies.low) if sign > 0 else (bodies.low, bodies.high)
+        step = sign * (ahead[i, axis] - behind[j, axis])
+        arrival = ahead[j, axis] + sign * step
         blocked = any(
-            limit.axis == axis and limit.sign == -sign and sign * (edge[j, axis] + sign * step - limit.at) > bodies.hair
+            limit.axis == axis and limit.sign == -sign and sign * (arrival - limit.at) > bodies.hair
             for limit in limits
         )
         ways.append((blocked, step, name))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The shapes of the scene language as geometry: volume, thickness, extent, inside or not, surface.
 
-Body frame: origin in the centre of mass, axes of revolution along z. One class of formulas per shape; the public
-functions look it up, so a new shape is one more class here and one row in ``LAWS``.
+Body frame: origin in the centre of mass, axes of revolution along z. One class of formulas per shape; the
+public functions look it up, so a new shape is one more class here and one row in ``LAWS``.
 """
 
 from __future__ import annotations

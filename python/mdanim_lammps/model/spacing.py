@@ -27,7 +27,7 @@ class Spacing:
     h: float
     """Particle spacing [m]."""
     set_by: str
-    """Name of the solid with the thinnest part, ``resolution``, or the liquid's name where there is no solid."""
+    """Name of the solid with the thinnest part, ``resolution``, or the liquid where there is no solid."""
     particles: tuple[int, ...]
     """Estimated number of particles of each solid, in the order of the scene."""
     memory: float
@@ -42,10 +42,11 @@ class Spacing:
 
 
 def plan_spacing(scene: Scene) -> Spacing:
-    """Choose the spacing: ``resolution``, else the thinnest part of all solids over the cells that accuracy asks.
+    """Choose the spacing: ``resolution``, else the thinnest part of all solids over the cells that accuracy
+    asks.
 
-    Raises SceneError, with a problem for every solid that is thinner than the spacing, whose mesh is no body, and
-    where the particles would not fit in memory.
+    Raises SceneError, with a problem for every solid that is thinner than the spacing, whose mesh is no body,
+    and where the particles would not fit in memory.
     """
     problems = []
     thin = []
@@ -61,7 +62,8 @@ def plan_spacing(scene: Scene) -> Spacing:
         if h > t * (1 + 1e-9):
             problems.append(Problem(
                 _span(solid),
-                f"{solid.name}: thinner than the spacing allows, {length(t)} at its thinnest, spacing {length(h)}",
+                f"{solid.name}: thinner than the spacing allows, "
+                f"{length(t)} at its thinnest, spacing {length(h)}",
                 f"write resolution {length(t / 2)} in control, or make it thicker",
             ))
     if problems:
@@ -76,8 +78,8 @@ def plan_spacing(scene: Scene) -> Spacing:
 def cells_across(accuracy: Accuracy | float) -> int:
     """Cells across the thinnest part for an accuracy class.
 
-    A target error (``accuracy error p %``) is treated as ``balanced`` so far: turning an error into a number of
-    cells needs the measured ladder of ``mdanim-lammps study``.
+    A target error (``accuracy error p %``) is treated as ``balanced`` so far: turning an error into a number
+    of cells needs the measured ladder of ``mdanim-lammps study``.
     """
     return accuracy.cells if isinstance(accuracy, Accuracy) else Accuracy.BALANCED.cells
 
@@ -107,8 +109,8 @@ def _choose(scene: Scene, thin: list[float]) -> tuple[float, str]:
 def estimate_particles(shape: Shape, h: float) -> int:
     """Estimated number of particles of a shape at spacing h [m]: exact for a cuboid that h divides.
 
-    A cell has one particle of its own, and a face on the surface half of one more. The staircase of a surface that
-    is turned every way is 3/2 as large as the surface.
+    A cell has one particle of its own, and a face on the surface half of one more. The staircase of a surface
+    that is turned every way is 3/2 as large as the surface.
     """
     if isinstance(shape, Box):
         return int(np.prod(np.rint(np.array(shape.size) / h) + 1))
@@ -131,8 +133,8 @@ def available_memory() -> float:
 def _too_large(scene: Scene, plan: Spacing) -> Problem:
     gigabytes = 1e-9
     found = (
-        f"about {plan.total:,} particles at a spacing of {length(plan.h)} need {plan.memory * gigabytes:.1f} GB, "
-        f"{plan.available * gigabytes:.1f} GB are free"
+        f"about {plan.total:,} particles at a spacing of {length(plan.h)} "
+        f"need {plan.memory * gigabytes:.1f} GB, {plan.available * gigabytes:.1f} GB are free"
     )
     # Particles go with 1/h^3; a tenth on top, because surfaces go with 1/h^2 only.
     coarser = plan.h * 1.1 * (plan.memory / plan.available) ** (1 / 3)

@@ -43,8 +43,9 @@ def spring_constants(cell: np.ndarray, young: float) -> np.ndarray:
 def stiffness(kind: np.ndarray, holders: np.ndarray, cell: np.ndarray, elasticity: Young | SpringConstant):
     """k of each spring [N/m], shape (S,).
 
-    With ``Young`` a spring on the surface has the part of k that its filled cells own (``holders / FULL``), so a
-    body is as stiff as its volume says however thin it is. ``SpringConstant`` is the paper's k for every spring.
+    With ``Young`` a spring on the surface has the part of k that its filled cells own (``holders / FULL``),
+    so a body is as stiff as its volume says however thin it is. ``SpringConstant`` is the paper's k for every
+    spring.
     """
     if isinstance(elasticity, SpringConstant):
         return np.full(len(kind), elasticity.k)

@@ -11,8 +11,8 @@ import numpy as np
 def revolve(profile: np.ndarray, facets: int, closed: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """Turn a profile (r, z) [m], shape (P, 2), about z; return points (V, 3) and triangles (T, 3).
 
-    The body lies to the left of the profile (it runs from the lower pole to the upper one, or counter-clockwise
-    where ``closed`` joins its ends). Points with r = 0 at the ends become single vertices.
+    The body lies to the left of the profile (it runs from the lower pole to the upper one, or
+    counter-clockwise where ``closed`` joins its ends). Points with r = 0 at the ends become single vertices.
     """
     angle = 2 * pi * np.arange(facets) / facets
     rings = profile if closed else profile[1:-1]

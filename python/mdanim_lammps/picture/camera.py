@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Where the camera stands: automatically, so that the whole action is in the picture, or along the scene's path."""
+"""Where the camera stands: chosen so that the whole action is in the picture, or along the scene's path."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ FIELD_OF_VIEW = 30.0
 """Vertical angle of view [degrees]."""
 MARGIN = 0.88
 """Share of the picture, across, that the action may fill."""
+FALL, FAR = 0.25, 4.0
+"""How far an object may fall, and go, before it leaves the picture, in sizes of the scene at its start."""
 _BOXES = 50_000
 
 
@@ -41,7 +43,7 @@ class Action:
     bounds: tuple[np.ndarray, np.ndarray]
     """Corners of the box that the picture shows [m]; objects that fly far off are left out of it."""
     escaped: bool
-    """Whether some object leaves that box."""
+    """Whether some object falls out of it, there being no ground."""
 
     @property
     def size(self) -> float:
@@ -57,35 +59,46 @@ class Action:
 def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
     """Bounds of all objects in all frames.
 
-    Centres are taken from every frame, extents about them from ``samples`` frames, so that a long trajectory need
-    not be read whole. An object may go as far from where the objects started as four times their common size (below
-    them, where there is no ground to stop it: once); what lies beyond is not part of the picture.
+    Centres are taken from every frame, extents about them from ``samples`` frames, so that a long trajectory
+    need not be read whole. Left out is what would make everything else tiny: an object, where there is no
+    ground, from when it has fallen out of the scene; whatever lies farther from the start than four times its
+    size; and of a crowd the outermost twentieth on each side.
     """
     catalogue, centers = trajectory.catalogue, trajectory.centers
     frames = np.unique(np.linspace(0, len(trajectory) - 1, samples).astype(int))
+    first = np.searchsorted(catalogue.skin.object_of_vertex, np.arange(len(catalogue.names)))
     below = np.zeros(centers.shape[1:])
     above = np.zeros(centers.shape[1:])
     for frame in frames:
         vertices = catalogue.skin.vertices(trajectory.position(frame))
-        first = np.searchsorted(catalogue.skin.object_of_vertex, np.arange(len(catalogue.names)))
         np.minimum(below, np.minimum.reduceat(vertices, first) - centers[frame], out=below)
         np.maximum(above, np.maximum.reduceat(vertices, first) - centers[frame], out=above)
     # A stretch is one frame, unless that makes more boxes than are worth looking at.
-    stretches = np.array_split(np.arange(len(centers)), min(len(centers), max(1, _BOXES // len(catalogue.names))))
+    stretches = np.array_split(
+        np.arange(len(centers)), min(len(centers), max(1, _BOXES // len(catalogue.names)))
+    )
     low = np.array([centers[s].min(axis=0) + below for s in stretches])
     high = np.array([centers[s].max(axis=0) + above for s in stretches])
+
     start_low, start_high = (centers[0] + below).min(axis=0), (centers[0] + above).max(axis=0)
-    size = max(np.linalg.norm(start_high - start_low), np.finfo(float).tiny)
+    size = max(float(np.linalg.norm(start_high - start_low)), np.finfo(float).tiny)
+    gone = np.zeros(low.shape[:2], dtype=bool)
+    if catalogue.ground is None:
+        gone = np.maximum.accumulate(low[:, :, 2] < start_low[2] - FALL * size, axis=0)
+    lowest = np.where(gone[:, :, None], np.inf, low).min(axis=0)
+    highest = np.where(gone[:, :, None], -np.inf, high).max(axis=0)
+    # What has gone from the first stretch on has no bounds of its own.
+    lowest, highest = np.minimum(lowest, start_high), np.maximum(highest, start_low)
+    outer = len(catalogue.names) // 20
+    shown_low = np.partition(lowest, outer, axis=0)[outer]
+    shown_high = -np.partition(-highest, outer, axis=0)[outer]
+    bounds = (
+        np.maximum(np.minimum(shown_low, start_low), start_low - FAR * size),
+        np.minimum(np.maximum(shown_high, start_high), start_high + FAR * size),
+    )
     if catalogue.ground is not None:
-        start_low[2] = min(start_low[2], max(catalogue.ground, start_low[2] - 4 * size))
-    far_low, far_high = start_low - 4 * size, start_high + 4 * size
-    far_low[2] = start_low[2] - (size if catalogue.ground is None else 0.0)
-    all_low, all_high = low.min(axis=(0, 1)), high.max(axis=(0, 1))
-    escaped = bool((all_low[:2] < far_low[:2]).any() or (all_high > far_high).any()
-                   or (catalogue.ground is None and all_low[2] < far_low[2]))
-    # On the ground objects dip a little below it, elastic as they are.
-    bounds = np.maximum(all_low, far_low if catalogue.ground is None else far_low - [0, 0, 0.02 * size])
-    return Action(low, high, (bounds, np.minimum(all_high, far_high)), escaped)
+        bounds[0][2] = min(bounds[0][2], max(catalogue.ground, start_low[2] - FAR * size))
+    return Action(low, high, bounds, bool(gone.any()))
 
 
 def automatic_view(action: Action, aspect: float, walls=None) -> View:
@@ -140,7 +153,7 @@ class CameraPath:
     """The scene's cameras as a smooth path in time.
 
     Between two of them eye, look and up follow a cubic Hermite curve whose slopes are those of the neighbours
-    (Catmull-Rom); before the first and after the last the camera stands still. ``look NAME`` follows the object.
+    (Catmull-Rom); before the first and after the last the camera stands still. ``look NAME`` follows it.
 
     Args:
         cameras: at least one; without a time: 0 s.
@@ -189,12 +202,18 @@ def hermite_weights(times: np.ndarray, time: float) -> np.ndarray:
             slope[k] = (unit[k + 1] - unit[k - 1]) / span
     h = times[i + 1] - times[i]
     s = (time - times[i]) / h
-    return ((1 + 2 * s) * (1 - s) ** 2 * unit[i] + s * (1 - s) ** 2 * h * slope[i]
-            + s**2 * (3 - 2 * s) * unit[i + 1] - s**2 * (1 - s) * h * slope[i + 1])
+    return (
+        (1 + 2 * s) * (1 - s) ** 2 * unit[i]
+        + s * (1 - s) ** 2 * h * slope[i]
+        + s**2 * (3 - 2 * s) * unit[i + 1]
+        - s**2 * (1 - s) * h * slope[i + 1]
+    )
 
 
 def _corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """The eight corners of each box, shape (8 n, 3)."""
     box = np.stack([low.reshape(-1, 3), high.reshape(-1, 3)])
     x, y, z = np.meshgrid([0, 1], [0, 1], [0, 1])
-    return np.stack([box[x.ravel(), :, 0], box[y.ravel(), :, 1], box[z.ravel(), :, 2]], axis=-1).reshape(-1, 3)
+    return np.stack([box[x.ravel(), :, 0], box[y.ravel(), :, 1], box[z.ravel(), :, 2]], axis=-1).reshape(
+        -1, 3
+    )

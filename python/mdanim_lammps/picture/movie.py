@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from fractions import Fraction
 from pathlib import Path
 
@@ -75,7 +75,7 @@ def render_movie(
         path: file to write; it appears when it is whole.
         size: width and height in pixels, instead of ``render.size``; odd ones grow by one, as H.264 asks.
         fps: pictures per second, instead of the trajectory's; the nearest frames are shown.
-        processes: how many draw at the same time; None takes what the host has and the movie is long enough for.
+        processes: how many draw at the same time; None takes as many as pay on this host.
         frames: a folder; also write every picture there, as ``frame-00000.png`` and so on.
         progress: called with (pictures done, pictures in all) after each.
 
@@ -85,8 +85,16 @@ def render_movie(
     """
     if not isinstance(trajectory, Trajectory):
         with Trajectory(trajectory) as opened:
-            return render_movie(opened, render, path, size=size, fps=fps, processes=processes, frames=frames,
-                                progress=progress)
+            return render_movie(
+                opened,
+                render,
+                path,
+                size=size,
+                fps=fps,
+                processes=processes,
+                frames=frames,
+                progress=progress,
+            )
     width, height = size or render.size
     size = (width + width % 2, height + height % 2)
     shown, rate = movie_frames(trajectory, fps)
@@ -114,7 +122,7 @@ def movie_frames(trajectory: Trajectory, fps: float | None = None) -> tuple[np.n
     """
     times = trajectory.times
     if not len(times):
-        raise OutputError(f"{trajectory.path}: holds no frame, so there is nothing to draw; resume the run first")
+        raise OutputError(f"{trajectory.path}: holds no frame, nothing can be drawn; resume the run first")
     if len(times) == 1:
         return np.zeros(1, dtype=int), _rate(fps or 30.0)
     own = (len(times) - 1) / (times[-1] - times[0])
@@ -134,7 +142,8 @@ def _rate(fps: float) -> Fraction:
     return Fraction(fps).limit_denominator(1001)
 
 
-# --- drawing ----------------------------------------------------------------------------------------------------
+# --- drawing ----------------------------------------------------------------------------------------------
+
 
 def _draw_here(trajectory, render, size, shown: Sequence[int], _processes) -> Iterator[np.ndarray]:
     from .render import Painter
@@ -151,14 +160,20 @@ def _draw_apart(trajectory, render, size, shown: Sequence[int], processes: int) 
     action = action_of(trajectory)
     threads = max(1, _cores() // processes)
     # Software OpenGL would start as many threads per process as there are cores.
-    environment = os.environ | {"LP_NUM_THREADS": str(threads), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    environment = os.environ | {
+        "LP_NUM_THREADS": str(threads),
+        "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+    }
     workers = []
     try:
         for k in range(processes):
             worker = subprocess.Popen(
-                [sys.executable, "-m", "mdanim_lammps.picture.worker"], env=environment,
+                [sys.executable, "-m", "mdanim_lammps.picture.worker"],
+                env=environment,
                 # A file, not a pipe: nobody reads it before the end.
-                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=(said := tempfile.TemporaryFile()),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=(said := tempfile.TemporaryFile()),
             )
             worker.said = said
             workers.append(worker)
@@ -188,33 +203,71 @@ def _worker_error(worker: subprocess.Popen) -> MdanimError:
     return SetupError(f"a process that draws pictures failed: {reason}; `render --processes 1` shows more")
 
 
-# --- writing ----------------------------------------------------------------------------------------------------
+# --- writing ----------------------------------------------------------------------------------------------
+
 
 @contextmanager
 def _encoder(path: Path, size: tuple[int, int], rate: Fraction) -> Iterator[Callable[[np.ndarray], None]]:
-    """Pipe pictures to ffmpeg; the movie gets its name at the end, and nothing is left behind after an error."""
+    """Pipe pictures to ffmpeg; the movie gets its name at the end, an error leaves nothing behind."""
     part = path.with_name(path.name + ".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         log = part.open("wb")
     except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror}; name another file or folder") from None
+        raise OutputError(
+            f"{path}: cannot be written: {error.strerror}; name another file or folder"
+        ) from None
     log.close()
     ffmpeg = subprocess.Popen(
         [
-            _ffmpeg(), "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}",
-            "-r", str(rate), "-i", "-", "-an", "-vf", "scale=out_color_matrix=bt709:out_range=tv",
-            "-c:v", "libx264", "-preset", "veryfast", "-crf", "17", "-pix_fmt", "yuv420p",
-            "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709",
-            "-movflags", "+faststart", "-f", "mp4", str(part),
+            _ffmpeg(),
+            "-loglevel",
+            "error",
+            "-y",
+            "-f",
+            "rawvideo",
+            "-pix_fmt",
+            "rgb24",
+            "-s",
+            f"{size[0]}x{size[1]}",
+            "-r",
+            str(rate),
+            "-i",
+            "-",
+            "-an",
+            "-vf",
+            "scale=out_color_matrix=bt709:out_range=tv",
+            "-c:v",
+            "libx264",
+            "-preset",
+            "veryfast",
+            "-crf",
+            "17",
+            "-pix_fmt",
+            "yuv420p",
+            "-colorspace",
+            "bt709",
+            "-color_primaries",
+            "bt709",
+            "-color_trc",
+            "bt709",
+            "-movflags",
+            "+faststart",
+            "-f",
+            "mp4",
+            str(part),
         ],
-        stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
     )
 
     def failed() -> OutputError:
         said = ffmpeg.stderr.read().decode(errors="replace").strip().splitlines()
-        return OutputError(f"{path}: the movie cannot be written: {said[-1] if said else 'ffmpeg stopped'}; "
-                           "make room or name another file, then `render` again")
+        return OutputError(
+            f"{path}: the movie cannot be written: {said[-1] if said else 'ffmpeg stopped'}; "
+            "make room or name another file, then `render` again"
+        )
 
     def encode(picture: np.ndarray) -> None:
         try:
@@ -244,7 +297,9 @@ def _ffmpeg() -> str:
 
         return get_ffmpeg_exe()
     except (ImportError, RuntimeError) as error:
-        raise SetupError(f"no ffmpeg for the movie ({error}); pip install imageio-ffmpeg, or run with --no-movie") from None
+        raise SetupError(
+            f"no ffmpeg for the movie ({error}); pip install imageio-ffmpeg, or run with --no-movie"
+        ) from None
 
 
 def _save_png(picture: np.ndarray, path: Path) -> None:
@@ -256,5 +311,8 @@ def _save_png(picture: np.ndarray, path: Path) -> None:
         Image.fromarray(picture).save(part, format="png", compress_level=4)
         os.replace(part, path)
     except OSError as error:
-        part.unlink(missing_ok=True)
-        raise OutputError(f"{path}: cannot be written: {error.strerror or error}; make room or name another file") from None
+        with suppress(OSError):
+            part.unlink()
+        raise OutputError(
+            f"{path}: cannot be written: {error.strerror or error}; make room or name another file"
+        ) from None

@@ -7,10 +7,20 @@ from collections.abc import Sequence
 
 import numpy as np
 
-# Twelve colours of one family: saturated enough to tell apart, light enough to show shading; neighbours differ in hue.
+# Twelve colours of one family: bold enough to tell apart, light enough to show shading.
 OBJECTS = (
-    "#e8743b", "#3b8fc4", "#f2b134", "#4fae7b", "#d3557a", "#7a6fc9",
-    "#54b8b3", "#c9884a", "#9bbf4a", "#e58aa8", "#5f86d6", "#b5654f",
+    "#e8743b",
+    "#3b8fc4",
+    "#f2b134",
+    "#4fae7b",
+    "#d3557a",
+    "#7a6fc9",
+    "#54b8b3",
+    "#c9884a",
+    "#9bbf4a",
+    "#e58aa8",
+    "#5f86d6",
+    "#b5654f",
 )
 STILL = "#a3a9b0"
 """Objects that are held as a whole."""
@@ -39,7 +49,7 @@ def object_colors(chosen: Sequence[str], still: np.ndarray) -> np.ndarray:
 
 
 def background_colors(chosen: str | None) -> tuple[np.ndarray, np.ndarray]:
-    """Colours at the bottom and at the top of the picture; a colour of the scene's own gets a gentle gradient too."""
+    """Colours at the bottom and at the top of the picture; the scene's own gets a gentle gradient too."""
     if chosen is None:
         return rgb(LOW), rgb(HIGH)
     base = rgb(chosen)

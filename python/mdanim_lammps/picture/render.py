@@ -12,13 +12,12 @@ from ..results.trajectory import Trajectory
 from ..scene.scene import Render
 from . import shading
 from .camera import FIELD_OF_VIEW, Action, CameraPath, View, action_of, automatic_view
-from .palette import background_colors, is_dark, object_colors, rgb
+from .palette import background_colors, is_dark, object_colors
 from .surfaces import shaded_mesh
 
 LAMP = np.array([-0.45, -0.55, 1.15]) / np.linalg.norm([-0.45, -0.55, 1.15])
 """Direction to the key light, world frame."""
-SHADOW_PIXELS = 1024
-SHADOW_SAMPLES = 12
+SHADOW_PIXELS, SHADOW_PIXELS_OF_A_CROWD = 1024, 2048
 
 
 class Painter:
@@ -75,13 +74,13 @@ class Painter:
         for window in (self._window, self._shadow):
             window.Finalize()
 
-    def __enter__(self) -> "Painter":
+    def __enter__(self) -> Painter:
         return self
 
     def __exit__(self, *_) -> None:
         self.close()
 
-    # --- the stage ----------------------------------------------------------------------------------------------
+    # --- the stage -----------------------------------------------------------------------------------------
 
     def _build(self, render: Render) -> None:
         import vtkmodules.vtkInteractionStyle  # noqa: F401  (VTK finds its renderer by these imports)
@@ -100,13 +99,17 @@ class Painter:
 
         self._surface = self._make_surface()
         self._actors = [self._make_actor(self._surface, shading.FRAGMENT_SOLID)]
+        # Objects are closed, so nobody sees their insides, and drawing them takes time.
+        self._actors[0].GetProperty().BackfaceCullingOn()
         floor = self._floor_height()
         if floor is not None:
             self._actors.append(self._make_floor(floor, low, high))
         for actor in self._actors:
             self._renderer.AddActor(actor)
         if self.trajectory.catalogue.walls is not None:
-            self._renderer.AddActor(_wall_edges(self.trajectory.catalogue.walls, 0.8 if is_dark(low) else 0.35))
+            self._renderer.AddActor(
+                _wall_edges(self.trajectory.catalogue.walls, 0.8 if is_dark(low) else 0.35)
+            )
         self._write(render, low)
 
         with _silent():
@@ -149,7 +152,6 @@ class Painter:
         for mark, code in shading.VERTEX.items():
             shader.AddVertexShaderReplacement(mark, True, code, False)
         for mark, code in shading.FRAGMENT_HEAD.items():
-            code = code.replace("SAMPLES", str(SHADOW_SAMPLES))
             shader.AddFragmentShaderReplacement(mark, True, code, False)
         shader.AddFragmentShaderReplacement("//VTK::Light::Impl", True, light, False)
         return actor
@@ -180,7 +182,9 @@ class Painter:
         uniforms.SetUniformf("gridSpacing", grid_spacing(size))
         uniforms.SetUniformf("pictureHeight", float(self.size[1]))
         uniforms.SetUniform3f("floorCentre", [centre[0], centre[1], reach])
-        uniforms.SetUniform3f("floorColor", list(np.minimum(1.0, low * 1.02) if not dark else low * 1.25 + 0.03))
+        uniforms.SetUniform3f(
+            "floorColor", list(np.minimum(1.0, low * 1.02) if not dark else low * 1.25 + 0.03)
+        )
         uniforms.SetUniform3f("gridColor", list(low * 0.72 if not dark else low + 0.22))
         uniforms.SetUniform3f("lowColor", list(low))
         uniforms.SetUniform3f("highColor", list(high))
@@ -209,7 +213,7 @@ class Painter:
         text(self.trajectory.catalogue.title, (margin, margin), 0.032)
         self._stamp = text("", (self.size[0] - margin, margin), 0.028, right=True)
 
-    # --- the shadow ---------------------------------------------------------------------------------------------
+    # --- the shadow ----------------------------------------------------------------------------------------
 
     def _make_shadow(self):
         """A depth picture of all objects, seen from the lamp along parallel rays."""
@@ -223,13 +227,15 @@ class Painter:
         )
 
         centre, radius = self.action.centre, 0.5 * self.action.size
+        extent = self.action.high[0] - self.action.low[0]
+        small = float(np.median(np.linalg.norm(extent, axis=1))) < self.action.size / 30.0
+        self._shadow_pixels = SHADOW_PIXELS_OF_A_CROWD if small else SHADOW_PIXELS
+        pixels = (self._shadow_pixels, self._shadow_pixels)
         mapper, actor, renderer = vtkPolyDataMapper(), vtkActor(), vtkRenderer()
         mapper.SetInputData(self._surface)
         mapper.ScalarVisibilityOff()
         actor.SetMapper(mapper)
         actor.GetProperty().LightingOff()
-        # Of closed objects the far side throws the same shadow, and the near side cannot shade itself by rounding.
-        actor.GetProperty().FrontfaceCullingOn()
         renderer.AddActor(actor)
         camera = renderer.GetActiveCamera()
         camera.ParallelProjectionOn()
@@ -238,11 +244,11 @@ class Painter:
         camera.SetViewUp(0.0, 1.0, 0.0)
         camera.SetParallelScale(radius * 1.02)
         camera.SetClippingRange(0.9 * radius, 3.1 * radius)
-        window = _window(renderer, (SHADOW_PIXELS, SHADOW_PIXELS), samples=0)
+        window = _window(renderer, pixels, samples=0)
         depth = vtkFloatArray()
-        depth.SetNumberOfTuples(SHADOW_PIXELS**2)
+        depth.SetNumberOfTuples(pixels[0] * pixels[1])
         image = vtkImageData()
-        image.SetDimensions(SHADOW_PIXELS, SHADOW_PIXELS, 1)
+        image.SetDimensions(*pixels, 1)
         image.GetPointData().SetScalars(depth)
         texture = vtkTexture()
         texture.SetInputData(image)
@@ -253,25 +259,25 @@ class Painter:
         return window, image, texture
 
     def _cast_shadow(self) -> None:
-        """Take the depth picture; apart from the main picture, for only one window can be drawn into at a time."""
+        """Take the depth picture, apart from the main one: only one window can be drawn into at a time."""
         self._shadow.Render()
-        last = SHADOW_PIXELS - 1
+        last = self._shadow_pixels - 1
         depth = self._depth.GetPointData().GetScalars()
         self._shadow.GetZbufferData(0, 0, last, last, depth)
         depth.Modified()
         self._depth.Modified()
 
     def _share_shadow(self, texture) -> None:
+        from vtkmodules.vtkCommonMath import vtkMatrix4x4
+
         camera = self._shadow.GetRenderers().GetFirstRenderer().GetActiveCamera()
         to_clip = camera.GetCompositeProjectionTransformMatrix(1.0, 0.0, 1.0)
         matrix = np.array([[to_clip.GetElement(i, j) for j in range(4)] for i in range(4)])
         # x and y from -1 .. 1 to the texture's 0 .. 1; z is 0 .. 1 already.
         matrix[:2] = 0.5 * matrix[:2] + 0.5 * matrix[3]
         width = 2 * camera.GetParallelScale()
-        texel = width / SHADOW_PIXELS
+        texel = width / self._shadow_pixels
         near, far = camera.GetClippingRange()
-        from vtkmodules.vtkCommonMath import vtkMatrix4x4
-
         lamp_matrix = vtkMatrix4x4()
         # VTK hands its matrices to OpenGL as they lie in memory, and OpenGL reads columns first.
         lamp_matrix.DeepCopy(matrix.T.ravel())
@@ -280,12 +286,12 @@ class Painter:
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
             uniforms.SetUniformMatrix("lampMatrix", lamp_matrix)
             uniforms.SetUniformf("lampTexel", texel)
-            uniforms.SetUniformf("lampBlur", 5.0 / SHADOW_PIXELS)
+            uniforms.SetUniformf("lampPixels", float(self._shadow_pixels))
             uniforms.SetUniformf("lampBias", 2.5 * texel / (far - near))
             uniforms.SetUniform3f("lamp", list(LAMP))
             uniforms.SetUniform3f("eye", [0.0, 0.0, 0.0])
 
-    # --- one picture --------------------------------------------------------------------------------------------
+    # --- one picture ---------------------------------------------------------------------------------------
 
     def _aim(self, view: View) -> None:
         camera = self._renderer.GetActiveCamera()
@@ -310,7 +316,10 @@ def grid_spacing(size: float) -> float:
     """Distance of the floor's lines: 1, 2 or 5 times a power of ten, about a twelfth of the action [m]."""
     exponent = np.floor(np.log10(size / 12.0))
     fraction = size / 12.0 / 10.0**exponent
-    return float((1.0 if fraction < 1.5 else 2.0 if fraction < 3.5 else 5.0 if fraction < 7.5 else 10.0) * 10.0**exponent)
+    return float(
+        (1.0 if fraction < 1.5 else 2.0 if fraction < 3.5 else 5.0 if fraction < 7.5 else 10.0)
+        * 10.0**exponent
+    )
 
 
 def _window(renderer, size: tuple[int, int], samples: int):
@@ -326,7 +335,7 @@ def _window(renderer, size: tuple[int, int], samples: int):
     if not window.SupportsOpenGL():
         raise SetupError(
             f"pictures need OpenGL 3.2, and {window.GetClassName()} found none on this host; install Mesa "
-            "(Debian: apt install libegl1 libosmesa6), or run with --no-movie and `render` the folder elsewhere"
+            "(Debian: apt install libegl1 libosmesa6), or run with --no-movie and render the folder elsewhere"
         )
     return window
 

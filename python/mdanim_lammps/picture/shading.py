@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The light of the pictures as GLSL: one key light with soft shadows, light from the sky, a floor with a grid.
+"""The light of the pictures as GLSL: a key light with soft shadows, light from the sky, a floor with a grid.
 
-VTK builds its shaders from a template; the pieces below replace marks in it. VTK's own shadow maps leave the light
-of a parallel lamp in stripes and have hard edges, so the shadow is looked up here, in a depth picture taken from
-the lamp (render.py).
+VTK builds its shaders from a template; the pieces below replace marks in it. VTK's own shadow maps have hard
+edges and leave much of the floor dark under a parallel lamp, so the shadow is looked up here, in a depth
+picture taken from the lamp (render.py).
 """
 
 VERTEX = {
@@ -24,20 +24,28 @@ in vec3 worldNormal;
 """,
     # The first mark after VTK's own declaration of the texture.
     "//VTK::Picking::Dec": """//VTK::Picking::Dec
-// Samples on a disc, turned by the golden angle: even cover with few of them.
+// Share of the lamp that is seen from here: the mean over a square four depth pixels wide that slides
+// smoothly over them, so that the edge of a shadow is soft and has no steps however near the camera comes.
 float shadow(vec3 where, vec3 normal)
 {
-  // Start a little off the surface, or it would shade itself where light grazes it.
-  vec3 p = (lampMatrix * vec4(where + normal * lampTexel, 1.0)).xyz;
+  // Start off the surface, or it would shade itself: part of the square is nearer to the lamp.
+  float lean = length(cross(normal, normalize(lamp)));
+  vec3 p = (lampMatrix * vec4(where + normal * lampTexel * (1.0 + 3.0 * lean), 1.0)).xyz;
   if (any(lessThan(p.xy, vec2(0.0))) || any(greaterThan(p.xy, vec2(1.0)))) return 1.0;
+  vec2 texel = p.xy * lampPixels - 0.5;
+  ivec2 corner = ivec2(floor(texel));
+  vec2 part = texel - floor(texel);
   float lit = 0.0;
-  for (int i = 0; i < SAMPLES; i++) {
-    float angle = 2.39996 * float(i);
-    float r = lampBlur * sqrt((float(i) + 0.5) / float(SAMPLES));
-    float depth = texture(lampDepth, p.xy + r * vec2(cos(angle), sin(angle))).r;
-    lit += (depth >= 1.0 || depth >= p.z - lampBias) ? 1.0 : 0.0;
+  for (int j = -1; j <= 3; j++) {
+    float row = j == -1 ? 1.0 - part.y : j == 3 ? part.y : 1.0;
+    for (int i = -1; i <= 3; i++) {
+      float column = i == -1 ? 1.0 - part.x : i == 3 ? part.x : 1.0;
+      ivec2 pixel = clamp(corner + ivec2(i - 1, j - 1), ivec2(0), ivec2(lampPixels) - 1);
+      float depth = texelFetch(lampDepth, pixel, 0).r;
+      lit += row * column * ((depth >= 1.0 || depth >= p.z - lampBias) ? 1.0 : 0.0);
+    }
   }
-  return lit / float(SAMPLES);
+  return lit / 16.0;
 }
 
 vec3 linear(vec3 c) { return c * c; }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The surfaces of all objects as one shaded mesh: vertices and normals of a frame by two sparse matrix products."""
+"""The surfaces of all objects as one shaded mesh; a frame is two sparse matrix products."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 from ..results.catalogue import Catalogue
 
 CREASE = np.radians(45.0)
-"""Faces that meet at a larger angle keep a crisp edge: below the 90 degrees of a box or the rim of a cylinder, above
-the facets of a round shape."""
+"""Faces that meet at a larger angle keep a crisp edge: below the 90 degrees of a box or a cylinder's rim,
+above the facets of a round shape."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class ShadedMesh:
         return self.carry @ np.asarray(position, dtype=np.float64)
 
     def normals(self, vertices: np.ndarray) -> np.ndarray:
-        """Outward unit normals, shape (V, 3): the mean over the triangles around a vertex, weighted by area."""
+        """Outward unit normals, shape (V, 3): the mean over a vertex's triangles, weighted by area."""
         normal = self.gather @ _area_vectors(vertices, self.triangle)
         length = np.linalg.norm(normal, axis=1, keepdims=True)
         return np.divide(normal, length, out=np.zeros_like(normal), where=length > 0.0)
@@ -65,7 +65,7 @@ def _area_vectors(vertices: np.ndarray, triangle: np.ndarray) -> np.ndarray:
 
 
 def _split_at_creases(vertices: np.ndarray, triangle: np.ndarray) -> np.ndarray:
-    """Renumber vertices so that triangles share one only where no crease lies between them, int32, shape (T, 3)."""
+    """Renumber vertices so that triangles share one only where no crease parts them, int32, shape (T, 3)."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -78,13 +78,17 @@ def _split_at_creases(vertices: np.ndarray, triangle: np.ndarray) -> np.ndarray:
     ends = np.stack([triangle.ravel()[tail], triangle.ravel()[head]], axis=1)
     order = np.lexsort((ends.max(axis=1), ends.min(axis=1)))
     here, there = order[:-1], order[1:]
-    shared = (ends[here].min(axis=1) == ends[there].min(axis=1)) & (ends[here].max(axis=1) == ends[there].max(axis=1))
+    shared = (ends[here].min(axis=1) == ends[there].min(axis=1)) & (
+        ends[here].max(axis=1) == ends[there].max(axis=1)
+    )
     here, there = here[shared], there[shared]
     smooth = np.einsum("td,td->t", normal[here // 3], normal[there // 3]) > np.cos(CREASE)
     here, there = here[smooth], there[smooth]
-    # Neighbours run along their common edge in opposite directions; a badly oriented pair is matched by vertex.
+    # Neighbours run along their common edge in opposite directions; if they do not, vertices are matched.
     opposite = ends[here, 0] == ends[there, 1]
     a = np.concatenate([tail[here], head[here]])
-    b = np.concatenate([np.where(opposite, head[there], tail[there]), np.where(opposite, tail[there], head[there])])
+    b = np.concatenate(
+        [np.where(opposite, head[there], tail[there]), np.where(opposite, tail[there], head[there])]
+    )
     links = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(3 * count, 3 * count))
     return connected_components(links, directed=False)[1].reshape(-1, 3).astype(np.int32)

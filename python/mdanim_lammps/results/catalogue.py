@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What never changes during a run: which particle belongs to which object, and how surfaces hang on particles."""
+"""What never changes during a run: which particle belongs to which object, and what surfaces hang on."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..scene.scene import Save, Scene, Vector
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Objects, stored particles and surfaces of one trajectory; O objects, N stored particles, U different surfaces."""
+    """Objects, particles and surfaces of one trajectory; O objects, N stored particles."""
 
     title: str
     names: tuple[str, ...]
@@ -60,7 +60,7 @@ class Catalogue:
         return np.repeat(np.arange(len(self.names), dtype=np.int32), np.diff(self.first))
 
     @cached_property
-    def skin(self) -> "Skin":
+    def skin(self) -> Skin:
         """All surfaces as one mesh."""
         return merge_surfaces(self)
 
@@ -133,7 +133,9 @@ def catalogue_of(scene: Scene, models: Sequence[Model], scene_text: str = "") ->
     )
 
 
-def distinct_surfaces(models: Sequence[Model], stored: Sequence[np.ndarray]) -> tuple[tuple[Surface, ...], np.ndarray]:
+def distinct_surfaces(
+    models: Sequence[Model], stored: Sequence[np.ndarray]
+) -> tuple[tuple[Surface, ...], np.ndarray]:
     """The different surfaces among the models, in stored particles, and which of them each model wears."""
     kinds: dict[bytes, int] = {}
     surfaces: list[Surface] = []
@@ -160,7 +162,9 @@ def merge_surfaces(catalogue: Catalogue) -> Skin:
     carry = csr_array(
         (
             _joined([surface.weight.ravel() for surface in worn], np.float64),
-            _joined([surface.index.ravel() + first for surface, first in zip(worn, catalogue.first)], np.int64),
+            _joined(
+                [surface.index.ravel() + first for surface, first in zip(worn, catalogue.first)], np.int64
+            ),
             np.concatenate([[0], np.cumsum(corners)]),
         ),
         shape=shape,
@@ -177,7 +181,7 @@ def merge_surfaces(catalogue: Catalogue) -> Skin:
 
 
 def _within(surface: Surface, kept: np.ndarray) -> Surface:
-    """The surface with particles counted among the kept ones; corners without weight move to a kept particle."""
+    """The surface with particles counted among the kept ones; corners without weight name particle 0."""
     rank = np.cumsum(kept) - 1
     index = np.where(surface.weight != 0.0, rank[surface.index], 0)
     return Surface(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The trajectory file: H5MD 1.1 with everything that pictures need, readable after a crash (docs/trajectory.md)."""
+"""The trajectory file: H5MD 1.1 with all that pictures need, readable after a crash (docs/trajectory.md)."""
 
 from __future__ import annotations
 
@@ -27,14 +27,16 @@ FILE_NAME = "trajectory.h5"
 FORMAT = 1
 """Version of ``/parameters/mdanim``; a reader refuses what is newer."""
 
-# HDF5 1.10 is the oldest library that knows single-writer-multiple-reader files, which stay readable at any instant.
+# HDF5 1.10 is the oldest that knows single-writer-multiple-reader files, readable at any instant.
 _LIBVER = ("v110", "v110")
 _CHUNK_BYTES = 1 << 20
-# Room for what HDF5 writes of its own between two claims and at the end: chunk indices, sizes, flushed short rows.
+# Room for what HDF5 writes of its own between two claims and at the end: chunk indices, sizes, short rows.
 _CLOSING_BYTES = 1 << 18
 
 
-def trajectory_bytes(models: Sequence[Model], frames: int, save: Save = Save.ALL, single: bool = False) -> int:
+def trajectory_bytes(
+    models: Sequence[Model], frames: int, save: Save = Save.ALL, single: bool = False
+) -> int:
     """Size of the trajectory file [bytes] before anything is run, rather too large than too small.
 
     Args:
@@ -53,8 +55,8 @@ def trajectory_bytes(models: Sequence[Model], frames: int, save: Save = Save.ALL
 class TrajectoryWriter:
     """Writes frames to ``PATH.part``; ``close`` gives the file its name.
 
-    A frame counts once ``flush`` has returned: it then survives the death of the process at any instant. The file
-    is written in HDF5's single-writer mode, and a frame's number is written only after its data.
+    A frame counts once ``flush`` has returned: it then survives the death of the process at any instant. The
+    file is written in HDF5's single-writer mode, and a frame's number is written only after its data.
 
     Args:
         path: the finished file, usually ``FOLDER/trajectory.h5``.
@@ -79,11 +81,13 @@ class TrajectoryWriter:
         scene_text: str = "",
     ):
         self._start(Path(path), catalogue_of(scene, models, scene_text), dt, steps_per_frame)
-        # Masses of all particles, also of those that are not stored: the centre of mass is the whole object's.
+        # Masses of all particles, stored or not: the centre of mass is the whole object's.
         self._weigh(np.concatenate([model.mass for model in models]), [len(m.position) for m in models])
 
     @classmethod
-    def append(cls, path: str | Path, scene: Scene, models: Sequence[Model], after_step: int) -> "TrajectoryWriter":
+    def append(
+        cls, path: str | Path, scene: Scene, models: Sequence[Model], after_step: int
+    ) -> TrajectoryWriter:
         """Go on with the trajectory of a run that ended early; frames after ``after_step`` are dropped.
 
         The frames are copied to a fresh file first, so a second crash loses nothing that was there.
@@ -131,9 +135,13 @@ class TrajectoryWriter:
         """
         for name, array in (("position", position), ("velocity", velocity)):
             if np.shape(array) != (self.catalogue.total, 3):
-                raise ValueError(f"{name} must have shape ({self.catalogue.total}, 3), found {np.shape(array)}")
+                raise ValueError(
+                    f"{name} must have shape ({self.catalogue.total}, 3), found {np.shape(array)}"
+                )
         if step <= self._last_step:
-            raise ValueError(f"step must be larger than that of the frame before ({self._last_step}), found {step}")
+            raise ValueError(
+                f"step must be larger than that of the frame before ({self._last_step}), found {step}"
+            )
         rows = {
             "position": position[self._stored],
             "velocity": velocity[self._stored],
@@ -162,7 +170,7 @@ class TrajectoryWriter:
             steps, times = zip(*self._pending)
             for dataset, column in ((self._step, steps), (self._time, times)):
                 dataset.resize(self._count, axis=0)
-                dataset[self._count - len(column):] = column
+                dataset[self._count - len(column) :] = column
             self._file.flush()
         self._flushed_step = self._pending[-1][0]
         self._pending.clear()
@@ -181,13 +189,15 @@ class TrajectoryWriter:
                     os.replace(self._partial, self.path)
         return self.path if finished else self._partial
 
-    def __enter__(self) -> "TrajectoryWriter":
+    def __enter__(self) -> TrajectoryWriter:
         return self
 
     def __exit__(self, kind, value, traceback) -> None:
         self.close(finished=kind is None)
 
-    def _start(self, path: Path, catalogue: Catalogue, dt: float, steps_per_frame: int, suffix: str = ".part"):
+    def _start(
+        self, path: Path, catalogue: Catalogue, dt: float, steps_per_frame: int, suffix: str = ".part"
+    ):
         import h5py
 
         self.path = path
@@ -201,7 +211,9 @@ class TrajectoryWriter:
             self._file = h5py.File(self._partial, "w", libver=_LIBVER)
             try:
                 text = len(catalogue.scene_text) + sum(map(len, catalogue.names))
-                self._claim(_fixed_bytes(len(catalogue.id), len(catalogue.bond), catalogue.surfaces) + 8 * text)
+                self._claim(
+                    _fixed_bytes(len(catalogue.id), len(catalogue.bond), catalogue.surfaces) + 8 * text
+                )
                 self._step, self._time, self._values = _create(self._file, catalogue, dt, steps_per_frame)
                 self._file.swmr_mode = True
                 self._file.flush()
@@ -211,7 +223,7 @@ class TrajectoryWriter:
                 raise
 
     def _claim(self, size: int) -> None:
-        """Take room on the disk before HDF5 needs it: HDF5 cannot even close a file once a write has failed."""
+        """Take room on the disk before HDF5 needs it: it cannot even close a file once a write has failed."""
         with self._partial.open("r+b") as file:
             os.posix_fallocate(file.fileno(), 0, self._file.id.get_filesize() + size + _CLOSING_BYTES)
 
@@ -251,7 +263,9 @@ class Trajectory:
             step, time = particles["position/step"][:], particles["position/time"][:]
         except (KeyError, OSError) as error:
             self._file.close()
-            raise OutputError(f"{self.path}: not a trajectory of mdanim-lammps, or damaged ({error})") from None
+            raise OutputError(
+                f"{self.path}: not a trajectory of mdanim-lammps, or damaged ({error})"
+            ) from None
         count = min(len(step), len(time), *(len(value) for value in values.values()))
         self.steps: np.ndarray = step[:count]
         """Time step of each frame, shape (F,)."""
@@ -268,7 +282,7 @@ class Trajectory:
         return len(self.times)
 
     @cached_property
-    def objects(self) -> Mapping[str, "ObjectTrack"]:
+    def objects(self) -> Mapping[str, ObjectTrack]:
         """The objects by name."""
         return {name: ObjectTrack(self, index) for index, name in enumerate(self.names)}
 
@@ -293,8 +307,8 @@ class Trajectory:
     def surface(self, frame: int) -> pyvista.PolyData:
         """Surfaces of all objects in one frame [m], as one mesh.
 
-        Cell data: ``object`` (index into ``names``) and, where the scene sets colours, ``color`` (``#rrggbb`` as
-        three bytes; black where it sets none).
+        Cell data: ``object`` (index into ``names``) and, where the scene sets colours, ``color`` (``#rrggbb``
+        as three bytes; black where it sets none).
         """
         import pyvista
 
@@ -310,8 +324,8 @@ class Trajectory:
     def universe(self) -> MDAnalysis.Universe:
         """The run for MDAnalysis: one residue per object, springs as bonds.
 
-        Lengths are metres, times seconds and velocities m/s (MDAnalysis's own unit is the ångström): the reader
-        is opened with ``convert_units=False``. Positions are float32, as everywhere in MDAnalysis.
+        Lengths are metres, times seconds and velocities m/s (MDAnalysis's own unit is the ångström): the
+        reader is opened with ``convert_units=False``. Positions are float32, as everywhere in MDAnalysis.
         """
         import MDAnalysis
         from MDAnalysis.coordinates.H5MD import H5MDReader
@@ -340,7 +354,7 @@ class Trajectory:
         """Close the file."""
         self._file.close()
 
-    def __enter__(self) -> "Trajectory":
+    def __enter__(self) -> Trajectory:
         return self
 
     def __exit__(self, *_) -> None:
@@ -394,7 +408,8 @@ class ObjectTrack:
         return f"<ObjectTrack {self.name}: {self.particles.stop - self.particles.start} particles>"
 
 
-# --- the file ---------------------------------------------------------------------------------------------------
+# --- the file ---------------------------------------------------------------------------------------------
+
 
 def part_of(path: str | Path) -> Path:
     """Where a trajectory is while it is written."""
@@ -420,7 +435,9 @@ def _create(file: h5py.File, catalogue: Catalogue, dt: float, steps_per_frame: i
     box.attrs["dimension"] = 3
     box.attrs["boundary"] = np.array(["none"] * 3, dtype="S4")
     step = file.create_dataset("particles/all/position/step", (0,), np.int64, maxshape=(None,), chunks=(256,))
-    time = file.create_dataset("particles/all/position/time", (0,), np.float64, maxshape=(None,), chunks=(256,))
+    time = file.create_dataset(
+        "particles/all/position/time", (0,), np.float64, maxshape=(None,), chunks=(256,)
+    )
     time.attrs["unit"] = "s"
 
     real = np.float32 if catalogue.single else np.float64
@@ -437,9 +454,11 @@ def _create(file: h5py.File, catalogue: Catalogue, dt: float, steps_per_frame: i
         per_chunk = max(1, min(64, 4096 // (24 * rows)))
         # Chunks of equal length, so that none is stored half empty.
         chunk = (per_chunk, -(-rows // max(1, -(-rows * 24 // _CHUNK_BYTES))), 3)
-        values[name] = group.create_dataset("value", (0, rows, 3), dtype, maxshape=(None, rows, 3), chunks=chunk)
-        # H5MD's own attribute is `unit`, but MDAnalysis refuses a file whose length unit it does not know, and it
-        # knows no metre; so `units` says it everywhere and `unit` where MDAnalysis understands it.
+        values[name] = group.create_dataset(
+            "value", (0, rows, 3), dtype, maxshape=(None, rows, 3), chunks=chunk
+        )
+        # H5MD's own attribute is `unit`, but MDAnalysis refuses a file whose length unit it does not
+        # know, and it knows no metre; so `units` says it everywhere and `unit` where it is understood.
         values[name].attrs["units"] = unit
         if unit != "m":
             values[name].attrs["unit"] = unit
@@ -452,7 +471,9 @@ def _create(file: h5py.File, catalogue: Catalogue, dt: float, steps_per_frame: i
     particles["species"] = catalogue.layer.astype(np.int8)
     particles["object"] = catalogue.object_of
     particles["held"] = catalogue.held.astype(np.uint8)
-    bonds = file.create_group("connectivity").create_dataset("bonds", data=catalogue.bond, **_packed(catalogue.bond))
+    bonds = file.create_group("connectivity").create_dataset(
+        "bonds", data=catalogue.bond, **_packed(catalogue.bond)
+    )
     bonds.attrs["particles_group"] = particles.ref
 
     _write_catalogue(file.create_group("parameters/mdanim"), catalogue, dt, steps_per_frame)
@@ -461,8 +482,13 @@ def _create(file: h5py.File, catalogue: Catalogue, dt: float, steps_per_frame: i
 
 def _write_catalogue(group: h5py.Group, catalogue: Catalogue, dt: float, steps_per_frame: int) -> None:
     group.attrs.update(
-        format=FORMAT, dt=dt, steps_per_frame=steps_per_frame, title=catalogue.title, total=catalogue.total,
-        save=catalogue.save.value, single=catalogue.single,
+        format=FORMAT,
+        dt=dt,
+        steps_per_frame=steps_per_frame,
+        title=catalogue.title,
+        total=catalogue.total,
+        save=catalogue.save.value,
+        single=catalogue.single,
     )
     if catalogue.ground is not None:
         group.attrs["ground"] = catalogue.ground
@@ -479,8 +505,10 @@ def _write_catalogue(group: h5py.Group, catalogue: Catalogue, dt: float, steps_p
     shapes = [(len(s.triangle), len(s.index), s.index.shape[1]) for s in catalogue.surfaces]
     surfaces["shape"] = np.array(shapes, dtype=np.int64).reshape(-1, 3)
     for name in ("triangle", "index", "weight"):
-        flat = np.concatenate([np.zeros(0, np.int32 if name != "weight" else np.float64)]
-                              + [getattr(s, name).ravel() for s in catalogue.surfaces])
+        flat = np.concatenate(
+            [np.zeros(0, np.int32 if name != "weight" else np.float64)]
+            + [getattr(s, name).ravel() for s in catalogue.surfaces]
+        )
         surfaces.create_dataset(name, data=flat, **_packed(flat))
 
 
@@ -493,9 +521,9 @@ def _read_catalogue(file: h5py.File) -> Catalogue:
     ends = np.cumsum(np.stack([3 * shapes[:, 0], shapes[:, 1] * shapes[:, 2]], axis=1), axis=0)
     surfaces = tuple(
         Surface(
-            triangle=flat["triangle"][t - 3 * triangles:t].reshape(-1, 3),
-            index=flat["index"][v - vertices * corners:v].reshape(-1, corners),
-            weight=flat["weight"][v - vertices * corners:v].reshape(-1, corners),
+            triangle=flat["triangle"][t - 3 * triangles : t].reshape(-1, 3),
+            index=flat["index"][v - vertices * corners : v].reshape(-1, corners),
+            weight=flat["weight"][v - vertices * corners : v].reshape(-1, corners),
         )
         for (triangles, vertices, corners), (t, v) in zip(shapes, ends)
     )
@@ -580,6 +608,8 @@ def _disk(path: Path) -> Iterator[None]:
     except (OSError, RuntimeError) as error:
         reason = os.strerror(error.errno) if getattr(error, "errno", None) else str(error)
         cure = "check the folder's permissions and the disk, then `resume`"
-        if getattr(error, "errno", None) in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG) or "space" in str(error):
+        if getattr(error, "errno", None) in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG) or "space" in str(
+            error
+        ):
             cure = "make room (or `control { save boundary single }`, which needs far less), then `resume`"
         raise OutputError(f"{path}: cannot be written: {reason}; {cure}") from error

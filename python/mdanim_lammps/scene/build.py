@@ -12,6 +12,7 @@ from ..errors import Span
 from . import scene as records
 from . import units
 from .expand import Filled, Setting
+from .rotation import IDENTITY, departure, rotation_about, rotation_euler
 from .scene import Vector
 from .source import Problems, Source
 from .words import BLOCKS, GLOBALS, KEYWORDS, QUANTITIES, did_you_mean, example
@@ -25,46 +26,6 @@ def build(out: Filled, problems: Problems, name: str, source: Source) -> records
     return Builder(out, problems, Span(source.name, 1, 1)).scene(name, source.path)
 
 
-# --- rotations: world = R @ body, rows ----------------------------------------------------------------------------
-
-def rotation_about(axis: Vector, angle: float) -> tuple[Vector, Vector, Vector]:
-    """Rotation by ``angle`` [rad] about a unit axis, Rodrigues' formula: R = cos I + sin [u]x + (1 - cos) u u^T."""
-    x, y, z = axis
-    c, s = math.cos(angle), math.sin(angle)
-    d = 1.0 - c
-    return (
-        (c + d * x * x, d * x * y - s * z, d * x * z + s * y),
-        (d * y * x + s * z, c + d * y * y, d * y * z - s * x),
-        (d * z * x - s * y, d * z * y + s * x, c + d * z * z),
-    )
-
-
-def product(a, b) -> tuple[Vector, Vector, Vector]:
-    """Matrix product a @ b of 3x3 tuples."""
-    return tuple(tuple(sum(a[i][k] * b[k][j] for k in range(3)) for j in range(3)) for i in range(3))
-
-
-def rotation_euler(angles: Vector) -> tuple[Vector, Vector, Vector]:
-    """About x, then y, then z, fixed axes [rad]: R = Rz @ Ry @ Rx."""
-    about = [rotation_about(tuple(float(i == k) for i in range(3)), angles[k]) for k in range(3)]
-    return product(about[2], product(about[1], about[0]))
-
-
-IDENTITY = rotation_about((0.0, 0.0, 1.0), 0.0)
-
-
-def departure(rows) -> float:
-    """How far a matrix is from a rotation: the largest entry of R R^T - 1, or 2 for a reflection."""
-    r = rows
-    error = max(abs(sum(r[i][k] * r[j][k] for k in range(3)) - (i == j)) for i in range(3) for j in range(3))
-    determinant = (
-        r[0][0] * (r[1][1] * r[2][2] - r[1][2] * r[2][1])
-        - r[0][1] * (r[1][0] * r[2][2] - r[1][2] * r[2][0])
-        + r[0][2] * (r[1][0] * r[2][1] - r[1][1] * r[2][0])
-    )
-    return max(error, 2.0 if determinant < 0.0 else 0.0)
-
-
 class Builder:
     """Reads one Filled scene; every ``problem`` has a place."""
 
@@ -73,7 +34,9 @@ class Builder:
         self.top = top
         """The beginning of the scene, for problems of the scene as a whole."""
 
-    def problem(self, span: Span | None, message: str, hint: str = "", severity: str = "error", key=None) -> None:
+    def problem(
+        self, span: Span | None, message: str, hint: str = "", severity: str = "error", key=None
+    ) -> None:
         self.problems.add(span, message, hint, severity, key)
 
     def blocks(self, kind: str) -> list[Filled]:
@@ -94,8 +57,12 @@ class Builder:
         render = self.render(control)
         expects = self.expects(control)
         if not solids and not liquids and not self.out.excused("object") and not self.problems.errors:
-            self.problem(self.top, f"the scene has neither an object nor a liquid: there is nothing to compute",
-                         "write object NAME { ... }", key="empty")
+            self.problem(
+                self.top,
+                "the scene has neither an object nor a liquid: there is nothing to compute",
+                "write object NAME { ... }",
+                key="empty",
+            )
         if self.problems.errors or control is None:
             return None
         spans = {w: found[0].span() for w, found in self.out.settings.items() if w != "expect"}
@@ -122,19 +89,29 @@ class Builder:
             if not rule.many and len(found) > 1:
                 for extra in found[1:]:
                     g = extra.group
-                    self.problem(g.source.span(g.token), f"a second {kind} block; a scene has at most one",
-                                 f"the first is at {found[0].group.source.span(found[0].group.token)}")
+                    self.problem(
+                        g.source.span(g.token),
+                        f"a second {kind} block; a scene has at most one",
+                        f"the first is at {found[0].group.source.span(found[0].group.token)}",
+                    )
 
     def names_once(self) -> None:
         """No two blocks of one name, and no name that expect uses for something else."""
         first: dict[str, Filled] = {}
         for block in self.blocks("object") + self.blocks("liquid"):
             if block.name in first:
-                self.problem(self.head(block), f"the name {block.name} is given twice{block.where}",
-                             f"first given at {self.head(first[block.name])}", key=("name", id(block.group)))
+                self.problem(
+                    self.head(block),
+                    f"the name {block.name} is given twice{block.where}",
+                    f"first given at {self.head(first[block.name])}",
+                    key=("name", id(block.group)),
+                )
             elif block.block == "object" and block.name in GLOBALS:
-                self.problem(self.head(block), f"an object cannot be called {block.name}: expect uses this word",
-                             "take another name")
+                self.problem(
+                    self.head(block),
+                    f"an object cannot be called {block.name}: expect uses this word",
+                    "take another name",
+                )
             first.setdefault(block.name, block)
 
     def gravity_fits(self, liquids: list[Filled]) -> None:
@@ -146,16 +123,24 @@ class Builder:
         if g[0] != 0.0 or g[1] != 0.0 or g[2] >= 0.0:
             span = given.span(0) if given else self.head(liquids[0])
             found = f"found {units.show(g)} m/s^2" if given else "the scene has no gravity"
-            self.problem(span, f"a liquid needs gravity along -z, {found}", "e.g. gravity (0, 0, -9.81) m/s^2", key="gravity")
+            self.problem(
+                span,
+                f"a liquid needs gravity along -z, {found}",
+                "e.g. gravity (0, 0, -9.81) m/s^2",
+                key="gravity",
+            )
 
     def inside_walls(self, solids: list[records.Solid], walls: records.Walls | None) -> None:
-        """The centre of an object must lie between the walls; how far the object reaches is checked with its model."""
+        """An object's centre must lie between the walls; how far it reaches is checked with its model."""
         if walls is None:
             return
         for s in solids:
             if not all(a < x < b for a, x, b in zip(walls.low, s.position, walls.high)):
-                self.problem(s.spans["position"], f"{s.name} stands outside the walls: its centre is {units.show(s.position)} m",
-                             f"the walls go from {units.show(walls.low)} to {units.show(walls.high)} m")
+                self.problem(
+                    s.spans["position"],
+                    f"{s.name} stands outside the walls: its centre is {units.show(s.position)} m",
+                    f"the walls go from {units.show(walls.low)} to {units.show(walls.high)} m",
+                )
 
     # -- helpers for one block
 
@@ -166,20 +151,30 @@ class Builder:
         for word, keyword in KEYWORDS[block.block].items():
             key = ("missing", id(block.group), keyword.one_of or word)
             if keyword.needed and word not in block.settings and not block.excused(word):
-                self.problem(self.head(block), f"{title} has no {word}{block.where}", example(keyword), key=key)
+                self.problem(
+                    self.head(block), f"{title} has no {word}{block.where}", example(keyword), key=key
+                )
                 good = False
             if keyword.one_of and keyword.one_of[0] == word:
                 given = [w for w in keyword.one_of if w in block.settings]
                 if not given and not block.excused(*keyword.one_of):
                     this = " or ".join(keyword.one_of)
-                    self.problem(self.head(block), f"{title} has no {this}{block.where}",
-                                 example(keyword), key=key)
+                    self.problem(
+                        self.head(block), f"{title} has no {this}{block.where}", example(keyword), key=key
+                    )
                     good = False
                 elif len(given) > 1:
-                    second = max((block.first(w) for w in given), key=lambda s: (s.entry.token.line, s.entry.token.column))
+                    second = max(
+                        (block.first(w) for w in given),
+                        key=lambda s: (s.entry.token.line, s.entry.token.column),
+                    )
                     first = next(block.first(w) for w in given if block.first(w) is not second)
-                    self.problem(second.span(), f"{title} has both {' and '.join(given)}; exactly one is needed",
-                                 f"remove one; the other stands at {first.span()}", key=key)
+                    self.problem(
+                        second.span(),
+                        f"{title} has both {' and '.join(given)}; exactly one is needed",
+                        f"remove one; the other stands at {first.span()}",
+                        key=key,
+                    )
                     good = False
         return good
 
@@ -198,8 +193,11 @@ class Builder:
         a, b = s.values[low], s.values[high]
         for axis, x, y in zip("xyz", a, b):
             if not x < y:
-                self.problem(s.span(high), f"{what} has no extent along {axis}: it goes from {x:.6g} m to {y:.6g} m",
-                             "the lower corner stands first")
+                self.problem(
+                    s.span(high),
+                    f"{what} has no extent along {axis}: it goes from {x:.6g} m to {y:.6g} m",
+                    "the lower corner stands first",
+                )
         return a, b
 
     # -- blocks
@@ -227,8 +225,12 @@ class Builder:
         s = block.first("shape")
         kind, v = s.entry.words[0], s.values
         if kind == "torus" and v[1] >= v[0]:
-            self.problem(s.span(1), f"the tube of a torus is thinner than the ring: r < R, found r = {v[1]:.6g} m, R = {v[0]:.6g} m",
-                         "write torus R r, the radius of the centre line first")
+            self.problem(
+                s.span(1),
+                "the tube of a torus is thinner than the ring: r < R, "
+                f"found r = {v[1]:.6g} m, R = {v[0]:.6g} m",
+                "write torus R r, the radius of the centre line first",
+            )
             return None
         if kind == "mesh":
             path = (s.entry.source.folder / v[0]).resolve()
@@ -236,11 +238,21 @@ class Builder:
                 self.problem(s.span(0), f"a mesh is an STL, OBJ or PLY file, found '{v[0]}'")
                 return None
             if not path.is_file():
-                self.problem(s.span(0), f"the mesh file '{v[0]}' is not there: {path}", "its name is relative to this scene file")
+                self.problem(
+                    s.span(0),
+                    f"the mesh file '{v[0]}' is not there: {path}",
+                    "its name is relative to this scene file",
+                )
                 return None
             return records.Mesh(path, 1.0 if v[1] is None else v[1])
-        make = {"box": records.Box, "sphere": records.Sphere, "ellipsoid": records.Ellipsoid,
-                "cylinder": records.Cylinder, "cone": records.Cone, "torus": records.Torus}[kind]
+        make = {
+            "box": records.Box,
+            "sphere": records.Sphere,
+            "ellipsoid": records.Ellipsoid,
+            "cylinder": records.Cylinder,
+            "cone": records.Cone,
+            "torus": records.Torus,
+        }[kind]
         return make(*v)
 
     def rotation(self, block: Filled) -> tuple[Vector, Vector, Vector] | None:
@@ -254,12 +266,19 @@ class Builder:
             axis, angle = s.values
             length = math.hypot(*axis)
             if not 1e-150 < length < 1e150:
-                self.problem(s.span(0), f"the axis of a rotation needs a direction, found {units.show(axis)}", "e.g. axis (0, 0, 1)")
+                self.problem(
+                    s.span(0),
+                    f"the axis of a rotation needs a direction, found {units.show(axis)}",
+                    "e.g. axis (0, 0, 1)",
+                )
                 return None
             return rotation_about(tuple(c / length for c in axis), angle)
         if departure(s.values) > 1e-9:
-            self.problem(s.span(), "this matrix is not a rotation: its rows are not orthonormal and right-handed",
-                         "write orientation axis (x, y, z) angle a")
+            self.problem(
+                s.span(),
+                "this matrix is not a rotation: its rows are not orthonormal and right-handed",
+                "write orientation axis (x, y, z) angle a",
+            )
             return None
         return s.values
 
@@ -280,11 +299,18 @@ class Builder:
         room = math.prod(b - a for a, b in zip(low, high))
         volume, level = block.value("volume"), block.value("level")
         if volume is not None and volume > room > 0.0:
-            self.problem(block.first("volume").span(0), f"{volume:.6g} m^3 of liquid do not fit into the basin of {room:.6g} m^3",
-                         "less liquid, or a larger basin")
+            self.problem(
+                block.first("volume").span(0),
+                f"{volume:.6g} m^3 of liquid do not fit into the basin of {room:.6g} m^3",
+                "less liquid, or a larger basin",
+            )
         if level is not None and not low[2] < level <= high[2]:
-            self.problem(block.first("level").span(0), f"the level {level:.6g} m is outside the basin, which goes from "
-                         f"{low[2]:.6g} m to {high[2]:.6g} m", "the level is a height, not a depth")
+            self.problem(
+                block.first("level").span(0),
+                f"the level {level:.6g} m is outside the basin, which goes from "
+                f"{low[2]:.6g} m to {high[2]:.6g} m",
+                "the level is a height, not a depth",
+            )
         sweeps = block.value("sweeps")
         return records.Liquid(
             name=block.name, low=low, high=high, density=block.value("density"), volume=volume, level=level,
@@ -301,7 +327,12 @@ class Builder:
         found = self.blocks("control")
         if not found:
             if not self.out.excused("control"):
-                self.problem(self.top, "the scene has no control block: how long is it?", "write control { time 3 s }", key="control")
+                self.problem(
+                    self.top,
+                    "the scene has no control block: how long is it?",
+                    "write control { time 3 s }",
+                    key="control",
+                )
             return None
         block = found[0]
         if not self.complete(block):
@@ -309,10 +340,14 @@ class Builder:
         value = block.value
         save = block.first("save")
         if value("frames", 30.0) * value("time") < 1.0:
-            self.problem(block.first("time").span(0), f"in {value('time'):.6g} s there is not one frame of "
-                         f"1/{value('frames', 30.0):.6g} s", "a longer time, or more frames per second")
+            self.problem(
+                block.first("time").span(0),
+                f"in {value('time'):.6g} s there is not one frame of 1/{value('frames', 30.0):.6g} s",
+                "a longer time, or more frames per second",
+            )
         return records.Control(
-            time=value("time"), frames=value("frames", 30.0), timestep=value("timestep"), resolution=value("resolution"),
+            time=value("time"), frames=value("frames", 30.0),
+            timestep=value("timestep"), resolution=value("resolution"),
             accuracy=self.accuracy(block.first("accuracy")), seed=int(value("seed", 1.0)),
             save=records.Save(value("save", "all")), single=bool(save) and save.values[1] == "single",
             spans=self.spans(block),
@@ -331,8 +366,11 @@ class Builder:
             percent = None
         if percent is None or not 0 < percent < 100 or float(percent / 100) == 0.0:
             classes = ", ".join(a.value for a in records.Accuracy)
-            self.problem(s.span(0), f"accuracy is {classes} or an error between 0 and 100 %, found \"{s.values[0]}\"",
-                         'write accuracy "error 2 %"')
+            self.problem(
+                s.span(0),
+                f'accuracy is {classes} or an error between 0 and 100 %, found "{s.values[0]}"',
+                'write accuracy "error 2 %"',
+            )
             return records.Accuracy.BALANCED
         return float(percent / 100)
 
@@ -347,8 +385,11 @@ class Builder:
         block = found[0]
         size = block.first("size")
         if size and max(size.values[0]) > LARGEST_PICTURE:
-            self.problem(size.span(0), f"a picture of {units.show(size.values[0])} pixels is too large",
-                         f"the most is {LARGEST_PICTURE} along a side")
+            self.problem(
+                size.span(0),
+                f"a picture of {units.show(size.values[0])} pixels is too large",
+                f"the most is {LARGEST_PICTURE} along a side",
+            )
         cameras = tuple(self.camera(s, control) for s in block.settings.get("camera", ()))
         if len(cameras) > 1:
             self.camera_path(block, cameras)
@@ -374,9 +415,16 @@ class Builder:
         last = -math.inf
         for s, camera in zip(block.settings["camera"], cameras):
             if camera.time is None:
-                self.problem(s.span(), "several cameras make a path, and this one has no time", "write camera 2 s from ...")
+                self.problem(
+                    s.span(),
+                    "several cameras make a path, and this one has no time",
+                    "write camera 2 s from ...",
+                )
             elif camera.time <= last:
-                self.problem(s.span(0), f"the times of the cameras must rise, found {camera.time:.6g} s after {last:.6g} s")
+                self.problem(
+                    s.span(0),
+                    f"the times of the cameras must rise, found {camera.time:.6g} s after {last:.6g} s",
+                )
             else:
                 last = camera.time
 
@@ -390,7 +438,9 @@ class Builder:
         return False
 
     def expects(self, control: records.Control | None) -> tuple[records.Expect, ...]:
-        return tuple(e for s in self.out.settings.get("expect", ()) if (e := self.expect(s, control)) is not None)
+        return tuple(
+            e for s in self.out.settings.get("expect", ()) if (e := self.expect(s, control)) is not None
+        )
 
     def expect(self, s: Setting, control: records.Control | None) -> records.Expect | None:
         """One self-check, with the unit of its quantity."""
@@ -400,13 +450,25 @@ class Builder:
         if kind == "NAME" and not self.known_subject(subject, quantity, s.span(0)):
             return None
         if (kind, quantity) not in QUANTITIES:
-            self.problem(s.span(0), f"{quantity} is no quantity of {subject} that expect can check", did_you_mean(quantity, known))
+            self.problem(
+                s.span(0),
+                f"{quantity} is no quantity of {subject} that expect can check",
+                did_you_mean(quantity, known),
+            )
             return None
-        if (kind == "liquid" or quantity == "draft") and not self.blocks("liquid") and not self.out.excused("liquid"):
+        if (
+            (kind == "liquid" or quantity == "draft")
+            and not self.blocks("liquid")
+            and not self.out.excused("liquid")
+        ):
             self.problem(s.span(0), f"{subject}.{quantity} needs a liquid, and the scene has none")
         if time is not None and (time < 0.0 or control is not None and time > control.time * (1.0 + 1e-9)):
             end = f", which ends at {control.time:.6g} s" if control else ""
-            self.problem(s.span(1), f"{time:.6g} s lies outside the run{end}", "an earlier time, or a longer control time")
+            self.problem(
+                s.span(1),
+                f"{time:.6g} s lies outside the run{end}",
+                "an earlier time, or a longer control time",
+            )
         dim = units.unit(QUANTITIES[kind, quantity][0]).dim
         numbers = []
         for n, (x, what) in enumerate(((value, "the value"), (tolerance, "the tolerance")), 2):
@@ -414,9 +476,14 @@ class Builder:
                 numbers.append(0.0)
                 continue
             if units.dimension(x) not in (dim, units.NONE):
-                self.problem(s.span(n), f"{subject}.{quantity} is {units.describe(dim)}, found {units.show(x)}, "
-                             f"{units.describe(units.dimension(x))}", f"units that fit: {' '.join(units.units_of(dim))}" if dim != units.NONE
-                             else "leave out the unit")
+                self.problem(
+                    s.span(n),
+                    f"{subject}.{quantity} is {units.describe(dim)}, found {units.show(x)}, "
+                    f"{units.describe(units.dimension(x))}",
+                    f"units that fit: {' '.join(units.units_of(dim))}"
+                    if dim != units.NONE
+                    else "leave out the unit",
+                )
                 return None
             if not math.isfinite(units.magnitude(x)):
                 self.problem(s.span(n), f"{what} is not a finite number")
@@ -428,7 +495,9 @@ class Builder:
     def known_subject(self, subject: str, quantity: str, span: Span) -> bool:
         """An object; or a word for the whole scene, mistyped."""
         if any(subject == b.name for b in self.blocks("liquid")):
-            self.problem(span, f"the liquid is called liquid in expect, found {subject}", f"write liquid.{quantity}")
+            self.problem(
+                span, f"the liquid is called liquid in expect, found {subject}", f"write liquid.{quantity}"
+            )
             return False
         names = [b.name for b in self.blocks("object")]
         if subject in names:

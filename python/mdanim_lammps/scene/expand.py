@@ -6,14 +6,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 
 from . import units
 from .colors import color
 from .expressions import SPOILED, Env
-from .statements import Broken, Entry, Group, Let, Name, Repeat, Shared, Value, parse_override
 from .source import Fault, Problems, Source
-from .words import KEYWORDS, Rule, did_you_mean, example
+from .statements import Shared, parse_override
+from .tree import Broken, Entry, Group, Let, Name, Repeat, Value
+from .words import Rule, did_you_mean, example
 
 MOST_OBJECTS = 10**6
 MOST_ROUNDS = 2 * 10**6
@@ -80,7 +80,7 @@ class Expander:
     # -- the whole scene
 
     def scene(self, body: list) -> Filled | None:
-        """Everything of a scene, the seed first: rand needs it wherever it stands. None for a scene without measure."""
+        """Everything of a scene, the seed first: rand needs it. None for a scene without measure."""
         env = Env({}, (), self.seed(body), self.strict, self.shared.lets, self.shared.incomplete)
         self.check_overrides()
         if not self.estimate(body, env):
@@ -91,8 +91,16 @@ class Expander:
 
     def seed(self, body: list) -> int:
         """``control seed``, worked out with the lets of the outermost level."""
-        entry = next((e for g in body if isinstance(g, Group) and g.block == "control"
-                      for e in g.body if isinstance(e, Entry) and e.keyword.name == "seed"), None)
+        entry = next(
+            (
+                e
+                for g in body
+                if isinstance(g, Group) and g.block == "control"
+                for e in g.body
+                if isinstance(e, Entry) and e.keyword.name == "seed"
+            ),
+            None,
+        )
         if entry is None:
             return 1
         env, quiet = Env({}, seed=None), Expander(Shared(Problems()), self.overrides, False)
@@ -109,8 +117,12 @@ class Expander:
         """Every ``--set`` must name a let."""
         for name in self.overrides:
             if name not in self.shared.lets:
-                self.problems.add(None, f"--set {name}: the scene has no 'let {name}'",
-                                  did_you_mean(name, self.shared.lets) or "it has no let at all", key=("--set", name))
+                self.problems.add(
+                    None,
+                    f"--set {name}: the scene has no 'let {name}'",
+                    did_you_mean(name, self.shared.lets) or "it has no let at all",
+                    key=("--set", name),
+                )
 
     def estimate(self, body: list, env: Env) -> bool:
         """Refuse a scene of too many objects before any is made."""
@@ -122,15 +134,23 @@ class Expander:
         place = worst[0] if worst else None
         span = place.source.span(place.token, place.variable) if place else None
         if objects > MOST_OBJECTS:
-            self.problems.add(span, f"this scene has about {objects:.3g} objects; the most is {MOST_OBJECTS}",
-                              "repeat less often", key="objects")
+            self.problems.add(
+                span,
+                f"this scene has about {objects:.3g} objects; the most is {MOST_OBJECTS}",
+                "repeat less often",
+                key="objects",
+            )
         else:
-            self.problems.add(span, f"the repeats of this scene run about {rounds:.3g} rounds; the most is {MOST_ROUNDS}",
-                              "repeat less often", key="objects")
+            self.problems.add(
+                span,
+                f"the repeats of this scene run about {rounds:.3g} rounds; the most is {MOST_ROUNDS}",
+                "repeat less often",
+                key="objects",
+            )
         return False
 
     def count(self, body: list, env: Env, worst: list) -> tuple[float, float]:
-        """About how many objects and rounds a body makes; an inner repeat is taken at the middle of the outer one."""
+        """About how many objects and rounds a body makes; inner repeats at the middle of the outer one."""
         objects = rounds = 0.0
         for s in body:
             if isinstance(s, Group):
@@ -176,7 +196,11 @@ class Expander:
                     env.values.setdefault(s.name, SPOILED)
             elif s.token in env.values:
                 first = own.get(str(s.token))
-                place = f"first given at {first.source.span(first.token)}" if first else "it is known outside already"
+                place = (
+                    f"first given at {first.source.span(first.token)}"
+                    if first
+                    else "it is known outside already"
+                )
                 self.problems.add(s.source.span(s.token), f"'{s.token}' is given twice", place)
             else:
                 own[str(s.token)] = s
@@ -217,15 +241,26 @@ class Expander:
     def _same_kind(self, name: str, source: Source, node, value, original) -> None:
         one, other = _kinds(value), _kinds(original)
         if len(one) != len(other):
-            raise Fault(node.first, f"{name} is {units.show(original)} in the scene, and a value of that kind is needed")
+            raise Fault(
+                node.first,
+                f"{name} is {units.show(original)} in the scene, and a value of that kind is needed",
+            )
         for a, b in zip(one, other):
             if a != b and a != units.NONE and b != units.NONE:
-                raise Fault(node.first, f"{name} is {units.describe(b)} in the scene, found {units.show(value)}",
-                            f"units that fit: {' '.join(units.units_of(b))}", node.last)
+                raise Fault(
+                    node.first,
+                    f"{name} is {units.describe(b)} in the scene, found {units.show(value)}",
+                    f"units that fit: {' '.join(units.units_of(b))}",
+                    node.last,
+                )
             if a != b and a == units.NONE:
-                self.problems.add(source.span(node.first, node.last),
-                                  f"--set {name} has no unit and is read as {units.show(value)} {units.symbol(b)}; "
-                                  f"the scene has {units.show(original)}", "write the unit", "warning")
+                self.problems.add(
+                    source.span(node.first, node.last),
+                    f"--set {name} has no unit and is read as {units.show(value)} {units.symbol(b)}; "
+                    f"the scene has {units.show(original)}",
+                    "write the unit",
+                    "warning",
+                )
 
     def bounds(self, s: Repeat, env: Env) -> tuple[int, int]:
         """First and last index of a repeat."""
@@ -233,7 +268,9 @@ class Expander:
         for node in (s.low, s.high):
             v = node.run(env)
             if type(v) is not float or v != v or abs(v) > 1e15 or v != int(v):
-                raise Fault(node.first, f"repeat counts in whole numbers, found {units.show(v)}", last=node.last)
+                raise Fault(
+                    node.first, f"repeat counts in whole numbers, found {units.show(v)}", last=node.last
+                )
             found.append(int(v))
         return found[0], found[1]
 
@@ -241,7 +278,9 @@ class Expander:
         """Run the body once for every index."""
         name = str(s.variable)
         if name in env.values:
-            self.problems.add(s.source.span(s.variable), f"'{name}' is given twice", "take another name for this repeat")
+            self.problems.add(
+                s.source.span(s.variable), f"'{name}' is given twice", "take another name for this repeat"
+            )
             return
         try:
             low, high = self.bounds(s, env)
@@ -249,14 +288,23 @@ class Expander:
             self.problems.fault(s.source, fault, self.where(env))
             return
         if high < low:
-            self.problems.add(s.source.span(s.token, s.variable), f"this repeat runs from {low} to {high}: not at all",
-                              "the first index is the smaller one", "warning")
+            self.problems.add(
+                s.source.span(s.token, s.variable),
+                f"this repeat runs from {low} to {high}: not at all",
+                "the first index is the smaller one",
+                "warning",
+            )
         outer, self.loop_names = self.loop_names, (*self.loop_names, name)
         for i in range(low, high + 1):
             self.rounds += 1
             if self.rounds > MOST_ROUNDS or self.objects > MOST_OBJECTS:
-                self.problems.add(s.source.span(s.token, s.variable), "this scene repeats without measure: more than "
-                                  f"{MOST_OBJECTS} objects or {MOST_ROUNDS} rounds", "repeat less often", key="objects")
+                self.problems.add(
+                    s.source.span(s.token, s.variable),
+                    "this scene repeats without measure: more than "
+                    f"{MOST_OBJECTS} objects or {MOST_ROUNDS} rounds",
+                    "repeat less often",
+                    key="objects",
+                )
                 break
             self.run(s.body, env.child({**env.values, name: float(i)}, (*env.loops, i)), out)
         self.loop_names = outer
@@ -280,7 +328,9 @@ class Expander:
             return str(name.token)
         v = name.index.run(env)
         if type(v) is not float or v != v or abs(v) > 1e15 or abs(v - round(v)) > 1e-9:
-            raise Fault(name.index.first, f"an index is a whole number, found {units.show(v)}", last=name.index.last)
+            raise Fault(
+                name.index.first, f"an index is a whole number, found {units.show(v)}", last=name.index.last
+            )
         return f"{name.token}[{round(v)}]"
 
     # -- settings
@@ -291,8 +341,11 @@ class Expander:
         given = out.settings.get(word)
         if given and not s.keyword.many:
             first = given[0].entry
-            self.problems.add(s.source.span(s.token), f"{word} is given twice" + (f" in {out.block} {out.name}".rstrip()),
-                              f"first given at {first.source.span(first.token)}")
+            self.problems.add(
+                s.source.span(s.token),
+                f"{word} is given twice" + (f" in {out.block} {out.name}".rstrip()),
+                f"first given at {first.source.span(first.token)}",
+            )
             return
         if word == "seed":
             env = env.child(env.values)
@@ -339,8 +392,17 @@ class Expander:
             return x if v.slot.unit == "?" else self.number(s, v, x, what, v.first, v.last)
         if not isinstance(x, tuple) or len(x) != v.slot.length:
             found = f"{len(x)} numbers" if isinstance(x, tuple) else f"the number {units.show(x)}"
-            hint = "a decimal number is written with a point: 0.5, not 0,5" if isinstance(x, tuple) and len(x) > v.slot.length else ""
-            raise Fault(v.first, f"{what} is a vector {v.slot.text}, found {found}", hint or (f"write {v.slot.text}" if " | " in s.keyword.form else example(s.keyword)), v.last)
+            hint = (
+                "a decimal number is written with a point: 0.5, not 0,5"
+                if isinstance(x, tuple) and len(x) > v.slot.length
+                else ""
+            )
+            raise Fault(
+                v.first,
+                f"{what} is a vector {v.slot.text}, found {found}",
+                hint or (f"write {v.slot.text}" if " | " in s.keyword.form else example(s.keyword)),
+                v.last,
+            )
         names = v.slot.text.strip("()").split(", ")
         return tuple([self.number(s, v, c, f"{n} of {what}", v.first, v.last) for c, n in zip(x, names)])
 
@@ -350,15 +412,26 @@ class Expander:
         rule = s.keyword.rule
         if type(x) is not float:
             if x.dim != dim:
-                raise Fault(first, f"{what} must be {units.describe(dim)}, found {_found(s, v, x)}, {units.describe(x.dim)}",
-                            _unit_hint(dim, x.dim), last)
+                raise Fault(
+                    first,
+                    f"{what} must be {units.describe(dim)}, found {_found(s, v, x)}, {units.describe(x.dim)}",
+                    _unit_hint(dim, x.dim),
+                    last,
+                )
             x = x.value
         elif self.strict and dim != units.NONE:
-            raise Fault(first, f"{what} has no unit: {x:.6g}", f"write {x:.6g} {units.symbol(dim)} (strict mode)", last)
+            raise Fault(
+                first,
+                f"{what} has no unit: {x:.6g}",
+                f"write {x:.6g} {units.symbol(dim)} (strict mode)",
+                last,
+            )
         if x - x != 0.0:
             raise Fault(first, f"{what} is not a finite number", "a calculation in it overflows", last)
         if rule is not Rule.ANY and not rule.holds(x):
-            raise Fault(first, f"{what} must be {rule.value}, found {_found(s, v, units.quantity(x, dim))}", last=last)
+            raise Fault(
+                first, f"{what} must be {rule.value}, found {_found(s, v, units.quantity(x, dim))}", last=last
+            )
         return x
 
     def _color(self, s: Entry, v: Value, x: str) -> str:
@@ -369,19 +442,28 @@ class Expander:
 
     def _half_units(self, s: Entry, raw: list) -> None:
         """``cylinder 10 20 cm`` is 10 m by 20 cm: hardly what was meant."""
-        measured = [(v, x) for v, x in zip(s.values, raw) if v is not None and v.slot.unit not in ("1", "?")
-                    and not isinstance(x, str)]
+        measured = [
+            (v, x)
+            for v, x in zip(s.values, raw)
+            if v is not None and v.slot.unit not in ("1", "?") and not isinstance(x, str)
+        ]
         bare = [v for v, x in measured if _bare(x)]
         if bare and len(bare) < len(measured):
             unit = bare[0].slot.unit
-            self.problems.add(s.source.span(bare[0].first, bare[0].last),
-                              f"this value of {s.keyword.name} has no unit and is read in {unit}, the other one has a unit",
-                              "write a unit after each value", "warning")
+            self.problems.add(
+                s.source.span(bare[0].first, bare[0].last),
+                f"this value of {s.keyword.name} has no unit and is read in {unit}, the other one has a unit",
+                "write a unit after each value",
+                "warning",
+            )
         for v, x in measured:
             if v.slot.unit == "rad" and _bare(x) and max(map(abs, _floats(x))) > 2.0 * math.pi:
-                self.problems.add(s.source.span(v.first, v.last),
-                                  f"an angle without a unit is read in radians: {units.show(x)} rad",
-                                  "write deg after it if degrees are meant", "warning")
+                self.problems.add(
+                    s.source.span(v.first, v.last),
+                    f"an angle without a unit is read in radians: {units.show(x)} rad",
+                    "write deg after it if degrees are meant",
+                    "warning",
+                )
 
 
 def label(s: Entry, v: Value) -> str:
@@ -399,7 +481,13 @@ def _found(s: Entry, v: Value, x) -> str:
     if v.node.constant and v.slot.length == 1:
         return units.show(x)
     text = s.source.excerpt(v.first, v.last)
-    return text if v.node.constant else f"{text} = {units.show(x)}" if v.slot.length == 1 else f"{units.show(x)} in {text}"
+    return (
+        text
+        if v.node.constant
+        else f"{text} = {units.show(x)}"
+        if v.slot.length == 1
+        else f"{units.show(x)} in {text}"
+    )
 
 
 def _unit_hint(dim: units.Dim, found: units.Dim) -> str:

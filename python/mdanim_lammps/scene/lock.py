@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""``scene.lock.txt``: a scene written out in full, every default and every repeat, so that it reads back as the same scene."""
+"""``scene.lock.txt``: a scene written out in full, defaults and repeats, and read back the same."""
 
 from __future__ import annotations
 
 from decimal import Decimal
 
 from . import scene as records
-from .build import IDENTITY
+from .rotation import IDENTITY
 from .scene import Scene, Solid, Vector
 from .words import GLOBALS, KEYWORDS, QUANTITIES
 
@@ -140,7 +140,12 @@ def _solid(s: Solid) -> list[str]:
     settings = [
         ("shape", _shape(s.shape)),
         ("position", f"{_vector(s.position)} m"),
-        ("orientation", f"matrix {' '.join(map(_vector, s.rotation))}" if turned else KEYWORDS["object"]["orientation"].default),
+        (
+            "orientation",
+            f"matrix {' '.join(map(_vector, s.rotation))}"
+            if turned
+            else KEYWORDS["object"]["orientation"].default,
+        ),
         ("mass", f"{s.mass!r} kg") if s.mass is not None else ("density", f"{s.density!r} kg/m^3"),
         ("elasticity", f"{s.elasticity.modulus!r} Pa" if young else f"spring {s.elasticity.k!r} N/m"),
         ("damping", repr(s.damping)),

@@ -9,7 +9,7 @@ from .words import BLOCKS, KEYWORDS, QUANTITIES, Block, Keyword, Rule, syntax, u
 _TOP = """\
 # The scene language
 
-<!-- Written by `python -m mdanim_lammps.scene.words` from the keyword table; change the table, not this page. -->
+<!-- Written by `python -m mdanim_lammps.scene.words` from the keyword table: change that, not this page. -->
 
 A scene is one UTF-8 text file. Here is a whole one:
 
@@ -30,33 +30,38 @@ control {
 
 ## Rules
 
-- `#` starts a comment, up to the end of the line. One setting per line, blocks in braces; several settings may share a line
-  (`control { time 2 s frames 25 fps }`). The order of blocks and settings is free; only a `let` stands above its use.
+- `#` starts a comment, up to the end of the line. One setting per line, blocks in braces; several
+  settings may share a line (`control { time 2 s frames 25 fps }`). The order of blocks and settings is
+  free; only a `let` stands above its use.
 - Texts stand in straight quotes and hold no quote.
-- All problems of a file are reported in one pass, each with its place, the cause, what was found and a way out.
+- All problems of a file are reported in one pass, each with its place, the cause, what was found and a
+  way out.
 - More than 1 000 000 objects are refused before any is made.
 
 ### Numbers, vectors, units
 
-- A number may be calculated: `+ - * / mod ^ ( )`, `sqrt sin cos tan min max abs`, `pi`, `rand(a, b)`. `^` binds strongest and
-  goes from right to left; `-2^2` is -4; `mod` has the sign of the divisor.
+- A number may be calculated: `+ - * / mod ^ ( )`, `sqrt sin cos tan min max abs`, `pi`, `rand(a, b)`. `^`
+  binds strongest and goes from right to left; `-2^2` is -4; `mod` has the sign of the divisor.
 - A vector is `(x, y, z)`. Vectors can be added, and multiplied by a number.
-- A unit may follow any number, vector or bracket. It belongs to everything before it, up to a bracket, a comma, or the sign
-  after the last unit: `rho*a*a kg` is (rho a a) kg, and `1 m + 20 cm` is 1.2 m. Terms of a sum that have a unit already keep theirs:
-  `gap + 20 cm` with `let gap = 5 mm` is 20.5 cm.
-- Bare numbers are SI: metres, kilograms, seconds, radians. `check --strict` refuses bare numbers where a unit belongs.
-- Dimensions are checked: `mass 3 m` is an error, and so is the sum of a length and a time. An angle is not a plain number:
-  write `spin (0, 0, 2) rad/s`, not `1/s`.
-- In operand position a name is a variable, right after a value it is a unit: with `let m = 3`, `m m` is 3 metres.
-- `rand(a, b)` is drawn from `control seed`, its place among the `rand`s of the scene, and the indices of the repeats around it. A
-  scene is always the same scene, and one more round of a repeat leaves the others as they were.
+- A unit may follow any number, vector or bracket. It belongs to everything before it, up to a bracket, a
+  comma, or the sign after the last unit: `rho*a*a kg` is (rho a a) kg, and `1 m + 20 cm` is 1.2 m. Terms
+  of a sum that have a unit already keep theirs: `gap + 20 cm` with `let gap = 5 mm` is 20.5 cm.
+- Bare numbers are SI: metres, kilograms, seconds, radians. `check --strict` refuses bare numbers where a
+  unit belongs.
+- Dimensions are checked: `mass 3 m` is an error, and so is the sum of a length and a time. An angle is
+  not a plain number: write `spin (0, 0, 2) rad/s`, not `1/s`.
+- In operand position a name is a variable, right after a value it is a unit: with `let m = 3`, `m m` is 3
+  metres.
+- `rand(a, b)` is drawn from `control seed`, its place among the `rand`s of the scene, and the indices of
+  the repeats around it. A scene is always the same scene, and one more round of a repeat leaves the
+  others as they were.
 
 | kind | units |
 |---|---|
 """
 
 _AFTER_UNITS = """
-Products, quotients and powers of these are units too: `kg*m/s^2`. `h` (hour) stands only below a fraction bar.
+Products, quotients and powers of these are units too: `kg*m/s^2`. `h` (hour) stands below a fraction bar.
 
 ### let, repeat, include
 
@@ -68,17 +73,18 @@ repeat i in 1 .. n {            # i = 1, 2, ... 8; nests
 include "rubber.txt"            # relative to this file
 ```
 
-- `let name = expression` gives a value a name. `--set name=value` on the command line takes its place. A `let` inside braces is known
-  up to the closing brace.
-- `repeat i in a .. b { }` runs for whole numbers i from a to b; objects, `expect` and `camera` lines, `hold` and other repeats may
-  stand inside.
-- `include "file"` reads another file in its place. Circles and more than 16 levels are errors that show the chain.
+- `let name = expression` gives a value a name. `--set name=value` on the command line takes its place. A
+  `let` inside braces is known up to the closing brace.
+- `repeat i in a .. b { }` runs for whole numbers i from a to b; objects, `expect` and `camera` lines,
+  `hold` and other repeats may stand inside.
+- `include "file"` reads another file in its place. Circles and more than 16 levels are errors that show
+  the chain.
 - There are no conditions and no other loops: every scene ends.
 """
 
 _END = """
-`position` and `velocity` are followed by `.x`, `.y` or `.z`. Time is written `at 2 s`; without it the check is made at the end of
-the run, or over the whole run for residuals and maxima.
+`position` and `velocity` are followed by `.x`, `.y` or `.z`. Time is written `at 2 s`; without
+it the check is made at the end of the run, or over the whole run for residuals and maxima.
 """
 
 
@@ -91,7 +97,9 @@ def language_page() -> str:
         parts += [f"\n## {block.name}\n\n", f"```\n{_head(block)} {{ ... }}\n```\n\n{block.about}\n\n"]
         parts.append(_table(KEYWORDS[block.name].values()))
     parts += ["\n## What `expect` can check\n\n", "| quantity | unit | meaning |\n|---|---|---|\n"]
-    parts += [f"| `{k}.{q}` | {u if u != '1' else '-'} | {about} |\n" for (k, q), (u, about) in QUANTITIES.items()]
+    parts += [
+        f"| `{k}.{q}` | {u if u != '1' else '-'} | {about} |\n" for (k, q), (u, about) in QUANTITIES.items()
+    ]
     parts.append(_END)
     return "".join(parts)
 
@@ -103,7 +111,7 @@ def _head(block: Block) -> str:
 def _table(keywords) -> str:
     rows = ["| setting | unit | must be | default | meaning |\n|---|---|---|---|---|\n"]
     rows += [
-        f"| {_form(k)} | {units_shown(k) or '-'} | {k.rule.value if k.rule is not Rule.ANY else '-'} | {_default(k)} "
+        f"| {_form(k)} | {units_shown(k) or '-'} | {_rule(k)} | {_default(k)} "
         f"| {k.about}{' May be given several times.' if k.many else ''} |\n"
         for k in keywords
     ]
@@ -114,6 +122,10 @@ def _form(k: Keyword) -> str:
     """The forms of a setting, one below the other; a bar would end the cell of the table."""
     choices = [c.replace("|", "\\|") for c in syntax(k).split(" | ")]
     return f"**{k.name}** " + "<br>or ".join(f"`{c}`" for c in choices)
+
+
+def _rule(k: Keyword) -> str:
+    return "-" if k.rule is Rule.ANY else k.rule.value
 
 
 def _default(k: Keyword) -> str:

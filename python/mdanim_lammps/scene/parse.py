@@ -10,9 +10,9 @@ from pathlib import Path
 from ..errors import Problem, SceneError
 from .build import build
 from .expand import Expander
-from .statements import parse, read_text
 from .scene import Scene
-from .source import Problems, Source
+from .source import Problems, Source, read_text
+from .statements import parse
 
 Overrides = Mapping[str, str | float]
 
@@ -20,8 +20,8 @@ Overrides = Mapping[str, str | float]
 def load_scene(path: str | os.PathLike, overrides: Overrides | None = None, strict: bool = False) -> Scene:
     """Read a scene file.
 
-    ``overrides`` are the values of ``--set name=value``: numbers, or text such as ``"12 cm"``. ``strict`` refuses
-    numbers that have a dimension but no unit. Raises SceneError with every problem of the file.
+    ``overrides`` are the values of ``--set name=value``: numbers, or text such as ``"12 cm"``. ``strict``
+    refuses numbers that have a dimension but no unit. Raises SceneError with every problem of the file.
     """
     shown = os.fspath(path)
     try:
@@ -45,14 +45,18 @@ def parse_scene(
 
     Raises SceneError with every problem of the text; ``name`` stands in for the file name.
     """
-    return _scene(Source(name, text, folder=Path(folder) if folder is not None else None), name, overrides, strict)
+    return _scene(
+        Source(name, text, folder=Path(folder) if folder is not None else None), name, overrides, strict
+    )
 
 
 def _scene(source: Source, name: str, overrides: Overrides | None, strict: bool) -> Scene:
     problems = Problems()
     problems.begin(source)
     if not source.text.strip():
-        raise SceneError([Problem(None, f"{source.name} is empty", "a scene has at least an object and a control block")])
+        raise SceneError(
+            [Problem(None, f"{source.name} is empty", "a scene has at least an object and a control block")]
+        )
     body, shared = parse(source, problems)
     out = Expander(shared, overrides, strict).scene(body)
     scene = build(out, problems, name, source) if out is not None else None

@@ -10,8 +10,8 @@ from lark.exceptions import UnexpectedInput
 
 from . import units
 from .expressions import Node, Rand, compile_value, language
+from .forms import Slot
 from .source import Fault, Source
-from .words import Slot
 
 DEEPEST_BRACKET = 60
 
@@ -22,11 +22,17 @@ def found(t: Token) -> str:
 
 
 ODD = {
-    "\u201c": "use straight quotes \"", "\u201d": "use straight quotes \"", "\u201e": "use straight quotes \"",
-    "\u2212": "use the plain minus -", "\u2013": "use the plain minus -", "\u00d7": "multiply with *",
-    "\u00b7": "multiply with *", "\u00b2": "write ^2", "\u00b3": "write ^3", "\u00b0": "write deg", ":": "leave it out",
-    ";": "one setting per line, without ;", "%": 'write a fraction, or accuracy "error 2 %"', "'": "use double quotes \"",
-}  # fmt: skip
+    **dict.fromkeys("\u201c\u201d\u201e'", 'use straight double quotes "'),
+    **dict.fromkeys("\u2212\u2013", "use the plain minus -"),
+    **dict.fromkeys("\u00d7\u00b7", "multiply with *"),
+    "\u00b2": "write ^2",
+    "\u00b3": "write ^3",
+    "\u00b0": "write deg",
+    ":": "leave it out",
+    ";": "one setting per line, without ;",
+    "%": 'write a fraction, or accuracy "error 2 %"',
+}
+"""Signs that the language does not have, and what to write instead."""
 
 
 class Reader:
@@ -58,7 +64,7 @@ class Reader:
             self.at += 1
 
     def expression(self, slot: Slot, stops, more: bool = False) -> Node:
-        """Read one value. ``stops`` are the words that may come next, ``more`` tells that another value may follow."""
+        """Read one value. ``stops``: words that may come next; ``more``: another value may follow."""
         tokens: list[Token] = []
         brackets: list[Token] = []
         wanted, after = "value", "nothing"
@@ -90,7 +96,9 @@ class Reader:
                 elif kind == "LPAR":
                     brackets.append(t)
                     if len(brackets) > DEEPEST_BRACKET:
-                        raise Fault(t, f"more than {DEEPEST_BRACKET} brackets are open here", "split this with let")
+                        raise Fault(
+                            t, f"more than {DEEPEST_BRACKET} brackets are open here", "split this with let"
+                        )
                     push(t)
                 elif kind in ("PLUS", "MINUS"):
                     push(t)
@@ -105,13 +113,21 @@ class Reader:
                     break
             elif kind == "NUMBER":
                 fraction = t == "1" and self.ahead(1).type == "SLASH" and self.ahead(2).type == "NAME"
-                if fraction and after != "unit" and not (more and not inside and str(self.ahead(2)) not in units.UNITS):
+                if (
+                    fraction
+                    and after != "unit"
+                    and not (more and not inside and str(self.ahead(2)) not in units.UNITS)
+                ):
                     push(t, "ONE")
                     after = "unit"
                 elif not inside and (more or after == "bracket" or ".." in stops):
                     break
                 else:
-                    hint = f"write {slot.text}, with commas" if "," in slot.text else "an operator or a comma is missing"
+                    hint = (
+                        f"write {slot.text}, with commas"
+                        if "," in slot.text
+                        else "an operator or a comma is missing"
+                    )
                     raise Fault(t, f"'{t}' follows another value", hint)
             elif kind == "LPAR":
                 if after == "name":
@@ -159,8 +175,11 @@ class Reader:
             return compile_value(tokens)
         except UnexpectedInput as e:
             bad = getattr(e, "token", None) or tokens[-1]
-            raise Fault(bad if bad.type != "$END" else tokens[-1], f"{found(bad)} makes no sense here",
-                        "put brackets around values with units") from None
+            raise Fault(
+                bad if bad.type != "$END" else tokens[-1],
+                f"{found(bad)} makes no sense here",
+                "put brackets around values with units",
+            ) from None
 
     def _unit_follows(self, t: Token, slot: Slot, stops, more: bool, inside: bool, after: str) -> bool:
         """Whether a name after a value is its unit (else it is the next word of the setting)."""
@@ -169,7 +188,11 @@ class Reader:
             return False
         if after == "unit":
             if known:
-                raise Fault(t, f"the unit '{t}' follows another unit", f"write a product of units with *: {self.tokens[self.at - 1]}*{t}")
+                raise Fault(
+                    t,
+                    f"the unit '{t}' follows another unit",
+                    f"write a product of units with *: {self.tokens[self.at - 1]}*{t}",
+                )
             if not inside:
                 return False
         if known:
@@ -189,8 +212,11 @@ class Reader:
         if t.type != "NAME" or str(t) not in units.UNITS and not (t == "h" and operator.type == "SLASH"):
             if t.type == "NAME":
                 raise Fault(t, f"'{t}' is not a unit", units.suggest_unit(str(t)))
-            raise Fault(t, f"a unit is expected after '{operator}', found {found(t)}",
-                        "put the value with its unit in brackets to go on calculating: (2 m) * 3")
+            raise Fault(
+                t,
+                f"a unit is expected after '{operator}', found {found(t)}",
+                "put the value with its unit in brackets to go on calculating: (2 m) * 3",
+            )
         push(t, "UNIT")
 
     def _complete(self, tokens: list, brackets: list, wanted: str, slot: Slot) -> None:
@@ -210,5 +236,9 @@ class Reader:
             raise Fault(t, f"{what}, found {found(t)}", hint)
         if brackets:
             hint = ODD.get(str(t), "") or "add a )"
-            raise Fault(brackets[-1], f"this ( is not closed: found {found(t)}" + (
-                f" at line {t.line}" if t.line != brackets[-1].line else ""), hint)
+            raise Fault(
+                brackets[-1],
+                f"this ( is not closed: found {found(t)}"
+                + (f" at line {t.line}" if t.line != brackets[-1].line else ""),
+                hint,
+            )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The scene as plain frozen records, in SI units: what the language says, and nothing about how it is computed."""
+"""The scene as plain frozen records, in SI units: what the language says, not how it is computed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from ..errors import Span
 Vector = tuple[float, float, float]
 
 
-# --- shapes: body frame, centre of mass at the origin, axes of revolution along z -------------------------------
+# --- shapes: body frame, centre of mass at the origin, axes of revolution along z -------------------------
+
 
 @dataclass(frozen=True, slots=True)
 class Box:
@@ -82,7 +83,8 @@ class Mesh:
 Shape = Box | Sphere | Ellipsoid | Cylinder | Cone | Torus | Mesh
 
 
-# --- objects ----------------------------------------------------------------------------------------------------
+# --- objects ----------------------------------------------------------------------------------------------
+
 
 class Side(Enum):
     """Which face of the body-frame bounding box ``hold face`` names; ``X`` stands for both faces across x."""
@@ -92,7 +94,7 @@ class Side(Enum):
 
 @dataclass(frozen=True, slots=True)
 class HoldFaces:
-    """Particles on these faces of the object (body frame) never move; ``faces x`` is both ``-x`` and ``+x``."""
+    """Particles on these faces (body frame) never move; ``faces x`` is both ``-x`` and ``+x``."""
 
     sides: tuple[Side, ...]
 
@@ -200,7 +202,8 @@ class Walls:
     """[m]"""
 
 
-# --- control, pictures, self-checks -----------------------------------------------------------------------------
+# --- control, pictures, self-checks -----------------------------------------------------------------------
+
 
 class Accuracy(Enum):
     PREVIEW = "preview"
@@ -282,7 +285,7 @@ class Expect:
     tolerance: float = 0.0
     """SI, >= 0."""
     time: float | None = None
-    """[s]; None is the end of the run (for ``strain.max``, ``penetration.max`` and residuals: the whole run)."""
+    """[s]; None is the end of the run (``strain.max``, ``penetration.max``, residuals: the whole run)."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
 

@@ -8,6 +8,8 @@ from pathlib import Path
 
 from ..errors import Problem, SceneError, Span
 
+LARGEST_FILE = 64 * 2**20
+
 MOST_PROBLEMS = 50
 """More than these help nobody; the rest is counted."""
 
@@ -53,6 +55,28 @@ class Source:
     def excerpt(self, first, last) -> str:
         """The text from one token to another, on one line."""
         return self.text[first.start_pos : last.end_pos].replace("\n", " ")
+
+
+def read_text(path: Path) -> str:
+    """Read a UTF-8 text file; raises ValueError with a message for people, or OSError."""
+    if path.is_dir():
+        raise ValueError("is a folder, not a scene file")
+    if not path.is_file():
+        raise ValueError("is not there" if not path.exists() else "is not an ordinary file")
+    if path.stat().st_size > LARGEST_FILE:
+        raise ValueError(f"is larger than {LARGEST_FILE >> 20} MB: this is hardly a scene")
+    data = path.read_bytes()
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise ValueError("is UTF-16 text; save it as UTF-8")
+    if b"\0" in data:
+        raise ValueError("is a binary file, not a text")
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as e:
+        line = data.count(b"\n", 0, e.start) + 1
+        raise ValueError(
+            f"is not UTF-8 text (byte 0x{data[e.start]:02x} in line {line}); save it as UTF-8"
+        ) from None
 
 
 class Problems:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""From text to statements: walks the blocks, reads each setting as words.py says, and goes on after a bad line."""
+"""From text to statements: walks the blocks, reads settings as words.py says, goes on after a bad line."""
 
 from __future__ import annotations
 
@@ -11,99 +11,15 @@ from pathlib import Path
 from lark import Token
 
 from .expressions import RESERVED, Node
+from .forms import Literal, Optional, Slot, alternatives, literals
 from .reader import ODD, Reader, found
-from .source import Fault, Problems, Source
-from .words import (
-    BLOCKS, GLOBALS, KEYWORDS, STATEMENTS, Keyword, Literal, Optional, Slot, alternatives, did_you_mean, example, literals, nearest,
-)  # fmt: skip
+from .source import Fault, Problems, Source, read_text
+from .tree import Broken, Entry, Group, Let, Name, Repeat, Value
+from .words import BLOCKS, GLOBALS, KEYWORDS, STATEMENTS, Keyword, did_you_mean, example, nearest
 
 DEEPEST_REPEAT = 16
 DEEPEST_INCLUDE = 16
 MOST_FILES = 1000
-LARGEST_FILE = 64 * 2**20
-
-
-# --- statements -------------------------------------------------------------------------------------------------
-
-@dataclass(slots=True, eq=False)
-class Name:
-    """``ball`` or ``ball[index]``."""
-
-    token: Token
-    last: Token
-    index: Node | None = None
-
-
-@dataclass(slots=True, eq=False)
-class Value:
-    """What stands in one slot of a setting."""
-
-    slot: Slot
-    first: Token
-    last: Token
-    node: Node | None = None
-    """Numbers and vectors."""
-    text: str = ""
-    """Texts, choices, colours, and the quantity of an expect."""
-    name: Name | None = None
-    """Object names."""
-
-
-@dataclass(slots=True, eq=False)
-class Let:
-    source: Source
-    token: Token
-    node: Node
-
-
-@dataclass(slots=True, eq=False)
-class Repeat:
-    source: Source
-    token: Token
-    variable: Token
-    low: Node
-    high: Node
-    body: list
-
-
-@dataclass(slots=True, eq=False)
-class Entry:
-    """One setting."""
-
-    source: Source
-    token: Token
-    keyword: Keyword
-    words: tuple[str, ...]
-    """The literal words found, e.g. ``("axis", "angle")``."""
-    values: tuple[Value | None, ...]
-    """In the order of the form; None for what was left out."""
-    known: tuple | None = None
-    """The values, once worked out, if they are the same in every repeat."""
-
-    @property
-    def constant(self) -> bool:
-        """Whether no variable is looked at."""
-        return all(v is None or (v.node is None or v.node.constant) and v.name is None for v in self.values)
-
-
-@dataclass(slots=True, eq=False)
-class Group:
-    """One block."""
-
-    source: Source
-    token: Token
-    block: str
-    name: Name | None
-    body: list
-
-
-@dataclass(slots=True, eq=False)
-class Broken:
-    """A statement that could not be read; keeps checks from complaining that something is missing."""
-
-    word: str
-    name: str = ""
-    """What a broken let would have named."""
 
 
 class Unclosed(Exception):
@@ -128,28 +44,6 @@ class Shared:
     """A file or a repeat could not be read, so that names may be missing that are not to blame."""
 
 
-# --- files ------------------------------------------------------------------------------------------------------
-
-def read_text(path: Path) -> str:
-    """Read a UTF-8 text file; raises ValueError with a message for people, or OSError."""
-    if path.is_dir():
-        raise ValueError("is a folder, not a scene file")
-    if not path.is_file():
-        raise ValueError("is not there" if not path.exists() else "is not an ordinary file")
-    if path.stat().st_size > LARGEST_FILE:
-        raise ValueError(f"is larger than {LARGEST_FILE >> 20} MB: this is hardly a scene")
-    data = path.read_bytes()
-    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise ValueError("is UTF-16 text; save it as UTF-8")
-    if b"\0" in data:
-        raise ValueError("is a binary file, not a text")
-    try:
-        return data.decode("utf-8")
-    except UnicodeDecodeError as e:
-        line = data.count(b"\n", 0, e.start) + 1
-        raise ValueError(f"is not UTF-8 text (byte 0x{data[e.start]:02x} in line {line}); save it as UTF-8") from None
-
-
 def parse(source: Source, problems: Problems) -> tuple[list, Shared]:
     """All statements of a scene, includes spliced in; what is wrong goes into ``problems``."""
     shared = Shared(problems)
@@ -169,7 +63,8 @@ def parse_override(source: Source, problems: Problems) -> Node | None:
         return None
 
 
-# --- the walk ---------------------------------------------------------------------------------------------------
+# --- the walk ---------------------------------------------------------------------------------------------
+
 
 class Parser(Reader):
     """Reads one file into statements."""
@@ -194,8 +89,13 @@ class Parser(Reader):
             t = self.peek
             if t.type == "END":
                 if opened is not None:
-                    self.problem(Fault(opened, f"{title}, opened at line {opened.line}, is never closed",
-                                       "add a } where it ends"))
+                    self.problem(
+                        Fault(
+                            opened,
+                            f"{title}, opened at line {opened.line}, is never closed",
+                            "add a } where it ends",
+                        )
+                    )
                 return result
             if t.type == "RBRACE":
                 self.take()
@@ -212,13 +112,21 @@ class Parser(Reader):
                 word, name = self.tokens[start], self.tokens[min(start + 1, len(self.tokens) - 1)]
                 self.skip_statement(start, block)
                 known = [*KEYWORDS[block], *BLOCKS, *STATEMENTS]
-                result.append(Broken(nearest(str(word), known) or str(word), str(name) if word == "let" else ""))
+                result.append(
+                    Broken(nearest(str(word), known) or str(word), str(name) if word == "let" else "")
+                )
             except Unclosed as trouble:
                 self.at = start
                 if opened is None:
                     raise
-                self.problem(Fault(opened, f"{title}, opened at line {opened.line}, is not closed before "
-                                   f"'{trouble.token}' at line {trouble.token.line}", "add a } between them"))
+                self.problem(
+                    Fault(
+                        opened,
+                        f"{title}, opened at line {opened.line}, is not closed before "
+                        f"'{trouble.token}' at line {trouble.token.line}",
+                        "add a } between them",
+                    )
+                )
                 return result
 
     def skip_statement(self, start: int, block: str) -> None:
@@ -242,25 +150,47 @@ class Parser(Reader):
                 depth += (t.type == "LPAR") - (t.type == "RPAR")
                 if t.type == "NEWLINE":
                     n = self.peek
-                    if depth <= 0 or n.type in ("RBRACE", "NEWLINE", "END") or str(n) in KEYWORDS[block] or str(n) in BLOCKS:
+                    if (
+                        depth <= 0
+                        or n.type in ("RBRACE", "NEWLINE", "END")
+                        or str(n) in KEYWORDS[block]
+                        or str(n) in BLOCKS
+                    ):
                         break
         self.at = max(self.at, start + 1)
 
     def word(self) -> Token:
         """A word, hyphens included (``air-drag``)."""
         first = last = self.take()
-        while (self.peek.type == "MINUS" and self.peek.start_pos == last.end_pos
-               and self.ahead(1).type == "NAME" and self.ahead(1).start_pos == self.peek.end_pos):
+        while (
+            self.peek.type == "MINUS"
+            and self.peek.start_pos == last.end_pos
+            and self.ahead(1).type == "NAME"
+            and self.ahead(1).start_pos == self.peek.end_pos
+        ):
             self.take()
             last = self.take()
         if last is first:
             return first
         text = self.source.text[first.start_pos : last.end_pos]
-        return Token("NAME", text, first.start_pos, first.line, first.column, last.end_line, last.end_column, last.end_pos)
+        return Token(
+            "NAME",
+            text,
+            first.start_pos,
+            first.line,
+            first.column,
+            last.end_line,
+            last.end_column,
+            last.end_pos,
+        )
 
     def opens_block(self) -> bool:
         """Whether the next tokens look like the head of a block."""
-        return self.peek.type == "LBRACE" or self.peek.type == "NAME" and self.ahead(1).type in ("LBRACE", "LSQB")
+        return (
+            self.peek.type == "LBRACE"
+            or self.peek.type == "NAME"
+            and self.ahead(1).type in ("LBRACE", "LSQB")
+        )
 
     def statement(self, block: str, opened: Token | None, repeats: int) -> list:
         t = self.peek
@@ -294,7 +224,9 @@ class Parser(Reader):
         if homes and not guess:
             place = " or ".join(f"{b} {{ }}" if b else "the outermost level" for b in homes)
             inside = f"inside {block} {{ }}" if block else "outside of all blocks"
-            raise Fault(word, f"'{word}' cannot stand {inside}", f"it belongs {'in' if homes[0] else 'on'} {place}")
+            raise Fault(
+                word, f"'{word}' cannot stand {inside}", f"it belongs {'in' if homes[0] else 'on'} {place}"
+            )
         kind = f"a setting of {block}" if block else "a word of the scene language"
         owner = next((k for k in KEYWORDS[block].values() if word in literals(k.form)), None)
         hint = did_you_mean(str(word), here)
@@ -314,14 +246,17 @@ class Parser(Reader):
         return not self.source.lines[t.line - 1][: t.column - 1].strip()
 
     def brace(self, after: str, settings=()) -> None:
-        """The { of a block; it may stand on the next line. If a setting stands there, the block goes on without it."""
+        """The { of a block; it may stand on the next line. Before a setting it may be missing."""
         at = self.at
         self.skip_newlines()
         if self.peek.type == "LBRACE":
             self.take()
             return
-        missing = Fault(self.tokens[at], f"a {{ is missing after {after}, found {found(self.tokens[at])}",
-                        "a block stands in braces")
+        missing = Fault(
+            self.tokens[at],
+            f"a {{ is missing after {after}, found {found(self.tokens[at])}",
+            "a block stands in braces",
+        )
         if str(self.peek) not in settings:
             self.at = at
             raise missing
@@ -329,16 +264,26 @@ class Parser(Reader):
 
     def group(self, word: Token, block: str, repeats: int) -> Group:
         if repeats and block != "object":
-            raise Fault(word, f"{block} cannot stand in a repeat", "only objects, expect lines and lets are repeated")
+            raise Fault(
+                word, f"{block} cannot stand in a repeat", "only objects, expect lines and lets are repeated"
+            )
         name = None
         if BLOCKS[block].head:
             if self.peek.type != "NAME":
-                raise Fault(self.peek, f"a name is missing after {block}, found {found(self.peek)}", f"e.g. {block} ball {{")
+                raise Fault(
+                    self.peek,
+                    f"a name is missing after {block}, found {found(self.peek)}",
+                    f"e.g. {block} ball {{",
+                )
             name = self.name()
             if name.index is not None and block != "object":
-                raise Fault(name.token, f"only objects have an index, found {block} {name.token}[...]", last=name.last)
+                raise Fault(
+                    name.token, f"only objects have an index, found {block} {name.token}[...]", last=name.last
+                )
         elif self.peek.type == "NAME":
-            raise Fault(self.peek, f"{block} has no name, found {found(self.peek)}", f"write {block} {{ ... }}")
+            raise Fault(
+                self.peek, f"{block} has no name, found {found(self.peek)}", f"write {block} {{ ... }}"
+            )
         title = f"{block} {name.token}" if name else block
         self.brace(title, KEYWORDS[block])
         return Group(self.source, word, block, name, self.body(block, word, 0, title))
@@ -352,7 +297,9 @@ class Parser(Reader):
         index = self.expression(Slot("number", "index"), frozenset())
         last = self.peek
         if last.type != "RSQB":
-            raise Fault(last, f"a ] is missing after the index of {token}, found {found(last)}", f"write {token}[1]")
+            raise Fault(
+                last, f"a ] is missing after the index of {token}, found {found(last)}", f"write {token}[1]"
+            )
         self.take()
         return Name(token, last, index)
 
@@ -371,7 +318,11 @@ class Parser(Reader):
         name = self.new_name("let")
         self.shared.lets.setdefault(str(name), name.line)
         if self.peek.type != "EQUAL":
-            raise Fault(self.peek, f"an = is missing after let {name}, found {found(self.peek)}", f"write let {name} = 3")
+            raise Fault(
+                self.peek,
+                f"an = is missing after let {name}, found {found(self.peek)}",
+                f"write let {name} = 3",
+            )
         self.take()
         node = self.expression(Slot("let", str(name)), frozenset())
         self.end_of_statement("let", ())
@@ -382,13 +333,19 @@ class Parser(Reader):
             raise Fault(word, f"more than {DEEPEST_REPEAT} repeats stand inside each other")
         variable = self.new_name("repeat")
         if self.peek != "in":
-            raise Fault(self.peek, f"'in' is missing after repeat {variable}, found {found(self.peek)}",
-                        f"write repeat {variable} in 1 .. 10 {{")
+            raise Fault(
+                self.peek,
+                f"'in' is missing after repeat {variable}, found {found(self.peek)}",
+                f"write repeat {variable} in 1 .. 10 {{",
+            )
         self.take()
         low = self.expression(Slot("number", "first"), frozenset([".."]))
         if self.peek.type != "DOTS":
-            raise Fault(self.peek, f"'..' is missing in repeat {variable}, found {found(self.peek)}",
-                        f"write repeat {variable} in 1 .. 10 {{")
+            raise Fault(
+                self.peek,
+                f"'..' is missing in repeat {variable}, found {found(self.peek)}",
+                f"write repeat {variable} in 1 .. 10 {{",
+            )
         self.take()
         high = self.expression(Slot("number", "last"), frozenset())
         title = f"repeat {variable}"
@@ -401,7 +358,7 @@ class Parser(Reader):
         file = str(t)[1:-1]
         path = (self.source.folder / file).resolve() if "\0" not in file else Path()
         if path in self.chain:
-            loop = [p.name for p in self.chain[self.chain.index(path):]] + [path.name]
+            loop = [p.name for p in self.chain[self.chain.index(path) :]] + [path.name]
             raise Fault(t, f"this include goes round in a circle: {' -> '.join(loop)}", "remove one of them")
         self.shared.files += 1
         if len(self.chain) > DEEPEST_INCLUDE:
@@ -413,7 +370,9 @@ class Parser(Reader):
             text = read_text(path)
         except (ValueError, OSError) as e:
             reason = e.strerror if isinstance(e, OSError) else str(e)
-            raise Fault(t, f"cannot include {t}: {path} {reason}", "the name is relative to this file") from None
+            raise Fault(
+                t, f"cannot include {t}: {path} {reason}", "the name is relative to this file"
+            ) from None
         shown = str(Path(self.source.name).parent / file)
         inner = Source(shown, text, path, (*self.source.included_from, self.source.span(word, t)))
         parser = Parser(inner, self.shared, self.chain)
@@ -466,8 +425,9 @@ class Parser(Reader):
             t = self.peek
             if isinstance(part, Literal):
                 if part.text != t and not (part.text == "+-" and t.type == "PLUS_MINUS"):
-                    raise Fault(t, f"'{part.text}' is missing in {keyword.name}, found {found(t)}",
-                                example(keyword))
+                    raise Fault(
+                        t, f"'{part.text}' is missing in {keyword.name}, found {found(t)}", example(keyword)
+                    )
                 words.append(str(self.take()))
             elif isinstance(part, Optional):
                 first = part.parts[0]
@@ -499,7 +459,11 @@ class Parser(Reader):
                 self.take()
                 return Value(slot, t, t, text=str(t)[1:-1])
             if t.type != "NAME":
-                raise Fault(t, f"{keyword.name} needs a colour, found {found(t)}", 'write a name such as red, or "#rrggbb"')
+                raise Fault(
+                    t,
+                    f"{keyword.name} needs a colour, found {found(t)}",
+                    'write a name such as red, or "#rrggbb"',
+                )
             self.take()
             return Value(slot, t, t, text=str(t))
         if slot.kind == "check":
@@ -527,22 +491,37 @@ class Parser(Reader):
             last = self.take()
             text += str(last)
         if text not in slot.choices:
-            raise Fault(first, f"'{text.strip()}' is not one of the choices of {keyword.name}", did_you_mean(text, slot.choices), last)
+            raise Fault(
+                first,
+                f"'{text.strip()}' is not one of the choices of {keyword.name}",
+                did_you_mean(text, slot.choices),
+                last,
+            )
         return Value(slot, first, last, text=text)
 
     def check(self, slot: Slot, keyword: Keyword) -> Value:
         """NAME.QUANTITY of an expect."""
         if self.peek.type != "NAME":
-            raise Fault(self.peek, f"expect needs NAME.QUANTITY, found {found(self.peek)}",
-                        f"NAME is an object, or one of {', '.join(GLOBALS)}")
+            raise Fault(
+                self.peek,
+                f"expect needs NAME.QUANTITY, found {found(self.peek)}",
+                f"NAME is an object, or one of {', '.join(GLOBALS)}",
+            )
         name, words = self.name(), []
         while self.peek.type == "DOT":
             self.take()
             if self.peek.type != "NAME":
-                raise Fault(self.peek, f"the quantity is missing after {name.token}., found {found(self.peek)}")
+                raise Fault(
+                    self.peek, f"the quantity is missing after {name.token}., found {found(self.peek)}"
+                )
             words.append(self.take())
         if not words:
-            raise Fault(name.token, f"expect {name.token} names no quantity", f"e.g. {name.token}.position.z", name.last)
+            raise Fault(
+                name.token,
+                f"expect {name.token} names no quantity",
+                f"e.g. {name.token}.position.z",
+                name.last,
+            )
         return Value(slot, name.token, words[-1], text=".".join(words), name=name)
 
     def end_of_statement(self, what: str, settings) -> None:

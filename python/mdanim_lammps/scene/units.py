@@ -8,10 +8,10 @@ import operator
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache
 
 Dim = tuple
-"""Exponents of (metre, kilogram, second, radian). The angle is kept apart so that ``mass 20 deg`` is an error."""
+"""Exponents of (metre, kilogram, second, radian). With the angle, ``mass 20 deg`` is an error."""
 
 NONE: Dim = (0, 0, 0, 0)
 
@@ -57,7 +57,7 @@ def _dim(text: str) -> Dim:
     exponent = dict.fromkeys(_BASE, 0)
     for part in text.split(","):
         name = part.rstrip("-0123456789")
-        exponent[name] = int(part[len(name):] or 1)
+        exponent[name] = int(part[len(name) :] or 1)
     return tuple(exponent.values())
 
 
@@ -67,7 +67,9 @@ def _number(text: str) -> float:
 
 UNITS: dict[str, Unit] = {
     name: Unit(name, _number(over), _number(under), _dim(dim))
-    for name, over, under, dim in (row.split() for line in _TABLE.split("\n") if line for row in line.split("|"))
+    for name, over, under, dim in (
+        row.split() for line in _TABLE.split("\n") if line for row in line.split("|")
+    )
 }
 """Every unit that may stand alone."""
 
@@ -75,7 +77,7 @@ HOUR = Unit("h", 3600.0, 1.0, UNITS["s"].dim)
 """Only below a fraction bar (``km/h``): alone, ``h`` is too good a name for a height."""
 
 
-@lru_cache(maxsize=None)
+@cache
 def unit(text: str) -> Unit:
     """The unit written as ``N*s/m``; raises KeyError for a word that is none."""
     result, sign, rest = ONE, 1, text
@@ -92,20 +94,43 @@ def unit(text: str) -> Unit:
 NAMES: dict[Dim, tuple[str, str]] = {
     unit(text).dim: (text, name)
     for text, name in (
-        ("m", "a length"), ("kg", "a mass"), ("s", "a time"), ("m^2", "an area"), ("m^3", "a volume"),
-        ("m/s", "a speed"), ("m/s^2", "an acceleration"), ("N", "a force"), ("Pa", "a pressure"),
-        ("kg/m^3", "a density"), ("N/m", "a spring constant"), ("N*s/m", "a drag coefficient"),
-        ("Pa*s", "a viscosity"), ("rad", "an angle"), ("rad/s", "an angular speed"), ("1/s", "a rate"),
+        ("m", "a length"),
+        ("kg", "a mass"),
+        ("s", "a time"),
+        ("m^2", "an area"),
+        ("m^3", "a volume"),
+        ("m/s", "a speed"),
+        ("m/s^2", "an acceleration"),
+        ("N", "a force"),
+        ("Pa", "a pressure"),
+        ("kg/m^3", "a density"),
+        ("N/m", "a spring constant"),
+        ("N*s/m", "a drag coefficient"),
+        ("Pa*s", "a viscosity"),
+        ("rad", "an angle"),
+        ("rad/s", "an angular speed"),
+        ("1/s", "a rate"),
         ("J", "an energy"),
     )
 }
 """Dimensions that have a name, with the SI unit they are shown in."""
 
 LISTED = (
-    ("length", "m mm cm km"), ("time", "s ms min"), ("mass", "kg g t"), ("force", "N kN"),
-    ("pressure", "Pa kPa MPa GPa"), ("speed", "m/s km/h"), ("acceleration", "m/s^2"),
-    ("density", "kg/m^3 g/cm^3"), ("spring constant", "N/m"), ("drag", "N*s/m"), ("viscosity", "Pa*s"),
-    ("volume", "m^3 l"), ("angle", "deg rad"), ("angular speed", "rad/s rpm"), ("rate", "1/s Hz fps"),
+    ("length", "m mm cm km"),
+    ("time", "s ms min"),
+    ("mass", "kg g t"),
+    ("force", "N kN"),
+    ("pressure", "Pa kPa MPa GPa"),
+    ("speed", "m/s km/h"),
+    ("acceleration", "m/s^2"),
+    ("density", "kg/m^3 g/cm^3"),
+    ("spring constant", "N/m"),
+    ("drag", "N*s/m"),
+    ("viscosity", "Pa*s"),
+    ("volume", "m^3 l"),
+    ("angle", "deg rad"),
+    ("angular speed", "rad/s rpm"),
+    ("rate", "1/s Hz fps"),
     ("energy", "J"),
 )
 """The units people use, by kind; products and quotients of them are allowed too."""
@@ -141,7 +166,8 @@ def suggest_unit(word: str, dim: Dim | None = None) -> str:
     return f"{'units that fit' if dim is not None else 'known units'}: {' '.join(choice)}"
 
 
-# --- arithmetic: a bare number is a float, everything with a dimension a Quantity, a vector a tuple of them --------
+# --- arithmetic: a bare number is a float, one with a dimension a Quantity, a vector a tuple of them ------
+
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
@@ -184,7 +210,8 @@ def _same(x: Scalar, y: Scalar, doing: str) -> Dim:
     a, b = dimension(x), dimension(y)
     if a != b and a != NONE and b != NONE:
         raise DimensionError(
-            f"cannot {doing} {describe(a)} and {describe(b)} ({show(x)}, {show(y)})", "both need the same kind of unit"
+            f"cannot {doing} {describe(a)} and {describe(b)} ({show(x)}, {show(y)})",
+            "both need the same kind of unit",
         )
     return a if a != NONE else b
 
@@ -200,7 +227,9 @@ def _pairwise(function, x: object, y: object):
             raise DimensionError(f"these vectors have {len(x)} and {len(y)} numbers")
         return tuple(map(function, x, y))
     if isinstance(x, tuple) or isinstance(y, tuple):
-        raise DimensionError("a vector and a number cannot be added", "write the number as a vector (x, y, z)")
+        raise DimensionError(
+            "a vector and a number cannot be added", "write the number as a vector (x, y, z)"
+        )
     return function(x, y)
 
 
@@ -305,4 +334,4 @@ FUNCTIONS = {
     "max": (1, 99, _extreme(max)),
     "abs": (1, 1, _absolute),
 }
-"""Functions of the language: fewest arguments, most arguments, function. ``rand`` is apart: it needs its place."""
+"""Functions: fewest arguments, most arguments, function. ``rand`` is apart: it needs its place."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The words of the scene language: one table that the parser, the checks, the messages, `explain` and the docs read.
+"""The words of the scene language: one table that parser, checks, messages, `explain` and docs read.
 
 ``python -m mdanim_lammps.scene.words`` prints docs/language.md.
 """
@@ -10,9 +10,6 @@ import re
 from dataclasses import dataclass
 from difflib import get_close_matches
 from enum import Enum
-from functools import lru_cache
-
-from .units import NONE, Dim, unit
 
 
 class Rule(Enum):
@@ -69,94 +66,125 @@ class Block:
     many: bool = False
 
 
-BLOCKS = {
-    b.name: b
-    for b in (
-        Block("object", "NAME[index]", "An elastic solid. Names are free; inside `repeat` an index keeps them apart.", many=True),
-        Block("liquid", "NAME", "The liquid of the scene; there is at most one, and it needs gravity along -z."),
-        Block("effects", "", "Switches effects on or off by hand. `auto`, the default, runs only what the scene calls for; "
-              "`off` on an effect that the scene needs is a warning."),
-        Block("control", "", "How long, how finely, what is saved. Needed: `time`."),
-        Block("render", "", "How the pictures look. Nothing here changes the motion."),
-    )
-}
+BLOCKS = {b.name: b for b in (
+    Block("object", "NAME[index]",
+          "An elastic solid. Names are free; in a `repeat` an index keeps them apart.", many=True),
+    Block("liquid", "NAME", "The liquid of the scene; there is at most one, and it needs gravity along -z."),
+    Block("effects", "", "Switches effects on or off by hand. `auto`, the default, runs only what the scene "
+          "calls for; `off` on an effect that the scene needs is a warning."),
+    Block("control", "", "How long, how finely, what is saved. Needed: `time`."),
+    Block("render", "", "How the pictures look. Nothing here changes the motion."),
+)}  # fmt: skip
+"""Blocks by name."""
 
 WORDS = (
-    Keyword("", "title", '<"text">', '"Cube on a beam"', "Title of the scene, shown by `check` and in the movie.", default='""'),
-    Keyword("", "gravity", "<(gx, gy, gz):m/s^2>", "(0, 0, -9.81) m/s^2", "Acceleration of free fall. Absent or zero: no gravity effect at all. "
-            "With a liquid it must point along -z.", default="(0, 0, 0) m/s^2"),
+    Keyword("", "title", '<"text">', '"Cube on a beam"',
+            "Title of the scene, shown by `check` and in the movie.", default='""'),
+    Keyword("", "gravity", "<(gx, gy, gz):m/s^2>", "(0, 0, -9.81) m/s^2",
+            "Acceleration of free fall. Absent or zero: no gravity effect at all. With a liquid it must "
+            "point along -z.", default="(0, 0, 0) m/s^2"),
     Keyword("", "ground", "z <h:m>", "z 0 m", "A floor plane at height h. Absent: no floor."),
-    Keyword("", "walls", "from <(x0, y0, z0):m> to <(x1, y1, z1):m>", "from (-2, -2, 0) m to (2, 2, 3) m", "A box that objects never leave. Absent: no walls."),
-    Keyword("", "expect", "<NAME.QUANTITY> [at <T:s>] = <value:?> [+- <tolerance:?>]", "ball.position.z at 1 s = 0.1 m +- 1 cm",
-            "A self-check, evaluated after the run; a miss is exit code 6. Without `at`: the end of the run, and the whole "
-            "run for residuals and maxima. Without `+-`: exactly.", many=True),
+    Keyword("", "walls", "from <(x0, y0, z0):m> to <(x1, y1, z1):m>", "from (-2, -2, 0) m to (2, 2, 3) m",
+            "A box that objects never leave. Absent: no walls."),
+    Keyword("", "expect", "<NAME.QUANTITY> [at <T:s>] = <value:?> [+- <tolerance:?>]",
+            "ball.position.z at 1 s = 0.1 m +- 1 cm",
+            "A self-check, evaluated after the run; a miss is exit code 6. Without `at`: the end of the "
+            "run, and the whole run for residuals and maxima. Without `+-`: exactly.", many=True),
 
-    Keyword("object", "shape", "box <(lx, ly, lz):m> | sphere <r:m> | ellipsoid <(rx, ry, rz):m> | cylinder <r:m> <h:m> | "
-            'cone <r:m> <h:m> | torus <R:m> <r:m> | mesh <"file"> [scale <s>]', "sphere 10 cm",
-            "Form of the object in its own frame: edge lengths, radii, heights along z. A mesh is a closed STL, OBJ or PLY "
-            "file, beside the scene file; `scale` is metres per unit of the file, default 1.", Rule.POSITIVE, needed=True),
+    Keyword("object", "shape", "box <(lx, ly, lz):m> | sphere <r:m> | ellipsoid <(rx, ry, rz):m> | "
+            'cylinder <r:m> <h:m> | cone <r:m> <h:m> | torus <R:m> <r:m> | mesh <"file"> [scale <s>]',
+            "sphere 10 cm",
+            "Form of the object in its own frame: edge lengths, radii, heights along z. A mesh is a closed "
+            "STL, OBJ or PLY file, beside the scene file; `scale` is metres per unit of the file, "
+            "default 1.", Rule.POSITIVE, needed=True),
     Keyword("object", "position", "<(x, y, z):m>", "(0, 0, 1) m", "Centre of mass.", needed=True),
     Keyword("object", "orientation", "axis <(x, y, z)> angle <a:rad> | euler <(rx, ry, rz):rad> | "
             "matrix <(xx, xy, xz)> <(yx, yy, yz)> <(zx, zy, zz)>", "axis (1, 1, 0) angle 20 deg",
-            "Turn about the centre of mass. `euler` turns about x, then y, then z, all fixed axes. `matrix` gives the rows "
-            "of the rotation matrix (world = matrix * body); `scene.lock.txt` uses it.",
-            default="axis (0, 0, 1) angle 0 rad"),
-    Keyword("object", "mass", "<m:kg>", "2 kg", "Mass of the whole object.", Rule.POSITIVE, one_of=("mass", "density")),
-    Keyword("object", "density", "<rho:kg/m^3>", "900 kg/m^3", "Mass per volume.", Rule.POSITIVE, one_of=("mass", "density")),
-    Keyword("object", "elasticity", "<E:Pa> | spring <k:N/m>", "200 kPa", "Young's modulus; or the paper's one k for every spring, "
-            "Wcislo 1999, eq. (3.6).", Rule.POSITIVE, needed=True),
-    Keyword("object", "damping", "<zeta>", "0.05", "Internal damping, as a fraction of critical damping in each spring.",
-            Rule.NOT_NEGATIVE, "0"),
-    Keyword("object", "velocity", "<(vx, vy, vz):m/s>", "(0, 0, -1) m/s", "Velocity at the start.", default="(0, 0, 0) m/s"),
-    Keyword("object", "spin", "<(wx, wy, wz):rad/s>", "(0, 0, 2) rad/s", "Angular velocity at the start, about the axes of the world.",
-            default="(0, 0, 0) rad/s"),
-    Keyword("object", "drag", "<lambda:N*s/m>", "0.5 N*s/m", "Air drag of the whole object, F = -lambda v, eq. (3.9).",
-            Rule.NOT_NEGATIVE, "0 N*s/m"),
-    Keyword("object", "hold", "faces <x|y|z> | face <-x|+x|-y|+y|-z|+z> | all | within box <(x0, y0, z0):m> to <(x1, y1, z1):m>", "faces x",
-            "Particles that never move: both faces across an axis of the object, one face, all of them (a wedge, an "
-            "obstacle), or those inside a box of the world at the start.", many=True),
-    Keyword("object", "color", "<color>", "steelblue", 'Colour in pictures: a CSS name or "#rrggbb". Absent: chosen automatically.'),
+            "Turn about the centre of mass. `euler` turns about x, then y, then z, all fixed axes. "
+            "`matrix` gives the rows of the rotation matrix (world = matrix * body); `scene.lock.txt` "
+            "uses it.", default="axis (0, 0, 1) angle 0 rad"),
+    Keyword("object", "mass", "<m:kg>", "2 kg",
+            "Mass of the whole object.", Rule.POSITIVE, one_of=("mass", "density")),
+    Keyword("object", "density", "<rho:kg/m^3>", "900 kg/m^3",
+            "Mass per volume.", Rule.POSITIVE, one_of=("mass", "density")),
+    Keyword("object", "elasticity", "<E:Pa> | spring <k:N/m>", "200 kPa",
+            "Young's modulus; or the paper's one k for every spring, Wcislo 1999, eq. (3.6).",
+            Rule.POSITIVE, needed=True),
+    Keyword("object", "damping", "<zeta>", "0.05",
+            "Internal damping, as a fraction of critical damping in each spring.", Rule.NOT_NEGATIVE, "0"),
+    Keyword("object", "velocity", "<(vx, vy, vz):m/s>", "(0, 0, -1) m/s",
+            "Velocity at the start.", default="(0, 0, 0) m/s"),
+    Keyword("object", "spin", "<(wx, wy, wz):rad/s>", "(0, 0, 2) rad/s",
+            "Angular velocity at the start, about the axes of the world.", default="(0, 0, 0) rad/s"),
+    Keyword("object", "drag", "<lambda:N*s/m>", "0.5 N*s/m",
+            "Air drag of the whole object, F = -lambda v, eq. (3.9).", Rule.NOT_NEGATIVE, "0 N*s/m"),
+    Keyword("object", "hold", "faces <x|y|z> | face <-x|+x|-y|+y|-z|+z> | all | "
+            "within box <(x0, y0, z0):m> to <(x1, y1, z1):m>", "faces x",
+            "Particles that never move: both faces across an axis of the object, one face, all of them (a "
+            "wedge, an obstacle), or those inside a box of the world at the start.", many=True),
+    Keyword("object", "color", "<color>", "steelblue",
+            'Colour in pictures: a CSS name or "#rrggbb". Absent: chosen automatically.'),
 
-    Keyword("liquid", "basin", "from <(x0, y0, z0):m> to <(x1, y1, z1):m>", "from (-1, -1, 0) m to (1, 1, 1.2) m",
+    Keyword("liquid", "basin", "from <(x0, y0, z0):m> to <(x1, y1, z1):m>",
+            "from (-1, -1, 0) m to (1, 1, 1.2) m",
             "Solid floor and side walls; for objects the walls go on upward.", needed=True),
-    Keyword("liquid", "density", "<rho:kg/m^3>", "1000 kg/m^3", "Mass per volume.", Rule.POSITIVE, needed=True),
-    Keyword("liquid", "volume", "<V:m^3>", "2 m^3", "Volume, rounded to whole cells.", Rule.POSITIVE, one_of=("volume", "level")),
-    Keyword("liquid", "level", "<z:m>", "0.5 m", "Height of the surface at the start.", one_of=("volume", "level")),
-    Keyword("liquid", "drag", "auto | <gamma:1/s>", "4 1/s", "Immersed solids feel F = -gamma rho V v with the immersed volume V; "
-            "`auto` is sqrt(g/L) for a body of size L.", Rule.NOT_NEGATIVE, "auto"),
-    Keyword("liquid", "model", "<surface|paper>", "surface", "`surface`: draft after Archimedes, occupancy by hexahedra, level rule. "
-            "`paper`: the literal rules of the paper, flagged as such.", default="surface"),
+    Keyword("liquid", "density", "<rho:kg/m^3>", "1000 kg/m^3",
+            "Mass per volume.", Rule.POSITIVE, needed=True),
+    Keyword("liquid", "volume", "<V:m^3>", "2 m^3",
+            "Volume, rounded to whole cells.", Rule.POSITIVE, one_of=("volume", "level")),
+    Keyword("liquid", "level", "<z:m>", "0.5 m",
+            "Height of the surface at the start.", one_of=("volume", "level")),
+    Keyword("liquid", "drag", "auto | <gamma:1/s>", "4 1/s",
+            "Immersed solids feel F = -gamma rho V v with the immersed volume V; `auto` is sqrt(g/L) for a "
+            "body of size L.", Rule.NOT_NEGATIVE, "auto"),
+    Keyword("liquid", "model", "<surface|paper>", "surface",
+            "`surface`: draft after Archimedes, occupancy by hexahedra, level rule. `paper`: the literal "
+            "rules of the paper, flagged as such.", default="surface"),
     Keyword("liquid", "sweeps", "auto | <n>", "4", "Sweeps of the automaton per update.", Rule.COUNT, "auto"),
 
-    Keyword("effects", "gravity", "<on|off|auto>", "off", "Called for by a gravity vector that is not zero.", default="auto"),
-    Keyword("effects", "springs", "<on|off|auto>", "off", "Called for by an object that is not all held.", default="auto"),
-    Keyword("effects", "contact", "<on|off|auto>", "off", "Called for by two objects that can meet.", default="auto"),
+    Keyword("effects", "gravity", "<on|off|auto>", "off",
+            "Called for by a gravity vector that is not zero.", default="auto"),
+    Keyword("effects", "springs", "<on|off|auto>", "off",
+            "Called for by an object that is not all held.", default="auto"),
+    Keyword("effects", "contact", "<on|off|auto>", "off",
+            "Called for by two objects that can meet.", default="auto"),
     Keyword("effects", "ground", "<on|off|auto>", "off", "Called for by `ground`.", default="auto"),
     Keyword("effects", "walls", "<on|off|auto>", "off", "Called for by `walls`.", default="auto"),
-    Keyword("effects", "air-drag", "<on|off|auto>", "off", "Called for by an object's `drag`.", default="auto"),
-    Keyword("effects", "damping", "<on|off|auto>", "off", "Called for by an object's `damping`.", default="auto"),
+    Keyword("effects", "air-drag", "<on|off|auto>", "off",
+            "Called for by an object's `drag`.", default="auto"),
+    Keyword("effects", "damping", "<on|off|auto>", "off",
+            "Called for by an object's `damping`.", default="auto"),
     Keyword("effects", "liquid", "<on|off|auto>", "off", "Called for by `liquid`.", default="auto"),
-    Keyword("effects", "buoyancy", "<on|off|auto>", "off", "Called for by a liquid that an object can reach.", default="auto"),
-    Keyword("effects", "liquid-drag", "<on|off|auto>", "off", "Called for by a liquid that an object can reach.", default="auto"),
+    Keyword("effects", "buoyancy", "<on|off|auto>", "off",
+            "Called for by a liquid that an object can reach.", default="auto"),
+    Keyword("effects", "liquid-drag", "<on|off|auto>", "off",
+            "Called for by a liquid that an object can reach.", default="auto"),
 
     Keyword("control", "time", "<T:s>", "3 s", "Simulated duration.", Rule.POSITIVE, needed=True),
-    Keyword("control", "frames", "<n:1/s>", "25 fps", "Frames per simulated second.", Rule.POSITIVE, "30 fps"),
-    Keyword("control", "timestep", "auto | <dt:s>", "0.1 ms", "`auto` is certified before the run; a number above the bound is refused.",
+    Keyword("control", "frames", "<n:1/s>", "25 fps",
+            "Frames per simulated second.", Rule.POSITIVE, "30 fps"),
+    Keyword("control", "timestep", "auto | <dt:s>", "0.1 ms",
+            "`auto` is certified before the run; a number above the bound is refused.",
             Rule.POSITIVE, "auto"),
     Keyword("control", "resolution", "auto | <h:m>", "2 cm", "Particle spacing.", Rule.POSITIVE, "auto"),
     Keyword("control", "accuracy", 'preview | balanced | reference | <"error p %">', '"error 2 %"',
             "How finely objects are resolved, or the error that is aimed at.", default="balanced"),
     Keyword("control", "seed", "<n>", "7", "Seed of `rand` and of the liquid.", Rule.WHOLE, "1"),
-    Keyword("control", "save", "<all|boundary> [<single|double>]", "boundary single", "Which particles the trajectory holds, and its precision; "
-            "the size is told before the run.", default="all double"),
+    Keyword("control", "save", "<all|boundary> [<single|double>]", "boundary single",
+            "Which particles the trajectory holds, and its precision; the size is told before the run.",
+            default="all double"),
 
-    Keyword("render", "size", "<(w, h)>", "(1920, 1080)", "Width and height of the pictures in pixels.", Rule.COUNT, "(1280, 720)"),
-    Keyword("render", "movie", '<"file.mp4">', '"ball.mp4"', "Name of the movie. Absent: `movie.mp4` in the output folder."),
-    Keyword("render", "background", "<color>", "white", 'Background: a CSS name or "#rrggbb". Absent: chosen automatically.'),
-    Keyword("render", "camera", "[<T:s>] from <(x, y, z):m> look <(x, y, z):m or NAME> [up <(x, y, z)>]", "from (4, -4, 2) m look (0, 0, 0.5) m",
-            "Where the camera stands and what it looks at; several lines with times T make a smooth path. `look NAME` follows "
-            "an object. Absent: chosen so that everything is seen.", many=True),
-)
+    Keyword("render", "size", "<(w, h)>", "(1920, 1080)",
+            "Width and height of the pictures in pixels.", Rule.COUNT, "(1280, 720)"),
+    Keyword("render", "movie", '<"file.mp4">', '"ball.mp4"',
+            "Name of the movie. Absent: `movie.mp4` in the output folder."),
+    Keyword("render", "background", "<color>", "white",
+            'Background: a CSS name or "#rrggbb". Absent: chosen automatically.'),
+    Keyword("render", "camera", "[<T:s>] from <(x, y, z):m> look <(x, y, z):m or NAME> [up <(x, y, z)>]",
+            "from (4, -4, 2) m look (0, 0, 0.5) m",
+            "Where the camera stands and what it looks at; several lines with times T make a smooth path. "
+            "`look NAME` follows an object. Absent: chosen so that everything is seen.", many=True),
+)  # fmt: skip
 
 KEYWORDS: dict[str, dict[str, Keyword]] = {
     block: {w.name: w for w in WORDS if w.block == block} for block in ("", *BLOCKS)
@@ -164,16 +192,27 @@ KEYWORDS: dict[str, dict[str, Keyword]] = {
 """Keywords by block and name."""
 
 STATEMENTS = {
-    "let": ("let name = expression", "Gives a number, a quantity or a vector a name. `--set name=value` overrides it."),
+    "let": (
+        "let name = expression",
+        "Gives a number, a quantity or a vector a name. `--set name=value` overrides it.",
+    ),
     "repeat": ("repeat i in a .. b { ... }", "Repeats what is in the braces for i = a, a + 1, ... b; nests."),
-    "include": ('include "file"', "Reads another file in this place; its name is relative to the including file."),
+    "include": (
+        'include "file"',
+        "Reads another file in this place; its name is relative to the including file.",
+    ),
 }
 """Statements that are not settings: how they are written, what they do."""
 
 QUANTITIES = {
-    **{("NAME", f"{what}.{axis}"): (u, f"{about}, {axis}")
-       for what, u, about in (("position", "m", "centre of mass"), ("velocity", "m/s", "velocity of the centre of mass"))
-       for axis in "xyz"},
+    **{
+        ("NAME", f"{what}.{axis}"): (u, f"{about}, {axis}")
+        for what, u, about in (
+            ("position", "m", "centre of mass"),
+            ("velocity", "m/s", "velocity of the centre of mass"),
+        )
+        for axis in "xyz"
+    },
     ("NAME", "draft"): ("m", "immersed depth of an object; needs a liquid"),
     ("NAME", "strain.max"): ("1", "largest relative change of length of a spring"),
     ("liquid", "volume"): ("m^3", "volume of the liquid"),
@@ -188,95 +227,14 @@ GLOBALS = ("liquid", "energy", "penetration")
 """Subjects of ``expect`` that are no objects."""
 
 
-# --- forms ------------------------------------------------------------------------------------------------------
-
-@dataclass(frozen=True, slots=True)
-class Literal:
-    """A word or sign that stands as it is."""
-
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
-class Slot:
-    """A place for a value."""
-
-    kind: str
-    """number, vector, text, choice, color, place or check."""
-    text: str
-    """As shown to people: ``r``, ``(x, y, z)``."""
-    unit: str = "1"
-    """SI unit; ``?`` is that of the quantity checked."""
-    length: int = 1
-    """Numbers of a vector."""
-    choices: tuple[str, ...] = ()
-    dim: Dim = NONE
-    """The dimension that the value must have."""
-
-
-@dataclass(frozen=True, slots=True)
-class Optional:
-    """Parts that may be left out together."""
-
-    parts: tuple
-
-
-def _slot(text: str) -> Slot:
-    shown, _, u = text.partition(":")
-    u, _, other = u.partition(" or ")
-    u = u or "1"
-    dim = NONE if u == "?" else unit(u).dim
-    if shown.startswith("("):
-        return Slot("place" if other else "vector", shown, u, shown.count(",") + 1, dim=dim)
-    if shown.startswith('"'):
-        return Slot("text", shown)
-    if "|" in shown:
-        return Slot("choice", shown, choices=tuple(shown.split("|")))
-    if shown == "color":
-        return Slot("color", shown)
-    if shown == "NAME.QUANTITY":
-        return Slot("check", shown)
-    return Slot("number", shown, u, dim=dim)
-
-
-@lru_cache(maxsize=None)
-def alternatives(form: str) -> tuple[tuple, ...]:
-    """A form as alternatives, each a tuple of Literal, Slot and Optional."""
-    result, parts, outer = [], [], []
-    for part in re.findall(r"<[^>]*>|\[|\]|[^\s\[\]<]+", form):
-        if part == "|":
-            result.append(tuple(parts))
-            parts = []
-        elif part == "[":
-            outer.append(parts)
-            parts = []
-        elif part == "]":
-            outer[-1].append(Optional(tuple(parts)))
-            parts = outer.pop()
-        else:
-            parts.append(_slot(part[1:-1]) if part.startswith("<") else Literal(part))
-    return (*result, tuple(parts))
-
-
 def example(keyword: Keyword) -> str:
     """``e.g. mass 2 kg``"""
     return f"e.g. {keyword.name} {keyword.example}"
 
 
-def literals(form: str) -> frozenset[str]:
-    """Every literal word of a form."""
-    def words(parts):
-        for p in parts:
-            if isinstance(p, Literal):
-                yield p.text
-            elif isinstance(p, Optional):
-                yield from words(p.parts)
-
-    return frozenset(w for a in alternatives(form) for w in words(a))
-
-
 def syntax(keyword: Keyword) -> str:
     """A form for people: ``box (lx, ly, lz) | sphere r``, units in brackets."""
+
     def shown(match: re.Match) -> str:
         text, _, u = match[1].partition(":")
         u, _, other = u.partition(" or ")
@@ -291,7 +249,8 @@ def units_shown(keyword: Keyword) -> str:
     return ", ".join(dict.fromkeys(u for u in found if u not in ("?", "1")))
 
 
-# --- help -------------------------------------------------------------------------------------------------------
+# --- help -------------------------------------------------------------------------------------------------
+
 
 def did_you_mean(word: str, choices) -> str:
     """``did you mean 'mass'?``, or the choices where none is near."""

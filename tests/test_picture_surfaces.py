@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Shaded meshes: crisp where a shape has edges, smooth where it is round, right after any motion."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from picture_samples import ball, box, slab_scene, solid
+
+from mdanim_lammps.picture.surfaces import shaded_mesh
+from mdanim_lammps.results.catalogue import catalogue_of
+from mdanim_lammps.scene import scene as records
+
+
+def prepared(*models):
+    """Mesh and positions of models at rest."""
+    scene = records.Scene("s", records.Control(1.0), solids=tuple(solid(m, (0, 0, 0)) for m in models))
+    position = np.concatenate([m.position for m in models])
+    return shaded_mesh(catalogue_of(scene, models), position), position
+
+
+def test_box_keeps_its_edges():
+    """All normals of a box are those of its six faces; each corner is there three times."""
+    mesh, position = prepared(box("box", (2, 1, 1), (4, 2, 2), (0, 0, 0)))
+    vertices = mesh.vertices(position)
+    normals = mesh.normals(vertices)
+    # 26 of the 27 + 18 lattice points lie outside: 6 faces with (5*3, 5*3, 3*3) points each, all apart.
+    assert len(vertices) == 2 * (5 * 3 + 5 * 3 + 3 * 3)
+    np.testing.assert_allclose(np.abs(normals).max(axis=1), 1.0, rtol=0, atol=1e-12)
+    assert (np.einsum("vd,vd->v", normals, vertices) > 0).all()
+    assert (np.linalg.norm(vertices - [1.0, 0.5, 0.5], axis=1) < 1e-12).sum() == 3
+
+
+def test_ball_is_smooth():
+    """No vertex of a ball is doubled, and its normals point from the centre."""
+    model = ball("ball", 0.5, 0.2, (3, 2, 1))
+    mesh, position = prepared(model)
+    vertices = mesh.vertices(position)
+    assert len(vertices) == len(model.surface.index)
+    radial = (vertices - [3, 2, 1]) / 0.5
+    np.testing.assert_allclose(np.linalg.norm(radial, axis=1), 1.0, rtol=0, atol=1e-6)  # the sphere's float32
+    # Facets of 7.5 degrees, long ones at the poles: their mean at a vertex is off by a quarter of one.
+    assert np.einsum("vd,vd->v", mesh.normals(vertices), radial).min() > np.cos(np.radians(2.0))
+
+
+def test_creases_do_not_depend_on_the_frame():
+    """A box bent into an arc keeps the same vertices, and turned bodies have turned normals."""
+    mesh, position = prepared(box("box", (2, 1, 1), (4, 2, 2), (0, 0, 0)))
+    turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    before = mesh.normals(mesh.vertices(position))
+    after = mesh.normals(mesh.vertices(position @ turn.T))
+    np.testing.assert_allclose(after, before @ turn.T, rtol=0, atol=1e-12)
+    bent = position + np.stack([0 * position[:, 0], 0 * position[:, 0], position[:, 0] ** 2], axis=1)
+    assert np.isfinite(mesh.normals(mesh.vertices(bent))).all()
+
+
+def test_many_objects_are_one_mesh():
+    """Each vertex belongs to the object that carries it, and equals that object's own surface."""
+    _, models = slab_scene()
+    mesh, position = prepared(*models)
+    moved = position * [1.1, 0.9, 1.0] + [0.3, 0.0, -0.2]
+    vertices = mesh.vertices(moved)
+    first = 0
+    for index, model in enumerate(models):
+        own = model.surface.vertices(moved[first : first + len(model.position)])
+        mine = vertices[mesh.object_of_vertex == index]
+        assert {tuple(v) for v in mine.round(9)} == {tuple(v) for v in own.round(9)}
+        first += len(model.position)
+
+
+@pytest.mark.parametrize("collapsed", [0.0, 1e-300])
+def test_flat_triangles_give_no_nan(collapsed):
+    """A body pressed to nothing has no normals, and no NaN either."""
+    mesh, position = prepared(box("box", (1, 1, 1), (2, 2, 2), (0, 0, 0)))
+    assert np.isfinite(mesh.normals(mesh.vertices(position * collapsed))).all()
