@@ -9,9 +9,9 @@ from model_samples import MESHES, SHAPES, model, scene, shape_id, solid
 
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.model import build_models, plan_spacing, shapes, spacing
-from mdanim_lammps.model.cells import box_counts, fill_cells
+from mdanim_lammps.model.cells import _without_nubs, box_counts, fill_cells
 from mdanim_lammps.model.springs import MAX_ASPECT
-from mdanim_lammps.scene.scene import Accuracy, Box, Cylinder, HoldAll, Liquid, Mesh, Sphere
+from mdanim_lammps.scene.scene import Accuracy, Box, Cone, Cylinder, HoldAll, Liquid, Mesh, Sphere
 
 BEAM = Box((1.2, 0.3, 0.1))
 
@@ -135,9 +135,12 @@ def test_a_cuboid_that_cannot_be_divided_is_refused():
 
 
 @pytest.mark.parametrize("shape", [s for s in SHAPES if not isinstance(s, Box)], ids=shape_id)
-@pytest.mark.parametrize(("cells", "error"), [(3, 0.06), (4, 0.03), (8, 0.01)])
+@pytest.mark.parametrize(("cells", "error"), [(3, 0.06), (4, 0.06), (8, 0.015)])
 def test_filled_cells_have_nearly_the_volume(shape, cells, error):
-    """Fill the volume within a few per cent with cubes near the spacing, in one piece."""
+    """Fill the volume within a few per cent with cubes near the spacing, in one piece.
+
+    The volume is no better because the outline counts too: a tenth of a cell that stands out weighs as much as 1 %.
+    """
     from scipy import ndimage
 
     h = shapes.thickness(shape) / cells
@@ -181,3 +184,30 @@ def test_all_problems_come_in_one_pass():
         plan_spacing(scene(*bodies))
     assert [p.message.split(":")[0] for p in caught.value.problems] == ["missing.stl", "open.obj"]
     assert all(p.line == 2 and p.hint for p in caught.value.problems)
+
+
+@pytest.mark.parametrize("shape", [s for s in SHAPES if not isinstance(s, Box)], ids=shape_id)
+@pytest.mark.parametrize("cells", [4, 8])
+def test_filled_cells_have_nearly_the_outline(shape, cells):
+    """Stay within 0.4 cells of the shape on all six sides, so that others rest on it where it is drawn.
+
+    A cone's rim is thinner than a cell: half a cell there, and the tip may end early.
+    """
+    low, high = shapes.extent(shape)
+    filled = fill_cells(shape, shapes.thickness(shape) / cells)
+    off = np.concatenate([low - filled.low, filled.high - high]) / filled.edge[0]
+    if isinstance(shape, Cone):
+        assert off[5] > -2.5
+        off[5] = 0.0
+    assert np.abs(off).max() <= (0.5 + 1e-9 if isinstance(shape, Cone) else 0.4)
+
+
+def test_a_nub_is_taken_away_and_a_needle_is_not():
+    """Drop a cell that stands alone on a flat face; keep the cells of a needle, one thick."""
+    block = np.zeros((5, 5, 5), bool)
+    block[:4] = True
+    with_nub = block.copy()
+    with_nub[4, 2, 2] = True
+    np.testing.assert_array_equal(_without_nubs(with_nub), block)
+    needle = np.ones((6, 1, 1), bool)
+    np.testing.assert_array_equal(_without_nubs(needle), needle)

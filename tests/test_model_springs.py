@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Bodies of springs against linear elasticity and the beam of the textbook, by sparse linear algebra."""
 
+from itertools import product
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,7 +11,7 @@ from scipy.sparse import diags
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 from twin import lattice as twin
 
-from mdanim_lammps.model.lattice import Cells, make_lattice
+from mdanim_lammps.model.lattice import AXES, OFFSETS, Cells, make_lattice
 from mdanim_lammps.model.springs import dashpots, spring_constants, stiffness
 from mdanim_lammps.scene.scene import Box, SpringConstant, Young
 
@@ -65,7 +66,7 @@ def test_a_bar_of_cuboid_cells_is_isotropic_too(size, cell):
     count = np.rint(np.divide(size, cell)).astype(int)
     lattice = make_lattice(Cells(np.ones(count[::-1], bool), np.zeros(3), np.array(size)))
 
-    k = stiffness(lattice.kind, lattice.holders, lattice.cells.edge, Young(3.0))
+    k = stiffness(lattice, Young(3.0))
     assert k.min() > 0
     body = SimpleNamespace(position=lattice.position, spring=lattice.spring, stiffness=k, share=lattice.share)
     young, nu = stretched(body)
@@ -84,7 +85,41 @@ def test_the_naked_lattice_of_the_paper_is_too_stiff():
 
 def test_constants_of_a_cube_are_all_equal():
     """Give edges and face diagonals 0.4 E h where cells are cubes."""
-    np.testing.assert_allclose(spring_constants(np.full(3, 0.05), 3e5), 0.4 * 3e5 * 0.05, rtol=1e-14)
+    k = spring_constants(np.full(3, 0.05), 3e5)
+    np.testing.assert_allclose(k[AXES < 3], 0.4 * 3e5 * 0.05, rtol=1e-14)
+    assert (k[AXES == 3] == 0).all()
+
+
+@pytest.mark.parametrize("brace", [0.0, 0.1, 0.3])
+@pytest.mark.parametrize("cell", [(1.0, 1.0, 1.0), (1.2, 1.0, 1.1)])
+def test_constants_make_an_isotropic_solid_braced_or_not(cell, brace):
+    """Sum k l^2 n n n n over the springs of a cell: C11 = 1.2 E, C12 = C44 = 0.4 E along every axis."""
+    cell = np.array(cell)
+    # One edge per axis, both diagonals of one face per plane and all four body diagonals belong to a cell.
+    l = OFFSETS * cell
+    k = spring_constants(cell, 2.5, brace)
+    c = np.einsum("s,si,sj,sk,sl->ijkl", k / (l**2).sum(1), l, l, l, l) / cell.prod()
+    for i, j in product(range(3), repeat=2):
+        assert c[i, i, j, j] == pytest.approx((1.2 if i == j else 0.4) * 2.5, rel=1e-12)
+        assert c[i, j, i, j] == pytest.approx((1.2 if i == j else 0.4) * 2.5, rel=1e-12)
+    assert c[0, 0, 0, 1] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_corner_pushed_through_its_cell_comes_back():
+    """Let the braced corner of a held cube of cells go at any place within its cell: it returns to its own."""
+    lattice = make_lattice(Cells(np.ones((3, 3, 3), bool), np.zeros(3), np.full(3, 3.0)))
+    corner = len(lattice.position) - 1
+    k = stiffness(lattice, Young(1.0))
+    mine = (lattice.spring == corner).any(axis=1)
+    other = lattice.position[lattice.spring[mine].sum(axis=1) - corner]
+    rest = np.linalg.norm(lattice.position[corner] - other, axis=1)
+    for start in product((-0.05, -0.3, -0.7, -1.02), repeat=3):
+        x = lattice.position[corner] + start
+        for _ in range(4000):
+            d = x - other
+            r = np.linalg.norm(d, axis=1)
+            x = x - 0.5 * ((k[mine] * (r - rest) / np.maximum(r, 1e-12)) @ d)
+        np.testing.assert_allclose(x, lattice.position[corner], atol=1e-6, err_msg=f"let go at {start}")
 
 
 def test_dashpots_damp_two_particles_by_the_fraction_asked_for():

@@ -11,7 +11,8 @@ import numpy as np
 def lattice(filled):
     """Everything by definition, in plain loops, for filled cells (z, y, x).
 
-    Returns nodes {(z, y, x): filled cells around it} and springs {(node, node): filled cells that hold both}.
+    Returns nodes {(z, y, x): filled cells around it} and springs {(node, node): filled cells that hold both}. A cell with
+    a corner of its own has its body diagonals too.
     """
     nodes, springs = {}, {}
     for cell in zip(*np.nonzero(filled)):
@@ -21,6 +22,12 @@ def lattice(filled):
         for a, b in combinations(corners, 2):
             if sum(p != q for p, q in zip(a, b)) <= 2:
                 springs[min(a, b), max(a, b)] = springs.get((min(a, b), max(a, b)), 0) + 1
+    for cell in zip(*np.nonzero(filled)):
+        corners = [tuple(int(c) + d for c, d in zip(cell, step)) for step in product((0, 1), repeat=3)]
+        if any(nodes[corner] == 1 for corner in corners):
+            for a, b in combinations(corners, 2):
+                if all(p != q for p, q in zip(a, b)):
+                    springs[min(a, b), max(a, b)] = 1
     return nodes, springs
 
 

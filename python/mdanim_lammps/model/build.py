@@ -96,10 +96,11 @@ def _make_fabric(
     m = lattice.share * (mass / lattice.share.sum())
     m *= mass / m.sum()
     edge = lattice.cells.edge
-    spring, kind, holders = lattice.spring, lattice.kind, lattice.holders
-    if rigid:
-        spring, kind, holders = spring[:0], kind[:0], holders[:0]
-    k = stiffness(kind, holders, edge, elasticity)
+    k = stiffness(lattice, elasticity)
+    spring, kind = lattice.spring, lattice.kind
+    if rigid or not k.all():  # the paper's literal springs have no braces
+        keep = (k > 0) & (not rigid)
+        spring, kind, k = spring[keep], kind[keep], k[keep]
     fabric = _Fabric(
         mass=m, spring=spring, stiffness=k, rest=rest_lengths(edge)[kind],
         damping=dashpots(damping, k, m, spring) if damping > 0 else None,

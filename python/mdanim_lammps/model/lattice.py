@@ -16,12 +16,15 @@ from .model import Layer
 OFFSETS = np.array([
     (1, 0, 0),
     (-1, 1, 0), (0, 1, 0), (1, 1, 0),
-    (0, -1, 1), (-1, 0, 1), (0, 0, 1), (1, 0, 1), (0, 1, 1),
+    (-1, -1, 1), (0, -1, 1), (1, -1, 1), (-1, 0, 1), (0, 0, 1), (1, 0, 1), (-1, 1, 1), (0, 1, 1), (1, 1, 1),
 ])
-"""Steps (x, y, z) from a particle to its neighbours of higher number: 3 edges and 6 face diagonals of a cell.
+"""Steps (x, y, z) from a particle to its neighbours of higher number: 3 edges, 6 face diagonals and 4 body diagonals.
 
 They stand in the order of the neighbours' numbers, so springs written particle by particle come out sorted.
 """
+
+AXES = np.count_nonzero(OFFSETS, axis=1)
+"""1 for an edge, 2 for a face diagonal, 3 for a body diagonal, shape (13,)."""
 
 CORNERS = np.array([
     (0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1),
@@ -71,6 +74,8 @@ class Lattice:
     """Row of OFFSETS of each spring, uint8, shape (S,)."""
     holders: np.ndarray
     """Number of filled cells that hold a spring, uint8, shape (S,)."""
+    braced: np.ndarray
+    """How many of these are braced, uint8, shape (S,)."""
     hexahedron: np.ndarray
     """Corner particles of each filled cell, VTK order, int32, shape (C, 8)."""
     cells: Cells
@@ -80,9 +85,12 @@ class Lattice:
 def make_lattice(cells: Cells) -> Lattice:
     """Put a particle on every corner of a filled cell and tie the 18 nearest neighbours that share a cell.
 
-    Particles are numbered row by row (z slowest, x fastest).
+    A cell with a corner that no other cell shares is braced by its body diagonals: with edges and face diagonals
+    alone, a blow on such a corner pushes it through the cell, where it stays (docs/physics-solids.md). Particles are
+    numbered row by row (z slowest, x fastest).
     """
     around = _cells_around(cells.filled)
+    braced = cells.filled & _any_corner(around == 1)
     present = np.flatnonzero(around)
     number = np.full(around.size, -1, np.int32)
     number[present] = np.arange(len(present), dtype=np.int32)
@@ -91,10 +99,11 @@ def make_lattice(cells: Cells) -> Lattice:
     position = _corner_positions(cells, present)
     centre = share @ position / share.sum()
     moved = Cells(cells.filled, cells.low - centre, cells.high - centre)
-    spring, kind, holders = _springs(cells.filled, number, present)
+    spring, kind, holders, braces = _springs(cells.filled, braced, number, present)
     return Lattice(
         position=position - centre, share=share, layer=_layers(around).ravel()[present],
-        spring=spring, kind=kind, holders=holders, hexahedron=_hexahedra(cells.filled, number), cells=moved,
+        spring=spring, kind=kind, holders=holders, braced=braces,
+        hexahedron=_hexahedra(cells.filled, number), cells=moved,
     )
 
 
@@ -125,18 +134,30 @@ def _corner_positions(cells: Cells, present: np.ndarray) -> np.ndarray:
     return position
 
 
-def _springs(filled: np.ndarray, number: np.ndarray, present: np.ndarray):
-    """Pairs (S, 2), rows of OFFSETS (S,) and numbers of holding cells (S,), sorted by pair."""
-    padded = np.pad(filled, 1).astype(np.uint8)
+def _any_corner(mask: np.ndarray) -> np.ndarray:
+    """Which cells have a corner in the mask, bool, one shorter than the mask along every axis."""
+    nz, ny, nx = np.array(mask.shape) - 1
+    found = np.zeros((nz, ny, nx), bool)
+    for z, y, x in product((0, 1), repeat=3):
+        found |= mask[z : z + nz, y : y + ny, x : x + nx]
+    return found
+
+
+def _springs(filled: np.ndarray, braced: np.ndarray, number: np.ndarray, present: np.ndarray):
+    """Pairs (S, 2), rows of OFFSETS, numbers of holding cells and of braced ones among them (S,), sorted by pair."""
+    all_cells, braced_cells = (np.pad(cells, 1).astype(np.uint8) for cells in (filled, braced))
     _, rows, columns = number.shape
     flat = number.ravel()
     other = np.zeros((len(present), len(OFFSETS)), np.int32)
     holders = np.zeros((len(present), len(OFFSETS)), np.uint8)
+    braces = np.zeros_like(holders)
     # A corner lies between two cells of each axis: a step of +1 runs along the upper one, a step of -1 along
     # the lower one, and a spring with no step along an axis is held by both.
     sides = {0: (0, 1), 1: (1,), -1: (0,)}
     for o, (x, y, z) in enumerate(OFFSETS.tolist()):
-        holders[:, o] = _window_sum(padded, product(sides[z], sides[y], sides[x])).ravel()[present]
+        starts = list(product(sides[z], sides[y], sides[x]))
+        braces[:, o] = _window_sum(braced_cells, starts).ravel()[present]
+        holders[:, o] = braces[:, o] if AXES[o] == 3 else _window_sum(all_cells, starts).ravel()[present]
         held = np.flatnonzero(holders[:, o])
         other[held, o] = flat[present[held] + (z * rows + y) * columns + x]
     exists = holders > 0
@@ -144,7 +165,7 @@ def _springs(filled: np.ndarray, number: np.ndarray, present: np.ndarray):
     spring[:, 0] = np.repeat(np.arange(len(present), dtype=np.int32), np.count_nonzero(exists, axis=1))
     spring[:, 1] = other[exists]
     kind = np.broadcast_to(np.arange(len(OFFSETS), dtype=np.uint8), exists.shape)[exists]
-    return spring, kind, holders[exists]
+    return spring, kind, holders[exists], braces[exists]
 
 
 def _layers(around: np.ndarray) -> np.ndarray:

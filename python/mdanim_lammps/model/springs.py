@@ -9,13 +9,16 @@ from __future__ import annotations
 import numpy as np
 
 from ..scene.scene import SpringConstant, Young
-from .lattice import OFFSETS
+from .lattice import AXES, OFFSETS, Lattice
 
 MAX_ASPECT = 1.2
 """Longest over shortest cell edge; an edge spring would pull the wrong way beyond sqrt(3/2) = 1.22."""
 
-FULL = np.where(np.count_nonzero(OFFSETS, axis=1) == 1, 4, 2)
-"""Cells that hold a spring inside a body: 4 at an edge, 2 at a face diagonal, shape (9,)."""
+BRACE = 0.1
+"""Constant of the body diagonals of a braced cell over E h: the least that leaves a corner no second place to rest."""
+
+FULL = np.array([0, 4, 2, 1])[AXES]
+"""Cells that hold a spring inside a body: 4 at an edge, 2 at a face diagonal, 1 at a body diagonal, shape (13,)."""
 
 
 def rest_lengths(cell: np.ndarray) -> np.ndarray:
@@ -23,34 +26,40 @@ def rest_lengths(cell: np.ndarray) -> np.ndarray:
     return np.linalg.norm(OFFSETS * cell, axis=1)
 
 
-def spring_constants(cell: np.ndarray, young: float) -> np.ndarray:
-    """Spring constant of each row of OFFSETS inside a body [N/m], shape (9,).
+def spring_constants(cell: np.ndarray, young: float, brace: float = 0.0) -> np.ndarray:
+    """Spring constant of each row of OFFSETS inside a body of such cells [N/m], shape (13,).
 
-    For edges a, b, c, V = abc and Young's modulus E:
-    face diagonal  k_ab = 0.2 E V (a^2 + b^2) / (a^2 b^2),
-    edge           k_a  = 0.4 E V (3 - a^2/b^2 - a^2/c^2) / a^2;
-    all are 0.4 E h for a cube. They make C11 = 1.2 E and C12 = C44 = 0.4 E along every axis.
+    For edges a, b, c, V = abc, L^2 = a^2 + b^2 + c^2, Young's modulus E and k_3 = brace * E V^(1/3):
+    body diagonal  k_3,
+    face diagonal  k_ab = (a^2 + b^2) (0.2 E V / (a^2 b^2) - 2 k_3 / L^2),
+    edge           k_a  = 0.4 E V (3 - a^2/b^2 - a^2/c^2) / a^2 + 4 k_3 a^2 / L^2;
+    without brace all are 0.4 E h for a cube. They make C11 = 1.2 E and C12 = C44 = 0.4 E along every axis,
+    whatever the brace.
     """
     a2 = np.asarray(cell, float) ** 2
     volume = float(np.prod(cell))
-    edge = 0.4 * young * volume * (4.0 - a2 * (1.0 / a2).sum()) / a2
+    body = brace * young * volume ** (1.0 / 3.0)
+    edge = 0.4 * young * volume * (4.0 - a2 * (1.0 / a2).sum()) / a2 + 4.0 * body * a2 / a2.sum()
     along = OFFSETS != 0
     both = np.where(along, a2, 1.0).prod(axis=1)
-    diagonal = 0.2 * young * volume * np.where(along, a2, 0.0).sum(axis=1) / both
-    return np.where(FULL == 4, along @ edge, diagonal)
+    face = np.where(along, a2, 0.0).sum(axis=1) * (0.2 * young * volume / both - 2.0 * body / a2.sum())
+    return np.select([AXES == 1, AXES == 2], [along @ edge, face], body)
 
 
-def stiffness(kind: np.ndarray, holders: np.ndarray, cell: np.ndarray, elasticity: Young | SpringConstant):
+def stiffness(lattice: Lattice, elasticity: Young | SpringConstant) -> np.ndarray:
     """k of each spring [N/m], shape (S,).
 
-    With ``Young`` a spring on the surface has the part of k that its filled cells own (``holders / FULL``),
-    so a body is as stiff as its volume says however thin it is. ``SpringConstant`` is the paper's k for every
-    spring.
+    With ``Young`` a spring has the part of k that each of its filled cells owns, a quarter of an edge, half a face
+    diagonal, so a body is as stiff as its volume says however thin it is. ``SpringConstant`` is the paper's k for
+    every spring; braces are not the paper's and get 0.
     """
     if isinstance(elasticity, SpringConstant):
-        return np.full(len(kind), elasticity.k)
-    table = spring_constants(cell, elasticity.modulus)[:, None] * np.arange(5) / FULL[:, None]
-    return table[kind, holders]
+        return np.where(AXES[lattice.kind] == 3, 0.0, elasticity.k)
+    cell = lattice.cells.edge
+    plain, braced = (spring_constants(cell, elasticity.modulus, f) / FULL for f in (0.0, BRACE))
+    table = (plain[:, None, None] * np.maximum(0, np.arange(5)[:, None] - np.arange(5))
+             + braced[:, None, None] * np.arange(5))
+    return table[lattice.kind, lattice.holders, lattice.braced]
 
 
 def equivalent_modulus(cell: np.ndarray, elasticity: Young | SpringConstant) -> float:
