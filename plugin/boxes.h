@@ -64,11 +64,11 @@ inline Box intersection(const Box &a, const Box &b)
   return c;
 }
 
-// A grid of cubic cells over a set of points, each cell listing its points. Cells are never smaller than
-// asked, and never many more than points.
+// A grid of cubic cells over a set of points, sorted by cell. Cells are never smaller than asked, and never many more than
+// points. Slot k holds point order()[k]: who keeps a copy of the points by slots reads them in one stream.
 class Grid {
  public:
-  template <class Points> Grid(const Points &points, int n, double cell) : cell(cell), next(n, -1)
+  template <class Points> Grid(const Points &points, int n, double cell) : cell(cell), sorted(n)
   {
     Box all;
     for (int i = 0; i < n; ++i) all.include(points(i));
@@ -84,23 +84,28 @@ class Grid {
       if (cells <= 4.0 * n + 64.0) break;
       this->cell *= 1.5;
     }
-    head.assign(static_cast<size_t>(count[0]) * count[1] * count[2], -1);
-    for (int i = n - 1; i >= 0; --i) {    // backwards: lists are then in ascending order
-      const size_t c = index(place(points(i), 0), place(points(i), 1), place(points(i), 2));
-      next[i] = head[c];
-      head[c] = i;
+    std::vector<size_t> home(n);
+    begin.assign(static_cast<size_t>(count[0]) * count[1] * count[2] + 1, 0);
+    for (int i = 0; i < n; ++i) {
+      home[i] = index(place(points(i), 0), place(points(i), 1), place(points(i), 2));
+      ++begin[home[i] + 1];
     }
+    for (size_t c = 1; c < begin.size(); ++c) begin[c] += begin[c - 1];
+    std::vector<int> at(begin.begin(), begin.end() - 1);
+    for (int i = 0; i < n; ++i) sorted[at[home[i]]++] = i;
   }
 
-  // Calls visit(j) for every point in the 27 cells around x.
+  const std::vector<int> &order() const { return sorted; }
+
+  // Calls visit(k) for every slot in the 27 cells around x.
   template <class Visit> void around(const double *x, Visit visit) const
   {
-    if (head.empty()) return;
+    if (begin.empty()) return;
     const int p[3] = {place(x, 0), place(x, 1), place(x, 2)};
+    const int low = std::max(0, p[2] - 1), high = std::min(count[2] - 1, p[2] + 1);
     for (int a = std::max(0, p[0] - 1); a <= std::min(count[0] - 1, p[0] + 1); ++a)
       for (int b = std::max(0, p[1] - 1); b <= std::min(count[1] - 1, p[1] + 1); ++b)
-        for (int c = std::max(0, p[2] - 1); c <= std::min(count[2] - 1, p[2] + 1); ++c)
-          for (int j = head[index(a, b, c)]; j >= 0; j = next[j]) visit(j);
+        for (int k = begin[index(a, b, low)]; k < begin[index(a, b, high) + 1]; ++k) visit(k);
   }
 
  private:
@@ -113,7 +118,7 @@ class Grid {
 
   double cell, origin[3] = {0.0, 0.0, 0.0};
   int count[3] = {0, 0, 0};
-  std::vector<int> head, next;
+  std::vector<int> begin, sorted;
 };
 
 // All pairs (a < b) of boxes that meet. Up to FEW boxes every pair is tried. Beyond that, boxes of usual size
@@ -154,7 +159,8 @@ inline std::vector<std::pair<int, int>> meeting_pairs(const std::vector<Box> &bo
   const auto corner = [&](int i) { return boxes[usual[i]].bound; };
   const Grid grid(corner, static_cast<int>(usual.size()), cell);
   for (size_t a = 0; a < usual.size(); ++a)
-    grid.around(boxes[usual[a]].bound, [&](int b) {
+    grid.around(boxes[usual[a]].bound, [&](int slot) {
+      const int b = grid.order()[slot];
       if (b > static_cast<int>(a)) check(usual[a], usual[b]);
     });
   for (size_t a = 0; a < large.size(); ++a) {

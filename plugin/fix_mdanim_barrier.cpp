@@ -217,39 +217,74 @@ void FixMdanimBarrier::find_candidates()
   find_candidates_near(zone, range);
 }
 
+// What a first look needs of a particle: most pairs are turned down by it.
+struct FixMdanimBarrier::Glance {
+  Vec3 x;
+  tagint object;
+  int role, particle;
+};
+
+// Particles in a grid, in the order of its cells.
+struct FixMdanimBarrier::Crowd {
+  Crowd(const FixMdanimBarrier &fix, const std::vector<int> &particles, double cell)
+      : grid([&](int n) { return fix.atom->x[particles[n]]; }, static_cast<int>(particles.size()), cell)
+  {
+    glance.reserve(particles.size());
+    for (const int n : grid.order()) {
+      const int i = particles[n];
+      glance.push_back({vec3(fix.atom->x[i]), fix.own[i].object, fix.role(i), i});
+    }
+  }
+
+  template <class Visit> void around(const Glance &me, Visit visit) const
+  {
+    const double x[3] = {me.x.x, me.x.y, me.x.z};
+    grid.around(x, [&](int slot) { visit(glance[slot]); });
+  }
+
+  Grid grid;
+  std::vector<Glance> glance;
+};
+
 void FixMdanimBarrier::find_candidates_near(const std::vector<Box> &zone, double range)
 {
   const double *const *x = atom->x;
   const tagint *tag = atom->tag;
   const double skin = neighbor->skin;
 
-  std::vector<int> near;
+  // Guards form the barrier; all others are boundary particles, which meet guards only. Most pairs are of two such others, so
+  // the two kinds stand in grids of their own.
+  std::vector<int> guards, others;
   for (int i = 0; i < atom->nlocal + atom->nghost; ++i)
-    if (role(i) != NONE && zone[own[i].object].contains(x[i])) near.push_back(i);
+    if (role(i) != NONE && zone[own[i].object].contains(x[i])) (role(i) == BOUNDARY ? others : guards).push_back(i);
+  const Crowd guard(*this, guards, range), other(*this, others, range);
 
-  const Grid grid([&](int n) { return x[near[n]]; }, static_cast<int>(near.size()), range);
-  for (const int i : near) {
-    if (i >= atom->nlocal || !(atom->mask[i] & groupbit)) continue;
-    const int role_i = role(i);
-    const size_t begin = candidate.size();
-    grid.around(x[i], [&](int n) {
-      const int j = near[n];
-      if (own[j].object == own[i].object) return;
-      const double pair_reach =
-          reach_factor(role_i, role(j), thin_ratio) * std::max(own[i].reach, own[j].reach);
-      if (pair_reach == 0.0) return;
-      const Vec3 d = vec3(x[i]) - vec3(x[j]);
-      if (dot(d, d) >= (pair_reach + skin) * (pair_reach + skin)) return;
-      const double k =
-          stiffness.constant() ? stiffness.number : pair_stiffness(own[i].stiffness, own[j].stiffness);
-      candidate.push_back({j, tag[i] < tag[j], (atom->mask[j] & groupbit) != 0, k, pair_reach});
-    });
-    if (candidate.size() == begin) continue;
-    std::sort(candidate.begin() + begin, candidate.end(),
-              [tag](const Candidate &a, const Candidate &b) { return tag[a.partner] < tag[b.partner]; });
-    row.push_back(i);
-    first.push_back(static_cast<int>(candidate.size()));
-  }
+  for (const Crowd *crowd : {&guard, &other})
+    for (const Glance &me : crowd->glance) {
+      const int i = me.particle;
+      if (i >= atom->nlocal || !(atom->mask[i] & groupbit)) continue;
+      const size_t begin = candidate.size();
+      const auto consider = [&](const Glance &partner) {
+        if (partner.object == me.object) return;
+        const Vec3 d = me.x - partner.x;
+        const double r2 = dot(d, d);
+        if (r2 >= range * range) return;
+        const int j = partner.particle;
+        const double pair_reach =
+            reach_factor(me.role, partner.role, thin_ratio) * std::max(own[i].reach, own[j].reach);
+        if (pair_reach == 0.0 || r2 >= (pair_reach + skin) * (pair_reach + skin)) return;
+        const double k =
+            stiffness.constant() ? stiffness.number : pair_stiffness(own[i].stiffness, own[j].stiffness);
+        candidate.push_back({j, tag[i] < tag[j], (atom->mask[j] & groupbit) != 0, k, pair_reach});
+      };
+      guard.around(me, consider);
+      if (crowd == &guard) other.around(me, consider);
+      if (candidate.size() == begin) continue;
+      std::sort(candidate.begin() + begin, candidate.end(),
+                [tag](const Candidate &a, const Candidate &b) { return tag[a.partner] < tag[b.partner]; });
+      row.push_back(i);
+      first.push_back(static_cast<int>(candidate.size()));
+    }
   for (const Candidate &c : candidate) pairs += c.in_group ? 0.5 : 1.0;
 }
 

@@ -47,6 +47,8 @@ class FixMdanimBarrier : public Fix {
   double largest_reach();
   std::vector<mdanim::Box> object_boxes();
   void find_candidates();
+  struct Glance;
+  struct Crowd;
   void find_candidates_near(const std::vector<mdanim::Box> &zone, double range);
   double sum(double here);
 

