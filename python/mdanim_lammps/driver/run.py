@@ -172,7 +172,8 @@ class _Run:
         path, c = self.folder / "trajectory.h5", self.certificate
         if self.resume:
             return TrajectoryWriter.append(path, self.ready.scene, self.ready.models, after_step=self.resume.step)
-        return TrajectoryWriter(path, self.ready.scene, self.ready.models, dt=c.timestep, steps_per_frame=c.steps_per_frame)
+        return TrajectoryWriter(path, self.ready.scene, self.ready.models, dt=c.timestep,
+                                steps_per_frame=c.steps_per_frame, scene_text=lock_text(self.ready.scene))
 
     def _record(self, out: TrajectoryWriter) -> dict[str, float]:
         """Check the state, then append it to ledger and trajectory. Raises DivergedError before anything bad is written."""
