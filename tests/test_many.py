@@ -39,6 +39,6 @@ def test_ten_thousand_objects_build_and_run():
         x = instance.array("x")
         assert np.isfinite(x).all()
         assert instance.fix_value("contact", 2) > 100 and instance.fix_value("ground", 4) > 1e-4
-        # Only neighbours can meet: at most 8 of the square lattice, counted once per pair.
-        assert instance.fix_value("contact", 0) <= 4 * 10_000
+        # Only near ones can meet: the 8 neighbours in the square lattice, and few more as they move; all pairs are 5e7.
+        assert instance.fix_value("contact", 0) < 10 * 10_000
         assert x[:, 2].min() > -0.05
