@@ -62,13 +62,18 @@ class Scene:
         if movie:
             from .picture.movie import render_movie
 
-            render_movie(folder, self.record.render, folder / "movie.mp4")
+            render_movie(folder, self.record.render, movie_file(folder, self.record))
         return result
 
 
 def default_folder(record: SceneRecord) -> Path:
     """``SCENE.out`` beside the scene file."""
     return (record.path.parent if record.path else Path.cwd()) / f"{record.name}.out"
+
+
+def movie_file(folder: Path, record: SceneRecord) -> Path:
+    """Where the movie goes: ``render { movie "NAME" }``, taken from the output folder, or movie.mp4."""
+    return folder / (record.render.movie or "movie.mp4")
 
 
 def refuse_executors(executors: int) -> None:

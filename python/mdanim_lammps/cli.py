@@ -77,8 +77,7 @@ def check(scene: Path, /, *, set_: Set = (), accuracy: Accuracy = None, strict: 
     format
         Text for people, JSON for programs.
     """
-    from .report import certificate_line, check_json, effect_line, scene_line
-    from .results.trajectory import trajectory_bytes
+    from .report import certificate_line, check_json, effect_line, output_line, scene_line
 
     ready = _prepare(scene, set_, accuracy, strict=strict, allow_unstable=allow_unstable)
     if format == "json":
@@ -87,9 +86,7 @@ def check(scene: Path, /, *, set_: Set = (), accuracy: Accuracy = None, strict: 
     _warn(ready)
     print(scene_line(ready))
     print(certificate_line(ready))
-    control = ready.scene.control
-    size = trajectory_bytes(ready.models, ready.certificate.frames + 1, control.save, control.single)
-    print(f"output   trajectory of {size / 1e6:.3g} MB")
+    print(output_line(ready))
     print("effects")
     for verdict in ready.verdicts.values():
         print(effect_line(verdict))
@@ -165,7 +162,9 @@ def render(folder: Path, /, *, size: tuple[int, int] | None = None, fps: float |
         Take the render block (camera, background) of this scene file instead.
     """
     record = _stored_scene(folder) if scene is None else _load(scene, ())
-    _render(folder, record, out or folder / "movie.mp4", quiet=quiet, size=size, fps=fps,
+    from .api import movie_file
+
+    _render(folder, record, out or movie_file(folder, record), quiet=quiet, size=size, fps=fps,
             frames=folder / "frames" if frames else None)
 
 
@@ -248,36 +247,41 @@ def _warn(ready) -> None:
 
 
 def _announce(ready, quiet: bool, verbose: bool) -> None:
-    from .report import certificate_line, effect_line, scene_line
+    from .report import certificate_line, effect_line, output_line, scene_line
 
+    _warn(ready)
     if quiet:
         return
-    _warn(ready)
     print(scene_line(ready))
     if verbose:
         for verdict in ready.verdicts.values():
             print(effect_line(verdict))
-    print(certificate_line(ready), flush=True)
+    print(certificate_line(ready))
+    print(output_line(ready), flush=True)
 
 
 def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, checkpoint=None) -> None:
+    from .api import movie_file
     from .driver.run import simulate
     from .report import cost_line, progress_line
 
     with _bar("run", quiet) as bar:
         result = simulate(ready, folder, resume=checkpoint,
                           watch=lambda p: bar(p.frame, p.frames, progress_line(p)))
-    if movie:
-        _render(folder, ready.scene, folder / "movie.mp4", quiet=quiet)
+    # Before the movie: what was found must not depend on whether pictures can be made here.
     if not quiet:
         print(cost_line(result, ready.certificate.steps * ready.certificate.timestep))
         print(f"ledger   energy residual {result.ledger.residual:.2e}   {folder / 'ledger.csv'}")
         for outcome in result.outcomes:
             if outcome.met:
                 print(outcome)
-        print(f"movie    {folder / 'movie.mp4'}" if movie else f"output   {folder}")
     for outcome in result.missed:
         print(outcome, file=sys.stderr)
+    if movie:
+        file = movie_file(folder, ready.scene)
+        _render(folder, ready.scene, file, quiet=quiet)
+    if not quiet:
+        print(f"movie    {file}" if movie else f"output   {folder}")
     if result.missed:
         raise SystemExit(ExitCode.DIVERGED)
 
@@ -351,8 +355,9 @@ def main(argv: list[str] | None = None) -> None:
     except MdanimError as error:
         if debug:
             raise
-        print(error if isinstance(error, (SceneError, RefusedError)) and ": error: " in str(error)
-              else f"mdanim-lammps: error: {error}", file=sys.stderr)
+        told = str(error)
+        print(told if told.startswith("error: ") or ": error: " in told.split("\n")[0] else f"mdanim-lammps: error: {told}",
+              file=sys.stderr)
         raise SystemExit(error.exit_code) from None
     except KeyboardInterrupt:
         print("mdanim-lammps: interrupted", file=sys.stderr)

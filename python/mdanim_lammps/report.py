@@ -6,6 +6,7 @@ from __future__ import annotations
 from .driver.prepare import Prepared
 from .driver.run import Progress, Result
 from .effects import Verdict
+from .results.trajectory import trajectory_bytes
 
 
 def count(number: int, noun: str) -> str:
@@ -28,6 +29,14 @@ def certificate_line(ready: Prepared) -> str:
     return f"certify  {c}   {count(c.steps, 'step')}, {c.steps_per_frame} per frame"
 
 
+def output_line(ready: Prepared) -> str:
+    """One line: how large the trajectory will be."""
+    c, control = ready.certificate, ready.scene.control
+    frames = 1 + c.frames + bool(c.last_steps)
+    size = trajectory_bytes(ready.models, frames, control.save, control.single)
+    return f"output   {count(frames, 'frame')}, trajectory of {size / 1e6:.3g} MB"
+
+
 def effect_line(verdict: Verdict) -> str:
     """One line of ``check``: an effect, on or off, its reason and scene line."""
     place = f"  [{verdict.span}]" if verdict.span else ""
@@ -36,9 +45,10 @@ def effect_line(verdict: Verdict) -> str:
 
 def progress_line(p: Progress) -> str:
     """The moving line of a run."""
-    left = p.seconds / max(1, p.step) * (p.steps - p.step)
+    each = p.seconds / max(1, p.step - p.first_step)
+    left = each * (p.steps - p.step)
     return (f"t={p.time:.2f} s  step {p.step}/{p.steps}  energy residual {p.residual:.1e}  "
-            f"{1e3 * p.seconds / max(1, p.step):.2f} ms/step  {left:.0f} s left")
+            f"{1e3 * each:.2f} ms/step  {left:.0f} s left")
 
 
 def cost_line(result: Result, simulated: float) -> str:

@@ -8,6 +8,7 @@ import platform
 from importlib import metadata
 
 from .. import __version__
+from ..results.files import PROGRAM
 from ..scene.lock import lock_text
 from ..scene.scene import Scene
 
@@ -24,6 +25,6 @@ def manifest(scene: Scene, argv: list[str]) -> dict:
             versions[package] = None
     digest = hashlib.sha256(lock_text(scene).encode()).hexdigest()
     source = hashlib.sha256(scene.path.read_bytes()).hexdigest() if scene.path and scene.path.exists() else None
-    return {"program": "mdanim-lammps", "version": __version__, "python": platform.python_version(), "packages": versions,
+    return {"program": PROGRAM, "version": __version__, "python": platform.python_version(), "packages": versions,
             "argv": list(argv), "scene": str(scene.path) if scene.path else None, "seed": scene.control.seed,
             "sha256": {"scene": source, "scene.lock.txt": digest}}

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..certificate import Certificate, certify
+from ..certificate import STRONG, Certificate, certify, strong_drag
 from ..effects import EFFECTS, Verdict, decide
 from ..engine.plan import Plan, make_plan
 from ..errors import Problem, SceneError
@@ -55,5 +55,12 @@ def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[i
     system = assemble(models)
     verdicts, warnings = decide(EFFECTS, scene)
     certificate = certify(scene, system, verdicts, allow_unstable=allow_unstable)
+    if verdicts["air-drag"].on and (phi := strong_drag(system, certificate.timestep)):
+        warnings.append(Problem(
+            verdicts["air-drag"].span,
+            f"air drag is strong for this time step (phi = {phi:.2g} > {STRONG}, eq. (3.13))",
+            "the exponential form is used instead of the paper's implicit one: same terminal speed, no overshoot",
+            severity="warning",
+        ))
     return Prepared(scene, tuple(models), system, verdicts, (*scene.warnings, *problems, *warnings), certificate,
                     make_plan(scene, system, verdicts, certificate))

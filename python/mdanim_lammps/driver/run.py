@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import signal
 import threading
 import time
@@ -12,11 +13,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ..effects.contact import REACH
+from .. import __version__
 from ..engine.commands import input_script
 from ..engine.data_file import write_data
 from ..engine.instance import Instance
-from ..errors import DivergedError, ExitCode, MdanimError
+from ..errors import DivergedError, ExitCode, MdanimError, OutputError
 from ..results.checkpoint import Checkpoint
 from ..results.expect import Measured, Outcome, evaluate, largest_strain, strained
 from ..results.files import write_json, write_whole
@@ -44,6 +45,8 @@ class Progress:
     residual: float
     seconds: float
     """Wall time of the simulation so far."""
+    first_step: int = 0
+    """Step from which these seconds count: not 0 after a resume."""
 
 
 @dataclass
@@ -86,6 +89,15 @@ def simulate(ready: Prepared, folder: Path, *, watch: Callable[[Progress], None]
     return run.go(watch or (lambda progress: None))
 
 
+def run_id(ready: Prepared) -> str:
+    """A word that is the same only for the same scene, models, time step and version of this program."""
+    digest = hashlib.sha256(lock_text(ready.scene).encode())
+    digest.update(repr((__version__, ready.certificate.timestep, ready.system.particles)).encode())
+    for array in (ready.system.mass, ready.system.stiffness):
+        digest.update(np.ascontiguousarray(array))
+    return digest.hexdigest()
+
+
 class _Run:
     """The state of one run; only its methods know the order of things."""
 
@@ -93,9 +105,14 @@ class _Run:
         self.ready, self.folder, self.resume = ready, folder, resume
         self.certificate = ready.certificate
         self.effects = ready.plan.effects
-        self.fixes = [e.fix for e in self.effects if e.fix and e.fix != "gravity"]
+        self.fixes = [e.fix for e in self.effects if e.fix]
         self.seconds = {"setup": 0.0, "simulation": 0.0, "output": 0.0}
         self.carried = dict(resume.carried) if resume else {}
+        self.first_step = resume.step if resume else 0
+        self.run_id = run_id(ready)
+        if resume and resume.run != self.run_id:
+            raise OutputError(f"{folder / 'checkpoint'} is of another run: scene, time step or program have changed since; "
+                              "run the scene again with --force")
         terms = ("kinetic", *dict.fromkeys(e.ledger for e in self.effects if e.ledger))
         self.strained = strained(ready.scene.expects)
         self.ledger = Ledger(terms, tuple(f"strain.{name}" for name in self.strained))
@@ -119,6 +136,7 @@ class _Run:
             saved = time.perf_counter()
             if not self.resume:
                 self._save(out, 0)
+            saved_frame = frame
             try:
                 for frame in range(frame + 1, len(lengths) + 1):
                     with self._clock("simulation"):
@@ -127,12 +145,15 @@ class _Run:
                         row = self._record(out)
                         if time.perf_counter() - saved > CHECKPOINT_SECONDS or frame == len(lengths) or stopped.is_set():
                             self._save(out, frame)
-                            saved = time.perf_counter()
+                            saved, saved_frame = time.perf_counter(), frame
                     watch(Progress(frame, len(lengths), self.instance.step, c.steps, row["time"], row["residual"],
-                                   self.seconds["simulation"]))
+                                   self.seconds["simulation"], self.first_step))
                     if stopped.is_set() and frame < len(lengths):
+                        if saved_frame != frame:
+                            self._save(out, frame)
+                        insist = " --allow-unstable" if c.fraction > 1.0 else ""
                         raise Interrupted(f"interrupted at t = {row['time']:.4g} s; go on with: "
-                                          f"mdanim-lammps resume {self.folder}")
+                                          f"mdanim-lammps resume {self.folder}{insist}")
             finally:
                 self._close_ledger()
             self._collect_cost()
@@ -146,6 +167,8 @@ class _Run:
                     trajectory.names, trajectory.times, trajectory.centers, trajectory.center_velocities,
                     self.ledger.array("residual"),
                     {name: self.ledger.array(f"strain.{name}") for name in self.strained}, penetration))
+        for name in [n for n in self.carried if n.startswith("seconds ")]:
+            self.seconds["before the resume"] = self.seconds.get("before the resume", 0.0) + self.carried[name]
         result = Result(self.folder, self.ledger, outcomes, dict(self.seconds))
         write_json(self.folder / "cost.json", {"seconds": self.seconds, "steps": self.certificate.steps,
                                                "particles": self.ready.system.particles})
@@ -163,7 +186,7 @@ class _Run:
             "energy_residual": self.ledger.residual, "penetration": penetration,
             "seconds": sum(self.seconds.values()),
             "expect": [{"what": f"{o.expect.subject}.{o.expect.quantity}", "time": o.expect.time, "value": o.expect.value,
-                        "tolerance": o.expect.tolerance, "found": o.found, "met": o.met} for o in outcomes],
+                        "tolerance": o.expect.tolerance, "found": o.found if np.isfinite(o.found) else None, "met": o.met} for o in outcomes],
         }
 
     # --- recording --------------------------------------------------------------------------------------------------
@@ -185,7 +208,7 @@ class _Run:
             bad = system.names[system.object[np.argmin(np.isfinite(x).all(1) & np.isfinite(v).all(1))]]
             raise self._diverged(f"step {step}, t = {when:.4g} s: positions of {bad} are no numbers any more")
         strain = {f"strain.{n}": largest_strain(system, system.names.index(n), x) for n in self.strained}
-        row = self.ledger.add(when, self._energies(x, v) | strain)
+        row = self.ledger.add(when, self._energies(v) | strain)
         if not abs(row["residual"]) <= BLOWN_UP:
             del self.ledger.rows[-1]
             raise self._diverged(f"step {step}, t = {when:.4g} s: the energies do not add up (residual {row['residual']:.3g})")
@@ -199,33 +222,22 @@ class _Run:
             "squeezed harder than their lattice stands (try a lower speed, a stiffer object or a smaller timestep). "
             f"The last good frame is kept in {self.folder}")
 
-    def _energies(self, x: np.ndarray, v: np.ndarray) -> dict[str, float]:
+    def _energies(self, v: np.ndarray) -> dict[str, float]:
         """Energy of every term of the ledger [J]."""
-        system, instance = self.ready.system, self.instance
-        names = {e.name for e in self.effects}
-        energies = {"kinetic": 0.5 * float(system.mass @ np.einsum("id,id->i", v, v))}
-        if "springs" in names:
-            energies["elastic"] = instance.elastic_energy()
-        if "gravity" in names:
-            energies["gravity"] = -float(system.mass @ (x @ np.array(self.ready.scene.gravity)))
-        if "contact" in names:
-            energies["contact"] = instance.fix_scalar("contact")
-        if names & {"ground", "walls"}:
-            energies["wall"] = sum(instance.fix_scalar(n) for n in ("ground", "walls") if n in names)
-        for term, value in (("drag_loss", lambda: instance.fix_scalar("leapfrog")),
-                            ("damping_loss", instance.damping_loss)):
-            if term in self.ledger.terms:
-                energies[term] = value() + self.carried.get(term, 0.0)
+        system, instance, scene = self.ready.system, self.instance, self.ready.scene
+        energies = dict.fromkeys(self.ledger.terms, 0.0)
+        energies["kinetic"] = 0.5 * float(system.mass @ np.einsum("id,id->i", v, v))
+        for effect in self.effects:
+            if effect.ledger:
+                energies[effect.ledger] += effect.energy(instance, scene, system)
+        for term in energies:
+            energies[term] += self.carried.get(term, 0.0)  # losses before a resume
         return energies
 
     def _penetration(self) -> float:
         """Deepest that a boundary particle has been below a surface in this run [m]."""
-        depths = [self.carried.get("penetration", 0.0)]
-        names = {e.name for e in self.effects}
-        if "contact" in names:
-            depths.append((1.0 / REACH - self.instance.fix_value("contact", 3)) * REACH * float(self.ready.system.spacing.max()))
-        depths += [self.instance.fix_value(n, 4) for n in ("ground", "walls") if n in names]
-        return max(depths)
+        depths = [e.penetration(self.instance, self.ready.system) for e in self.effects]
+        return max([self.carried.get("penetration", 0.0), *depths])
 
     def _save(self, out: TrajectoryWriter, frame: int) -> None:
         """Make everything up to this frame safe; the checkpoint last, so that it never is ahead of the trajectory."""
@@ -233,7 +245,8 @@ class _Run:
         self._close_ledger()
         carried = {t: self.ledger.rows[-1][t] for t in self.ledger.terms if t.endswith("_loss")}
         carried["penetration"] = self._penetration()
-        Checkpoint(self.instance.step, frame, *(self.instance.array(a) for a in "xvf"), carried).write(
+        carried["seconds so far"] = sum(self.seconds.values()) + self.carried.get("seconds so far", 0.0)
+        Checkpoint(self.instance.step, frame, *(self.instance.array(a) for a in "xvf"), carried, self.run_id).write(
             self.folder / "checkpoint")
 
     def _reread_ledger(self, frame: int) -> None:

@@ -20,3 +20,6 @@ class AirDrag(Effect):
 
     def columns(self, scene, system):
         return {"lambda": system.drag}
+
+    def energy(self, instance, scene, system):
+        return instance.fix_scalar("leapfrog")

@@ -26,6 +26,12 @@ class Boundary(Effect):
             f"fix {self.fix} mobile mdanim/wall {self.fix} d_stiffness",
         ]
 
+    def energy(self, instance, scene, system):
+        return instance.fix_scalar(self.fix)
+
+    def penetration(self, instance, system):
+        return instance.fix_value(self.fix, 4)
+
     def rate(self, scene, system):
         # A wall does not move, so D_i alone bounds it, without the factor 2 of a pair.
         return np.where(system.held, 0.0, system.contact_stiffness / system.mass)

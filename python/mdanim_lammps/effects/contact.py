@@ -70,3 +70,12 @@ class Contact(Effect):
         k = 2.0 * s * partner[system.object] / (s + partner[system.object])
         reach = REACH * system.spacing.max() / np.cbrt(system.cell_volume.min())
         return 2.0 * plane_stiffness(round(float(reach), 3)) * k / system.mass
+
+    def energy(self, instance, scene, system):
+        return instance.fix_scalar(self.fix)
+
+    def penetration(self, instance, system):
+        # A guard lies one spacing below its surface, so r = h means that surfaces touch; between lattice points, and for
+        # thin objects, this says rather too much.
+        smallest = instance.fix_value(self.fix, 3)
+        return max(0.0, (1.0 / REACH - smallest) * REACH * float(system.spacing.max()))

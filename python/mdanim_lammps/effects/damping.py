@@ -10,6 +10,7 @@ from .springs import all_held, spring_norm
 class Damping(Effect):
     name = "damping"
     ledger = "damping_loss"
+    needs = "springs"
     lost = "damped objects ring for ever"
 
     def called_for(self, scene):
@@ -18,7 +19,8 @@ class Damping(Effect):
                 return Verdict(self.name, True, f"damping of {solid.name}", solid.spans.get("damping"))
         return Verdict(self.name, False, "no object has damping")
 
-    @staticmethod
-    def drag_rate(system):
-        """2 lambda_max(C_i)/m_i of the dashpots [1/s], shape (N,): the second term of the bound dt^2 a + 2 dt b <= 4."""
+    def energy(self, instance, scene, system):
+        return instance.damping_loss()
+
+    def drag_rate(self, scene, system):
         return 2.0 * spring_norm(system, system.damping) / system.mass

@@ -31,9 +31,11 @@ class Effect:
     name = ""
     """As in ``effects { name off }``; also its name in the cost table."""
     fix = ""
-    """ID of its LAMMPS fix, which times itself; empty when it has none."""
+    """ID of its LAMMPS fix of ours, which times itself; empty when it has none."""
     ledger = ""
     """Its energy column in ledger.csv; empty when it has none."""
+    needs = ""
+    """An effect without which this one cannot be."""
     lost = ""
     """What looks wrong when a scene needs the effect and it is switched off."""
 
@@ -46,12 +48,24 @@ class Effect:
         return {}
 
     def commands(self, scene: Scene, system: System) -> list[str]:
-        """LAMMPS commands; groups ``mobile``, ``boundary``, ``inner``, ``sub``, ``thin`` exist by then."""
+        """LAMMPS commands; group ``mobile`` exists by then, with contact also ``boundary``, ``inner``, ``thin``."""
         return []
 
     def rate(self, scene: Scene, system: System) -> np.ndarray | None:
         """Its share in the bound on the squared frequency of each particle, 2 lambda_max(D_i)/m_i [1/s^2], shape (N,)."""
         return None
+
+    def drag_rate(self, scene: Scene, system: System) -> np.ndarray | None:
+        """The same of its dashpots, 2 lambda_max(C_i)/m_i [1/s], shape (N,)."""
+        return None
+
+    def energy(self, instance, scene: Scene, system: System) -> float:
+        """What stands in its ledger column now [J]; ``instance`` is the running engine.instance.Instance."""
+        return 0.0
+
+    def penetration(self, instance, system: System) -> float:
+        """Deepest that something has been where it should not be, in this run [m]."""
+        return 0.0
 
 
 def decide(effects: tuple[Effect, ...], scene: Scene) -> tuple[dict[str, Verdict], list[Problem]]:
@@ -78,4 +92,7 @@ def decide(effects: tuple[Effect, ...], scene: Scene) -> tuple[dict[str, Verdict
                 severity="warning",
             ))
         verdicts[effect.name] = own
+    for effect in effects:
+        if (own := verdicts[effect.name]).on and effect.needs and not verdicts[effect.needs].on:
+            verdicts[effect.name] = Verdict(effect.name, False, f"{effect.needs} is off", own.span)
     return verdicts, warnings

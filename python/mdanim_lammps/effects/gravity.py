@@ -10,7 +10,6 @@ from .effect import Effect, Verdict
 
 class Gravity(Effect):
     name = "gravity"
-    fix = "gravity"
     ledger = "gravity"
     lost = "nothing falls"
 
@@ -24,3 +23,6 @@ class Gravity(Effect):
         g = np.array(scene.gravity)
         x, y, z = scene.gravity
         return [f"fix gravity mobile gravity {float(np.linalg.norm(g))!r} vector {x!r} {y!r} {z!r}"]
+
+    def energy(self, instance, scene, system):
+        return -float(system.mass @ (instance.array("x") @ np.array(scene.gravity)))

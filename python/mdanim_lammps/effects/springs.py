@@ -46,6 +46,9 @@ class Springs(Effect):
     def rate(self, scene, system):
         return 2.0 * spring_norm(system, system.stiffness) / system.mass
 
+    def energy(self, instance, scene, system):
+        return instance.elastic_energy()
+
 
 def spring_norm(system, weight: np.ndarray) -> np.ndarray:
     """``block_norm`` of the springs of a system with these weights; shape (N,)."""

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..certificate import strong_drag
 from .plan import HELD, Plan
 
 SKIN = 0.75
 """Neighbour skin over the spacing: lists are rebuilt when a particle has moved half of it."""
 GHOST = 3.0
-"""Least communication cutoff over the spacing: a bonded partner is found while its spring is stretched less than twice."""
+"""Least communication cutoff over the spacing: a bonded partner is found while its spring is less than 1.7 times as long as at rest."""
 
 
 def harmonic_coeff(k: float) -> float:
@@ -64,6 +65,8 @@ def physics(plan: Plan) -> list[str]:
         groups += ["group inner type 1 2 5 6", "group boundary type 3 4 7 8", "group thin type 4 8"]
     effects = [c for e in plan.effects for c in e.commands(plan.scene, plan.system)]
     drag = " lambda d_lambda" if "lambda" in plan.columns else ""
+    if drag and strong_drag(plan.system, plan.certificate.timestep):
+        drag += " drag exp"
     return [
         "mass * 1.0",  # wanted by atom_style bond; the particles' own masses (rmass) are what counts
         *groups,
@@ -76,7 +79,7 @@ def physics(plan: Plan) -> list[str]:
 def input_script(plan: Plan) -> str:
     """The text of ``in.NAME``: runs alone with ``lmp -in in.NAME``, on any number of ranks, to the same bits."""
     c = plan.certificate
-    energy = "".join(f" f_{e.fix}" for e in plan.effects if e.fix and e.fix != "gravity")
+    energy = "".join(f" f_{e.fix}" for e in plan.effects if e.fix)
     when = f"{c.steps_per_frame}"
     variable, modify = [], []
     if c.last_steps:

@@ -45,5 +45,5 @@ def data_text(plan: Plan) -> Iterator[str]:
 
 def write_data(plan: Plan, path: Path) -> None:
     """Write ``data.NAME``. Raises OSError."""
-    with open(path, "w", encoding="ascii") as file:
+    with open(path, "w", encoding="ascii", errors="replace") as file:  # a title may hold any letter
         file.writelines(data_text(plan))

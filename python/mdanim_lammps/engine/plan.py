@@ -40,7 +40,7 @@ class Plan:
     @property
     def name(self) -> str:
         """The scene's name as it may stand in a LAMMPS file name."""
-        return re.sub(r"[^\w.+-]", "_", self.scene.name)
+        return re.sub(r"[^\w.+-]", "_", self.scene.name, flags=re.ASCII)
 
     @property
     def damped(self) -> bool:

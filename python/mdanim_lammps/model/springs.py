@@ -22,7 +22,7 @@ FULL = np.array([0, 4, 2, 1])[AXES]
 
 
 def rest_lengths(cell: np.ndarray) -> np.ndarray:
-    """Length of each row of OFFSETS [m], shape (9,), for cell edges [m], shape (3,)."""
+    """Length of each row of OFFSETS [m], shape (13,), for cell edges [m], shape (3,)."""
     return np.linalg.norm(OFFSETS * cell, axis=1)
 
 

@@ -82,10 +82,6 @@ class System:
         weighted = np.add.reduceat(self.mass[:, None] * position, self.first[:-1], axis=0)
         return weighted / self.mass_of[:, None]
 
-    def spans(self) -> list[slice]:
-        """The particles of each solid."""
-        return [slice(a, b) for a, b in zip(self.first[:-1].tolist(), self.first[1:].tolist())]
-
 
 def assemble(models: Sequence[Model]) -> System:
     """Join the models of a scene, in order, into one System."""

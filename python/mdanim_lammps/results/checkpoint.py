@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -27,13 +28,15 @@ class Checkpoint:
     f: np.ndarray
     """Forces [N], shape (N, 3): dashpots see half-step velocities that x and v do not hold."""
     carried: dict[str, float]
-    """What fixes had summed up by then: energies lost, deepest penetration."""
+    """What had been summed up by then: energies lost, deepest penetration, seconds."""
+    run: str = ""
+    """Which run this is a state of: another scene or time step cannot go on from it."""
 
     def write(self, path: Path) -> None:
         """Write atomically: the last good checkpoint is never lost. Raises OutputError."""
         def save(part: Path) -> None:
             with open(part, "wb") as file:
-                np.savez(file, version=VERSION, step=self.step, frame=self.frame, x=self.x, v=self.v, f=self.f,
+                np.savez(file, version=VERSION, run=self.run, step=self.step, frame=self.frame, x=self.x, v=self.v, f=self.f,
                          keys=np.array(list(self.carried)), values=np.array(list(self.carried.values()), float))
         write_whole(path, save)
 
@@ -46,6 +49,6 @@ class Checkpoint:
                     raise OutputError(f"{path} is of version {int(data['version'])}, this program writes {VERSION}; "
                                       "run the scene again with --force")
                 return cls(int(data["step"]), int(data["frame"]), data["x"], data["v"], data["f"],
-                           dict(zip(data["keys"].tolist(), data["values"].tolist())))
-        except (OSError, ValueError, KeyError) as error:
+                           dict(zip(data["keys"].tolist(), data["values"].tolist())), str(data["run"]))
+        except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
             raise OutputError(f"{path} cannot be read ({error}): nothing to resume from") from error

@@ -43,6 +43,8 @@ class Difference:
 def compare(a: Path, b: Path) -> Difference:
     """Compare all frames of two output folders. Raises OutputError when they do not hold the same objects or frames."""
     with Trajectory(a) as first, Trajectory(b) as second:
+        if not len(first) or not len(second):
+            raise OutputError(f"{a if not len(first) else b} holds no frame yet: there is nothing to compare")
         if first.names != second.names or first.position(0).shape != second.position(0).shape:
             raise OutputError(f"{a} and {b} hold different objects or resolutions: there is nothing to compare")
         if len(first) != len(second) or not np.array_equal(first.times, second.times):

@@ -13,7 +13,8 @@ from pathlib import Path
 from ..errors import OutputError
 
 MARK = "manifest.json"
-"""A folder that holds this file is one of ours, and only such a folder is emptied by ``--force``."""
+PROGRAM = "mdanim-lammps"
+"""Only a folder whose manifest says that this program made it is emptied by ``--force``."""
 
 
 @contextmanager
@@ -32,7 +33,7 @@ def open_folder(folder: Path, *, force: bool) -> None:
         if folder.exists():
             if not folder.is_dir():
                 raise OutputError(f"{folder} is a file; name another folder with -o DIR")
-            ours, empty = (folder / MARK).exists(), not any(folder.iterdir())
+            ours, empty = _ours(folder), not any(folder.iterdir())
             if not empty and not force:
                 raise OutputError(f"{folder} exists; overwrite it with --force, or write elsewhere with -o DIR")
             if not empty and not ours:
@@ -41,6 +42,13 @@ def open_folder(folder: Path, *, force: bool) -> None:
             if not empty:
                 shutil.rmtree(folder)
         folder.mkdir(parents=True, exist_ok=True)
+
+
+def _ours(folder: Path) -> bool:
+    try:
+        return json.loads((folder / MARK).read_text(encoding="utf-8")).get("program") == PROGRAM
+    except (OSError, ValueError, AttributeError):
+        return False
 
 
 def write_whole(path: Path, write: Callable[[Path], None] | str) -> None:
@@ -55,8 +63,8 @@ def write_whole(path: Path, write: Callable[[Path], None] | str) -> None:
 
 
 def write_json(path: Path, data: dict) -> None:
-    """Write plain data as JSON that a reader can read too."""
-    write_whole(path, json.dumps(data, indent=1, ensure_ascii=False) + "\n")
+    """Write plain data as JSON that every reader can read; numbers in it are finite."""
+    write_whole(path, json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
 
 
 def read_json(path: Path) -> dict:

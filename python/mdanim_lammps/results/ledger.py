@@ -11,10 +11,6 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import OutputError
-from .files import disk_errors
-
-LOST = ("drag_loss", "damping_loss")
-"""Columns that only grow: energy that has left the scene so far."""
 
 
 @dataclass
@@ -62,8 +58,8 @@ class Ledger:
         return np.array([r[column] for r in self.rows])
 
     def write(self, path: Path) -> None:
-        """Write the ledger as CSV, floats in digits that keep every bit. Raises OutputError."""
-        with disk_errors(path), open(path, "w", newline="", encoding="utf-8") as file:
+        """Write the ledger as CSV, floats in digits that keep every bit. Raises OSError."""
+        with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(self.columns)
             writer.writerows([repr(r[c]) for c in self.columns] for r in self.rows)
