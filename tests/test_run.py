@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from mdanim_lammps import Scene, Trajectory
+from mdanim_lammps.driver.run import Interrupted, simulate, write_inputs
 from mdanim_lammps.errors import DivergedError, OutputError
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
@@ -179,7 +180,6 @@ def test_a_run_that_blows_up_keeps_the_last_good_frame(tmp_path):
     """Insist on a step far above the bound: stop with the object, the cause and what to change, and keep the good frames."""
     (tmp_path / "bad.txt").write_text(FALL.replace("time 0.3 s", "time 3 s\n timestep 4 ms"))
     from mdanim_lammps.driver.prepare import prepare
-    from mdanim_lammps.driver.run import simulate, write_inputs
 
     ready = prepare(Scene.load(tmp_path / "bad.txt").record, allow_unstable=True)
     out = tmp_path / "bad.out"
@@ -208,3 +208,94 @@ def test_disk_full_is_told(fall, tmp_path):
     with pytest.raises(OutputError, match="make room and resume"), disk_errors(tmp_path / "x"):
         with open("/dev/full", "w") as file:
             file.write("x" * 100000)
+
+
+def test_force_never_deletes_a_folder_that_only_looks_like_ours(fall):
+    """Leave a folder alone that holds somebody else's manifest.json."""
+    folder = fall.folder.parent / "webapp"
+    folder.mkdir()
+    (folder / "manifest.json").write_text('{"name": "my web app"}')
+    (folder / "index.html").write_text("hello")
+    with pytest.raises(OutputError, match="does not delete"):
+        Scene.load(fall.folder.parent / "fall.txt").run(folder, force=True)
+    assert (folder / "index.html").exists()
+
+
+def stop_at(frame):
+    """A watcher that interrupts the run after this frame, as Ctrl-C does."""
+    def watch(progress):
+        if progress.frame == frame:
+            os.kill(os.getpid(), signal.SIGINT)
+    return watch
+
+
+def test_interrupt_during_an_impact_resumes_bit_for_bit(tmp_path):
+    """Stop while objects are pressed together and dashpots work; the resumed film is that of the run that never stopped."""
+    text = FALL.replace("drag 2", "drag 2\n damping 0.1").replace("spin (1, 2, 3)", "spin (1, 2, 3)\n damping 0.1")
+    (tmp_path / "fall.txt").write_text(text)
+    scene = Scene.load(tmp_path / "fall.txt")
+    whole = scene.run(tmp_path / "whole.out")
+    frame = int(np.argmax(whole.ledger.array("contact")))
+    assert whole.ledger.rows[frame]["contact"] > 0 and whole.ledger.rows[frame]["damping_loss"] > 0
+    with pytest.raises(Interrupted, match="mdanim-lammps resume"):
+        scene.run(tmp_path / "cut.out", watch=stop_at(frame))
+    checkpoint = Checkpoint.read(tmp_path / "cut.out" / "checkpoint")
+    assert checkpoint.frame == frame, "the frame at which it was stopped is the one that is kept"
+    resumed = simulate(scene.prepared, tmp_path / "cut.out", resume=checkpoint)
+    assert compare(whole.folder, tmp_path / "cut.out").equal
+    for term in ("kinetic", "elastic", "contact", "drag_loss"):
+        np.testing.assert_allclose(resumed.ledger.array(term), whole.ledger.array(term), rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(resumed.ledger.array("damping_loss"), whole.ledger.array("damping_loss"), rtol=1e-3, atol=1e-9)
+
+
+def test_a_checkpoint_of_another_run_is_refused(fall, tmp_path):
+    """Refuse to go on with another time step: its steps would mean other times."""
+    checkpoint = Checkpoint.read(fall.folder / "checkpoint")
+    (tmp_path / "fall.txt").write_text(FALL.replace("frames 50 fps", "frames 50 fps\n timestep 0.1 ms"))
+    with pytest.raises(OutputError, match="another run"):
+        simulate(Scene.load(tmp_path / "fall.txt").prepared, tmp_path, resume=checkpoint)
+
+
+@pytest.mark.parametrize("damage", [
+    pytest.param(lambda b: b"", id="empty"),
+    pytest.param(lambda b: b[: len(b) // 2], id="half"),
+    pytest.param(lambda b: b"nonsense", id="no archive"),
+])
+def test_a_damaged_checkpoint_is_told(fall, tmp_path, damage):
+    """Say that there is nothing to resume from."""
+    (tmp_path / "checkpoint").write_bytes(damage((fall.folder / "checkpoint").read_bytes()))
+    with pytest.raises(OutputError, match="nothing to resume from"):
+        Checkpoint.read(tmp_path / "checkpoint")
+
+
+def test_a_title_may_hold_any_letter(tmp_path):
+    """Write LAMMPS's files in ASCII whatever the title and the name of the scene."""
+    (tmp_path / "würfel.txt").write_text('title "Würfel fällt"\n' + FALL)
+    scene = Scene.load(tmp_path / "würfel.txt")
+    write_inputs(scene.prepared, tmp_path)
+    assert (tmp_path / "data.w_rfel").read_bytes().isascii() and (tmp_path / "in.w_rfel").read_bytes().isascii()
+    assert "Würfel" in (tmp_path / "scene.lock.txt").read_text(encoding="utf-8")
+
+
+def test_strong_air_drag_decays_without_overshoot(tmp_path):
+    """Take drag exponentially, with a warning, where the implicit form would turn the velocity round every step."""
+    (tmp_path / "feather.txt").write_text("""
+        object feather {
+          shape box (4, 4, 4) cm
+          position (0, 0, 0) m
+          density 10
+          elasticity 1 kPa
+          velocity (1, 0, 0)
+          drag 5
+        }
+        control {
+          time 0.1 s
+          frames 100 fps
+        }
+    """)
+    scene = Scene.load(tmp_path / "feather.txt")
+    assert [w.message for w in scene.prepared.warnings if "air drag is strong" in w.message]
+    scene.run()
+    with Trajectory(tmp_path / "feather.out") as t:
+        v = t.center_velocities[:, 0, 0]
+    assert v[0] == pytest.approx(1.0) and np.abs(v[1:]).max() < 1e-12

@@ -87,8 +87,9 @@ def input_script(plan: Plan) -> str:
         n, end = c.steps_per_frame, c.steps
         variable = [f"variable frame equal (step+{n})*(step+{n}<={end})+{end}*(step+{n}>{end}&&step<{end})+1e15*(step>={end})"]
         modify = ["dump_modify trajectory every v_frame first yes"]
+    title = (plan.scene.title or plan.name).encode("ascii", "replace").decode()  # LAMMPS reads ASCII
     return "\n".join([
-        f"# {plan.scene.title or plan.name}: written by mdanim-lammps; run it here with 'lmp -in in.{plan.name}'",
+        f"# {title}: written by mdanim-lammps; run it here with 'lmp -in in.{plan.name}'",
         f"# or 'mpiexec -n 4 lmp -in in.{plan.name}'. Needs the styles of the mdanim-lammps package (pip install).",
         f"# Effects: {', '.join(e.name for e in plan.effects) or 'none'}.",
         "",
