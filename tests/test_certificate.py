@@ -121,3 +121,18 @@ def test_a_time_that_fits_no_step_is_a_problem():
     """Say which duration would do."""
     with pytest.raises(SceneError, match="try 'time 1.73333 s'"):
         fit_steps(scene(math.sqrt(3.0)), 1e-2)
+
+
+@pytest.mark.parametrize(("young", "height", "warned"), [
+    pytest.param("100 kPa", 0.6, True, id="soft ball from 60 cm: 0.29 of the wave speed"),
+    pytest.param("1 MPa", 0.6, False, id="stiffer"),
+    pytest.param("100 kPa", 0.12, False, id="lower"),
+])
+def test_a_landing_that_is_too_hard_is_told(prepared, young, height, warned):
+    """Warn when a fall ends at more than 0.2 of the wave speed, with an elasticity that will do."""
+    text = (f"gravity (0, 0, -9.81)\nground z 0\nobject ball {{\n shape sphere 0.1\n position (0, 0, {height})\n density 1000\n"
+            f" elasticity {young}\n}}\ncontrol {{ time 1 s }}")
+    found = [w for w in prepared(text).warnings if "crumpled" in w.message]
+    assert bool(found) == warned
+    if warned:
+        assert found[0].span.line == 7 and "write elasticity" in found[0].hint

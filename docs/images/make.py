@@ -9,7 +9,7 @@ from mdanim_lammps.picture.movie import render_still
 
 HERE = Path(__file__).parent
 SCENES = HERE.parent.parent / "scenes"
-PICTURES = {"beam": 0.33, "drop": 0.6, "duck": 0.6, "crowd": 0.48}
+PICTURES = {"beam": 0.33, "drop": 0.5, "duck": 0.6, "crowd": 0.48}
 """Scene and the moment to show [s]."""
 
 

@@ -151,3 +151,38 @@ def strong_drag(system: System, timestep: float) -> float:
     """Largest phi of the scene's air drag when it is above STRONG, else 0."""
     phi = 0.0 if system.drag is None else float((system.drag / system.mass).max()) * timestep / 2.0
     return phi if phi > STRONG else 0.0
+
+
+FOLDS = 0.2
+"""Speed of an impact over the wave speed above which a lattice folds up and stays crumpled (docs/physics-solids.md)."""
+
+
+def hard_landing(scene: Scene, system: System) -> Problem | None:
+    """A warning for the object that may hit hardest for its stiffness, when that is harder than a lattice stands.
+
+    The speed is the start's, with the fall down to the ground, or to the lowest object. c = sqrt(1.2 E / rho).
+    """
+    free = np.logical_or.reduceat(~system.held, system.first[:-1])
+    if not free.any():
+        return None
+    bottom = np.minimum.reduceat(system.position[:, 2], system.first[:-1])
+    floor = min([bottom.min(), *([scene.ground] if scene.ground is not None else [])])
+    speed = np.sqrt(np.maximum.reduceat((system.velocity**2).sum(1), system.first[:-1])
+                    + 2.0 * max(0.0, -scene.gravity[2]) * (bottom - floor))
+    meets = len(system.names) > 1 or scene.ground is not None or scene.walls is not None
+    density = system.mass_of / (np.add.reduceat(system.share, system.first[:-1]) * system.cell_volume)
+    wave = np.sqrt(1.2 * system.young / density)
+    ratio = np.where(free & meets, speed / wave, 0.0)
+    worst = int(ratio.argmax())
+    if ratio[worst] <= FOLDS:
+        return None
+    solid = scene.solids[worst]
+    enough = system.young[worst] * (ratio[worst] / FOLDS) ** 2
+    others = int((ratio > FOLDS).sum()) - 1
+    return Problem(
+        solid.spans.get("elasticity"),
+        f"{solid.name}{f' and {others} more' if others else ''} may hit at {speed[worst]:.2g} m/s, {ratio[worst]:.2f} of the wave speed "
+        f"{wave[worst]:.2g} m/s; above about {FOLDS:g} a soft object folds up and stays crumpled",
+        f"write elasticity {enough / 1e3:.2g} kPa or more, or a lower density, height or speed",
+        severity="warning",
+    )

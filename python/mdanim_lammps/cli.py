@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 from cyclopts import App, CycloptsError, Parameter
 
 from . import __version__
-from .errors import ExitCode, MdanimError, RefusedError, SceneError
+from .errors import ExitCode, MdanimError, RefusedError, SceneError, UsageError
 
 app = App(
     name="mdanim-lammps",
@@ -149,6 +149,10 @@ def render(folder: Path, /, *, size: tuple[int, int] | None = None, fps: float |
     scene
         Take the render block (camera, background) of this scene file instead.
     """
+    if size is not None and not all(2 <= n <= 8192 for n in size):
+        raise UsageError(f"--size {size[0]} {size[1]}: width and height must lie between 2 and 8192, e.g. --size 1280 720")
+    if fps is not None and not 0.0 < fps <= 1000.0:
+        raise UsageError(f"--fps {fps:g}: must be above 0 and at most 1000, e.g. --fps 30")
     record = _stored_scene(folder) if scene is None else _load(scene, ())
     from .api import movie_file
 
@@ -196,7 +200,7 @@ def _load(path: Path, overrides: tuple[str, ...], *, strict: bool = False):
     for text in overrides:
         name, equals, value = text.partition("=")
         if not equals or not name.strip():
-            raise MdanimError(f"--set {text}: expected NAME=VALUE, e.g. --set rho=0.8")
+            raise UsageError(f"--set {text}: expected NAME=VALUE, e.g. --set rho=0.8")
         pairs[name.strip()] = value.strip()
     return load_scene(path, overrides=pairs, strict=strict)
 

@@ -100,6 +100,12 @@ class MdanimError(Exception):
     exit_code = ExitCode.USAGE
 
 
+class UsageError(MdanimError):
+    """The command line was given something that cannot be."""
+
+    exit_code = ExitCode.USAGE
+
+
 class SceneError(MdanimError):
     """A scene cannot be used; ``problems`` holds everything found in one pass."""
 

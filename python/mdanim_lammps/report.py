@@ -19,7 +19,8 @@ def scene_line(ready: Prepared) -> str:
     on = [v.name for v in ready.verdicts.values() if v.on]
     off = [f"{v.name} ({v.reason})" for v in ready.verdicts.values() if not v.on]
     file = ready.scene.path.name if ready.scene.path else ready.scene.name
-    return (f"scene    {file}  {count(len(ready.system.names), 'object')} ({count(ready.system.particles, 'particle')}); "
+    title = f"'{ready.scene.title}'  " if ready.scene.title else ""
+    return (f"scene    {file}  {title}{count(len(ready.system.names), 'object')} ({count(ready.system.particles, 'particle')}); "
             f"effects: {', '.join(on) or 'none'}" + (f"   off: {', '.join(off)}" if off else ""))
 
 

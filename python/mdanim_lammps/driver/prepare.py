@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..certificate import STRONG, Certificate, certify, strong_drag
+from ..certificate import STRONG, Certificate, certify, hard_landing, strong_drag
 from ..effects import EFFECTS, Verdict, decide
 from ..engine.plan import Plan, make_plan
 from ..errors import Problem, SceneError
@@ -62,5 +62,7 @@ def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[i
             "the exponential form is used instead of the paper's implicit one: same terminal speed, no overshoot",
             severity="warning",
         ))
+    if (verdicts["springs"].on and (warning := hard_landing(scene, system))):
+        warnings.append(warning)
     return Prepared(scene, tuple(models), system, verdicts, (*scene.warnings, *problems, *warnings), certificate,
                     make_plan(scene, system, verdicts, certificate))

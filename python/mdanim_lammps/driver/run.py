@@ -217,10 +217,11 @@ class _Run:
 
     def _diverged(self, what: str) -> DivergedError:
         c = self.certificate
-        return DivergedError(
-            f"{what}; the step is {c.fraction:.2f} of the bound, set by {c.object} ({c.cause}): objects are probably hit or "
-            "squeezed harder than their lattice stands (try a lower speed, a stiffer object or a smaller timestep). "
-            f"The last good frame is kept in {self.folder}")
+        cure = ("that is why: write 'timestep auto'" if c.fraction > 1.0 else
+                "objects are probably hit or squeezed harder than their lattice stands: try a lower speed, a stiffer object or "
+                "a smaller timestep")
+        return DivergedError(f"{what}; the step is {c.fraction:.2f} of the bound, set by {c.object} ({c.cause}); {cure}. "
+                             f"The last good frame is kept in {self.folder}")
 
     def _energies(self, v: np.ndarray) -> dict[str, float]:
         """Energy of every term of the ledger [J]."""

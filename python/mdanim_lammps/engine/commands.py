@@ -38,6 +38,9 @@ def prelude(plan: Plan) -> list[str]:
     spacing = float(plan.system.spacing.max())
     skin = SKIN * spacing
     reach = float(plan.columns["reach"].max()) if "reach" in plan.columns else 0.0
+    longest = float(plan.coefficients[:, 1].max()) if len(plan.bonds) else 0.0
+    # The last is LAMMPS's own estimate for bonds: below it, it warns at every rebuild.
+    cutoff = max(GHOST * spacing, 1.001 * (reach + skin), 1.5 * longest + 1.001 * skin)
     velocities = " vel yes" if plan.damped else ""
     columns = "".join(f" d_{name}" for name in plan.columns)
     return [
@@ -47,7 +50,7 @@ def prelude(plan: Plan) -> list[str]:
         "newton off",
         "boundary s s s",
         "comm_style tiled",
-        f"comm_modify cutoff {max(GHOST * spacing, 1.001 * (reach + skin))!r}{velocities}",
+        f"comm_modify cutoff {cutoff!r}{velocities}",
         f"neighbor {skin!r} bin",
         "neigh_modify every 1 delay 0 check yes",
         "pair_style none",

@@ -61,8 +61,8 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
 
     Centres are taken from every frame, extents about them from ``samples`` frames, so that a long trajectory
     need not be read whole. Left out is what would make everything else tiny: an object, where there is no
-    ground, from when it has fallen out of the scene; whatever lies farther from the start than four times its
-    size; and of a crowd the outermost twentieth on each side.
+    ground, from when it has fallen out of the scene; of a crowd the outermost twentieth on each side and what lies
+    farther from the start than four times its size; of few objects what lies ten times farther still.
     """
     catalogue, centers = trajectory.catalogue, trajectory.centers
     frames = np.unique(np.linspace(0, len(trajectory) - 1, samples).astype(int))
@@ -92,9 +92,11 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
     outer = len(catalogue.names) // 20
     shown_low = np.partition(lowest, outer, axis=0)[outer]
     shown_high = -np.partition(-highest, outer, axis=0)[outer]
+    # One among many may fly off; where there are few, the picture follows far.
+    far = (FAR if outer else 10.0 * FAR) * size
     bounds = (
-        np.maximum(np.minimum(shown_low, start_low), start_low - FAR * size),
-        np.minimum(np.maximum(shown_high, start_high), start_high + FAR * size),
+        np.maximum(np.minimum(shown_low, start_low), start_low - far),
+        np.minimum(np.maximum(shown_high, start_high), start_high + far),
     )
     if catalogue.ground is not None:
         bounds[0][2] = min(bounds[0][2], max(catalogue.ground, start_low[2] - FAR * size))
