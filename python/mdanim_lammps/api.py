@@ -72,7 +72,7 @@ def open_run(ready: Prepared, folder: str | Path | None, *, force: bool) -> Path
     """Make the output folder (None: the default one) with all that is known before the run. Raises OutputError."""
     folder = Path(folder) if folder is not None else default_folder(ready.scene)
     open_folder(folder, force=force)
-    write_json(folder / MARK, manifest(ready.scene, sys.argv))
+    write_json(folder / MARK, manifest(ready.scene, ready.lock, sys.argv))
     write_inputs(ready, folder)
     return folder
 

