@@ -10,6 +10,7 @@
 #include "lammps.h"
 #include "library.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
@@ -105,6 +106,24 @@ void insert(LAMMPS *lmp, int n, const int *tag, const int *type, const int *mole
   atom->nbonds += bonds.first[n] / 2;    // LAMMPS counts a bond once, wherever it is stored
 }
 
+void set_table(LAMMPS *lmp, const char *name, int columns, int n, const int *tag, const int *values)
+{
+  Atom *atom = lmp->atom;
+  int is_double = 0, width = 0;
+  const int index = atom->find_custom(name, is_double, width);
+  if (index < 0 || is_double || !width)
+    fail(std::string("there is no per-particle table i2_") + name + "; use 'fix ID all property/atom i2_" + name + " " +
+         number(columns) + "'");
+  if (width != columns)
+    fail(std::string("the per-particle table i2_") + name + " has " + number(width) + " columns, " + number(columns) +
+         " are given");
+  for (int i = 0; i < n; ++i) {
+    const int here = atom->map(tag[i]);
+    if (here < 0 || here >= atom->nlocal) continue;    // on another rank
+    std::copy_n(values + static_cast<size_t>(i) * columns, columns, atom->iarray[index][here]);
+  }
+}
+
 // This rank's value of bond_style mdanim/harmonic; 0 with another bond style.
 double of_bonds(void *handle, const char *what)
 {
@@ -134,6 +153,20 @@ MDANIM_EXPORT int mdanim_insert(void *handle, int n, const int *tag, const int *
     snprintf(error, error_size, "%s", e.what());
   } catch (...) {
     snprintf(error, error_size, "unknown error");
+  }
+  return 1;
+}
+
+// Write whole numbers, shape (n, columns), into the property i2_NAME of the particles with these tags. Every rank calls it
+// with the same arguments. Returns 0, or 1 with a message in `error`.
+MDANIM_EXPORT int mdanim_set_table(void *handle, const char *name, int columns, int n, const int *tag, const int *values,
+                                   char *error, int error_size)
+{
+  try {
+    set_table(static_cast<LAMMPS *>(handle), name, columns, n, tag, values);
+    return 0;
+  } catch (const std::exception &e) {
+    snprintf(error, error_size, "%s", e.what());
   }
   return 1;
 }

@@ -6,6 +6,7 @@
 #include "bond_mdanim_harmonic.h"
 #include "fix_mdanim_barrier.h"
 #include "fix_mdanim_leapfrog.h"
+#include "fix_mdanim_liquid.h"
 #include "fix_mdanim_wall.h"
 
 #include "comm.h"
@@ -62,6 +63,7 @@ MDANIM_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *register_sty
       bond("mdanim/harmonic", "springs in gather form", &make_bond<BondMdanimHarmonic>),
       fix("mdanim/leapfrog", "leap-frog with friction", &make_fix<FixMdanimLeapfrog>),
       fix("mdanim/barrier", "contact of objects", &make_fix<FixMdanimBarrier>),
+      fix("mdanim/liquid", "liquid that solids float and sink in", &make_fix<FixMdanimLiquid>),
       fix("mdanim/wall", "walls that stand any impact", &make_fix<FixMdanimWall>),
   };
   for (PluginRecord &style : styles) {

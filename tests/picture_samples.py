@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from mdanim_lammps.model.basin import plan_grid
 from mdanim_lammps.model.model import Layer, Model, Surface
 from mdanim_lammps.results.trajectory import TrajectoryWriter
 from mdanim_lammps.scene import scene as records
@@ -171,9 +172,68 @@ def falling(models, frames, dt=0.1, floor=0.3, g=9.81):
         yield i * 10, t, np.concatenate(position), np.concatenate(velocity)
 
 
-def write(path, scene, models, frames):
+def pool_scene(models=None, spacing=0.05, color=None, **control):
+    """A basin half full of water and, unless others are given, a crate and a ball above it; and the grid."""
+    models = models or [
+        box("crate", (0.4, 0.4, 0.3), (4, 4, 3), (-0.35, 0.1, 0.45)),
+        ball("ball", 0.16, 0.08, (0.45, -0.3, 0.2)),
+    ]
+    liquid = records.Liquid("water", (-1.0, -0.7, 0.0), (1.0, 0.7, 1.0), 1000.0, volume=1.4, color=color)
+    scene = records.Scene(
+        name="pool",
+        title="A crate in a tank of water",
+        control=records.Control(time=1.0, frames=10.0, **control),
+        solids=tuple(solid(m, tuple(m.position.mean(axis=0))) for m in models),
+        liquid=liquid,
+    )
+    return scene, models, plan_grid(liquid, spacing)
+
+
+def column_centres(grid):
+    """x and y of the columns [m], each of shape (ny, nx)."""
+    x, y = (a + (np.arange(n) + 0.5) * e for a, e, n in zip(grid.low, grid.cell, grid.shape[:2]))
+    return np.meshgrid(x, y)
+
+
+def flat(grid, level=0.5):
+    """Heights of a level liquid [m], shape (ny, nx)."""
+    return np.full(grid.shape[1::-1], level)
+
+
+def dam(grid, front=0.1):
+    """Heights of a dam that breaks: a step 0.8 m high on the left that slopes to the dry floor on the right."""
+    x, _ = column_centres(grid)
+    return 0.8 / (1 + np.exp((x - front) / 0.12)) * (x < front + 0.5)
+
+
+def splash(grid, centre=(0.0, 0.0), level=0.5, height=0.09):
+    """Heights of rings around a splash."""
+    x, y = column_centres(grid)
+    r = np.hypot(x - centre[0], y - centre[1])
+    return level + height * np.cos(18 * r) * np.exp(-2.2 * r)
+
+
+def wet_frames(models, *liquids):
+    """Frames of models at rest with these heights; raw ones are whole cells, NaN in the columns of a body."""
+    position = np.concatenate([m.position for m in models])
+    for i, (smooth, raw) in enumerate(liquids):
+        yield i * 10, 0.1 * i, position, np.zeros_like(position), (smooth, raw)
+
+
+def raw_of(grid, smooth, models=()):
+    """Raw heights that go with smooth ones: whole cells, NaN where a body stands."""
+    edge = grid.cell[2]
+    raw = np.round((smooth - grid.low[2]) / edge) * edge + grid.low[2]
+    x, y = column_centres(grid)
+    for m in models:
+        low, high = m.position.min(axis=0), m.position.max(axis=0)
+        raw[(x > low[0]) & (x < high[0]) & (y > low[1]) & (y < high[1])] = np.nan
+    return raw
+
+
+def write(path, scene, models, frames, grid=None):
     """Write a whole trajectory; returns its path."""
-    with TrajectoryWriter(path, scene, models, dt=0.01, steps_per_frame=10) as out:
+    with TrajectoryWriter(path, scene, models, dt=0.01, steps_per_frame=10, grid=grid) as out:
         for frame in frames:
             out.write(*frame)
     return path

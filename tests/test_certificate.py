@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from mdanim_lammps.certificate import fit_steps
+from mdanim_lammps.effects import EFFECTS
 from mdanim_lammps.effects.contact import plane_stiffness
+from mdanim_lammps.engine.commands import physics
 from mdanim_lammps.errors import RefusedError, SceneError
 
 BOX = """
@@ -136,3 +138,73 @@ def test_a_landing_that_is_too_hard_is_told(prepared, young, height, warned):
     assert bool(found) == warned
     if warned:
         assert found[0].span.line == 7 and "write elasticity" in found[0].hint
+
+
+POOL = """gravity (0, 0, -9.81)
+liquid water {{
+  basin from (-0.5, -0.5, 0) m to (0.5, 0.5, 2) m
+  density 1000
+  level {level} m
+  {liquid}
+}}
+object cube {{
+  shape box (20, 20, 20) cm
+  position (0, 0, {height})
+  density {density}
+  elasticity {young} kPa
+}}
+control {{
+  time 1 s
+  resolution 5 cm
+}}
+"""
+
+
+def pool(density=500, height=0.6, young=100, level=0.5, liquid="", more=""):
+    """A scene of one cube above a liquid."""
+    return POOL.format(density=density, height=height, young=young, level=level, liquid=liquid) + more
+
+
+def test_buoyancy_is_a_spring_to_the_surface(prepared):
+    """Add (rho_l/rho_s) g over the height of a cell to every particle's rate, and no more: a rigid body bobs more slowly."""
+    ready = prepared(pool(density=250))
+    found = next(e for e in EFFECTS if e.name == "buoyancy").rate(ready.scene, ready.system)
+    np.testing.assert_allclose(found, 4 * 9.81 / 0.05, rtol=1e-12)
+    soft, dry = (prepared(pool(density=250, young=0.05, more=more)).certificate for more in ("", "effects { buoyancy off }"))
+    # Corner: 8 E / rho h^2 from springs, E / rho h^2 from the floor (a quarter of E h on an eighth of a cell's mass is 2).
+    springs = (8 + 2) * 50 / (250 * 0.05**2)
+    assert dry.bound == pytest.approx(2.0 / math.sqrt(springs), rel=1e-12)
+    assert soft.bound == pytest.approx(2.0 / math.sqrt(springs + 4 * 9.81 / 0.05), rel=1e-12)
+
+
+@pytest.mark.parametrize(("gamma", "drag", "told"), [
+    pytest.param(4, "", "", id="weak"),
+    pytest.param(4000, "", "liquid drag is strong", id="liquid"),
+    pytest.param(600, "drag 5000", "air drag and liquid drag is strong", id="strong together"),
+])
+def test_strong_drag_of_the_liquid_is_told(prepared, gamma, drag, told):
+    """Count gamma rho_l V_i with the drag of air, and take the exponential form where phi is above 0.5."""
+    ready = prepared(pool(liquid=f"drag {gamma}").replace("density 500", f"density 500\n  {drag}"))
+    found = [w for w in ready.warnings if "is strong" in w.message]
+    assert [w.message.startswith(told) for w in found] == [True] * bool(told)
+    assert ("drag exp" in "\n".join(physics(ready.plan))) == bool(told)
+    if told:
+        most = (gamma * 1000 + (5000 / 0.008 if drag else 0)) / 500 * ready.certificate.timestep / 2
+        assert f"phi = {most:.2g}" in found[0].message
+
+
+@pytest.mark.parametrize(("density", "height", "level", "more", "speed"), [
+    pytest.param(500, 1.1, 0.01, "", 4.41, id="light, shallow: to the floor"),
+    pytest.param(500, 1.1, 0.5, "", None, id="light, deep: never reaches the floor"),
+    pytest.param(2000, 1.6, 0.5, "", 4.95, id="heavy: down to the floor, with half its weight in the liquid"),
+    pytest.param(2000, 1.6, 0.5, "effects { buoyancy off }", 5.42, id="no buoyancy: as through air"),
+    pytest.param(500, 1.6, 0.2, "object raft { shape box (20, 20, 20) cm position (0.3, 0.3, 0.1) density 900 elasticity 1 MPa }",
+                 5.06, id="light, with another floating: to the surface"),
+])
+def test_a_liquid_breaks_a_fall(prepared, density, height, level, more, speed):
+    """Count a fall through air down to the surface, and from there what the liquid leaves of the weight."""
+    found = [w for w in prepared(pool(density, height, 20, level, more=more)).warnings if "crumpled" in w.message]
+    if speed is None:
+        assert not found
+    else:
+        assert f"may hit at {speed:.2g} m/s" in found[0].message

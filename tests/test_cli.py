@@ -56,10 +56,21 @@ def test_check_text_and_json(scene):
     path = scene()
     text = run("check", path)
     assert text.returncode == 0 and "certify" in text.stdout and "contact" in text.stdout
+    assert "basin, liquid, buoyancy, liquid-drag (no liquid in the scene)" in text.stdout
     data = json.loads(run("check", path, "--format", "json").stdout)
     assert data["effects"]["gravity"]["on"] and not data["effects"]["contact"]["on"]
     assert data["certificate"]["object"] == "cube"
     assert [p.name for p in path.parent.iterdir()] == ["cube.txt"]
+
+
+def test_a_liquid_is_announced(scenes):
+    """Say how many cells the liquid has, and by how much its volume was rounded where it was."""
+    text = run("check", scenes / "float.txt").stdout
+    assert "1 object (405 particles), 1 liquid (38 400 cells); effects: springs, gravity, basin, liquid, buoyancy" in text
+    rounded = run("check", scenes / "float.txt", "--set", "a=0.3").stdout
+    assert "its volume rounded by" in rounded
+    data = json.loads(run("check", scenes / "float.txt", "--format", "json").stdout)
+    assert data["liquid"]["cells"] == [40, 40, 24] and data["liquid"]["cell"] == pytest.approx([0.05, 0.05, 0.05])
 
 
 def test_build_writes_two_files_for_lammps(scene):
@@ -87,7 +98,10 @@ def test_compare_and_render_use_an_output_folder(scene):
     pytest.param(["cube.txt", "--frobnicate"], 2, ["frobnicate"], id="unknown option"),
     pytest.param(["missing.txt"], 3, ["missing.txt"], id="no such scene"),
     pytest.param(["bad.txt"], 3, ["bad.txt:7:14: error", "'kgg'", "did you mean", "^"], id="scene error"),
-    pytest.param(["liquid.txt"], 3, ["liquid is not built yet"], id="liquid"),
+    pytest.param(["check", "liquid.txt"], 3, ["cube is 4 cm below the floor of the basin", "move it up by 4 cm",
+                                              "2 cells wide along x"], id="basin"),
+    pytest.param(["check", "alone.txt"], 3, ["no object", "hold all"], id="liquid alone"),
+    pytest.param(["check", "dry.txt"], 3, ["liquid.level needs the liquid, which is off", "switch the liquid on"], id="liquid off"),
     pytest.param(["fast.txt"], 4, ["certified bound", "cube", "timestep auto"], id="step above the bound"),
     pytest.param(["cube.txt", "-n", "4"], 4, ["executors", "mpiexec"], id="several executors"),
     pytest.param(["study", "cube.txt"], 4, ["not built yet"], id="study"),
@@ -101,7 +115,10 @@ def test_exit_codes(scene, arguments, code, words):
     """End with the documented code and a message that says how to go on; never with a traceback."""
     directory = scene().parent
     scene(GOOD.replace("density 1000 kg/m^3", "mass   1.5 kgg"), "bad.txt")
-    scene(GOOD + "liquid water {\n basin from (-1,-1,-1) m to (1,1,1) m\n density 1000 kg/m^3\n level 0 m\n}\n", "liquid.txt")
+    water = "liquid water {\n basin from (-1, -1, 0) m to (1, 1, 1) m\n density 1000 kg/m^3\n level 0.5 m\n}\n"
+    scene(GOOD + water.replace("(-1, -1, 0) m to (1, 1, 1)", "(-4, -20, 5) cm to (4, 20, 80)").replace(") m\n d", ") cm\n d"), "liquid.txt")
+    scene("gravity (0, 0, -9.81)\ncontrol { time 1 s }\n" + water, "alone.txt")
+    scene(GOOD + water + "effects { liquid off }\nexpect liquid.level = 0.5 m +- 1 cm\n", "dry.txt")
     scene(GOOD.replace("time 0.1 s", "time 0.1 s\n  timestep 1 s"), "fast.txt")
     scene(GOOD + "expect cube.position.z at 0.1 s = 9 m +- 1 m\n", "wrong.txt")
     done = run(*arguments, cwd=directory)

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Effects: on when the scene calls for them, with reason and line, and off without a trace."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from mdanim_lammps.effects import EFFECTS, decide
 from mdanim_lammps.effects.contact import plane_stiffness
+from mdanim_lammps.effects.liquid import lattice_cells
 from mdanim_lammps.scene.parse import parse_scene
 
 FULL = """gravity (0, 0, -9.81)
@@ -24,10 +28,16 @@ object b {
   mass 1
   elasticity 1e5
 }
+liquid w {
+  basin from (-1, -1, 0) to (1, 1, 2)
+  density 1000
+  level 0.3
+}
 control { time 1 }
 """
 BARE = "object a {\n shape sphere 0.1\n position (0, 0, 0)\n mass 1\n elasticity 1e5\n}\ncontrol { time 1 }\n"
-LINES = {"springs": 8, "damping": 9, "gravity": 1, "contact": 12, "ground": 2, "walls": 3, "air-drag": 10}
+LINES = {"springs": 8, "damping": 9, "gravity": 1, "contact": 12, "ground": 2, "walls": 3, "air-drag": 10, "basin": 19,
+         "liquid": 18, "buoyancy": 4, "liquid-drag": 4}
 
 
 def verdicts(text):
@@ -70,6 +80,133 @@ def test_a_needless_effect_cannot_be_switched_on():
 def test_held_objects_need_no_springs(text):
     """Leave springs out when nothing can deform."""
     assert not verdicts(text)[0]["springs"].on
+
+
+# --- liquid -------------------------------------------------------------------------------------------------
+
+POOL = """gravity (0, 0, -9.81) m/s^2
+liquid w {{
+  basin from (0, 0, 0) m to (1, 0.8, 0.6) m
+  density 1000
+  {liquid}
+}}
+object block {{
+  shape box (20, 20, 20) cm
+  position (0.5, 0.4, 0.4) m
+  density 500
+  elasticity 200 kPa
+  {block}
+}}
+control {{
+  time 1 s
+  resolution 5 cm
+  seed 3
+}}
+{top}
+"""
+
+
+def pool(liquid="level 0.25 m", block="", top=""):
+    """A scene of a block that falls into a basin."""
+    return POOL.format(liquid=liquid, block=block, top=top)
+
+
+def commands(ready, name):
+    """What an effect writes for LAMMPS."""
+    return next(e for e in EFFECTS if e.name == name).commands(ready.scene, ready.system)
+
+
+@pytest.mark.parametrize("effect", ["basin", "buoyancy", "liquid-drag"])
+def test_what_is_held_reaches_no_liquid(effect):
+    """Leave out basin, buoyancy and drag where nothing moves; the liquid itself still makes room for what stands in it."""
+    found, _ = verdicts(pool(block="hold all"))
+    assert not found[effect].on and "move" in found[effect].reason
+    assert found["liquid"].on
+
+
+def test_liquid_takes_what_needs_it_along():
+    """Switch buoyancy and drag off with the liquid, but neither basin nor gravity."""
+    found, warnings = verdicts(pool(top="effects { liquid off }"))
+    assert [n for n in ("gravity", "basin", "liquid", "buoyancy", "liquid-drag") if found[n].on] == ["gravity", "basin"]
+    assert found["buoyancy"].reason == "liquid is off" and len(warnings) == 1
+
+
+def test_without_gravity_a_liquid_cannot_be():
+    """Say so when gravity is switched off."""
+    found, _ = verdicts(pool(top="effects { gravity off }"))
+    assert not found["liquid"].on and found["liquid"].reason == "gravity is off"
+
+
+def test_drag_zero_is_off():
+    """Leave no lambda for a liquid without drag."""
+    found, _ = verdicts(pool("level 0.25 m\n drag 0"))
+    assert not found["liquid-drag"].on and found["liquid-drag"].span.line == 6
+
+
+def test_the_liquid_in_lammps_terms(prepared):
+    """Write basin, cells, amount, gravity, models and seed, bit for bit."""
+    assert commands(prepared(pool()), "liquid") == [
+        "group held type 5:8",
+        "region liquid block 0.0 1.0 0.0 0.8 0.0 0.6",
+        "fix liquid all mdanim/liquid liquid 1000.0 grid 20 16 12 level 0.25 gravity 9.81 cells i2_cell still held "
+        "sweeps auto seed 3",
+    ]
+    fill, fix = commands(prepared(pool(
+        "volume 10 l\n fill from (0, 0, 0.1) m to (0.3, 0.8, 0.6) m\n model paper\n sweeps 7\n drag 2")), "liquid")[2:]
+    assert fill == "region fill block 0.0 0.3 0.0 0.8 0.1 0.6"
+    assert fix == ("fix liquid all mdanim/liquid liquid 1000.0 grid 20 16 12 volume 0.01 fill fill gravity 9.81 model paper "
+                   "still held sweeps 7 seed 3")
+
+
+def test_the_paper_needs_no_lattice_cells(prepared):
+    """Carry the table of lattice cells only for the model that reads it."""
+    assert "cell" in prepared(pool()).plan.tables
+    assert not prepared(pool("level 0.25 m\n model paper")).plan.tables
+
+
+def test_walls_of_a_basin_go_on_upward(prepared):
+    """Give the basin a floor and four walls, but no lid."""
+    assert commands(prepared(pool()), "basin")[0] == "region basin block 0.0 1.0 0.0 0.8 0.0 INF"
+
+
+def test_drag_of_a_liquid_is_a_rate(prepared):
+    """Take gamma as it is written; by default sqrt(g/L) with the edge of the cube of equal volume."""
+    plan = prepared(pool()).plan
+    np.testing.assert_allclose(plan.columns["gamma"], np.sqrt(9.81 / 0.2), rtol=1e-12)
+    assert not plan.columns["lambda"].any() and "air" not in plan.columns
+    plan = prepared(pool("level 0.25 m\n drag 4")).plan
+    assert (plan.columns["gamma"] == 4.0).all()
+
+
+def test_drags_of_air_and_liquid_add_up(prepared):
+    """Hand lambda to the liquid, with that of the air as its base; switched off, air leaves nothing."""
+    ready = prepared(pool(block="drag 3"))
+    columns = ready.plan.columns
+    np.testing.assert_allclose(columns["air"].sum(), 3.0, rtol=1e-12)
+    assert np.array_equal(columns["lambda"], columns["air"])
+    assert commands(ready, "liquid-drag") == ["fix_modify liquid drag d_gamma lambda d_lambda base d_air"]
+    ready = prepared(pool(block="drag 3", top="effects { air-drag off }"))
+    assert "air" not in ready.plan.columns and not ready.plan.columns["lambda"].any()
+    assert commands(ready, "liquid-drag") == ["fix_modify liquid drag d_gamma lambda d_lambda"]
+
+
+def test_every_lattice_cell_is_in_the_table(prepared):
+    """Find each cell once, at its first corner, the others as tags in VTK order."""
+    ready = prepared(pool(top="object ball { shape sphere 8 cm position (20, 20, 45) cm density 900 elasticity 100 kPa }"))
+    system, table = ready.system, ready.plan.tables["cell"]
+    owner = np.flatnonzero(table.any(axis=1))
+    found = np.column_stack([owner, table[owner] - 1])
+    assert np.array_equal(found, system.hexahedron[np.argsort(system.hexahedron[:, 0])])
+    assert len(found) == sum(len(m.hexahedron) for m in ready.models)
+    assert table.dtype == np.int32 and table.min() == 0
+
+
+def test_a_particle_owns_one_cell_at_most(prepared):
+    """Refuse a lattice in which two cells start at one particle."""
+    system = prepared(pool()).system
+    twice = replace(system, hexahedron=np.concatenate([system.hexahedron, system.hexahedron[:1]]))
+    with pytest.raises(ValueError, match="first corner of two"):
+        lattice_cells(twice)
 
 
 def test_plane_stiffness_bounds_every_depth():

@@ -13,6 +13,7 @@ from mdanim_lammps.engine.commands import harmonic_coeff, input_script
 from mdanim_lammps.engine.data_file import data_text, write_data
 from mdanim_lammps.engine.instance import Instance, both_ends
 from mdanim_lammps.engine.plan import bond_kinds
+from mdanim_lammps.errors import SetupError
 
 MEETING = """
 gravity (0, 0, -9.81) m/s^2
@@ -47,6 +48,46 @@ control {
   resolution 2.5 cm
 }
 """
+
+SPLASH = """
+gravity (0, 0, -9.81) m/s^2
+liquid water {
+  basin from (-30, -25, 0) cm to (30, 25, 40) cm
+  density 1000
+  volume 45 l
+  fill from (-30, -25, 0) cm to (20, 25, 40) cm
+}
+object wall {
+  shape box (5, 30, 20) cm
+  position (15, -10, 10) cm
+  density 2000
+  elasticity 1 MPa
+  hold all
+}
+object raft {
+  shape box (15, 15, 10) cm
+  position (-8, 0, 26) cm
+  orientation euler (0, 20, 10) deg
+  density 400
+  elasticity 100 kPa
+  velocity (0, 0, -2) m/s
+  drag 0.5
+}
+object stone {
+  shape box (7.5, 7.5, 7.5) cm
+  position (-20, -15, 5) cm
+  density 2500
+  elasticity 500 kPa
+  damping 0.05
+}
+control {
+  time 0.1 s
+  frames 50 fps
+  resolution 2.5 cm
+  seed 5
+}
+"""
+SCENES = [pytest.param(MEETING, id="solids"), pytest.param(SPLASH, id="liquid")]
 
 
 def state(instance):
@@ -110,12 +151,13 @@ def test_both_ends_are_ascending():
     assert [kind[a:b].tolist() for a, b in zip(first, first[1:])] == [[1, 2], [1, 3], [3, 4], [2, 4]]
 
 
-def test_lammps_reads_back_our_data_file(prepared, tmp_path):
-    """Find in LAMMPS every particle and spring of the data file, bit for bit."""
+@pytest.mark.parametrize("text", SCENES)
+def test_lammps_reads_back_our_data_file(prepared, tmp_path, text):
+    """Find in LAMMPS every particle, property and spring of the data file, bit for bit."""
     from mdanim_lammps.engine.plugin import open_lammps
     from mdanim_lammps.engine.commands import prelude
 
-    plan = prepared(MEETING).plan
+    plan = prepared(text).plan
     path = tmp_path / "data.small"
     write_data(plan, path)
     lmp, _ = open_lammps()
@@ -125,6 +167,8 @@ def test_lammps_reads_back_our_data_file(prepared, tmp_path):
     assert np.array_equal(lmp.numpy.extract_atom("v")[: plan.system.particles][order], plan.system.velocity)
     assert np.array_equal(lmp.numpy.extract_atom("rmass")[: plan.system.particles][order], plan.system.mass)
     assert np.array_equal(lmp.numpy.extract_atom("molecule")[: plan.system.particles][order], plan.system.object + 1)
+    for name, values in (*((f"d_{c}", v) for c, v in plan.columns.items()), *((f"i2_{t}", v) for t, v in plan.tables.items())):
+        assert np.array_equal(lmp.numpy.extract_atom(name)[: plan.system.particles][order], values), name
     bonds = lmp.numpy.gather_bonds()
     found = {(min(i, j) - 1, max(i, j) - 1): t for t, i, j in bonds.tolist()}
     assert found == {(i, j): t for (i, j), t in zip(plan.bonds.tolist(), plan.bond_kind.tolist())}
@@ -161,9 +205,10 @@ def test_a_scene_agrees_with_its_naive_twin(prepared):
             world.spring_forces(x, system.spring, system.stiffness, system.rest)[1], rel=1e-9)
 
 
-def test_pieces_of_a_run_give_the_bits_of_one(prepared):
+@pytest.mark.parametrize("text", SCENES)
+def test_pieces_of_a_run_give_the_bits_of_one(prepared, text):
     """Advance in pieces of any length and get the same bits."""
-    ready = prepared(MEETING)
+    ready = prepared(text)
     with Instance(ready.plan) as whole, Instance(ready.plan) as pieces:
         whole.setup()
         whole.run(60)
@@ -173,27 +218,69 @@ def test_pieces_of_a_run_give_the_bits_of_one(prepared):
         assert np.array_equal(state(whole), state(pieces))
 
 
-def test_restore_goes_on_bit_for_bit(prepared):
-    """Go on from a stored state, dashpots included, as if nothing had happened."""
-    ready = prepared(MEETING.replace("drag 0.8", "drag 0.8\n  damping 0.1"))
+@pytest.mark.parametrize("text", [pytest.param(MEETING.replace("drag 0.8", "drag 0.8\n  damping 0.1"), id="solids"), SCENES[1]])
+def test_restore_goes_on_bit_for_bit(prepared, text):
+    """Go on from a stored state, dashpots and liquid included, as if nothing had happened."""
+    ready = prepared(text)
     with Instance(ready.plan) as first:
         first.setup()
-        first.run(50)
+        first.run(151)
         x, v, f = (first.array(a).copy() for a in "xvf")
+        liquid = first.liquid_state() if ready.plan.grid else None
         step = first.step
-        first.run(50)
+        first.run(151)
         with Instance(ready.plan) as second:
-            second.restore(step, x, v, f)
-            second.run(50)
+            second.restore(step, x, v, f, liquid)
+            second.run(151)
             assert second.step == first.step
             assert np.array_equal(state(first), state(second))
+            if ready.plan.grid:
+                assert np.array_equal(first.liquid_cells(), second.liquid_cells())
+                assert np.array_equal(first.liquid_heights(), second.liquid_heights(), equal_nan=True)
+                assert second.fix_scalar("liquid") == pytest.approx(first.fix_scalar("liquid"), rel=1e-12)
+
+
+def test_a_liquid_state_of_another_grid_is_refused(prepared):
+    """Say so instead of going on with other cells."""
+    with Instance(prepared(SPLASH).plan) as other:
+        other.setup()
+        state = other.liquid_state()
+    ready = prepared(SPLASH.replace("40) cm\n  density", "45) cm\n  density"))
+    with Instance(ready.plan) as instance:
+        x, v, f = (instance.array(a).copy() for a in "xvf")
+        with pytest.raises(SetupError, match="grid of 24 x 20 x 16 cells, this one has 24 x 20 x 18"):
+            instance.restore(0, x, v, f, state)
+
+
+def test_a_liquid_is_read_back(prepared):
+    """Pour the volume asked for into the fill region, beside what stands there, and give its surface as arrays."""
+    ready = prepared(SPLASH)
+    grid = ready.plan.grid
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        cells, (smooth, raw) = instance.liquid_cells(), instance.liquid_heights()
+    assert cells.shape == grid.shape[::-1] and smooth.shape == raw.shape == (20, 24)
+    wet = (cells > 0) & (cells < 255)
+    assert cells[wet].sum() == grid.units(0.045) == 2880
+    assert not wet[:, :, 20:].any(), "the liquid starts behind its dam"
+    assert np.count_nonzero(cells == 255) == pytest.approx(192 + 144 + 27, abs=20), "wall, raft and stone"
+    assert (raw[:, 20:] == 0.0).all() and np.nanmax(raw) == pytest.approx(0.2, abs=1e-12)
+    assert not np.isnan(smooth).any() and np.isnan(raw).any()
+
+
+def test_a_scene_without_liquid_has_none(prepared):
+    """Refuse to read a liquid that is not there, or off."""
+    for text in (MEETING, SPLASH + "effects { liquid off }"):
+        with Instance(prepared(text).plan) as instance, pytest.raises(SetupError, match="no liquid"):
+            instance.liquid_heights()
 
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("ranks", [1, 2, 4])
-def test_lmp_gives_the_bits_of_the_driver(prepared, tmp_path, ranks):
+@pytest.mark.parametrize("text", SCENES)
+def test_lmp_gives_the_bits_of_the_driver(prepared, tmp_path, text, ranks):
     """Run the built input by hand on 1, 2 and 4 ranks and get the driver's frames bit for bit."""
-    ready = prepared(MEETING)
+    ready = prepared(text)
     film = run_frames(ready, ready.certificate.frames)
     write_files(ready, tmp_path)
     run_lmp(tmp_path, "in.small", ranks)
@@ -202,9 +289,10 @@ def test_lmp_gives_the_bits_of_the_driver(prepared, tmp_path, ranks):
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_shuffled_atoms_give_the_same_bits(prepared, tmp_path, ranks):
+@pytest.mark.parametrize("text", SCENES)
+def test_shuffled_atoms_give_the_same_bits(prepared, tmp_path, text, ranks):
     """Shuffle atoms and bonds of the data file and get the driver's frames bit for bit."""
-    ready = prepared(MEETING)
+    ready = prepared(text)
     film = run_frames(ready, ready.certificate.frames)
     write_files(ready, tmp_path)
     path = tmp_path / "data.small"
@@ -249,6 +337,6 @@ def test_an_effect_that_is_off_leaves_no_trace(prepared):
     """Write no command, column or fix for what a scene does not call for."""
     ready = prepared("object a { shape box (2, 2, 2) cm\n position (0, 0, 0)\n mass 1 g\n elasticity 1 kPa\n }\ncontrol { time 1 s }")
     script = input_script(ready.plan)
-    for word in ("gravity", "barrier", "mdanim/wall", "lambda", " d_", "region", "boundary type"):
+    for word in ("gravity", "barrier", "mdanim/wall", "mdanim/liquid", "lambda", " d_", " i2_", "region", "boundary type"):
         assert word not in script, word
     assert "Model # mass\n" in "".join(data_text(ready.plan))

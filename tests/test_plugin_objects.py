@@ -189,3 +189,47 @@ def test_mistakes_come_back_as_text(change, message):
     status, text = insert(lmp, BODY, change.get("columns", COLUMNS), (first, partner, kind))
     assert status == 1 and message in text
     lmp.close()
+
+
+TABLE = np.arange(7 * len(BODY.x), dtype=np.int32).reshape(-1, 7)
+
+
+def set_table(lmp, name="cell", table=TABLE, tags=None):
+    """Call the C function; returns its status and message."""
+    tags = np.arange(1, len(table) + 1, dtype=np.int32) if tags is None else tags
+    error = ctypes.create_string_buffer(256)
+    status = ctypes.CDLL(plugin_path.folder() + "/mdanimplugin.so").mdanim_set_table(
+        ctypes.c_void_p(getattr(lmp.lmp, "value", lmp.lmp)), name.encode(), table.shape[1], len(table),
+        tags.ctypes.data_as(ctypes.c_void_p), table.ctypes.data_as(ctypes.c_void_p), error, len(error),
+    )
+    return status, error.value.decode()
+
+
+@pytest.fixture
+def with_table():
+    """An instance that holds the particles and has room for a table."""
+    lmp = empty_instance(columns={**COLUMNS, "x i2_cell 7": None})
+    assert insert(lmp, BODY, {**COLUMNS, "x": COLUMNS["k"]})[0] == 0
+    yield lmp
+    lmp.close()
+
+
+def test_a_table_reaches_its_particles(with_table):
+    """Write rows of whole numbers by tag, in any order, also to some particles only."""
+    order = np.random.default_rng(2).permutation(len(BODY.x)).astype(np.int32)
+    assert set_table(with_table, table=TABLE[order], tags=order + np.int32(1)) == (0, "")
+    assert np.array_equal(with_table.numpy.extract_atom("i2_cell")[: len(BODY.x)], TABLE)
+    assert set_table(with_table, table=-TABLE[3:5].copy(), tags=np.array([4, 5], np.int32)) == (0, "")
+    found = with_table.numpy.extract_atom("i2_cell")[: len(BODY.x)]
+    assert np.array_equal(found[3:5], -TABLE[3:5]) and np.array_equal(found[5:], TABLE[5:])
+
+
+@pytest.mark.parametrize(("name", "table", "message"), [
+    pytest.param("cells", TABLE, "no per-particle table i2_cells; use 'fix ID all property/atom i2_cells 7'", id="unknown"),
+    pytest.param("k", TABLE, "no per-particle table i2_k", id="a column of numbers"),
+    pytest.param("cell", TABLE[:, :5].copy(), "has 7 columns, 5 are given", id="another width"),
+])
+def test_a_wrong_table_comes_back_as_text(with_table, name, table, message):
+    """Name the cause and the way out."""
+    status, text = set_table(with_table, name, table)
+    assert status == 1 and message in text

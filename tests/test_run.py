@@ -299,3 +299,100 @@ def test_strong_air_drag_decays_without_overshoot(tmp_path):
     with Trajectory(tmp_path / "feather.out") as t:
         v = t.center_velocities[:, 0, 0]
     assert v[0] == pytest.approx(1.0) and np.abs(v[1:]).max() < 1e-12
+
+
+# --- liquid -------------------------------------------------------------------------------------------------
+
+SPLASH = """
+gravity (0, 0, -9.81) m/s^2
+liquid water {
+  basin from (-30, -30, 0) cm to (30, 30, 50) cm
+  density 1000
+  volume 90 l
+}
+object raft {
+  shape box (20, 20, 10) cm
+  position (0, 0, 36) cm
+  orientation euler (0, 15, 0) deg
+  density 500
+  elasticity 100 kPa
+  drag 5
+}
+control {
+  time 1.2 s
+  frames 25 fps
+  resolution 2.5 cm
+}
+expect raft.draft at 1.2 s = 5 cm +- 2 cm
+expect liquid.residual = 0
+expect liquid.volume = 90 l +- 0.01 l
+expect liquid.level at 1.2 s = 25.6 cm +- 0.5 cm
+"""
+
+
+@pytest.fixture(scope="module")
+def splash(tmp_path_factory):
+    """A finished run of a raft that falls into a liquid."""
+    directory = tmp_path_factory.mktemp("splash")
+    (directory / "splash.txt").write_text(SPLASH)
+    return Scene.load(directory / "splash.txt").run()
+
+
+def test_a_liquid_meets_its_expectations(splash):
+    """Measure draft, level, volume and residual of the liquid."""
+    assert len(splash.outcomes) == 4 and not splash.missed, splash.missed
+
+
+def test_ledger_of_a_liquid_adds_up(splash):
+    """Keep energy with the work of buoyancy in it, count drag of air and liquid once, and every cell."""
+    ledger = Ledger.read(splash.folder / "ledger.csv")
+    assert ledger.terms == ("kinetic", "elastic", "gravity", "wall", "drag_loss", "buoyancy")
+    assert ledger.extras == ("draft.raft", "liquid_cells")
+    assert set(ledger.array("liquid_cells")) == {5760}
+    assert ledger.array("drag_loss")[-1] > 1.0 and np.ptp(ledger.array("buoyancy")) > 1.0
+    # Counted twice, the loss alone would make a residual of a half.
+    assert ledger.residual < 1e-3
+
+
+def test_heights_of_a_liquid_are_stored(splash):
+    """Keep both heights of every frame: flat at the start, risen by what the raft displaces at the end."""
+    with Trajectory(splash.folder) as t:
+        assert t.liquid.shape == (24, 24, 20) and t.liquid_height(0).shape == (24, 24)
+        assert np.ptp(t.liquid_height(0)) < 1e-6
+        # Archimedes: half of 4 l over 0.36 m^2.
+        assert t.liquid_levels[-1] - t.liquid_levels[0] == pytest.approx(0.002 / 0.36, abs=0.002)
+        assert np.isnan(t.liquid_raw(len(t) - 1)).any()
+
+
+def test_cost_of_a_liquid_is_split(splash):
+    """Tell automaton, occupancy and coupling apart, and give no second twice."""
+    parts = {name for name in splash.cost if name.startswith("liquid")}
+    assert parts == {"liquid automaton", "liquid occupancy", "liquid coupling"}
+    assert all(splash.cost[name] > 0.0 for name in parts)
+    summary = json.loads((splash.folder / "summary.json").read_text())
+    assert (summary["liquid_cells"], summary["liquid_residual"]) == (5760, 0)
+
+
+@pytest.mark.parametrize("frame", [pytest.param(5, id="in the splash"), pytest.param(28, id="afloat")])
+def test_interrupt_in_a_liquid_resumes_bit_for_bit(splash, tmp_path, frame):
+    """Stop while the liquid moves; the resumed film, heights included, is that of the run that never stopped."""
+    scene = Scene.load(splash.folder.parent / "splash.txt")
+    with pytest.raises(Interrupted):
+        scene.run(tmp_path / "cut.out", watch=stop_at(frame))
+    checkpoint = Checkpoint.read(tmp_path / "cut.out" / "checkpoint")
+    assert checkpoint.frame == frame and checkpoint.liquid is not None
+    resumed = simulate(scene.prepared, tmp_path / "cut.out", resume=checkpoint)
+    assert compare(splash.folder, tmp_path / "cut.out").equal
+    for term in (*resumed.ledger.terms, *resumed.ledger.extras):
+        np.testing.assert_allclose(resumed.ledger.array(term), splash.ledger.array(term), rtol=1e-9, atol=1e-12, err_msg=term)
+
+
+def test_a_liquid_without_anything_that_moves_levels(tmp_path):
+    """Let a dam of liquid run down beside a held block, a little in every frame, though nothing in the scene vibrates."""
+    (tmp_path / "dam.txt").write_text(SPLASH.split("expect")[0].replace("drag 5", "hold all").replace(
+        "volume 90 l", "volume 45 l\n  fill from (-30, -30, 0) cm to (0, 30, 50) cm"))
+    Scene.load(tmp_path / "dam.txt").run()
+    with Trajectory(tmp_path / "dam.out") as t:
+        assert np.ptp(t.liquid_height(0)) > 0.1 and np.ptp(t.liquid_height(len(t) - 1)) < 0.03
+        changes = [np.abs(t.liquid_height(i + 1) - t.liquid_height(i)).max() for i in range(6)]
+        assert min(changes) > 1e-3

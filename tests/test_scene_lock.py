@@ -136,6 +136,8 @@ def scenes(draw):
             drag=draw(st.none() | st.floats(0, 100)),
             model=draw(st.sampled_from(records.LiquidModel)),
             sweeps=draw(st.none() | st.integers(1, 100)),
+            fill=draw(st.none() | st.just((basin.low, basin.high))),
+            color=draw(colors),
         )
     cameras = draw(
         st.lists(
@@ -174,6 +176,7 @@ def scenes(draw):
             movie=draw(st.none() | texts),
             background=draw(colors),
             camera=cameras,
+            liquid=draw(st.sampled_from(["smooth", "cells"])),
         ),
         expects=tuple(expects),
     )

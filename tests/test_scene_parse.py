@@ -262,12 +262,23 @@ def test_liquid_options():
     """Read a liquid given by its level, with the paper's model."""
     scene = parse_scene(
         "gravity (0, 0, -9.81)\nliquid sea { basin from (0, 0, 0) m to (1, 1, 1) m density 1 g/cm^3\n"
-        "level 50 cm drag auto model paper sweeps 4 }" + CONTROL
+        "level 50 cm fill from (0, 0, 0) m to (0.5, 1, 0.6) m drag auto model paper sweeps 4 color navy }\n"
+        "render { liquid cells }" + CONTROL
     )
     sea = scene.liquid
     assert (sea.name, sea.level, sea.volume, sea.drag, sea.sweeps) == ("sea", 0.5, None, None, 4)
     assert sea.density == 1000.0
     assert sea.model is records.LiquidModel.PAPER
+    assert sea.fill == ((0.0, 0.0, 0.0), (0.5, 1.0, 0.6))
+    assert (sea.color, scene.render.liquid) == ("#000080", "cells")
+
+
+def test_the_model_of_the_paper_is_flagged():
+    """Warn, at its word, that the literal rules are not Archimedes; the default needs no warning."""
+    (warning,) = parse_scene(pool("volume 1 l model paper")).warnings
+    assert (warning.severity, warning.line, warning.column) == ("warning", 3, 20)
+    assert "not Archimedes" in warning.message and "0.4" in warning.message
+    assert parse_scene(pool()).warnings == ()
 
 
 def test_expect_of_an_indexed_object():
@@ -535,6 +546,14 @@ MISTAKES = [
     ("too much liquid", pool("volume 2 m^3"), 3, 10,
      "2 m^3 of liquid do not fit into the basin of 1 m^3", ""),
     ("level outside", pool("level 2 m"), 3, 9, "the level 2 m is outside the basin", ""),
+    ("fill sticks out", pool("volume 1 l fill from (0, 0, 0) m to (0.5, 1, 1.5) m"), 3, 39,
+     "the upper corner of fill lies outside the basin: (0.5, 1, 1.5) m", "the basin goes from (0, 0, 0) to (1, 1, 1) m"),
+    ("fill upside down", pool("volume 1 l fill from (0, 1, 0) m to (0.5, 0, 1) m"), 3, 39,
+     "the part that is filled has no extent along y", "lower corner"),
+    ("too much for fill", pool("volume 6 l fill from (0, 0, 0) m to (0.1, 0.5, 0.1) m"), 3, 10,
+     "0.006 m^3 of liquid do not fit into the fill region of 0.005 m^3", "larger fill region"),
+    ("level outside fill", pool("level 0.1 m fill from (0, 0, 0.2) m to (1, 1, 1) m"), 3, 9,
+     "the level 0.1 m is outside the fill region, which goes from 0.2 m to 1 m", ""),
     ("basin upside down", pool("volume 1 l basin from (0, 0, 1) m to (1, 1, 0) m"), 3, 40,
      "the basin has no extent along z", "lower corner"),
     ("outside the walls", text("walls from (2, 2, 2) m to (3, 3, 3) m\n"), 4, 12,

@@ -8,27 +8,18 @@ from pathlib import Path
 import pytest
 
 from mdanim_lammps import Scene
-from mdanim_lammps.errors import SceneError
 
 SCENES = Path(__file__).parent.parent / "scenes"
-LIQUID = {"float"}
 FRAGMENTS = {"rubber"}
 """Files that scenes include, no scenes themselves."""
 
 
-@pytest.mark.parametrize("name", sorted({p.stem for p in SCENES.glob("*.txt")} - LIQUID - FRAGMENTS))
+@pytest.mark.parametrize("name", sorted({p.stem for p in SCENES.glob("*.txt")} - FRAGMENTS))
 def test_scene_meets_its_expectations(name, tmp_path):
     """Run a scene and meet every expect line; there are some."""
     result = Scene.load(SCENES / f"{name}.txt").run(tmp_path / f"{name}.out")
     assert result.outcomes, f"{name}.txt has no expect lines"
     assert not result.missed, "\n".join(map(str, result.missed))
-
-
-@pytest.mark.parametrize("name", sorted(LIQUID))
-def test_liquid_ends_with_one_clear_line(name):
-    """Read a scene with a liquid, then say that liquid is not built yet."""
-    with pytest.raises(SceneError, match="liquid is not built yet"):
-        Scene.load(SCENES / f"{name}.txt").run("/nonexistent")
 
 
 def test_demo_scene_checks_from_the_command_line():

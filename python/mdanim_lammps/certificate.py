@@ -4,20 +4,23 @@
 Leap-frog with lagged dashpots is stable while dt^2 K + 2 dt C < 4 M (energy argument in docs/physics-solids.md). With
 K <= 2 blockdiag(D_i) and C <= 2 blockdiag(D'_i) this holds when dt^2 a_i + 2 dt b_i <= 4 for every particle, where
 a_i = 2 lambda_max(D_i)/m_i and b_i = 2 lambda_max(D'_i)/m_i. Rigorous for springs, dashpots and walls; contact enters with
-the largest curvature over a plane of guards on one side (effects/contact.py), and the step is half of the bound. Air drag
-cannot make it unstable, only inaccurate: strong drag is taken exponentially, see `strong_drag`.
+the largest curvature over a plane of guards on one side (effects/contact.py), and the step is half of the bound. Buoyancy
+is a spring from each particle to the surface. Drag, of air or liquid, cannot make it unstable, only inaccurate: strong drag
+is taken exponentially, see `strong_drag`.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from fractions import Fraction
 
 import numpy as np
 
-from .effects import EFFECTS, Verdict
+from .effects import EFFECTS, Effect, Verdict
 from .errors import Problem, RefusedError, SceneError, Span
+from .model.basin import liquid_level
 from .model.system import System
 from .scene.scene import Scene
 
@@ -82,7 +85,7 @@ def certify(scene: Scene, system: System, verdicts: dict[str, Verdict], *, allow
     drag = sum(drags.values(), np.zeros(system.particles))
     free = ~system.held
     if not free.any() or not (stiff + drag)[free].any():
-        # Nothing vibrates: any step integrates free fall exactly; one step per frame, or what the scene says.
+        # Nothing vibrates: any step integrates free fall exactly; one step per frame, or what liquid or scene say.
         bound, worst = math.inf, 0
     else:
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -106,7 +109,8 @@ def certify(scene: Scene, system: System, verdicts: dict[str, Verdict], *, allow
             f"write 'timestep auto' ({FRACTION * bound:.3g} s), or insist with --allow-unstable",
         )
         raise RefusedError(str(problem))
-    per_frame, frames, last = fit_steps(scene, FRACTION * bound if asked is None else asked)
+    longest = min([FRACTION * bound, *(e.pace(scene, system) for e in on.values())]) if asked is None else asked
+    per_frame, frames, last = fit_steps(scene, longest)
     return Certificate(
         timestep=1.0 / (scene.control.frames * per_frame),
         bound=bound,
@@ -147,9 +151,10 @@ STRONG = 0.5
 """phi = lambda dt / 2m, eq. (3.13), above which the implicit form is no good: beyond 1 it turns velocities round every step."""
 
 
-def strong_drag(system: System, timestep: float) -> float:
-    """Largest phi of the scene's air drag when it is above STRONG, else 0."""
-    phi = 0.0 if system.drag is None else float((system.drag / system.mass).max()) * timestep / 2.0
+def strong_drag(scene: Scene, system: System, effects: Iterable[Effect], timestep: float) -> float:
+    """Largest phi of the drag that these effects make, all together, when it is above STRONG, else 0."""
+    frictions = [f for e in effects if (f := e.friction(scene, system)) is not None]
+    phi = float((sum(frictions) / system.mass).max()) * timestep / 2.0 if frictions else 0.0
     return phi if phi > STRONG else 0.0
 
 
@@ -157,19 +162,19 @@ FOLDS = 0.2
 """Speed of an impact over the wave speed above which a lattice folds up and stays crumpled (docs/physics-solids.md)."""
 
 
-def hard_landing(scene: Scene, system: System) -> Problem | None:
+def hard_landing(scene: Scene, system: System, verdicts: dict[str, Verdict]) -> Problem | None:
     """A warning for the object that may hit hardest for its stiffness, when that is harder than a lattice stands.
 
-    The speed is the start's, with the fall down to the ground, or to the lowest object. c = sqrt(1.2 E / rho).
+    The speed is the start's, with the fall down to the ground, to the floor of the basin, or to the lowest object.
+    c = sqrt(1.2 E / rho).
     """
     free = np.logical_or.reduceat(~system.held, system.first[:-1])
     if not free.any():
         return None
-    bottom = np.minimum.reduceat(system.position[:, 2], system.first[:-1])
-    floor = min([bottom.min(), *([scene.ground] if scene.ground is not None else [])])
-    speed = np.sqrt(np.maximum.reduceat((system.velocity**2).sum(1), system.first[:-1])
-                    + 2.0 * max(0.0, -scene.gravity[2]) * (bottom - floor))
-    meets = len(system.names) > 1 or scene.ground is not None or scene.walls is not None
+    fall = _fall(scene, system, verdicts)
+    speed = np.sqrt(np.maximum(0.0, np.maximum.reduceat((system.velocity**2).sum(1), system.first[:-1])
+                               + 2.0 * max(0.0, -scene.gravity[2]) * fall))
+    meets = len(system.names) > 1 or scene.ground is not None or scene.walls is not None or scene.liquid is not None
     density = system.mass_of / (np.add.reduceat(system.share, system.first[:-1]) * system.cell_volume)
     wave = np.sqrt(1.2 * system.young / density)
     ratio = np.where(free & meets, speed / wave, 0.0)
@@ -186,3 +191,19 @@ def hard_landing(scene: Scene, system: System) -> Problem | None:
         f"write elasticity {enough / 1e3:.2g} kPa or more, or a lower density, height or speed",
         severity="warning",
     )
+
+
+def _fall(scene: Scene, system: System, verdicts: dict[str, Verdict]) -> np.ndarray:
+    """Height of each solid's fall [m], shape (M,), as if through air: in a liquid, heights count by what it leaves of the weight.
+
+    Below the surface a light solid gains height; where there are others it may meet them at the surface already.
+    """
+    bottom = np.minimum.reduceat(system.position[:, 2], system.first[:-1])
+    floors = [z for z in (scene.ground, scene.liquid and scene.liquid.low[2]) if z is not None]
+    floor = min([bottom.min(), *floors])
+    if not verdicts["buoyancy"].on:
+        return bottom - floor
+    surface = liquid_level(scene.liquid)
+    weight = 1.0 - scene.liquid.density * np.add.reduceat(system.volume, system.first[:-1]) / system.mass_of
+    in_air, in_liquid = np.maximum(0.0, bottom - surface), np.minimum(bottom, surface) - floor
+    return in_air + in_liquid * (weight if len(system.names) == 1 else np.maximum(0.0, weight))

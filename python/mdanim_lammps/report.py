@@ -17,11 +17,27 @@ def count(number: int, noun: str) -> str:
 def scene_line(ready: Prepared) -> str:
     """One line: what is in the scene, what is on, what is off and why."""
     on = [v.name for v in ready.verdicts.values() if v.on]
-    off = [f"{v.name} ({v.reason})" for v in ready.verdicts.values() if not v.on]
+    reasons: dict[str, list[str]] = {}
+    for v in ready.verdicts.values():
+        if not v.on:
+            reasons.setdefault(v.reason, []).append(v.name)
+    off = [f"{', '.join(names)} ({reason})" for reason, names in reasons.items()]
     file = ready.scene.path.name if ready.scene.path else ready.scene.name
     title = f"'{ready.scene.title}'  " if ready.scene.title else ""
-    return (f"scene    {file}  {title}{count(len(ready.system.names), 'object')} ({count(ready.system.particles, 'particle')}); "
-            f"effects: {', '.join(on) or 'none'}" + (f"   off: {', '.join(off)}" if off else ""))
+    return (f"scene    {file}  {title}{count(len(ready.system.names), 'object')} ({count(ready.system.particles, 'particle')})"
+            f"{_liquid(ready)}; effects: {', '.join(on) or 'none'}" + (f"   off: {', '.join(off)}" if off else ""))
+
+
+def _liquid(ready: Prepared) -> str:
+    """``, 1 liquid (38 400 cells)``, and by how much the volume asked for was rounded; empty without a liquid."""
+    grid, liquid = ready.plan.grid, ready.scene.liquid
+    if grid is None:
+        return ""
+    rounded = ""
+    if liquid.volume is not None:
+        off = grid.units(liquid.volume) * grid.cell_volume / liquid.volume - 1.0
+        rounded = f", its volume rounded by {100 * off:+.2g} %" if abs(off) > 1e-9 else ""
+    return f", 1 liquid ({count(grid.cells, 'cell')}{rounded})"
 
 
 def certificate_line(ready: Prepared) -> str:
@@ -34,21 +50,22 @@ def output_line(ready: Prepared) -> str:
     """One line: how large the trajectory will be."""
     c, control = ready.certificate, ready.scene.control
     frames = 1 + c.frames + bool(c.last_steps)
-    size = trajectory_bytes(ready.models, frames, control.save, control.single)
+    size = trajectory_bytes(ready.models, frames, control.save, control.single, ready.plan.grid)
     return f"output   {count(frames, 'frame')}, trajectory of {size / 1e6:.3g} MB"
 
 
 def effect_line(verdict: Verdict) -> str:
     """One line of ``check``: an effect, on or off, its reason and scene line."""
     place = f"  [{verdict.span}]" if verdict.span else ""
-    return f"  {'on ' if verdict.on else 'off'}  {verdict.name:<10} {verdict.reason}{place}"
+    return f"  {'on ' if verdict.on else 'off'}  {verdict.name:<11} {verdict.reason}{place}"
 
 
 def progress_line(p: Progress) -> str:
     """The moving line of a run."""
     each = p.seconds / max(1, p.step - p.first_step)
     left = each * (p.steps - p.step)
-    return (f"t={p.time:.2f} s  step {p.step}/{p.steps}  energy residual {p.residual:.1e}  "
+    liquid = "" if p.gained is None else f"liquid residual {p.gained}  "
+    return (f"t={p.time:.2f} s  step {p.step}/{p.steps}  energy residual {p.residual:.1e}  {liquid}"
             f"{1e3 * each:.2f} ms/step  {left:.0f} s left")
 
 
@@ -66,6 +83,8 @@ def check_json(ready: Prepared) -> dict:
         "scene": str(ready.scene.path) if ready.scene.path else ready.scene.name,
         "objects": [{"name": m.name, "particles": len(m.position), "springs": len(m.spring), "cell": list(m.cell)}
                     for m in ready.models],
+        "liquid": None if ready.plan.grid is None else {
+            "name": ready.scene.liquid.name, "cells": list(ready.plan.grid.shape), "cell": list(ready.plan.grid.cell)},
         "effects": {v.name: {"on": v.on, "reason": v.reason, "place": str(v.span) if v.span else None}
                     for v in ready.verdicts.values()},
         "certificate": ready.certificate.to_json(),

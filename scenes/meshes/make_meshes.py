@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Make duck.stl, a plump bath duck: smoothly joined ellipsoids, contoured and thinned out to a small closed
-mesh.
+"""Make the meshes of the scenes: duck.stl, a plump bath duck of smoothly joined ellipsoids, and boat.stl, an open hull;
+contoured and thinned out to small closed meshes.
 
 Run ``python make_meshes.py`` in this folder; needs only what mdanim-lammps needs. Units are centimetres.
 """
@@ -37,6 +37,29 @@ def duck() -> pyvista.PolyData:
     return surface.decimate(1 - TRIANGLES / surface.n_cells, volume_preservation=True).clean()
 
 
+HULL = np.array([60.0, 26.0, 30.0])
+"""Half length, half width and depth of the boat [cm]; it points along x and its rim lies at z = 0."""
+THICK = 7.0
+"""Thickness of its planks [cm]: two cells and more of the boat's scene."""
+
+
+def boat() -> pyvista.PolyData:
+    """The boat as a closed triangle mesh [cm]: the lower half of a full-bodied ellipsoid, less a smaller one."""
+    step, low, high = 1.0, np.array([-63.0, -29.0, -33.0]), np.array([63.0, 29.0, 3.0])
+    counts = ((high - low) / step).astype(int) + 1
+    grid = pyvista.ImageData(dimensions=counts, spacing=(step,) * 3, origin=low)
+    outer, inner = (_superellipsoid(grid.points, half) for half in (HULL, HULL - THICK))
+    grid["distance"] = np.max([outer, -inner, grid.points[:, 2]], axis=0)
+    surface = grid.contour([0.0], scalars="distance").triangulate().clean()
+    return surface.decimate(1 - TRIANGLES / surface.n_cells, volume_preservation=True).clean()
+
+
+def _superellipsoid(points: np.ndarray, half: np.ndarray) -> np.ndarray:
+    """About the distance to the surface |x/a|^2.5 + |y/b|^2.5 + |z/c|^2.5 = 1: fuller than an ellipsoid."""
+    f = (np.abs(points / half) ** 2.5).sum(axis=1) ** 0.4
+    return (f - 1) * half.min()
+
+
 def _distance(points: np.ndarray, centre: np.ndarray, half: np.ndarray) -> np.ndarray:
     """Distance to an ellipsoid to first order: f (f - 1) / |grad|, with f = |(p - c) / half|."""
     q = (points - centre) / half
@@ -45,8 +68,9 @@ def _distance(points: np.ndarray, centre: np.ndarray, half: np.ndarray) -> np.nd
 
 
 if __name__ == "__main__":
-    mesh = duck()
-    path = Path(__file__).with_name("duck.stl")
-    mesh.save(path, binary=True)
-    size = path.stat().st_size
-    print(f"{path.name}: {mesh.n_cells} triangles, open edges {mesh.n_open_edges}, {size} bytes")
+    for make in (duck, boat):
+        mesh = make()
+        path = Path(__file__).with_name(f"{make.__name__}.stl")
+        mesh.save(path, binary=True)
+        size = path.stat().st_size
+        print(f"{path.name}: {mesh.n_cells} triangles, open edges {mesh.n_open_edges}, {size} bytes")

@@ -11,6 +11,7 @@ from ..certificate import STRONG, Certificate, certify, hard_landing, strong_dra
 from ..effects import EFFECTS, Verdict, decide
 from ..engine.plan import Plan, make_plan
 from ..errors import Problem, SceneError
+from ..model.basin import check_basin
 from ..model.build import build_models
 from ..model.model import Model
 from ..model.overlap import check_geometry
@@ -43,33 +44,41 @@ def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[i
     Raises SceneError with all problems of its geometry, RefusedError when it does not fit in memory or its time step is
     above the bound.
     """
-    if scene.liquid is not None:
-        raise SceneError([Problem(
-            scene.liquid.spans.get("liquid"),
-            f"liquid '{scene.liquid.name}' is read, but liquid is not built yet",
-            "take the liquid block out to run the solids alone",
-        )])
     if not scene.solids:
         raise SceneError([Problem(
-            None, "the scene has no object, so there is nothing to animate",
-            "write one, e.g.  object cube { shape box (10, 10, 10) cm  density 1000  elasticity 100 kPa }",
+            scene.liquid.spans.get("liquid") if scene.liquid else None,
+            "the scene has no object, and runs without one are not built yet",
+            "write one; one that never moves will do, e.g.  object stone { shape box (10, 10, 10) cm  position (0, 0, 0) m  "
+            "density 2000  elasticity 1 MPa  hold all }",
         )])
     models = build_models(scene, progress=progress)
-    problems = check_geometry(scene, models)
-    errors = [p for p in problems if p.severity == "error"]
-    if errors:
-        raise SceneError(problems)
-    system = assemble(models)
+    problems = check_geometry(scene, models) + check_basin(scene, models)
     verdicts, warnings = decide(EFFECTS, scene)
+    problems += _unmeasurable(scene, verdicts)
+    if problems:
+        raise SceneError(problems)
+    system = assemble(models, scene)
     certificate = certify(scene, system, verdicts, allow_unstable=allow_unstable)
-    if verdicts["air-drag"].on and (phi := strong_drag(system, certificate.timestep)):
+    plan = make_plan(scene, system, verdicts, certificate)
+    if phi := strong_drag(scene, system, plan.effects, certificate.timestep):
+        kinds = [verdicts[name] for name in ("air-drag", "liquid-drag") if verdicts[name].on]
         warnings.append(Problem(
-            verdicts["air-drag"].span,
-            f"air drag is strong for this time step (phi = {phi:.2g} > {STRONG}, eq. (3.13))",
+            kinds[-1].span,
+            f"{' and '.join(v.name.replace('-', ' ') for v in kinds)} is strong for this time step "
+            f"(phi = {phi:.2g} > {STRONG}, eq. (3.13))",
             "the exponential form is used instead of the paper's implicit one: same terminal speed, no overshoot",
             severity="warning",
         ))
-    if (verdicts["springs"].on and (warning := hard_landing(scene, system))):
+    if (verdicts["springs"].on and (warning := hard_landing(scene, system, verdicts))):
         warnings.append(warning)
-    return Prepared(scene, tuple(models), system, verdicts, (*scene.warnings, *problems, *warnings), certificate,
-                    make_plan(scene, system, verdicts, certificate))
+    return Prepared(scene, tuple(models), system, verdicts, (*scene.warnings, *warnings), certificate, plan)
+
+
+def _unmeasurable(scene: Scene, verdicts: dict[str, Verdict]) -> list[Problem]:
+    """A problem for every ``expect`` about a liquid that is switched off."""
+    if verdicts["liquid"].on:
+        return []
+    return [Problem(
+        e.span, f"{e.subject}.{e.quantity} needs the liquid, which is off ({verdicts['liquid'].reason})",
+        "take this expect out, or switch the liquid on",
+    ) for e in scene.expects if e.subject == "liquid" or e.quantity == "draft"]

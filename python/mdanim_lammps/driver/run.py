@@ -19,7 +19,7 @@ from ..engine.data_file import write_data
 from ..engine.instance import Instance
 from ..errors import DivergedError, ExitCode, MdanimError, OutputError
 from ..results.checkpoint import Checkpoint
-from ..results.expect import Measured, Outcome, evaluate, largest_strain, strained
+from ..results.expect import Measured, Outcome, drafted, evaluate, immersed_depth, largest_strain, strained
 from ..results.files import write_json, write_whole
 from ..results.ledger import Ledger
 from ..results.trajectory import Trajectory, TrajectoryWriter
@@ -46,6 +46,8 @@ class Progress:
     """Wall time of the simulation so far."""
     first_step: int = 0
     """Step from which these seconds count: not 0 after a resume."""
+    gained: int | None = None
+    """Whole cells of liquid more than at the start; None without a liquid."""
 
 
 @dataclass
@@ -116,7 +118,10 @@ class _Run:
                               "run the scene again with --force")
         terms = ("kinetic", *dict.fromkeys(e.ledger for e in self.effects if e.ledger))
         self.strained = strained(ready.scene.expects)
-        self.ledger = Ledger(terms, tuple(f"strain.{name}" for name in self.strained))
+        self.drafted = drafted(ready.scene.expects)
+        self.grid = ready.plan.grid
+        self.ledger = Ledger(terms, (*(f"strain.{name}" for name in self.strained), *(f"draft.{name}" for name in self.drafted),
+                                     *(("liquid_cells",) if self.grid else ())))
 
     # --- the order of things ----------------------------------------------------------------------------------------
 
@@ -126,7 +131,7 @@ class _Run:
         start = time.perf_counter()
         with Instance(self.ready.plan) as self.instance, _Interrupt() as stopped, self._open_trajectory() as out:
             if self.resume:
-                self.instance.restore(self.resume.step, self.resume.x, self.resume.v, self.resume.f)
+                self.instance.restore(self.resume.step, self.resume.x, self.resume.v, self.resume.f, self.resume.liquid)
                 self._reread_ledger(self.resume.frame)
                 frame = self.resume.frame
             else:
@@ -148,7 +153,7 @@ class _Run:
                             self._save(out, frame)
                             saved, saved_frame = time.perf_counter(), frame
                     watch(Progress(frame, len(lengths), self.instance.step, c.steps, row["time"], row["residual"],
-                                   self.seconds["simulation"], self.first_step))
+                                   self.seconds["simulation"], self.first_step, self._gained()))
                     if stopped.is_set() and frame < len(lengths):
                         if saved_frame != frame:
                             self._save(out, frame)
@@ -164,10 +169,14 @@ class _Run:
     def _finish(self, penetration: float) -> Result:
         with self._clock("output"):
             with Trajectory(self.folder) as trajectory:
+                liquid = {} if self.grid is None else {
+                    "cells": self.ledger.array("liquid_cells"), "cell_volume": self.grid.cell_volume,
+                    "level": trajectory.liquid_levels}
                 outcomes = evaluate(self.ready.scene.expects, Measured(
                     trajectory.names, trajectory.times, trajectory.centers, trajectory.center_velocities,
                     self.ledger.array("residual"),
-                    {name: self.ledger.array(f"strain.{name}") for name in self.strained}, penetration))
+                    {name: self.ledger.array(f"strain.{name}") for name in self.strained}, penetration,
+                    {name: self.ledger.array(f"draft.{name}") for name in self.drafted}, **liquid))
         result = Result(self.folder, self.ledger, outcomes, dict(self.seconds))
         write_json(self.folder / "cost.json", {"seconds": self.seconds, "steps": self.certificate.steps,
                                                "particles": self.ready.system.particles})
@@ -183,6 +192,7 @@ class _Run:
             "steps": c.steps, "frames": len(self.ledger.rows),
             "effects": [e.name for e in self.effects],
             "energy_residual": self.ledger.residual, "penetration": penetration,
+            **({"liquid_cells": int(self.ledger.rows[-1]["liquid_cells"]), "liquid_residual": self._gained()} if self.grid else {}),
             "seconds": sum(self.seconds.values()),
             "expect": [{"what": f"{o.expect.subject}.{o.expect.quantity}", "time": o.expect.time, "value": o.expect.value,
                         "tolerance": o.expect.tolerance, "found": o.found if np.isfinite(o.found) else None, "met": o.met} for o in outcomes],
@@ -193,9 +203,9 @@ class _Run:
     def _open_trajectory(self) -> TrajectoryWriter:
         path, c = self.folder / "trajectory.h5", self.certificate
         if self.resume:
-            return TrajectoryWriter.append(path, self.ready.scene, self.ready.models, after_step=self.resume.step)
+            return TrajectoryWriter.append(path, self.ready.scene, self.ready.models, after_step=self.resume.step, grid=self.grid)
         return TrajectoryWriter(path, self.ready.scene, self.ready.models, dt=c.timestep,
-                                steps_per_frame=c.steps_per_frame, scene_text=self.ready.lock)
+                                steps_per_frame=c.steps_per_frame, scene_text=self.ready.lock, grid=self.grid)
 
     def _record(self, out: TrajectoryWriter) -> dict[str, float]:
         """Check the state, then append it to ledger and trajectory. Raises DivergedError before anything bad is written."""
@@ -206,13 +216,24 @@ class _Run:
         if not (np.isfinite(x).all() and np.isfinite(v).all()):
             bad = system.names[system.object[np.argmin(np.isfinite(x).all(1) & np.isfinite(v).all(1))]]
             raise self._diverged(f"step {step}, t = {when:.4g} s: positions of {bad} are no numbers any more")
-        strain = {f"strain.{n}": largest_strain(system, system.names.index(n), x) for n in self.strained}
-        row = self.ledger.add(when, self._energies(v) | strain)
+        extras = {f"strain.{n}": largest_strain(system, system.names.index(n), x) for n in self.strained}
+        heights = instance.liquid_heights() if self.grid else None
+        if self.grid:
+            extras |= {f"draft.{n}": self._draft(n, x, heights[0]) for n in self.drafted}
+            extras["liquid_cells"] = instance.fix_value("liquid", 0)
+        row = self.ledger.add(when, self._energies(v) | extras)
         if not abs(row["residual"]) <= BLOWN_UP:
             del self.ledger.rows[-1]
             raise self._diverged(f"step {step}, t = {when:.4g} s: the energies do not add up (residual {row['residual']:.3g})")
-        out.write(step, when, x, v)
+        out.write(step, when, x, v, heights)
         return row
+
+    def _draft(self, name: str, x: np.ndarray, height: np.ndarray) -> float:
+        """Immersed depth of a solid [m]."""
+        system = self.ready.system
+        k = system.names.index(name)
+        points = self.ready.models[k].surface.vertices(x[system.first[k]:system.first[k + 1]])
+        return immersed_depth(points, self.grid, height)
 
     def _diverged(self, what: str) -> DivergedError:
         c = self.certificate
@@ -234,6 +255,11 @@ class _Run:
             energies[term] += self.carried.get(term, 0.0)  # losses before a resume
         return energies
 
+    def _gained(self) -> int | None:
+        """Whole cells of liquid more than at the start: 0, or something is wrong; None without a liquid."""
+        rows = self.ledger.rows
+        return int(rows[-1]["liquid_cells"] - rows[0]["liquid_cells"]) if self.grid else None
+
     def _penetration(self) -> float:
         """Deepest that a boundary particle has been below a surface in this run [m]."""
         depths = [e.penetration(self.instance, self.ready.system) for e in self.effects]
@@ -246,7 +272,8 @@ class _Run:
         carried = {t: self.ledger.rows[-1][t] for t in self.ledger.terms if t.endswith("_loss")}
         carried["penetration"] = self._penetration()
         carried["seconds"] = sum(self.seconds.values())
-        Checkpoint(self.instance.step, frame, *(self.instance.array(a) for a in "xvf"), carried, self.run_id).write(
+        liquid = self.instance.liquid_state() if self.grid else None
+        Checkpoint(self.instance.step, frame, *(self.instance.array(a) for a in "xvf"), carried, self.run_id, liquid).write(
             self.folder / "checkpoint")
 
     def _reread_ledger(self, frame: int) -> None:
@@ -265,7 +292,10 @@ class _Run:
 
     def _collect_cost(self) -> None:
         """Split the simulation's time by effect: every style times itself."""
-        own = {fix: self.instance.fix_seconds(fix) for fix in (*self.fixes, "leapfrog")}
+        own = {fix: self.instance.fix_seconds(fix) for fix in (*self.fixes, "leapfrog") if fix != "liquid"}
+        if self.grid:
+            own |= {f"liquid {part}": self.instance.fix_value("liquid", 7 + k)
+                    for k, part in enumerate(("automaton", "occupancy", "coupling"))}
         if any(e.name == "springs" for e in self.effects):
             own["springs"] = self.instance.bond_seconds()
         rest = self.seconds.pop("simulation") - sum(own.values())

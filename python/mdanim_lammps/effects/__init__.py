@@ -7,8 +7,11 @@ from .contact import Contact
 from .damping import Damping
 from .effect import Effect, Verdict, decide
 from .gravity import Gravity
+from .liquid import Basin, Buoyancy, Liquid, LiquidDrag
 from .springs import Springs
 
-EFFECTS: tuple[Effect, ...] = (Springs(), Damping(), Gravity(), Contact(), Ground(), Walls(), AirDrag())
+EFFECTS: tuple[Effect, ...] = (
+    Springs(), Damping(), Gravity(), Contact(), Ground(), Walls(), Basin(), AirDrag(), Liquid(), Buoyancy(), LiquidDrag(),
+)
 
 __all__ = ["EFFECTS", "Effect", "Verdict", "decide"]

@@ -3,8 +3,17 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from ..scene.scene import Switch
 from .effect import Effect, Verdict
 from .springs import all_held
+
+
+def felt(scene, system) -> np.ndarray | None:
+    """lambda of each particle in air [N*s/m], shape (N,); None where air drag is off."""
+    on = AirDrag().called_for(scene).on and scene.effects.get(AirDrag.name) is not Switch.OFF
+    return system.drag if on else None
 
 
 class AirDrag(Effect):
@@ -20,6 +29,9 @@ class AirDrag(Effect):
 
     def columns(self, scene, system):
         return {"lambda": system.drag}
+
+    def friction(self, scene, system):
+        return system.drag
 
     def energy(self, instance, scene, system):
         return instance.fix_scalar("leapfrog")

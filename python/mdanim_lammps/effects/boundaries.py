@@ -9,7 +9,7 @@ from .effect import Effect, Verdict
 
 
 class Boundary(Effect):
-    """What ground and walls have in common: a region, and a fix that pushes back whatever leaves it."""
+    """What ground, walls and basins have in common: a region, and a fix that pushes back whatever leaves it."""
 
     ledger = "wall"
 

@@ -10,7 +10,7 @@ from .springs import all_held, spring_norm
 class Damping(Effect):
     name = "damping"
     ledger = "damping_loss"
-    needs = "springs"
+    needs = ("springs",)
     lost = "damped objects ring for ever"
 
     def called_for(self, scene):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,8 +35,8 @@ class Effect:
     """ID of its LAMMPS fix of ours, which times itself; empty when it has none."""
     ledger = ""
     """Its energy column in ledger.csv; empty when it has none."""
-    needs = ""
-    """An effect without which this one cannot be."""
+    needs: tuple[str, ...] = ()
+    """Effects without which this one cannot be; they stand before it in EFFECTS."""
     lost = ""
     """What looks wrong when a scene needs the effect and it is switched off."""
 
@@ -45,6 +46,10 @@ class Effect:
 
     def columns(self, scene: Scene, system: System) -> dict[str, np.ndarray]:
         """Per-particle properties that its commands name as ``d_NAME``, each of shape (N,)."""
+        return {}
+
+    def tables(self, scene: Scene, system: System) -> dict[str, np.ndarray]:
+        """Per-particle whole numbers that its commands name as ``i2_NAME``, int32, each of shape (N, K)."""
         return {}
 
     def commands(self, scene: Scene, system: System) -> list[str]:
@@ -57,6 +62,14 @@ class Effect:
 
     def drag_rate(self, scene: Scene, system: System) -> np.ndarray | None:
         """The same of its dashpots, 2 lambda_max(C_i)/m_i [1/s], shape (N,)."""
+        return None
+
+    def pace(self, scene: Scene, system: System) -> float:
+        """Longest time step that still shows what it does [s]; stability is another matter, see `rate`."""
+        return math.inf
+
+    def friction(self, scene: Scene, system: System) -> np.ndarray | None:
+        """The most that it adds to each particle's lambda, eq. (3.9) [N*s/m], shape (N,)."""
         return None
 
     def energy(self, instance, scene: Scene, system: System) -> float:
@@ -93,6 +106,7 @@ def decide(effects: tuple[Effect, ...], scene: Scene) -> tuple[dict[str, Verdict
             ))
         verdicts[effect.name] = own
     for effect in effects:
-        if (own := verdicts[effect.name]).on and effect.needs and not verdicts[effect.needs].on:
-            verdicts[effect.name] = Verdict(effect.name, False, f"{effect.needs} is off", own.span)
+        missing = next((name for name in effect.needs if not verdicts[name].on), None)
+        if (own := verdicts[effect.name]).on and missing:
+            verdicts[effect.name] = Verdict(effect.name, False, f"{missing} is off", own.span)
     return verdicts, warnings

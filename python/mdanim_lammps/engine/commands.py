@@ -43,6 +43,7 @@ def prelude(plan: Plan) -> list[str]:
     cutoff = max(GHOST * spacing, 1.001 * (reach + skin), 1.5 * longest + 1.001 * skin)
     velocities = " vel yes" if plan.damped else ""
     columns = "".join(f" d_{name}" for name in plan.columns)
+    tables = "".join(f" i2_{name} {table.shape[1]}" for name, table in plan.tables.items())
     return [
         "units si",
         "atom_style bond",
@@ -56,7 +57,7 @@ def prelude(plan: Plan) -> list[str]:
         "pair_style none",
         "special_bonds lj/coul 1 1 1",
         *(["bond_style mdanim/harmonic"] if len(plan.bonds) else []),
-        f"fix model all property/atom rmass{columns} ghost yes",
+        f"fix model all property/atom rmass{columns}{tables} ghost yes",
     ]
 
 
@@ -68,7 +69,7 @@ def physics(plan: Plan) -> list[str]:
         groups += ["group inner type 1 2 5 6", "group boundary type 3 4 7 8", "group thin type 4 8"]
     effects = [c for e in plan.effects for c in e.commands(plan.scene, plan.system)]
     drag = " lambda d_lambda" if "lambda" in plan.columns else ""
-    if drag and strong_drag(plan.system, plan.certificate.timestep):
+    if drag and strong_drag(plan.scene, plan.system, plan.effects, plan.certificate.timestep):
         drag += " drag exp"
     return [
         "mass * 1.0",  # wanted by atom_style bond; the particles' own masses (rmass) are what counts

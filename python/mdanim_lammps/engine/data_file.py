@@ -35,8 +35,10 @@ def data_text(plan: Plan) -> Iterator[str]:
     yield from rows("%d %d %d %r %r %r\n", tag, system.object + 1, plan.kind, *system.position.T)
     yield "\nVelocities\n\n"
     yield from rows("%d %r %r %r\n", tag, *system.velocity.T)
-    yield "\nModel # mass" + "".join(f" {name}" for name in plan.columns) + "\n\n"
-    yield from rows("%d %r" + " %r" * len(plan.columns) + "\n", tag, system.mass, *plan.columns.values())
+    numbers = [column for table in plan.tables.values() for column in table.T]
+    yield "\nModel # mass" + "".join(f" {name}" for name in (*plan.columns, *plan.tables)) + "\n\n"
+    yield from rows("%d %r" + " %r" * len(plan.columns) + " %d" * len(numbers) + "\n",
+                    tag, system.mass, *plan.columns.values(), *numbers)
     if s:
         yield "\nBond Coeffs # mdanim/harmonic\n\n" + "\n".join(bond_coeffs(plan)) + "\n"
         yield "\nBonds\n\n"

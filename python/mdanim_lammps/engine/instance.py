@@ -8,10 +8,13 @@ import ctypes
 import numpy as np
 
 from ..errors import DivergedError, SetupError
+from ..model.basin import Grid
 from .commands import bond_coeffs, box, physics, prelude
 from .plan import Plan
 from .plugin import open_lammps
 
+LIQUID = b"liquid"
+"""ID of the liquid's fix (effects/liquid.py)."""
 GLOBAL, SCALAR, VECTOR, SIZE_VECTOR = 0, 0, 1, 3  # LAMMPS's constants for extract_fix
 
 
@@ -74,15 +77,21 @@ class Instance:
         arrays = [np.ascontiguousarray(a, t) for a, t in (
             (tag, np.int32), (plan.kind, np.int32), (molecule, np.int32), (system.position, np.float64),
             (system.velocity, np.float64), (system.mass, np.float64))]
-        error = ctypes.create_string_buffer(1024)
-        status = self._library.mdanim_insert(
-            self._handle, ctypes.c_int(n),
+        self._call(
+            f"insert {n} particles", self._library.mdanim_insert, ctypes.c_int(n),
             *(_pointer(a) for a in arrays),
             ctypes.c_int(len(names)), (ctypes.c_char_p * max(1, len(names)))(*(c.encode() for c in names)),
-            _pointer(properties), _pointer(first), _pointer(partner), _pointer(kind), error, ctypes.c_int(len(error)),
+            _pointer(properties), _pointer(first), _pointer(partner), _pointer(kind),
         )
-        if status:
-            raise SetupError(f"the plugin could not insert {n} particles: {error.value.decode(errors='replace')}")
+        for name, table in plan.tables.items():
+            self._call(f"set i2_{name}", self._library.mdanim_set_table, name.encode(), ctypes.c_int(table.shape[1]),
+                       ctypes.c_int(n), _pointer(tag), _pointer(np.ascontiguousarray(table, np.int32)))
+
+    def _call(self, what: str, function, *arguments) -> None:
+        """Call one of our C functions that give a message; raise it as SetupError."""
+        error = ctypes.create_string_buffer(1024)
+        if function(self._handle, *arguments, error, ctypes.c_int(len(error))):
+            raise SetupError(f"the plugin could not {what}: {error.value.decode(errors='replace')}")
 
     # --- running --------------------------------------------------------------------------------------------------
 
@@ -118,12 +127,49 @@ class Instance:
         """View of ``x``, ``v`` or ``f`` in tag order, shape (N, 3); valid until the next command."""
         return self._lmp.numpy.extract_atom(name)[: self.plan.system.particles]
 
-    def restore(self, step: int, x: np.ndarray, v: np.ndarray, f: np.ndarray) -> None:
-        """Take up a stored state bit for bit: forces too, since dashpots see half-step velocities that x and v do not hold."""
+    def restore(self, step: int, x: np.ndarray, v: np.ndarray, f: np.ndarray, liquid: np.ndarray | None = None) -> None:
+        """Take up a stored state bit for bit: forces too, since dashpots see half-step velocities that x and v do not hold.
+
+        ``liquid`` is what `liquid_state` gave, uint8, shape (B,). Raises SetupError when it is of another grid or version.
+        """
         self._lmp.command(f"reset_timestep {step}")
+        if liquid is not None:
+            state = np.ascontiguousarray(liquid, np.uint8)
+            self._call("take up the liquid's state", self._library.mdanim_liquid_set_state, LIQUID, _pointer(state),
+                       ctypes.c_longlong(len(state)))
         self.array("x")[:], self.array("v")[:] = x, v
         self.setup()
         self.array("v")[:], self.array("f")[:] = v, f
+
+    def liquid_heights(self) -> tuple[np.ndarray, np.ndarray]:
+        """Height of every column of cells [m], shape (ny, nx): the surface that solids feel, and the topmost liquid.
+
+        The second is NaN where a body hides it. Raises SetupError without a liquid.
+        """
+        nx, ny, _ = self._grid().shape
+        smooth, raw = np.empty((ny, nx)), np.empty((ny, nx))
+        self._library.mdanim_liquid_heights(self._handle, LIQUID, _pointer(smooth), _pointer(raw))
+        return smooth, raw
+
+    def liquid_cells(self) -> np.ndarray:
+        """Content of every cell, 255 where it is solid; uint8, shape (nz, ny, nx). Raises SetupError without a liquid."""
+        cells = np.empty(self._grid().shape[::-1], np.uint8)
+        self._library.mdanim_liquid_cells(self._handle, LIQUID, _pointer(cells))
+        return cells
+
+    def liquid_state(self) -> np.ndarray:
+        """All that the liquid's later steps depend on, for `restore`; uint8, shape (B,). Raises SetupError without a liquid."""
+        self._grid()
+        size = self._library.mdanim_liquid_state_size
+        size.restype = ctypes.c_longlong
+        state = np.empty(size(self._handle, LIQUID), np.uint8)
+        self._library.mdanim_liquid_get_state(self._handle, LIQUID, _pointer(state))
+        return state
+
+    def _grid(self) -> Grid:
+        if self.plan.grid is None:
+            raise SetupError("the scene has no liquid, or it is switched off")
+        return self.plan.grid
 
     def fix_scalar(self, fix: str) -> float:
         """Energy of a fix [J]."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..certificate import Certificate
 from ..effects import EFFECTS, Effect, Verdict
+from ..model.basin import Grid
 from ..model.system import System
 from ..scene.scene import Scene
 
@@ -30,6 +31,8 @@ class Plan:
     """Atom type of each particle, int32, shape (N,)."""
     columns: dict[str, np.ndarray]
     """Per-particle properties ``d_NAME`` that some effect asks for, each of shape (N,)."""
+    tables: dict[str, np.ndarray]
+    """Per-particle whole numbers ``i2_NAME`` that some effect asks for, int32, each of shape (N, K)."""
     bonds: np.ndarray
     """Springs as 0-based pairs i < j, int32, shape (S, 2)."""
     bond_kind: np.ndarray
@@ -43,6 +46,11 @@ class Plan:
         return re.sub(r"[^\w.+-]", "_", self.scene.name, flags=re.ASCII)
 
     @property
+    def grid(self) -> Grid | None:
+        """Cells of the liquid; None where there is none, or it is switched off."""
+        return self.system.grid if any(e.name == "liquid" for e in self.effects) else None
+
+    @property
     def damped(self) -> bool:
         """Whether any bond type has a dashpot."""
         return bool(self.coefficients[:, 2].any())
@@ -53,8 +61,10 @@ def make_plan(scene: Scene, system: System, verdicts: dict[str, Verdict], certif
     effects = tuple(e for e in EFFECTS if verdicts[e.name].on)
     names = {e.name for e in effects}
     columns: dict[str, np.ndarray] = {}
+    tables: dict[str, np.ndarray] = {}
     for effect in effects:
         columns.update(effect.columns(scene, system))
+        tables.update(effect.tables(scene, system))
     if "springs" in names:
         dashpot = system.damping if "damping" in names else None
         bonds, kind, coefficients = system.spring, *bond_kinds(system.stiffness, system.rest, dashpot)
@@ -63,7 +73,7 @@ def make_plan(scene: Scene, system: System, verdicts: dict[str, Verdict], certif
     return Plan(
         scene=scene, system=system, certificate=certificate, effects=effects,
         kind=(system.layer + HELD * system.held).astype(np.int32),
-        columns=columns, bonds=bonds, bond_kind=kind, coefficients=coefficients,
+        columns=columns, tables=tables, bonds=bonds, bond_kind=kind, coefficients=coefficients,
     )
 
 

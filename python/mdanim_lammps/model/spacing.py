@@ -48,16 +48,8 @@ def plan_spacing(scene: Scene) -> Spacing:
     Raises SceneError, with a problem for every solid that is thinner than the spacing, whose mesh is no body,
     and where the particles would not fit in memory.
     """
+    h, set_by, thin = choose_spacing(scene)
     problems = []
-    thin = []
-    for solid in scene.solids:
-        try:
-            thin.append(shapes.thickness(solid.shape))
-        except MeshError as error:
-            problems.append(Problem(_span(solid), f"{solid.name}: {error}", error.hint))
-    if problems:
-        raise SceneError(problems)
-    h, set_by = _choose(scene, thin)
     for solid, t in zip(scene.solids, thin):
         if h > t * (1 + 1e-9):
             problems.append(Problem(
@@ -73,6 +65,23 @@ def plan_spacing(scene: Scene) -> Spacing:
     if plan.memory > plan.available:
         raise SceneError([_too_large(scene, plan)])
     return plan
+
+
+def choose_spacing(scene: Scene) -> tuple[float, str, list[float]]:
+    """The spacing [m], who asked for it, and the thinnest part of every solid [m]; whether it will do is not looked at.
+
+    Raises SceneError with a problem for every solid whose mesh is no body.
+    """
+    problems = []
+    thin = []
+    for solid in scene.solids:
+        try:
+            thin.append(shapes.thickness(solid.shape))
+        except MeshError as error:
+            problems.append(Problem(_span(solid), f"{solid.name}: {error}", error.hint))
+    if problems:
+        raise SceneError(problems)
+    return *_choose(scene, thin), thin
 
 
 def cells_across(accuracy: Accuracy | float) -> int:

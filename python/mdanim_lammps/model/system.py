@@ -9,6 +9,9 @@ from functools import cached_property
 
 import numpy as np
 
+from ..scene.scene import Scene
+from . import shapes
+from .basin import Grid, scene_grid
 from .model import Layer, Model
 
 
@@ -47,6 +50,12 @@ class System:
     """Longest cell edge of each solid [m], shape (M,)."""
     cell_volume: np.ndarray
     """Volume of a lattice cell of each solid [m^3], shape (M,)."""
+    volume: np.ndarray
+    """Share of each particle in the true volume of its solid, V_i = m_i / rho [m^3], shape (N,)."""
+    hexahedron: np.ndarray
+    """Corners of every filled lattice cell, particle numbers in VTK order, int32, shape (C, 8)."""
+    grid: Grid | None
+    """Cells of the liquid's basin; None without a liquid."""
 
     @property
     def particles(self) -> int:
@@ -83,7 +92,7 @@ class System:
         return weighted / self.mass_of[:, None]
 
 
-def assemble(models: Sequence[Model]) -> System:
+def assemble(models: Sequence[Model], scene: Scene) -> System:
     """Join the models of a scene, in order, into one System."""
     first = np.concatenate([[0], np.cumsum([len(m.position) for m in models])]).astype(np.int64)
 
@@ -115,4 +124,7 @@ def assemble(models: Sequence[Model]) -> System:
         young=np.array([m.young for m in models]),
         spacing=np.array([m.spacing for m in models]),
         cell_volume=np.array([np.prod(m.cell) for m in models]),
+        volume=join([m.mass * (shapes.volume(s.shape) / m.mass.sum()) for m, s in zip(models, scene.solids)]),
+        hexahedron=join([m.hexahedron + o if o else m.hexahedron for m, o in zip(models, offsets)]),
+        grid=scene_grid(scene),
     )

@@ -84,7 +84,9 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
     size = max(float(np.linalg.norm(start_high - start_low)), np.finfo(float).tiny)
     gone = np.zeros(low.shape[:2], dtype=bool)
     if catalogue.ground is None:
-        gone = np.maximum.accumulate(low[:, :, 2] < start_low[2] - FALL * size, axis=0)
+        # Nothing falls out of a basin, which has a floor of its own.
+        bottom = min(start_low[2], catalogue.liquid.low[2]) if catalogue.liquid else start_low[2]
+        gone = np.maximum.accumulate(low[:, :, 2] < bottom - FALL * size, axis=0)
     lowest = np.where(gone[:, :, None], np.inf, low).min(axis=0)
     highest = np.where(gone[:, :, None], -np.inf, high).max(axis=0)
     # What has gone from the first stretch on has no bounds of its own.
@@ -98,18 +100,22 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
         np.maximum(np.minimum(shown_low, start_low), start_low - far),
         np.minimum(np.maximum(shown_high, start_high), start_high + far),
     )
+    if catalogue.liquid is not None:
+        # The basin is seen whole, whatever happens in it.
+        bounds = np.minimum(bounds[0], catalogue.liquid.low), np.maximum(bounds[1], catalogue.liquid.high)
     if catalogue.ground is not None:
         bounds[0][2] = min(bounds[0][2], max(catalogue.ground, start_low[2] - FAR * size))
     return Action(low, high, bounds, bool(gone.any()))
 
 
-def automatic_view(action: Action, aspect: float, walls=None) -> View:
+def automatic_view(action: Action, aspect: float, walls=None, basin=None) -> View:
     """A three-quarter view from slightly above that holds the whole action; the same for all frames.
 
     Args:
         action: what must be seen.
         aspect: width of the picture over its height.
         walls: corners of the scene's walls, shown too unless they are far larger than the action.
+        basin: corners of the liquid's basin, always shown.
     """
     low, high = action.bounds
     extent = high - low
@@ -121,6 +127,8 @@ def automatic_view(action: Action, aspect: float, walls=None) -> View:
     points = _corners(np.clip(action.low, low, high), np.clip(action.high, low, high))
     if walls is not None and np.linalg.norm(np.subtract(*walls)) < 2.0 * action.size:
         points = np.concatenate([points, _corners(*np.array(walls, dtype=float)[:, None])])
+    if basin is not None:
+        points = np.concatenate([points, _corners(*np.array(basin, dtype=float)[:, None])])
     return fit_view(points, -back, aspect)
 
 

@@ -24,6 +24,7 @@ OBJECTS = (
 )
 STILL = "#a3a9b0"
 """Objects that are held as a whole."""
+LIQUID = "#2a8fb8"
 LOW, HIGH = "#dfe5ea", "#f8fafb"
 """Background, at the bottom and at the top."""
 

@@ -13,10 +13,14 @@ from ..scene.scene import Render
 from . import shading
 from .camera import FIELD_OF_VIEW, Action, CameraPath, View, action_of, automatic_view
 from .palette import background_colors, is_dark, object_colors
+from .pieces import Field, MovingMesh, box_edges, lit_actor, plane
 from .surfaces import shaded_mesh
+from .tank import Tank
 
 LAMP = np.array([-0.45, -0.55, 1.15]) / np.linalg.norm([-0.45, -0.55, 1.15])
 """Direction to the key light, world frame."""
+FLOOR = 5.0
+"""How far the floor reaches from the middle of the action to each side, in sizes of the action."""
 SHADOW_PIXELS, SHADOW_PIXELS_OF_A_CROWD = 1024, 2048
 
 
@@ -46,8 +50,10 @@ class Painter:
         self.action = action or action_of(trajectory)
         self._mesh = shaded_mesh(trajectory.catalogue, trajectory.position(0))
         self._path = CameraPath(render.camera, trajectory) if render.camera else None
-        walls = trajectory.catalogue.walls
-        self._still = None if self._path else automatic_view(self.action, self.size[0] / self.size[1], walls)
+        walls, pool = trajectory.catalogue.walls, trajectory.liquid
+        basin = (pool.low, pool.high) if pool else None
+        aspect = self.size[0] / self.size[1]
+        self._still = None if self._path else automatic_view(self.action, aspect, walls, basin)
         self._build(render)
 
     def view(self, time: float) -> View:
@@ -58,11 +64,9 @@ class Painter:
         """Picture of a frame, uint8 RGB, shape (height, width, 3), first row on top."""
         vertices = self._mesh.vertices(self.trajectory.position(index))
         time = float(self.trajectory.times[index])
-        self._points[:] = vertices
-        self._normals[:] = self._mesh.normals(vertices)
-        self._surface.GetPoints().Modified()
-        self._surface.GetPointData().GetNormals().Modified()
-        self._surface.Modified()
+        self._surface.move(vertices, self._mesh.normals(vertices))
+        if self._tank:
+            self._tank.show(index)
         self._stamp.SetInput(f"t = {time:.2f} s")
         self._aim(self.view(time))
         self._cast_shadow()
@@ -97,86 +101,47 @@ class Painter:
         camera = self._renderer.GetActiveCamera()
         camera.SetViewAngle(FIELD_OF_VIEW)
 
-        self._surface = self._make_surface()
-        self._actors = [self._make_actor(self._surface, shading.FRAGMENT_SOLID)]
+        catalogue, dark = self.trajectory.catalogue, is_dark(low)
+        self._tank = Tank(self.trajectory, render.liquid, dark) if catalogue.liquid else None
+        floor, (x, y, _), reach = self._floor_height(), self.action.centre, FLOOR * self.action.size
+        self._surface = MovingMesh(self._mesh.carry.shape[0], self._mesh.triangle)
+        self._surface.paint(object_colors(catalogue.colors, catalogue.still)[self._mesh.object_of_vertex])
+        self._actors = [lit_actor(self._surface.data, shading.FRAGMENT_SOLID, bool(self._tank))]
         # Objects are closed, so nobody sees their insides, and drawing them takes time.
         self._actors[0].GetProperty().BackfaceCullingOn()
-        floor = self._floor_height()
         if floor is not None:
             self._actors.append(self._make_floor(floor, low, high))
         for actor in self._actors:
             self._renderer.AddActor(actor)
-        if self.trajectory.catalogue.walls is not None:
-            self._renderer.AddActor(
-                _wall_edges(self.trajectory.catalogue.walls, 0.8 if is_dark(low) else 0.35)
-            )
+        if catalogue.walls is not None:
+            self._renderer.AddActor(box_edges(*catalogue.walls, 0.8 if dark else 0.35))
+        if self._tank:
+            # What is translucent is laid over the rest in the order of adding.
+            for actor in self._tank.actors:
+                self._renderer.AddActor(actor)
+            self._actors += self._tank.lit
+            self._tank.colour_through(self._actors)
+            self._tank.stand_on(0.0 if floor is None else floor, (x, y, 0.0 if floor is None else reach))
         self._write(render, low)
 
         with _silent():
             self._window = _window(self._renderer, self.size, samples=4)
-            self._shadow, self._depth, texture = self._make_shadow()
-        self._share_shadow(texture)
-
-    def _make_surface(self):
-        from vtkmodules.util.numpy_support import vtk_to_numpy
-        from vtkmodules.vtkCommonCore import vtkFloatArray, vtkPoints
-        from vtkmodules.vtkCommonDataModel import vtkPolyData
-
-        mesh, catalogue = self._mesh, self.trajectory.catalogue
-        count = mesh.carry.shape[0]
-        points, normals = vtkPoints(), vtkFloatArray()
-        points.SetDataTypeToFloat()
-        points.SetNumberOfPoints(count)
-        normals.SetNumberOfComponents(3)
-        normals.SetNumberOfTuples(count)
-        surface = vtkPolyData()
-        surface.SetPoints(points)
-        surface.SetPolys(_cells(mesh.triangle))
-        surface.GetPointData().SetNormals(normals)
-        self._colors = object_colors(catalogue.colors, catalogue.still)[mesh.object_of_vertex]
-        surface.GetPointData().SetScalars(_bytes(self._colors))
-        self._points, self._normals = vtk_to_numpy(points.GetData()), vtk_to_numpy(normals)
-        return surface
-
-    def _make_actor(self, data, light: str):
-        from vtkmodules.vtkRenderingCore import vtkActor
-        from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
-
-        mapper = vtkOpenGLPolyDataMapper()
-        mapper.SetInputData(data)
-        # Positions reach the shader as they are, in metres.
-        mapper.SetVBOShiftScaleMethod(0)
-        actor = vtkActor()
-        actor.SetMapper(mapper)
-        shader = actor.GetShaderProperty()
-        for mark, code in shading.VERTEX.items():
-            shader.AddVertexShaderReplacement(mark, True, code, False)
-        for mark, code in shading.FRAGMENT_HEAD.items():
-            shader.AddFragmentShaderReplacement(mark, True, code, False)
-        shader.AddFragmentShaderReplacement("//VTK::Light::Impl", True, light, False)
-        return actor
+            self._shadow, self._depth = self._make_shadow()
+        self._share_shadow()
 
     def _floor_height(self) -> float | None:
         """The ground; without one the lowest point of the action, unless something falls through there."""
-        ground = self.trajectory.catalogue.ground
-        if ground is not None:
-            return ground
+        catalogue = self.trajectory.catalogue
+        if catalogue.ground is not None:
+            # A basin sunk into the ground would be hidden by it.
+            return min(catalogue.ground, catalogue.liquid.low[2] if catalogue.liquid else catalogue.ground)
         return None if self.action.escaped else float(self.action.bounds[0][2])
 
     def _make_floor(self, height: float, low: np.ndarray, high: np.ndarray):
-        from vtkmodules.vtkFiltersSources import vtkPlaneSource
-
         centre, size = self.action.centre, self.action.size
-        reach = 5.0 * size
-        plane = vtkPlaneSource()
-        x, y, z = centre[0] - reach, centre[1] - reach, height - 1e-4 * size
-        plane.SetOrigin(x, y, z)
-        plane.SetPoint1(x + 2 * reach, y, z)
-        plane.SetPoint2(x, y + 2 * reach, z)
-        plane.Update()
-        # With texture coordinates VTK would paint the lamp's depth picture on the floor.
-        plane.GetOutput().GetPointData().SetTCoords(None)
-        actor = self._make_actor(plane.GetOutput(), shading.FRAGMENT_FLOOR)
+        reach = FLOOR * size
+        ground = plane(centre - reach, centre + reach, height - 1e-4 * size)
+        actor = lit_actor(ground, shading.FRAGMENT_FLOOR, bool(self._tank))
         dark = is_dark(low)
         uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
         uniforms.SetUniformf("gridSpacing", grid_spacing(size))
@@ -217,14 +182,7 @@ class Painter:
 
     def _make_shadow(self):
         """A depth picture of all objects, seen from the lamp along parallel rays."""
-        from vtkmodules.vtkCommonCore import vtkFloatArray
-        from vtkmodules.vtkCommonDataModel import vtkImageData
-        from vtkmodules.vtkRenderingCore import (
-            vtkActor,
-            vtkPolyDataMapper,
-            vtkRenderer,
-            vtkTexture,
-        )
+        from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 
         centre, radius = self.action.centre, 0.5 * self.action.size
         extent = self.action.high[0] - self.action.low[0]
@@ -232,7 +190,7 @@ class Painter:
         self._shadow_pixels = SHADOW_PIXELS_OF_A_CROWD if small else SHADOW_PIXELS
         pixels = (self._shadow_pixels, self._shadow_pixels)
         mapper, actor, renderer = vtkPolyDataMapper(), vtkActor(), vtkRenderer()
-        mapper.SetInputData(self._surface)
+        mapper.SetInputData(self._surface.data)
         mapper.ScalarVisibilityOff()
         actor.SetMapper(mapper)
         actor.GetProperty().LightingOff()
@@ -245,29 +203,16 @@ class Painter:
         camera.SetParallelScale(radius * 1.02)
         camera.SetClippingRange(0.9 * radius, 3.1 * radius)
         window = _window(renderer, pixels, samples=0)
-        depth = vtkFloatArray()
-        depth.SetNumberOfTuples(pixels[0] * pixels[1])
-        image = vtkImageData()
-        image.SetDimensions(*pixels, 1)
-        image.GetPointData().SetScalars(depth)
-        texture = vtkTexture()
-        texture.SetInputData(image)
-        texture.SetColorModeToDirectScalars()
-        texture.InterpolateOff()
-        texture.RepeatOff()
-        texture.EdgeClampOn()
-        return window, image, texture
+        return window, Field(*pixels, smooth=False)
 
     def _cast_shadow(self) -> None:
         """Take the depth picture, apart from the main one: only one window can be drawn into at a time."""
         self._shadow.Render()
         last = self._shadow_pixels - 1
-        depth = self._depth.GetPointData().GetScalars()
-        self._shadow.GetZbufferData(0, 0, last, last, depth)
-        depth.Modified()
-        self._depth.Modified()
+        self._shadow.GetZbufferData(0, 0, last, last, self._depth.values)
+        self._depth.changed()
 
-    def _share_shadow(self, texture) -> None:
+    def _share_shadow(self) -> None:
         from vtkmodules.vtkCommonMath import vtkMatrix4x4
 
         camera = self._shadow.GetRenderers().GetFirstRenderer().GetActiveCamera()
@@ -282,7 +227,7 @@ class Painter:
         # VTK hands its matrices to OpenGL as they lie in memory, and OpenGL reads columns first.
         lamp_matrix.DeepCopy(matrix.T.ravel())
         for actor in self._actors:
-            actor.GetProperty().SetTexture("lampDepth", texture)
+            actor.GetProperty().SetTexture("lampDepth", self._depth.texture)
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
             uniforms.SetUniformMatrix("lampMatrix", lamp_matrix)
             uniforms.SetUniformf("lampTexel", texel)
@@ -351,37 +296,3 @@ def _silent():
         yield
     finally:
         vtkLogger.SetStderrVerbosity(before)
-
-
-def _cells(triangle: np.ndarray):
-    from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
-    from vtkmodules.vtkCommonDataModel import vtkCellArray
-
-    cells = vtkCellArray()
-    flat = np.ascontiguousarray(triangle, dtype=np.int64).ravel()
-    cells.SetData(3, numpy_to_vtkIdTypeArray(flat, deep=1))
-    return cells
-
-
-def _bytes(array: np.ndarray):
-    from vtkmodules.util.numpy_support import numpy_to_vtk
-
-    return numpy_to_vtk(np.ascontiguousarray(array, dtype=np.uint8), deep=1)
-
-
-def _wall_edges(walls, grey: float):
-    from vtkmodules.vtkFiltersSources import vtkOutlineSource
-    from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
-
-    (x0, y0, z0), (x1, y1, z1) = walls
-    outline = vtkOutlineSource()
-    outline.SetBounds(x0, x1, y0, y1, z0, z1)
-    mapper, actor = vtkPolyDataMapper(), vtkActor()
-    mapper.SetInputConnection(outline.GetOutputPort())
-    actor.SetMapper(mapper)
-    look = actor.GetProperty()
-    look.LightingOff()
-    look.SetColor(grey, grey, grey)
-    look.SetOpacity(0.45)
-    look.SetLineWidth(1.5)
-    return actor

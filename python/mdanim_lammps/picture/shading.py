@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The light of the pictures as GLSL: a key light with soft shadows, light from the sky, a floor with a grid.
+"""The light of the pictures as GLSL: a key light with soft shadows, light from the sky, a floor with a grid, liquid.
 
 VTK builds its shaders from a template; the pieces below replace marks in it. VTK's own shadow maps have hard
 edges and leave much of the floor dark under a parallel lamp, so the shadow is looked up here, in a depth
@@ -17,13 +17,20 @@ worldNormal = normalMC;
 """,
 }
 
-FRAGMENT_HEAD = {
-    "//VTK::PositionVC::Dec": """//VTK::PositionVC::Dec
+
+def fragment_head(liquid: bool) -> dict[str, str]:
+    """Declarations and functions that every fragment shader below uses, by VTK's mark."""
+    return {
+        "//VTK::PositionVC::Dec": """//VTK::PositionVC::Dec
 in vec3 worldPosition;
 in vec3 worldNormal;
 """,
-    # The first mark after VTK's own declaration of the texture.
-    "//VTK::Picking::Dec": """//VTK::Picking::Dec
+        # The first mark after VTK's own declaration of the texture.
+        "//VTK::Picking::Dec": "//VTK::Picking::Dec\n" + SHADOW + (THROUGH_LIQUID if liquid else THROUGH_AIR),
+    }
+
+
+SHADOW = """
 // Share of the lamp that is seen from here: the mean over a square four depth pixels wide that slides
 // smoothly over them, so that the edge of a shadow is soft and has no steps however near the camera comes.
 float shadow(vec3 where, vec3 normal)
@@ -49,8 +56,49 @@ float shadow(vec3 where, vec3 normal)
 }
 
 vec3 linear(vec3 c) { return c * c; }
-""",
+"""
+
+THROUGH_AIR = """
+vec3 seen(vec3 color, vec3 where) { return color; }
+"""
+
+# What is seen through liquid takes its colour with the way that the light has gone in it (Beer and Lambert).
+THROUGH_LIQUID = """
+float liquidHeight(vec2 where)
+{
+  return texture(liquidHeights, (where - basinLow.xy) / (basinHigh.xy - basinLow.xy)).r;
 }
+
+// Metres of liquid between a point and the eye: the ray's part in the basin, cut into a dozen pieces. The surface is
+// taken as straight within a piece, so that nothing jumps where it is crossed.
+float liquidPath(vec3 where)
+{
+  vec3 ray = eye - where + vec3(1e-9);
+  vec3 a = (basinLow - where) / ray;
+  vec3 b = (vec3(basinHigh.xy, liquidTop) - where) / ray;
+  vec3 enter = min(a, b), leave = max(a, b);
+  float from = max(max(enter.x, enter.y), max(enter.z, 0.0));
+  float to = min(min(leave.x, leave.y), min(leave.z, 1.0));
+  if (from >= to) return 0.0;
+  float wet = 0.0, before = 0.0;
+  for (int k = 0; k <= 12; k++) {
+    vec3 p = where + ray * mix(from, to, float(k) / 12.0);
+    float cover = liquidHeight(p.xy) - p.z;
+    float high = max(before, cover), low = min(before, cover);
+    if (k > 0) wet += clamp(high / max(high - low, 1e-9), 0.0, 1.0);
+    before = cover;
+  }
+  return length(ray) * (to - from) * wet / 12.0;
+}
+
+vec3 seen(vec3 color, vec3 where)
+{
+  // Light of the liquid's own colour goes farther than other light.
+  float way = liquidPath(where) / liquidClear;
+  vec3 left = exp(-way * (1.25 - liquidColor));
+  return color * left + liquidColor * (1.0 - exp(-0.8 * way));
+}
+"""
 
 # `diffuseColor` is VTK's name for the colour of the surface here.
 FRAGMENT_SOLID = """//VTK::Light::Impl
@@ -67,7 +115,7 @@ FRAGMENT_SOLID = """//VTK::Light::Impl
   vec3 color = base * (sky + fill + vec3(0.86, 0.83, 0.78) * facing * lit);
   vec3 halfway = normalize(toLamp + toEye);
   color += vec3(0.10) * lit * pow(max(dot(n, halfway), 0.0), 40.0);
-  fragOutput0 = vec4(sqrt(min(color, vec3(1.0))), 1.0);
+  fragOutput0 = vec4(seen(sqrt(min(color, vec3(1.0))), worldPosition), 1.0);
 }
 """
 
@@ -86,6 +134,42 @@ FRAGMENT_FLOOR = """//VTK::Light::Impl
   color = mix(color, gridColor, max(0.22 * thin, 0.55 * bold));
   float away = length(worldPosition.xy - floorCentre.xy) / floorCentre.z;
   vec3 behind = mix(lowColor, highColor, clamp(gl_FragCoord.y / pictureHeight, 0.0, 1.0));
-  fragOutput0 = vec4(mix(color, behind, smoothstep(0.25, 1.0, away)), 1.0);
+  fragOutput0 = vec4(seen(mix(color, behind, smoothstep(0.25, 1.0, away)), worldPosition), 1.0);
+}
+"""
+
+# The skin of the liquid, laid over what `seen` has coloured already: what it mirrors, and the lamp's glint. Where it is
+# thinner than half a cell it fades out, so that a dry floor is bare.
+FRAGMENT_LIQUID = """//VTK::Light::Impl
+{
+  vec3 n = normalize(worldNormal);
+  vec3 toEye = normalize(eye - worldPosition);
+  vec3 toLamp = normalize(lamp);
+  // Beside a wall the depth is that of the column behind it.
+  float top = n.z > 0.5 ? worldPosition.z : liquidHeight(worldPosition.xy - 0.25 * cell.xy * n.xy);
+  float film = smoothstep(0.1, 0.5, (top - basinLow.z) / cell.z);
+  if (film <= 0.0) discard;
+  bool inner = dot(n, toEye) < 0.0;
+  if (inner) n = -n;
+  float lit = inner ? 0.0 : shadow(worldPosition, n);
+  float graze = pow(1.0 - max(dot(n, toEye), 0.0), 3.0);
+  vec3 mirrored = reflect(-toEye, n);
+  // Bright towards the horizon, blue above: what a slope mirrors tells how it leans.
+  float low = n.z > 0.3 && !inner ? 1.0 - smoothstep(0.0, 0.75, mirrored.z) : 0.15;
+  vec3 color = liquidColor * (0.62 + 0.40 * max(dot(n, toLamp), 0.0) * (0.45 + 0.55 * lit));
+  color = mix(color, vec3(0.96, 0.99, 1.0), min(1.0, 0.75 * low + 0.4 * graze));
+  float glint = lit * pow(max(dot(normalize(toLamp + toEye), n), 0.0), 120.0);
+  float cover = mix(skinCover, 0.80, max(graze, 0.6 * low));
+  if (inner) {
+    // Behind the inner faces is floor, which `seen` has coloured, or sky, which nobody has.
+    vec3 past = worldPosition - toEye * (worldPosition.z - floorHeight) / toEye.z;
+    bool sky = toEye.z <= 0.0 || any(greaterThan(abs(past.xy - floorCentre.xy), vec2(floorCentre.z)));
+    cover = 0.10;
+    if (sky) {
+      cover = 1.0 - exp(-0.8 * liquidPath(worldPosition) / liquidClear);
+      color = liquidColor;
+    }
+  }
+  fragOutput0 = vec4(min(color + 0.8 * glint, vec3(1.0)), film * min(1.0, cover + 0.8 * glint));
 }
 """

@@ -9,8 +9,31 @@ from functools import cached_property
 
 import numpy as np
 
+from ..model.basin import Grid
 from ..model.model import Layer, Model, Surface
-from ..scene.scene import Save, Scene, Vector
+from ..scene.scene import Liquid, Save, Scene, Vector
+
+
+@dataclass(frozen=True, slots=True)
+class Pool:
+    """The liquid, and the cells of the basin that holds it."""
+
+    name: str
+    low: Vector
+    """Lower corner of the basin [m]."""
+    high: Vector
+    """Upper corner [m]."""
+    shape: tuple[int, int, int]
+    """Cells along x, y, z."""
+    density: float
+    """[kg/m^3]"""
+    color: str = ""
+    """``#rrggbb``, or empty where the renderer chooses."""
+
+    @property
+    def grid(self) -> Grid:
+        """The cells alone."""
+        return Grid(self.low, self.high, self.shape)
 
 
 @dataclass(frozen=True)
@@ -48,6 +71,8 @@ class Catalogue:
     """Height of the ground plane [m]."""
     walls: tuple[Vector, Vector] | None = None
     """Lower and upper corner of the box that objects never leave [m]."""
+    liquid: Pool | None = None
+    """None in a scene without liquid."""
     save: Save = Save.ALL
     single: bool = False
     """Positions and velocities in single precision."""
@@ -95,13 +120,16 @@ def stored_particles(model: Model, save: Save) -> np.ndarray:
     return stored
 
 
-def catalogue_of(scene: Scene, models: Sequence[Model], scene_text: str = "") -> Catalogue:
+def catalogue_of(
+    scene: Scene, models: Sequence[Model], scene_text: str = "", grid: Grid | None = None
+) -> Catalogue:
     """Collect what a trajectory of these models must know; objects in the order of ``models``.
 
     Args:
         scene: for title, colours, ground, walls and ``control save``.
         models: one per solid, named like the solids.
         scene_text: the expanded scene, kept so that pictures need nothing but the trajectory.
+        grid: cells of the scene's liquid; None where there is none, or where it is switched off.
     """
     solids = {solid.name: solid for solid in scene.solids}
     worn = [solids[model.name] for model in models]
@@ -127,10 +155,16 @@ def catalogue_of(scene: Scene, models: Sequence[Model], scene_text: str = "") ->
         surface_of=surface_of,
         ground=scene.ground,
         walls=(scene.walls.low, scene.walls.high) if scene.walls else None,
+        liquid=pool_of(scene.liquid, grid) if grid else None,
         save=scene.control.save,
         single=scene.control.single,
         scene_text=scene_text,
     )
+
+
+def pool_of(liquid: Liquid, grid: Grid) -> Pool:
+    """What a trajectory must know of a scene's liquid."""
+    return Pool(liquid.name, grid.low, grid.high, grid.shape, liquid.density, liquid.color or "")
 
 
 def distinct_surfaces(

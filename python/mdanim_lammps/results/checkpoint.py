@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from zipfile import BadZipFile
@@ -12,7 +13,7 @@ import numpy as np
 from ..errors import OutputError
 from .files import write_whole
 
-VERSION = 1
+VERSION = 2
 
 
 @dataclass(frozen=True)
@@ -31,13 +32,19 @@ class Checkpoint:
     """What had been summed up by then: energies lost, deepest penetration, seconds."""
     run: str = ""
     """Which run this is a state of: another scene or time step cannot go on from it."""
+    liquid: np.ndarray | None = None
+    """State of the liquid's fix, uint8 bytes, shape (S,); None without liquid."""
 
     def write(self, path: Path) -> None:
         """Write atomically: the last good checkpoint is never lost. Raises OutputError."""
+        # Mostly equal cells: a hundredth is left of them; positions and forces would not shrink.
+        liquid = {} if self.liquid is None else {
+            "liquid": np.frombuffer(zlib.compress(self.liquid.tobytes(), 1), np.uint8)}
+
         def save(part: Path) -> None:
             with open(part, "wb") as file:
                 np.savez(file, version=VERSION, run=self.run, step=self.step, frame=self.frame, x=self.x, v=self.v, f=self.f,
-                         keys=np.array(list(self.carried)), values=np.array(list(self.carried.values()), float))
+                         keys=np.array(list(self.carried)), values=np.array(list(self.carried.values()), float), **liquid)
         write_whole(path, save)
 
     @classmethod
@@ -48,7 +55,8 @@ class Checkpoint:
                 if int(data["version"]) != VERSION:
                     raise OutputError(f"{path} is of version {int(data['version'])}, this program writes {VERSION}; "
                                       "run the scene again with --force")
+                liquid = np.frombuffer(zlib.decompress(data["liquid"]), np.uint8) if "liquid" in data else None
                 return cls(int(data["step"]), int(data["frame"]), data["x"], data["v"], data["f"],
-                           dict(zip(data["keys"].tolist(), data["values"].tolist())), str(data["run"]))
-        except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
+                           dict(zip(data["keys"].tolist(), data["values"].tolist())), str(data["run"]), liquid)
+        except (OSError, ValueError, KeyError, EOFError, BadZipFile, zlib.error) as error:
             raise OutputError(f"{path} cannot be read ({error}): nothing to resume from") from error

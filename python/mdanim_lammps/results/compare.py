@@ -23,9 +23,9 @@ class Difference:
     time: float = 0.0
     """[s]"""
     object: str = ""
-    """Object that differs most there."""
+    """Object, or liquid, that differs most there."""
     distance: float = 0.0
-    """By how much [m]; 0 when only velocities differ."""
+    """By how much [m], of a liquid the heights; 0 when only velocities differ."""
     largest: float = 0.0
     """Largest distance in any frame [m]."""
 
@@ -50,18 +50,35 @@ def compare(a: Path, b: Path) -> Difference:
         if len(first) != len(second) or not np.array_equal(first.times, second.times):
             raise OutputError(f"{a} has {len(first)} frames and {b} {len(second)}, or their times differ: "
                               "run both scenes with the same control block")
+        if first.liquid != second.liquid:
+            raise OutputError(f"{a} and {b} hold different liquids or basins: there is nothing to compare")
         found = None
         largest = 0.0
         for i in range(len(first)):
             x, y = first.position(i), second.position(i)
             same = np.array_equal(x, y) and np.array_equal(first.velocity(i), second.velocity(i))
-            if same:
+            rise = _rise(first, second, i)
+            if same and rise is None:
                 continue
             distance = np.linalg.norm(x - y, axis=1)
-            largest = max(largest, float(distance.max()))
+            largest = max(largest, float(distance.max()), rise or 0.0)
             if found is None:
                 worst = int(distance.argmax())
-                found = (i, float(first.times[i]), first.names[first.catalogue.object_of[worst]], float(distance[worst]))
+                name, by = first.names[first.catalogue.object_of[worst]], float(distance[worst])
+                if same or (rise or 0.0) > by:
+                    name, by = first.liquid.name, rise
+                found = (i, float(first.times[i]), name, by)
         if found is None:
             return Difference(len(first))
         return Difference(len(first), *found, largest)
+
+
+def _rise(first: Trajectory, second: Trajectory, frame: int) -> float | None:
+    """Largest difference between the liquids' heights in a frame [m]; None where they are equal, or there is none."""
+    if first.liquid is None:
+        return None
+    pairs = [(t.liquid_height(frame), t.liquid_raw(frame)) for t in (first, second)]
+    if all(np.array_equal(x, y, equal_nan=True) for x, y in zip(*pairs)):
+        return None
+    # A raw height that only one of them has is no number of metres.
+    return float(max(np.nanmax(np.abs(x - y), initial=0.0) for x, y in zip(*pairs)))

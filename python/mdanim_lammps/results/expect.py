@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..model.basin import Grid
 from ..model.system import System
 from ..scene.scene import Expect
 
@@ -51,16 +52,52 @@ class Measured:
     """Largest |r/r0 - 1| of the solids that an ``expect`` asks about, at each frame, shape (F,)."""
     penetration: float
     """Deepest penetration of the run [m]."""
+    draft: Mapping[str, np.ndarray] = field(default_factory=dict)
+    """Immersed depth of the solids that an ``expect`` asks about, at each frame [m], shape (F,)."""
+    cells: np.ndarray | None = None
+    """Whole cells of liquid at each frame, shape (F,); None without liquid."""
+    cell_volume: float = 0.0
+    """[m^3]"""
+    level: np.ndarray | None = None
+    """Mean height of the liquid over the basin at each frame [m], shape (F,); None without liquid."""
 
 
 def evaluate(expects: tuple[Expect, ...], measured: Measured) -> list[Outcome]:
-    """Measure every expectation. Quantities of a liquid are refused before the run, so none is left here."""
+    """Measure every expectation. What needs a liquid is refused before a run that has none."""
     return [Outcome(e, _measure(e, measured)) for e in expects]
 
 
 def strained(expects: tuple[Expect, ...]) -> tuple[str, ...]:
     """Solids whose strain has to be recorded during the run, in order and once."""
     return tuple(dict.fromkeys(e.subject for e in expects if e.quantity == "strain.max"))
+
+
+def drafted(expects: tuple[Expect, ...]) -> tuple[str, ...]:
+    """Solids whose draft has to be recorded during the run, in order and once."""
+    return tuple(dict.fromkeys(e.subject for e in expects if e.quantity == "draft"))
+
+
+def immersed_depth(points: np.ndarray, grid: Grid, height: np.ndarray) -> float:
+    """How deep an object is in the liquid: local level less its lowest point, at most its own height [m].
+
+    The local level is the mean over the columns that the object's upright bounding box touches; the smooth height
+    runs on below a body that fills its columns. An object beside the basin has a draft of 0.
+
+    Args:
+        points: of its surface, such as ``model.surface.vertices(position)`` [m], shape (n, 3).
+        grid: cells of the liquid.
+        height: smooth height z of the liquid over each column [m], shape (ny, nx).
+    """
+    low, high = points.min(axis=0), points.max(axis=0)
+    columns = []
+    for a, b, start, edge, count in zip(low, high, grid.low, grid.cell, grid.shape[:2]):
+        first, last = int(np.floor((a - start) / edge)), int(np.floor((b - start) / edge))
+        if last < 0 or first >= count:
+            return 0.0
+        columns.append(slice(max(first, 0), min(last, count - 1) + 1))
+    across, along = columns
+    level = float(np.mean(height[along, across], dtype=np.float64))
+    return float(np.clip(level - low[2], 0.0, high[2] - low[2]))
 
 
 def largest_strain(system: System, solid: int, position: np.ndarray) -> float:
@@ -79,6 +116,14 @@ def _measure(expect: Expect, m: Measured) -> float:
             return _largest(m, m.residual, expect.time)
         case "penetration", "max":
             return m.penetration
+        case "liquid", "residual":
+            return _largest(m, m.cells - m.cells[0], expect.time)
+        case "liquid", "volume":
+            return _at(m, m.cells, expect.time) * m.cell_volume
+        case "liquid", "level":
+            return _at(m, m.level, expect.time)
+        case name, "draft":
+            return _at(m, m.draft[name], expect.time)
         case name, "strain.max":
             return _largest(m, m.strain[name], expect.time)
         case name, quantity:
@@ -91,6 +136,11 @@ def _largest(m: Measured, values: np.ndarray, time: float | None) -> float:
     """Largest magnitude up to a time, or in the whole run."""
     upto = values if time is None else values[m.times <= time * (1 + 1e-9)]
     return float(np.abs(upto).max())
+
+
+def _at(m: Measured, values: np.ndarray, time: float | None) -> float:
+    """The value at a time, straight between frames; without a time at the end."""
+    return float(values[-1] if time is None else np.interp(time, m.times, values))
 
 
 def _motion(m: Measured, solid: int, time: float | None) -> tuple[np.ndarray, np.ndarray]:

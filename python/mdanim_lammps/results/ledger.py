@@ -12,14 +12,19 @@ import numpy as np
 
 from ..errors import OutputError
 
+POTENTIALS = ("gravity", "buoyancy")
+"""Energies whose zero is arbitrary: only how far they have changed says how much is in play."""
+WHOLE = ("liquid_cells",)
+"""Extras that are whole numbers, and written as such."""
+
 
 @dataclass
 class Ledger:
     """One row per frame: time [s], one energy per effect that is on [J], and the residual.
 
     residual = (total now - total at the start) / (largest energy in play so far). The total is the sum of all columns,
-    losses included; the energy in play is the sum of the columns' absolute values, gravity's counted from its lowest value
-    so far (its zero is arbitrary).
+    losses included; the energy in play is the sum of the columns' absolute values, gravity and buoyancy each counted from
+    its own lowest value so far: their zeros are arbitrary, and a floating body trades one for the other.
     """
 
     terms: tuple[str, ...]
@@ -28,7 +33,7 @@ class Ledger:
     """Further columns that are no energies, such as ``strain.NAME`` where an ``expect`` asks for it."""
     rows: list[dict[str, float]] = field(default_factory=list)
     _peak: float = 0.0
-    _lowest: float = 0.0
+    _lowest: dict[str, float] = field(default_factory=dict)
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -38,12 +43,12 @@ class Ledger:
         """Append a row with these energies and extras; returns it."""
         row = {"time": time, **{t: float(values[t]) for t in (*self.terms, *self.extras)}}
         first = self.rows[0] if self.rows else row
-        gravity = row.get("gravity", 0.0)
-        in_play = sum(abs(row[t]) for t in self.terms if t != "gravity") + gravity
-        self._lowest = min(self._lowest, gravity) if self.rows else gravity
+        potentials = {t: row[t] for t in POTENTIALS if t in self.terms}
+        in_play = sum(abs(row[t]) for t in self.terms if t not in potentials) + sum(potentials.values())
+        self._lowest = {t: min(self._lowest.get(t, e), e) for t, e in potentials.items()}
         self._peak = max(self._peak, in_play) if self.rows else in_play
         change = sum(row[t] - first[t] for t in self.terms)
-        scale = self._peak - self._lowest
+        scale = self._peak - sum(self._lowest.values())
         row["residual"] = change / scale if scale else 0.0
         self.rows.append(row)
         return row
@@ -62,7 +67,8 @@ class Ledger:
         with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(self.columns)
-            writer.writerows([repr(r[c]) for c in self.columns] for r in self.rows)
+            writer.writerows(
+                [f"{r[c]:.0f}" if c in WHOLE else repr(r[c]) for c in self.columns] for r in self.rows)
 
     @classmethod
     def read(cls, path: Path) -> "Ledger":

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import OutputError
+from ..model.basin import Grid
 from ..model.model import Model, Surface
 from ..scene.scene import Save, Scene
-from .catalogue import Catalogue, catalogue_of, distinct_surfaces, stored_particles
+from .catalogue import Catalogue, Pool, catalogue_of, distinct_surfaces, stored_particles
 
 if TYPE_CHECKING:
     import h5py
@@ -24,8 +25,11 @@ if TYPE_CHECKING:
     import pyvista
 
 FILE_NAME = "trajectory.h5"
-FORMAT = 1
-"""Version of ``/parameters/mdanim``; a reader refuses what is newer."""
+FORMAT = 2
+"""Version of ``/parameters/mdanim``; a reader refuses what is newer. Version 1 knew no liquid."""
+
+LIQUID = ("liquid/height", "liquid/raw")
+"""Heights of a liquid: smooth, and of the topmost cells; below ``/observables``."""
 
 # HDF5 1.10 is the oldest that knows single-writer-multiple-reader files, readable at any instant.
 _LIBVER = ("v110", "v110")
@@ -35,7 +39,11 @@ _CLOSING_BYTES = 1 << 18
 
 
 def trajectory_bytes(
-    models: Sequence[Model], frames: int, save: Save = Save.ALL, single: bool = False
+    models: Sequence[Model],
+    frames: int,
+    save: Save = Save.ALL,
+    single: bool = False,
+    grid: Grid | None = None,
 ) -> int:
     """Size of the trajectory file [bytes] before anything is run, rather too large than too small.
 
@@ -44,9 +52,12 @@ def trajectory_bytes(
         frames: number of frames, the first included.
         save: which particles are stored.
         single: whether positions and velocities take 4 bytes a number instead of 8.
+        grid: cells of the liquid, if there is one.
     """
     stored = sum(int(stored_particles(model, save).sum()) for model in models)
     per_frame = stored * 6 * (4 if single else 8) + len(models) * 6 * 8 + 16
+    if grid:
+        per_frame += 2 * 4 * grid.shape[0] * grid.shape[1]
     surfaces = distinct_surfaces(models, [stored_particles(model, save) for model in models])[0]
     springs = sum(len(model.spring) for model in models)
     return frames * per_frame + _fixed_bytes(stored, springs, surfaces) + 64 * 1024
@@ -65,6 +76,7 @@ class TrajectoryWriter:
         dt: time step [s].
         steps_per_frame: time steps between frames.
         scene_text: the expanded scene, so that pictures need no other file.
+        grid: cells of the scene's liquid; every frame then has heights. None without liquid.
 
     Raises:
         OutputError: the file cannot be written, e.g. because the disk is full.
@@ -79,14 +91,20 @@ class TrajectoryWriter:
         dt: float,
         steps_per_frame: int,
         scene_text: str = "",
+        grid: Grid | None = None,
     ):
-        self._start(Path(path), catalogue_of(scene, models, scene_text), dt, steps_per_frame)
+        self._start(Path(path), catalogue_of(scene, models, scene_text, grid), dt, steps_per_frame)
         # Masses of all particles, stored or not: the centre of mass is the whole object's.
         self._weigh(np.concatenate([model.mass for model in models]), [len(m.position) for m in models])
 
     @classmethod
     def append(
-        cls, path: str | Path, scene: Scene, models: Sequence[Model], after_step: int
+        cls,
+        path: str | Path,
+        scene: Scene,
+        models: Sequence[Model],
+        after_step: int,
+        grid: Grid | None = None,
     ) -> TrajectoryWriter:
         """Go on with the trajectory of a run that ended early; frames after ``after_step`` are dropped.
 
@@ -94,7 +112,7 @@ class TrajectoryWriter:
 
         Args:
             path: as for a new trajectory; ``PATH`` or, of a killed run, ``PATH.part`` must exist.
-            scene, models: the same as in the first run.
+            scene, models, grid: the same as in the first run.
             after_step: last step to keep.
 
         Raises:
@@ -108,6 +126,11 @@ class TrajectoryWriter:
                 raise OutputError(
                     f"{old.path}: holds {len(old.names)} objects with {old.catalogue.total} particles, "
                     f"not this scene's; start afresh with --force or another -o folder"
+                )
+            if (old.liquid and old.liquid.grid) != grid:
+                raise OutputError(
+                    f"{old.path}: holds {_described(old.liquid and old.liquid.grid)}, this scene "
+                    f"{_described(grid)}; start afresh with --force or another -o folder"
                 )
             self = cls.__new__(cls)
             self._start(path, old.catalogue, old.dt, old.steps_per_frame, suffix=".part.new")
@@ -124,7 +147,14 @@ class TrajectoryWriter:
         self._partial = part_of(path)
         return self
 
-    def write(self, step: int, time: float, position: np.ndarray, velocity: np.ndarray) -> None:
+    def write(
+        self,
+        step: int,
+        time: float,
+        position: np.ndarray,
+        velocity: np.ndarray,
+        liquid: tuple[np.ndarray, np.ndarray] | None = None,
+    ) -> None:
         """Add a frame.
 
         Args:
@@ -132,12 +162,19 @@ class TrajectoryWriter:
             time: simulated time [s].
             position: of all particles, stored or not [m], shape (N, 3).
             velocity: [m/s], shape (N, 3).
+            liquid: heights z of the liquid over the columns of its cells, smooth and raw [m], each of shape
+                (ny, nx); raw ones are NaN where a column tells nothing. None without liquid.
         """
         for name, array in (("position", position), ("velocity", velocity)):
             if np.shape(array) != (self.catalogue.total, 3):
                 raise ValueError(
                     f"{name} must have shape ({self.catalogue.total}, 3), found {np.shape(array)}"
                 )
+        pool = self.catalogue.liquid
+        wanted = [pool.shape[1::-1]] * 2 if pool else []
+        found = [np.shape(height) for height in liquid or ()]
+        if found != wanted:
+            raise ValueError(f"liquid must be heights of shapes {wanted}, found {found}")
         if step <= self._last_step:
             raise ValueError(
                 f"step must be larger than that of the frame before ({self._last_step}), found {step}"
@@ -148,6 +185,8 @@ class TrajectoryWriter:
             "center_of_mass": self._mean(position),
             "center_of_mass_velocity": self._mean(velocity),
         }
+        if liquid:
+            rows |= {name: np.asarray(h, np.float32) for name, h in zip(LIQUID, liquid)}
         with _disk(self._partial):
             self._claim(sum(row.nbytes for row in rows.values()))
             for name, row in rows.items():
@@ -257,6 +296,8 @@ class Trajectory:
                 values[name] = self._file[f"observables/{name}/value"]
             self._values = values
             self.catalogue = _read_catalogue(self._file)
+            if self.catalogue.liquid:
+                values |= {name: self._file[f"observables/{name}/value"] for name in LIQUID}
             parameters = self._file["parameters/mdanim"].attrs
             self.dt = float(parameters["dt"])
             self.steps_per_frame = int(parameters["steps_per_frame"])
@@ -303,6 +344,25 @@ class Trajectory:
     def center_velocities(self) -> np.ndarray:
         """Velocities of the centres of mass [m/s], shape (F, O, 3)."""
         return self._values["center_of_mass_velocity"][: len(self)]
+
+    @property
+    def liquid(self) -> Pool | None:
+        """The liquid and its basin; None in a scene without."""
+        return self.catalogue.liquid
+
+    def liquid_height(self, frame: int) -> np.ndarray:
+        """Smooth height z of the liquid over each column of cells [m], float32, shape (ny, nx)."""
+        return self._liquid(LIQUID[0], frame)
+
+    def liquid_raw(self, frame: int) -> np.ndarray:
+        """Top of the topmost liquid cell of each column, z [m], float32, shape (ny, nx); NaN where a column
+        tells nothing because an object fills it."""
+        return self._liquid(LIQUID[1], frame)
+
+    @cached_property
+    def liquid_levels(self) -> np.ndarray:
+        """Mean height z of the liquid over the basin [m], shape (F,)."""
+        return np.array([self.liquid_height(i).mean(dtype=np.float64) for i in range(len(self))])
 
     def surface(self, frame: int) -> pyvista.PolyData:
         """Surfaces of all objects in one frame [m], as one mesh.
@@ -362,6 +422,11 @@ class Trajectory:
 
     def __repr__(self) -> str:
         return f"<Trajectory {self.path}: {len(self)} frames, {len(self.names)} objects>"
+
+    def _liquid(self, name: str, frame: int) -> np.ndarray:
+        if self.liquid is None:
+            raise OutputError(f"{self.path}: there is no liquid in this run")
+        return self._values[name][self._frame(frame)]
 
     def _frame(self, frame: int) -> int:
         if not -len(self) <= frame < len(self):
@@ -442,21 +507,22 @@ def _create(file: h5py.File, catalogue: Catalogue, dt: float, steps_per_frame: i
 
     real = np.float32 if catalogue.single else np.float64
     n, objects = len(catalogue.id), len(catalogue.names)
+    pool = catalogue.liquid
     values = {}
-    for name, where, rows, dtype, unit in (
-        ("position", "particles/all", n, real, "m"),
-        ("velocity", "particles/all", n, real, "m s-1"),
-        ("center_of_mass", "observables", objects, np.float64, "m"),
-        ("center_of_mass_velocity", "observables", objects, np.float64, "m s-1"),
+    for name, where, row, dtype, unit in (
+        ("position", "particles/all", (n, 3), real, "m"),
+        ("velocity", "particles/all", (n, 3), real, "m s-1"),
+        ("center_of_mass", "observables", (objects, 3), np.float64, "m"),
+        ("center_of_mass_velocity", "observables", (objects, 3), np.float64, "m s-1"),
+        *((name, "observables", pool.shape[1::-1], np.float32, "m") for name in LIQUID if pool),
     ):
         group = file.require_group(f"{where}/{name}")
+        line = 8 * row[1]
         # One frame a chunk for particles; of the short rows of objects as many frames as make a page.
-        per_chunk = max(1, min(64, 4096 // (24 * rows)))
+        per_chunk = max(1, min(64, 4096 // (line * row[0])))
         # Chunks of equal length, so that none is stored half empty.
-        chunk = (per_chunk, -(-rows // max(1, -(-rows * 24 // _CHUNK_BYTES))), 3)
-        values[name] = group.create_dataset(
-            "value", (0, rows, 3), dtype, maxshape=(None, rows, 3), chunks=chunk
-        )
+        chunk = (per_chunk, -(-row[0] // max(1, -(-row[0] * line // _CHUNK_BYTES))), row[1])
+        values[name] = group.create_dataset("value", (0, *row), dtype, maxshape=(None, *row), chunks=chunk)
         # H5MD's own attribute is `unit`, but MDAnalysis refuses a file whose length unit it does not
         # know, and it knows no metre; so `units` says it everywhere and `unit` where it is understood.
         values[name].attrs["units"] = unit
@@ -465,6 +531,16 @@ def _create(file: h5py.File, catalogue: Catalogue, dt: float, steps_per_frame: i
         for key, dataset in (("step", step), ("time", time)):
             if key not in group:
                 group[key] = dataset
+
+    if pool:
+        file["observables/liquid"].attrs.update(
+            name=pool.name,
+            low=pool.low,
+            high=pool.high,
+            shape=np.array(pool.shape, dtype=np.int64),
+            density=pool.density,
+            color=pool.color,
+        )
 
     particles.create_dataset("mass", data=catalogue.mass).attrs["unit"] = "kg"
     particles["id"] = catalogue.id.astype(np.int64)
@@ -512,6 +588,18 @@ def _write_catalogue(group: h5py.Group, catalogue: Catalogue, dt: float, steps_p
         surfaces.create_dataset(name, data=flat, **_packed(flat))
 
 
+def _read_pool(file: h5py.File) -> Pool | None:
+    if "observables/liquid" not in file:
+        return None
+    attributes = file["observables/liquid"].attrs
+    low, high, shape = (tuple(attributes[key].tolist()) for key in ("low", "high", "shape"))
+    return Pool(attributes["name"], low, high, shape, float(attributes["density"]), attributes["color"])
+
+
+def _described(grid: Grid | None) -> str:
+    return f"a liquid in {' x '.join(map(str, grid.shape))} cells" if grid else "no liquid"
+
+
 def _read_catalogue(file: h5py.File) -> Catalogue:
     group, particles = file["parameters/mdanim"], file["particles/all"]
     if group.attrs["format"] > FORMAT:
@@ -545,6 +633,7 @@ def _read_catalogue(file: h5py.File) -> Catalogue:
         surface_of=group["surface_of"][:],
         ground=float(group.attrs["ground"]) if "ground" in group.attrs else None,
         walls=None if walls is None else (tuple(walls[0].tolist()), tuple(walls[1].tolist())),
+        liquid=_read_pool(file),
         save=Save(group.attrs["save"]),
         single=bool(group.attrs["single"]),
         scene_text=_texts(group["scene"])[0],

@@ -292,32 +292,57 @@ class Builder:
         return records.HoldFaces(tuple(map(records.Side, sides)))
 
     def liquid(self, block: Filled) -> records.Liquid | None:
-        """The liquid, with its volume checked against the basin's."""
+        """The liquid, with its volume or level checked against what it starts in: the basin, or part of it."""
         if not self.complete(block):
             return None
         low, high = self.corners(block.first("basin"), 0, 1, "the basin")
-        room = math.prod(b - a for a, b in zip(low, high))
+        fill = self.fill(block, low, high)
+        where = "the basin" if fill is None else "the fill region"
+        bottom, top = (low, high) if fill is None else fill
+        room = math.prod(b - a for a, b in zip(bottom, top))
         volume, level = block.value("volume"), block.value("level")
         if volume is not None and volume > room > 0.0:
             self.problem(
                 block.first("volume").span(0),
-                f"{volume:.6g} m^3 of liquid do not fit into the basin of {room:.6g} m^3",
-                "less liquid, or a larger basin",
+                f"{volume:.6g} m^3 of liquid do not fit into {where} of {room:.6g} m^3",
+                "less liquid, or a larger basin" if fill is None else "less liquid, or a larger fill region",
             )
-        if level is not None and not low[2] < level <= high[2]:
+        if level is not None and not bottom[2] < level <= top[2]:
             self.problem(
                 block.first("level").span(0),
-                f"the level {level:.6g} m is outside the basin, which goes from "
-                f"{low[2]:.6g} m to {high[2]:.6g} m",
+                f"the level {level:.6g} m is outside {where}, which goes from "
+                f"{bottom[2]:.6g} m to {top[2]:.6g} m",
                 "the level is a height, not a depth",
             )
         sweeps = block.value("sweeps")
+        model = records.LiquidModel(block.value("model", "surface"))
+        if model is records.LiquidModel.PAPER:
+            self.problem(
+                block.first("model").span(0),
+                "model paper takes the rules literally: not Archimedes, objects denser than about 0.4 of the liquid sink",
+                "leave the line out for drafts after Archimedes",
+                severity="warning",
+            )
         return records.Liquid(
             name=block.name, low=low, high=high, density=block.value("density"), volume=volume, level=level,
-            drag=block.value("drag"),
-            model=records.LiquidModel(block.value("model", "surface")),
-            sweeps=None if sweeps is None else int(sweeps), spans=self.spans(block),
+            drag=block.value("drag"), model=model, sweeps=None if sweeps is None else int(sweeps), fill=fill,
+            color=block.value("color"), spans=self.spans(block),
         )  # fmt: skip
+
+    def fill(self, block: Filled, low: Vector, high: Vector) -> tuple[Vector, Vector] | None:
+        """The part of the basin that the liquid starts in; it must lie within the basin."""
+        s = block.first("fill")
+        if s is None:
+            return None
+        fill = self.corners(s, 0, 1, "the part that is filled")
+        for which, (corner, name) in enumerate(zip(fill, ("lower", "upper"))):
+            if not all(a <= x <= b for a, x, b in zip(low, corner, high)):
+                self.problem(
+                    s.span(which),
+                    f"the {name} corner of fill lies outside the basin: {units.show(corner)} m",
+                    f"the basin goes from {units.show(low)} to {units.show(high)} m",
+                )
+        return fill
 
     def walls(self) -> records.Walls | None:
         s = self.out.first("walls")
@@ -395,7 +420,8 @@ class Builder:
             self.camera_path(block, cameras)
         return records.Render(
             size=tuple(map(int, size.values[0])) if size else (1280, 720), movie=block.value("movie"),
-            background=block.value("background"), camera=cameras, spans=self.spans(block),
+            background=block.value("background"), camera=cameras, liquid=block.value("liquid", "smooth"),
+            spans=self.spans(block),
         )  # fmt: skip
 
     def camera(self, s: Setting, control: records.Control | None) -> records.Camera:

@@ -92,19 +92,25 @@ def _render(r: records.Render) -> list[str]:
         time = "" if c.time is None else f"{c.time!r} s "
         look = c.look if isinstance(c.look, str) else f"{_vector(c.look)} m"
         settings.append(("camera", f"{time}from {_vector(c.eye)} m look {look} up {_vector(c.up)}"))
+    settings.append(("liquid", r.liquid))
     return _block("render", settings)
 
 
 def _liquid(q: records.Liquid) -> list[str]:
     amount = ("volume", f"{q.volume!r} m^3") if q.volume is not None else ("level", f"{q.level!r} m")
-    return _block(f"liquid {q.name}", [
+    settings = [
         ("basin", _box(q)),
         ("density", f"{q.density!r} kg/m^3"),
         amount,
         ("drag", _auto(q.drag, "1/s")),
         ("model", q.model.value),
         ("sweeps", _auto(q.sweeps, "")),
-    ])  # fmt: skip
+    ]
+    if q.fill is not None:
+        settings.append(("fill", _box(records.Walls(*q.fill))))
+    if q.color is not None:
+        settings.append(("color", _text(q.color)))
+    return _block(f"liquid {q.name}", settings)
 
 
 def _shape(s: records.Shape) -> str:

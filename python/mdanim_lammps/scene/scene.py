@@ -189,6 +189,10 @@ class Liquid:
     model: LiquidModel = LiquidModel.SURFACE
     sweeps: int | None = None
     """Automaton sweeps per update; None is ``auto``."""
+    fill: tuple[Vector, Vector] | None = None
+    """Lower and upper corner of the part of the basin that the liquid starts in [m]; None is all of it."""
+    color: str | None = None
+    """``#rrggbb``; None lets the renderer choose."""
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
 
 
@@ -269,6 +273,8 @@ class Render:
     movie: str | None = None
     background: str | None = None
     camera: tuple[Camera, ...] = ()
+    liquid: str = "smooth"
+    """``smooth`` or ``cells``: how the surface of the liquid is drawn."""
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
 
 

@@ -134,13 +134,19 @@ WORDS = (
             "Volume, rounded to whole cells.", Rule.POSITIVE, one_of=("volume", "level")),
     Keyword("liquid", "level", "<z:m>", "0.5 m",
             "Height of the surface at the start.", one_of=("volume", "level")),
+    Keyword("liquid", "fill", "from <(x0, y0, z0):m> to <(x1, y1, z1):m>",
+            "from (-1, -1, 0) m to (0, 1, 1.2) m",
+            "Part of the basin that the liquid starts in, behind a dam that is gone at once. Absent: all of it."),
     Keyword("liquid", "drag", "auto | <gamma:1/s>", "4 1/s",
             "Immersed solids feel F = -gamma rho V v with the immersed volume V; `auto` is sqrt(g/L) for a "
             "body of size L.", Rule.NOT_NEGATIVE, "auto"),
     Keyword("liquid", "model", "<surface|paper>", "surface",
             "`surface`: draft after Archimedes, occupancy by hexahedra, level rule. `paper`: the literal "
-            "rules of the paper, flagged as such.", default="surface"),
+            "rules of the paper, with a warning: not Archimedes, objects denser than about 0.4 of the liquid sink.",
+            default="surface"),
     Keyword("liquid", "sweeps", "auto | <n>", "4", "Sweeps of the automaton per update.", Rule.COUNT, "auto"),
+    Keyword("liquid", "color", "<color>", "deepskyblue",
+            'Colour in pictures: a CSS name or "#rrggbb". Absent: chosen automatically.'),
 
     Keyword("effects", "gravity", "<on|off|auto>", "off",
             "Called for by a gravity vector that is not zero.", default="auto"),
@@ -154,6 +160,8 @@ WORDS = (
             "Called for by an object's `drag`.", default="auto"),
     Keyword("effects", "damping", "<on|off|auto>", "off",
             "Called for by an object's `damping`.", default="auto"),
+    Keyword("effects", "basin", "<on|off|auto>", "off",
+            "Called for by the basin of a liquid and an object that can move.", default="auto"),
     Keyword("effects", "liquid", "<on|off|auto>", "off", "Called for by `liquid`.", default="auto"),
     Keyword("effects", "buoyancy", "<on|off|auto>", "off",
             "Called for by a liquid that an object can reach.", default="auto"),
@@ -180,6 +188,9 @@ WORDS = (
             "Name of the movie. Absent: `movie.mp4` in the output folder."),
     Keyword("render", "background", "<color>", "white",
             'Background: a CSS name or "#rrggbb". Absent: chosen automatically.'),
+    Keyword("render", "liquid", "<smooth|cells>", "cells",
+            "`smooth`: the surface of the liquid as a smooth sheet. `cells`: the columns of the automaton as they "
+            "are.", default="smooth"),
     Keyword("render", "camera", "[<T:s>] from <(x, y, z):m> look <(x, y, z):m or NAME> [up <(x, y, z)>]",
             "from (4, -4, 2) m look (0, 0, 0.5) m",
             "Where the camera stands and what it looks at; several lines with times T make a smooth path. "

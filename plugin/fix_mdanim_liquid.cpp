@@ -1,0 +1,817 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/liquid: when the automaton steps, what it is told of solids and what solids feel of it; the rules are in
+// automaton.h, level.h, surface.h, occupancy.h and buoyancy.h. Every rank holds the whole grid.
+
+#include "fix_mdanim_liquid.h"
+
+#include "buoyancy.h"
+#include "stopwatch.h"
+#include "surface.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "group.h"
+#include "memory.h"
+#include "neighbor.h"
+#include "region.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace mdanim;
+
+static constexpr double STATE_VERSION = 1.0;
+
+// Reasons and measurements: docs/physics-liquid.md.
+static constexpr double STRIDE = 0.25;           // of a cell that solids travel between updates
+static constexpr double SWEEPS_PER_CELL = 8.0;   // that the fastest solid travels
+static constexpr int MOST_SWEEPS = 4096;         // per update; also parts the keys of their random numbers
+static constexpr double PERIOD = 0.06;           // sqrt(cell/g) between updates while the liquid is not level
+static constexpr double LEVEL_RATE = 0.11;       // share of exposed cells moved while a shallow-water wave crosses one cell
+static constexpr double SAMPLED = 4.0;           // cells above the liquid up to which solids are marked
+static constexpr double NEAR = 8.0;              // cells above the liquid up to which their motion counts
+static constexpr double SPLASH = 1.5;            // cells below the surface within which an empty cell is taken for a ripple
+static constexpr std::uint8_t SOLID_CODE = 255, STILL_CODE = 254;
+
+// --- the command ---
+
+// fix ID group mdanim/liquid REGION rho grid NX NY NZ volume V | level Z gravity G keyword values ...
+FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  scalar_flag = 1;
+  extscalar = 1;
+  energy_global_flag = 1;
+  vector_flag = 1;
+  size_vector = 11;
+  extvector = 0;
+  array_flag = 1;
+  size_array_cols = 4;
+  extarray = 0;
+  global_freq = 1;
+  nevery = 1;
+  restart_global = 1;
+
+  if (narg < 9) utils::missing_cmd_args(FLERR, "fix mdanim/liquid", error);
+  region_id = arg[3];
+  Region *region = domain->get_region_by_id(region_id);
+  if (!region) error->all(FLERR, 3, "fix mdanim/liquid: there is no region {}; make it before this fix", arg[3]);
+  if (strcmp(region->style, "block") != 0 || !region->interior || region->dynamic_check() || !region->bboxflag)
+    error->all(FLERR, 3, "fix mdanim/liquid: the basin must be a finite, resting region of style block, side in; {} is not",
+               arg[3]);
+  rho = utils::numeric(FLERR, arg[4], false, lmp);
+  if (!(rho > 0.0)) error->all(FLERR, 4, "fix mdanim/liquid: density must be > 0, got {}", arg[4]);
+  if (strcmp(arg[5], "grid") != 0)
+    error->all(FLERR, 5, "fix mdanim/liquid: expected grid NX NY NZ after the density, got {}", arg[5]);
+  int n[3];
+  double bytes = 1.0;
+  for (int d = 0; d < 3; ++d) {
+    n[d] = utils::inumeric(FLERR, arg[6 + d], false, lmp);
+    if (n[d] < 1) error->all(FLERR, 6 + d, "fix mdanim/liquid: grid must be >= 1 along every axis, got {}", arg[6 + d]);
+    bytes *= n[d];
+  }
+  if (bytes > std::numeric_limits<int>::max())
+    error->all(FLERR, 6, "fix mdanim/liquid: a grid of {:.3g} cells is too large; use fewer, larger cells", bytes);
+
+  bool has_volume = false;
+  Vertical vertical = Vertical::LOWER;
+  for (int iarg = 9; iarg < narg;) {
+    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", arg[iarg]), error);
+    const char *word = arg[iarg], *value = arg[iarg + 1];
+    int used = 2;
+    if (strcmp(word, "volume") == 0) {
+      volume_asked = utils::numeric(FLERR, value, false, lmp);
+      if (!(volume_asked > 0.0)) error->all(FLERR, iarg + 1, "fix mdanim/liquid: volume must be > 0, got {}", value);
+      has_volume = true;
+    } else if (strcmp(word, "level") == 0) {
+      level_asked = utils::numeric(FLERR, value, false, lmp);
+      has_level = true;
+    } else if (strcmp(word, "fill") == 0) {
+      fill_id = value;
+      if (!domain->get_region_by_id(fill_id))
+        error->all(FLERR, iarg + 1, "fix mdanim/liquid: there is no region {} to fill", value);
+    } else if (strcmp(word, "gravity") == 0) {
+      g = utils::numeric(FLERR, value, false, lmp);
+      if (!(g > 0.0))
+        error->all(FLERR, iarg + 1, "fix mdanim/liquid: gravity, along -z, must be > 0, got {}", value);
+    } else if (strcmp(word, "model") == 0) {
+      if (strcmp(value, "surface") == 0) model = Model::SURFACE;
+      else if (strcmp(value, "paper") == 0) model = Model::PAPER;
+      else error->all(FLERR, iarg + 1, "fix mdanim/liquid: model must be surface or paper, got {}", value);
+    } else if (strcmp(word, "vertical") == 0) {
+      if (strcmp(value, "lower") == 0) vertical = Vertical::LOWER;
+      else if (strcmp(value, "any") == 0) vertical = Vertical::ANY;
+      else error->all(FLERR, iarg + 1, "fix mdanim/liquid: vertical must be lower or any, got {}", value);
+    } else if (strcmp(word, "seed") == 0) {
+      seed = static_cast<std::uint64_t>(utils::bnumeric(FLERR, value, false, lmp));
+    } else {
+      used = keyword(iarg, narg, arg);
+      if (!used)
+        error->all(FLERR, iarg,
+                   "fix mdanim/liquid: unknown keyword {}; it knows volume, level, fill, gravity, model, vertical, "
+                   "seed, buoyancy, drag, lambda, base, cells, faces, still, sweeps and every",
+                   word);
+    }
+    iarg += used;
+  }
+  if (has_volume == has_level)
+    error->all(FLERR, "fix mdanim/liquid: write either volume V or level Z, {}", has_level ? "not both" : "one of them");
+  if (g < 0.0) error->all(FLERR, "fix mdanim/liquid: gravity G is missing; liquid lies flat only under gravity along -z");
+
+  low = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
+  cell = {(region->extent_xhi - low.x) / n[0], (region->extent_yhi - low.y) / n[1], (region->extent_zhi - low.z) / n[2]};
+  shortest = std::min({cell.x, cell.y, cell.z});
+  if (has_level && !(level_asked > low.z && level_asked <= region->extent_zhi))
+    error->all(FLERR, "fix mdanim/liquid: level {} is not within the basin, {} to {}", level_asked, low.z, region->extent_zhi);
+
+  automaton = std::make_unique<Automaton>(n[0], n[1], n[2], seed, vertical);
+  still_count = std::make_unique<Occupancy>(n[0], n[1], n[2]);
+  moving_count = std::make_unique<Occupancy>(n[0], n[1], n[2]);
+  solid.assign(still_count->count.size(), 0);
+  height.assign(columns(), 0.0);
+  eta.assign(columns(), 0.0);
+  blocked.assign(columns(), 0);
+  size_array_rows = columns();
+}
+
+// Keywords that fix_modify takes as well; returns how many words it used, 0 for a word it does not know.
+int FixMdanimLiquid::keyword(int iarg, int narg, char **arg)
+{
+  const char *word = arg[iarg];
+  static const char *const known[] = {"buoyancy", "drag", "lambda", "base", "cells", "faces", "still", "sweeps", "every"};
+  if (std::none_of(std::begin(known), std::end(known), [&](const char *k) { return strcmp(k, word) == 0; })) return 0;
+  if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", word), error);
+  const char *value = arg[iarg + 1];
+  if (strcmp(word, "buoyancy") == 0) {
+    volume = ParticleValue(lmp, "fix mdanim/liquid: buoyancy", iarg + 1, value);
+    lifts = true;
+  } else if (strcmp(word, "drag") == 0) {
+    gamma = ParticleValue(lmp, "fix mdanim/liquid: drag", iarg + 1, value);
+    slows = true;
+  } else if (strcmp(word, "lambda") == 0 || strcmp(word, "base") == 0) {
+    if (!utils::strmatch(value, "^d_"))
+      error->all(FLERR, iarg + 1, "fix mdanim/liquid: {} must be a per-particle property d_NAME, got {}", word, value);
+    (strcmp(word, "base") == 0 ? base_name : lambda_name) = value + 2;
+    writable(value + 2, word);
+  } else if (strcmp(word, "cells") == 0 || strcmp(word, "faces") == 0) {
+    if (!utils::strmatch(value, "^i2_"))
+      error->all(FLERR, iarg + 1, "fix mdanim/liquid: {} must be a per-particle property i2_NAME, got {}", word, value);
+    (strcmp(word, "cells") == 0 ? corners_name : faces_name) = value + 3;
+  } else if (strcmp(word, "still") == 0) {
+    still_bit = group_bit(iarg + 1, value);
+  } else if (strcmp(word, "sweeps") == 0) {
+    sweeps = strcmp(value, "auto") == 0 ? 0 : utils::inumeric(FLERR, value, false, lmp);
+    if (strcmp(value, "auto") != 0 && (sweeps < 1 || sweeps > MOST_SWEEPS))
+      error->all(FLERR, iarg + 1, "fix mdanim/liquid: sweeps must be auto or 1 to {}, got {}", MOST_SWEEPS, value);
+  } else {
+    every = utils::inumeric(FLERR, value, false, lmp);
+    if (every < 1) error->all(FLERR, iarg + 1, "fix mdanim/liquid: every must be >= 1, got {}", value);
+  }
+  return 2;
+}
+
+int FixMdanimLiquid::modify_param(int narg, char **arg) { return keyword(0, narg, arg); }
+
+int FixMdanimLiquid::group_bit(int iarg, const char *word)
+{
+  const int index = group->find(word);
+  if (index < 0) error->all(FLERR, iarg, "fix mdanim/liquid: there is no group {}; make it before this fix", word);
+  return group->bitmask[index];
+}
+
+// A per-particle property that this fix reads and writes itself.
+double *FixMdanimLiquid::writable(const std::string &name, const char *keyword)
+{
+  int is_double = 0, width = 0;
+  const int index = atom->find_custom(name.c_str(), is_double, width);
+  if (index < 0 || !is_double || width)
+    error->all(FLERR,
+               "fix mdanim/liquid: {} names d_{}, which is no per-particle property; make it with 'fix ID all "
+               "property/atom d_{}'",
+               keyword, name, name);
+  return atom->dvector[index];
+}
+
+// Columns of a per-particle table of tags; 0 when there is no such table.
+int FixMdanimLiquid::width_of(const std::string &name) const
+{
+  int is_double = 0, width = 0;
+  const int index = atom->find_custom(name.c_str(), is_double, width);
+  return index < 0 || is_double ? 0 : width;
+}
+
+int *const *FixMdanimLiquid::table_of(const std::string &name) const
+{
+  int is_double = 0, width = 0;
+  return atom->iarray[atom->find_custom(name.c_str(), is_double, width)];
+}
+
+int FixMdanimLiquid::setmask() { return POST_NEIGHBOR | POST_FORCE | END_OF_STEP; }
+
+void FixMdanimLiquid::init()
+{
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, "fix {} mdanim/liquid: run_style respa is not supported; use run_style verlet", id);
+  if (domain->dimension != 3)
+    error->all(FLERR, "fix {} mdanim/liquid: dimension must be 3, got {}", id, domain->dimension);
+  if (domain->triclinic) error->all(FLERR, "fix {} mdanim/liquid: a triclinic box is not supported", id);
+  if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
+    error->all(FLERR, "fix {} mdanim/liquid: periodic boundaries are not supported; use boundary s, f or m", id);
+  if (slows && lambda_name.empty())
+    error->all(FLERR, "fix {} mdanim/liquid: drag needs lambda d_NAME, the property that fix mdanim/leapfrog reads", id);
+  if (!slows && !(lambda_name.empty() && base_name.empty()))
+    error->all(FLERR, "fix {} mdanim/liquid: lambda and base say where drag goes, but there is no drag; add one", id);
+  if (slows && !lifts)
+    error->all(FLERR, "fix {} mdanim/liquid: drag acts on the volume of particles, which buoyancy gives; add buoyancy", id);
+  if (lifts) volume.init(lmp);
+  if (slows) gamma.init(lmp);
+  if (!corners_name.empty() && width_of(corners_name) != 7)
+    error->all(FLERR,
+               "fix {} mdanim/liquid: cells names i2_{}, which is no property of 7 integers; make it with 'fix ID all "
+               "property/atom i2_{} 7 ghost yes'",
+               id, corners_name, corners_name);
+  if (!faces_name.empty()) {
+    faces_width = width_of(faces_name);
+    if (faces_width == 0 || faces_width % 3)
+      error->all(FLERR,
+                 "fix {} mdanim/liquid: faces names i2_{}, which is no property of 3 integers a face; make it with 'fix ID all "
+                 "property/atom i2_{} 36'",
+                 id, faces_name, faces_name);
+    if (model == Model::PAPER)
+      error->all(FLERR, "fix {} mdanim/liquid: model paper knows no pressure on faces; leave faces out", id);
+  }
+  if (!(corners_name.empty() && faces_name.empty()) && atom->map_style == Atom::MAP_NONE)
+    error->all(FLERR, "fix {} mdanim/liquid: cells and faces need an atom map; use 'atom_modify map array'", id);
+  // Lists are then rebuilt as soon as a particle has moved by half the skin.
+  watching = neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once;
+}
+
+// --- solids on the grid ---
+
+Vec3 FixMdanimLiquid::in_cells(const double *x) const
+{ return {(x[0] - low.x) / cell.x, (x[1] - low.y) / cell.y, (x[2] - low.z) / cell.z}; }
+
+// Bodies that never move (or all others), as far as they reach below a height in cells.
+void FixMdanimLiquid::add_bodies(Occupancy &into, bool still, double below)
+{
+  double *const *x = atom->x;
+  const int *mask = atom->mask, nlocal = atom->nlocal;
+  if (corners_name.empty() || model == Model::PAPER) {
+    for (int i = 0; i < nlocal; ++i) {
+      if (!(mask[i] & groupbit) || static_cast<bool>(mask[i] & still_bit) != still) continue;
+      const Vec3 place = in_cells(x[i]);
+      if (place.z <= below) into.add_particle(place);
+    }
+    return;
+  }
+  int *const *corners = table_of(corners_name);
+  for (int i = 0; i < nlocal; ++i) {
+    if (!(mask[i] & groupbit) || corners[i][0] == 0) continue;
+    int at[8] = {i};
+    int all = mask[i];
+    for (int k = 0; k < 7; ++k) {
+      at[k + 1] = atom->map(corners[i][k]);
+      if (at[k + 1] < 0)
+        error->one(FLERR,
+                   "fix {} mdanim/liquid: particle {}, a corner of the lattice cell of particle {}, is out of reach; raise "
+                   "comm_modify cutoff",
+                   id, corners[i][k], atom->tag[i]);
+      all &= mask[at[k + 1]];
+    }
+    if (static_cast<bool>(all & still_bit) != still) continue;
+    Vec3 corner[8];
+    double lowest = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 8; ++k) {
+      corner[k] = in_cells(x[at[k]]);
+      lowest = std::min(lowest, corner[k].z);
+    }
+    if (lowest <= below) into.add_cell(corner);
+  }
+}
+
+// Whole numbers: the sum does not depend on which rank holds what.
+void FixMdanimLiquid::sum_over_ranks(Occupancy &counted)
+{
+  if (comm->nprocs == 1) return;
+  CellBox &box = counted.touched;
+  int here[6], all[6];
+  for (int d = 0; d < 3; ++d) {
+    here[d] = box.low[d];
+    here[3 + d] = -box.high[d];
+  }
+  MPI_Allreduce(here, all, 6, MPI_INT, MPI_MIN, world);
+  for (int d = 0; d < 3; ++d) {
+    box.low[d] = all[d];
+    box.high[d] = -all[3 + d];
+  }
+  if (box.empty()) return;
+  std::vector<int> part(box.size());
+  const int width = box.high[0] - box.low[0];
+  const auto rows = [&](auto &&copy) {
+    int *packed = part.data();
+    for (int z = box.low[2]; z < box.high[2]; ++z)
+      for (int y = box.low[1]; y < box.high[1]; ++y, packed += width)
+        copy(&counted.count[(static_cast<std::size_t>(z) * counted.ny + y) * counted.nx + box.low[0]], packed);
+  };
+  rows([&](const int *grid, int *packed) { std::copy_n(grid, width, packed); });
+  MPI_Allreduce(MPI_IN_PLACE, part.data(), static_cast<int>(part.size()), MPI_INT, MPI_SUM, world);
+  rows([&](int *grid, const int *packed) { std::copy_n(packed, width, grid); });
+}
+
+void FixMdanimLiquid::count_still()
+{
+  const Lap lap(occupancy_seconds);
+  still_count->clear();
+  add_bodies(*still_count, true, std::numeric_limits<double>::infinity());
+  sum_over_ranks(*still_count);
+}
+
+void FixMdanimLiquid::count_moving()
+{
+  const Lap lap(occupancy_seconds);
+  CellBox before = moving_count->touched;
+  moving_count->clear();
+  add_bodies(*moving_count, false, poured ? top + SAMPLED : std::numeric_limits<double>::infinity());
+  sum_over_ranks(*moving_count);
+  before.take_in(moving_count->touched);
+  const Occupancy &still = *still_count;
+  const auto mark = [&](const CellBox &box) {
+    for (int z = box.low[2]; z < box.high[2]; ++z)
+      for (int y = box.low[1]; y < box.high[1]; ++y)
+        for (int x = box.low[0]; x < box.high[0]; ++x) {
+          const std::size_t c = (static_cast<std::size_t>(z) * still.ny + y) * still.nx + x;
+          const int resting = still.count[c], all = resting + moving_count->count[c];
+          solid[c] = 2 * resting >= Occupancy::FULL ? 2 : 2 * all >= Occupancy::FULL ? 1 : 0;
+        }
+  };
+  if (!poured) mark(still.touched);
+  mark(before);
+  const CellBox &box = moving_count->touched;
+  moving_solid = 0;
+  for (int z = box.low[2]; z < box.high[2]; ++z)
+    for (int y = box.low[1]; y < box.high[1]; ++y) {
+      const auto row = solid.begin() + (static_cast<std::ptrdiff_t>(z) * still.ny + y) * still.nx;
+      moving_solid += std::count(row + box.low[0], row + box.high[0], std::uint8_t(1));
+    }
+}
+
+// --- the liquid ---
+
+// The start: solids first, then liquid into what they leave.
+void FixMdanimLiquid::pour()
+{
+  const Cells &cells = automaton->cells;
+  count_moving();
+  const auto now = static_cast<std::uint64_t>(update->ntimestep);
+  automaton->displace(solid.data(), now);
+
+  std::vector<std::uint8_t> within(solid.size(), 1);
+  if (!fill_id.empty()) {
+    Region *fill = domain->get_region_by_id(fill_id);
+    if (!fill) error->all(FLERR, "fix {} mdanim/liquid: region {} has been deleted", id, fill_id);
+    fill->prematch();
+    for (int z = 0; z < cells.nz; ++z)
+      for (int y = 0; y < cells.ny; ++y)
+        for (int x = 0; x < cells.nx; ++x)
+          within[cells.number(x, y, z)] =
+              fill->match(low.x + (x + 0.5) * cell.x, low.y + (y + 0.5) * cell.y, low.z + (z + 0.5) * cell.z);
+  }
+  if (has_level) {
+    // Whole layers below the level, and of the layer that it cuts the same part of the open cells.
+    const double depth = (level_asked - low.z) / cell.z;
+    units = 0;
+    for (int z = 0; z < cells.nz && z < depth; ++z) {
+      std::int64_t open = 0;
+      for (int y = 0; y < cells.ny; ++y)
+        for (int x = 0; x < cells.nx; ++x) {
+          const std::uint64_t c = cells.number(x, y, z);
+          open += within[c] && !solid[c];
+        }
+      units += static_cast<std::int64_t>(std::min(1.0, depth - z) * static_cast<double>(open) + 0.5);
+    }
+  } else {
+    units = static_cast<std::int64_t>(volume_asked / (cell.x * cell.y * cell.z) + 0.5);
+  }
+  const long left = automaton->fill(units, within.data(), now);
+  if (left)
+    error->all(FLERR,
+               "fix {} mdanim/liquid: {} of {} cells of liquid find no room beside the solids in {}; use less liquid or a larger "
+               "basin",
+               id, left, units, fill_id.empty() ? "the basin" : "the region to fill");
+  poured = true;
+  raise_surface(false);
+}
+
+// Heights, and the surface that solids feel, from the cells as they are now.
+void FixMdanimLiquid::raise_surface(bool just_levelled)
+{
+  const Lap lap(automaton_seconds);
+  calm = leveller.heights(automaton->cells, height.data(), just_levelled);
+  smooth();
+}
+
+void FixMdanimLiquid::smooth()
+{
+  const Cells &cells = automaton->cells;
+  top = cells.nz;
+  while (top > 0 && std::all_of(&cells.content[cells.at(-1, -1, top - 1)],
+                                &cells.content[cells.at(-1, -1, top - 1)] + cells.layer, [](std::uint8_t q) { return q == 0; }))
+    --top;
+  // A column is parted where what ends its liquid never moves: each side of a wall has a level of its own.
+  for (int y = 0; y < cells.ny; ++y)
+    for (int x = 0; x < cells.nx; ++x) {
+      const std::size_t column = static_cast<std::size_t>(y) * cells.nx + x;
+      blocked[column] = 0;
+      if (!std::isnan(height[column])) continue;
+      int z = top - 1;
+      while (z >= 0 && !cells.content[cells.at(x, y, z)]) --z;
+      const bool dry = z < 0;
+      ++z;
+      while (dry && z < cells.nz - 1 && cells.open[cells.at(x, y, z)]) ++z;
+      blocked[column] = cells.still[cells.at(x, y, z)];
+    }
+  smooth_surface(cells.nx, cells.ny, height.data(), blocked.data(), eta.data());
+  lowest_eta = *std::min_element(eta.begin(), eta.end());
+}
+
+// Whether it is time for an update. Depends on the state alone, so that neither ranks nor pieces of a run change it.
+bool FixMdanimLiquid::due()
+{
+  double fastest = -1.0;    // squared; -1 when no solid is near the liquid
+  if (!nobody) {
+    const Lap lap(coupling_seconds);
+    const double *const *x = atom->x, *const *v = atom->v;
+    const double below = low.z + (top + NEAR) * cell.z;
+    for (const int i : watched)
+      if (x[i][2] < below) fastest = std::max(fastest, dot(vec3(v[i]), vec3(v[i])));
+    if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &fastest, 1, MPI_DOUBLE, MPI_MAX, world);
+  }
+  waited += every;
+  if (fastest >= 0.0) travel += std::sqrt(fastest) * every * update->dt / shortest;
+  else if (moving_solid) return true;    // the last one has just left
+  if (travel >= STRIDE) return true;
+  return !calm && waited * update->dt >= PERIOD * std::sqrt(shortest / g);
+}
+
+void FixMdanimLiquid::update_liquid()
+{
+  count_moving();
+  long changed = 0;
+  const auto now = static_cast<std::uint64_t>(update->ntimestep);
+  {
+    const Lap lap(automaton_seconds);
+    try {
+      changed = automaton->displace(solid.data(), now);
+    } catch (const std::runtime_error &problem) {
+      error->all(FLERR, "fix {} mdanim/liquid: {}", id, problem.what());
+    }
+    if (changed || !calm) {
+      const int most = sweeps ? sweeps : std::clamp(static_cast<int>(std::ceil(SWEEPS_PER_CELL * travel)), 1, MOST_SWEEPS);
+      for (int k = 0; k < most; ++k) automaton->sweep(now * MOST_SWEEPS + k);
+      swept += most;
+      if (model == Model::SURFACE) {
+        const double depth = static_cast<double>(units) / columns() * cell.z;
+        const double crossed = std::sqrt(g * depth) * waited * update->dt / shortest;    // cells that a wave has gone
+        if (leveller.move(automaton->cells, seed, now, LEVEL_RATE * crossed, changed)) automaton->poured();
+      }
+    }
+  }
+  if (changed || !calm) raise_surface(model == Model::SURFACE);
+  travel = 0.0;
+  waited = 0;
+  if (low.z + top * cell.z > watched_top) watch();
+}
+
+// --- solids in the liquid ---
+
+void FixMdanimLiquid::setup_post_neighbor()
+{
+  count_still();
+  if (!poured) pour();
+  post_neighbor();
+}
+
+void FixMdanimLiquid::post_neighbor()
+{
+  const Lap lap(coupling_seconds);
+  watch();
+}
+
+// Particles that can come near the liquid before lists are rebuilt. All others have no friction from it.
+void FixMdanimLiquid::watch()
+{
+  watched.clear();
+  watched_top = low.z + top * cell.z;
+  const double below = watching ? watched_top + NEAR * cell.z + 0.5 * neighbor->skin : std::numeric_limits<double>::infinity();
+  double *lambda = slows ? writable(lambda_name, "lambda") : nullptr;
+  const double *base = base_name.empty() ? nullptr : writable(base_name, "base");
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    if (lambda) lambda[i] = base ? base[i] : 0.0;
+    if (!(atom->mask[i] & still_bit) && atom->x[i][2] < below) watched.push_back(i);
+  }
+  int here = !watched.empty(), any = here;
+  if (comm->nprocs > 1) MPI_Allreduce(&here, &any, 1, MPI_INT, MPI_MAX, world);
+  nobody = !any;
+}
+
+void FixMdanimLiquid::setup(int)
+{
+  couple();
+  last_power = power(last_loss);
+}
+
+void FixMdanimLiquid::post_force(int)
+{
+  if (update->ntimestep % every == 0 && due()) update_liquid();
+  couple();
+}
+
+bool FixMdanimLiquid::over_basin(const double *x) const
+{
+  return x[0] >= low.x && x[0] <= low.x + automaton->cells.nx * cell.x && x[1] >= low.y &&
+         x[1] <= low.y + automaton->cells.ny * cell.y;
+}
+
+// Part of the volume around a particle that counts as immersed.
+double FixMdanimLiquid::immersed(const Vec3 &place) const
+{
+  const Cells &cells = automaton->cells;
+  if (!(place.x >= 0.0 && place.x <= cells.nx && place.y >= 0.0 && place.y <= cells.ny)) return 0.0;
+  if (model == Model::SURFACE) return immersed_part(at_point(eta.data(), cells.nx, cells.ny, place.x, place.y), place.z);
+  // The paper's own words: liquid in any of the cells around.
+  if (!(place.z >= 0.0 && place.z < cells.nz)) return 0.0;
+  const int x = std::min(static_cast<int>(place.x), cells.nx - 1), y = std::min(static_cast<int>(place.y), cells.ny - 1),
+            z = static_cast<int>(place.z);
+  for (int dz = -1; dz <= 1; ++dz)
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx)
+        if (cells.content[cells.at(x + dx, y + dy, z + dz)]) return 1.0;
+  return 0.0;
+}
+
+void FixMdanimLiquid::couple()
+{
+  wet.clear();
+  if (!lifts || watched.empty()) return;
+  const Lap lap(coupling_seconds);
+  double *const *x = atom->x, *const *f = atom->f;
+  const double *volumes = volume.values(lmp), *gammas = slows ? gamma.values(lmp) : nullptr;
+  double *lambda = slows ? writable(lambda_name, "lambda") : nullptr;
+  const double *base = base_name.empty() ? nullptr : writable(base_name, "base");
+  int *const *faces = faces_name.empty() ? nullptr : table_of(faces_name);
+  const double above = low.z + (top + 1.0) * cell.z;    // nothing is immersed from here up
+  // All is from here down, as far as the basin reaches; most particles of a large body need not look up the surface.
+  const bool deep = model == Model::SURFACE && lowest_eta >= 1.0;
+  const double below = deep ? low.z + (lowest_eta - 0.5) * cell.z : -std::numeric_limits<double>::infinity();
+  for (const int i : watched) {
+    const double z = x[i][2];
+    const double s = z >= above ? 0.0 : z <= below && over_basin(x[i]) ? 1.0 : immersed(in_cells(x[i]));
+    const double own = volumes ? volumes[i] : volume.number;
+    const double own_lambda = slows ? liquid_lambda(gammas ? gammas[i] : gamma.number, rho, own, s) / force->ftm2v : 0.0;
+    if (lambda) lambda[i] = (base ? base[i] : 0.0) + own_lambda;
+    if (z >= above || (s == 0.0 && !faces)) continue;
+    const Vec3 push = faces ? pressure_on(i, faces[i]) : Vec3{0.0, 0.0, lift(rho, own, s, g)};
+    add_to(f[i], push);
+    wet.push_back({i, push, own_lambda});
+  }
+}
+
+// Hydrostatic pressure on the faces that meet in a particle, its quarter of each.
+Vec3 FixMdanimLiquid::pressure_on(int i, const int *faces) const
+{
+  Vec3 sum;
+  for (int k = 0; k < faces_width && faces[k]; k += 3) {
+    int at[3];
+    for (int n = 0; n < 3; ++n) {
+      at[n] = atom->map(faces[k + n]);
+      if (at[n] < 0)
+        error->one(FLERR,
+                   "fix {} mdanim/liquid: particle {}, a corner of a face of particle {}, is out of reach; raise comm_modify cutoff",
+                   id, faces[k + n], atom->tag[i]);
+    }
+    const Vec3 a = vec3(atom->x[i]), b = vec3(atom->x[at[0]]), c = vec3(atom->x[at[1]]), d = vec3(atom->x[at[2]]);
+    const Vec3 middle = 0.25 * ((a + c) + (b + d)), area = cross(c - a, d - b);
+    const double size = std::sqrt(dot(area, area));
+    if (size == 0.0) continue;
+    const Vec3 outside = middle + (0.75 * shortest / size) * area;
+    const Vec3 place = in_cells(&middle.x);
+    if (!(place.x >= 0.0 && place.x <= automaton->cells.nx && place.y >= 0.0 && place.y <= automaton->cells.ny)) continue;
+    const double depth = at_point(eta.data(), automaton->cells.nx, automaton->cells.ny, place.x, place.y) - place.z;
+    if (depth <= 0.0 || (depth > SPLASH && dry(in_cells(&outside.x)))) continue;
+    sum += corner_push(rho * g * depth * cell.z, a, b, c, d);
+  }
+  return sum;
+}
+
+// Whether a place below the surface is air all the same, as the inside of a hull is: no liquid in its cell and none above.
+bool FixMdanimLiquid::dry(const Vec3 &place) const
+{
+  const Cells &cells = automaton->cells;
+  if (!(place.x >= 0.0 && place.x < cells.nx && place.y >= 0.0 && place.y < cells.ny && place.z >= 0.0 && place.z < cells.nz))
+    return false;
+  const int x = static_cast<int>(place.x), y = static_cast<int>(place.y);
+  int z = static_cast<int>(place.z);
+  if (!cells.open[cells.at(x, y, z)]) return false;
+  for (; z < top; ++z)
+    if (cells.content[cells.at(x, y, z)]) return false;
+  return true;
+}
+
+// Power of buoyancy, and what drag takes, at the velocities of now; on this rank.
+double FixMdanimLiquid::power(double &loss) const
+{
+  double gain = 0.0;
+  loss = 0.0;
+  for (const Wet &w : wet) {
+    const Vec3 v = vec3(atom->v[w.i]);
+    gain += dot(w.push, v);
+    loss += w.lambda * dot(v, v);
+  }
+  return gain;
+}
+
+// Velocities are those of whole steps here, eq. (3.10), which are the means of the half steps before and after: the
+// trapezoidal rule gives the work exactly.
+void FixMdanimLiquid::end_of_step()
+{
+  if (wet.empty() && last_power == 0.0 && last_loss == 0.0) return;
+  const Lap lap(coupling_seconds);
+  double loss = 0.0;
+  const double gain = power(loss);
+  work += 0.5 * update->dt * (last_power + gain);
+  lost += 0.5 * update->dt * (last_loss + loss);
+  last_power = gain;
+  last_loss = loss;
+}
+
+// --- what it tells ---
+
+double FixMdanimLiquid::compute_scalar()
+{
+  double all = 0.0;
+  MPI_Allreduce(&work, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return -all;
+}
+
+// 1 units of liquid; 2 at the start; 3 mean level; 4 solid cells; 5 sweeps; 6 awake; 7 energy lost to drag; wall seconds of the slowest
+// rank for 8 automaton, 9 occupancy, 10 coupling, 11 all
+double FixMdanimLiquid::compute_vector(int n)
+{
+  double all = 0.0;
+  switch (n) {
+    case 0: return static_cast<double>(automaton->total());
+    case 1: return static_cast<double>(units);
+    case 2:
+      for (const double h : eta) all += h;
+      return low.z + cell.z * all / columns();
+    case 3: return static_cast<double>(automaton->count_solid());
+    case 4: return static_cast<double>(swept);
+    case 5: return !(calm && nobody);
+    case 6: MPI_Allreduce(&lost, &all, 1, MPI_DOUBLE, MPI_SUM, world); return all;
+    default: break;
+  }
+  double here[] = {automaton_seconds, occupancy_seconds, coupling_seconds,
+                   automaton_seconds + occupancy_seconds + coupling_seconds};
+  MPI_Allreduce(&here[n - 7], &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all;
+}
+
+// A row per column of cells: x, y of its centre, z of the smooth surface, z of the topmost liquid (NaN where a body hides it).
+double FixMdanimLiquid::compute_array(int row, int column)
+{
+  const int nx = automaton->cells.nx;
+  switch (column) {
+    case 0: return low.x + (row % nx + 0.5) * cell.x;
+    case 1: return low.y + (row / nx + 0.5) * cell.y;
+    case 2: return low.z + eta[row] * cell.z;
+    default: return low.z + height[row] * cell.z;
+  }
+}
+
+void FixMdanimLiquid::surface(double *smooth, double *raw) const
+{
+  for (int c = 0; c < columns(); ++c) {
+    smooth[c] = low.z + eta[c] * cell.z;
+    raw[c] = low.z + height[c] * cell.z;
+  }
+}
+
+void FixMdanimLiquid::contents(std::uint8_t *out) const
+{
+  const Cells &cells = automaton->cells;
+  for (int z = 0; z < cells.nz; ++z)
+    for (int y = 0; y < cells.ny; ++y)
+      for (int x = 0; x < cells.nx; ++x) {
+        const std::size_t c = cells.at(x, y, z);
+        *out++ = cells.open[c] ? cells.content[c] : SOLID_CODE;
+      }
+}
+
+double FixMdanimLiquid::memory_usage()
+{
+  return 3.0 * automaton->cells.content.size() + solid.size() * (1.0 + 2.0 * sizeof(int)) +
+         columns() * (2.0 * sizeof(double) + 1.0) + watched.capacity() * sizeof(int) + wet.capacity() * sizeof(Wet);
+}
+
+// --- state ---
+
+namespace {
+struct StateHead {
+  double version;
+  std::int64_t nx, ny, nz;
+  std::int64_t units, swept, waited, calm;
+  double travel, work, lost;
+};
+}    // namespace
+
+std::vector<std::uint8_t> FixMdanimLiquid::state()
+{
+  const Cells &cells = automaton->cells;
+  StateHead head{STATE_VERSION, cells.nx, cells.ny, cells.nz, units, swept, waited, calm, travel, 0.0, 0.0};
+  MPI_Allreduce(&work, &head.work, 1, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(&lost, &head.lost, 1, MPI_DOUBLE, MPI_SUM, world);
+  const std::size_t heights = height.size() * sizeof(double);
+  std::vector<std::uint8_t> bytes(sizeof head + heights + solid.size());
+  memcpy(bytes.data(), &head, sizeof head);
+  memcpy(bytes.data() + sizeof head, height.data(), heights);
+  std::uint8_t *content = bytes.data() + sizeof head + heights;
+  contents(content);
+  for (std::size_t c = 0; c < solid.size(); ++c)
+    if (content[c] == SOLID_CODE && solid[c] == 2) content[c] = STILL_CODE;
+  return bytes;
+}
+
+std::string FixMdanimLiquid::set_state(const std::uint8_t *bytes, std::size_t size)
+{
+  Cells &cells = automaton->cells;
+  StateHead head;
+  const std::size_t heights = height.size() * sizeof(double);
+  if (size < sizeof head) return fmt::format("the liquid's state has {} bytes, that is too few", size);
+  memcpy(&head, bytes, sizeof head);
+  if (head.version != STATE_VERSION)
+    return fmt::format("the liquid's state has version {}, {} is needed", head.version, STATE_VERSION);
+  if (head.nx != cells.nx || head.ny != cells.ny || head.nz != cells.nz || size != sizeof head + heights + solid.size())
+    return fmt::format("the liquid's state is of a grid of {} x {} x {} cells, this one has {} x {} x {}", head.nx, head.ny,
+                       head.nz, cells.nx, cells.ny, cells.nz);
+  units = head.units;
+  swept = head.swept;
+  waited = head.waited;
+  calm = head.calm != 0;
+  travel = head.travel;
+  work = comm->me == 0 ? head.work : 0.0;
+  lost = comm->me == 0 ? head.lost : 0.0;
+  memcpy(height.data(), bytes + sizeof head, heights);
+
+  // Solids first: an empty grid loses nothing to them.
+  const std::uint8_t *content = bytes + sizeof head + heights;
+  std::fill(cells.content.begin(), cells.content.end(), 0);
+  moving_count->clear();
+  moving_solid = 0;
+  for (int z = 0; z < cells.nz; ++z)
+    for (int y = 0; y < cells.ny; ++y)
+      for (int x = 0; x < cells.nx; ++x) {
+        const std::size_t c = cells.number(x, y, z);
+        solid[c] = content[c] == STILL_CODE ? 2 : content[c] == SOLID_CODE ? 1 : 0;
+        if (solid[c] != 1) continue;
+        moving_count->touched.take_in(x, y, z);
+        ++moving_solid;
+      }
+  automaton->displace(solid.data(), 0);
+  for (int z = 0; z < cells.nz; ++z)
+    for (int y = 0; y < cells.ny; ++y)
+      for (int x = 0; x < cells.nx; ++x) {
+        const std::size_t c = cells.number(x, y, z);
+        if (!solid[c]) cells.content[cells.at(x, y, z)] = content[c];
+      }
+  automaton->touched();
+  poured = true;
+  smooth();
+  return "";
+}
+
+void FixMdanimLiquid::write_restart(FILE *fp)
+{
+  const std::vector<std::uint8_t> bytes = state();
+  if (comm->me != 0) return;
+  const int size = static_cast<int>(bytes.size());
+  fwrite(&size, sizeof size, 1, fp);
+  fwrite(bytes.data(), 1, bytes.size(), fp);
+}
+
+void FixMdanimLiquid::restart(char *buffer)
+{
+  // LAMMPS hands over no size; the grid says it, and a state of another grid is found out by its head.
+  const auto *bytes = reinterpret_cast<const std::uint8_t *>(buffer);
+  const std::string why = set_state(bytes, sizeof(StateHead) + height.size() * sizeof(double) + solid.size());
+  if (!why.empty()) error->all(FLERR, "fix {} mdanim/liquid: {}", id, why);
+}

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A liquid in its basin, what it does to solids, and what the basin does to them. Wcislo 1999, sec. 4."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..model.system import System
+from ..scene.scene import LiquidModel
+from . import air_drag
+from .boundaries import Boundary
+from .effect import Effect, Verdict
+from .springs import all_held
+
+
+EVERY = 4
+"""Steps after which the fix looks whether cells are to be updated; its own default."""
+PERIOD = 0.06
+"""Time between updates of a liquid that is not level, over sqrt(cell/g); as in the fix."""
+
+
+def free_solid(scene):
+    """A solid that can reach the liquid, or None: gravity brings there all that is not held."""
+    return next((s for s in scene.solids if not all_held(s)), None)
+
+
+class Basin(Boundary):
+    """Floor and side walls; these go on upward, so that nothing falls beside the basin."""
+
+    name = fix = "basin"
+    lost = "objects fall through the floor of the basin"
+
+    def called_for(self, scene):
+        if scene.liquid is None:
+            return Verdict(self.name, False, "no liquid in the scene")
+        if free_solid(scene) is None:
+            return Verdict(self.name, False, "nothing in the basin can move")
+        return Verdict(self.name, True, f"the basin of {scene.liquid.name}", scene.liquid.spans.get("basin"))
+
+    def region(self, scene):
+        (x0, y0, z0), (x1, y1, _) = scene.liquid.low, scene.liquid.high
+        return f"block {x0!r} {x1!r} {y0!r} {y1!r} {z0!r} INF"
+
+
+class Liquid(Effect):
+    """The automaton: liquid that falls, spreads, levels and makes room for solids."""
+
+    name = fix = "liquid"
+    needs = ("gravity",)
+    lost = "the basin stays empty"
+
+    def called_for(self, scene):
+        if scene.liquid is None:
+            return Verdict(self.name, False, "no liquid in the scene")
+        return Verdict(self.name, True, f"{scene.liquid.name} in a basin", scene.liquid.spans.get("liquid"))
+
+    def tables(self, scene, system):
+        return {} if scene.liquid.model is LiquidModel.PAPER else {"cell": lattice_cells(system)}
+
+    def pace(self, scene, system):
+        return PERIOD / EVERY * math.sqrt(min(system.grid.cell) / -scene.gravity[2])
+
+    def commands(self, scene, system):
+        liquid, grid = scene.liquid, system.grid
+        fill = [f"region fill {_block(*liquid.fill)}"] if liquid.fill else []
+        words = [
+            "fix liquid all mdanim/liquid liquid", repr(liquid.density), "grid", *map(str, grid.shape),
+            f"volume {liquid.volume!r}" if liquid.volume is not None else f"level {liquid.level!r}",
+            *(["fill fill"] if fill else []),
+            f"gravity {-scene.gravity[2]!r}",
+            "model paper" if liquid.model is LiquidModel.PAPER else "cells i2_cell",
+            f"still held sweeps {liquid.sweeps or 'auto'} seed {scene.control.seed}",
+        ]
+        return ["group held type 5:8", f"region liquid {_block(liquid.low, liquid.high)}", *fill, " ".join(words)]
+
+
+class Buoyancy(Effect):
+    """Archimedes, particle by particle: rho_l V_i s_i g upward on the immersed part s_i of a particle."""
+
+    name = "buoyancy"
+    ledger = "buoyancy"
+    needs = ("liquid",)
+    lost = "objects sink like stones"
+
+    def called_for(self, scene):
+        return _reached(self.name, scene)
+
+    def columns(self, scene, system):
+        return {"volume": system.volume}
+
+    def commands(self, scene, system):
+        return ["fix_modify liquid buoyancy d_volume"]
+
+    def rate(self, scene, system):
+        # s_i goes from 0 to 1 over the height of a cell: a spring to the surface, which does not move along.
+        stiffness = scene.liquid.density * -scene.gravity[2] * system.volume / system.grid.cell[2]
+        return np.where(system.held, 0.0, stiffness / system.mass)
+
+    def energy(self, instance, scene, system):
+        return instance.fix_scalar(Liquid.fix)
+
+
+class LiquidDrag(Effect):
+    """-gamma rho_l V_i s_i v on the immersed part of a particle, taken by the leap-frog with the drag of air."""
+
+    name = "liquid-drag"
+    ledger = "drag_loss"
+    needs = ("liquid", "buoyancy")  # which gives the fix the volumes
+    lost = "floating objects bob for a long time"
+
+    def called_for(self, scene):
+        if scene.liquid is not None and scene.liquid.drag == 0.0:
+            return Verdict(self.name, False, f"{scene.liquid.name} has drag 0", scene.liquid.spans.get("drag"))
+        return _reached(self.name, scene)
+
+    def columns(self, scene, system):
+        air = air_drag.felt(scene, system)
+        dry = np.zeros(system.particles) if air is None else air
+        return {"gamma": gamma(scene, system), "lambda": dry, **({} if air is None else {"air": air})}
+
+    def friction(self, scene, system):
+        return gamma(scene, system) * scene.liquid.density * system.volume
+
+    def commands(self, scene, system):
+        base = "" if air_drag.felt(scene, system) is None else " base d_air"
+        return [f"fix_modify liquid drag d_gamma lambda d_lambda{base}"]
+
+    def energy(self, instance, scene, system):
+        # The leap-frog counts what air and liquid take together; where air drag is on, that effect tells it.
+        return 0.0 if air_drag.felt(scene, system) is not None else instance.fix_scalar("leapfrog")
+
+
+def gamma(scene, system: System) -> np.ndarray:
+    """Drag rate of each particle [1/s], shape (N,); ``auto`` is sqrt(g/L), L^3 the volume of its solid."""
+    if scene.liquid.drag is not None:
+        return np.full(system.particles, scene.liquid.drag)
+    size = np.cbrt(np.add.reduceat(system.volume, system.first[:-1]))
+    return np.sqrt(-scene.gravity[2] / size)[system.object]
+
+
+def lattice_cells(system: System) -> np.ndarray:
+    """Tags (from 1) of corners 1 to 7 of the lattice cell whose corner 0 a particle is, int32, shape (N, 7).
+
+    Corners in VTK order; 0 where it is none. Raises ValueError where a particle is corner 0 of two cells.
+    """
+    table = np.zeros((system.particles, 7), np.int32)
+    owner = system.hexahedron[:, 0]
+    if len(np.unique(owner)) != len(owner):
+        raise ValueError("a particle is the first corner of two lattice cells")
+    table[owner] = system.hexahedron[:, 1:] + 1
+    return table
+
+
+def _reached(name: str, scene) -> Verdict:
+    """On where a solid can reach the liquid."""
+    if scene.liquid is None:
+        return Verdict(name, False, "no liquid in the scene")
+    solid = free_solid(scene)
+    if solid is None:
+        return Verdict(name, False, "nothing that can move reaches the liquid")
+    return Verdict(name, True, f"{solid.name} can reach {scene.liquid.name}", solid.spans.get("object"))
+
+
+def _block(low, high) -> str:
+    return "block " + " ".join(f"{a!r} {b!r}" for a, b in zip(low, high))

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The automaton's grid in a basin (Wcislo 1999, sec. 5.2), and whether liquid and solids fit into it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import Problem
+from ..scene.scene import Liquid, LiquidModel, Scene, Solid, Switch, Vector
+from . import shapes
+from .model import Model
+from .spacing import available_memory, choose_spacing
+from .wording import length
+
+BYTES_PER_CELL = 20.0
+"""What fix mdanim/liquid keeps per cell, measured 18 to 21: content, masks, counts of samples, marks."""
+NARROWEST = 3
+"""Fewest cells along a side: with two, no cell is off the walls, and a slope has no middle."""
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """Cells that fill a basin exactly."""
+
+    low: Vector
+    """Lower corner [m]."""
+    high: Vector
+    """Upper corner [m]."""
+    shape: tuple[int, int, int]
+    """Cells along x, y, z."""
+
+    @property
+    def cell(self) -> Vector:
+        """Edges of a cell [m]."""
+        return tuple((b - a) / n for a, b, n in zip(self.low, self.high, self.shape))
+
+    @property
+    def cell_volume(self) -> float:
+        """[m^3]"""
+        return math.prod(self.cell)
+
+    @property
+    def cells(self) -> int:
+        """Number of cells."""
+        return math.prod(self.shape)
+
+    def units(self, volume: float) -> int:
+        """Whole cells that a volume [m^3] is rounded to."""
+        return math.floor(volume / self.cell_volume + 0.5)
+
+    def cells_within(self, low: Vector, high: Vector) -> int:
+        """Number of cells whose centre lies in a box [m]."""
+        count = 1
+        for axis, n in enumerate(self.shape):
+            centre = self.low[axis] + (np.arange(n) + 0.5) * self.cell[axis]
+            count *= int(np.count_nonzero((centre >= low[axis]) & (centre <= high[axis])))
+        return count
+
+
+def plan_grid(liquid: Liquid, h: float) -> Grid:
+    """The grid of a basin at spacing h [m].
+
+    A side that is no multiple of h gets cells up to a tenth longer; where even that is too short for a whole
+    number of cells (fewer than ten of them), cells as near to h as can be.
+    """
+    shape = []
+    for a, b in zip(liquid.low, liquid.high):
+        ratio = (b - a) / h * (1 + 1e-9)
+        whole = math.floor(ratio)
+        shape.append(whole if whole and ratio <= 1.1 * whole else max(1, round(ratio)))
+    return Grid(liquid.low, liquid.high, tuple(shape))
+
+
+def scene_grid(scene: Scene) -> Grid | None:
+    """The grid of a scene's basin; None without a liquid. Raises SceneError for a mesh that is no body."""
+    return None if scene.liquid is None else plan_grid(scene.liquid, choose_spacing(scene)[0])
+
+
+def liquid_level(liquid: Liquid) -> float:
+    """Height of the liquid in its basin when it has come to rest without any solid [m]."""
+    low, high = liquid.fill or (liquid.low, liquid.high)
+    volume = liquid.volume
+    if volume is None:
+        volume = (liquid.level - low[2]) * (high[0] - low[0]) * (high[1] - low[1])
+    area = (liquid.high[0] - liquid.low[0]) * (liquid.high[1] - liquid.low[1])
+    return liquid.low[2] + volume / area
+
+
+# --- whether all fits ---------------------------------------------------------------------------------------
+
+def check_basin(scene: Scene, models: Sequence[Model]) -> list[Problem]:
+    """Find a basin too narrow or too large, a liquid of no cell, and liquid and solids that do not fit into it.
+
+    Solids that float need room for what they displace, others for all of their volume; those that are held,
+    even in part, take the room that they have at the start.
+    """
+    liquid, grid = scene.liquid, scene_grid(scene)
+    if liquid is None or scene.effects.get("liquid") is Switch.OFF:
+        return []
+    problems = _unusable(liquid, grid)
+    return problems or _too_full(scene, models, grid)
+
+
+def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
+    """What is wrong with the grid itself."""
+    place = liquid.spans.get("basin")
+    axis = int(np.argmin(grid.shape))
+    if grid.shape[axis] < NARROWEST:
+        side, n = liquid.high[axis] - liquid.low[axis], grid.shape[axis]
+        return [Problem(
+            place, f"the basin is {n} cell{'' if n == 1 else 's'} wide along {'xyz'[axis]}, {length(side)}; "
+            f"the least is {NARROWEST}",
+            f"write resolution {length(0.9 * side / NARROWEST)} in control, or make the basin larger",
+        )]
+    needed, free = grid.cells * BYTES_PER_CELL, available_memory()
+    if needed > free:
+        coarser = 1.1 * max(grid.cell) * (needed / free) ** (1 / 3)
+        return [Problem(
+            place, f"the basin has {grid.cells:,} cells of {length(max(grid.cell))}, which need "
+            f"{needed * 1e-9:.1f} GB, {free * 1e-9:.1f} GB are free",
+            f"try resolution {length(coarser)}, or a smaller basin",
+        )]
+    if liquid.volume is not None and grid.units(liquid.volume) < 1:
+        return [Problem(
+            liquid.spans.get("volume"),
+            f"{liquid.volume:.3g} m^3 of liquid are less than half a cell of {grid.cell_volume:.3g} m^3",
+            f"more liquid, or resolution {length(0.8 * liquid.volume ** (1 / 3))}",
+        )]
+    return []
+
+
+def _too_full(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem]:
+    """Liquid that finds no room at the start, and bodies that find none when they sink in."""
+    liquid, cell = scene.liquid, grid.cell_volume
+    volume = np.array([shapes.volume(s.shape) for s in scene.solids])
+    low, high = liquid.fill or (liquid.low, liquid.high)
+    room = grid.cells_within(low, high) * cell - volume @ _within(models, low, high)
+    if liquid.volume is not None:
+        poured, amount = liquid.volume, f"{liquid.volume:.4g} m^3"
+    else:
+        top = (high[0], high[1], min(high[2], liquid.level))
+        poured = math.prod(b - a for a, b in zip(low, top)) - volume @ _within(models, low, top)
+        amount = f"a level of {liquid.level:.4g} m"
+    place = liquid.spans.get("volume") or liquid.spans.get("level")
+    if grid.units(max(0.0, room)) < max(1, grid.units(poured)):
+        where = "the basin" if liquid.fill is None else "the part that is filled"
+        return [Problem(
+            place, f"{amount} of liquid: {where} has room for {max(0.0, room):.4g} m^3 beside what stands in it "
+            "at the start",
+            "less liquid, a larger basin, or objects that start above it",
+        )]
+
+    standing = np.array([bool(m.held.any()) for m in models], bool)
+    within = _within(models, liquid.low, liquid.high)
+    free = grid.cells * cell - poured - (volume * within)[standing].sum()
+    sinks = np.where(standing, 0.0, volume * [_sunk(s, v, scene) for s, v in zip(scene.solids, volume)])
+    too_big = [Problem(
+        solid.spans.get("shape") or solid.spans.get("object"),
+        f"{solid.name} displaces up to {sunk:.4g} m^3 of liquid, and the basin has room for "
+        f"{max(0.0, free):.4g} m^3 more",
+        "a smaller object, less liquid, or a higher basin",
+    ) for solid, sunk in zip(scene.solids, sinks) if sunk > max(0.0, free)]
+    if not too_big and sinks.sum() > free:
+        return [Problem(
+            place, f"the objects together displace up to {sinks.sum():.4g} m^3 of liquid, and the basin has room "
+            f"for {free:.4g} m^3 more", "fewer objects, less liquid, or a higher basin",
+        )]
+    return too_big
+
+
+def _within(models: Sequence[Model], low: Vector, high: Vector) -> np.ndarray:
+    """Part of each solid that starts in a box [m], by the centres of its lattice cells [-], shape (M,)."""
+    parts = np.zeros(len(models))
+    for k, model in enumerate(models):
+        corner = model.hexahedron
+        centre = (model.position[corner[:, 0]] + model.position[corner[:, 6]]) / 2
+        parts[k] = ((centre > low) & (centre < high)).all(axis=1).mean()
+    return parts
+
+
+def _sunk(solid: Solid, volume: float, scene: Scene) -> float:
+    """Part of a free solid that comes to lie below the surface [-]: Archimedes, where the liquid lifts at all."""
+    liquid = scene.liquid
+    if liquid.model is LiquidModel.PAPER or scene.effects.get("buoyancy") is Switch.OFF:
+        return 1.0
+    density = solid.density if solid.density is not None else solid.mass / volume
+    return min(1.0, density / liquid.density)

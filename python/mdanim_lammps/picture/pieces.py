@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Pieces of VTK that a picture is put together from: meshes whose vertices move, lit actors, edges of boxes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import shading
+
+
+class MovingMesh:
+    """A triangle mesh whose vertices and normals are overwritten for every frame."""
+
+    def __init__(self, vertices: int, triangle: np.ndarray):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkCommonCore import vtkFloatArray, vtkPoints
+        from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+        points, normals = vtkPoints(), vtkFloatArray()
+        points.SetDataTypeToFloat()
+        points.SetNumberOfPoints(vertices)
+        normals.SetNumberOfComponents(3)
+        normals.SetNumberOfTuples(vertices)
+        self.data = vtkPolyData()
+        self.data.SetPoints(points)
+        self.data.SetPolys(_cells(triangle))
+        self.data.GetPointData().SetNormals(normals)
+        self._points, self._normals = vtk_to_numpy(points.GetData()), vtk_to_numpy(normals)
+
+    def paint(self, color: np.ndarray) -> None:
+        """Colour every vertex, uint8, shape (V, 3)."""
+        from vtkmodules.util.numpy_support import numpy_to_vtk
+
+        colors = numpy_to_vtk(np.ascontiguousarray(color, dtype=np.uint8), deep=1)
+        self.data.GetPointData().SetScalars(colors)
+
+    def move(self, vertices: np.ndarray, normals: np.ndarray) -> None:
+        """Place the vertices [m] and turn their normals, each of shape (V, 3)."""
+        self._points[:] = vertices
+        self._normals[:] = normals
+        self.data.GetPoints().Modified()
+        self.data.GetPointData().GetNormals().Modified()
+        self.data.Modified()
+
+
+class MovingLine:
+    """A closed line whose points are overwritten for every frame."""
+
+    def __init__(self, points: int, color: tuple[float, float, float], opacity: float, width: float):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkCommonCore import vtkPoints
+        from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+        from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
+
+        self._data, cells = vtkPolyData(), vtkCellArray()
+        place = vtkPoints()
+        place.SetNumberOfPoints(points)
+        self._points = vtk_to_numpy(place.GetData())
+        cells.InsertNextCell(points + 1, [*range(points), 0])
+        self._data.SetPoints(place)
+        self._data.SetLines(cells)
+        mapper = vtkPolyDataMapper()
+        mapper.SetInputData(self._data)
+        self.actor = vtkActor()
+        self.actor.SetMapper(mapper)
+        look = self.actor.GetProperty()
+        look.LightingOff()
+        look.SetColor(color)
+        look.SetOpacity(opacity)
+        look.SetLineWidth(width)
+
+    def move(self, points: np.ndarray) -> None:
+        """Place the points [m], shape (P, 3)."""
+        self._points[:] = points
+        self._data.GetPoints().Modified()
+        self._data.Modified()
+
+
+class Field:
+    """Single numbers on a grid for a shader to look up, overwritten for every frame."""
+
+    def __init__(self, width: int, height: int, *, smooth: bool):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkCommonCore import vtkFloatArray
+        from vtkmodules.vtkCommonDataModel import vtkImageData
+        from vtkmodules.vtkRenderingCore import vtkTexture
+
+        self.values = vtkFloatArray()
+        self.values.SetNumberOfTuples(width * height)
+        self._array = vtk_to_numpy(self.values).reshape(height, width)
+        self._array[:] = 0.0
+        self._image = vtkImageData()
+        self._image.SetDimensions(width, height, 1)
+        self._image.GetPointData().SetScalars(self.values)
+        self.texture = vtkTexture()
+        self.texture.SetInputData(self._image)
+        self.texture.SetColorModeToDirectScalars()
+        self.texture.SetInterpolate(smooth)
+        self.texture.RepeatOff()
+        self.texture.EdgeClampOn()
+
+    def fill(self, numbers: np.ndarray) -> None:
+        """Overwrite all, shape (height, width)."""
+        self._array[:] = numbers
+        self.changed()
+
+    def changed(self) -> None:
+        """Say that ``values`` has been written to."""
+        self.values.Modified()
+        self._image.Modified()
+
+
+def lit_actor(data, light: str, liquid: bool):
+    """An actor for a mesh, lit by one of the shaders of ``shading``.
+
+    Args:
+        data: ``vtkPolyData``.
+        light: the shader.
+        liquid: whether it may be seen through liquid.
+    """
+    from vtkmodules.vtkRenderingCore import vtkActor
+    from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
+
+    mapper = vtkOpenGLPolyDataMapper()
+    mapper.SetInputData(data)
+    # Positions reach the shader as they are, in metres.
+    mapper.SetVBOShiftScaleMethod(0)
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    shader = actor.GetShaderProperty()
+    for mark, code in shading.VERTEX.items():
+        shader.AddVertexShaderReplacement(mark, True, code, False)
+    for mark, code in shading.fragment_head(liquid).items():
+        shader.AddFragmentShaderReplacement(mark, True, code, False)
+    shader.AddFragmentShaderReplacement("//VTK::Light::Impl", True, light, False)
+    return actor
+
+
+def plane(low, high, height: float):
+    """A level rectangle [m] as ``vtkPolyData``."""
+    from vtkmodules.vtkFiltersSources import vtkPlaneSource
+
+    source = vtkPlaneSource()
+    source.SetOrigin(low[0], low[1], height)
+    source.SetPoint1(high[0], low[1], height)
+    source.SetPoint2(low[0], high[1], height)
+    source.Update()
+    # With texture coordinates VTK would paint the lamp's depth picture on it.
+    source.GetOutput().GetPointData().SetTCoords(None)
+    return source.GetOutput()
+
+
+def box_edges(low, high, grey: float, opacity: float = 0.45, width: float = 1.5):
+    """The twelve edges of a box [m] as an actor."""
+    from vtkmodules.vtkFiltersSources import vtkOutlineSource
+    from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
+
+    (x0, y0, z0), (x1, y1, z1) = low, high
+    outline = vtkOutlineSource()
+    outline.SetBounds(x0, x1, y0, y1, z0, z1)
+    mapper, actor = vtkPolyDataMapper(), vtkActor()
+    mapper.SetInputConnection(outline.GetOutputPort())
+    actor.SetMapper(mapper)
+    look = actor.GetProperty()
+    look.LightingOff()
+    look.SetColor(grey, grey, grey)
+    look.SetOpacity(opacity)
+    look.SetLineWidth(width)
+    return actor
+
+
+def _cells(triangle: np.ndarray):
+    from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
+    from vtkmodules.vtkCommonDataModel import vtkCellArray
+
+    cells = vtkCellArray()
+    flat = np.ascontiguousarray(triangle, dtype=np.int64).ravel()
+    cells.SetData(3, numpy_to_vtkIdTypeArray(flat, deep=1))
+    return cells

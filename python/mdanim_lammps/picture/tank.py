@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The basin as a glass tank, and the liquid in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..results.trajectory import Trajectory
+from . import shading
+from .liquid import Blocks, Sheet
+from .palette import LIQUID, rgb
+from .pieces import Field, MovingLine, MovingMesh, box_edges, lit_actor, plane
+
+CLEAR = 1.0
+"""How far one sees in the liquid, in half diagonals of the basin: by then about 1/e is left of what lies behind."""
+COVER = {"smooth": 0.24, "cells": 0.35}
+"""How much the skin of the liquid covers, seen straight on."""
+
+HAIR = 1e-3
+"""By how much, in sizes of the basin, the edges are drawn outside and the liquid inside: what stands flush with the glass
+is then seen in front of the liquid, and nothing flickers."""
+
+
+class Tank:
+    """Actors of the tank of one trajectory.
+
+    Args:
+        trajectory: one with a liquid.
+        look: ``smooth`` for the surface that objects feel, ``cells`` for the raw columns.
+        dark: whether the background is.
+    """
+
+    def __init__(self, trajectory: Trajectory, look: str, dark: bool):
+        pool = trajectory.liquid
+        self._trajectory, self._look = trajectory, look
+        self._low, self._high = np.array(pool.low), np.array(pool.high)
+        self._color = rgb(pool.color or LIQUID)
+        self._form = Sheet(pool.grid) if look == "smooth" else Blocks(pool.grid)
+        self._heights = Field(*pool.shape[:2], smooth=look == "smooth")
+        vertices = self._form.mesh(np.full(pool.shape[1::-1], pool.low[2]))[0]
+        self._mesh = MovingMesh(len(vertices), self._form.triangle)
+        bottom = lit_actor(plane(self._low, self._high, pool.low[2]), shading.FRAGMENT_SOLID, True)
+        bottom.GetProperty().SetColor((0.28, 0.33, 0.37) if dark else (0.74, 0.78, 0.81))
+        # Behind, then in front: a ray meets the inner faces before the outer ones.
+        inner, outer = (lit_actor(self._mesh.data, shading.FRAGMENT_LIQUID, True) for _ in range(2))
+        inner.GetProperty().FrontfaceCullingOn()
+        outer.GetProperty().BackfaceCullingOn()
+        for actor in (inner, outer):
+            actor.ForceTranslucentOn()
+            uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
+            uniforms.SetUniform3f("cell", list(pool.grid.cell))
+            uniforms.SetUniformf("skinCover", COVER[look])
+        self.lit = [bottom, inner, outer]
+        """Those that share the lamp."""
+        glass = HAIR * np.linalg.norm(self._high - self._low) * np.array([1.0, 1.0, 0.0])
+        edges = box_edges(self._low - glass, self._high + glass, 0.85 if dark else 0.25, 0.55, 2.0)
+        self.actors = [*self.lit, edges]
+        """All, in the order in which they are drawn."""
+        if look == "smooth":
+            self._rim = MovingLine(len(self._form.rim), (1.0, 1.0, 1.0), 0.7, 2.0)
+            self.actors.append(self._rim.actor)
+        self._through: Sequence = ()
+
+    def colour_through(self, actors: Sequence) -> None:
+        """Let everything that is lit take the liquid's colour where it is seen through liquid."""
+        self._through = actors
+        clear = CLEAR * 0.5 * float(np.linalg.norm(self._high - self._low))
+        for actor in actors:
+            actor.GetProperty().SetTexture("liquidHeights", self._heights.texture)
+            uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
+            uniforms.SetUniform3f("basinLow", self._low.tolist())
+            uniforms.SetUniform3f("basinHigh", self._high.tolist())
+            uniforms.SetUniform3f("liquidColor", self._color.tolist())
+            uniforms.SetUniformf("liquidClear", clear)
+
+    def stand_on(self, height: float, floor: tuple[float, float, float]) -> None:
+        """Say where the floor of the picture is: its height, middle x and y, and half side [m]; 0 where there is none."""
+        for actor in self.lit[1:]:
+            uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
+            uniforms.SetUniformf("floorHeight", height)
+            uniforms.SetUniform3f("floorCentre", list(map(float, floor)))
+
+    def show(self, frame: int) -> None:
+        """Move the liquid to a frame."""
+        smooth = self._trajectory.liquid_height(frame)
+        height = smooth if self._look == "smooth" else self._trajectory.liquid_raw(frame)
+        points, normals = self._form.mesh(height)
+        points[:, :2] += HAIR * ((self._low + self._high)[:2] / 2 - points[:, :2])
+        self._mesh.move(points, normals)
+        if self._look == "smooth":
+            self._rim.move(points[self._form.rim])
+        # What is seen through a column that tells nothing is seen through liquid all the same.
+        top = np.where(np.isnan(height), smooth, height)
+        self._heights.fill(top)
+        for actor in self._through:
+            actor.GetShaderProperty().GetFragmentCustomUniforms().SetUniformf("liquidTop", float(top.max()))

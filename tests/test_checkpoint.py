@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A checkpoint gives back what it was given, also the state of a liquid, and refuses what it cannot be."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mdanim_lammps.errors import OutputError
+from mdanim_lammps.results import checkpoint
+from mdanim_lammps.results.checkpoint import Checkpoint
+
+
+def state(liquid=None):
+    x, v, f = np.random.default_rng(1).normal(size=(3, 7, 3))
+    return Checkpoint(120, 12, x, v, f, {"drag_loss": 0.1, "seconds": 3.5}, "run", liquid)
+
+
+@pytest.mark.parametrize("liquid", [None, np.repeat(np.arange(256, dtype=np.uint8), 400), np.zeros(0, np.uint8)])
+def test_state_comes_back(tmp_path, liquid):
+    """Every bit, with and without a liquid."""
+    written = state(liquid)
+    written.write(tmp_path / "checkpoint")
+    read = Checkpoint.read(tmp_path / "checkpoint")
+    assert (read.step, read.frame, read.carried, read.run) == (120, 12, written.carried, "run")
+    for name in "xvf":
+        np.testing.assert_array_equal(getattr(read, name), getattr(written, name))
+    if liquid is None:
+        assert read.liquid is None
+    else:
+        np.testing.assert_array_equal(read.liquid, liquid)
+        assert read.liquid.dtype == np.uint8
+
+
+def test_a_liquid_takes_little_room(tmp_path):
+    """A million equal cells take a hundredth of their bytes."""
+    state().write(tmp_path / "dry")
+    state(np.ones(1_000_000, np.uint8)).write(tmp_path / "wet")
+    assert (tmp_path / "wet").stat().st_size - (tmp_path / "dry").stat().st_size < 10_000
+
+
+def test_version_1_is_refused(tmp_path, monkeypatch):
+    """A checkpoint from before there was liquid says which version it is and what to do."""
+    with monkeypatch.context() as patch:
+        patch.setattr(checkpoint, "VERSION", 1)
+        state().write(tmp_path / "checkpoint")
+    with pytest.raises(OutputError, match="is of version 1, this program writes 2; run the scene again with --force"):
+        Checkpoint.read(tmp_path / "checkpoint")
+
+
+def test_damaged_liquid_is_refused(tmp_path):
+    """Bytes that do not unpack are named with the file."""
+    with open(tmp_path / "checkpoint", "wb") as file:
+        fields = dict(version=2, run="r", step=1, frame=1, x=1, v=1, f=1, keys=[], values=[])
+        np.savez(file, **fields, liquid=np.ones(9, np.uint8))
+    with pytest.raises(OutputError, match="checkpoint cannot be read"):
+        Checkpoint.read(tmp_path / "checkpoint")

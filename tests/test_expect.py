@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Expect lines on a liquid, against heights made by hand: drafts, level, volume, cells gained or lost."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mdanim_lammps.model.basin import Grid
+from mdanim_lammps.results.expect import Measured, drafted, evaluate, immersed_depth
+from mdanim_lammps.scene.scene import Expect
+
+GRID = Grid((-1.0, -2.0, 0.0), (1.0, 2.0, 3.0), (20, 40, 30))
+X, Y = np.meshgrid(-0.95 + 0.1 * np.arange(20), -1.95 + 0.1 * np.arange(40))
+
+
+def corners(low, high):
+    """The eight corners of a box [m], shape (8, 3)."""
+    return np.array([[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)], dtype=float)
+
+
+def measured(**fields):
+    """A run of three frames at 0, 1 and 2 s in which nothing moves."""
+    still = np.zeros((3, 1, 3))
+    options = dict(cells=np.array([100.0, 100, 100]), cell_volume=0.001, level=np.zeros(3)) | fields
+    return Measured(("box",), np.array([0.0, 1.0, 2.0]), still, still, np.zeros(3), {}, 0.0, **options)
+
+
+def found(subject, quantity, time=None, **fields):
+    """What one expect line finds."""
+    (outcome,) = evaluate((Expect(subject, quantity, 0.0, time=time),), measured(**fields))
+    return outcome.found
+
+
+@pytest.mark.parametrize(
+    ("bottom", "depth"), [(0.6, 0.4), (0.95, 0.05), (1.2, 0.0), (0.1, 0.5)], ids=["afloat", "dips", "above", "under"]
+)
+def test_draft_in_level_liquid(bottom, depth):
+    """Level less lowest point, not less than nothing and not more than the box is high."""
+    box = corners((-0.3, 0.1, bottom), (0.1, 0.4, bottom + 0.5))
+    assert immersed_depth(box, GRID, np.full((40, 20), 1.0)) == pytest.approx(depth)
+
+
+def test_draft_is_measured_where_the_object_is():
+    """On a slope the level is that of the columns under the object, each axis its own."""
+    height = 1.0 + 0.5 * X + 0.25 * Y
+    box = corners((0.205, -1.195, 0.5), (0.595, -0.605, 1.5))
+    # The columns that the box touches are centred on the box: 0.4 and -0.9.
+    assert immersed_depth(box, GRID, height) == pytest.approx(1.0 + 0.5 * 0.4 - 0.25 * 0.9 - 0.5)
+
+
+def test_draft_of_an_object_smaller_than_a_column():
+    """A pebble has the level of the column that it is in."""
+    height = np.where((X > 0.5) & (Y > 1.0), 2.0, 1.0)
+    assert immersed_depth(corners((0.52, 1.01, 0.99), (0.54, 1.03, 1.5)), GRID, height) == pytest.approx(0.51)
+    assert immersed_depth(corners((0.42, 1.01, 0.99), (0.44, 1.03, 1.5)), GRID, height) == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize("shift", [(2.5, 0.0), (-2.5, 0.0), (0.0, 4.5), (0.0, -4.5)])
+def test_an_object_beside_the_basin_is_dry(shift):
+    """Out of the basin there is no liquid, however low the object lies; half out counts the part inside."""
+    height = np.full((40, 20), 1.0)
+    box = corners((-0.2, -0.2, 0.5), (0.2, 0.2, 0.9))
+    assert immersed_depth(box + [*shift, 0.0], GRID, height) == 0.0
+    half = np.sign(shift) * [1.0, 2.0]
+    assert immersed_depth(box + [*half, 0.0], GRID, height) == pytest.approx(0.4)
+
+
+def test_draft_between_frames_is_a_straight_line():
+    """At a time between two frames the draft is between theirs; without a time it is the last."""
+    draft = {"box": np.array([0.0, 0.4, 0.2])}
+    assert found("box", "draft", 1.25, draft=draft) == pytest.approx(0.35)
+    assert found("box", "draft", 1.0, draft=draft) == pytest.approx(0.4)
+    assert found("box", "draft", draft=draft) == pytest.approx(0.2)
+
+
+def test_level_and_volume():
+    """The level between frames, the volume as cells times their size."""
+    assert found("liquid", "level", 0.5, level=np.array([1.0, 2.0, 4.0])) == pytest.approx(1.5)
+    assert found("liquid", "level", level=np.array([1.0, 2.0, 4.0])) == 4.0
+    assert found("liquid", "volume", cells=np.array([10.0, 10, 12]), cell_volume=0.25) == pytest.approx(3.0)
+    assert found("liquid", "volume", 1.0, cells=np.array([10.0, 10, 12]), cell_volume=0.25) == pytest.approx(2.5)
+
+
+@pytest.mark.parametrize(
+    ("cells", "time", "residual"),
+    [((10, 10, 10), None, 0), ((10, 8, 10), None, 2), ((10, 11, 13), None, 3), ((10, 11, 13), 1.0, 1)],
+)
+def test_residual_is_the_worst_so_far(cells, time, residual):
+    """Cells gained or lost count even if they come back later; up to a time only what was before."""
+    assert found("liquid", "residual", time, cells=np.array(cells, float)) == residual
+
+
+def test_drafts_to_record_are_named_once():
+    """Every object that a line asks about, in order, whatever the time."""
+    wanted = [("b", "draft"), ("c", "position.z"), ("a", "draft"), ("liquid", "level"), ("b", "draft")]
+    assert drafted(tuple(Expect(*line, 0.1, time=float(i)) for i, line in enumerate(wanted))) == ("b", "a")

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The ledger's residual: the error in the sum of energies over the energy that is really in play."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mdanim_lammps.results.ledger import Ledger
+
+
+def residuals(terms, rows):
+    """Residuals of rows of energies."""
+    ledger = Ledger(terms)
+    return [ledger.add(float(i), dict(zip(terms, row)))["residual"] for i, row in enumerate(rows)]
+
+
+def test_residual_is_change_over_energy_in_play():
+    """A body that falls through 10 J and gains 9.9 J is off by a hundredth."""
+    assert residuals(("kinetic", "gravity"), [(0, 10), (5, 5), (9.9, 0)])[-1] == pytest.approx(-0.01)
+
+
+@pytest.mark.parametrize("zero", [(0.0, 0.0), (1e6, 0.0), (0.0, -1e6), (3e5, 1e6)])
+def test_zero_of_a_potential_does_not_count(zero):
+    """Wherever gravity and buoyancy count from, the residual is the same: no constant makes it look small."""
+    rows = np.array([(0.0, 10.0, 0.0, 0.0), (2.0, 3.0, 5.0, 0.0), (0.5, 0.0, 8.0, 1.4)])
+    rows[:, 1:3] += zero
+    found = residuals(("kinetic", "gravity", "buoyancy", "drag_loss"), rows)
+    # 0.1 J too little in the end; at most 10 J are in play. A million joules leave ten digits of a tenth.
+    assert found == pytest.approx([0.0, 0.0, -0.01], abs=1e-10)
+
+
+def test_a_floating_body_has_what_it_trades_in_play():
+    """A body that trades 2 J of gravity for buoyancy is measured by those, not by its few millijoules of motion."""
+    found = residuals(("kinetic", "gravity", "buoyancy"), [(0, 4, 0), (1e-3, 2, 2.0), (0, 4, 0.004)])
+    assert found[-1] == pytest.approx(0.004 / 2.004)
+
+
+def test_whole_cells_are_written_as_whole_numbers(tmp_path):
+    """Cells of a liquid stand in the file as integers; every float comes back to the bit."""
+    ledger = Ledger(("kinetic",), ("liquid_cells", "draft.box"))
+    ledger.add(0.1, {"kinetic": 1 / 3, "liquid_cells": 2_000_001.0, "draft.box": 0.1})
+    ledger.write(tmp_path / "ledger.csv")
+    text = (tmp_path / "ledger.csv").read_text().splitlines()
+    assert text == ["time,kinetic,residual,liquid_cells,draft.box", "0.1,0.3333333333333333,0.0,2000001,0.1"]
+    back = Ledger.read(tmp_path / "ledger.csv")
+    assert back.rows == ledger.rows and back.extras == ledger.extras
