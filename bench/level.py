@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Cost of the level rule and of the surface: ``python bench/level.py [cells] [rounds]``.
 
-A basin of cells^3 cells, half full, with a body of a third of its width afloat; calls in interleaved rounds, medians in
-milliseconds. MDANIM_LEVEL_LIBRARY as in tests/level_lab.py.
+A basin of cells^3 cells, half full, with a body of a third of its width afloat; calls in interleaved rounds,
+medians in milliseconds. MDANIM_LEVEL_LIBRARY as in tests/level_lab.py.
 """
 
 import statistics
@@ -44,7 +44,8 @@ def pools(n: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
         "waves, two vessels": (waves, wall),
         "dam": (dam, nothing),
     }
-    return {name: (np.where(solid > 0, 0, content).astype(np.uint8), solid) for name, (content, solid) in cases.items()}
+    outside = lambda content, solid: np.where(solid > 0, 0, content).astype(np.uint8)
+    return {name: (outside(content, solid), solid) for name, (content, solid) in cases.items()}
 
 
 def main(n: int = 128, rounds: int = 15) -> None:

@@ -12,7 +12,7 @@ namespace {
 constexpr int CHUNK = 64;    // cells read at a time: one word of bits
 constexpr std::uint64_t ONES = 0x0101010101010101u, LOW7 = 0x7f7f7f7f7f7f7f7fu, HIGH = 0x8080808080808080u;
 
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "bits of a word are taken from bytes in rising order");
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the first byte of a word gives its lowest bit");
 
 struct Bytes {
   std::uint64_t w[CHUNK / 8];
@@ -40,7 +40,7 @@ struct Bytes {
     for (int i = 0; i < CHUNK / 8; ++i) {
       const std::uint64_t v = w[i] & which;
       const std::uint64_t high = (((v & LOW7) + LOW7) | v) & HIGH;    // 0x80 in every byte that is not 0
-      result |= (((high >> 7) * 0x0102040810204080u) >> 56) << (8 * i);    // the product has them in its top byte
+      result |= (((high >> 7) * 0x0102040810204080u) >> 56) << (8 * i);    // gathered in the top byte
     }
     return result;
   }
@@ -63,10 +63,13 @@ void Bodies::search(const Cells &cells)
     for (std::vector<Word> *grid : {&liquid, &empty, &beside}) grid->assign(rows * (row_words + 1) + 1, 0);
     begin.assign(rows, 0);
     end.assign(rows, 0);
+    // A basin is open at the top: what reaches up to there is exposed.
+    for (int y = 0; y < ny; ++y)
+      for (int k = 0; k < row_words; ++k) at(empty, row_of(y, nz))[k] = mask(0, nx - 1, k);
   }
   excess.clear();
   all.clear();
-  highest = -1, lowest = INT_MAX;
+  highest = -1, lowest = nz;
   const int old_top = top;
   for (top = nz - 1; top >= 0; --top)
     if (any_liquid(&cells.content[(top + 1) * cells.layer], cells.layer)) break;
@@ -74,6 +77,7 @@ void Bodies::search(const Cells &cells)
     for (int y = 0; y < ny; ++y) read_row(cells, y, z);
   for (int z = 0; z <= std::min(top + 1, nz - 1); ++z)
     for (int y = 0; y < ny; ++y) find_edge(y, z);
+  if (top == nz - 1) highest = top;
 }
 
 void Bodies::read_row(const Cells &cells, int y, int z)

@@ -14,8 +14,8 @@
 
 namespace mdanim {
 
-// A body: cells with content, connected through faces. Exposed: the cell above is open and empty. Beside it:
-// open and empty, with a face in common.
+// A body: cells with content, connected through faces. Exposed: the cell above is open and empty, or is none,
+// for a basin is open at the top. Beside it: open and empty, with a face in common.
 struct Body {
   long exposed = 0;           // cells
   long excess = 0;            // units above 1 in a cell
@@ -44,12 +44,13 @@ class Bodies {
   void join();
 
   int top = -1;                  // highest layer with liquid; -1 none
-  int lowest = INT_MAX;          // lowest layer with a cell beside a body; exposed cells lie at most one layer deeper
+  int lowest = 0;                // layer of the lowest cell beside a body, or nz; exposed cells: one deeper
   std::vector<Excess> excess;    // cells with more than one unit
   std::vector<Body> all;         // after join()
 
   const Word *liquid_row(int y, int z) const { return at(liquid, row_of(y, z)); }
-  const Word *empty_row(int y, int z) const { return at(empty, row_of(y, z)); }    // open and empty; z <= top + 1
+  // Open and empty; in layers up to top + 1.
+  const Word *empty_row(int y, int z) const { return at(empty, row_of(y, z)); }
   int words() const { return row_words; }
   static Word mask(int first, int last, int word);    // cells first..last
 
@@ -105,8 +106,10 @@ template <class Visit> void Bodies::each_exposed(int y, int z, Visit visit) cons
   for (int k = 0; k < row_words; ++k) any |= wet[k] & dry[k];
   if (any == 0) return;
   for (int r = begin[row]; r < end[row]; ++r)
-    for (int k = runs[r].first / 64; k <= runs[r].last / 64; ++k)
-      if (const Word bits = wet[k] & dry[k] & mask(runs[r].first, runs[r].last, k)) visit(runs[r].body, k, bits);
+    for (int k = runs[r].first / 64; k <= runs[r].last / 64; ++k) {
+      const Word bits = wet[k] & dry[k] & mask(runs[r].first, runs[r].last, k);
+      if (bits != 0) visit(runs[r].body, k, bits);
+    }
 }
 
 template <class Visit> void Bodies::each_beside(int y, int z, Visit visit)

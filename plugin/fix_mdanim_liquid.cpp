@@ -25,6 +25,7 @@
 #include <cstring>
 #include <limits>
 #include <stdexcept>
+#include <unordered_map>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -436,8 +437,8 @@ void FixMdanimLiquid::smooth()
       while (z >= 0 && !cells.content[cells.at(x, y, z)]) --z;
       const bool dry = z < 0;
       ++z;
-      while (dry && z < cells.nz - 1 && cells.open[cells.at(x, y, z)]) ++z;
-      blocked[column] = cells.still[cells.at(x, y, z)];
+      while (dry && z < cells.nz && cells.open[cells.at(x, y, z)]) ++z;
+      blocked[column] = z < cells.nz && cells.still[cells.at(x, y, z)];
     }
   smooth_surface(cells.nx, cells.ny, height.data(), blocked.data(), eta.data());
   lowest_eta = *std::min_element(eta.begin(), eta.end());
@@ -519,6 +520,7 @@ void FixMdanimLiquid::watch()
     if (lambda) lambda[i] = base ? base[i] : 0.0;
     if (!(atom->mask[i] & still_bit) && atom->x[i][2] < below) watched.push_back(i);
   }
+  if (!faces_name.empty()) find_faces();
   int here = !watched.empty(), any = here;
   if (comm->nprocs > 1) MPI_Allreduce(&here, &any, 1, MPI_INT, MPI_MAX, world);
   nobody = !any;
@@ -568,63 +570,94 @@ void FixMdanimLiquid::couple()
   const double *volumes = volume.values(lmp), *gammas = slows ? gamma.values(lmp) : nullptr;
   double *lambda = slows ? writable(lambda_name, "lambda") : nullptr;
   const double *base = base_name.empty() ? nullptr : writable(base_name, "base");
-  int *const *faces = faces_name.empty() ? nullptr : table_of(faces_name);
+  for (Face &face : faces) face.push = pressure_on(face);
   const double above = low.z + (top + 1.0) * cell.z;    // nothing is immersed from here up
   // All is from here down, as far as the basin reaches; most particles of a large body need not look up the surface.
   const bool deep = model == Model::SURFACE && lowest_eta >= 1.0;
   const double below = deep ? low.z + (lowest_eta - 0.5) * cell.z : -std::numeric_limits<double>::infinity();
-  for (const int i : watched) {
+  for (std::size_t n = 0; n < watched.size(); ++n) {
+    const int i = watched[n];
     const double z = x[i][2];
     const double s = z >= above ? 0.0 : z <= below && over_basin(x[i]) ? 1.0 : immersed(in_cells(x[i]));
     const double own = volumes ? volumes[i] : volume.number;
     const double own_lambda = slows ? liquid_lambda(gammas ? gammas[i] : gamma.number, rho, own, s) / force->ftm2v : 0.0;
     if (lambda) lambda[i] = (base ? base[i] : 0.0) + own_lambda;
-    if (z >= above || (s == 0.0 && !faces)) continue;
-    const Vec3 push = faces ? pressure_on(i, faces[i]) : Vec3{0.0, 0.0, lift(rho, own, s, g)};
+    Vec3 push;
+    if (faces_name.empty()) push.z = lift(rho, own, s, g);
+    else
+      for (int k = face_of_first[n]; k < face_of_first[n + 1]; ++k) push += faces[face_of[k]].push;
+    if (s == 0.0 && dot(push, push) == 0.0) continue;
     add_to(f[i], push);
     wet.push_back({i, push, own_lambda});
   }
 }
 
-// Hydrostatic pressure on the faces that meet in a particle, its quarter of each.
-Vec3 FixMdanimLiquid::pressure_on(int i, const int *faces) const
+// The faces of the watched particles, each once, with its corners in an order that does not depend on who asks.
+void FixMdanimLiquid::find_faces()
 {
-  Vec3 sum;
-  for (int k = 0; k < faces_width && faces[k]; k += 3) {
-    int at[3];
-    for (int n = 0; n < 3; ++n) {
-      at[n] = atom->map(faces[k + n]);
-      if (at[n] < 0)
-        error->one(FLERR,
-                   "fix {} mdanim/liquid: particle {}, a corner of a face of particle {}, is out of reach; raise comm_modify cutoff",
-                   id, faces[k + n], atom->tag[i]);
+  faces.clear();
+  face_of.clear();
+  face_of_first.assign(1, 0);
+  int *const *table = table_of(faces_name);
+  std::unordered_map<std::uint64_t, int> known;    // by the tags across: no other face has both
+  for (const int i : watched) {
+    for (int k = 0; k < faces_width && table[i][k]; k += 3) {
+      tagint tag[4] = {atom->tag[i], table[i][k], table[i][k + 1], table[i][k + 2]};
+      std::rotate(tag, std::min_element(tag, tag + 4), tag + 4);
+      const auto [place, is_new] =
+          known.try_emplace(static_cast<std::uint64_t>(tag[0]) << 32 | static_cast<std::uint32_t>(tag[2]),
+                            static_cast<int>(faces.size()));
+      face_of.push_back(place->second);
+      if (!is_new) continue;
+      Face face;
+      for (int n = 0; n < 4; ++n) {
+        face.corner[n] = atom->map(tag[n]);
+        if (face.corner[n] < 0)
+          error->one(FLERR,
+                     "fix {} mdanim/liquid: particle {}, a corner of a face of particle {}, is out of reach; raise comm_modify "
+                     "cutoff",
+                     id, tag[n], atom->tag[i]);
+      }
+      faces.push_back(face);
     }
-    const Vec3 a = vec3(atom->x[i]), b = vec3(atom->x[at[0]]), c = vec3(atom->x[at[1]]), d = vec3(atom->x[at[2]]);
-    const Vec3 middle = 0.25 * ((a + c) + (b + d)), area = cross(c - a, d - b);
-    const double size = std::sqrt(dot(area, area));
-    if (size == 0.0) continue;
-    const Vec3 outside = middle + (0.75 * shortest / size) * area;
-    const Vec3 place = in_cells(&middle.x);
-    if (!(place.x >= 0.0 && place.x <= automaton->cells.nx && place.y >= 0.0 && place.y <= automaton->cells.ny)) continue;
-    const double depth = at_point(eta.data(), automaton->cells.nx, automaton->cells.ny, place.x, place.y) - place.z;
-    if (depth <= 0.0 || (depth > SPLASH && dry(in_cells(&outside.x)))) continue;
-    sum += corner_push(rho * g * depth * cell.z, a, b, c, d);
+    face_of_first.push_back(static_cast<int>(face_of.size()));
   }
-  return sum;
 }
 
-// Whether a place below the surface is air all the same, as the inside of a hull is: no liquid in its cell and none above.
-bool FixMdanimLiquid::dry(const Vec3 &place) const
+// What hydrostatic pressure does to each corner of a face.
+Vec3 FixMdanimLiquid::pressure_on(const Face &face) const
+{
+  const double *const *x = atom->x;
+  const Vec3 a = vec3(x[face.corner[0]]), b = vec3(x[face.corner[1]]), c = vec3(x[face.corner[2]]), d = vec3(x[face.corner[3]]);
+  const Vec3 middle = 0.25 * ((a + c) + (b + d));
+  if (!over_basin(&middle.x)) return {};
+  const Vec3 place = in_cells(&middle.x);
+  const double depth = at_point(eta.data(), automaton->cells.nx, automaton->cells.ny, place.x, place.y) - place.z;
+  if (depth <= 0.0) return {};
+  if (depth > SPLASH) {
+    const Vec3 area = cross(c - a, d - b);
+    const double size = std::sqrt(dot(area, area));
+    if (size == 0.0 || looks_into_air(middle, (1.0 / size) * area)) return {};
+  }
+  return corner_push(rho * g * depth * cell.z, a, b, c, d);
+}
+
+// Whether a face below the surface has air before it all the same, as the inside of a hull does: no liquid in the first open cell
+// along its normal, and none above that. The nearest cells may be solid, for they are only roughly where the face is.
+bool FixMdanimLiquid::looks_into_air(const Vec3 &middle, const Vec3 &normal) const
 {
   const Cells &cells = automaton->cells;
-  if (!(place.x >= 0.0 && place.x < cells.nx && place.y >= 0.0 && place.y < cells.ny && place.z >= 0.0 && place.z < cells.nz))
-    return false;
-  const int x = static_cast<int>(place.x), y = static_cast<int>(place.y);
-  int z = static_cast<int>(place.z);
-  if (!cells.open[cells.at(x, y, z)]) return false;
-  for (; z < top; ++z)
-    if (cells.content[cells.at(x, y, z)]) return false;
-  return true;
+  for (const double far : {0.75, 1.25, 1.75, 2.25}) {
+    const Vec3 there = middle + (far * shortest) * normal, place = in_cells(&there.x);
+    if (!(place.x >= 0.0 && place.x < cells.nx && place.y >= 0.0 && place.y < cells.ny && place.z >= 0.0 && place.z < cells.nz))
+      return false;
+    const int x = static_cast<int>(place.x), y = static_cast<int>(place.y);
+    int z = static_cast<int>(place.z);
+    if (!cells.open[cells.at(x, y, z)]) continue;
+    while (z < top && !cells.content[cells.at(x, y, z)]) ++z;
+    return z >= top;
+  }
+  return false;
 }
 
 // Power of buoyancy, and what drag takes, at the velocities of now; on this rank.

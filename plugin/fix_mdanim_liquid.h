@@ -56,6 +56,11 @@ class FixMdanimLiquid : public Fix {
     double lambda;
   };
 
+  struct Face {
+    int corner[4];        // counter-clockwise seen from outside
+    mdanim::Vec3 push;    // on each corner, in this step
+  };
+
   int keyword(int iarg, int narg, char **arg);
   int group_bit(int iarg, const char *word);
   int width_of(const std::string &name) const;
@@ -78,8 +83,9 @@ class FixMdanimLiquid : public Fix {
   void couple();
   bool over_basin(const double *x) const;
   double immersed(const mdanim::Vec3 &place) const;
-  mdanim::Vec3 pressure_on(int i, const int *faces) const;
-  bool dry(const mdanim::Vec3 &place) const;
+  void find_faces();
+  mdanim::Vec3 pressure_on(const Face &face) const;
+  bool looks_into_air(const mdanim::Vec3 &middle, const mdanim::Vec3 &normal) const;
   double power(double &loss) const;
 
   // what the command says
@@ -124,6 +130,8 @@ class FixMdanimLiquid : public Fix {
   double watched_top = 0.0;
   std::vector<int> watched;
   std::vector<Wet> wet;
+  std::vector<Face> faces;                    // of the watched particles
+  std::vector<int> face_of, face_of_first;    // those of watched[n]: face_of[face_of_first[n]] …
   double last_power = 0.0, last_loss = 0.0;
   double automaton_seconds = 0.0, occupancy_seconds = 0.0, coupling_seconds = 0.0;
 };

@@ -65,14 +65,16 @@ void Leveller::Groups::group(std::size_t count)
   for (const Item &item : added) ++start[item.body + 2];
   for (std::size_t b = 2; b < count + 2; ++b) start[b] += start[b - 1];
   items.resize(added.size());
-  for (const Item &item : added) items[start[item.body + 1]++] = item;    // leaves start[b] at the first item of b
+  // Afterwards start[b] is where the items of b start.
+  for (const Item &item : added) items[start[item.body + 1]++] = item;
   added.clear();
 }
 
 long Leveller::move_in(std::size_t body, Cells &cells, std::uint64_t key, long most)
 {
   Item *const giving = sources.begin(body), *const to = targets.begin(body);
-  const auto taken = [&](const Item &item) { return cells.content[item.place] != 0; };    // by an earlier body
+  // By an earlier body.
+  const auto taken = [&](const Item &item) { return cells.content[item.place] != 0; };
   Item *const end = std::remove_if(to, targets.end(body), taken);
   const long room = std::min<long>(most, end - to);
 
@@ -137,7 +139,8 @@ bool Leveller::heights(const Cells &cells, double *height, bool just_moved)
       bodies.each_exposed(y, z, [&](int body, int word, Bodies::Word bits) {
         const Body &b = bodies.all[body];
         double told = b.deep ? z + 1.0 : NOTHING;
-        if (b.deep && b.level() && b.full + b.part > 0) told = b.highest + b.full / static_cast<double>(b.full + b.part);
+        const double cover = b.full + b.part;
+        if (b.deep && b.level() && cover > 0.0) told = b.highest + b.full / cover;
         each_bit(word, bits & open[word], [&](int x) { row[x] = told; });
       });
       for (int k = 0; k < words; ++k) {
@@ -146,7 +149,8 @@ bool Leveller::heights(const Cells &cells, double *height, bool just_moved)
       }
     }
   for (int y = 0; y < cells.ny; ++y)
-    forget_solid(cells, y, &undecided[static_cast<std::size_t>(y) * words], height + static_cast<std::size_t>(y) * cells.nx);
+    forget_solid(cells, y, &undecided[static_cast<std::size_t>(y) * words],
+                 height + static_cast<std::size_t>(y) * cells.nx);
   return std::all_of(bodies.all.begin(), bodies.all.end(), [](const Body &b) { return b.level(); });
 }
 

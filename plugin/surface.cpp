@@ -51,7 +51,8 @@ class Surface {
   double mean_around(std::size_t place) const;
 
   std::size_t at(int x, int y) const { return static_cast<std::size_t>(y + 1) * row + x + 1; }
-  std::array<std::size_t, 4> around(std::size_t place) const { return {place - 1, place + 1, place - row, place + row}; }
+  std::array<std::size_t, 4> around(std::size_t place) const
+  { return {place - 1, place + 1, place - row, place + row}; }
   void set(std::size_t place, double height)
   {
     value[place] = height;
@@ -149,7 +150,8 @@ void Surface::spread_level()
 // cell in waves of tens of cells.
 void Surface::filter(const double *height)
 {
-  for (auto *numbers : {&keep, &take, &sum, &weight, &next_sum, &next_weight}) numbers->assign(value.size(), 0.0f);
+  for (auto *numbers : {&keep, &take, &sum, &weight, &next_sum, &next_weight})
+    numbers->assign(value.size(), 0.0f);
   for (const Run &run : runs)
     for (int n = 0; n < run.length; ++n) {
       const std::size_t place = run.place + n;
@@ -194,7 +196,8 @@ void Surface::fill(bool blocked_too)
   };
   ring.clear();
   for (int y = 0; y < ny; ++y)
-    for (std::size_t n = at(0, y); n < at(nx, y); ++n) wanted[n] = (known[n] ^ 1) & (free[n] | (blocked_too ? 1 : 0));
+    for (std::size_t n = at(0, y); n < at(nx, y); ++n)
+      wanted[n] = (known[n] ^ 1) & (free[n] | static_cast<int>(blocked_too));
   for (int y = 0; y < ny; ++y) {
     if (!std::memchr(&wanted[at(0, y)], 1, nx)) continue;
     for (std::size_t place = at(0, y); place < at(nx, y); ++place) {

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The level rule and the surface filter of the built plugin, from Python.
 
-The environment variable MDANIM_LEVEL_LIBRARY names another library: plugin/{bodies,level,surface,level_c}.cpp alone need
-no LAMMPS.
+The environment variable MDANIM_LEVEL_LIBRARY names another library: plugin/{bodies,level,surface,level_c}.cpp
+alone need no LAMMPS.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mdanim_lammps.model.basin import Grid
-from mdanim_lammps.results.expect import Measured, drafted, evaluate, immersed_depth
+from mdanim_lammps.results.expect import Measured, evaluate, immersed_depth, immersed_share, recorded
 from mdanim_lammps.scene.scene import Expect
 
 GRID = Grid((-1.0, -2.0, 0.0), (1.0, 2.0, 3.0), (20, 40, 30))
@@ -23,7 +23,7 @@ def measured(**fields):
     """A run of three frames at 0, 1 and 2 s in which nothing moves."""
     still = np.zeros((3, 1, 3))
     options = dict(cells=np.array([100.0, 100, 100]), cell_volume=0.001, level=np.zeros(3)) | fields
-    return Measured(("box",), np.array([0.0, 1.0, 2.0]), still, still, np.zeros(3), {}, 0.0, **options)
+    return Measured(("box",), np.array([0.0, 1.0, 2.0]), still, still, np.zeros(3), 0.0, **options)
 
 
 def found(subject, quantity, time=None, **fields):
@@ -68,10 +68,10 @@ def test_an_object_beside_the_basin_is_dry(shift):
 
 def test_draft_between_frames_is_a_straight_line():
     """At a time between two frames the draft is between theirs; without a time it is the last."""
-    draft = {"box": np.array([0.0, 0.4, 0.2])}
-    assert found("box", "draft", 1.25, draft=draft) == pytest.approx(0.35)
-    assert found("box", "draft", 1.0, draft=draft) == pytest.approx(0.4)
-    assert found("box", "draft", draft=draft) == pytest.approx(0.2)
+    draft = {("box", "draft"): np.array([0.0, 0.4, 0.2])}
+    assert found("box", "draft", 1.25, recorded=draft) == pytest.approx(0.35)
+    assert found("box", "draft", 1.0, recorded=draft) == pytest.approx(0.4)
+    assert found("box", "draft", recorded=draft) == pytest.approx(0.2)
 
 
 def test_level_and_volume():
@@ -91,7 +91,20 @@ def test_residual_is_the_worst_so_far(cells, time, residual):
     assert found("liquid", "residual", time, cells=np.array(cells, float)) == residual
 
 
-def test_drafts_to_record_are_named_once():
-    """Every object that a line asks about, in order, whatever the time."""
-    wanted = [("b", "draft"), ("c", "position.z"), ("a", "draft"), ("liquid", "level"), ("b", "draft")]
-    assert drafted(tuple(Expect(*line, 0.1, time=float(i)) for i, line in enumerate(wanted))) == ("b", "a")
+def test_what_to_record_is_named_once():
+    """Every quantity that a line asks about and frames alone do not tell, in order, whatever the time."""
+    wanted = [("b", "draft"), ("c", "position.z"), ("a", "strain.max"), ("liquid", "level"), ("b", "draft"), ("b", "immersed")]
+    named = recorded(tuple(Expect(*line, 0.1, time=float(i)) for i, line in enumerate(wanted)))
+    assert list(named.values()) == ["draft.b", "strain.a", "immersed.b"]
+
+
+def test_immersed_share_of_cells_across_a_slope():
+    """Two lattice cells under a surface that rises along x: the share below it, by points in every cell."""
+    height = 1.0 + 0.5 * X
+    cell = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
+    boxes = np.stack([cell * [0.4, 0.4, 1.0] + [-0.4, 0.0, 0.5], cell * [0.4, 0.4, 1.0] + [0.0, 0.0, 0.5]])
+    # Mean heights over the boxes are 0.9 and 1.1; columns are 0.1 wide and points stand 1/4 of a cell apart.
+    assert immersed_share(boxes, GRID, height) == pytest.approx((0.4 + 0.6) / 2, abs=0.05)
+    assert immersed_share(boxes[:1], GRID, height) < immersed_share(boxes[1:], GRID, height)
+    assert immersed_share(boxes - [0.0, 0.0, 3.0], GRID, height) == 1.0
+    assert immersed_share(boxes + [5.0, 0.0, -3.0], GRID, height) == 0.0

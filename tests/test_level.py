@@ -16,7 +16,8 @@ def random_cells(random, shape):
     if random.random() < 0.5:
         chance = chance * np.linspace(1.5, 0.0, shape[0])[:, None, None]
     content = (random.random(shape) < chance).astype(np.uint8)
-    content += ((random.random(shape) < random.choice([0.0, 0.02, 0.3])) * random.integers(0, 5, shape)).astype(np.uint8)
+    overfull = random.random(shape) < random.choice([0.0, 0.02, 0.3])
+    content += (overfull * random.integers(0, 5, shape)).astype(np.uint8)
     content[random.integers(1, 2 * shape[0]) :] = 0
     content[solid > 0] = 0
     return content, solid
@@ -69,7 +70,7 @@ def test_draws_depend_on_seed_and_time():
 
 @pytest.mark.parametrize("seed", range(6))
 def test_falls_strictly_and_ends_level(seed):
-    """Without excess every call that moves loses energy; at the end all bodies are level, and nothing is lost on the way."""
+    """Without excess every call that moves loses energy; at the end all is level, and nothing was lost."""
     random = np.random.default_rng(seed)
     content, solid = random_cells(random, (8, 7, 12))
     content = np.minimum(content, 1)
@@ -139,7 +140,7 @@ def test_nothing_leaks_through_a_diagonal_gap():
 
 @pytest.mark.parametrize("width", [16, 32, 64])
 def test_dam_break_takes_time_in_proportion_to_its_width(width):
-    """A quarter of the basin, full to the rim, levels out to 2 cells in about 0.8 W calls; sweeps alone need some W^2 / 4."""
+    """A full quarter of the basin levels out to 2 cells in 0.8 W calls; sweeps alone need some W^2 / 4."""
     content = np.zeros((width // 2, 8, width), np.uint8)
     content[: width // 2 - 2, :, : width // 4] = 1
     pool = Pool(content, np.zeros_like(content))
@@ -183,7 +184,7 @@ def test_excess_without_room_stays():
     assert pool.move(rate=1.0, at_least=100) == 0
     assert (pool.content == content).all()
     height, level = pool.heights()
-    assert not level and np.isnan(height).all()  # no column ends in a free surface
+    assert not level and (height == 2.0).all()
 
 
 def test_two_bodies_cannot_fill_one_cell_twice():
@@ -199,7 +200,7 @@ def test_two_bodies_cannot_fill_one_cell_twice():
 
 
 def test_moving_masks_never_lose_a_unit():
-    """50 random masks, liquid in newly solid cells piled up at random: sum exact, no liquid in solid, equal to the twin."""
+    """50 random masks, liquid of solid cells piled up by lot: sum exact, none in solid, equal to the twin."""
     random = np.random.default_rng(3)
     shape = (7, 6, 9)
     content = np.zeros(shape, np.uint8)
@@ -222,13 +223,14 @@ def half_full(shape, height, seed=1):
     random = np.random.default_rng(seed)
     content = (np.arange(shape[0])[:, None, None] < int(height)).astype(np.uint8) * np.ones(shape, np.uint8)
     cells = shape[1] * shape[2]
-    content[int(height)].flat[random.choice(cells, round((height - int(height)) * cells), replace=False)] = 1
+    part = random.choice(cells, round((height - int(height)) * cells), replace=False)
+    content[min(int(height), shape[0] - 1)].flat[part] = 1
     return content
 
 
-@pytest.mark.parametrize("height", [0.0, 3.0, 5.25, 5.5])
+@pytest.mark.parametrize("height", [0.0, 3.0, 5.25, 5.5, 8.0, 8.75, 9.0])
 def test_a_level_pool_has_one_height_everywhere(height):
-    """Volume over area, the same number in every column; their sum is the volume."""
+    """Volume over area in every column, up to the top of the grid; their sum is the volume."""
     content = half_full((9, 12, 20), height)
     pool = Pool(content, np.zeros_like(content))
     told, level = pool.heights()
@@ -247,8 +249,17 @@ def test_a_heap_tells_raw_heights():
     np.testing.assert_array_equal(told, expected)
 
 
+def test_a_column_up_to_the_top_of_the_grid_falls():
+    """A basin is open at the top: nothing covers the cells of the top layer."""
+    content = half_full((6, 5, 5), 2.0)
+    content[:, 2, 2] = 1
+    pool = Pool(content, np.zeros_like(content))
+    assert pool.move(rate=0.0, at_least=1) == 1
+    assert pool.content[:, 2, 2].tolist() == [1, 1, 1, 1, 1, 0]
+
+
 def test_columns_around_a_floating_body():
-    """Columns of the body tell nothing, all others exactly the level; so does a wall, and each side has its own."""
+    """Columns of the body and of a wall tell nothing, all others exactly the level of their side."""
     content = half_full((10, 12, 20), 5.5)
     solid = np.zeros_like(content)
     solid[4:8, 3:6, 3:6] = 1
@@ -262,7 +273,7 @@ def test_columns_around_a_floating_body():
     assert np.isnan(told[~free]).all()
     assert (told[:, :10][left] == 5.0 + content[5][:, :10].sum() / left.sum()).all()
     assert (told[:, 11:][right] == 5.0 + content[5][:, 11:].sum() / right.sum()).all()
-    # Without solids in the column the sum over columns is the volume there; 1e-12: 100 sums of rounded heights.
+    # Without solids in the column the sum over columns is the volume there; 100 sums of rounded heights.
     assert told[:, 11:].sum() == pytest.approx(content[:, :, 11:].sum(), rel=1e-12)
 
 
@@ -277,7 +288,7 @@ def test_a_sunken_block_is_an_ordinary_column():
 
 
 def test_films_drops_and_dry_columns():
-    """What stands neither on liquid nor on the floor tells nothing; dry columns tell 0, or nothing above a solid."""
+    """What stands neither on liquid nor on the floor tells nothing; dry columns tell 0, or nothing."""
     solid = np.zeros((6, 1, 12), np.uint8)
     content = np.zeros_like(solid)
     solid[:, 0, [1, 3, 5, 8]] = 2  # partitions

@@ -6,7 +6,7 @@ import pytest
 from level_lab import smooth
 from twin import level as twin
 
-# Weights and weighted heights are kept in single precision: 10 steps of rounding at 6e-8 of the range of heights.
+# Weights and weighted heights are in single precision: 10 steps of rounding at 6e-8 of the range of heights.
 SINGLE = 2e-6
 
 
@@ -23,7 +23,7 @@ def test_equals_the_twin(seed):
 
 
 # (v + v + v) / 3 is not v for some of the later ones.
-@pytest.mark.parametrize("value", [0.0, 7.0, 2.0 + 1.0 / 3.0, 1e3 / 7.0, *np.random.default_rng(2).uniform(5.0, 9.0, 8)])
+@pytest.mark.parametrize("value", [0.0, 7.0, 2.0 + 1.0 / 3.0, 1e3 / 7.0, 5.6, 10.84, 11.7, 23.9])
 def test_a_level_surface_keeps_every_bit(value):
     """Also over bodies, wide ones too, and over walls; beside a rough pool as well."""
     height = np.full((50, 60), value)
@@ -71,7 +71,7 @@ def test_a_pool_shut_in_by_walls_without_liquid_takes_what_is_around():
 
 
 def test_under_a_wide_body_the_surface_runs_from_side_to_side():
-    """A tilted surface around a body 40 columns wide: filled in between what is told around, in the middle half way."""
+    """A tilted surface around a body 40 columns wide: filled between what is told, half way in the middle."""
     height = np.repeat(np.linspace(2.0, 8.0, 61)[None], 61, axis=0)
     height[10:51, 10:51] = np.nan
     result = smooth(height)
@@ -100,7 +100,7 @@ def test_width_of_the_filter():
 
 
 def test_noise_at_rest():
-    """A half-filled top layer drawn by lot leaves 0.07 cell: 0.5 / sqrt(4 pi sigma^2) = 0.0705 for a Gaussian of sigma 2."""
+    """A half-filled layer drawn by lot leaves 0.5 / sqrt(4 pi sigma^2) = 0.0705 cell, as a Gaussian would."""
     layer = np.random.default_rng(4).random((128, 128)) < 0.5
     noise = smooth(5.0 + layer)[8:-8, 8:-8]
     # 12 500 columns hold some 250 independent values: 5 % for their deviation, three times that allowed.

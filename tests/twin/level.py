@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Naive twin of plugin/level.h and plugin/surface.h: whole arrays (nz, ny, nx), bodies by scipy, everything sorted."""
+"""Naive twin of plugin/level.h and plugin/surface.h: whole arrays (nz, ny, nx), bodies by scipy."""
 
 from collections import deque
 from math import ceil
@@ -32,25 +32,27 @@ def neighbour(a, step):
 
 
 def bodies(content, solid):
-    """Every body as (cells, exposed cells, cells beside it), bool arrays, in order of first cells from the top layer down."""
+    """Every body as (cells, exposed cells, cells beside it), bool arrays, first cells from the top down."""
     empty = (content == 0) & (solid == 0)
     labels, count = ndimage.label(content > 0)
     first = [min((-z, y, x) for z, y, x in np.argwhere(labels == n)) for n in range(1, count + 1)]
     for n in sorted(range(count), key=first.__getitem__):
         cells = labels == n + 1
         beside = empty & np.any([neighbour(cells, step) for step in FACES], axis=0)
-        yield cells, cells & neighbour(empty, (1, 0, 0)), beside
+        yield cells, cells & ~neighbour(~empty, (1, 0, 0)), beside  # above the grid nothing covers
 
 
 def is_level(content, cells, exposed, beside):
     """No excess, and no exposed cell above one beside the body."""
     if (content[cells] > 1).any():
         return False
-    return not exposed.any() or not beside.any() or np.nonzero(exposed)[0].max() <= np.nonzero(beside)[0].min()
+    if not (exposed.any() and beside.any()):
+        return True
+    return np.nonzero(exposed)[0].max() <= np.nonzero(beside)[0].min()
 
 
 def move(content, solid, seed, when, rate, at_least):
-    """The cells after one call, and units moved: source k goes to target k (physics of the rule: docs/physics-liquid.md)."""
+    """The cells after one call, and units moved: source k goes to target k (docs/physics-liquid.md)."""
     after = content.copy()
     moved = 0
     lot = lambda cell: draw(seed, when, int(np.ravel_multi_index(cell, content.shape)))
@@ -108,9 +110,8 @@ def smooth(height, blocked, steps=10, mix=0.2):
     ny, nx = height.shape
     free = ~np.asarray(blocked, bool)
     step = np.eye(ny * nx)
-    around = lambda y, x: [
-        (y + dy, x + dx) for dy, dx in ((0, 1), (0, -1), (1, 0), (-1, 0)) if 0 <= y + dy < ny and 0 <= x + dx < nx
-    ]
+    inside = lambda y, x: 0 <= y < ny and 0 <= x < nx
+    around = lambda y, x: [c for c in ((y, x + 1), (y, x - 1), (y + 1, x), (y - 1, x)) if inside(*c)]
     for y in range(ny):
         for x in range(nx):
             for v, u in around(y, x):

@@ -81,4 +81,4 @@ def _unmeasurable(scene: Scene, verdicts: dict[str, Verdict]) -> list[Problem]:
     return [Problem(
         e.span, f"{e.subject}.{e.quantity} needs the liquid, which is off ({verdicts['liquid'].reason})",
         "take this expect out, or switch the liquid on",
-    ) for e in scene.expects if e.subject == "liquid" or e.quantity == "draft"]
+    ) for e in scene.expects if e.subject == "liquid" or e.quantity in ("draft", "immersed")]

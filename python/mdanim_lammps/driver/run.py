@@ -19,7 +19,7 @@ from ..engine.data_file import write_data
 from ..engine.instance import Instance
 from ..errors import DivergedError, ExitCode, MdanimError, OutputError
 from ..results.checkpoint import Checkpoint
-from ..results.expect import Measured, Outcome, drafted, evaluate, immersed_depth, largest_strain, strained
+from ..results.expect import Measured, Outcome, evaluate, record, recorded
 from ..results.files import write_json, write_whole
 from ..results.ledger import Ledger
 from ..results.trajectory import Trajectory, TrajectoryWriter
@@ -117,11 +117,9 @@ class _Run:
             raise OutputError(f"{folder / 'checkpoint'} is of another run: scene, time step or program have changed since; "
                               "run the scene again with --force")
         terms = ("kinetic", *dict.fromkeys(e.ledger for e in self.effects if e.ledger))
-        self.strained = strained(ready.scene.expects)
-        self.drafted = drafted(ready.scene.expects)
+        self.recorded = recorded(ready.scene.expects)
         self.grid = ready.plan.grid
-        self.ledger = Ledger(terms, (*(f"strain.{name}" for name in self.strained), *(f"draft.{name}" for name in self.drafted),
-                                     *(("liquid_cells",) if self.grid else ())))
+        self.ledger = Ledger(terms, (*self.recorded.values(), *(("liquid_cells",) if self.grid else ())))
 
     # --- the order of things ----------------------------------------------------------------------------------------
 
@@ -174,9 +172,8 @@ class _Run:
                     "level": trajectory.liquid_levels}
                 outcomes = evaluate(self.ready.scene.expects, Measured(
                     trajectory.names, trajectory.times, trajectory.centers, trajectory.center_velocities,
-                    self.ledger.array("residual"),
-                    {name: self.ledger.array(f"strain.{name}") for name in self.strained}, penetration,
-                    {name: self.ledger.array(f"draft.{name}") for name in self.drafted}, **liquid))
+                    self.ledger.array("residual"), penetration,
+                    {what: self.ledger.array(column) for what, column in self.recorded.items()}, **liquid))
         result = Result(self.folder, self.ledger, outcomes, dict(self.seconds))
         write_json(self.folder / "cost.json", {"seconds": self.seconds, "steps": self.certificate.steps,
                                                "particles": self.ready.system.particles})
@@ -216,10 +213,10 @@ class _Run:
         if not (np.isfinite(x).all() and np.isfinite(v).all()):
             bad = system.names[system.object[np.argmin(np.isfinite(x).all(1) & np.isfinite(v).all(1))]]
             raise self._diverged(f"step {step}, t = {when:.4g} s: positions of {bad} are no numbers any more")
-        extras = {f"strain.{n}": largest_strain(system, system.names.index(n), x) for n in self.strained}
         heights = instance.liquid_heights() if self.grid else None
+        extras = {column: record(quantity, system, self.ready.models[system.names.index(name)], x, heights and heights[0])
+                  for (name, quantity), column in self.recorded.items()}
         if self.grid:
-            extras |= {f"draft.{n}": self._draft(n, x, heights[0]) for n in self.drafted}
             extras["liquid_cells"] = instance.fix_value("liquid", 0)
         row = self.ledger.add(when, self._energies(v) | extras)
         if not abs(row["residual"]) <= BLOWN_UP:
@@ -227,13 +224,6 @@ class _Run:
             raise self._diverged(f"step {step}, t = {when:.4g} s: the energies do not add up (residual {row['residual']:.3g})")
         out.write(step, when, x, v, heights)
         return row
-
-    def _draft(self, name: str, x: np.ndarray, height: np.ndarray) -> float:
-        """Immersed depth of a solid [m]."""
-        system = self.ready.system
-        k = system.names.index(name)
-        points = self.ready.models[k].surface.vertices(x[system.first[k]:system.first[k + 1]])
-        return immersed_depth(points, self.grid, height)
 
     def _diverged(self, what: str) -> DivergedError:
         c = self.certificate

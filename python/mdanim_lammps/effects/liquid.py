@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from ..model.embed import FACES
 from ..model.system import System
 from ..scene.scene import LiquidModel
 from . import air_drag
@@ -90,12 +91,24 @@ class Buoyancy(Effect):
     def columns(self, scene, system):
         return {"volume": system.volume}
 
+    def tables(self, scene, system):
+        return {"face": outer_faces(system)} if scene.liquid.model is LiquidModel.PRESSURE else {}
+
     def commands(self, scene, system):
-        return ["fix_modify liquid buoyancy d_volume"]
+        faces = " faces i2_face" if scene.liquid.model is LiquidModel.PRESSURE else ""
+        return [f"fix_modify liquid buoyancy d_volume{faces}"]
 
     def rate(self, scene, system):
-        # s_i goes from 0 to 1 over the height of a cell: a spring to the surface, which does not move along.
-        stiffness = scene.liquid.density * -scene.gravity[2] * system.volume / system.grid.cell[2]
+        weight = scene.liquid.density * -scene.gravity[2]
+        if scene.liquid.model is LiquidModel.PRESSURE:
+            # Row sums of the derivatives of -p A/4 over the faces of a particle: of p = weight * depth by its
+            # four corners, and of A = d1 x d2 / 2 at the pressure under a full basin.
+            h, deepest = system.spacing[system.object], system.grid.high[2] - system.grid.low[2]
+            faces = np.count_nonzero(outer_faces(system)[:, ::3], axis=1)
+            stiffness = faces * weight * (h**2 / 4 + deepest * math.sqrt(0.5) * h)
+        else:
+            # s_i goes from 0 to 1 over the height of a cell: a spring to the surface, which does not move along.
+            stiffness = weight * system.volume / system.grid.cell[2]
         return np.where(system.held, 0.0, stiffness / system.mass)
 
     def energy(self, instance, scene, system):
@@ -151,6 +164,24 @@ def lattice_cells(system: System) -> np.ndarray:
         raise ValueError("a particle is the first corner of two lattice cells")
     table[owner] = system.hexahedron[:, 1:] + 1
     return table
+
+
+def outer_faces(system: System) -> np.ndarray:
+    """The faces that meet in each particle: tags (from 1) of their other three corners, int32, shape (N, 3 F).
+
+    Faces of lattice cells that no other cell shares, counter-clockwise seen from outside, 0 after a particle's last; F is
+    the most at one particle.
+    """
+    quads = system.hexahedron[:, FACES].reshape(-1, 4)
+    _, first, count = np.unique(np.sort(quads, axis=1), axis=0, return_index=True, return_counts=True)
+    outer = quads[np.sort(first[count == 1])]
+    views = np.concatenate([np.roll(outer, -k, axis=1) for k in range(4)])  # each corner's own view of the face
+    views = views[np.argsort(views[:, 0], kind="stable")]
+    owner = views[:, 0]
+    nth = np.arange(len(owner)) - np.searchsorted(owner, owner)
+    table = np.zeros((system.particles, int(nth.max()) + 1, 3), np.int32)
+    table[owner, nth] = views[:, 1:] + 1
+    return table.reshape(system.particles, -1)
 
 
 def _reached(name: str, scene) -> Verdict:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..model.basin import Grid
+from ..model.model import Model
 from ..model.system import System
 from ..scene.scene import Expect
 
@@ -48,12 +49,10 @@ class Measured:
     """Their velocities [m/s], shape (F, M, 3)."""
     residual: np.ndarray
     """Energy residual at each frame, shape (F,)."""
-    strain: Mapping[str, np.ndarray]
-    """Largest |r/r0 - 1| of the solids that an ``expect`` asks about, at each frame, shape (F,)."""
     penetration: float
     """Deepest penetration of the run [m]."""
-    draft: Mapping[str, np.ndarray] = field(default_factory=dict)
-    """Immersed depth of the solids that an ``expect`` asks about, at each frame [m], shape (F,)."""
+    recorded: Mapping[tuple[str, str], np.ndarray] = field(default_factory=dict)
+    """What `recorded` names, at each frame, each of shape (F,)."""
     cells: np.ndarray | None = None
     """Whole cells of liquid at each frame, shape (F,); None without liquid."""
     cell_volume: float = 0.0
@@ -67,14 +66,56 @@ def evaluate(expects: tuple[Expect, ...], measured: Measured) -> list[Outcome]:
     return [Outcome(e, _measure(e, measured)) for e in expects]
 
 
-def strained(expects: tuple[Expect, ...]) -> tuple[str, ...]:
-    """Solids whose strain has to be recorded during the run, in order and once."""
-    return tuple(dict.fromkeys(e.subject for e in expects if e.quantity == "strain.max"))
+RECORDED = {"strain.max": "strain", "draft": "draft", "immersed": "immersed"}
+"""Quantities of a solid that need all its particles at every frame, and what their ledger columns are called."""
 
 
-def drafted(expects: tuple[Expect, ...]) -> tuple[str, ...]:
-    """Solids whose draft has to be recorded during the run, in order and once."""
-    return tuple(dict.fromkeys(e.subject for e in expects if e.quantity == "draft"))
+def recorded(expects: tuple[Expect, ...]) -> dict[tuple[str, str], str]:
+    """What has to be recorded during the run: (solid, quantity) to the ledger's column, in order and once."""
+    return {(e.subject, e.quantity): f"{RECORDED[e.quantity]}.{e.subject}" for e in expects if e.quantity in RECORDED}
+
+
+def record(quantity: str, system: System, model: Model, position: np.ndarray, height: np.ndarray | None) -> float:
+    """Measure one of RECORDED of a solid now.
+
+    Args:
+        position: of all particles [m], shape (N, 3).
+        height: smooth height z of the liquid over each column [m], shape (ny, nx); None without liquid.
+    """
+    solid = system.names.index(model.name)
+    own = position[system.first[solid]:system.first[solid + 1]]
+    match quantity:
+        case "strain.max":
+            return largest_strain(system, solid, position)
+        case "draft":
+            return immersed_depth(model.surface.vertices(own), system.grid, height)
+        case "immersed":
+            return immersed_share(own[model.hexahedron], system.grid, height)
+    raise ValueError(f"{quantity} is not recorded")
+
+
+def immersed_share(corners: np.ndarray, grid: Grid, height: np.ndarray) -> float:
+    """Share of an object's volume that is below the liquid's surface [-], by 64 points in every lattice cell.
+
+    They are spread evenly with no two at one height (a Kronecker sequence), so that a body that floats upright is cut
+    as finely as one that is turned.
+
+    Args:
+        corners: of its lattice cells, in VTK order [m], shape (C, 8, 3).
+        grid: cells of the liquid.
+        height: smooth height z of the liquid over each column [m], shape (ny, nx).
+    """
+    u, v, w = np.modf(0.5 + np.outer(1.2207440846057596 ** -np.arange(1.0, 4.0), np.arange(64)))[0]
+    weight = np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v])
+    weight = np.concatenate([weight * (1 - w), weight * w])
+    below = 0  # in pieces: 100 MB for a body of any size
+    for start in range(0, len(corners), 4096):
+        point = np.einsum("kp,ckd->cpd", weight, corners[start:start + 4096]).reshape(-1, 3)
+        column = np.floor((point[:, :2] - grid.low[:2]) / grid.cell[:2]).astype(int)
+        inside = ((column >= 0) & (column < grid.shape[:2])).all(axis=1)
+        x, y = column[inside].T
+        below += int(np.count_nonzero(point[inside, 2] < height[y, x]))
+    return below / (len(corners) * len(u))
 
 
 def immersed_depth(points: np.ndarray, grid: Grid, height: np.ndarray) -> float:
@@ -122,10 +163,10 @@ def _measure(expect: Expect, m: Measured) -> float:
             return _at(m, m.cells, expect.time) * m.cell_volume
         case "liquid", "level":
             return _at(m, m.level, expect.time)
-        case name, "draft":
-            return _at(m, m.draft[name], expect.time)
         case name, "strain.max":
-            return _largest(m, m.strain[name], expect.time)
+            return _largest(m, m.recorded[name, "strain.max"], expect.time)
+        case name, ("draft" | "immersed") as quantity:
+            return _at(m, m.recorded[name, quantity], expect.time)
         case name, quantity:
             kind, axis = quantity.split(".")
             position, velocity = _motion(m, m.names.index(name), expect.time)

@@ -483,7 +483,7 @@ class Builder:
             )
             return None
         if (
-            (kind == "liquid" or quantity == "draft")
+            (kind == "liquid" or quantity in ("draft", "immersed"))
             and not self.blocks("liquid")
             and not self.out.excused("liquid")
         ):

@@ -166,7 +166,11 @@ class Solid:
 
 class LiquidModel(Enum):
     SURFACE = "surface"
+    """Lift by the part of each particle's volume below the surface."""
+    PRESSURE = "pressure"
+    """The same liquid, lift by its pressure on the outer faces: for open hulls."""
     PAPER = "paper"
+    """The paper's rules, word by word."""
 
 
 @dataclass(frozen=True, slots=True)

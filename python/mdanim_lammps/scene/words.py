@@ -140,8 +140,9 @@ WORDS = (
     Keyword("liquid", "drag", "auto | <gamma:1/s>", "4 1/s",
             "Immersed solids feel F = -gamma rho V v with the immersed volume V; `auto` is sqrt(g/L) for a "
             "body of size L.", Rule.NOT_NEGATIVE, "auto"),
-    Keyword("liquid", "model", "<surface|paper>", "surface",
-            "`surface`: draft after Archimedes, occupancy by hexahedra, level rule. `paper`: the literal "
+    Keyword("liquid", "model", "<surface|pressure|paper>", "surface",
+            "`surface`: draft after Archimedes, occupancy by hexahedra, level rule. `pressure`: the same with the "
+            "liquid's pressure on every outer face, so that an open hull floats by the air in it. `paper`: the literal "
             "rules of the paper, with a warning: not Archimedes, objects denser than about 0.4 of the liquid sink.",
             default="surface"),
     Keyword("liquid", "sweeps", "auto | <n>", "4", "Sweeps of the automaton per update.", Rule.COUNT, "auto"),
@@ -224,7 +225,8 @@ QUANTITIES = {
         )
         for axis in "xyz"
     },
-    ("NAME", "draft"): ("m", "immersed depth of an object; needs a liquid"),
+    ("NAME", "draft"): ("m", "immersed depth of an object, from the surface to its lowest point; needs a liquid"),
+    ("NAME", "immersed"): ("1", "share of an object's volume below the surface; needs a liquid"),
     ("NAME", "strain.max"): ("1", "largest relative change of length of a spring"),
     ("liquid", "volume"): ("m^3", "volume of the liquid"),
     ("liquid", "residual"): ("1", "whole cells gained or lost"),
