@@ -11,7 +11,7 @@ from mdanim_lammps.scene import scene as records
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.scene.rotation import departure, rotation_about, rotation_euler
-from mdanim_lammps.scene.words import BLOCKS, GLOBALS, KEYWORDS, QUANTITIES, STATEMENTS
+from mdanim_lammps.scene.words import BLOCKS, GLOBALS, IMMERSION, KEYWORDS, QUANTITIES, STATEMENTS
 
 SCENES = Path(__file__).parent.parent / "scenes"
 
@@ -153,7 +153,7 @@ def scenes(draw):
     cameras = tuple(c for c in cameras if c.eye != c.look)
     expects = []
     for kind, quantity in draw(st.lists(st.sampled_from(sorted(QUANTITIES)), max_size=3)):
-        if wet or kind != "liquid" and quantity != "draft":
+        if wet or kind != "liquid" and quantity not in IMMERSION:
             subject = kind if kind in GLOBALS else draw(st.sampled_from([b.name for b in bodies]))
             time = draw(st.none() | st.floats(0, control.time))
             expects.append(records.Expect(subject, quantity, draw(numbers), draw(st.floats(0, 1e3)), time))

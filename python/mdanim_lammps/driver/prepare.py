@@ -18,6 +18,7 @@ from ..model.overlap import check_geometry
 from ..model.system import System, assemble
 from ..scene.lock import lock_text
 from ..scene.scene import Scene
+from ..scene.words import IMMERSION
 
 
 @dataclass(frozen=True)
@@ -81,4 +82,4 @@ def _unmeasurable(scene: Scene, verdicts: dict[str, Verdict]) -> list[Problem]:
     return [Problem(
         e.span, f"{e.subject}.{e.quantity} needs the liquid, which is off ({verdicts['liquid'].reason})",
         "take this expect out, or switch the liquid on",
-    ) for e in scene.expects if e.subject == "liquid" or e.quantity in ("draft", "immersed")]
+    ) for e in scene.expects if e.subject == "liquid" or e.quantity in IMMERSION]

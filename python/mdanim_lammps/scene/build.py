@@ -15,7 +15,7 @@ from .expand import Filled, Setting
 from .rotation import IDENTITY, departure, rotation_about, rotation_euler
 from .scene import Vector
 from .source import Problems, Source
-from .words import BLOCKS, GLOBALS, KEYWORDS, QUANTITIES, did_you_mean, example
+from .words import BLOCKS, GLOBALS, IMMERSION, KEYWORDS, QUANTITIES, did_you_mean, example
 
 LARGEST_PICTURE = 16384
 """Pixels along one side."""
@@ -483,7 +483,7 @@ class Builder:
             )
             return None
         if (
-            (kind == "liquid" or quantity in ("draft", "immersed"))
+            (kind == "liquid" or quantity in IMMERSION)
             and not self.blocks("liquid")
             and not self.out.excused("liquid")
         ):

@@ -236,6 +236,9 @@ QUANTITIES = {
 }
 """What ``expect`` can check: (subject, quantity) to (unit, meaning); NAME stands for any object."""
 
+IMMERSION = ("draft", "immersed")
+"""Quantities of an object that need a liquid."""
+
 GLOBALS = ("liquid", "energy", "penetration")
 """Subjects of ``expect`` that are no objects."""
 

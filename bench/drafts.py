@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""How deep elastic cubes float, and how fast they sink: ``python bench/drafts.py [drafts] [cells] [speed] [drift]``.
+
+drafts   share of a cube of 6^3 cells below the surface, after five ways to get there, against its density over the liquid's;
+         beside it how far the nearest axis of the cube leans from the vertical (45 = on an edge, 54.7 = on a corner)
+cells    the same for one tilted drop and cubes of 3 to 10 cells a side
+speed    terminal speed under the liquid's drag over (rho_s - rho_l) g / (gamma rho_l)
+drift    what a floating cube moves sideways in 20 s, and the sweeps of the automaton in that time
+
+Without words all of them. Units: spacing 1, liquid of density 1000; elasticity 1000 Pa is a wave speed of about 1.
+"""
+
+import sys
+
+import numpy as np
+
+SCENE = """
+gravity (0, 0, -{g})
+liquid water {{
+  basin from (-{half}, -{half}, 0) to ({half}, {half}, {top})
+  density 1000
+  level {level}
+  {liquid}
+}}
+object cube {{
+  shape box ({side}, {side}, {side})
+  position (0.3, -0.2, {z})
+  orientation euler {turned} deg
+  density {density}
+  elasticity {young} Pa
+  velocity (0, 0, {v})
+}}
+control {{
+  time 10^6
+  frames 0.01 fps
+  resolution 1
+}}
+"""
+DENSITIES = (300, 500, 700, 900)
+WAYS = {
+    "dropped upright": dict(),
+    "dropped tilted": dict(turned=(20, 35, 10)),
+    "dropped at 0.8 c": dict(fast=0.8, level=20, top=34, z=26),
+    "from the bottom": dict(z=3.2),
+    "20 times softer": dict(young=50, g=0.002),
+}
+SWEEPS = 4  # entry of the fix's vector
+
+
+class Pool:
+    """A cube over a pool, in LAMMPS; a context manager."""
+
+    def __init__(self, fast=0.0, **what):
+        from mdanim_lammps.driver.prepare import prepare
+        from mdanim_lammps.engine.instance import Instance
+        from mdanim_lammps.scene.parse import parse_scene
+
+        values = dict(g=0.01, half=10, top=24, level=14, liquid="", side=6, z=20, turned=(0, 0, 0), density=500, young=1000, v=0)
+        values |= what
+        if fast:  # in wave speeds c
+            values["v"] = -fast * (1.2 * values["young"] / values["density"]) ** 0.5
+        self.ready = prepare(parse_scene(SCENE.format(**values)))
+        self.instance = Instance(self.ready.plan)
+        self.instance.setup()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.instance.close()
+
+    def run(self, time: float):
+        """Go on for a time."""
+        self.instance.run(int(time / self.ready.certificate.timestep))
+
+    def mean(self, name: str) -> np.ndarray:
+        """Mean of a property, weighted with mass, shape (3,)."""
+        return self.ready.system.center_of_mass(self.instance.array(name))[0]
+
+    def corners(self) -> np.ndarray:
+        """Of the lattice cells, shape (C, 8, 3)."""
+        return self.instance.array("x")[self.ready.system.hexahedron]
+
+    def share(self) -> float:
+        """Part of the cube below the surface."""
+        from mdanim_lammps.results.expect import immersed_share
+
+        return immersed_share(self.corners(), self.ready.system.grid, self.instance.liquid_heights()[0])
+
+    def lean(self) -> float:
+        """Angle between the vertical and the nearest axis of the cube [deg]."""
+        corner = self.corners().mean(axis=0)
+        axes = np.array([corner[1] - corner[0], corner[3] - corner[0], corner[4] - corner[0]])
+        upright = np.abs(axes[:, 2]) / np.linalg.norm(axes, axis=1)
+        return float(np.degrees(np.arccos(min(1.0, upright.max()))))
+
+
+def settled(g=0.01, **what) -> str:
+    """Share and lean after 160 sqrt(L/g), when drag has damped everything."""
+    with Pool(g=g, **what) as pool:
+        pool.run(160 * (what.get("side", 6) / g) ** 0.5)
+        return f"{pool.share():.4f} {pool.lean():5.1f}"
+
+
+def drafts() -> None:
+    """Print the table of drafts."""
+    print("immersed share, and lean in degrees, of cubes of 6^3 cells of density")
+    print(f"{'':20}" + "".join(f"{d / 1000:<15}" for d in DENSITIES))
+    for name, way in WAYS.items():
+        print(f"{name:20}" + "   ".join(settled(density=d, **way) for d in DENSITIES), flush=True)
+
+
+def cells() -> None:
+    """Print how drafts depend on the size of the cube."""
+    print("the same for a tilted drop and cubes of … cells a side")
+    for side in (3, 4, 6, 8, 10):
+        half, level = 1.7 * side, 2.5 * side
+        way = dict(side=side, half=half, level=level, top=level + 3 * side, z=level + side, turned=(20, 35, 10))
+        print(f"{side:<20}" + "   ".join(settled(density=d, **way) for d in DENSITIES), flush=True)
+
+
+def speed() -> None:
+    """Print terminal speeds."""
+    gamma, g = 0.1, 0.01
+    print("terminal speed over that of the formula, after 5 times rho_s/(gamma rho_l)")
+    for density in (1500, 3000):
+        fall, time = (density / 1000 - 1) * g / gamma, 5 * density / 1000 / gamma
+        deep = int(26 + 1.2 * fall * time)
+        with Pool(density=density, liquid=f"drag {gamma}", level=deep, top=deep + 10, z=deep - 4) as pool:
+            pool.run(time)
+            print(f"{density / 1000:<20}{-pool.mean('v')[2] / fall:.4f}   (1 - exp(-5) = {1 - np.exp(-5):.4f})", flush=True)
+
+
+def drift() -> None:
+    """Print what a floating cube does by itself."""
+    with Pool(density=900, z=13, young=1e5, g=9.81) as pool:
+        pool.run(10)
+        before, swept = pool.mean("x"), pool.instance.fix_value("liquid", SWEEPS)
+        pool.run(20)
+        aside = np.abs(pool.mean("x") - before)[:2].max()
+        print(f"cube of density 0.9, afloat for 20 s: {aside:.2e} cells sideways, "
+              f"{pool.instance.fix_value('liquid', SWEEPS) - swept:.0f} sweeps")
+
+
+if __name__ == "__main__":
+    for what in sys.argv[1:] or ("drafts", "cells", "speed", "drift"):
+        {"drafts": drafts, "cells": cells, "speed": speed, "drift": drift}[what]()
