@@ -719,7 +719,37 @@ double FixMdanimLiquid::compute_vector(int n)
   return all;
 }
 
-// A row per column of cells: x, y of its centre, z of the smooth surface, z of the topmost liquid (NaN where a body hides it).
+// Open cells without liquid right below the smooth surface of a column that tells no height, none where there is liquid above.
+static int air_below(const Cells &cells, int x, int y, double height, double eta)
+{
+  if (!std::isnan(height)) return 0;
+  const int first = std::min(static_cast<int>(eta), cells.nz) - 1;
+  for (int z = std::max(first + 1, 0); z < cells.nz; ++z)
+    if (cells.content[cells.at(x, y, z)]) return 0;
+  int z = first;
+  while (z >= 0 && cells.open[cells.at(x, y, z)] && !cells.content[cells.at(x, y, z)]) --z;
+  return first - z;
+}
+
+// Topmost liquid of a column, in cells above the floor: NaN where a solid hides it, minus infinity where something keeps the column
+// dry below the surface, as a hull does its inside. One cell of air is no proof of that, two here or beside are: over what has just
+// gone under the liquid closes late.
+static double topmost(const Cells &cells, const std::vector<double> &height, const std::vector<double> &eta, int column)
+{
+  const int x = column % cells.nx, y = column / cells.nx;
+  const auto air = [&](int x, int y) {
+    const int c = y * cells.nx + x;
+    return air_below(cells, x, y, height[c], eta[c]);
+  };
+  if (air(x, y) == 0) return height[column];
+  for (int b = std::max(y - 1, 0); b < std::min(y + 2, cells.ny); ++b)
+    for (int a = std::max(x - 1, 0); a < std::min(x + 2, cells.nx); ++a)
+      if (air(a, b) >= 2) return -std::numeric_limits<double>::infinity();
+  return height[column];
+}
+
+// A row per column of cells: x, y of its centre, z of the smooth surface, z of the topmost liquid (NaN where a body hides it,
+// minus infinity where one keeps the column dry below the surface).
 double FixMdanimLiquid::compute_array(int row, int column)
 {
   const int nx = automaton->cells.nx;
@@ -727,7 +757,7 @@ double FixMdanimLiquid::compute_array(int row, int column)
     case 0: return low.x + (row % nx + 0.5) * cell.x;
     case 1: return low.y + (row / nx + 0.5) * cell.y;
     case 2: return low.z + eta[row] * cell.z;
-    default: return low.z + height[row] * cell.z;
+    default: return low.z + topmost(automaton->cells, height, eta, row) * cell.z;
   }
 }
 
@@ -735,7 +765,7 @@ void FixMdanimLiquid::surface(double *smooth, double *raw) const
 {
   for (int c = 0; c < columns(); ++c) {
     smooth[c] = low.z + eta[c] * cell.z;
-    raw[c] = low.z + height[c] * cell.z;
+    raw[c] = low.z + topmost(automaton->cells, height, eta, c) * cell.z;
   }
 }
 

@@ -288,6 +288,17 @@ def test_lmp_gives_the_bits_of_the_driver(prepared, tmp_path, text, ranks):
 
 
 @pytest.mark.mpi
+@pytest.mark.parametrize("model", ["pressure", "paper"])
+def test_the_other_models_of_the_liquid_give_the_same_bits(prepared, tmp_path, model):
+    """Two ranks share the faces that liquid presses on, or the cells around particles; frames stay the driver's."""
+    ready = prepared(SPLASH.replace("volume 45 l", f"volume 45 l model {model}"))
+    film = run_frames(ready, ready.certificate.frames)
+    write_files(ready, tmp_path)
+    run_lmp(tmp_path, "in.small", 2)
+    assert np.array_equal(read_dump(tmp_path / "small.lammpstrj", ready.system.particles), film)
+
+
+@pytest.mark.mpi
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("text", SCENES)
 def test_shuffled_atoms_give_the_same_bits(prepared, tmp_path, text, ranks):

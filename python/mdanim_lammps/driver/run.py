@@ -217,7 +217,10 @@ class _Run:
         extras = {column: record(quantity, system, self.ready.models[system.names.index(name)], x, heights and heights[0])
                   for (name, quantity), column in self.recorded.items()}
         if self.grid:
-            extras["liquid_cells"] = instance.fix_value("liquid", 0)
+            extras["liquid_cells"], start = instance.fix_value("liquid", 0), instance.fix_value("liquid", 1)
+            if extras["liquid_cells"] != start:
+                raise DivergedError(f"step {step}, t = {when:.4g} s: {extras['liquid_cells']:.0f} cells of liquid, {start:.0f} at the "
+                                    f"start: this must never be, please report it. The last good frame is kept in {self.folder}")
         row = self.ledger.add(when, self._energies(v) | extras)
         if not abs(row["residual"]) <= BLOWN_UP:
             del self.ledger.rows[-1]
