@@ -719,37 +719,7 @@ double FixMdanimLiquid::compute_vector(int n)
   return all;
 }
 
-// Open cells without liquid right below the smooth surface of a column that tells no height, none where there is liquid above.
-static int air_below(const Cells &cells, int x, int y, double height, double eta)
-{
-  if (!std::isnan(height)) return 0;
-  const int first = std::min(static_cast<int>(eta), cells.nz) - 1;
-  for (int z = std::max(first + 1, 0); z < cells.nz; ++z)
-    if (cells.content[cells.at(x, y, z)]) return 0;
-  int z = first;
-  while (z >= 0 && cells.open[cells.at(x, y, z)] && !cells.content[cells.at(x, y, z)]) --z;
-  return first - z;
-}
-
-// Topmost liquid of a column, in cells above the floor: NaN where a solid hides it, minus infinity where something keeps the column
-// dry below the surface, as a hull does its inside. One cell of air is no proof of that, two here or beside are: over what has just
-// gone under the liquid closes late.
-static double topmost(const Cells &cells, const std::vector<double> &height, const std::vector<double> &eta, int column)
-{
-  const int x = column % cells.nx, y = column / cells.nx;
-  const auto air = [&](int x, int y) {
-    const int c = y * cells.nx + x;
-    return air_below(cells, x, y, height[c], eta[c]);
-  };
-  if (air(x, y) == 0) return height[column];
-  for (int b = std::max(y - 1, 0); b < std::min(y + 2, cells.ny); ++b)
-    for (int a = std::max(x - 1, 0); a < std::min(x + 2, cells.nx); ++a)
-      if (air(a, b) >= 2) return -std::numeric_limits<double>::infinity();
-  return height[column];
-}
-
-// A row per column of cells: x, y of its centre, z of the smooth surface, z of the topmost liquid (NaN where a body hides it,
-// minus infinity where one keeps the column dry below the surface).
+// A row per column of cells: x, y of its centre, z of the smooth surface, z of the topmost liquid (NaN where a body hides it).
 double FixMdanimLiquid::compute_array(int row, int column)
 {
   const int nx = automaton->cells.nx;
@@ -757,15 +727,43 @@ double FixMdanimLiquid::compute_array(int row, int column)
     case 0: return low.x + (row % nx + 0.5) * cell.x;
     case 1: return low.y + (row / nx + 0.5) * cell.y;
     case 2: return low.z + eta[row] * cell.z;
-    default: return low.z + topmost(automaton->cells, height, eta, row) * cell.z;
+    default: return low.z + height[row] * cell.z;
   }
 }
 
+// Open cells without liquid right below a height in cells; none where there is liquid above.
+static int air_below(const Cells &cells, int x, int y, double height)
+{
+  const int first = std::min(static_cast<int>(height), cells.nz) - 1;
+  for (int z = first + 1; z < cells.nz; ++z)
+    if (cells.content[cells.at(x, y, z)]) return 0;
+  int z = first;
+  while (z >= 0 && cells.open[cells.at(x, y, z)] && !cells.content[cells.at(x, y, z)]) --z;
+  return first - z;
+}
+
+// Of the columns that tell no height those with air below the surface count as kept dry, as a hull keeps its inside, where the air
+// is two cells deep, and all around as far as it goes on: over what has just gone under the liquid closes a little late.
 void FixMdanimLiquid::surface(double *smooth, double *raw) const
 {
+  const Cells &cells = automaton->cells;
+  std::vector<int> air(columns(), 0), dry;
   for (int c = 0; c < columns(); ++c) {
     smooth[c] = low.z + eta[c] * cell.z;
-    raw[c] = low.z + topmost(automaton->cells, height, eta, c) * cell.z;
+    raw[c] = low.z + height[c] * cell.z;
+    if (std::isnan(height[c])) air[c] = air_below(cells, c % cells.nx, c / cells.nx, eta[c]);
+    if (air[c] >= 2) dry.push_back(c);
+  }
+  while (!dry.empty()) {
+    const int c = dry.back(), x = c % cells.nx, y = c / cells.nx;
+    dry.pop_back();
+    if (!air[c]) continue;
+    air[c] = 0;
+    raw[c] = -std::numeric_limits<double>::infinity();
+    if (x > 0) dry.push_back(c - 1);
+    if (x + 1 < cells.nx) dry.push_back(c + 1);
+    if (y > 0) dry.push_back(c - cells.nx);
+    if (y + 1 < cells.ny) dry.push_back(c + cells.nx);
   }
 }
 

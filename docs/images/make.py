@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Make the pictures of README and docs: ``python docs/images/make.py`` (runs the scenes it needs)."""
+"""Make the pictures of README and docs: ``python docs/images/make.py [SCENE ...]`` (runs the scenes; default all)."""
 
+import sys
 import tempfile
 from pathlib import Path
 
@@ -9,21 +10,26 @@ from mdanim_lammps.picture.movie import render_still
 
 HERE = Path(__file__).parent
 SCENES = HERE.parent.parent / "scenes"
-PICTURES = {"beam": 0.33, "drop": 0.5, "duck": 0.6, "crowd": 0.48}
+PICTURES = {
+    "beam": 0.33, "drop": 0.5, "duck": 0.6, "crowd": 0.48,
+    "float": 5.0, "densities": 5.0, "vessels": 0.3, "splash": 0.45, "cork": 0.5, "boat": 0.6,
+}
 """Scene and the moment to show [s]."""
+SIZE = (720, 405)
+"""Two beside each other in the gallery; no file is larger than 200 kB."""
 
 
-def main() -> None:
+def main(names: list[str]) -> None:
     """Write one picture per scene beside this file."""
-    for name, time in PICTURES.items():
+    for name in names or PICTURES:
         with tempfile.TemporaryDirectory() as folder:
             scene = Scene.load(SCENES / f"{name}.txt")
             scene.run(folder, force=True)
             with Trajectory(folder) as trajectory:
-                frame = int(abs(trajectory.times - time).argmin())
-                render_still(trajectory, frame, HERE / f"{name}.png", scene.record.render, size=(960, 540))
+                frame = int(abs(trajectory.times - PICTURES[name]).argmin())
+                render_still(trajectory, frame, HERE / f"{name}.png", scene.record.render, size=SIZE)
         print(HERE / f"{name}.png")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

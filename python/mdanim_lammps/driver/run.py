@@ -134,6 +134,7 @@ class _Run:
                 frame = self.resume.frame
             else:
                 self.instance.setup()
+                self.before = self.instance.array("f").copy()
                 frame = 0
                 self._record(out)
             self.seconds["setup"] += time.perf_counter() - start
@@ -144,7 +145,7 @@ class _Run:
             try:
                 for frame in range(frame + 1, len(lengths) + 1):
                     with self._clock("simulation"):
-                        self.instance.run(lengths[frame - 1])
+                        self._advance(lengths[frame - 1])
                     with self._clock("output"):
                         row = self._record(out)
                         if time.perf_counter() - saved > CHECKPOINT_SECONDS or frame == len(lengths) or stopped.is_set():
@@ -163,6 +164,13 @@ class _Run:
             self._collect_cost()
             penetration = self._penetration()
         return self._finish(penetration)
+
+    def _advance(self, steps: int) -> None:
+        """Run to the next frame and keep the forces of the step before it: how they change tells how stiff the motion is."""
+        if steps > 1:
+            self.instance.run(steps - 1)
+        self.before = self.instance.array("f").copy()
+        self.instance.run(1)
 
     def _finish(self, penetration: float) -> Result:
         with self._clock("output"):
@@ -240,13 +248,27 @@ class _Run:
         """Energy of every term of the ledger [J]."""
         system, instance, scene = self.ready.system, self.instance, self.ready.scene
         energies = dict.fromkeys(self.ledger.terms, 0.0)
-        energies["kinetic"] = 0.5 * float(system.mass @ np.einsum("id,id->i", v, v))
+        energies["kinetic"] = self._kinetic(v)
         for effect in self.effects:
             if effect.ledger:
                 energies[effect.ledger] += effect.energy(instance, scene, system)
         for term in energies:
             energies[term] += self.carried.get(term, 0.0)  # losses before a resume
         return energies
+
+    def _kinetic(self, v: np.ndarray) -> float:
+        """Kinetic energy [J], corrected so that the sum of all energies is what leap-frog conserves, to fourth order in dt.
+
+        That is T + U + dt^2 (v.U''.v / 12 - F.F / 24 m), the energy of the nearby system whose exact motion the steps are (Hairer,
+        Lubich & Wanner, Geometric Numerical Integration, IX.3); without it a vibration of frequency w seems to hold
+        (w dt)^2/24 too little, and an impact to lose what goes into vibrations.
+        """
+        mass, dt, f = self.ready.system.mass, self.certificate.timestep, self.instance.array("f")
+        half = v - 0.5 * dt * f / mass[:, None]  # v(n-1/2)
+        bent = -dt * np.einsum("id,id->i", half, f - self.before) / 12.0
+        swung = dt**2 * np.einsum("id,id->i", f, f) / (24.0 * mass)
+        free = ~self.ready.system.held
+        return float((0.5 * mass * np.einsum("id,id->i", v, v) + bent - swung)[free].sum())
 
     def _gained(self) -> int | None:
         """Whole cells of liquid more than at the start: 0, or something is wrong; None without a liquid."""

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The liquid as a mesh: a smooth sheet with side walls, or the blocks of its cells. A frame moves its vertices only."""
+"""The liquid as a mesh: a smooth sheet with side walls, or the blocks of its cells; and where something keeps it out.
+
+A frame moves vertices only.
+"""
 
 from __future__ import annotations
 
@@ -54,7 +57,7 @@ class Sheet:
 
 
 class Blocks:
-    """Every column as a box up to its raw height; a column that tells nothing has none.
+    """Every column as a box up to its raw height; a column that tells nothing, or is kept dry, has none.
 
     V vertices: four on top of each column, then four of each step between neighbours across x, then across y; beyond
     the basin's edges all is floor. Where a step falls instead of rising, its face turns over by itself.
@@ -73,6 +76,7 @@ class Blocks:
 
     def mesh(self, height: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Vertices [m] and outward unit normals, each of shape (V, 3), for raw heights z [m], shape (ny, nx)."""
+        height = np.where(np.isfinite(height), height, np.nan)
         z = np.where(np.isnan(height), self._floor, height)
         beside = np.pad(height, ((0, 0), (1, 1)), constant_values=self._floor)
         behind = np.pad(height, ((1, 1), (0, 0)), constant_values=self._floor)
@@ -91,6 +95,43 @@ class Blocks:
         """Heights on both sides of the faces between columns; none where a side tells nothing."""
         known = np.where(np.isnan(before), behind, before), np.where(np.isnan(behind), before, behind)
         return tuple(np.where(np.isnan(k), self._floor, k) for k in known)
+
+
+def kept_dry(raw: np.ndarray) -> np.ndarray:
+    """Columns into which something lets no liquid below the surface, as a hull does inside; bool, shape (ny, nx).
+
+    Raw heights tell it, z [m], shape (ny, nx): minus infinity. A column that a solid hides goes with the nearest one that none
+    hides, so that a dry place ends in the middle of the planks around it, and cargo in it is dry.
+    """
+    dry = np.isneginf(raw)
+    if not dry.any():
+        return dry
+    from scipy.ndimage import distance_transform_edt
+
+    j, i = distance_transform_edt(np.isnan(raw), return_distances=False, return_indices=True)
+    return dry[j, i]
+
+
+def undersides(grid: Grid, position: np.ndarray) -> np.ndarray:
+    """Lowest point of any object over each column of cells and those around it, the floor where there is none.
+
+    Args:
+        grid: the columns.
+        position: of particles [m], shape (N, 3); about as dense as the cells, so that no column over a hull is without.
+
+    Returns:
+        z [m], shape (ny, nx).
+    """
+    from scipy.ndimage import minimum_filter
+
+    nx, ny, _ = grid.shape
+    column = np.floor((position[:, :2] - grid.low[:2]) / grid.cell[:2]).astype(int)
+    within = ((column >= 0) & (column < (nx, ny))).all(axis=1)
+    (i, j), z = column[within].T, position[within, 2]
+    lowest = np.full((ny, nx), np.inf)
+    np.minimum.at(lowest, (j, i), z)
+    lowest = minimum_filter(lowest, 3)
+    return np.where(np.isfinite(lowest), np.maximum(lowest, grid.low[2]), grid.low[2])
 
 
 def _centres_and_ends(grid: Grid, axis: int) -> np.ndarray:

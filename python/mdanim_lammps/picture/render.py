@@ -62,11 +62,12 @@ class Painter:
 
     def frame(self, index: int) -> np.ndarray:
         """Picture of a frame, uint8 RGB, shape (height, width, 3), first row on top."""
-        vertices = self._mesh.vertices(self.trajectory.position(index))
+        position = self.trajectory.position(index)
+        vertices = self._mesh.vertices(position)
         time = float(self.trajectory.times[index])
         self._surface.move(vertices, self._mesh.normals(vertices))
         if self._tank:
-            self._tank.show(index)
+            self._tank.show(index, position)
         self._stamp.SetInput(f"t = {time:.2f} s")
         self._aim(self.view(time))
         self._cast_shadow()

@@ -146,7 +146,10 @@ FRAGMENT_LIQUID = """//VTK::Light::Impl
   vec3 toEye = normalize(eye - worldPosition);
   vec3 toLamp = normalize(lamp);
   // Beside a wall the depth is that of the column behind it.
-  float top = n.z > 0.5 ? worldPosition.z : liquidHeight(worldPosition.xy - 0.25 * cell.xy * n.xy);
+  float inside = liquidHeight(worldPosition.xy - 0.25 * cell.xy * n.xy);
+  float top = n.z > 0.5 ? worldPosition.z : inside;
+  // The sheet runs on through a hull that is dry inside, where the liquid ends far below it.
+  if (worldPosition.z > inside + sheetAbove) discard;
   float film = smoothstep(0.1, 0.5, (top - basinLow.z) / cell.z);
   if (film <= 0.0) discard;
   bool inner = dot(n, toEye) < 0.0;

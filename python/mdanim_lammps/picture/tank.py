@@ -9,7 +9,7 @@ import numpy as np
 
 from ..results.trajectory import Trajectory
 from . import shading
-from .liquid import Blocks, Sheet
+from .liquid import Blocks, Sheet, kept_dry, undersides
 from .palette import LIQUID, rgb
 from .pieces import Field, MovingLine, MovingMesh, box_edges, lit_actor, plane
 
@@ -52,6 +52,8 @@ class Tank:
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
             uniforms.SetUniform3f("cell", list(pool.grid.cell))
             uniforms.SetUniformf("skinCover", COVER[look])
+            # Blocks have none where it is dry.
+            uniforms.SetUniformf("sheetAbove", 0.5 * pool.grid.cell[2] if look == "smooth" else np.finfo("f4").max)
         self.lit = [bottom, inner, outer]
         """Those that share the lamp."""
         glass = HAIR * np.linalg.norm(self._high - self._low) * np.array([1.0, 1.0, 0.0])
@@ -82,17 +84,20 @@ class Tank:
             uniforms.SetUniformf("floorHeight", height)
             uniforms.SetUniform3f("floorCentre", list(map(float, floor)))
 
-    def show(self, frame: int) -> None:
-        """Move the liquid to a frame."""
-        smooth = self._trajectory.liquid_height(frame)
-        height = smooth if self._look == "smooth" else self._trajectory.liquid_raw(frame)
-        points, normals = self._form.mesh(height)
+    def show(self, frame: int, position: np.ndarray) -> None:
+        """Move the liquid to a frame, in which particles are there [m], shape (N, 3)."""
+        smooth, raw = self._trajectory.liquid_height(frame), self._trajectory.liquid_raw(frame)
+        points, normals = self._form.mesh(smooth if self._look == "smooth" else raw)
         points[:, :2] += HAIR * ((self._low + self._high)[:2] / 2 - points[:, :2])
         self._mesh.move(points, normals)
         if self._look == "smooth":
             self._rim.move(points[self._form.rim])
         # What is seen through a column that tells nothing is seen through liquid all the same.
-        top = np.where(np.isnan(height), smooth, height)
+        top = smooth if self._look == "smooth" else np.where(np.isfinite(raw), raw, smooth)
+        dry = kept_dry(raw)
+        if dry.any():
+            # Under a hull there is liquid.
+            top[dry] = undersides(self._trajectory.liquid.grid, position)[dry]
         self._heights.fill(top)
         for actor in self._through:
             actor.GetShaderProperty().GetFragmentCustomUniforms().SetUniformf("liquidTop", float(top.max()))
