@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The automaton's grid (Wcislo 1999, sec. 4): whole numbers of liquid in cubic cells, and which cells are solid.
+// The automaton's grid (Wcislo 1999, sec. 4): whole numbers of liquid in cubic cells, and which cells are
+// solid.
 
 #ifndef MDANIM_CELLS_H
 #define MDANIM_CELLS_H
@@ -35,12 +36,22 @@ struct Cells {
   std::uint64_t number(int x, int y, int z) const
   { return (static_cast<std::uint64_t>(z) * ny + y) * nx + x; }
 
+  // Calls f(x, y, z) for all cells in the order of their numbers.
+  template <class F> void each(F &&f) const
+  {
+    for (int z = 0; z < nz; ++z)
+      for (int y = 0; y < ny; ++y)
+        for (int x = 0; x < nx; ++x) f(x, y, z);
+  }
+
   int nx, ny, nz;
   int row;
   std::size_t layer;
-  std::vector<std::uint8_t> content;    // 0 none, 1 at rest pressure, more under pressure; always 0 in solid cells
-  std::vector<std::uint8_t> open;       // OPEN or SOLID
-  std::vector<std::uint8_t> still;      // 1 where what fills the cell never moves (held objects, the rim), else 0
+  std::vector<std::uint8_t>
+      content;    // 0 none, 1 at rest pressure, more under pressure; always 0 in solid cells
+  std::vector<std::uint8_t> open;    // OPEN or SOLID
+  std::vector<std::uint8_t>
+      still;    // 1 where what fills the cell never moves (held objects, the rim), else 0
 };
 
 }    // namespace mdanim

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Random numbers that depend on nothing but their own key: the same on every rank, in every order, after every
-// resume.
+// Random numbers that depend on nothing but their own key: the same on every rank, in every order, after
+// every resume.
 
 #ifndef MDANIM_COUNTER_RNG_H
 #define MDANIM_COUNTER_RNG_H

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// fix mdanim/liquid: when the automaton steps, what it is told of solids and what solids feel of it; the rules are in
-// automaton.h, level.h, surface.h, occupancy.h and buoyancy.h. Every rank holds the whole grid.
+// fix mdanim/liquid: when the automaton steps, what it is told of solids and what solids feel of it; the
+// rules are in automaton.h, level.h, surface.h, occupancy.h and buoyancy.h. Every rank holds the whole grid.
 
 #include "fix_mdanim_liquid.h"
 
@@ -14,7 +14,6 @@
 #include "error.h"
 #include "force.h"
 #include "group.h"
-#include "memory.h"
 #include "neighbor.h"
 #include "region.h"
 #include "update.h"
@@ -24,6 +23,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -34,14 +34,16 @@ using namespace mdanim;
 static constexpr double STATE_VERSION = 1.0;
 
 // Reasons and measurements: docs/physics-liquid.md.
-static constexpr double STRIDE = 0.25;           // of a cell that solids travel between updates
-static constexpr double SWEEPS_PER_CELL = 8.0;   // that the fastest solid travels
-static constexpr int MOST_SWEEPS = 4096;         // per update; also parts the keys of their random numbers
-static constexpr double PERIOD = 0.06;           // sqrt(cell/g) between updates while the liquid is not level
-static constexpr double LEVEL_RATE = 0.11;       // share of exposed cells moved while a shallow-water wave crosses one cell
-static constexpr double SAMPLED = 4.0;           // cells above the liquid up to which solids are marked
-static constexpr double NEAR = 8.0;              // cells above the liquid up to which their motion counts
-static constexpr double SPLASH = 1.5;            // cells below the surface within which an empty cell is taken for a ripple
+static constexpr double STRIDE = 0.25;            // of a cell that solids travel between updates
+static constexpr double SWEEPS_PER_CELL = 8.0;    // that the fastest solid travels
+static constexpr int MOST_SWEEPS = 4096;          // per update; also parts the keys of their random numbers
+static constexpr double PERIOD = 0.06;    // sqrt(cell/g) between updates while the liquid is not level
+static constexpr double LEVEL_RATE =
+    0.11;    // share of exposed cells moved while a shallow-water wave crosses one cell
+static constexpr double SAMPLED = 4.0;    // cells above the liquid up to which solids are marked
+static constexpr double NEAR = 8.0;       // cells above the liquid up to which their motion counts
+static constexpr double SPLASH =
+    1.5;    // cells below the surface within which an empty cell is taken for a ripple
 static constexpr std::uint8_t SOLID_CODE = 255, STILL_CODE = 254;
 
 // --- the command ---
@@ -65,10 +67,14 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   if (narg < 9) utils::missing_cmd_args(FLERR, "fix mdanim/liquid", error);
   region_id = arg[3];
   Region *region = domain->get_region_by_id(region_id);
-  if (!region) error->all(FLERR, 3, "fix mdanim/liquid: there is no region {}; make it before this fix", arg[3]);
-  if (strcmp(region->style, "block") != 0 || !region->interior || region->dynamic_check() || !region->bboxflag)
-    error->all(FLERR, 3, "fix mdanim/liquid: the basin must be a finite, resting region of style block, side in; {} is not",
-               arg[3]);
+  if (!region)
+    error->all(FLERR, 3, "fix mdanim/liquid: there is no region {}; make it before this fix", arg[3]);
+  if (strcmp(region->style, "block") != 0 || !region->interior || region->dynamic_check() ||
+      !region->bboxflag)
+    error->all(
+        FLERR, 3,
+        "fix mdanim/liquid: the basin must be a finite, resting region of style block, side in; {} is not",
+        arg[3]);
   rho = utils::numeric(FLERR, arg[4], false, lmp);
   if (!(rho > 0.0)) error->all(FLERR, 4, "fix mdanim/liquid: density must be > 0, got {}", arg[4]);
   if (strcmp(arg[5], "grid") != 0)
@@ -77,21 +83,25 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   double bytes = 1.0;
   for (int d = 0; d < 3; ++d) {
     n[d] = utils::inumeric(FLERR, arg[6 + d], false, lmp);
-    if (n[d] < 1) error->all(FLERR, 6 + d, "fix mdanim/liquid: grid must be >= 1 along every axis, got {}", arg[6 + d]);
+    if (n[d] < 1)
+      error->all(FLERR, 6 + d, "fix mdanim/liquid: grid must be >= 1 along every axis, got {}", arg[6 + d]);
     bytes *= n[d];
   }
-  if (bytes > std::numeric_limits<int>::max())
-    error->all(FLERR, 6, "fix mdanim/liquid: a grid of {:.3g} cells is too large; use fewer, larger cells", bytes);
+  if (bytes > 1.5e9)    // the state, of a byte a cell and 8 a column, must fit into a restart file's int
+    error->all(FLERR, 6, "fix mdanim/liquid: a grid of {:.3g} cells is too large; use fewer, larger cells",
+               bytes);
 
   bool has_volume = false;
   Vertical vertical = Vertical::LOWER;
   for (int iarg = 9; iarg < narg;) {
-    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", arg[iarg]), error);
+    if (iarg + 1 >= narg)
+      utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", arg[iarg]), error);
     const char *word = arg[iarg], *value = arg[iarg + 1];
     int used = 2;
     if (strcmp(word, "volume") == 0) {
       volume_asked = utils::numeric(FLERR, value, false, lmp);
-      if (!(volume_asked > 0.0)) error->all(FLERR, iarg + 1, "fix mdanim/liquid: volume must be > 0, got {}", value);
+      if (!(volume_asked > 0.0))
+        error->all(FLERR, iarg + 1, "fix mdanim/liquid: volume must be > 0, got {}", value);
       has_volume = true;
     } else if (strcmp(word, "level") == 0) {
       level_asked = utils::numeric(FLERR, value, false, lmp);
@@ -117,27 +127,38 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
     } else {
       used = keyword(iarg, narg, arg);
       if (!used)
-        error->all(FLERR, iarg,
-                   "fix mdanim/liquid: unknown keyword {}; it knows volume, level, fill, gravity, model, vertical, "
-                   "seed, buoyancy, drag, lambda, base, cells, faces, still, sweeps and every",
-                   word);
+        error->all(
+            FLERR, iarg,
+            "fix mdanim/liquid: unknown keyword {}; it knows volume, level, fill, gravity, model, vertical, "
+            "seed, buoyancy, drag, lambda, base, cells, faces, still, sweeps and every",
+            word);
     }
     iarg += used;
   }
   if (has_volume == has_level)
-    error->all(FLERR, "fix mdanim/liquid: write either volume V or level Z, {}", has_level ? "not both" : "one of them");
-  if (g < 0.0) error->all(FLERR, "fix mdanim/liquid: gravity G is missing; liquid lies flat only under gravity along -z");
+    error->all(FLERR, "fix mdanim/liquid: write either volume V or level Z, {}",
+               has_level ? "not both" : "one of them");
+  if (g < 0.0)
+    error->all(FLERR,
+               "fix mdanim/liquid: gravity G is missing; liquid lies flat only under gravity along -z");
 
   low = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
-  cell = {(region->extent_xhi - low.x) / n[0], (region->extent_yhi - low.y) / n[1], (region->extent_zhi - low.z) / n[2]};
+  cell = {(region->extent_xhi - low.x) / n[0], (region->extent_yhi - low.y) / n[1],
+          (region->extent_zhi - low.z) / n[2]};
   shortest = std::min({cell.x, cell.y, cell.z});
   if (has_level && !(level_asked > low.z && level_asked <= region->extent_zhi))
-    error->all(FLERR, "fix mdanim/liquid: level {} is not within the basin, {} to {}", level_asked, low.z, region->extent_zhi);
+    error->all(FLERR, "fix mdanim/liquid: level {} is not within the basin, {} to {}", level_asked, low.z,
+               region->extent_zhi);
 
-  automaton = std::make_unique<Automaton>(n[0], n[1], n[2], seed, vertical);
-  still_count = std::make_unique<Occupancy>(n[0], n[1], n[2]);
-  moving_count = std::make_unique<Occupancy>(n[0], n[1], n[2]);
-  solid.assign(still_count->count.size(), 0);
+  try {
+    automaton = std::make_unique<Automaton>(n[0], n[1], n[2], seed, vertical);
+    still_count = std::make_unique<Occupancy>(n[0], n[1], n[2]);
+    moving_count = std::make_unique<Occupancy>(n[0], n[1], n[2]);
+    solid.assign(still_count->count.size(), 0);
+  } catch (const std::bad_alloc &) {
+    error->one(FLERR, "fix mdanim/liquid: no memory for a grid of {:.3g} cells; use fewer, larger cells",
+               bytes);
+  }
   height.assign(columns(), 0.0);
   eta.assign(columns(), 0.0);
   blocked.assign(columns(), 0);
@@ -148,8 +169,10 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
 int FixMdanimLiquid::keyword(int iarg, int narg, char **arg)
 {
   const char *word = arg[iarg];
-  static const char *const known[] = {"buoyancy", "drag", "lambda", "base", "cells", "faces", "still", "sweeps", "every"};
-  if (std::none_of(std::begin(known), std::end(known), [&](const char *k) { return strcmp(k, word) == 0; })) return 0;
+  static const char *const known[] = {"buoyancy", "drag",  "lambda", "base", "cells",
+                                      "faces",    "still", "sweeps", "every"};
+  if (std::none_of(std::begin(known), std::end(known), [&](const char *k) { return strcmp(k, word) == 0; }))
+    return 0;
   if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", word), error);
   const char *value = arg[iarg + 1];
   if (strcmp(word, "buoyancy") == 0) {
@@ -160,19 +183,22 @@ int FixMdanimLiquid::keyword(int iarg, int narg, char **arg)
     slows = true;
   } else if (strcmp(word, "lambda") == 0 || strcmp(word, "base") == 0) {
     if (!utils::strmatch(value, "^d_"))
-      error->all(FLERR, iarg + 1, "fix mdanim/liquid: {} must be a per-particle property d_NAME, got {}", word, value);
+      error->all(FLERR, iarg + 1, "fix mdanim/liquid: {} must be a per-particle property d_NAME, got {}",
+                 word, value);
     (strcmp(word, "base") == 0 ? base_name : lambda_name) = value + 2;
     writable(value + 2, word);
   } else if (strcmp(word, "cells") == 0 || strcmp(word, "faces") == 0) {
     if (!utils::strmatch(value, "^i2_"))
-      error->all(FLERR, iarg + 1, "fix mdanim/liquid: {} must be a per-particle property i2_NAME, got {}", word, value);
+      error->all(FLERR, iarg + 1, "fix mdanim/liquid: {} must be a per-particle property i2_NAME, got {}",
+                 word, value);
     (strcmp(word, "cells") == 0 ? corners_name : faces_name) = value + 3;
   } else if (strcmp(word, "still") == 0) {
     still_bit = group_bit(iarg + 1, value);
   } else if (strcmp(word, "sweeps") == 0) {
     sweeps = strcmp(value, "auto") == 0 ? 0 : utils::inumeric(FLERR, value, false, lmp);
     if (strcmp(value, "auto") != 0 && (sweeps < 1 || sweeps > MOST_SWEEPS))
-      error->all(FLERR, iarg + 1, "fix mdanim/liquid: sweeps must be auto or 1 to {}, got {}", MOST_SWEEPS, value);
+      error->all(FLERR, iarg + 1, "fix mdanim/liquid: sweeps must be auto or 1 to {}, got {}", MOST_SWEEPS,
+                 value);
   } else {
     every = utils::inumeric(FLERR, value, false, lmp);
     if (every < 1) error->all(FLERR, iarg + 1, "fix mdanim/liquid: every must be >= 1, got {}", value);
@@ -185,7 +211,8 @@ int FixMdanimLiquid::modify_param(int narg, char **arg) { return keyword(0, narg
 int FixMdanimLiquid::group_bit(int iarg, const char *word)
 {
   const int index = group->find(word);
-  if (index < 0) error->all(FLERR, iarg, "fix mdanim/liquid: there is no group {}; make it before this fix", word);
+  if (index < 0)
+    error->all(FLERR, iarg, "fix mdanim/liquid: there is no group {}; make it before this fix", word);
   return group->bitmask[index];
 }
 
@@ -195,10 +222,11 @@ double *FixMdanimLiquid::writable(const std::string &name, const char *keyword)
   int is_double = 0, width = 0;
   const int index = atom->find_custom(name.c_str(), is_double, width);
   if (index < 0 || !is_double || width)
-    error->all(FLERR,
-               "fix mdanim/liquid: {} names d_{}, which is no per-particle property; make it with 'fix ID all "
-               "property/atom d_{}'",
-               keyword, name, name);
+    error->all(
+        FLERR,
+        "fix mdanim/liquid: {} names d_{}, which is no per-particle property; make it with 'fix ID all "
+        "property/atom d_{}'",
+        keyword, name, name);
   return atom->dvector[index];
 }
 
@@ -226,32 +254,42 @@ void FixMdanimLiquid::init()
     error->all(FLERR, "fix {} mdanim/liquid: dimension must be 3, got {}", id, domain->dimension);
   if (domain->triclinic) error->all(FLERR, "fix {} mdanim/liquid: a triclinic box is not supported", id);
   if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
-    error->all(FLERR, "fix {} mdanim/liquid: periodic boundaries are not supported; use boundary s, f or m", id);
+    error->all(FLERR, "fix {} mdanim/liquid: periodic boundaries are not supported; use boundary s, f or m",
+               id);
   if (slows && lambda_name.empty())
-    error->all(FLERR, "fix {} mdanim/liquid: drag needs lambda d_NAME, the property that fix mdanim/leapfrog reads", id);
+    error->all(FLERR,
+               "fix {} mdanim/liquid: drag needs lambda d_NAME, the property that fix mdanim/leapfrog reads",
+               id);
   if (!slows && !(lambda_name.empty() && base_name.empty()))
-    error->all(FLERR, "fix {} mdanim/liquid: lambda and base say where drag goes, but there is no drag; add one", id);
+    error->all(FLERR,
+               "fix {} mdanim/liquid: lambda and base say where drag goes, but there is no drag; add one",
+               id);
   if (slows && !lifts)
-    error->all(FLERR, "fix {} mdanim/liquid: drag acts on the volume of particles, which buoyancy gives; add buoyancy", id);
+    error->all(
+        FLERR,
+        "fix {} mdanim/liquid: drag acts on the volume of particles, which buoyancy gives; add buoyancy", id);
   if (lifts) volume.init(lmp);
   if (slows) gamma.init(lmp);
   if (!corners_name.empty() && width_of(corners_name) != 7)
-    error->all(FLERR,
-               "fix {} mdanim/liquid: cells names i2_{}, which is no property of 7 integers; make it with 'fix ID all "
-               "property/atom i2_{} 7 ghost yes'",
-               id, corners_name, corners_name);
+    error->all(
+        FLERR,
+        "fix {} mdanim/liquid: cells names i2_{}, which is no property of 7 integers; make it with 'fix ID all "
+        "property/atom i2_{} 7 ghost yes'",
+        id, corners_name, corners_name);
   if (!faces_name.empty()) {
     faces_width = width_of(faces_name);
     if (faces_width == 0 || faces_width % 3)
-      error->all(FLERR,
-                 "fix {} mdanim/liquid: faces names i2_{}, which is no property of 3 integers a face; make it with 'fix ID all "
-                 "property/atom i2_{} 36'",
-                 id, faces_name, faces_name);
+      error->all(
+          FLERR,
+          "fix {} mdanim/liquid: faces names i2_{}, which is no property of 3 integers a face; make it with 'fix ID all "
+          "property/atom i2_{} 36'",
+          id, faces_name, faces_name);
     if (model == Model::PAPER)
       error->all(FLERR, "fix {} mdanim/liquid: model paper knows no pressure on faces; leave faces out", id);
   }
   if (!(corners_name.empty() && faces_name.empty()) && atom->map_style == Atom::MAP_NONE)
-    error->all(FLERR, "fix {} mdanim/liquid: cells and faces need an atom map; use 'atom_modify map array'", id);
+    error->all(FLERR, "fix {} mdanim/liquid: cells and faces need an atom map; use 'atom_modify map array'",
+               id);
   // Lists are then rebuilt as soon as a particle has moved by half the skin.
   watching = neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once;
 }
@@ -282,10 +320,11 @@ void FixMdanimLiquid::add_bodies(Occupancy &into, bool still, double below)
     for (int k = 0; k < 7; ++k) {
       at[k + 1] = atom->map(corners[i][k]);
       if (at[k + 1] < 0)
-        error->one(FLERR,
-                   "fix {} mdanim/liquid: particle {}, a corner of the lattice cell of particle {}, is out of reach; raise "
-                   "comm_modify cutoff",
-                   id, corners[i][k], atom->tag[i]);
+        error->one(
+            FLERR,
+            "fix {} mdanim/liquid: particle {}, a corner of the lattice cell of particle {}, is out of reach; raise "
+            "comm_modify cutoff",
+            id, corners[i][k], atom->tag[i]);
       all &= mask[at[k + 1]];
     }
     if (static_cast<bool>(all & still_bit) != still) continue;
@@ -321,19 +360,32 @@ void FixMdanimLiquid::sum_over_ranks(Occupancy &counted)
     int *packed = part.data();
     for (int z = box.low[2]; z < box.high[2]; ++z)
       for (int y = box.low[1]; y < box.high[1]; ++y, packed += width)
-        copy(&counted.count[(static_cast<std::size_t>(z) * counted.ny + y) * counted.nx + box.low[0]], packed);
+        copy(&counted.count[(static_cast<std::size_t>(z) * counted.ny + y) * counted.nx + box.low[0]],
+             packed);
   };
   rows([&](const int *grid, int *packed) { std::copy_n(grid, width, packed); });
   MPI_Allreduce(MPI_IN_PLACE, part.data(), static_cast<int>(part.size()), MPI_INT, MPI_SUM, world);
   rows([&](int *grid, const int *packed) { std::copy_n(packed, width, grid); });
 }
 
-void FixMdanimLiquid::count_still()
+// Marks what never moves, as it stands now; returns how many cells that changes.
+long FixMdanimLiquid::count_still()
 {
   const Lap lap(occupancy_seconds);
+  CellBox box = still_count->touched;
   still_count->clear();
   add_bodies(*still_count, true, std::numeric_limits<double>::infinity());
   sum_over_ranks(*still_count);
+  box.take_in(still_count->touched);
+  long changed = 0;
+  box.each([&](int x, int y, int z) {
+    const std::uint64_t c = automaton->cells.number(x, y, z);
+    const bool still = 2 * still_count->count[c] >= Occupancy::FULL;
+    if (still == (solid[c] == 2)) return;
+    solid[c] = still ? 2 : 0;
+    ++changed;
+  });
+  return changed;
 }
 
 void FixMdanimLiquid::count_moving()
@@ -344,25 +396,13 @@ void FixMdanimLiquid::count_moving()
   add_bodies(*moving_count, false, poured ? top + SAMPLED : std::numeric_limits<double>::infinity());
   sum_over_ranks(*moving_count);
   before.take_in(moving_count->touched);
-  const Occupancy &still = *still_count;
-  const auto mark = [&](const CellBox &box) {
-    for (int z = box.low[2]; z < box.high[2]; ++z)
-      for (int y = box.low[1]; y < box.high[1]; ++y)
-        for (int x = box.low[0]; x < box.high[0]; ++x) {
-          const std::size_t c = (static_cast<std::size_t>(z) * still.ny + y) * still.nx + x;
-          const int resting = still.count[c], all = resting + moving_count->count[c];
-          solid[c] = 2 * resting >= Occupancy::FULL ? 2 : 2 * all >= Occupancy::FULL ? 1 : 0;
-        }
-  };
-  if (!poured) mark(still.touched);
-  mark(before);
-  const CellBox &box = moving_count->touched;
   moving_solid = 0;
-  for (int z = box.low[2]; z < box.high[2]; ++z)
-    for (int y = box.low[1]; y < box.high[1]; ++y) {
-      const auto row = solid.begin() + (static_cast<std::ptrdiff_t>(z) * still.ny + y) * still.nx;
-      moving_solid += std::count(row + box.low[0], row + box.high[0], std::uint8_t(1));
-    }
+  before.each([&](int x, int y, int z) {
+    const std::uint64_t c = automaton->cells.number(x, y, z);
+    if (solid[c] == 2) return;
+    solid[c] = 2 * (still_count->count[c] + moving_count->count[c]) >= Occupancy::FULL;
+    moving_solid += solid[c];
+  });
 }
 
 // --- the liquid ---
@@ -380,11 +420,10 @@ void FixMdanimLiquid::pour()
     Region *fill = domain->get_region_by_id(fill_id);
     if (!fill) error->all(FLERR, "fix {} mdanim/liquid: region {} has been deleted", id, fill_id);
     fill->prematch();
-    for (int z = 0; z < cells.nz; ++z)
-      for (int y = 0; y < cells.ny; ++y)
-        for (int x = 0; x < cells.nx; ++x)
-          within[cells.number(x, y, z)] =
-              fill->match(low.x + (x + 0.5) * cell.x, low.y + (y + 0.5) * cell.y, low.z + (z + 0.5) * cell.z);
+    cells.each([&](int x, int y, int z) {
+      within[cells.number(x, y, z)] =
+          fill->match(low.x + (x + 0.5) * cell.x, low.y + (y + 0.5) * cell.y, low.z + (z + 0.5) * cell.z);
+    });
   }
   if (has_level) {
     // Whole layers below the level, and of the layer that it cuts the same part of the open cells.
@@ -402,12 +441,18 @@ void FixMdanimLiquid::pour()
   } else {
     units = static_cast<std::int64_t>(volume_asked / (cell.x * cell.y * cell.z) + 0.5);
   }
+  if (units < 1)
+    error->all(
+        FLERR,
+        "fix {} mdanim/liquid: {} is less than half a cell of liquid; use more liquid or smaller cells", id,
+        has_level ? fmt::format("level {}", level_asked) : fmt::format("volume {}", volume_asked));
   const long left = automaton->fill(units, within.data(), now);
   if (left)
-    error->all(FLERR,
-               "fix {} mdanim/liquid: {} of {} cells of liquid find no room beside the solids in {}; use less liquid or a larger "
-               "basin",
-               id, left, units, fill_id.empty() ? "the basin" : "the region to fill");
+    error->all(
+        FLERR,
+        "fix {} mdanim/liquid: {} of {} cells of liquid find no room beside the solids in {}; use less liquid or a larger "
+        "basin",
+        id, left, units, fill_id.empty() ? "the basin" : "the region to fill");
   poured = true;
   raise_surface(false);
 }
@@ -424,8 +469,10 @@ void FixMdanimLiquid::smooth()
 {
   const Cells &cells = automaton->cells;
   top = cells.nz;
-  while (top > 0 && std::all_of(&cells.content[cells.at(-1, -1, top - 1)],
-                                &cells.content[cells.at(-1, -1, top - 1)] + cells.layer, [](std::uint8_t q) { return q == 0; }))
+  while (top > 0 &&
+         std::all_of(&cells.content[cells.at(-1, -1, top - 1)],
+                     &cells.content[cells.at(-1, -1, top - 1)] + cells.layer,
+                     [](std::uint8_t q) { return q == 0; }))
     --top;
   // A column is parted where what ends its liquid never moves: each side of a wall has a level of its own.
   for (int y = 0; y < cells.ny; ++y)
@@ -435,16 +482,38 @@ void FixMdanimLiquid::smooth()
       if (!std::isnan(height[column])) continue;
       int z = top - 1;
       while (z >= 0 && !cells.content[cells.at(x, y, z)]) --z;
-      const bool dry = z < 0;
-      ++z;
-      while (dry && z < cells.nz && cells.open[cells.at(x, y, z)]) ++z;
-      blocked[column] = z < cells.nz && cells.still[cells.at(x, y, z)];
+      if (z < 0)    // dry: what stands on the floor or hangs above it
+        while (++z < cells.nz && cells.open[cells.at(x, y, z)]) {}
+      else if (z + 1 < cells.nz && !cells.open[cells.at(x, y, z + 1)]) ++z;    // what shuts the liquid in
+      else
+        while (z >= 0 && cells.open[cells.at(x, y, z)]) --z;    // what a film lies on
+      blocked[column] = z >= 0 && z < cells.nz && cells.still[cells.at(x, y, z)];
     }
   smooth_surface(cells.nx, cells.ny, height.data(), blocked.data(), eta.data());
+  // Under a lid from wall to wall no column tells a height: then it is that up to which the open cells would
+  // hold the liquid.
+  if (std::all_of(height.begin(), height.end(), [](double h) { return std::isnan(h); }))
+    std::fill(eta.begin(), eta.end(), shut_in_height());
   lowest_eta = *std::min_element(eta.begin(), eta.end());
 }
 
-// Whether it is time for an update. Depends on the state alone, so that neither ranks nor pieces of a run change it.
+// Height up to which open cells, from the lowest layer up, hold all the liquid [cells].
+double FixMdanimLiquid::shut_in_height() const
+{
+  const Cells &cells = automaton->cells;
+  std::int64_t left = automaton->total();
+  for (int z = 0; z < cells.nz; ++z) {
+    std::int64_t open = 0;
+    for (int y = 0; y < cells.ny; ++y)
+      for (int x = 0; x < cells.nx; ++x) open += cells.open[cells.at(x, y, z)] != Cells::SOLID;
+    if (open && left <= open) return z + static_cast<double>(left) / static_cast<double>(open);
+    left -= open;
+  }
+  return cells.nz;
+}
+
+// Whether it is time for an update. Depends on the state alone, so that neither ranks nor pieces of a run
+// change it.
 bool FixMdanimLiquid::due()
 {
   double fastest = -1.0;    // squared; -1 when no solid is near the liquid
@@ -456,11 +525,22 @@ bool FixMdanimLiquid::due()
       if (x[i][2] < below) fastest = std::max(fastest, dot(vec3(v[i]), vec3(v[i])));
     if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &fastest, 1, MPI_DOUBLE, MPI_MAX, world);
   }
-  waited += every;
+  if (!calm) waited += every;
   if (fastest >= 0.0) travel += std::sqrt(fastest) * every * update->dt / shortest;
   else if (moving_solid) return true;    // the last one has just left
   if (travel >= STRIDE) return true;
   return !calm && waited * update->dt >= PERIOD * std::sqrt(shortest / g);
+}
+
+// Liquid leaves the cells that have become solid; returns how many have changed.
+long FixMdanimLiquid::make_room()
+{
+  try {
+    return automaton->displace(solid.data(), static_cast<std::uint64_t>(update->ntimestep));
+  } catch (const std::runtime_error &problem) {
+    error->all(FLERR, "fix {} mdanim/liquid: {}", id, problem.what());
+  }
+  return 0;
 }
 
 void FixMdanimLiquid::update_liquid()
@@ -470,18 +550,16 @@ void FixMdanimLiquid::update_liquid()
   const auto now = static_cast<std::uint64_t>(update->ntimestep);
   {
     const Lap lap(automaton_seconds);
-    try {
-      changed = automaton->displace(solid.data(), now);
-    } catch (const std::runtime_error &problem) {
-      error->all(FLERR, "fix {} mdanim/liquid: {}", id, problem.what());
-    }
+    changed = make_room();
     if (changed || !calm) {
-      const int most = sweeps ? sweeps : std::clamp(static_cast<int>(std::ceil(SWEEPS_PER_CELL * travel)), 1, MOST_SWEEPS);
+      const int most =
+          sweeps ? sweeps : std::clamp(static_cast<int>(std::ceil(SWEEPS_PER_CELL * travel)), 1, MOST_SWEEPS);
       for (int k = 0; k < most; ++k) automaton->sweep(now * MOST_SWEEPS + k);
       swept += most;
       if (model == Model::SURFACE) {
         const double depth = static_cast<double>(units) / columns() * cell.z;
-        const double crossed = std::sqrt(g * depth) * waited * update->dt / shortest;    // cells that a wave has gone
+        const double crossed =
+            std::sqrt(g * depth) * waited * update->dt / shortest;    // cells that a wave has gone
         if (leveller.move(automaton->cells, seed, now, LEVEL_RATE * crossed, changed)) automaton->poured();
       }
     }
@@ -496,8 +574,12 @@ void FixMdanimLiquid::update_liquid()
 
 void FixMdanimLiquid::setup_post_neighbor()
 {
-  count_still();
+  const long changed = count_still();
   if (!poured) pour();
+  else if (changed) {    // somebody has moved what never moves, between two runs
+    make_room();
+    raise_surface(false);
+  }
   post_neighbor();
 }
 
@@ -512,7 +594,8 @@ void FixMdanimLiquid::watch()
 {
   watched.clear();
   watched_top = low.z + top * cell.z;
-  const double below = watching ? watched_top + NEAR * cell.z + 0.5 * neighbor->skin : std::numeric_limits<double>::infinity();
+  const double below =
+      watching ? watched_top + NEAR * cell.z + 0.5 * neighbor->skin : std::numeric_limits<double>::infinity();
   double *lambda = slows ? writable(lambda_name, "lambda") : nullptr;
   const double *base = base_name.empty() ? nullptr : writable(base_name, "base");
   for (int i = 0; i < atom->nlocal; ++i) {
@@ -541,7 +624,7 @@ void FixMdanimLiquid::post_force(int)
 bool FixMdanimLiquid::over_basin(const double *x) const
 {
   return x[0] >= low.x && x[0] <= low.x + automaton->cells.nx * cell.x && x[1] >= low.y &&
-         x[1] <= low.y + automaton->cells.ny * cell.y;
+      x[1] <= low.y + automaton->cells.ny * cell.y;
 }
 
 // Part of the volume around a particle that counts as immersed.
@@ -549,11 +632,12 @@ double FixMdanimLiquid::immersed(const Vec3 &place) const
 {
   const Cells &cells = automaton->cells;
   if (!(place.x >= 0.0 && place.x <= cells.nx && place.y >= 0.0 && place.y <= cells.ny)) return 0.0;
-  if (model == Model::SURFACE) return immersed_part(at_point(eta.data(), cells.nx, cells.ny, place.x, place.y), place.z);
+  if (model == Model::SURFACE)
+    return immersed_part(at_point(eta.data(), blocked.data(), cells.nx, cells.ny, place.x, place.y), place.z);
   // The paper's own words: liquid in any of the cells around.
   if (!(place.z >= 0.0 && place.z < cells.nz)) return 0.0;
-  const int x = std::min(static_cast<int>(place.x), cells.nx - 1), y = std::min(static_cast<int>(place.y), cells.ny - 1),
-            z = static_cast<int>(place.z);
+  const int x = std::min(static_cast<int>(place.x), cells.nx - 1),
+            y = std::min(static_cast<int>(place.y), cells.ny - 1), z = static_cast<int>(place.z);
   for (int dz = -1; dz <= 1; ++dz)
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx)
@@ -572,7 +656,8 @@ void FixMdanimLiquid::couple()
   const double *base = base_name.empty() ? nullptr : writable(base_name, "base");
   for (Face &face : faces) face.push = pressure_on(face);
   const double above = low.z + (top + 1.0) * cell.z;    // nothing is immersed from here up
-  // All is from here down, as far as the basin reaches; most particles of a large body need not look up the surface.
+  // All is from here down, as far as the basin reaches; most particles of a large body need not look up the
+  // surface.
   const bool deep = model == Model::SURFACE && lowest_eta >= 1.0;
   const double below = deep ? low.z + (lowest_eta - 0.5) * cell.z : -std::numeric_limits<double>::infinity();
   for (std::size_t n = 0; n < watched.size(); ++n) {
@@ -580,7 +665,8 @@ void FixMdanimLiquid::couple()
     const double z = x[i][2];
     const double s = z >= above ? 0.0 : z <= below && over_basin(x[i]) ? 1.0 : immersed(in_cells(x[i]));
     const double own = volumes ? volumes[i] : volume.number;
-    const double own_lambda = slows ? liquid_lambda(gammas ? gammas[i] : gamma.number, rho, own, s) / force->ftm2v : 0.0;
+    const double own_lambda =
+        slows ? liquid_lambda(gammas ? gammas[i] : gamma.number, rho, own, s) / force->ftm2v : 0.0;
     if (lambda) lambda[i] = (base ? base[i] : 0.0) + own_lambda;
     Vec3 push;
     if (faces_name.empty()) push.z = lift(rho, own, s, g);
@@ -592,7 +678,8 @@ void FixMdanimLiquid::couple()
   }
 }
 
-// The faces of the watched particles, each once, with its corners in an order that does not depend on who asks.
+// The faces of the watched particles, each once, with its corners in an order that does not depend on who
+// asks.
 void FixMdanimLiquid::find_faces()
 {
   faces.clear();
@@ -613,10 +700,11 @@ void FixMdanimLiquid::find_faces()
       for (int n = 0; n < 4; ++n) {
         face.corner[n] = atom->map(tag[n]);
         if (face.corner[n] < 0)
-          error->one(FLERR,
-                     "fix {} mdanim/liquid: particle {}, a corner of a face of particle {}, is out of reach; raise comm_modify "
-                     "cutoff",
-                     id, tag[n], atom->tag[i]);
+          error->one(
+              FLERR,
+              "fix {} mdanim/liquid: particle {}, a corner of a face of particle {}, is out of reach; raise comm_modify "
+              "cutoff",
+              id, tag[n], atom->tag[i]);
       }
       faces.push_back(face);
     }
@@ -628,11 +716,14 @@ void FixMdanimLiquid::find_faces()
 Vec3 FixMdanimLiquid::pressure_on(const Face &face) const
 {
   const double *const *x = atom->x;
-  const Vec3 a = vec3(x[face.corner[0]]), b = vec3(x[face.corner[1]]), c = vec3(x[face.corner[2]]), d = vec3(x[face.corner[3]]);
+  const Vec3 a = vec3(x[face.corner[0]]), b = vec3(x[face.corner[1]]), c = vec3(x[face.corner[2]]),
+             d = vec3(x[face.corner[3]]);
   const Vec3 middle = 0.25 * ((a + c) + (b + d));
   if (!over_basin(&middle.x)) return {};
   const Vec3 place = in_cells(&middle.x);
-  const double depth = at_point(eta.data(), automaton->cells.nx, automaton->cells.ny, place.x, place.y) - place.z;
+  const double depth =
+      at_point(eta.data(), blocked.data(), automaton->cells.nx, automaton->cells.ny, place.x, place.y) -
+      place.z;
   if (depth <= 0.0) return {};
   if (depth > SPLASH) {
     const Vec3 area = cross(c - a, d - b);
@@ -642,14 +733,16 @@ Vec3 FixMdanimLiquid::pressure_on(const Face &face) const
   return corner_push(rho * g * depth * cell.z, a, b, c, d);
 }
 
-// Whether a face below the surface has air before it all the same, as the inside of a hull does: no liquid in the first open cell
-// along its normal, and none above that. The nearest cells may be solid, for they are only roughly where the face is.
+// Whether a face below the surface has air before it all the same, as the inside of a hull does: no liquid in
+// the first open cell along its normal, and none above that. The nearest cells may be solid, for they are
+// only roughly where the face is.
 bool FixMdanimLiquid::looks_into_air(const Vec3 &middle, const Vec3 &normal) const
 {
   const Cells &cells = automaton->cells;
   for (const double far : {0.75, 1.25, 1.75, 2.25}) {
     const Vec3 there = middle + (far * shortest) * normal, place = in_cells(&there.x);
-    if (!(place.x >= 0.0 && place.x < cells.nx && place.y >= 0.0 && place.y < cells.ny && place.z >= 0.0 && place.z < cells.nz))
+    if (!(place.x >= 0.0 && place.x < cells.nx && place.y >= 0.0 && place.y < cells.ny && place.z >= 0.0 &&
+          place.z < cells.nz))
       return false;
     const int x = static_cast<int>(place.x), y = static_cast<int>(place.y);
     int z = static_cast<int>(place.z);
@@ -673,8 +766,8 @@ double FixMdanimLiquid::power(double &loss) const
   return gain;
 }
 
-// Velocities are those of whole steps here, eq. (3.10), which are the means of the half steps before and after: the
-// trapezoidal rule gives the work exactly.
+// Velocities are those of whole steps here, eq. (3.10), which are the means of the half steps before and
+// after: the trapezoidal rule gives the work exactly.
 void FixMdanimLiquid::end_of_step()
 {
   if (wet.empty() && last_power == 0.0 && last_loss == 0.0) return;
@@ -696,22 +789,22 @@ double FixMdanimLiquid::compute_scalar()
   return -all;
 }
 
-// 1 units of liquid; 2 at the start; 3 mean level; 4 solid cells; 5 sweeps; 6 awake; 7 energy lost to drag; wall seconds of the slowest
-// rank for 8 automaton, 9 occupancy, 10 coupling, 11 all
+// 1 units of liquid; 2 at the start; 3 mean level; 4 solid cells; 5 sweeps; 6 awake; 7 energy lost to drag;
+// wall seconds of the slowest rank for 8 automaton, 9 occupancy, 10 coupling, 11 all
 double FixMdanimLiquid::compute_vector(int n)
 {
   double all = 0.0;
   switch (n) {
-    case 0: return static_cast<double>(automaton->total());
-    case 1: return static_cast<double>(units);
-    case 2:
-      for (const double h : eta) all += h;
-      return low.z + cell.z * all / columns();
-    case 3: return static_cast<double>(automaton->count_solid());
-    case 4: return static_cast<double>(swept);
-    case 5: return !(calm && nobody);
-    case 6: MPI_Allreduce(&lost, &all, 1, MPI_DOUBLE, MPI_SUM, world); return all;
-    default: break;
+  case 0: return static_cast<double>(automaton->total());
+  case 1: return static_cast<double>(units);
+  case 2:
+    for (const double h : eta) all += h;
+    return low.z + cell.z * all / columns();
+  case 3: return static_cast<double>(automaton->count_solid());
+  case 4: return static_cast<double>(swept);
+  case 5: return !(calm && nobody);
+  case 6: MPI_Allreduce(&lost, &all, 1, MPI_DOUBLE, MPI_SUM, world); return all;
+  default: break;
   }
   double here[] = {automaton_seconds, occupancy_seconds, coupling_seconds,
                    automaton_seconds + occupancy_seconds + coupling_seconds};
@@ -719,15 +812,16 @@ double FixMdanimLiquid::compute_vector(int n)
   return all;
 }
 
-// A row per column of cells: x, y of its centre, z of the smooth surface, z of the topmost liquid (NaN where a body hides it).
+// A row per column of cells: x, y of its centre, z of the smooth surface, z of the topmost liquid (NaN where
+// a body hides it).
 double FixMdanimLiquid::compute_array(int row, int column)
 {
   const int nx = automaton->cells.nx;
   switch (column) {
-    case 0: return low.x + (row % nx + 0.5) * cell.x;
-    case 1: return low.y + (row / nx + 0.5) * cell.y;
-    case 2: return low.z + eta[row] * cell.z;
-    default: return low.z + height[row] * cell.z;
+  case 0: return low.x + (row % nx + 0.5) * cell.x;
+  case 1: return low.y + (row / nx + 0.5) * cell.y;
+  case 2: return low.z + eta[row] * cell.z;
+  default: return low.z + height[row] * cell.z;
   }
 }
 
@@ -742,8 +836,9 @@ static int air_below(const Cells &cells, int x, int y, double height)
   return first - z;
 }
 
-// Of the columns that tell no height those with air below the surface count as kept dry, as a hull keeps its inside, where the air
-// is two cells deep, and all around as far as it goes on: over what has just gone under the liquid closes a little late.
+// Of the columns that tell no height those with air below the surface count as kept dry, as a hull keeps its
+// inside, where the air is two cells deep, and all around as far as it goes on: over what has just gone under
+// the liquid closes a little late.
 void FixMdanimLiquid::surface(double *smooth, double *raw) const
 {
   const Cells &cells = automaton->cells;
@@ -770,18 +865,17 @@ void FixMdanimLiquid::surface(double *smooth, double *raw) const
 void FixMdanimLiquid::contents(std::uint8_t *out) const
 {
   const Cells &cells = automaton->cells;
-  for (int z = 0; z < cells.nz; ++z)
-    for (int y = 0; y < cells.ny; ++y)
-      for (int x = 0; x < cells.nx; ++x) {
-        const std::size_t c = cells.at(x, y, z);
-        *out++ = cells.open[c] ? cells.content[c] : SOLID_CODE;
-      }
+  cells.each([&](int x, int y, int z) {
+    const std::size_t c = cells.at(x, y, z);
+    *out++ = cells.open[c] ? cells.content[c] : SOLID_CODE;
+  });
 }
 
 double FixMdanimLiquid::memory_usage()
 {
   return 3.0 * automaton->cells.content.size() + solid.size() * (1.0 + 2.0 * sizeof(int)) +
-         columns() * (2.0 * sizeof(double) + 1.0) + watched.capacity() * sizeof(int) + wet.capacity() * sizeof(Wet);
+      columns() * (2.0 * sizeof(double) + 1.0) + watched.capacity() * sizeof(int) +
+      wet.capacity() * sizeof(Wet);
 }
 
 // --- state ---
@@ -821,9 +915,22 @@ std::string FixMdanimLiquid::set_state(const std::uint8_t *bytes, std::size_t si
   memcpy(&head, bytes, sizeof head);
   if (head.version != STATE_VERSION)
     return fmt::format("the liquid's state has version {}, {} is needed", head.version, STATE_VERSION);
-  if (head.nx != cells.nx || head.ny != cells.ny || head.nz != cells.nz || size != sizeof head + heights + solid.size())
-    return fmt::format("the liquid's state is of a grid of {} x {} x {} cells, this one has {} x {} x {}", head.nx, head.ny,
-                       head.nz, cells.nx, cells.ny, cells.nz);
+  if (head.nx != cells.nx || head.ny != cells.ny || head.nz != cells.nz ||
+      size != sizeof head + heights + solid.size())
+    return fmt::format("the liquid's state is of a grid of {} x {} x {} cells, this one has {} x {} x {}",
+                       head.nx, head.ny, head.nz, cells.nx, cells.ny, cells.nz);
+  // A byte of the grid is what a cell holds, or a code.
+  const std::uint8_t *content = bytes + sizeof head + heights;
+  std::int64_t held = 0;
+  for (std::size_t c = 0; c < solid.size(); ++c) {
+    if (content[c] >= STILL_CODE) continue;
+    if (content[c] > Cells::FULLEST)
+      return fmt::format("the liquid's state is damaged: a cell holds {}", content[c]);
+    held += content[c];
+  }
+  if (held != head.units)
+    return fmt::format("the liquid's state is damaged: it holds {} units of liquid, not {}", held,
+                       head.units);
   units = head.units;
   swept = head.swept;
   waited = head.waited;
@@ -834,26 +941,21 @@ std::string FixMdanimLiquid::set_state(const std::uint8_t *bytes, std::size_t si
   memcpy(height.data(), bytes + sizeof head, heights);
 
   // Solids first: an empty grid loses nothing to them.
-  const std::uint8_t *content = bytes + sizeof head + heights;
   std::fill(cells.content.begin(), cells.content.end(), 0);
   moving_count->clear();
   moving_solid = 0;
-  for (int z = 0; z < cells.nz; ++z)
-    for (int y = 0; y < cells.ny; ++y)
-      for (int x = 0; x < cells.nx; ++x) {
-        const std::size_t c = cells.number(x, y, z);
-        solid[c] = content[c] == STILL_CODE ? 2 : content[c] == SOLID_CODE ? 1 : 0;
-        if (solid[c] != 1) continue;
-        moving_count->touched.take_in(x, y, z);
-        ++moving_solid;
-      }
+  cells.each([&](int x, int y, int z) {
+    const std::uint64_t c = cells.number(x, y, z);
+    solid[c] = content[c] == STILL_CODE ? 2 : content[c] == SOLID_CODE ? 1 : 0;
+    if (solid[c] != 1) return;
+    moving_count->touched.take_in(x, y, z);
+    ++moving_solid;
+  });
   automaton->displace(solid.data(), 0);
-  for (int z = 0; z < cells.nz; ++z)
-    for (int y = 0; y < cells.ny; ++y)
-      for (int x = 0; x < cells.nx; ++x) {
-        const std::size_t c = cells.number(x, y, z);
-        if (!solid[c]) cells.content[cells.at(x, y, z)] = content[c];
-      }
+  cells.each([&](int x, int y, int z) {
+    const std::uint64_t c = cells.number(x, y, z);
+    if (!solid[c]) cells.content[cells.at(x, y, z)] = content[c];
+  });
   automaton->touched();
   poured = true;
   smooth();

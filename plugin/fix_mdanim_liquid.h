@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// fix mdanim/liquid: a basin of liquid that solids displace, and that lifts and slows them. Wcislo 1999, sec. 4.
+// fix mdanim/liquid: a basin of liquid that solids displace, and that lifts and slows them. Wcislo 1999,
+// sec. 4.
 
 #ifndef LMP_FIX_MDANIM_LIQUID_H
 #define LMP_FIX_MDANIM_LIQUID_H
@@ -37,8 +38,8 @@ class FixMdanimLiquid : public Fix {
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  // For objects.cpp. Heights are z of every column, x fastest: the surface that solids feel, and the topmost liquid (NaN where a
-  // column tells none).
+  // For objects.cpp. Heights are z of every column, x fastest: the surface that solids feel, and the topmost
+  // liquid (NaN where a column tells none).
   int columns() const { return automaton->cells.nx * automaton->cells.ny; }
   void surface(double *smooth, double *raw) const;
   // Everything that later steps depend on, except positions and velocities; all ranks call it together.
@@ -68,14 +69,16 @@ class FixMdanimLiquid : public Fix {
   double *writable(const std::string &name, const char *keyword);
 
   mdanim::Vec3 in_cells(const double *x) const;
-  void count_still();
+  long count_still();
   void count_moving();
   void sum_over_ranks(mdanim::Occupancy &counted);
   void add_bodies(mdanim::Occupancy &into, bool still, double below);
   void mark_solid();
   void pour();
+  long make_room();
   void raise_surface(bool just_levelled);
   void smooth();
+  double shut_in_height() const;
 
   bool due();
   void update_liquid();
@@ -113,20 +116,20 @@ class FixMdanimLiquid : public Fix {
 
   // state
   bool poured = false;
-  bool calm = false;            // all is level and no solid has moved since: nothing to do
-  double travel = 0.0;          // of the fastest particle near the liquid since the last update, in cells
-  std::int64_t waited = 0;      // steps since the last update
-  std::int64_t swept = 0;       // sweeps so far
-  std::int64_t units = 0;       // cells of liquid at the start
-  double work = 0.0, lost = 0.0;            // on this rank
-  std::vector<double> height, eta;          // of the columns, in cells above the floor; see level.h, surface.h
+  bool calm = false;                // all is level and no solid has moved since: nothing to do
+  double travel = 0.0;              // of the fastest particle near the liquid since the last update, in cells
+  std::int64_t waited = 0;          // steps since the last update
+  std::int64_t swept = 0;           // sweeps so far
+  std::int64_t units = 0;           // cells of liquid at the start
+  double work = 0.0, lost = 0.0;    // on this rank
+  std::vector<double> height, eta;    // of the columns, in cells above the floor; see level.h, surface.h
 
   // what follows from it
-  int top = 0;                    // no liquid in layers from this one up
+  int top = 0;    // no liquid in layers from this one up
   double lowest_eta = 0.0;
-  long moving_solid = 0;          // cells filled by what may move
+  long moving_solid = 0;    // cells filled by what may move
   bool watching = false;
-  bool nobody = false;            // no particle of any rank is near the liquid before the next rebuild of lists
+  bool nobody = false;    // no particle of any rank is near the liquid before the next rebuild of lists
   double watched_top = 0.0;
   std::vector<int> watched;
   std::vector<Wet> wet;

@@ -16,8 +16,8 @@ using namespace LAMMPS_NS;
 static FixMdanimLiquid *liquid(void *handle, const char *fix)
 { return dynamic_cast<FixMdanimLiquid *>(static_cast<LAMMPS *>(handle)->modify->get_fix_by_id(fix)); }
 
-// z of every column of cells (ny, nx): the smooth surface, and the topmost liquid (NaN where a body hides it). Returns 0, or 1 when
-// there is no such fix.
+// z of every column of cells (ny, nx): the smooth surface, and the topmost liquid (NaN where a body hides
+// it). Returns 0, or 1 when there is no such fix.
 MDANIM_EXPORT int mdanim_liquid_heights(void *handle, const char *fix, double *smooth, double *raw)
 {
   const FixMdanimLiquid *found = liquid(handle, fix);
@@ -52,12 +52,13 @@ MDANIM_EXPORT int mdanim_liquid_get_state(void *handle, const char *fix, unsigne
 }
 
 // To be called before the setup of a run. Returns 0, or 1 with a message in `error`.
-MDANIM_EXPORT int mdanim_liquid_set_state(void *handle, const char *fix, const unsigned char *bytes, long long size,
-                                          char *error, int error_size)
+MDANIM_EXPORT int mdanim_liquid_set_state(void *handle, const char *fix, const unsigned char *bytes,
+                                          long long size, char *error, int error_size)
 {
   try {
     FixMdanimLiquid *found = liquid(handle, fix);
-    const std::string why = found ? found->set_state(bytes, size) : std::string("there is no fix mdanim/liquid ") + fix;
+    const std::string why =
+        found ? found->set_state(bytes, size) : std::string("there is no fix mdanim/liquid ") + fix;
     if (why.empty()) return 0;
     snprintf(error, error_size, "%s", why.c_str());
   } catch (const std::exception &e) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Which cells of the automaton a lattice body fills: sample points in its lattice cells, counted in whole numbers, so that
-// the sum over bodies and ranks does not depend on their order. docs/physics-liquid.md.
+// Which cells of the automaton a lattice body fills: sample points in its lattice cells, counted in whole
+// numbers, so that the sum over bodies and ranks does not depend on their order. docs/physics-liquid.md.
 
 #ifndef MDANIM_OCCUPANCY_H
 #define MDANIM_OCCUPANCY_H
@@ -19,6 +19,13 @@ struct CellBox {
   void take_in(int x, int y, int z);
   void take_in(const CellBox &other);
   std::size_t size() const;
+  // Calls f(x, y, z) for all its cells, x fastest.
+  template <class F> void each(F &&f) const
+  {
+    for (int z = low[2]; z < high[2]; ++z)
+      for (int y = low[1]; y < high[1]; ++y)
+        for (int x = low[0]; x < high[0]; ++x) f(x, y, z);
+  }
 };
 
 class Occupancy {
@@ -27,8 +34,8 @@ class Occupancy {
 
   Occupancy(int nx, int ny, int nz);
 
-  // Corner points of a lattice cell in VTK order, in units of the automaton's cells from the corner of its grid. The lattice cell's present volume
-  // is shared out over 3x3x3 points.
+  // Corner points of a lattice cell in VTK order, in units of the automaton's cells from the corner of its
+  // grid. The lattice cell's present volume is shared out over 3x3x3 points.
   void add_cell(const Vec3 corner[8]);
   // The paper's literal rule: the cell that holds a particle is full.
   void add_particle(const Vec3 &place);

@@ -328,6 +328,7 @@ def test_a_restart_file_goes_on(tmp_path):
     first.command("run 150")
     stored = state(first)
     first.command(f"write_restart {tmp_path}/half.restart")
+    unbroken = frames(first, [150])[-1]
     first.close()
     import plugin_path
 
@@ -335,11 +336,63 @@ def test_a_restart_file_goes_on(tmp_path):
     for command in [
         "atom_modify map array sort 0 0", "newton off", f"read_restart {tmp_path}/half.restart",
         "fix model all property/atom rmass d_volume d_lambda ghost yes", "fix table all property/atom i2_cell 7 ghost yes",
-        *BASIN, POOL + " cells i2_cell buoyancy d_volume drag 0.1 lambda d_lambda",
+        *BASIN, FALL, POOL + " cells i2_cell buoyancy d_volume drag 0.1 lambda d_lambda",
+        "fix move all mdanim/leapfrog lambda d_lambda", "timestep 0.3", "neighbor 0.4 bin", "neigh_modify every 1 delay 0",
+        "comm_modify cutoff 3.0", "pair_style none",
     ]:  # fmt: skip
         second.command(command)
     assert np.array_equal(state(second), stored)
+    assert same(frames(second, [150])[-1], unbroken)
     second.close()
+
+
+def test_a_damaged_state_is_refused(tmp_path):
+    """A state whose cells do not hold what its head says, or hold what no cell can, is not taken up."""
+    lmp = block_in_pool(tmp_path, **FAST)
+    lmp.command("run 0")
+    stored = state(lmp)
+    error = ctypes.create_string_buffer(200)
+
+    def take(bytes_):
+        pointer = bytes_.ctypes.data_as(ctypes.c_void_p)
+        return library().mdanim_liquid_set_state(handle(lmp), b"water", pointer, ctypes.c_longlong(len(bytes_)), error, 200)
+
+    dry, burst = stored.copy(), stored.copy()
+    dry[-16 * 20 * 20 :] = 0
+    burst[-16 * 20 * 20] = 252
+    assert take(dry) == 1 and b"holds 0 units of liquid" in error.value
+    assert take(burst) == 1 and b"a cell holds 252" in error.value
+    assert take(stored) == 0
+    lmp.close()
+
+
+def test_a_still_body_that_was_moved_is_marked_anew(tmp_path):
+    """Between two runs somebody shifts a wall: its cells follow at the setup, and no liquid is lost."""
+    wall = lab.block((2, 4, 14), (-5.0, -2.0, 0.0))
+    lmp = lab.load(
+        wall, tmp_path,
+        ["fix table all property/atom i2_cell 7 ghost yes", *lattice(wall, (2, 4, 14)), *BASIN,
+         POOL + " cells i2_cell still all", "run 8"],
+    )  # fmt: skip
+    before = cells(lmp) == 255
+    lmp.command("displace_atoms all move 6 0 0")
+    lmp.command("run 8")
+    after = cells(lmp) == 255
+    assert before[:14, 8:12, 5:7].all() and before.sum() == after.sum() == 2 * 4 * 14
+    assert after[:14, 8:12, 11:13].all()
+    assert value(lmp, "units") == value(lmp, "start")
+    lmp.close()
+
+
+def test_a_lid_from_wall_to_wall_still_floats(tmp_path):
+    """No column tells a height: the liquid's own volume does, and a sinking lid comes back up."""
+    lmp = block_in_pool(tmp_path, (20, 20, 2), (-10.0, -10.0, 10.0), ["run 3000"])
+    bottom = lab.by_tag(lmp, "x")[:, 2].min()
+    # It floats in by half of its two cells; below it there is no room for liquid that is not there.
+    assert 8.0 < bottom < 10.5
+    assert np.abs(lab.by_tag(lmp, "v")[:, 2]).max() < 0.1
+    assert value(lmp, "units") == value(lmp, "start")
+    lmp.close()
 
 
 # --- refusals ---
@@ -363,12 +416,14 @@ def test_a_restart_file_goes_on(tmp_path):
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 lambda d_no", "make it with"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 sweeps 0", "auto or 1 to"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 model wave", "surface or paper"),
+        ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 0.1 gravity 1\nrun 0", "level 0.1 is less than half a cell"),
+        ("fix w all mdanim/liquid basin 1 grid 4 4 4 volume 40 gravity 1\nrun 0", "volume 40.* is less than half a cell"),
     ],
 )  # fmt: skip
 def test_refuses_with_a_cure(tmp_path, command, message):
     """Every wrong argument has its own message."""
     with pytest.raises(Exception, match=message):
-        lab.load(one(5.0), tmp_path, [*BASIN, "region ball sphere 0 0 0 5", command])
+        lab.load(one(5.0), tmp_path, [*BASIN, "region ball sphere 0 0 0 5", *command.split("\n")])
 
 
 @pytest.mark.parametrize(

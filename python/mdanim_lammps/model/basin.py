@@ -102,7 +102,7 @@ def check_basin(scene: Scene, models: Sequence[Model]) -> list[Problem]:
     if liquid is None or scene.effects.get("liquid") is Switch.OFF:
         return []
     problems = _unusable(liquid, grid)
-    return problems or _too_full(scene, models, grid)
+    return problems or [*_too_full(scene, models, grid), *_too_snug(scene, models, grid)]
 
 
 def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
@@ -124,13 +124,41 @@ def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
             f"{needed * 1e-9:.1f} GB, {free * 1e-9:.1f} GB are free",
             f"try resolution {length(coarser)}, or a smaller basin",
         )]
-    if liquid.volume is not None and grid.units(liquid.volume) < 1:
+    low, high = liquid.fill or (liquid.low, liquid.high)
+    if not grid.cells_within(low, high):
+        thinnest = min(b - a for a, b in zip(low, high))
         return [Problem(
-            liquid.spans.get("volume"),
-            f"{liquid.volume:.3g} m^3 of liquid are less than half a cell of {grid.cell_volume:.3g} m^3",
-            f"more liquid, or resolution {length(0.8 * liquid.volume ** (1 / 3))}",
+            liquid.spans.get("fill"), f"no cell of the basin has its centre in the part to fill, which is {length(thinnest)} thin "
+            f"where cells are {length(max(grid.cell))}",
+            f"fill more of the basin, or write resolution {length(0.9 * thinnest)} in control",
+        )]
+    top = high if liquid.level is None else (high[0], high[1], min(high[2], liquid.level))
+    volume = liquid.volume or math.prod(b - a for a, b in zip(low, top))
+    if grid.units(volume) < 1:
+        return [Problem(
+            liquid.spans.get("volume" if liquid.volume is not None else "level"),
+            f"{volume:.3g} m^3 of liquid are less than half a cell of {grid.cell_volume:.3g} m^3",
+            f"more liquid, or resolution {length(0.8 * volume ** (1 / 3))}",
         )]
     return []
+
+
+def _too_snug(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem]:
+    """Bodies that leave no column of liquid beside them that could tell how high it stands."""
+    problems = []
+    for solid, model in zip(scene.solids, models):
+        gap = [(b - a) - float(np.ptp(model.position[:, axis])) for axis, (a, b) in
+               enumerate(zip(scene.liquid.low[:2], scene.liquid.high[:2]))]
+        if model.held.any() or any(g >= 1.5 * c for g, c in zip(gap, grid.cell)):
+            continue
+        problems.append(Problem(
+            solid.spans.get("shape") or solid.spans.get("object"),
+            f"{solid.name} fills the basin from wall to wall but for {length(max(gap))}, less than one and a half cells of "
+            f"{length(max(grid.cell))}: no liquid beside it tells how deep it floats",
+            f"a smaller object, a wider basin, or resolution {length(max(gap) / 2)}" if max(gap) > 0.1 * min(grid.cell)
+            else "a smaller object, or a wider basin",
+        ))
+    return problems
 
 
 def _too_full(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem]:
@@ -145,7 +173,7 @@ def _too_full(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem
         top = (high[0], high[1], min(high[2], liquid.level))
         poured = math.prod(b - a for a, b in zip(low, top)) - volume @ _within(models, low, top)
         amount = f"a level of {liquid.level:.4g} m"
-    place = liquid.spans.get("volume") or liquid.spans.get("level")
+    place = liquid.spans.get("volume" if liquid.volume is not None else "level")
     if grid.units(max(0.0, room)) < max(1, grid.units(poured)):
         where = "the basin" if liquid.fill is None else "the part that is filled"
         return [Problem(

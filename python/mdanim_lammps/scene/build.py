@@ -25,6 +25,9 @@ def build(out: Filled, problems: Problems, name: str, source: Source) -> records
     """The scene, or None where errors make it impossible."""
     return Builder(out, problems, Span(source.name, 1, 1)).scene(name, source.path)
 
+MOST_SWEEPS = 4096
+"""Most sweeps of the automaton per update that fix mdanim/liquid takes."""
+
 
 class Builder:
     """Reads one Filled scene; every ``problem`` has a place."""
@@ -315,6 +318,11 @@ class Builder:
                 "the level is a height, not a depth",
             )
         sweeps = block.value("sweeps")
+        if sweeps is not None and sweeps > MOST_SWEEPS:
+            self.problem(
+                block.first("sweeps").span(0), f"{sweeps:.0f} sweeps per update are more than {MOST_SWEEPS}",
+                "write sweeps auto, which takes 8 for each cell that the fastest solid travels",
+            )
         model = records.LiquidModel(block.value("model", "surface"))
         if model is records.LiquidModel.PAPER:
             self.problem(
