@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""How deep elastic cubes float, and how fast they sink: ``python bench/drafts.py [drafts] [cells] [speed] [drift]``.
+"""How deep elastic cubes float, and how fast they sink: ``python bench/drafts.py [drafts] [cells] [models] [speed] [drift]``.
 
 drafts   share of a cube of 6^3 cells below the surface, after five ways to get there, against its density over the liquid's;
          beside it how far the nearest axis of the cube leans from the vertical (45 = on an edge, 54.7 = on a corner)
 cells    the same for one tilted drop and cubes of 3 to 10 cells a side
+models   the same for a cube of 6^3 cells set upright onto the surface, by `liquid { model … }`; ten times stiffer, because pressure
+         squeezes: softer ones shrink and lie deeper
 speed    terminal speed under the liquid's drag over (rho_s - rho_l) g / (gamma rho_l)
 drift    what a floating cube moves sideways in 20 s, and the sweeps of the automaton in that time
 
@@ -119,6 +121,13 @@ def cells() -> None:
         print(f"{side:<20}" + "   ".join(settled(density=d, **way) for d in DENSITIES), flush=True)
 
 
+def models() -> None:
+    """Print drafts under each model of the liquid."""
+    print("the same for stiff ones set onto the surface upright, by model of the liquid")
+    for model in ("surface", "pressure", "paper"):
+        print(f"{model:20}" + "   ".join(settled(density=d, z=17.1, young=10000, liquid=f"model {model}") for d in DENSITIES), flush=True)
+
+
 def speed() -> None:
     """Print terminal speeds."""
     gamma, g = 0.1, 0.01
@@ -142,6 +151,8 @@ def drift() -> None:
               f"{pool.instance.fix_value('liquid', SWEEPS) - swept:.0f} sweeps")
 
 
+WORDS = {"drafts": drafts, "cells": cells, "models": models, "speed": speed, "drift": drift}
+
 if __name__ == "__main__":
-    for what in sys.argv[1:] or ("drafts", "cells", "speed", "drift"):
-        {"drafts": drafts, "cells": cells, "speed": speed, "drift": drift}[what]()
+    for what in sys.argv[1:] or WORDS:
+        WORDS[what]()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Small elastic bodies as arrays, and LAMMPS instances filled with them, for the tests of the plugin.
 
-Units: spacing h = density = Young's modulus = 1 (docs/physics.md), so the wave speed is sqrt(1.2).
+Units: spacing h = density = Young's modulus = 1 (docs/physics-solids.md), so the wave speed is sqrt(1.2).
 """
 
 from __future__ import annotations
@@ -216,3 +216,17 @@ def by_tag(lmp, name: str) -> np.ndarray:
 def kinetic(body: Body, v: np.ndarray) -> float:
     """Kinetic energy for velocities v."""
     return float(0.5 * (body.mass * (v**2).sum(1)).sum())
+
+
+def conserved(lmp, body: Body, dt: float, steps: int) -> float:
+    """Run and give the energy that leap-frog conserves to fourth order, T + U + dt^2 (v.U''.v/12 - F.F/24m).
+
+    ``thermo_style`` must name ``pe``; fixes that hold an energy are asked by ``fix_modify energy``.
+    """
+    lmp.command(f"run {steps - 1}" if lmp.extract_global("ntimestep") == 0 else f"run {steps - 1} pre no")
+    before = by_tag(lmp, "f")
+    lmp.command("run 1 pre no")
+    f, v = by_tag(lmp, "f"), by_tag(lmp, "v")
+    half = v - 0.5 * dt * f / body.mass[:, None]
+    corrected = -dt * np.sum(half * (f - before)) / 12.0 - dt**2 * np.sum(f**2 / body.mass[:, None]) / 24.0
+    return kinetic(body, v) + corrected + lmp.get_thermo("pe")

@@ -236,7 +236,7 @@ def test_blocks_head_on_rebound(tmp_path, speed, drift):
     assert np.abs(body.mass @ v).max() < 1e-12
     assert lmp.get_thermo("etotal") == pytest.approx(start, rel=drift)
     if speed <= 0.5:  # faster ones come apart wildly shaking
-        # docs/physics.md: 0.78-0.98, 0.84-0.91, 0.81-0.86 of the speed comes back.
+        # docs/physics-solids.md: 0.78-0.98, 0.84-0.91, 0.81-0.86 of the speed comes back.
         assert 0.78 < velocity[1][0] / (0.5 * speed * lab.WAVE_SPEED) < 0.98
     lmp.close()
 
