@@ -39,7 +39,7 @@ class FixMdanimLiquid : public Fix {
   void restart(char *) override;
 
   // For objects.cpp. Heights are z of every column, x fastest: the surface that solids feel, and the topmost
-  // liquid (NaN where a column tells none).
+  // liquid (NaN where a column tells none, minus infinity where a hull keeps it dry).
   int columns() const { return automaton->cells.nx * automaton->cells.ny; }
   void surface(double *smooth, double *raw) const;
   // Everything that later steps depend on, except positions and velocities; all ranks call it together.

@@ -17,7 +17,8 @@ static FixMdanimLiquid *liquid(void *handle, const char *fix)
 { return dynamic_cast<FixMdanimLiquid *>(static_cast<LAMMPS *>(handle)->modify->get_fix_by_id(fix)); }
 
 // z of every column of cells (ny, nx): the smooth surface, and the topmost liquid (NaN where a body hides
-// it). Returns 0, or 1 when there is no such fix.
+// it, minus infinity where one keeps the column dry below the surface, as a hull does its inside). Returns
+// 0, or 1 when there is no such fix.
 MDANIM_EXPORT int mdanim_liquid_heights(void *handle, const char *fix, double *smooth, double *raw)
 {
   const FixMdanimLiquid *found = liquid(handle, fix);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The liquid in pictures: its mesh holds its volume and is closed, and it is seen where it is and nowhere else."""
+"""The liquid in pictures: its mesh holds its volume and is closed, and it is seen where it is only."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from test_picture_camera import project
 from test_picture_render import hue_mask
 
 from mdanim_lammps.model.basin import Grid
+from mdanim_lammps.picture import tank
 from mdanim_lammps.picture.camera import action_of
 from mdanim_lammps.picture.liquid import Blocks, Sheet
 from mdanim_lammps.picture.render import Painter
@@ -44,7 +45,7 @@ def test_sheet_holds_the_volume(heights):
     sheet = Sheet(GRID)
     points, _ = sheet.mesh(height)
     expected = (height - GRID.low[2]).sum() * GRID.cell[0] * GRID.cell[1]
-    # Bilinear patches hold it exactly; two triangles differ from one by its twist, which cancels but for this.
+    # Bilinear patches hold it exactly; two triangles differ by the twist, which cancels but for this.
     assert volume_below(points, sheet.triangle, GRID.low[2]) == pytest.approx(expected, rel=2e-4)
 
 
@@ -60,7 +61,7 @@ def test_mesh_is_closed_but_for_its_bottom(form, heights):
 
 @pytest.mark.parametrize("form", [Sheet, Blocks])
 def test_normals_look_out_of_the_faces(form):
-    """A vertex's normal has unit length and is on the outer side of its triangles, as drawing by side needs."""
+    """A vertex's normal has unit length and is on the outer side of its triangles, for drawing by side."""
     mesh = form(GRID)
     points, normals = mesh.mesh(splash(GRID, height=0.03))
     np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, rtol=1e-12)
@@ -88,7 +89,8 @@ def test_sheet_reaches_the_edges_and_its_rim_runs_there():
     sheet = Sheet(GRID)
     height = splash(GRID, centre=(0.4, 0.2))
     points, _ = sheet.mesh(height)
-    np.testing.assert_allclose([points.min(axis=0)[:2], points.max(axis=0)[:2]], [GRID.low[:2], GRID.high[:2]])
+    ends = [points.min(axis=0)[:2], points.max(axis=0)[:2]]
+    np.testing.assert_allclose(ends, [GRID.low[:2], GRID.high[:2]])
     rim = points[sheet.rim]
     on_wall = (np.abs(rim[:, 0]) == 1.0) | (np.abs(rim[:, 1]) == 0.7)
     assert on_wall.all() and len(np.unique(rim, axis=0)) == len(rim) == 2 * (21 + 15)
@@ -171,7 +173,8 @@ def test_deeper_is_bluer(tmp_path):
 def test_waterline_is_crisp(tmp_path):
     """Down the middle of a block the colour changes within three pixels, at the height of the liquid."""
     image, view = picture(tmp_path / "t.h5", flat, slab(0.45, y=-0.62))
-    (x, top), (_, low) = (project(view, np.array([[0.0, -0.67, z]]), SIZE[0] / SIZE[1])[0][0] for z in (0.8, 0.2))
+    ends = np.array([[0.0, -0.67, 0.8], [0.0, -0.67, 0.2]])
+    (x, top), (_, low) = project(view, ends, SIZE[0] / SIZE[1])[0]
     column = round((x + 1) / 2 * SIZE[0])
     rows = [round((1 - y) / 2 * SIZE[1]) for y in (top, low)]
     red = image[rows[0] : rows[1], column, 0]
@@ -201,7 +204,7 @@ def test_nothing_is_drawn_where_it_is_dry(tmp_path, look):
 
 @pytest.mark.parametrize("look", ["smooth", "cells"])
 def test_less_than_a_film_is_not_drawn(tmp_path, look):
-    """A twentieth of a cell, as the filter leaves around a puddle, has no skin, whatever colour the liquid has."""
+    """A twentieth of a cell, as the filter leaves around a puddle, has no skin, whatever its colour."""
     images = []
     for color in ("#d02020", "#20d020"):
         scene, models, grid = pool_scene(color=color)
@@ -214,7 +217,7 @@ def test_less_than_a_film_is_not_drawn(tmp_path, look):
 
 
 def test_cells_show_steps_and_the_sheet_does_not(tmp_path):
-    """With ``liquid cells`` raw heights are drawn: a step between two levels, and a hole where nothing is told."""
+    """With ``liquid cells`` raw heights are drawn: a step between levels, a hole where nothing is told."""
     models = [box("mark", (0.1, 0.1, 0.1), (1, 1, 1), (0.9, 0.6, 0.95))]
 
     def step(grid):
@@ -236,12 +239,39 @@ def test_cells_show_steps_and_the_sheet_does_not(tmp_path):
     assert spot(change, view, (0, 0, 0.5)).max() > 0.02 and spot(change, view, (0.7, 0, 0.5)).max() == 0.0
 
 
+def test_rim_is_drawn_where_liquid_meets_the_glass(tmp_path, monkeypatch):
+    """The bright line runs along the front wall, but not before a block at the glass, nor on a dry floor."""
+    block = [box("block", (0.4, 1.4, 0.9), (4, 14, 9), (0.0, 0.0, 0.5))]
+
+    def half(grid):
+        return np.where(column_centres(grid)[0] < 0.0, 0.5, 0.0)
+
+    # Seen aslant, part of a line that lies behind a face by less than its own width comes out of it.
+    aslant = Render(camera=(Camera((2.5, -3.5, 1.5), (0.0, 0.0, 0.45)),))
+    image, view = picture(tmp_path / "t.h5", half, block, aslant)
+    monkeypatch.setattr(tank, "RIM", 0.0)
+    line = np.abs(image - picture(tmp_path / "t.h5", half, block, aslant)[0]).max(axis=2)
+
+    def seen(low, high):
+        """Brightest of the line in a rectangle of the front wall."""
+        x, z = np.meshgrid(np.linspace(low[0], high[0], 100), np.linspace(low[1], high[1], 100))
+        places, _ = project(view, np.stack([x, 0 * x - 0.7, z], axis=-1).reshape(-1, 3), SIZE[0] / SIZE[1])
+        column, row = ((places * [1, -1] + 1) / 2 * SIZE).astype(int).T
+        return line[row, column].max()
+
+    assert seen((-0.9, 0.48), (-0.3, 0.52)) > 0.1
+    # The step between both levels lies in the block, whose outermost column it fades in.
+    assert seen((-0.15, 0.06), (0.15, 0.94)) == 0.0
+    assert seen((0.25, -0.02), (0.95, 0.1)) == 0.0
+
+
 def test_objects_above_the_liquid_hide_it(tmp_path):
     """A block before the front wall, seen from the front, shows no trace of the liquid behind it."""
     front = [box("block", (0.4, 0.1, 0.4), (4, 1, 4), (0.0, -1.0, 0.25))]
     wet, _ = picture(tmp_path / "wet.h5", flat, front)
     bare, view = picture(tmp_path / "dry.h5", dry, front)
-    np.testing.assert_allclose(spot(wet, view, (0, -1.05, 0.25)), spot(bare, view, (0, -1.05, 0.25)), atol=0.01)
+    middle = (0, -1.05, 0.25)
+    np.testing.assert_allclose(spot(wet, view, middle), spot(bare, view, middle), atol=0.01)
     assert hue_mask(wet, "#e8743b").sum() > 500
 
 
@@ -249,7 +279,8 @@ def test_liquid_takes_the_scenes_colour(tmp_path):
     """Green liquid is green."""
     scene, models, grid = pool_scene(color="#208030")
     frames = wet_frames(models, (flat(grid), flat(grid)))
-    with Trajectory(write(tmp_path / "t.h5", scene, models, frames, grid)) as t, Painter(t, SIDE, size=SIZE) as painter:
+    path = write(tmp_path / "t.h5", scene, models, frames, grid)
+    with Trajectory(path) as t, Painter(t, SIDE, size=SIZE) as painter:
         color = spot(painter.frame(0) / 255.0, painter.view(0.0), (-0.7, -0.7, 0.25))
     assert color[1] > color[0] + 0.1 and color[1] > color[2] + 0.05
 
@@ -258,7 +289,8 @@ def test_camera_holds_the_basin(tmp_path):
     """Without a camera line the whole basin is in the picture, seen from above its water."""
     scene, models, grid = pool_scene([box("crumb", (0.05,) * 3, (1,) * 3, (0.1, 0.1, 0.5))])
     frames = wet_frames(models, (flat(grid), flat(grid)))
-    with Trajectory(write(tmp_path / "t.h5", scene, models, frames, grid)) as t, Painter(t, size=SIZE) as painter:
+    path = write(tmp_path / "t.h5", scene, models, frames, grid)
+    with Trajectory(path) as t, Painter(t, size=SIZE) as painter:
         view = painter.view(0.0)
     corners = np.array([[(grid.low, grid.high)[k >> a & 1][a] for a in range(3)] for k in range(8)])
     places, depth = project(view, corners, SIZE[0] / SIZE[1])
@@ -267,7 +299,7 @@ def test_camera_holds_the_basin(tmp_path):
 
 
 def test_what_sinks_has_not_fallen_out_of_the_scene(tmp_path):
-    """Without ground an object that goes to the basin's floor is followed there, one that falls past it is not."""
+    """Without ground an object that goes to the basin's floor is followed, one that falls past it is not."""
     scene, models, grid = pool_scene([box("stone", (0.2,) * 3, (2,) * 3, (0.1, 0.1, 0.9))])
     for drop, escaped in ((0.8, False), (3.0, True)):
         frames = []
@@ -279,7 +311,7 @@ def test_what_sinks_has_not_fallen_out_of_the_scene(tmp_path):
 
 
 def test_sky_is_seen_through_liquid_too(tmp_path):
-    """From below the level the sky behind the tank has the liquid's colour, as the floor has below the horizon."""
+    """From below the level the sky behind the tank has the liquid's colour, like the floor."""
     scene, models, grid = pool_scene([box("crumb", (0.05,) * 3, (1,) * 3, (0.9, 0.6, 0.05))])
     heights = flat(grid, 0.9)
     low = Render(camera=(Camera((0.0, -4.5, 0.3), (0.0, 0.0, 0.45)),))
@@ -322,7 +354,8 @@ def test_movie_workers_draw_the_liquid(tmp_path):
     from mdanim_lammps.picture.movie import _draw_apart, _draw_here
 
     scene, models, grid = pool_scene(spacing=0.1)
-    frames = wet_frames(models, *[(h, raw_of(grid, h, models)) for h in (flat(grid), splash(grid), dam(grid))])
+    heights = (flat(grid), splash(grid), dam(grid))
+    frames = wet_frames(models, *[(h, raw_of(grid, h, models)) for h in heights])
     with Trajectory(write(tmp_path / "t.h5", scene, models, frames, grid)) as t:
         task = (t, Render(), (160, 90), [0, 1, 2], 2)
         for here, apart in zip(_draw_here(*task), _draw_apart(*task), strict=True):

@@ -10,7 +10,8 @@ import pytest
 from picture_samples import ball, box, falling, slab_scene, solid, write
 
 from mdanim_lammps.picture.palette import LOW, OBJECTS, STILL, object_colors, rgb
-from mdanim_lammps.picture.render import Painter, grid_spacing
+from mdanim_lammps.picture import render as drawing
+from mdanim_lammps.picture.render import Painter, grid_spacing, nearest_around
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.scene import Camera, Control, Render, Scene, Walls
 
@@ -111,6 +112,27 @@ def test_nothing_shades_itself(tmp_path):
     ]
     values = np.array([image[int(row), int(column)].sum() for column, row in spots])
     assert np.ptp(values) < 0.04 * values.mean()
+
+
+def test_shadows_are_the_same_without_the_short_cut(tmp_path, monkeypatch):
+    """Where nothing is near between a point and the lamp no shadow is counted out; that changes no pixel."""
+    scene, models = slab_scene()
+    with Trajectory(write(tmp_path / "t.h5", scene, models, falling(models, 2))) as t:
+        quick = picture(t, frame=1)
+        always = np.zeros((drawing.SHADOW_PIXELS // drawing.SHADOW_BLOCK,) * 2)
+        monkeypatch.setattr(drawing, "nearest_around", lambda depth, block: always)
+        np.testing.assert_array_equal(picture(t, frame=1), quick)
+
+
+def test_nearest_around_is_that_of_nine_blocks():
+    """The least depth of a block and its neighbours, at the edges of those that there are."""
+    depth = np.ones((64, 48))
+    depth[17, 40], depth[63, 0], depth[31, 15] = 0.5, 0.2, 0.7
+    expected = np.ones((4, 3))
+    expected[0:3, 0:2] = 0.7
+    expected[0:3, 1:3] = 0.5
+    expected[2:4, 0:2] = 0.2
+    np.testing.assert_array_equal(nearest_around(depth, 16), expected)
 
 
 def test_a_ball_darkens_evenly(tmp_path):

@@ -146,7 +146,8 @@ class Instance:
     def liquid_heights(self) -> tuple[np.ndarray, np.ndarray]:
         """Height of every column of cells [m], shape (ny, nx): the surface that solids feel, and the topmost liquid.
 
-        The second is NaN where a body hides it. Raises SetupError without a liquid.
+        The second is NaN where a body hides it, minus infinity where one keeps the column dry below the surface, as a
+        hull does its inside. Raises SetupError without a liquid.
         """
         nx, ny, _ = self._grid().shape
         smooth, raw = np.empty((ny, nx)), np.empty((ny, nx))

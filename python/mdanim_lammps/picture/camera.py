@@ -61,8 +61,8 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
 
     Centres are taken from every frame, extents about them from ``samples`` frames, so that a long trajectory
     need not be read whole. Left out is what would make everything else tiny: an object, where there is no
-    ground, from when it has fallen out of the scene; of a crowd the outermost twentieth on each side and what lies
-    farther from the start than four times its size; of few objects what lies ten times farther still.
+    ground, from when it has fallen out of the scene; of a crowd the outermost twentieth on each side and what
+    lies farther from the start than four times its size; of few objects what lies ten times farther still.
     """
     catalogue, centers = trajectory.catalogue, trajectory.centers
     frames = np.unique(np.linspace(0, len(trajectory) - 1, samples).astype(int))

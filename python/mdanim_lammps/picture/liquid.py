@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The liquid as a mesh: a smooth sheet with side walls, or the blocks of its cells; and where something keeps it out.
+"""The liquid as a mesh, a smooth sheet with side walls or the blocks of its cells; and where it is kept out.
 
 A frame moves vertices only.
 """
@@ -14,8 +14,9 @@ from ..model.basin import Grid
 class Sheet:
     """The surface over the column centres, drawn out to the basin's edges, and its walls down to the floor.
 
-    V vertices: (nx + 2)(ny + 2) of the surface, then top and bottom of each wall. T triangles, counter-clockwise
-    seen from outside. Bilinear between its vertices it holds exactly the sum of the heights times a column's area.
+    V vertices: (nx + 2)(ny + 2) of the surface, then top and bottom of each wall. T triangles,
+    counter-clockwise seen from outside. Bilinear between its vertices it holds exactly the sum of the heights
+    times a column's area.
     """
 
     def __init__(self, grid: Grid):
@@ -59,8 +60,8 @@ class Sheet:
 class Blocks:
     """Every column as a box up to its raw height; a column that tells nothing, or is kept dry, has none.
 
-    V vertices: four on top of each column, then four of each step between neighbours across x, then across y; beyond
-    the basin's edges all is floor. Where a step falls instead of rising, its face turns over by itself.
+    V vertices: four on top of each column, then four of each step between neighbours across x, then across y;
+    beyond the basin's edges all is floor. Where a step falls instead of rising, its face turns over.
     """
 
     def __init__(self, grid: Grid):
@@ -75,7 +76,7 @@ class Blocks:
         """Vertex indices, int32, shape (T, 3)."""
 
     def mesh(self, height: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Vertices [m] and outward unit normals, each of shape (V, 3), for raw heights z [m], shape (ny, nx)."""
+        """Vertices [m] and outward unit normals, both (V, 3), for raw heights z [m], shape (ny, nx)."""
         height = np.where(np.isfinite(height), height, np.nan)
         z = np.where(np.isnan(height), self._floor, height)
         beside = np.pad(height, ((0, 0), (1, 1)), constant_values=self._floor)
@@ -98,10 +99,10 @@ class Blocks:
 
 
 def kept_dry(raw: np.ndarray) -> np.ndarray:
-    """Columns into which something lets no liquid below the surface, as a hull does inside; bool, shape (ny, nx).
+    """Columns that something keeps dry below the surface, as a hull does its inside; bool, shape (ny, nx).
 
-    Raw heights tell it, z [m], shape (ny, nx): minus infinity. A column that a solid hides goes with the nearest one that none
-    hides, so that a dry place ends in the middle of the planks around it, and cargo in it is dry.
+    Raw heights tell it, z [m], shape (ny, nx): minus infinity. A column that a solid hides goes with the
+    nearest one that none hides: a dry place ends in the middle of its planks, and cargo in it is dry.
     """
     dry = np.isneginf(raw)
     if not dry.any():
@@ -113,11 +114,11 @@ def kept_dry(raw: np.ndarray) -> np.ndarray:
 
 
 def undersides(grid: Grid, position: np.ndarray) -> np.ndarray:
-    """Lowest point of any object over each column of cells and those around it, the floor where there is none.
+    """Lowest point of any object over each column of cells and those around it; the floor if there is none.
 
     Args:
         grid: the columns.
-        position: of particles [m], shape (N, 3); about as dense as the cells, so that no column over a hull is without.
+        position: of particles [m], shape (N, 3); about as dense as the cells, so that a hull has no gaps.
 
     Returns:
         z [m], shape (ny, nx).

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Pieces of VTK that a picture is put together from: meshes whose vertices move, lit actors, edges of boxes."""
+"""Pieces of VTK that a picture is put together from: meshes that move, lit actors, edges of boxes."""
 
 from __future__ import annotations
 
@@ -44,35 +44,40 @@ class MovingMesh:
 
 
 class MovingLine:
-    """A closed line whose points are overwritten for every frame."""
+    """A closed line whose points are overwritten for every frame, and how much it covers at each."""
 
-    def __init__(self, points: int, color: tuple[float, float, float], opacity: float, width: float):
+    def __init__(self, points: int, color: tuple[float, float, float], width: float):
         from vtkmodules.util.numpy_support import vtk_to_numpy
-        from vtkmodules.vtkCommonCore import vtkPoints
+        from vtkmodules.vtkCommonCore import vtkPoints, vtkUnsignedCharArray
         from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
         from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
 
         self._data, cells = vtkPolyData(), vtkCellArray()
-        place = vtkPoints()
+        place, cover = vtkPoints(), vtkUnsignedCharArray()
         place.SetNumberOfPoints(points)
-        self._points = vtk_to_numpy(place.GetData())
+        cover.SetNumberOfComponents(4)
+        cover.SetNumberOfTuples(points)
+        self._points, self._colors = vtk_to_numpy(place.GetData()), vtk_to_numpy(cover)
+        self._colors[:, :3] = 255 * np.array(color)
         cells.InsertNextCell(points + 1, [*range(points), 0])
         self._data.SetPoints(place)
         self._data.SetLines(cells)
+        self._data.GetPointData().SetScalars(cover)
         mapper = vtkPolyDataMapper()
         mapper.SetInputData(self._data)
         self.actor = vtkActor()
         self.actor.SetMapper(mapper)
+        self.actor.ForceTranslucentOn()
         look = self.actor.GetProperty()
         look.LightingOff()
-        look.SetColor(color)
-        look.SetOpacity(opacity)
         look.SetLineWidth(width)
 
-    def move(self, points: np.ndarray) -> None:
-        """Place the points [m], shape (P, 3)."""
+    def move(self, points: np.ndarray, opacity: np.ndarray) -> None:
+        """Place the points [m], shape (P, 3), and say how much the line covers there, 0 to 1, shape (P,)."""
         self._points[:] = points
+        self._colors[:, 3] = 255 * opacity
         self._data.GetPoints().Modified()
+        self._data.GetPointData().GetScalars().Modified()
         self._data.Modified()
 
 
@@ -87,8 +92,8 @@ class Field:
 
         self.values = vtkFloatArray()
         self.values.SetNumberOfTuples(width * height)
-        self._array = vtk_to_numpy(self.values).reshape(height, width)
-        self._array[:] = 0.0
+        self.numbers = vtk_to_numpy(self.values).reshape(height, width)
+        self.numbers[:] = 0.0
         self._image = vtkImageData()
         self._image.SetDimensions(width, height, 1)
         self._image.GetPointData().SetScalars(self.values)
@@ -101,7 +106,7 @@ class Field:
 
     def fill(self, numbers: np.ndarray) -> None:
         """Overwrite all, shape (height, width)."""
-        self._array[:] = numbers
+        self.numbers[:] = numbers
         self.changed()
 
     def changed(self) -> None:

@@ -22,6 +22,8 @@ LAMP = np.array([-0.45, -0.55, 1.15]) / np.linalg.norm([-0.45, -0.55, 1.15])
 FLOOR = 5.0
 """How far the floor reaches from the middle of the action to each side, in sizes of the action."""
 SHADOW_PIXELS, SHADOW_PIXELS_OF_A_CROWD = 1024, 2048
+SHADOW_BLOCK = 16
+"""Pixels of the shadow, along a side, of which the nearest to the lamp is known."""
 
 
 class Painter:
@@ -99,6 +101,8 @@ class Painter:
         self._renderer.SetBackground2(high)
         self._renderer.GradientBackgroundOn()
         self._renderer.SetUseHiddenLineRemoval(False)
+        # What is translucent is laid over the rest in the order of adding.
+        self._renderer.SetUseOIT(False)
         camera = self._renderer.GetActiveCamera()
         camera.SetViewAngle(FIELD_OF_VIEW)
 
@@ -110,6 +114,9 @@ class Painter:
         self._actors = [lit_actor(self._surface.data, shading.FRAGMENT_SOLID, bool(self._tank))]
         # Objects are closed, so nobody sees their insides, and drawing them takes time.
         self._actors[0].GetProperty().BackfaceCullingOn()
+        if self._tank:
+            # Before the floor: what is hidden already is not shaded.
+            self._actors.append(self._tank.plate)
         if floor is not None:
             self._actors.append(self._make_floor(floor, low, high))
         for actor in self._actors:
@@ -117,17 +124,16 @@ class Painter:
         if catalogue.walls is not None:
             self._renderer.AddActor(box_edges(*catalogue.walls, 0.8 if dark else 0.35))
         if self._tank:
-            # What is translucent is laid over the rest in the order of adding.
             for actor in self._tank.actors:
                 self._renderer.AddActor(actor)
-            self._actors += self._tank.lit
+            self._actors += self._tank.skin
             self._tank.colour_through(self._actors)
             self._tank.stand_on(0.0 if floor is None else floor, (x, y, 0.0 if floor is None else reach))
         self._write(render, low)
 
         with _silent():
             self._window = _window(self._renderer, self.size, samples=4)
-            self._shadow, self._depth = self._make_shadow()
+            self._shadow, self._depth, self._nearest = self._make_shadow()
         self._share_shadow()
 
     def _floor_height(self) -> float | None:
@@ -204,7 +210,8 @@ class Painter:
         camera.SetParallelScale(radius * 1.02)
         camera.SetClippingRange(0.9 * radius, 3.1 * radius)
         window = _window(renderer, pixels, samples=0)
-        return window, Field(*pixels, smooth=False)
+        blocks = self._shadow_pixels // SHADOW_BLOCK
+        return window, Field(*pixels, smooth=False), Field(blocks, blocks, smooth=False)
 
     def _cast_shadow(self) -> None:
         """Take the depth picture, apart from the main one: only one window can be drawn into at a time."""
@@ -212,6 +219,7 @@ class Painter:
         last = self._shadow_pixels - 1
         self._shadow.GetZbufferData(0, 0, last, last, self._depth.values)
         self._depth.changed()
+        self._nearest.fill(nearest_around(self._depth.numbers, SHADOW_BLOCK))
 
     def _share_shadow(self) -> None:
         from vtkmodules.vtkCommonMath import vtkMatrix4x4
@@ -229,10 +237,12 @@ class Painter:
         lamp_matrix.DeepCopy(matrix.T.ravel())
         for actor in self._actors:
             actor.GetProperty().SetTexture("lampDepth", self._depth.texture)
+            actor.GetProperty().SetTexture("lampNearest", self._nearest.texture)
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
             uniforms.SetUniformMatrix("lampMatrix", lamp_matrix)
             uniforms.SetUniformf("lampTexel", texel)
             uniforms.SetUniformf("lampPixels", float(self._shadow_pixels))
+            uniforms.SetUniformi("lampBlock", SHADOW_BLOCK)
             uniforms.SetUniformf("lampBias", 2.5 * texel / (far - near))
             uniforms.SetUniform3f("lamp", list(LAMP))
             uniforms.SetUniform3f("eye", [0.0, 0.0, 0.0])
@@ -258,6 +268,25 @@ class Painter:
         return vtk_to_numpy(data).reshape(height, width, 3)[::-1].copy()
 
 
+def nearest_around(depth: np.ndarray, block: int) -> np.ndarray:
+    """Least depth in each block of pixels and the eight around it.
+
+    Args:
+        depth: shape (n, m).
+        block: pixels along a side, a divisor of n and m.
+
+    Returns:
+        shape (n / block, m / block).
+    """
+    n, m = depth.shape
+    least = depth.reshape(n // block, block, m).min(axis=1).reshape(n // block, m // block, block).min(axis=2)
+    for axis in (0, 1):
+        ends = np.pad(least, [(1, 1) if a == axis else (0, 0) for a in (0, 1)], mode="edge")
+        before, behind = (np.delete(ends, cut, axis=axis) for cut in ((-1, -2), (0, 1)))
+        least = np.minimum(least, np.minimum(before, behind))
+    return least
+
+
 def grid_spacing(size: float) -> float:
     """Distance of the floor's lines: 1, 2 or 5 times a power of ten, about a twelfth of the action [m]."""
     exponent = np.floor(np.log10(size / 12.0))
@@ -276,6 +305,8 @@ def _window(renderer, size: tuple[int, int], samples: int):
     window.SetOffScreenRendering(1)
     window.SetSize(*size)
     window.SetMultiSamples(samples)
+    # Pictures are read from the buffer that is drawn into; nobody looks at the other one.
+    window.SwapBuffersOff()
     window.AddRenderer(renderer)
     window.Initialize()
     if not window.SupportsOpenGL():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The light of the pictures as GLSL: a key light with soft shadows, light from the sky, a floor with a grid, liquid.
+"""The light of the pictures as GLSL: a key light with soft shadows, light from the sky, a floor, liquid.
 
 VTK builds its shaders from a template; the pieces below replace marks in it. VTK's own shadow maps have hard
 edges and leave much of the floor dark under a parallel lamp, so the shadow is looked up here, in a depth
@@ -42,6 +42,9 @@ float shadow(vec3 where, vec3 normal)
   vec2 texel = p.xy * lampPixels - 0.5;
   ivec2 corner = ivec2(floor(texel));
   vec2 part = texel - floor(texel);
+  // Most of what is lit has nothing before it for a long way around.
+  ivec2 block = clamp(corner, ivec2(0), ivec2(lampPixels) - 1) / lampBlock;
+  if (texelFetch(lampNearest, block, 0).r >= p.z - lampBias) return 1.0;
   float lit = 0.0;
   for (int j = -1; j <= 3; j++) {
     float row = j == -1 ? 1.0 - part.y : j == 3 ? part.y : 1.0;
@@ -69,8 +72,9 @@ float liquidHeight(vec2 where)
   return texture(liquidHeights, (where - basinLow.xy) / (basinHigh.xy - basinLow.xy)).r;
 }
 
-// Metres of liquid between a point and the eye: the ray's part in the basin, cut into a dozen pieces. The surface is
-// taken as straight within a piece, so that nothing jumps where it is crossed.
+// Metres of liquid between a point and the eye, along the ray's part in the basin. Below the lowest height
+// there is liquid all the way; the rest is cut into up to a dozen pieces. The surface is taken as straight
+// within a piece, so that nothing jumps where it is crossed.
 float liquidPath(vec3 where)
 {
   vec3 ray = eye - where + vec3(1e-9);
@@ -80,15 +84,19 @@ float liquidPath(vec3 where)
   float from = max(max(enter.x, enter.y), max(enter.z, 0.0));
   float to = min(min(leave.x, leave.y), min(leave.z, 1.0));
   if (from >= to) return 0.0;
+  float cross = clamp((liquidLow - where.z) / ray.z, from, to);
+  vec2 wavy = ray.z > 0.0 ? vec2(cross, to) : vec2(from, cross);
+  float whole = to - from, part = wavy.y - wavy.x;
+  int pieces = int(ceil(12.0 * part / whole - 1e-3));
   float wet = 0.0, before = 0.0;
-  for (int k = 0; k <= 12; k++) {
-    vec3 p = where + ray * mix(from, to, float(k) / 12.0);
+  for (int k = 0; k <= pieces; k++) {
+    vec3 p = where + ray * mix(wavy.x, wavy.y, float(k) / float(max(pieces, 1)));
     float cover = liquidHeight(p.xy) - p.z;
     float high = max(before, cover), low = min(before, cover);
     if (k > 0) wet += clamp(high / max(high - low, 1e-9), 0.0, 1.0);
     before = cover;
   }
-  return length(ray) * (to - from) * wet / 12.0;
+  return length(ray) * (whole - part + (pieces > 0 ? part * wet / float(pieces) : 0.0));
 }
 
 vec3 seen(vec3 color, vec3 where)
@@ -138,8 +146,8 @@ FRAGMENT_FLOOR = """//VTK::Light::Impl
 }
 """
 
-# The skin of the liquid, laid over what `seen` has coloured already: what it mirrors, and the lamp's glint. Where it is
-# thinner than half a cell it fades out, so that a dry floor is bare.
+# The skin of the liquid, laid over what `seen` has coloured already: what it mirrors, and the lamp's glint.
+# Where it is thinner than half a cell it fades out, so that a dry floor is bare.
 FRAGMENT_LIQUID = """//VTK::Light::Impl
 {
   vec3 n = normalize(worldNormal);

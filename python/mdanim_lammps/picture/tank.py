@@ -14,13 +14,15 @@ from .palette import LIQUID, rgb
 from .pieces import Field, MovingLine, MovingMesh, box_edges, lit_actor, plane
 
 CLEAR = 1.0
-"""How far one sees in the liquid, in half diagonals of the basin: by then about 1/e is left of what lies behind."""
+"""How far one sees in the liquid, in half diagonals of the basin: by then 1/e is left of what lies behind."""
 COVER = {"smooth": 0.24, "cells": 0.35}
 """How much the skin of the liquid covers, seen straight on."""
 
+RIM = 0.7
+"""How much the bright line covers where the liquid meets the glass."""
 HAIR = 1e-3
-"""By how much, in sizes of the basin, the edges are drawn outside and the liquid inside: what stands flush with the glass
-is then seen in front of the liquid, and nothing flickers."""
+"""By how much, in sizes of the basin, the edges are drawn outside and the liquid inside: what stands flush
+with the glass is then seen in front of the liquid, and nothing flickers."""
 
 
 class Tank:
@@ -41,8 +43,9 @@ class Tank:
         self._heights = Field(*pool.shape[:2], smooth=look == "smooth")
         vertices = self._form.mesh(np.full(pool.shape[1::-1], pool.low[2]))[0]
         self._mesh = MovingMesh(len(vertices), self._form.triangle)
-        bottom = lit_actor(plane(self._low, self._high, pool.low[2]), shading.FRAGMENT_SOLID, True)
-        bottom.GetProperty().SetColor((0.28, 0.33, 0.37) if dark else (0.74, 0.78, 0.81))
+        self.plate = lit_actor(plane(self._low, self._high, pool.low[2]), shading.FRAGMENT_SOLID, True)
+        """The tank's floor, opaque."""
+        self.plate.GetProperty().SetColor((0.28, 0.33, 0.37) if dark else (0.74, 0.78, 0.81))
         # Behind, then in front: a ray meets the inner faces before the outer ones.
         inner, outer = (lit_actor(self._mesh.data, shading.FRAGMENT_LIQUID, True) for _ in range(2))
         inner.GetProperty().FrontfaceCullingOn()
@@ -52,16 +55,17 @@ class Tank:
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
             uniforms.SetUniform3f("cell", list(pool.grid.cell))
             uniforms.SetUniformf("skinCover", COVER[look])
-            # Blocks have none where it is dry.
-            uniforms.SetUniformf("sheetAbove", 0.5 * pool.grid.cell[2] if look == "smooth" else np.finfo("f4").max)
-        self.lit = [bottom, inner, outer]
-        """Those that share the lamp."""
+            # There are no blocks where it is dry.
+            above = 0.5 * pool.grid.cell[2] if look == "smooth" else float(np.finfo(np.float32).max)
+            uniforms.SetUniformf("sheetAbove", above)
+        self.skin = [inner, outer]
+        """The liquid's own faces."""
         glass = HAIR * np.linalg.norm(self._high - self._low) * np.array([1.0, 1.0, 0.0])
         edges = box_edges(self._low - glass, self._high + glass, 0.85 if dark else 0.25, 0.55, 2.0)
-        self.actors = [*self.lit, edges]
-        """All, in the order in which they are drawn."""
+        self.actors = [inner, outer, edges]
+        """What is translucent, in the order in which it is drawn."""
         if look == "smooth":
-            self._rim = MovingLine(len(self._form.rim), (1.0, 1.0, 1.0), 0.7, 2.0)
+            self._rim = MovingLine(len(self._form.rim), (1.0, 1.0, 1.0), 2.0)
             self.actors.append(self._rim.actor)
         self._through: Sequence = ()
 
@@ -78,8 +82,8 @@ class Tank:
             uniforms.SetUniformf("liquidClear", clear)
 
     def stand_on(self, height: float, floor: tuple[float, float, float]) -> None:
-        """Say where the floor of the picture is: its height, middle x and y, and half side [m]; 0 where there is none."""
-        for actor in self.lit[1:]:
+        """Say where the picture's floor is: its height, middle x and y, and half side [m]; 0 for none."""
+        for actor in self.skin:
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
             uniforms.SetUniformf("floorHeight", height)
             uniforms.SetUniform3f("floorCentre", list(map(float, floor)))
@@ -91,13 +95,24 @@ class Tank:
         points[:, :2] += HAIR * ((self._low + self._high)[:2] / 2 - points[:, :2])
         self._mesh.move(points, normals)
         if self._look == "smooth":
-            self._rim.move(points[self._form.rim])
+            self._rim.move(points[self._form.rim], self._rim_opacity(smooth, raw))
         # What is seen through a column that tells nothing is seen through liquid all the same.
         top = smooth if self._look == "smooth" else np.where(np.isfinite(raw), raw, smooth)
         dry = kept_dry(raw)
         if dry.any():
             # Under a hull there is liquid.
-            top[dry] = undersides(self._trajectory.liquid.grid, position)[dry]
+            top = np.where(dry, undersides(self._trajectory.liquid.grid, position), top)
         self._heights.fill(top)
         for actor in self._through:
-            actor.GetShaderProperty().GetFragmentCustomUniforms().SetUniformf("liquidTop", float(top.max()))
+            uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
+            uniforms.SetUniformf("liquidTop", float(top.max()))
+            uniforms.SetUniformf("liquidLow", float(top.min()))
+
+    def _rim_opacity(self, smooth: np.ndarray, raw: np.ndarray) -> np.ndarray:
+        """How much the line on the glass covers, shape (R,).
+
+        Nothing where a solid hides the liquid: it would look out beside the solid. Nothing on a dry floor.
+        """
+        film = (smooth - self._low[2]) / self._trajectory.liquid.grid.cell[2]
+        shown = RIM * np.clip((film - 0.1) / 0.4, 0.0, 1.0) * np.isfinite(raw)
+        return np.pad(shown, 1, mode="edge").ravel()[self._form.rim]

@@ -80,5 +80,6 @@ def _rise(first: Trajectory, second: Trajectory, frame: int) -> float | None:
     pairs = [(t.liquid_height(frame), t.liquid_raw(frame)) for t in (first, second)]
     if all(np.array_equal(x, y, equal_nan=True) for x, y in zip(*pairs)):
         return None
-    # A raw height that only one of them has is no number of metres.
-    return float(max(np.nanmax(np.abs(x - y), initial=0.0) for x, y in zip(*pairs)))
+    # A raw height that only one of them has (NaN, minus infinity) is no number of metres.
+    both = [np.isfinite(x) & np.isfinite(y) for x, y in zip(*pairs)]
+    return float(max(np.abs(x[b] - y[b]).max(initial=0.0) for x, y, b in zip(*pairs, both)))

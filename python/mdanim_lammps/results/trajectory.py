@@ -163,7 +163,8 @@ class TrajectoryWriter:
             position: of all particles, stored or not [m], shape (N, 3).
             velocity: [m/s], shape (N, 3).
             liquid: heights z of the liquid over the columns of its cells, smooth and raw [m], each of shape
-                (ny, nx); raw ones are NaN where a column tells nothing. None without liquid.
+                (ny, nx); raw ones are NaN where a solid hides
+                the liquid, minus infinity where one keeps the column dry, as a hull does. None without liquid.
         """
         for name, array in (("position", position), ("velocity", velocity)):
             if np.shape(array) != (self.catalogue.total, 3):
@@ -355,8 +356,8 @@ class Trajectory:
         return self._liquid(LIQUID[0], frame)
 
     def liquid_raw(self, frame: int) -> np.ndarray:
-        """Top of the topmost liquid cell of each column, z [m], float32, shape (ny, nx); NaN where a column
-        tells nothing because an object fills it."""
+        """Top of the topmost liquid cell of each column, z [m], float32, shape (ny, nx); NaN where a solid
+        hides it, minus infinity where one keeps the column dry, as a hull does."""
         return self._liquid(LIQUID[1], frame)
 
     @cached_property
