@@ -1,12 +1,13 @@
 # make demo   set up .venv, run scenes/beam.txt, end with the path of the movie
 # make test   set up .venv, run the tests
+# make soak   set up .venv, run the long form of the hard cases (tests/stability)
 # make clean  forget everything that was built
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 SOURCES := pyproject.toml CMakeLists.txt $(shell find plugin python -name '*.so' -prune -o -name __pycache__ -prune -o -type f -print)
 
-.PHONY: demo test setup clean
+.PHONY: demo test soak setup clean
 .DEFAULT_GOAL := demo
 
 setup: $(VENV)/.installed
@@ -25,6 +26,9 @@ demo: setup
 
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist loadfile
+
+soak: setup
+	$(BIN)/python -m pytest -n 2 -m soak tests/stability
 
 clean:
 	rm -rf $(VENV) build dist

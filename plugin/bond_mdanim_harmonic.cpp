@@ -233,12 +233,10 @@ void BondMdanimHarmonic::forces(int begin, int end)
   spring_forces(n, &rows.K[base], &rows.r0[base], stretch.x.data(), stretch.y.data(), stretch.z.data());
 }
 
-// Add the dashpots of rows [begin, end) to `stretch`; returns their power loss, each bond counted by what the
-// rows hold.
-double BondMdanimHarmonic::dashpot_power(int begin, int end)
+// Add the dashpots of rows [begin, end) to `stretch`, and what each particle feels of them to `on`.
+void BondMdanimHarmonic::dashpots(int begin, int end, std::vector<Vec3> &on)
 {
   const int base = rows.first[begin];
-  double power = 0.0;
   for (int i = begin; i < end; ++i)
     for (int b = rows.first[i]; b < rows.first[i + 1]; ++b) {
       const double c = spring[rows.type[b]].c;
@@ -249,9 +247,9 @@ double BondMdanimHarmonic::dashpot_power(int begin, int end)
       stretch.x[b - base] += push.x;
       stretch.y[b - base] += push.y;
       stretch.z[b - base] += push.z;
-      power -= dot(push, v);
+      on[i] += push;
+      if (rows.upper_only) on[j] -= push;
     }
-  return power;
 }
 
 void BondMdanimHarmonic::sum_rows(int begin, int end)
@@ -289,22 +287,21 @@ void BondMdanimHarmonic::compute(int eflag, int vflag)
   if (neighbor->ago == 0 && source_changed()) make_rows();
 
   const int nlocal = atom->nlocal;
-  double power = 0.0;
+  std::vector<Vec3> *on = nullptr;
+  if (damped) {
+    if (neighbor->ago == 0) loss.look(atom->tag, nlocal);
+    on = &loss.forces(nlocal);
+  }
   for (int begin = 0, end; begin < nlocal; begin = end) {
     end = begin + 1;
     while (end < nlocal && rows.first[end + 1] - rows.first[begin] <= STRETCH) ++end;
     forces(begin, end);
-    if (damped) power += dashpot_power(begin, end);
+    if (on) dashpots(begin, end, *on);
     if (rows.upper_only) sum_halves(begin, end);
     else sum_rows(begin, end);
   }
+  if (on) loss.step(atom->v, update->dt, update->setupflag);
   if (evflag) tally();
-
-  if (damped) {
-    if (!rows.upper_only) power *= 0.5;    // a bond stands in the rows of both its ends
-    if (update->setupflag) loss.setup(power);
-    else loss.step(power, update->dt);
-  }
 }
 
 // Energy and virial on steps that ask for them; half of a bond's share goes to either end.
@@ -376,6 +373,9 @@ void *BondMdanimHarmonic::extract(const char *what, int &dim)
 {
   dim = 0;
   if (strcmp(what, "seconds") == 0) return &seconds;
-  if (strcmp(what, "lost") == 0) return &loss.total;
+  if (strcmp(what, "lost") == 0) {
+    lost = loss.total();
+    return &lost;
+  }
   return nullptr;
 }

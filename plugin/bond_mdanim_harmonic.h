@@ -55,7 +55,7 @@ class BondMdanimHarmonic : public Bond {
   void forces(int begin, int end);
   void sum_rows(int begin, int end);
   void sum_halves(int begin, int end);
-  double dashpot_power(int begin, int end);
+  void dashpots(int begin, int end, std::vector<mdanim::Vec3> &on);
   void tally();
 
   std::vector<mdanim::Spring> spring;    // by bond type
@@ -67,6 +67,7 @@ class BondMdanimHarmonic : public Bond {
   std::vector<mdanim::Vec3> received;    // from lower partners so far, for sum_halves()
 
   mdanim::Loss loss;    // to dashpots, on this rank
+  double lost = 0.0;    // when it was asked for last
   double seconds = 0.0;
 };
 

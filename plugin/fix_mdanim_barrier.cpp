@@ -129,6 +129,7 @@ void FixMdanimBarrier::post_neighbor()
   const Lap lap(seconds);
   collect_own();
   find_candidates();
+  if (damping > 0.0) loss.look(atom->tag, atom->nlocal);
 }
 
 void FixMdanimBarrier::collect_own()
@@ -299,12 +300,15 @@ void FixMdanimBarrier::setup(int vflag)
 void FixMdanimBarrier::post_force(int)
 {
   energy = touching = 0.0;
-  if (candidate.empty() && loss.idle()) return;
+  if (candidate.empty() && loss.idle()) {
+    loss.rest();
+    return;
+  }
 
   const Lap lap(seconds);
   const double *const *x = atom->x, *const *v = atom->v;
   double *const *f = atom->f;
-  double power_lost = 0.0;
+  std::vector<Vec3> *slowed = damping > 0.0 ? &loss.forces(atom->nlocal) : nullptr;
   for (size_t n = 0; n < row.size(); ++n) {
     const int i = row[n];
     Vec3 total;
@@ -322,10 +326,7 @@ void FixMdanimBarrier::post_force(int)
         const double approach = dot(vec3(v[i]) - vec3(v[j]), normal);
         const double rate = damping * reduced_mass(own[i].mass, own[j].mass) / force->ftm2v;
         push -= rate * q * approach;
-        // This velocity belongs to the way from step n-1, where the depth was still q before, to here: see
-        // loss.h.
-        const double before = std::max(0.0, q + update->dt * approach / pair.reach);
-        power_lost += share * rate * (0.75 * q + 0.25 * before) * approach * approach;
+        (*slowed)[i] -= (rate * q * approach) * normal;
       }
       total += push * normal;
       touching += share;
@@ -333,8 +334,7 @@ void FixMdanimBarrier::post_force(int)
     }
     add_to(f[i], total);
   }
-  if (update->setupflag) loss.setup(power_lost);
-  else loss.step(power_lost, update->dt);
+  if (slowed) loss.step(v, update->dt, update->setupflag);
 }
 
 // --- output ---
@@ -358,7 +358,7 @@ double FixMdanimBarrier::compute_vector(int n)
   case 1: return sum(pairs);
   case 2: return sum(touching);
   case 3: MPI_Allreduce(&deepest, &all, 1, MPI_DOUBLE, MPI_MIN, world); return all;
-  case 4: return sum(loss.total);
+  case 4: return sum(loss.total());
   default: MPI_Allreduce(&seconds, &all, 1, MPI_DOUBLE, MPI_MAX, world); return all;
   }
 }

@@ -128,6 +128,10 @@ template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Ha
     if (!(mask[i] & groupbit)) continue;
     const double m = mass_of(rmass, mass, type, i), kick = half_dt / m;
     const double phi = (own ? own[i] : lambda.number) * kick;
+    if (phi == 0.0) {    // the same bits, for what is out of the liquid
+      add_to(v[i], kick * vec3(f[i]));
+      continue;
+    }
     const Vec3 before = vec3(v[i]), push = vec3(f[i]);
     const Vec3 after = half(Drag{phi, kick}, before, push);
     v[i][0] = after.x;

@@ -31,7 +31,7 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
-static constexpr double STATE_VERSION = 1.0;
+static constexpr double STATE_VERSION = 2.0;
 
 // Reasons and measurements: docs/physics-liquid.md.
 static constexpr double STRIDE = 0.25;            // of a cell that solids travel between updates
@@ -552,19 +552,21 @@ void FixMdanimLiquid::update_liquid()
     const Lap lap(automaton_seconds);
     changed = make_room();
     if (changed || !calm) {
-      const int most =
-          sweeps ? sweeps : std::clamp(static_cast<int>(std::ceil(SWEEPS_PER_CELL * travel)), 1, MOST_SWEEPS);
+      // A front goes on by one cell in a move: half a cell of wave between moves makes its speed 2 sqrt(g
+      // depth), that of the front of a broken dam.
+      crossed += std::sqrt(g * top * cell.z) * waited * update->dt / shortest;
+      const bool wave = crossed >= 0.5;
+      const int due = std::max(static_cast<int>(SWEEPS_PER_CELL * travel + 0.5), wave || changed ? 1 : 0);
+      const int most = sweeps ? sweeps : std::min(due, MOST_SWEEPS);
       for (int k = 0; k < most; ++k) automaton->sweep(now * MOST_SWEEPS + k);
       swept += most;
-      if (model == Model::SURFACE) {
-        const double depth = static_cast<double>(units) / columns() * cell.z;
-        const double crossed =
-            std::sqrt(g * depth) * waited * update->dt / shortest;    // cells that a wave has gone
-        if (leveller.move(automaton->cells, seed, now, LEVEL_RATE * crossed, changed)) automaton->poured();
-      }
+      if (model == Model::SURFACE && (wave || changed) &&
+          leveller.move(automaton->cells, seed, now, wave ? LEVEL_RATE * crossed : 0.0, changed))
+        automaton->poured();
+      if (wave) crossed = 0.0;
     }
   }
-  if (changed || !calm) raise_surface(model == Model::SURFACE);
+  if (changed || !calm) raise_surface(false);
   travel = 0.0;
   waited = 0;
   if (low.z + top * cell.z > watched_top) watch();
@@ -885,14 +887,15 @@ struct StateHead {
   double version;
   std::int64_t nx, ny, nz;
   std::int64_t units, swept, waited, calm;
-  double travel, work, lost;
+  double travel, crossed, work, lost;
 };
 }    // namespace
 
 std::vector<std::uint8_t> FixMdanimLiquid::state()
 {
   const Cells &cells = automaton->cells;
-  StateHead head{STATE_VERSION, cells.nx, cells.ny, cells.nz, units, swept, waited, calm, travel, 0.0, 0.0};
+  StateHead head{STATE_VERSION, cells.nx, cells.ny, cells.nz, units, swept,
+                 waited,        calm,     travel,   crossed,  0.0,   0.0};
   MPI_Allreduce(&work, &head.work, 1, MPI_DOUBLE, MPI_SUM, world);
   MPI_Allreduce(&lost, &head.lost, 1, MPI_DOUBLE, MPI_SUM, world);
   const std::size_t heights = height.size() * sizeof(double);
@@ -936,6 +939,7 @@ std::string FixMdanimLiquid::set_state(const std::uint8_t *bytes, std::size_t si
   waited = head.waited;
   calm = head.calm != 0;
   travel = head.travel;
+  crossed = head.crossed;
   work = comm->me == 0 ? head.work : 0.0;
   lost = comm->me == 0 ? head.lost : 0.0;
   memcpy(height.data(), bytes + sizeof head, heights);

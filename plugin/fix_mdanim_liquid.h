@@ -117,6 +117,7 @@ class FixMdanimLiquid : public Fix {
   // state
   bool poured = false;
   bool calm = false;                // all is level and no solid has moved since: nothing to do
+  double crossed = 0.0;             // by a shallow-water wave since liquid was last levelled, in cells
   double travel = 0.0;              // of the fastest particle near the liquid since the last update, in cells
   std::int64_t waited = 0;          // steps since the last update
   std::int64_t swept = 0;           // sweeps so far

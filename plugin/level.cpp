@@ -138,7 +138,7 @@ bool Leveller::heights(const Cells &cells, double *height, bool just_moved)
       if (any == 0) continue;
       bodies.each_exposed(y, z, [&](int body, int word, Bodies::Word bits) {
         const Body &b = bodies.all[body];
-        double told = b.deep ? z + 1.0 : NOTHING;
+        double told = b.deep ? -(z + 1.0) : NOTHING;
         const double cover = b.full + b.part;
         if (b.deep && b.level() && cover > 0.0) told = b.highest + b.full / cover;
         each_bit(word, bits & open[word], [&](int x) { row[x] = told; });
@@ -151,7 +151,33 @@ bool Leveller::heights(const Cells &cells, double *height, bool just_moved)
   for (int y = 0; y < cells.ny; ++y)
     forget_solid(cells, y, &undecided[static_cast<std::size_t>(y) * words],
                  height + static_cast<std::size_t>(y) * cells.nx);
+  for (int y = 0; y < cells.ny; ++y) pile_up(cells, y, height + static_cast<std::size_t>(y) * cells.nx);
   return std::all_of(bodies.all.begin(), bodies.all.end(), [](const Body &b) { return b.level(); });
+}
+
+// Where liquid is uneven, which is told by minus the topmost layer: what a column holds above the solid cell
+// below its liquid (or the floor), as if it were packed.
+void Leveller::pile_up(const Cells &cells, int y, double *height)
+{
+  if (std::none_of(height, height + cells.nx, [](double h) { return h < 0.0; })) return;
+  ends.resize(cells.nx);
+  for (int x = 0; x < cells.nx; ++x) ends[x] = height[x] < 0.0 ? static_cast<std::int32_t>(-height[x]) : 0;
+  bed.assign(cells.nx, 0);
+  pile.assign(cells.nx, 0);
+  for (int z = 0; z <= bodies.top; ++z) {
+    const std::uint8_t *const open = &cells.open[cells.at(0, y, z)],
+                              *const content = &cells.content[cells.at(0, y, z)];
+    const std::int32_t *const e = ends.data();
+    std::int32_t *const b = bed.data(), *const p = pile.data();
+#pragma GCC ivdep
+    for (int x = 0; x < cells.nx; ++x) {
+      const bool is_open = open[x] != Cells::SOLID, inside = z < e[x];
+      b[x] = inside && !is_open ? z + 1 : b[x];
+      p[x] = !inside ? p[x] : is_open ? p[x] + content[x] : 0;
+    }
+  }
+  for (int x = 0; x < cells.nx; ++x)
+    if (height[x] < 0.0) height[x] = std::min(bed[x] + pile[x], cells.nz);
 }
 
 // Of the dry columns of a row those that hold solid cells tell nothing.
@@ -176,7 +202,9 @@ void Leveller::forget_solid(const Cells &cells, int y, Bodies::Word *dry, double
     for (int x = 0; x < cells.nx; ++x) holds[x] |= static_cast<std::uint8_t>(~open[x]);
   }
   for (int k = 0; k < words; ++k)
-    each_bit(k, dry[k], [&](int x) { if (holds_solid[x] != 0) forget(x); });
+    each_bit(k, dry[k], [&](int x) {
+      if (holds_solid[x] != 0) forget(x);
+    });
 }
 
 }    // namespace mdanim

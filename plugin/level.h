@@ -23,13 +23,14 @@ class Leveller {
   // wants it. Returns units moved.
   long move(Cells &cells, std::uint64_t seed, std::uint64_t when, double rate, long at_least);
 
-  // Height of the liquid in every column, in cells above the floor, x fastest, shape (ny, nx): topmost cell
-  // with liquid + 1, 0 where dry. In a body that is level all columns that end in an exposed cell get one
-  // height, the exact mean of those that stand on liquid: z + full / (full + part), see Body. NaN where a
-  // column tells no height: the cell above its topmost liquid is solid; it is dry and holds solid cells; or
-  // its topmost liquid is a drop in the air or a film on a solid (no exposed cell of that body stands on
-  // liquid or on the floor). `just_moved`: the cells are as the last `move` left them, which saves the search
-  // if that moved nothing. Returns whether all liquid is level.
+  // Height of the liquid in every column, in cells above the floor, x fastest, shape (ny, nx): of its topmost
+  // solid cell (or the floor) and the units above that, as if packed; 0 where dry. In a body that is level
+  // all columns that end in an exposed cell get one height, the exact mean of those that stand on liquid: z +
+  // full / (full + part), see Body. So heights over open ground sum to the volume. NaN where a column tells
+  // no height: the cell above its topmost liquid is solid; it is dry and holds solid cells; or its topmost
+  // liquid is a drop in the air or a film on a solid (no exposed cell of that body stands on liquid or on the
+  // floor). `just_moved`: the cells are as the last `move` left them, which saves the search if that moved
+  // nothing. Returns whether all liquid is level.
   bool heights(const Cells &cells, double *height, bool just_moved = false);
 
  private:
@@ -49,6 +50,7 @@ class Leveller {
   void collect(const Cells &cells);
   long move_in(std::size_t body, Cells &cells, std::uint64_t key, long most);
   void draw_lots(Item *from, Item *to, long count, std::uint64_t key);
+  void pile_up(const Cells &cells, int y, double *height);
   void forget_solid(const Cells &cells, int y, Bodies::Word *dry, double *height);
 
   Bodies bodies;
@@ -58,6 +60,7 @@ class Leveller {
   std::vector<std::pair<std::uint64_t, Item>> lots;
   std::vector<Bodies::Word> undecided;
   std::vector<std::uint8_t> holds_solid;
+  std::vector<std::int32_t> ends, bed, pile;    // of a row's columns
 };
 
 }    // namespace mdanim

@@ -4,38 +4,94 @@
 #ifndef MDANIM_LOSS_H
 #define MDANIM_LOSS_H
 
+#include "vec3.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
 namespace mdanim {
 
-// Forces are computed with v^{n-1/2}, so what is known at step n is P_n = -F^n . v^{n-1/2}. F^n acts from
-// n-1/2 to n+1/2, where the mean velocity is close to (3 v^{n-1/2} + v^{n+1/2}) / 4: its work is dt (3 P_n +
-// P_{n+1}) / 4. In the half step before the end of a run and in the one after a setup, whose forces see v^n,
-// it acts for dt/2 only. All in all:
-//   lost = dt (3/8 P_0 + 7/8 P_1 + P_2 + ... + P_{n-1} + 3/4 P_n), an error of second order in dt.
-// Where the damping coefficient g changes along the way, P_n is to be taken with 3/4 g_n + 1/4 g_{n-1}.
+// Such a force F^n is computed with v^{n-1/2} and acts from there to v^{n+1/2}: what it takes in the step is exactly
+//   W^n = -dt F^n . (v^{n-1/2} + v^{n+1/2}) / 2.
+// So the forces of a step are kept for each particle, and the next computation, which sees v^{n+1/2}, closes their account.
+// The energy that leap-frog conserves to fourth order (driver/run.py) is that of a smooth path through the x^n, whose velocity is
+// not v^n but v^n - dt^2/6 da/dt. What F takes on that path up to step n, the ends of the sum by Euler and Maclaurin, is
+//   sum_{m<n} [W^m - dt/12 (F^{m+1} - F^{m-1}) . (v^{m+1/2} - v^{m-1/2})]
+//     - dt/2 F^n . v^{n-1/2} + dt/12 (F^n - F^{n-1}) . v^{n-1/2}.
+// The forces of a setup see v^n itself, and count for half a step.
 class Loss {
  public:
-  void setup(double power)
+  // When lists are rebuilt: whether particle i still is the one whose force was kept.
+  template <class Tag> void look(const Tag *tag, int particles)
   {
-    sum += tail;
-    tail = 0.0;
-    last = power;
-    first = true;
+    if (static_cast<int>(order.size()) == particles && std::equal(order.begin(), order.end(), tag)) return;
+    order.assign(tag, tag + particles);
+    reordered = true;
   }
-  void step(double power, double dt)
-  {
-    sum += (first ? 0.375 : 0.5) * dt * (last + power);
-    tail = 0.25 * dt * power;
-    last = power;
-    first = false;
-    total = sum + tail;
-  }
-  bool idle() const { return last == 0.0 && tail == 0.0; }
 
-  double total = 0.0;    // up to the last step
+  // Room for the forces of a computation, all zero.
+  std::vector<Vec3> &forces(int particles)
+  {
+    older.swap(last);
+    last.swap(force);
+    force.assign(particles, Vec3());
+    return force;
+  }
+
+  // When they are complete. v is what they have seen.
+  void step(const double *const *v, double dt, bool setup)
+  {
+    const int particles = static_cast<int>(force.size());
+    if (reordered) kept = 0;
+    reordered = false;
+    const double now = -sum_of(force, v);
+    if (setup) sum += tail;
+    // Where particles were re-ordered, F^n . v^{n+1/2} is taken for the mean of F^n . v^{n-1/2} and F^{n+1} . v^{n+1/2}.
+    else if (begun) sum += 0.5 * dt * power;
+    else if (power != 0.0 || now != 0.0) sum += 0.5 * dt * (power + (kept ? -sum_of(last, v) : 0.5 * (power + now)));
+    double bend = 0.0, change = 0.0;
+    if (!setup && kept >= 2)
+      for (int i = 0; i < particles; ++i) bend += dot(force[i] - older[i], vec3(v[i]) - seen[i]);
+    if (!setup && kept >= 1)
+      for (int i = 0; i < particles; ++i) change += dot(force[i] - last[i], vec3(v[i]));
+    sum -= dt / 12.0 * bend;
+    power = now;
+    tail = setup ? 0.0 : 0.5 * dt * power + dt / 12.0 * change;
+    begun = setup;
+    kept = setup ? 0 : std::min(kept + 1, 2);
+    seen.resize(particles);
+    for (int i = 0; i < particles; ++i) seen[i] = vec3(v[i]);
+  }
+
+  // Whether nothing has acted in the last step.
+  bool idle() const { return power == 0.0 && tail == 0.0; }
+
+  // In place of a computation, while idle.
+  void rest()
+  {
+    kept = 0;
+    begun = true;    // from nothing
+  }
+
+  // Energy lost up to the last step.
+  double total() const { return sum + tail; }
 
  private:
-  double sum = 0.0, tail = 0.0, last = 0.0;
-  bool first = true;
+  static double sum_of(const std::vector<Vec3> &f, const double *const *v)
+  {
+    double all = 0.0;
+    for (std::size_t i = 0; i < f.size(); ++i) all += dot(f[i], vec3(v[i]));
+    return all;
+  }
+
+  std::vector<Vec3> force, last, older;    // F^n, F^{n-1}, F^{n-2} of the particles here
+  std::vector<Vec3> seen;                  // v^{n-1/2}
+  std::vector<long long> order;            // tags
+  int kept = 0;                            // how many older forces are of the same particles
+  double sum = 0.0, tail = 0.0, power = 0.0;
+  bool begun = false;        // the last forces were those of a setup
+  bool reordered = false;
 };
 
 }    // namespace mdanim

@@ -201,7 +201,7 @@ def flat(grid, level=0.5):
 
 
 def dam(grid, front=0.1):
-    """Heights of a dam that breaks: a step 0.8 m high on the left that slopes to the dry floor on the right."""
+    """Heights of a dam that breaks: 0.8 m high on the left, sloping to the dry floor on the right."""
     x, _ = column_centres(grid)
     return 0.8 / (1 + np.exp((x - front) / 0.12)) * (x < front + 0.5)
 

@@ -104,7 +104,7 @@ def test_compare_and_render_use_an_output_folder(scene):
     pytest.param(["check", "dry.txt"], 3, ["liquid.level needs the liquid, which is off", "switch the liquid on"], id="liquid off"),
     pytest.param(["fast.txt"], 4, ["certified bound", "cube", "timestep auto"], id="step above the bound"),
     pytest.param(["cube.txt", "-n", "4"], 4, ["executors", "mpiexec"], id="several executors"),
-    pytest.param(["study", "cube.txt"], 4, ["not built yet"], id="study"),
+    pytest.param(["study", "cube.txt", "--budget", "soon"], 2, ["--budget soon", "expected a time above 0"], id="study"),
     pytest.param(["render", "nowhere.out", "--size", "0", "0"], 2, ["between 2 and 8192"], id="no size"),
     pytest.param(["render", "nowhere.out", "--fps", "-3"], 2, ["--fps -3", "above 0"], id="no rate"),
     pytest.param(["resume", "nowhere.out"], 7, ["nowhere.out"], id="nothing to resume"),

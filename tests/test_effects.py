@@ -9,6 +9,9 @@ import pytest
 from mdanim_lammps.effects import EFFECTS, decide
 from mdanim_lammps.effects.contact import plane_stiffness
 from mdanim_lammps.effects.liquid import lattice_cells
+from mdanim_lammps.engine.commands import input_script
+from mdanim_lammps.engine.data_file import data_text
+from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.scene.parse import parse_scene
 
 FULL = """gravity (0, 0, -9.81)
@@ -149,13 +152,13 @@ def test_the_liquid_in_lammps_terms(prepared):
         "group held type 5:8",
         "region liquid block 0.0 1.0 0.0 0.8 0.0 0.6",
         "fix liquid all mdanim/liquid liquid 1000.0 grid 20 16 12 level 0.25 gravity 9.81 cells i2_cell still held "
-        "sweeps auto seed 3",
+        "sweeps auto every 4 seed 3",
     ]
     fill, fix = commands(prepared(pool(
         "volume 10 l\n fill from (0, 0, 0.1) m to (0.3, 0.8, 0.6) m\n model paper\n sweeps 7\n drag 2")), "liquid")[2:]
     assert fill == "region fill block 0.0 0.3 0.0 0.8 0.1 0.6"
     assert fix == ("fix liquid all mdanim/liquid liquid 1000.0 grid 20 16 12 volume 0.01 fill fill gravity 9.81 model paper "
-                   "still held sweeps 7 seed 3")
+                   "still held sweeps 7 every 4 seed 3")
 
 
 def test_the_paper_needs_no_lattice_cells(prepared):
@@ -213,3 +216,89 @@ def test_plane_stiffness_bounds_every_depth():
     """Be at least the curvature of a particle at the surface (1.18) and below twice the pair's stiffness."""
     assert 1.5 < plane_stiffness(1.6) < 1.75
     assert plane_stiffness(1.9) > plane_stiffness(1.6)
+
+
+# --- off leaves nothing -------------------------------------------------------------------------------------
+
+ALL = """gravity (0, 0, -9.81)
+ground z 0
+walls from (-1, -1, 0) to (1, 1, 3)
+object a { shape sphere 0.1 position (0, 0, 1.2) mass 1 elasticity 1e5 damping 0.1 drag 0.2 }
+object b { shape sphere 0.1 position (0, 0, 0.9) mass 1 elasticity 1e5 }
+liquid w { basin from (-1, -1, 0) to (1, 1, 3) density 1000 level 0.3 }
+control { time 0.1  resolution 0.1 }
+"""
+TRACES = {
+    "springs": ["bond_style", "Bonds", "Bond Coeffs"],
+    "damping": ["vel yes"],
+    "gravity": ["fix gravity"],
+    "contact": ["mdanim/barrier", "d_reach", " reach", "group boundary", "group inner", "group thin"],
+    "ground": ["region ground", "fix ground"],
+    "walls": ["region walls", "fix walls"],
+    "basin": ["region basin", "fix basin"],
+    "air-drag": ["d_air", "base"],
+    "liquid": ["mdanim/liquid", "region liquid", "i2_cell", "group held"],
+    "buoyancy": ["modify liquid buoyancy", "d_volume"],
+    "liquid-drag": ["modify liquid drag", "d_gamma"],
+}
+"""Words of the built files that stand there for one effect alone."""
+FIXES = {"gravity", "contact", "ground", "walls", "basin", "liquid"}
+"""Effects that are a fix of this name."""
+TAKES_ALONG = {"springs": {"damping"}, "gravity": {"liquid", "buoyancy", "liquid-drag"},
+               "liquid": {"buoyancy", "liquid-drag"}, "buoyancy": {"liquid-drag"}}
+"""Effects that cannot be without another."""
+
+
+def written(ready) -> str:
+    """All that LAMMPS reads, without the comments."""
+    lines = (input_script(ready.plan) + "".join(data_text(ready.plan))).splitlines()
+    return "\n".join(line for line in lines if not line.startswith("#"))
+
+
+def live_fixes(ready) -> set[str]:
+    """LAMMPS's own list of the fixes of a live instance, but for the particles' columns and the integrator."""
+    with Instance(ready.plan) as instance:
+        return set(instance._lmp.available_ids("fix")) - {"model", "leapfrog"}
+
+
+def test_what_is_on_is_there(prepared):
+    """Find every trace where all effects are on."""
+    ready = prepared(ALL)
+    text = written(ready)
+    assert all(v.on for v in ready.verdicts.values())
+    assert not [word for words in TRACES.values() for word in words if word not in text]
+    assert live_fixes(ready) == FIXES
+
+
+@pytest.mark.parametrize("effect", [e.name for e in EFFECTS])
+def test_what_is_off_leaves_nothing(prepared, effect):
+    """Find no trace of an effect that is off, nor of those that need it, and all traces of the others."""
+    ready = prepared(ALL + f"effects {{ {effect} off }}\n")
+    gone = {effect} | TAKES_ALONG.get(effect, set())
+    assert {v.name for v in ready.verdicts.values() if not v.on} == gone
+    text = written(ready)
+    assert not [word for name in gone for word in TRACES[name] if word in text]
+    shared = set() if "liquid-drag" not in gone else {"d_air", "base"}  # what air hands to the liquid
+    assert not [word for name in TRACES.keys() - gone for word in TRACES[name] if word not in text and word not in shared]
+    assert live_fixes(ready) == FIXES - gone
+    names = next(line for line in input_script(ready.plan).splitlines() if line.startswith("# Effects:"))
+    assert not gone & set(names.removeprefix("# Effects: ").rstrip(".").split(", "))
+
+
+def test_a_scene_of_nothing_is_nothing(prepared):
+    """Leave springs, the integrator and nothing else to a free ball: no column, no group, no neighbourhood of another's."""
+    ready = prepared(BARE)
+    assert live_fixes(ready) == set()
+    assert not ready.plan.columns and not ready.plan.tables
+    lines = [line for line in written(ready).splitlines() if line.startswith(("fix ", "group ", "region ", "fix_modify "))]
+    assert lines == ["fix model all property/atom rmass ghost yes", "group mobile type 1:4", "fix leapfrog mobile mdanim/leapfrog",
+                     "fix balance all balance 1000 1.1 rcb"]
+
+
+def test_contact_that_cannot_be_leaves_nothing(prepared):
+    """Leave no barrier to two objects that fall side by side."""
+    apart = prepared("gravity (0, 0, -9.81)\n" + "".join(
+        f"object o{k} {{ shape box (0.1, 0.1, 0.1) position ({k}, 0, 1) mass 1 elasticity 1e6 }}\n" for k in range(2))
+        + "control { time 0.1 }\n")
+    assert live_fixes(apart) == {"gravity"}
+    assert not [word for word in TRACES["contact"] if word in written(apart)]

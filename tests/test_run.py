@@ -367,9 +367,10 @@ def test_heights_of_a_liquid_are_stored(splash):
 
 def test_cost_of_a_liquid_is_split(splash):
     """Tell automaton, occupancy and coupling apart, and give no second twice."""
-    parts = {name for name in splash.cost if name.startswith("liquid")}
-    assert parts == {"liquid automaton", "liquid occupancy", "liquid coupling"}
-    assert all(splash.cost[name] > 0.0 for name in parts)
+    clocks = splash.cost.effects["liquid"].clocks
+    assert set(clocks) == {"automaton", "occupancy"} and all(seconds > 0.0 for seconds in clocks.values())
+    assert splash.cost.parts["buoyancy"] > 0.0
+    assert splash.cost.parts["liquid"] == pytest.approx(sum(clocks.values()))
     summary = json.loads((splash.folder / "summary.json").read_text())
     assert (summary["liquid_cells"], summary["liquid_residual"]) == (5760, 0)
 

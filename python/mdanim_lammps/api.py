@@ -3,7 +3,11 @@
 
 from __future__ import annotations
 
+import os
 import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 
@@ -16,6 +20,12 @@ from .errors import RefusedError
 from .results.files import MARK, open_folder, write_json
 from .scene.parse import load_scene
 from .scene.scene import Scene as SceneRecord
+from .study.bench import BUDGET
+from .study.study import Study, run_study
+from .study.target import settle
+
+STUDY = "study"
+"""Folder of a study inside the output folder."""
 
 
 class Scene:
@@ -35,8 +45,11 @@ class Scene:
 
     @cached_property
     def prepared(self) -> Prepared:
-        """Models, effects, certificate and LAMMPS plan. Raises SceneError, RefusedError."""
-        return prepare(self.record)
+        """Models, effects, certificate and LAMMPS plan. Raises SceneError, RefusedError.
+
+        ``accuracy error p %`` has the setting that is stored beside the scene; as long as there is none it counts as ``balanced``.
+        """
+        return prepare(settle(self.record, make=False).scene)
 
     def effects(self) -> dict[str, Verdict]:
         """Every effect with whether it is on, and why. Raises SceneError, RefusedError."""
@@ -50,17 +63,31 @@ class Scene:
             watch=None) -> Result:
         """Simulate into ``folder`` (default: ``NAME.out`` beside the scene); returns ledger, outcomes and cost.
 
-        ``watch`` is called with a Progress after every frame. Raises SceneError, RefusedError, DivergedError, OutputError.
+        ``watch`` is called with a Progress after every frame. A scene with ``accuracy error p %`` and no setting stored beside
+        it is studied first, for two minutes at most. Raises SceneError, RefusedError, DivergedError, OutputError.
         """
         refuse_executors(executors)
-        ready = self.prepared
+        started = time.perf_counter()
+        settled = settle(self.record, make=True, study=(Path(folder) if folder else default_folder(self.record)) / STUDY)
+        ready = self.prepared if settled.scene is self.record else prepare(settled.scene)
         folder = open_run(ready, folder, force=force)
-        result = simulate(ready, folder, watch=watch)
+        result = simulate(ready, folder, watch=watch, started=started)
         if movie:
             from .picture.movie import render_movie
 
             render_movie(folder, self.record.render, movie_file(folder, self.record))
         return result
+
+    def study(self, folder: str | Path | None = None, *, budget: float = BUDGET, ladders: Sequence[str] = (),
+              force: bool = False, watch=lambda line: None) -> Study:
+        """Measure what accuracy costs in time (docs/accuracy.md), for ``budget`` seconds of wall time.
+
+        Points are kept in ``folder``/study (default folder: ``NAME.out`` beside the scene) as soon as they are measured, and
+        not measured again. ``ladders`` names some of "time step", "resolution", "sweeps"; ``force`` throws away the study of
+        another scene; ``watch`` is told what goes on, line by line. Raises SceneError, RefusedError, DivergedError, OutputError.
+        """
+        folder = Path(folder) if folder is not None else default_folder(self.record)
+        return run_study(self.record, folder / STUDY, budget=budget, only=ladders, force=force, watch=watch)
 
 
 def default_folder(record: SceneRecord) -> Path:
@@ -71,10 +98,25 @@ def default_folder(record: SceneRecord) -> Path:
 def open_run(ready: Prepared, folder: str | Path | None, *, force: bool) -> Path:
     """Make the output folder (None: the default one) with all that is known before the run. Raises OutputError."""
     folder = Path(folder) if folder is not None else default_folder(ready.scene)
-    open_folder(folder, force=force)
+    with _study_aside(folder):
+        open_folder(folder, force=force)
     write_json(folder / MARK, manifest(ready.scene, ready.lock, sys.argv))
     write_inputs(ready, folder)
     return folder
+
+
+@contextmanager
+def _study_aside(folder: Path) -> Iterator[None]:
+    """Keep a study out of the way while a run's folder is made: it is no part of the run, and dear to make again."""
+    study, aside = folder / STUDY, folder.with_name(f".{folder.name}.{STUDY}")
+    if study.is_dir():
+        os.replace(study, aside)
+    try:
+        yield
+    finally:
+        if aside.is_dir():
+            folder.mkdir(parents=True, exist_ok=True)
+            os.replace(aside, study)
 
 
 def movie_file(folder: Path, record: SceneRecord) -> Path:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The certified time step: a bound from springs, dashpots, contact and walls, what sets it, and the step chosen.
+"""The certificate, before step 0: a bound on the time step, what sets it, the step chosen, and how far off every other limit is.
 
 Leap-frog with lagged dashpots is stable while dt^2 K + 2 dt C < 4 M (energy argument in docs/physics-solids.md). With
 K <= 2 blockdiag(D_i) and C <= 2 blockdiag(D'_i) this holds when dt^2 a_i + 2 dt b_i <= 4 for every particle, where
@@ -19,13 +19,67 @@ from fractions import Fraction
 import numpy as np
 
 from .effects import EFFECTS, Effect, Verdict
+from .effects.liquid import EVERY
 from .errors import Problem, RefusedError, SceneError, Span
 from .model.basin import liquid_level
+from .model.shapes import thickness
 from .model.system import System
-from .scene.scene import Scene
+from .scene.scene import Accuracy, Scene
 
-FRACTION = 0.5
-"""``timestep auto`` over the bound: the bound is linear, motion at a tenth of the wave speed needs this margin."""
+WARN = 0.7
+"""Time step over the bound above which large motion may blow up: the bound is that of small motion (docs/physics-solids.md)."""
+STRONG = 0.5
+"""phi = lambda dt / 2m, eq. (3.13), above which the implicit form is no good: beyond 1 it turns velocities round every step."""
+FOLDS = 0.2
+"""Speed of an impact over the wave speed above which a lattice folds up and stays crumpled (docs/physics-solids.md)."""
+CRUSH = 0.2
+"""Load over Young's modulus above which a lattice is crushed (docs/physics-solids.md)."""
+THINNEST = 2
+"""Fewest cells across: one cell is 1.9 times too stiff in bending (docs/physics-solids.md)."""
+TUNNEL = (0.5, 0.7, 0.8)
+"""Closing speed over the wave speed from which a block goes through a clamped plate of 1, 2, 3 and more cells (docs/stability.md)."""
+SWEEPS = 4
+"""Fewest sweeps of the automaton for each cell that the fastest solid travels; 8 are better (docs/physics-liquid.md)."""
+STRIDE = 0.25
+"""Cells that a solid travels at most before the liquid's fix updates; it looks every EVERY steps."""
+MOST_OBJECTS = 100
+"""Objects whose own bound is told, the smallest first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Margin:
+    """A quantity beside its limit, for the object where it comes closest."""
+
+    name: str
+    """``time step``, ``contact``, ``load`` ..."""
+    object: str
+    """Name of the object."""
+    value: float
+    limit: float
+    unit: str
+    """Of value and limit; empty for ratios."""
+    text: str
+    """Both in a sentence."""
+    span: Span | None
+    """Scene line of what would change it."""
+    severity: str
+    """``ok``, ``warning`` or ``refused``."""
+    least: bool = False
+    """Whether the value is to be above the limit, not below."""
+    hint: str = ""
+    """What to write instead."""
+
+    @property
+    def used(self) -> float:
+        """Part of the limit that is used [-]: more than 1 is beyond it."""
+        if self.least:
+            return self.limit / self.value if self.value else math.inf
+        return self.value / self.limit
+
+    def to_json(self) -> dict:
+        """Plain data for certificate.json."""
+        numbers = {k: v if math.isfinite(v) else None for k, v in (("value", self.value), ("limit", self.limit), ("used", self.used))}
+        return {**asdict(self), **numbers, "span": str(self.span) if self.span else None}
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +103,8 @@ class Certificate:
     """Steps of a last, shorter frame; 0 when ``time`` is a whole number of frames."""
     span: Span | None
     """Scene line of what sets the bound."""
+    margins: tuple[Margin, ...] = ()
+    """The bound of each object, the smallest first, and every other limit that the scene has to keep."""
 
     @property
     def steps(self) -> int:
@@ -63,7 +119,8 @@ class Certificate:
     def to_json(self) -> dict:
         """Plain data for certificate.json."""
         return {**asdict(self), "bound": self.bound if math.isfinite(self.bound) else None,
-                "span": str(self.span) if self.span else None, "steps": self.steps, "fraction": self.fraction}
+                "span": str(self.span) if self.span else None, "steps": self.steps, "fraction": self.fraction,
+                "margins": [m.to_json() for m in self.margins]}
 
     def __str__(self) -> str:
         if not math.isfinite(self.bound):
@@ -80,39 +137,32 @@ def certify(scene: Scene, system: System, verdicts: dict[str, Verdict], *, allow
     """
     on = {e.name: e for e in EFFECTS if verdicts[e.name].on}
     rates = {name: r for name, e in on.items() if (r := e.rate(scene, system)) is not None}
-    stiff = sum(rates.values(), np.zeros(system.particles))
     drags = {name: r for name, e in on.items() if (r := e.drag_rate(scene, system)) is not None}
-    drag = sum(drags.values(), np.zeros(system.particles))
-    free = ~system.held
-    if not free.any() or not (stiff + drag)[free].any():
-        # Nothing vibrates: any step integrates free fall exactly; one step per frame, or what liquid or scene say.
-        bound, worst = math.inf, 0
-    else:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            limit = np.where(stiff > 0.0, (np.sqrt(drag**2 + 4.0 * stiff) - drag) / stiff, 2.0 / drag)
-        limit[~free] = np.inf
-        worst = int(np.argmin(limit))
-        bound = float(limit[worst])
+    limit = stable_step(sum(rates.values(), np.zeros(system.particles)), sum(drags.values(), np.zeros(system.particles)))
+    limit[system.held] = np.inf
+    worst = int(np.argmin(limit))
+    bound = float(limit[worst])
+    # Where nothing vibrates any step integrates free fall exactly: one step per frame, or what liquid or scene say.
     causes = {name: r[worst] for name, r in rates.items()}
     if math.isfinite(bound):
         causes |= {name: 2.0 * r[worst] / bound for name, r in drags.items()}
     total = sum(causes.values())
     cause = max(causes, key=causes.get) if total else "nothing"
-    name = system.names[system.object[worst]] if system.particles else "nothing"
-    solid = next((s for s in scene.solids if s.name == name), None)
+    name = system.names[system.object[worst]]
 
-    asked = scene.control.timestep
+    asked, fraction = scene.control.timestep, accuracy_fraction(scene)
     if asked is not None and asked > bound * (1.0 + 1e-12) and not allow_unstable:
         problem = Problem(
             scene.control.spans.get("timestep"),
             f"timestep {asked:.4g} s is above the certified bound {bound:.4g} s, set by {name} ({cause})",
-            f"write 'timestep auto' ({FRACTION * bound:.3g} s), or insist with --allow-unstable",
+            f"write 'timestep auto' ({fraction * bound:.3g} s), or insist with --allow-unstable",
         )
         raise RefusedError(str(problem))
-    longest = min([FRACTION * bound, *(e.pace(scene, system) for e in on.values())]) if asked is None else asked
+    longest = min([fraction * bound, *(e.pace(scene, system) for e in on.values())]) if asked is None else asked
     per_frame, frames, last = fit_steps(scene, longest)
+    timestep = 1.0 / (scene.control.frames * per_frame)
     return Certificate(
-        timestep=1.0 / (scene.control.frames * per_frame),
+        timestep=timestep,
         bound=bound,
         object=name,
         cause=cause,
@@ -120,8 +170,22 @@ def certify(scene: Scene, system: System, verdicts: dict[str, Verdict], *, allow
         steps_per_frame=per_frame,
         frames=frames,
         last_steps=last,
-        span=solid.spans.get("elasticity") if solid else None,
+        span=scene.solids[system.object[worst]].spans.get("elasticity"),
+        margins=tuple(_Margins(scene, system, on, timestep).all(limit, rates)),
     )
+
+
+def accuracy_fraction(scene: Scene) -> float:
+    """Time step over the bound that the scene's accuracy asks of ``timestep auto``; a target error counts as balanced."""
+    accuracy = scene.control.accuracy
+    return (accuracy if isinstance(accuracy, Accuracy) else Accuracy.BALANCED).fraction
+
+
+def stable_step(stiff: np.ndarray, drag: np.ndarray) -> np.ndarray:
+    """Largest dt with dt^2 a + 2 dt b <= 4, for a [1/s^2] and b [1/s] of any shape; infinite where both are 0."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        root = np.where(stiff > 0.0, (np.sqrt(drag**2 + 4.0 * stiff) - drag) / stiff, 2.0 / drag)
+    return np.where((stiff > 0.0) | (drag > 0.0), root, np.inf)
 
 
 def fit_steps(scene: Scene, longest: float) -> tuple[int, int, int]:
@@ -147,10 +211,6 @@ def fit_steps(scene: Scene, longest: float) -> tuple[int, int, int]:
     return per_frame, frames, rest * per_frame // q
 
 
-STRONG = 0.5
-"""phi = lambda dt / 2m, eq. (3.13), above which the implicit form is no good: beyond 1 it turns velocities round every step."""
-
-
 def strong_drag(scene: Scene, system: System, effects: Iterable[Effect], timestep: float) -> float:
     """Largest phi of the drag that these effects make, all together, when it is above STRONG, else 0."""
     frictions = [f for e in effects if (f := e.friction(scene, system)) is not None]
@@ -158,52 +218,269 @@ def strong_drag(scene: Scene, system: System, effects: Iterable[Effect], timeste
     return phi if phi > STRONG else 0.0
 
 
-FOLDS = 0.2
-"""Speed of an impact over the wave speed above which a lattice folds up and stays crumpled (docs/physics-solids.md)."""
+def warnings(certificate: Certificate) -> list[Problem]:
+    """A problem for every limit that is passed, in the order of the margins; one for all objects that pass the same."""
+    found: dict[str, Problem] = {}
+    for m in certificate.margins:
+        if m.severity != "ok":
+            found.setdefault(m.name, Problem(m.span, m.text, m.hint, severity="warning"))
+    return list(found.values())
 
 
-def hard_landing(scene: Scene, system: System, verdicts: dict[str, Verdict]) -> Problem | None:
-    """A warning for the object that may hit hardest for its stiffness, when that is harder than a lattice stands.
+def margin_lines(certificate: Certificate) -> list[str]:
+    """Lines for ``check``: every limit that is passed, and one line for all that are kept."""
+    kept: dict[str, Margin] = {}
+    lines = []
+    for m in certificate.margins:
+        if m.severity != "ok":
+            place = f"  [{m.span}]" if m.span else ""
+            lines.append(f"  {m.severity:<8} {m.name:<14} {_number(m.value)} {'<' if m.least else '>'} {_number(m.limit)} {m.unit}".rstrip()
+                         + f"  {m.object}{place}")
+        elif m.used >= kept.get(m.name, m).used:
+            kept[m.name] = m
+    lines.append("  kept     " + (", ".join(f"{m.name} {100 * m.used:.0f} %" for m in kept.values()) or "no limit"))
+    return lines
 
-    The speed is the start's, with the fall down to the ground, to the floor of the basin, or to the lowest object.
-    c = sqrt(1.2 E / rho).
-    """
-    free = np.logical_or.reduceat(~system.held, system.first[:-1])
-    if not free.any():
-        return None
-    fall = _fall(scene, system, verdicts)
-    speed = np.sqrt(np.maximum(0.0, np.maximum.reduceat((system.velocity**2).sum(1), system.first[:-1])
-                               + 2.0 * max(0.0, -scene.gravity[2]) * fall))
-    meets = len(system.names) > 1 or scene.ground is not None or scene.walls is not None or scene.liquid is not None
+
+def _number(value: float) -> str:
+    return f"{value:.3g}"
+
+
+def wave_speed(system: System) -> np.ndarray:
+    """Speed of longitudinal waves in each solid, sqrt(1.2 E / rho) [m/s], shape (M,)."""
     density = system.mass_of / (np.add.reduceat(system.share, system.first[:-1]) * system.cell_volume)
-    wave = np.sqrt(1.2 * system.young / density)
-    ratio = np.where(free & meets, speed / wave, 0.0)
-    worst = int(ratio.argmax())
-    if ratio[worst] <= FOLDS:
-        return None
-    solid = scene.solids[worst]
-    enough = system.young[worst] * (ratio[worst] / FOLDS) ** 2
-    others = int((ratio > FOLDS).sum()) - 1
-    return Problem(
-        solid.spans.get("elasticity"),
-        f"{solid.name}{f' and {others} more' if others else ''} may hit at {speed[worst]:.2g} m/s, {ratio[worst]:.2f} of the wave speed "
-        f"{wave[worst]:.2g} m/s; above about {FOLDS:g} a soft object folds up and stays crumpled",
-        f"write elasticity {enough / 1e3:.2g} kPa or more, or a lower density, height or speed",
-        severity="warning",
-    )
+    return np.sqrt(1.2 * system.young / density)
 
 
-def _fall(scene: Scene, system: System, verdicts: dict[str, Verdict]) -> np.ndarray:
-    """Height of each solid's fall [m], shape (M,), as if through air: in a liquid, heights count by what it leaves of the weight.
+class _Margins:
+    """Every limit of a scene at a time step."""
 
-    Below the surface a light solid gains height; where there are others it may meet them at the surface already.
-    """
-    bottom = np.minimum.reduceat(system.position[:, 2], system.first[:-1])
-    floors = [z for z in (scene.ground, scene.liquid and scene.liquid.low[2]) if z is not None]
-    floor = min([bottom.min(), *floors])
-    if not verdicts["buoyancy"].on:
-        return bottom - floor
-    surface = liquid_level(scene.liquid)
-    weight = 1.0 - scene.liquid.density * np.add.reduceat(system.volume, system.first[:-1]) / system.mass_of
-    in_air, in_liquid = np.maximum(0.0, bottom - surface), np.minimum(bottom, surface) - floor
-    return in_air + in_liquid * (weight if len(system.names) == 1 else np.maximum(0.0, weight))
+    def __init__(self, scene: Scene, system: System, on: dict[str, Effect], timestep: float):
+        self.scene, self.system, self.on, self.dt = scene, system, on, timestep
+        self.moving = np.logical_or.reduceat(~system.held, system.first[:-1])
+        """Solids of which something can move, bool, shape (M,)."""
+        self.wave = wave_speed(system)
+        self.speed = self._speed(self._fall())
+        """Largest speed that each solid may reach by its start and its fall [m/s], shape (M,)."""
+        self.cells = self._cells()
+        """Cells across the thinnest part of each solid [-], shape (M,)."""
+
+    def all(self, limit: np.ndarray, rates: dict[str, np.ndarray]) -> list[Margin]:
+        """The margins, the bound of the objects first; ``limit`` is the largest stable step of each particle [s], shape (N,)."""
+        found = [*self._bounds(limit), *self._contact_and_wall(rates), *self._drag()]
+        if not self.moving.any():
+            return found
+        if "springs" in self.on:
+            found += [self._amplitude(), *self._load(), self._thinnest()]
+        return found + self._closing() + self._sweeps()
+
+    def _of(self, m: int, *keywords: str) -> Span | None:
+        """Where the first of these keywords of a solid stands; its name where there is none."""
+        spans = self.scene.solids[m].spans
+        return next((spans[k] for k in (*keywords, "object") if k in spans), None)
+
+    # --- the time step --------------------------------------------------------------------------------------------
+
+    def _bounds(self, limit: np.ndarray) -> list[Margin]:
+        system = self.system
+        own = np.minimum.reduceat(limit, system.first[:-1])
+        own = np.where(np.isfinite(own), own, np.inf)
+        order = np.argsort(own, kind="stable")[:MOST_OBJECTS]
+        margins = []
+        for m in order[np.isfinite(own[order])]:
+            used = self.dt / own[m]
+            severity = "refused" if used > 1.0 + 1e-12 else "warning" if used > WARN * (1.0 + 1e-9) else "ok"
+            margins.append(Margin(
+                "time step", system.names[m], self.dt, float(own[m]), "s",
+                f"the time step {self.dt:.3g} s is {used:.2f} of what {system.names[m]} bears, {own[m]:.3g} s; above {WARN:g} large motion "
+                "may blow up, above 1 any",
+                self.scene.control.spans.get("timestep") or self._of(m, "elasticity"), severity, hint="write 'timestep auto'"))
+        return margins
+
+    def _contact_and_wall(self, rates: dict[str, np.ndarray]) -> list[Margin]:
+        """What contact and walls alone would bear."""
+        walls = [rates[name] for name in ("ground", "walls", "basin") if name in rates]
+        margins = []
+        for name, rate in (("contact", rates.get("contact")), ("wall", np.maximum.reduce(walls) if walls else None)):
+            if rate is None or not np.any(free := np.where(self.system.held, 0.0, rate)):
+                continue
+            i = int(np.argmax(free))
+            m = int(self.system.object[i])
+            alone = 2.0 / math.sqrt(free[i])
+            margins.append(Margin(
+                name, self.system.names[m], self.dt, alone, "s",
+                f"{name} alone would bear a time step of {alone:.3g} s at {self.system.names[m]}", self._of(m, "elasticity"),
+                "refused" if self.dt > alone * (1.0 + 1e-12) else "ok", hint="write 'timestep auto'"))
+        return margins
+
+    def _drag(self) -> list[Margin]:
+        """phi of air and liquid together, as an immersed particle feels it."""
+        system = self.system
+        frictions = {name: f for name, e in self.on.items() if (f := e.friction(self.scene, system)) is not None}
+        if not frictions:
+            return []
+        phi = sum(frictions.values()) / system.mass * self.dt / 2.0
+        i = int(np.argmax(phi))
+        m = int(system.object[i])
+        strong = bool(phi[i] > STRONG)
+        kinds = " and ".join(name.replace("-", " ") for name in frictions)
+        return [Margin(
+            "drag", system.names[m], float(phi[i]), STRONG, "",
+            f"{kinds} is {'strong' if strong else 'weak'} for this time step (phi = {phi[i]:.2g} {'>' if strong else '<='} {STRONG}, "
+            "eq. (3.13))",
+            self.on[list(frictions)[-1]].called_for(self.scene).span, "warning" if strong else "ok",
+            hint="the exponential form is used instead of the paper's implicit one: same terminal speed, no overshoot")]
+
+    # --- impacts --------------------------------------------------------------------------------------------------
+
+    def _speed(self, fall: np.ndarray) -> np.ndarray:
+        """The start's speed, with that of a fall [m], shape (M,)."""
+        start = np.maximum.reduceat((self.system.velocity**2).sum(1), self.system.first[:-1])
+        return np.where(self.moving, np.sqrt(np.maximum(0.0, start + 2.0 * self._g() * fall)), 0.0)
+
+    def _g(self) -> float:
+        return max(0.0, -self.scene.gravity[2]) if "gravity" in self.on else 0.0
+
+    def _fall(self) -> np.ndarray:
+        """Height of each solid's fall [m], shape (M,), down to the ground, the floor of the basin, or the lowest object.
+
+        As if through air: in a liquid, heights count by what it leaves of the weight. Below the surface a light solid gains height;
+        where there are others it may meet them at the surface already.
+        """
+        scene, system = self.scene, self.system
+        bottom = np.minimum.reduceat(system.position[:, 2], system.first[:-1])
+        floors = [z for z in (scene.ground, scene.liquid and scene.liquid.low[2]) if z is not None]
+        floor = min([bottom.min(), *floors])
+        if "buoyancy" not in self.on:
+            return bottom - floor
+        surface = liquid_level(scene.liquid)
+        in_air, in_liquid = np.maximum(0.0, bottom - surface), np.minimum(bottom, surface) - floor
+        weight = self._weight_left()
+        return in_air + in_liquid * (weight if len(system.names) == 1 else np.maximum(0.0, weight))
+
+    def _weight_left(self) -> np.ndarray:
+        """What the liquid leaves of each solid's weight when it is immersed, over its weight; below 0 where it floats, shape (M,)."""
+        if "buoyancy" not in self.on:
+            return np.ones(len(self.system.names))
+        volume = np.add.reduceat(self.system.volume, self.system.first[:-1])
+        return 1.0 - self.scene.liquid.density * volume / self.system.mass_of
+
+    def _amplitude(self) -> Margin:
+        scene, system = self.scene, self.system
+        meets = len(system.names) > 1 or any(x is not None for x in (scene.ground, scene.walls, scene.liquid))
+        ratio = np.where(meets, self.speed / self.wave, 0.0)
+        m = int(ratio.argmax())
+        folds = bool(ratio[m] > FOLDS)
+        others = int((ratio > FOLDS).sum()) - 1
+        enough = system.young[m] * (ratio[m] / FOLDS) ** 2
+        return Margin(
+            "amplitude", system.names[m], float(ratio[m]), FOLDS, "",
+            f"{system.names[m]}{f' and {others} more' if others > 0 else ''} may hit at {self.speed[m]:.2g} m/s, {ratio[m]:.2f} of the wave "
+            f"speed {self.wave[m]:.2g} m/s; above about {FOLDS:g} a soft object folds up and stays crumpled",
+            self._of(m, "elasticity"), "warning" if folds else "ok",
+            hint=f"write elasticity {enough / 1e3:.2g} kPa or more, or a lower density, height or speed")
+
+    def _closing(self) -> list[Margin]:
+        """Speed at which each solid may meet another: both fall alike, so only the start tells them apart, until one has landed."""
+        if "contact" not in self.on:
+            return []
+        system = self.system
+        low, high = (f.reduceat(system.velocity, system.first[:-1]) for f in (np.minimum, np.maximum))
+        apart = np.maximum(high - _least_of_others(low), -_least_of_others(-high) - low)
+        apart = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(1))
+        closing = np.where(self.moving, np.sqrt(apart**2 + 2.0 * self._g() * np.maximum(0.0, self._fall())), 0.0)
+        # A held partner may be met at full speed, the softer of two is the one that is passed through.
+        limit = np.array(TUNNEL)[np.clip(np.rint(self.cells).astype(int), 1, len(TUNNEL)) - 1] * self.wave
+        weakest = int(limit.argmin())
+        fastest = int((closing / np.minimum(limit, limit[weakest])).argmax())
+        value, most = float(closing[fastest]), float(min(limit[fastest], limit[weakest]))
+        partner = "" if limit[fastest] <= limit[weakest] else f", in {system.names[weakest]}"
+        return [Margin(
+            "closing speed", system.names[fastest], value, most, "m/s",
+            f"{system.names[fastest]} may meet another object at {value:.3g} m/s; up to {most:.3g} m/s{partner} nothing passes through",
+            self._of(fastest, "velocity", "position"), "warning" if value > most else "ok",
+            hint="write a lower speed, a higher elasticity, or a resolution of three cells across the thinnest part")]
+
+    # --- load and thickness ---------------------------------------------------------------------------------------
+
+    def _load(self) -> list[Margin]:
+        g = self._g()
+        if not g:
+            return []
+        system = self.system
+        stress = self._stress(g)
+        ratio = np.where(self.moving, stress / (CRUSH * system.young), 0.0)
+        m = int(ratio.argmax())
+        strength = CRUSH * system.young[m]
+        return [Margin(
+            "load", system.names[m], float(stress[m]), float(strength), "Pa",
+            f"{system.names[m]} bears about {stress[m]:.3g} Pa at its foot by its weight and by what stands above it at the start, "
+            f"{ratio[m]:.2f} of its crush strength 0.2 E = {strength:.3g} Pa (an estimate: evenly spread, at rest)",
+            self._of(m, "elasticity"), "warning" if ratio[m] > 1.0 else "ok",
+            hint=f"write elasticity {1e-3 * system.young[m] * ratio[m] * 1.5:.2g} kPa or more, or a lower density or height")]
+
+    def _stress(self, g: float) -> np.ndarray:
+        """rho g H of each solid and of the part of others that stands above it, less buoyancy [Pa], shape (M,)."""
+        system = self.system
+        low, high = (f.reduceat(system.position, system.first[:-1]) for f in (np.minimum, np.maximum))
+        size = np.maximum(high - low, 1e-300)
+        weight = system.mass_of * g * np.maximum(0.0, self._weight_left())
+        floor = size[:, 0] * size[:, 1]
+        above = np.zeros(len(weight))
+        for start in range(0, len(weight), 256):  # the table of all pairs would be too large for a crowd
+            part = slice(start, start + 256)
+            wide = [np.minimum(high[part, None, a], high[None, :, a]) - np.maximum(low[part, None, a], low[None, :, a]) for a in (0, 1)]
+            over = np.maximum(wide[0], 0.0) * np.maximum(wide[1], 0.0) / floor
+            over[low[None, :, 2] < high[part, None, 2] - 0.25 * size[part, None, 2]] = 0.0
+            above[part] = over @ weight
+        volume = np.add.reduceat(system.volume, system.first[:-1])
+        return (weight + above) * size[:, 2] / volume
+
+    def _cells(self) -> np.ndarray:
+        system, known = self.system, {}
+        thin = np.array([known[s.shape] if s.shape in known else known.setdefault(s.shape, thickness(s.shape)) for s in self.scene.solids])
+        return thin / np.cbrt(system.cell_volume)
+
+    def _thinnest(self) -> Margin:
+        cells = np.where(self.moving, self.cells, np.inf)
+        m = int(cells.argmin())
+        few = round(float(cells[m])) < THINNEST
+        h = float(np.cbrt(self.system.cell_volume[m]))
+        return Margin(
+            "thinnest part", self.system.names[m], float(cells[m]), THINNEST, "cells",
+            f"{self.system.names[m]} is {cells[m]:.2g} cells thin; one cell is 1.9 times too stiff in bending, two are 1.2 times",
+            self._of(m, "shape"), "warning" if few else "ok", least=True,
+            hint=f"write resolution {500.0 * h * cells[m]:.3g} mm for two cells")
+
+    # --- liquid ---------------------------------------------------------------------------------------------------
+
+    def _sweeps(self) -> list[Margin]:
+        """Sweeps for each cell that the fastest solid travels: it may go on for EVERY steps before the fix looks."""
+        if "liquid" not in self.on:
+            return []
+        liquid, cell = self.scene.liquid, min(self.system.grid.cell)
+        bottom = np.minimum.reduceat(self.system.position[:, 2], self.system.first[:-1])
+        surface = liquid_level(liquid)
+        # Fastest at the surface on its way down or up, or at the floor.
+        rise = np.maximum(0.0, surface - bottom) * np.maximum(0.0, -self._weight_left())
+        fastest = self._speed(np.maximum.reduce([bottom - surface, rise, self._fall()]))
+        m = int(fastest.argmax())
+        speed = float(fastest[m])
+        stride = STRIDE + EVERY * self.dt * speed / cell
+        each = 2.0 * SWEEPS if liquid.sweeps is None else liquid.sweeps / stride
+        few = each < SWEEPS
+        return [Margin(
+            "sweeps", self.system.names[m], each, SWEEPS, "per cell",
+            f"liquid is swept {each:.2g} times for each cell that {self.system.names[m]} travels at {speed:.3g} m/s; below "
+            f"{SWEEPS} it is pushed up before it can flow away, {2 * SWEEPS} are better",
+            liquid.spans.get("sweeps") or liquid.spans.get("liquid"), "warning" if few else "ok", least=True,
+            hint=f"write sweeps auto, or {math.ceil(2 * SWEEPS * stride)}")]
+
+
+def _least_of_others(values: np.ndarray) -> np.ndarray:
+    """Along each axis, the least of all rows but one's own; shape (M, 3)."""
+    order = np.argsort(values, axis=0)
+    least = np.broadcast_to(np.take_along_axis(values, order[:1], 0), values.shape).copy()
+    if len(values) > 1:
+        np.put_along_axis(least, order[:1], np.take_along_axis(values, order[1:2], 0), 0)
+    return least

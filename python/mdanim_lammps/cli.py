@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import difflib
 import json
+import re
 import sys
+import time
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -13,6 +15,9 @@ from cyclopts import App, CycloptsError, Parameter
 
 from . import __version__
 from .errors import ExitCode, MdanimError, RefusedError, SceneError, UsageError
+
+STARTED = time.perf_counter()
+"""When this process began to work: reading and modelling are part of what a run costs."""
 
 app = App(
     name="mdanim-lammps",
@@ -22,7 +27,7 @@ app = App(
 )
 
 Set = Annotated[tuple[str, ...], Parameter(name="--set", help="Override a 'let': --set NAME=VALUE.", negative=(), consume_multiple=False)]
-Accuracy = Annotated[Literal["preview", "balanced", "reference"] | None, Parameter(help="Cells across the thinnest part: 2, 4, 8.")]
+Accuracy = Annotated[Literal["preview", "balanced", "reference"] | None, Parameter(help="Cells across the thinnest part: 2, 4, 8; time step 0.7, 0.5, 0.25 of the bound.")]
 Strict = Annotated[bool, Parameter(negative=(), help="Bare numbers need a unit.")]
 AllowUnstable = Annotated[bool, Parameter(negative=(), help="Insist on a time step above the certified bound.")]
 Quiet = Annotated[bool, Parameter(name=["-q", "--quiet"], negative=(), help="Print errors only.")]
@@ -53,7 +58,8 @@ def run(scene: Path, /, *, executors: Annotated[int, Parameter(name=["-n", "--ex
     refuse_executors(executors)
     if control is not None:
         raise RefusedError("--control chooses between kinds of runs on several executors, which are not built yet; leave it out")
-    ready = _prepare(scene, set_, accuracy, allow_unstable=allow_unstable)
+    record = _settle(_with_accuracy(_load(scene, set_), accuracy), make=True, quiet=quiet, out=out)
+    ready = _prepare_record(record, allow_unstable=allow_unstable)
     _announce(ready, quiet, verbose)
     folder = open_run(ready, out, force=force)
     _simulate_and_render(ready, folder, quiet=quiet, movie=movie)
@@ -71,16 +77,27 @@ def check(scene: Path, /, *, set_: Set = (), accuracy: Accuracy = None, strict: 
     format
         Text for people, JSON for programs.
     """
-    from .report import certificate_line, check_json, effect_line, output_line, scene_line
+    from .certificate import margin_lines
+    from .driver.calibration import calibration
+    from .driver.forecast import forecast
+    from .report import certificate_line, check_json, effect_line, forecast_line, output_line, scene_line
 
-    ready = _prepare(scene, set_, accuracy, strict=strict, allow_unstable=allow_unstable)
+    record = _with_accuracy(_load(scene, set_, strict=strict), accuracy)
+    ready = _prepare_record(_settle(record, make=False, quiet=format == "json"), allow_unstable=allow_unstable)
+    setup = time.perf_counter() - STARTED
+    rates = calibration(lambda line: print(line, file=sys.stderr, flush=True)).rates
+    cost = forecast(ready, rates, setup=setup)
     if format == "json":
-        print(json.dumps(check_json(ready), indent=1, ensure_ascii=False))
+        print(json.dumps(check_json(ready, cost), indent=1, ensure_ascii=False))
         return
     _warn(ready)
     print(scene_line(ready))
     print(certificate_line(ready))
+    print("limits")
+    for line in margin_lines(ready.certificate):
+        print(line)
     print(output_line(ready))
+    print(forecast_line(cost))
     print("effects")
     for verdict in ready.verdicts.values():
         print(effect_line(verdict))
@@ -98,7 +115,8 @@ def build(scene: Path, /, *, out: Out = None, set_: Set = (), accuracy: Accuracy
     """
     from .api import open_run
 
-    ready = _prepare(scene, set_, accuracy, allow_unstable=allow_unstable)
+    record = _settle(_with_accuracy(_load(scene, set_), accuracy), make=True, quiet=quiet, out=out)
+    ready = _prepare_record(record, allow_unstable=allow_unstable)
     _announce(ready, quiet, verbose)
     folder = open_run(ready, out, force=force)
     if not quiet:
@@ -156,8 +174,10 @@ def render(folder: Path, /, *, size: tuple[int, int] | None = None, fps: float |
     record = _stored_scene(folder) if scene is None else _load(scene, ())
     from .api import movie_file
 
-    _render(folder, record, out or movie_file(folder, record), quiet=quiet, size=size, fps=fps,
-            frames=folder / "frames" if frames else None)
+    path = out or movie_file(folder, record)
+    _render(folder, record, path, quiet=quiet, size=size, fps=fps, frames=folder / "frames" if frames else None)
+    if not quiet:
+        print(f"movie    {path}" + (f"   pictures in {folder / 'frames'}" if frames else ""))
 
 
 @app.command
@@ -180,15 +200,39 @@ def compare(a: Path, b: Path, /) -> None:
 
 
 @app.command
-def study(scene: Path, /) -> None:
-    """What accuracy costs in time (not built yet).
+def study(scene: Path, /, *, budget: str = "2 min", out: Out = None, ladders: Annotated[str, Parameter(name="--ladders")] = "",
+          set_: Set = (), accuracy: Accuracy = None, force: Force = False, quiet: Quiet = False) -> None:
+    """What accuracy costs in time: ladders of settings around the scene's own, measured, with a table, a plot and advice.
+
+    Points that were measured before are not measured again: the same command goes on where it was stopped.
 
     Parameters
     ----------
     scene
         The scene file.
+    budget
+        Wall time, e.g. "30 s" or "2 min".
+    ladders
+        Only these, e.g. "time step, resolution"; known are time step, resolution, sweeps.
     """
-    raise RefusedError("'study' is not built yet; compare --accuracy preview, balanced and reference by hand")
+    from .api import STUDY, default_folder
+    from .study.report import order_lines, table
+    from .study.study import run_study
+
+    seconds = _seconds("--budget", budget)
+    record = _with_accuracy(_load(scene, set_), accuracy)
+    only = [name.strip() for name in ladders.split(",") if name.strip()]
+    told = (lambda line: None) if quiet else (lambda line: print(f"study    {line}", file=sys.stderr, flush=True))
+    done = run_study(record, (out or default_folder(record)) / STUDY, budget=seconds, only=only, force=force, watch=told)
+    if quiet:
+        return
+    from rich.console import Console
+
+    Console(width=None if sys.stdout.isatty() else 140).print(table(done))
+    for line in order_lines(done):
+        print(line)
+    print(f"advice   {done.advice}")
+    print(f"output   {done.folder}/study.json, study.csv, study.png")
 
 
 # --- what the commands share ------------------------------------------------------------------------------------------
@@ -205,21 +249,51 @@ def _load(path: Path, overrides: tuple[str, ...], *, strict: bool = False):
     return load_scene(path, overrides=pairs, strict=strict)
 
 
-def _prepare(path: Path, overrides: tuple[str, ...], accuracy: str | None, *, strict: bool = False, allow_unstable: bool = False):
+def _with_accuracy(scene, accuracy: str | None):
+    """The scene with a class of accuracy from the command line."""
     from dataclasses import replace
 
     from .scene.scene import Accuracy as AccuracyClass
 
-    scene = _load(path, overrides, strict=strict)
-    if accuracy is not None:
-        scene = replace(scene, control=replace(scene.control, accuracy=AccuracyClass(accuracy)))
-    return _prepare_record(scene, allow_unstable=allow_unstable)
+    if accuracy is None:
+        return scene
+    return replace(scene, control=replace(scene.control, accuracy=AccuracyClass(accuracy)))
+
+
+def _settle(scene, *, make: bool, quiet: bool = False, out: Path | None = None):
+    """The scene with a setting for its target error, and a line that says where it comes from."""
+    from .api import STUDY, default_folder
+    from .study.target import settle
+
+    told = (lambda line: None) if quiet else (lambda line: print(f"accuracy {line}", file=sys.stderr, flush=True))
+    settled = settle(scene, make=make, study=(out or default_folder(scene)) / STUDY, watch=told)
+    if settled.warning:
+        print(settled.warning, file=sys.stderr)
+    if settled.line and not quiet:
+        print(settled.line)
+    return settled.scene
 
 
 def _prepare_record(scene, *, allow_unstable: bool):
     from .driver.prepare import prepare
 
     return prepare(scene, allow_unstable=allow_unstable)
+
+
+def _seconds(option: str, text: str) -> float:
+    """A duration such as "2 min" in seconds."""
+    from .scene.units import DimensionError, unit
+
+    match = re.fullmatch(r"\s*([0-9.]+(?:e[+-]?[0-9]+)?)\s*([a-z]+)\s*", text)
+    try:
+        u = unit(match[2])
+        seconds = float(match[1]) * u.over / u.under
+        good = u.dim == unit("s").dim and 0.0 < seconds < float("inf")
+    except (KeyError, TypeError, ValueError, DimensionError):
+        good = False
+    if not good:
+        raise UsageError(f'{option} {text}: expected a time above 0, e.g. {option} "30 s" or {option} "2 min"')
+    return seconds
 
 
 def _stored_scene(folder: Path):
@@ -258,7 +332,7 @@ def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, check
     from .report import cost_line, progress_line
 
     with _bar("run", quiet) as bar:
-        result = simulate(ready, folder, resume=checkpoint,
+        result = simulate(ready, folder, resume=checkpoint, started=STARTED,
                           watch=lambda p: bar(p.frame, p.frames, progress_line(p)))
     # Before the movie: what was found must not depend on whether pictures can be made here.
     if not quiet:
@@ -267,6 +341,8 @@ def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, check
         for outcome in result.outcomes:
             if outcome.met:
                 print(outcome)
+    for warning in result.warnings:
+        print(warning, file=sys.stderr)
     for outcome in result.missed:
         print(outcome, file=sys.stderr)
     if movie:
@@ -281,8 +357,12 @@ def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, check
 def _render(folder: Path, scene, path: Path, *, quiet: bool, **options) -> None:
     from .picture.movie import render_movie
 
-    with _bar("movie", quiet) as bar:
-        render_movie(folder, scene.render, path, progress=lambda done, total: bar(done, total, f"frame {done}/{total}"), **options)
+    try:
+        with _bar("movie", quiet) as bar:
+            render_movie(folder, scene.render, path, progress=lambda done, total: bar(done, total, f"frame {done}/{total}"), **options)
+    except KeyboardInterrupt:
+        print(f"the movie was interrupted, the run is complete; draw it with: mdanim-lammps render {folder}", file=sys.stderr)
+        raise SystemExit(ExitCode.INTERRUPTED) from None
 
 
 class _bar:

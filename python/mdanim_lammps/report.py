@@ -6,6 +6,7 @@ from __future__ import annotations
 from .driver.prepare import Prepared
 from .driver.run import Progress, Result
 from .effects import Verdict
+from .results.cost import Cost
 from .results.trajectory import trajectory_bytes
 
 
@@ -71,14 +72,30 @@ def progress_line(p: Progress) -> str:
 
 def cost_line(result: Result, simulated: float) -> str:
     """One line: where the wall time went."""
-    total = sum(result.cost.values())
-    parts = sorted(result.cost.items(), key=lambda item: -item[1])
+    total = result.cost.total
+    parts = sorted(result.cost.parts.items(), key=lambda item: -item[1])
     shares = "  ".join(f"{name} {100 * s / total:.0f}%" for name, s in parts if s >= 0.005 * total)
     return f"cost     {shares}   total {total:.1f} s, {simulated / total:.2g} of real time"
 
 
-def check_json(ready: Prepared) -> dict:
-    """What ``check --format json`` prints."""
+def forecast_line(cost: Cost) -> str:
+    """One line of ``check``: what a run will cost on this machine, and most of it."""
+    parts = sorted(cost.parts.items(), key=lambda item: -item[1])
+    told = ", ".join(f"{name} {_about(s)}" for name, s in parts if s >= 0.05 * cost.total)
+    return f"cost     about {_about(cost.total)} here: {told}"
+
+
+def _about(seconds: float) -> str:
+    """A time in one digit, two where the first is a 1: no forecast is better than that."""
+    for unit, size in (("h", 3600.0), ("min", 60.0), ("s", 1.0), ("ms", 1e-3)):
+        if seconds >= size:
+            break
+    digits = 2 if f"{seconds / size:e}".startswith("1") else 1
+    return f"{float(f'{seconds / size:.{digits}g}'):g} {unit}"
+
+
+def check_json(ready: Prepared, forecast: Cost | None = None) -> dict:
+    """What ``check --format json`` prints; ``forecast`` is the expected cost (driver/forecast.py)."""
     return {
         "scene": str(ready.scene.path) if ready.scene.path else ready.scene.name,
         "objects": [{"name": m.name, "particles": len(m.position), "springs": len(m.spring), "cell": list(m.cell)}
@@ -88,6 +105,7 @@ def check_json(ready: Prepared) -> dict:
         "effects": {v.name: {"on": v.on, "reason": v.reason, "place": str(v.span) if v.span else None}
                     for v in ready.verdicts.values()},
         "certificate": ready.certificate.to_json(),
+        "cost": None if forecast is None else forecast.to_json(),
         "warnings": [{"message": w.message, "hint": w.hint, "place": str(w.span) if w.span else None}
                      for w in ready.warnings],
     }

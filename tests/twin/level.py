@@ -71,6 +71,10 @@ def move(content, solid, seed, when, rate, at_least):
     return after, moved
 
 
+UNEVEN = -1.0
+"""A height that is still to be counted."""
+
+
 def heights(content, solid):
     """Heights (ny, nx) and whether all is level."""
     nz, ny, nx = content.shape
@@ -83,7 +87,7 @@ def heights(content, solid):
         z = np.nonzero(exposed)[0]
         if len(z) == 0 or not (on_liquid.any() or exposed[0].any()):
             continue
-        told[exposed] = z + 1.0
+        told[exposed] = UNEVEN
         if level:
             full = on_liquid[z.max()].sum()
             part = exposed[z.max() - 1].sum() if z.max() > 0 else 0
@@ -95,6 +99,10 @@ def heights(content, solid):
             wet = np.flatnonzero(content[:, y, x])
             if len(wet):
                 height[y, x] = told[wet[-1], y, x]
+                if height[y, x] == UNEVEN:
+                    below = np.flatnonzero(solid[: wet[-1], y, x])
+                    bed = below[-1] + 1 if len(below) else 0
+                    height[y, x] = min(nz, bed + content[bed : wet[-1] + 1, y, x].astype(int).sum())
             elif solid[:, y, x].any():
                 height[y, x] = np.nan
     return height, every

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
-from ..certificate import STRONG, Certificate, certify, hard_landing, strong_drag
+from ..certificate import Certificate, certify
+from ..certificate import warnings as margin_warnings
 from ..effects import EFFECTS, Verdict, decide
 from ..engine.plan import Plan, make_plan
 from ..errors import Problem, SceneError
@@ -32,6 +33,8 @@ class Prepared:
     warnings: tuple[Problem, ...]
     certificate: Certificate
     plan: Plan
+    insist: bool = False
+    """Whether a time step above the bound was asked for all the same (``--allow-unstable``)."""
 
     @cached_property
     def lock(self) -> str:
@@ -61,18 +64,8 @@ def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[i
     system = assemble(models, scene)
     certificate = certify(scene, system, verdicts, allow_unstable=allow_unstable)
     plan = make_plan(scene, system, verdicts, certificate)
-    if phi := strong_drag(scene, system, plan.effects, certificate.timestep):
-        kinds = [verdicts[name] for name in ("air-drag", "liquid-drag") if verdicts[name].on]
-        warnings.append(Problem(
-            kinds[-1].span,
-            f"{' and '.join(v.name.replace('-', ' ') for v in kinds)} is strong for this time step "
-            f"(phi = {phi:.2g} > {STRONG}, eq. (3.13))",
-            "the exponential form is used instead of the paper's implicit one: same terminal speed, no overshoot",
-            severity="warning",
-        ))
-    if (verdicts["springs"].on and (warning := hard_landing(scene, system, verdicts))):
-        warnings.append(warning)
-    return Prepared(scene, tuple(models), system, verdicts, (*scene.warnings, *warnings), certificate, plan)
+    warnings += margin_warnings(certificate)
+    return Prepared(scene, tuple(models), system, verdicts, (*scene.warnings, *warnings), certificate, plan, allow_unstable)
 
 
 def _unmeasurable(scene: Scene, verdicts: dict[str, Verdict]) -> list[Problem]:

@@ -14,21 +14,22 @@ from pathlib import Path
 import numpy as np
 
 from .. import __version__
+from ..effects.air_drag import LEAPFROG
 from ..engine.commands import input_script
 from ..engine.data_file import write_data
 from ..engine.instance import Instance
-from ..errors import DivergedError, ExitCode, MdanimError, OutputError
+from ..errors import DivergedError, ExitCode, MdanimError, OutputError, Problem
 from ..results.checkpoint import Checkpoint
+from ..results.cost import Cost, Part
 from ..results.expect import Measured, Outcome, evaluate, record, recorded
 from ..results.files import write_json, write_whole
 from ..results.ledger import Ledger
 from ..results.trajectory import Trajectory, TrajectoryWriter
+from .guard import Guard
 from .prepare import Prepared
 
 CHECKPOINT_SECONDS = 10.0
 """Wall time between checkpoints: a killed run loses at most this much, and a fast one does not write all the time."""
-BLOWN_UP = 0.5
-"""An energy residual above this is no animation any more: the run stops and keeps the last good frame."""
 
 
 @dataclass
@@ -57,8 +58,10 @@ class Result:
     folder: Path
     ledger: Ledger
     outcomes: list[Outcome] = field(default_factory=list)
-    cost: dict[str, float] = field(default_factory=dict)
+    cost: Cost | None = None
     """Seconds per effect and per other piece of work."""
+    warnings: list[Problem] = field(default_factory=list)
+    """What was seen in the run that does not stop it."""
 
     @property
     def missed(self) -> list[Outcome]:
@@ -81,12 +84,13 @@ def write_inputs(ready: Prepared, folder: Path) -> None:
 
 
 def simulate(ready: Prepared, folder: Path, *, watch: Callable[[Progress], None] | None = None,
-             resume: Checkpoint | None = None) -> Result:
+             resume: Checkpoint | None = None, started: float | None = None) -> Result:
     """Run all frames (or go on from a checkpoint), leaving trajectory.h5, ledger.csv, checkpoint and summary.json in ``folder``.
 
-    Raises DivergedError with the last good frame kept, Interrupted after Ctrl-C, OutputError when the disk is full.
+    ``started`` is what ``time.perf_counter()`` gave when the work for this run began, so that loading and modelling are in its cost;
+    None is now. Raises DivergedError with the last good frame kept, Interrupted after Ctrl-C, OutputError when the disk is full.
     """
-    run = _Run(ready, folder, resume)
+    run = _Run(ready, folder, resume, time.perf_counter() if started is None else started)
     return run.go(watch or (lambda progress: None))
 
 
@@ -102,11 +106,12 @@ def run_id(ready: Prepared) -> str:
 class _Run:
     """The state of one run; only its methods know the order of things."""
 
-    def __init__(self, ready: Prepared, folder: Path, resume: Checkpoint | None):
+    def __init__(self, ready: Prepared, folder: Path, resume: Checkpoint | None, started: float):
         self.ready, self.folder, self.resume = ready, folder, resume
         self.certificate = ready.certificate
         self.effects = ready.plan.effects
-        self.fixes = [e.fix for e in self.effects if e.fix]
+        self.started = started
+        self.guard = Guard(ready, folder)
         self.seconds = {"setup": 0.0, "simulation": 0.0, "output": 0.0}
         self.carried = dict(resume.carried) if resume else {}
         if "seconds" in self.carried:
@@ -126,7 +131,6 @@ class _Run:
     def go(self, watch: Callable[[Progress], None]) -> Result:
         c = self.certificate
         lengths = [c.steps_per_frame] * c.frames + ([c.last_steps] if c.last_steps else [])
-        start = time.perf_counter()
         with Instance(self.ready.plan) as self.instance, _Interrupt() as stopped, self._open_trajectory() as out:
             if self.resume:
                 self.instance.restore(self.resume.step, self.resume.x, self.resume.v, self.resume.f, self.resume.liquid)
@@ -137,22 +141,26 @@ class _Run:
                 self.before = self.instance.array("f").copy()
                 frame = 0
                 self._record(out)
-            self.seconds["setup"] += time.perf_counter() - start
+            self.seconds["setup"] = time.perf_counter() - self.started
+            with self._clock("output"):
+                if not self.resume:
+                    self._save(out, 0)
             saved = time.perf_counter()
-            if not self.resume:
-                self._save(out, 0)
             saved_frame = frame
             try:
                 for frame in range(frame + 1, len(lengths) + 1):
                     with self._clock("simulation"):
                         self._advance(lengths[frame - 1])
+                    with self._clock("guard"):
+                        self.guard.look(self.instance.step, self.instance.array("x"), self.instance.array("v"))
                     with self._clock("output"):
                         row = self._record(out)
                         if time.perf_counter() - saved > CHECKPOINT_SECONDS or frame == len(lengths) or stopped.is_set():
                             self._save(out, frame)
                             saved, saved_frame = time.perf_counter(), frame
-                    watch(Progress(frame, len(lengths), self.instance.step, c.steps, row["time"], row["residual"],
-                                   self.seconds["simulation"], self.first_step, self._gained()))
+                    with self._clock("output"):
+                        watch(Progress(frame, len(lengths), self.instance.step, c.steps, row["time"], row["residual"],
+                                       self.seconds["simulation"], self.first_step, self._gained()))
                     if stopped.is_set() and frame < len(lengths):
                         if saved_frame != frame:
                             self._save(out, frame)
@@ -161,16 +169,22 @@ class _Run:
                                           f"mdanim-lammps resume {self.folder}{insist}")
             finally:
                 self._close_ledger()
-            self._collect_cost()
+            self.parts, self.leapfrog = self._collect_cost()
             penetration = self._penetration()
+            closing = time.perf_counter()
+        self.seconds["output"] += time.perf_counter() - closing
         return self._finish(penetration)
 
     def _advance(self, steps: int) -> None:
         """Run to the next frame and keep the forces of the step before it: how they change tells how stiff the motion is."""
-        if steps > 1:
-            self.instance.run(steps - 1)
-        self.before = self.instance.array("f").copy()
-        self.instance.run(1)
+        instance = self.instance
+        try:
+            if steps > 1:
+                instance.run(steps - 1)
+            self.before = instance.array("f").copy()
+            instance.run(1)
+        except DivergedError as error:
+            raise self.guard.broke(instance.step, error, instance.array("v")) from error
 
     def _finish(self, penetration: float) -> Result:
         with self._clock("output"):
@@ -182,11 +196,11 @@ class _Run:
                     trajectory.names, trajectory.times, trajectory.centers, trajectory.center_velocities,
                     self.ledger.array("residual"), penetration,
                     {what: self.ledger.array(column) for what, column in self.recorded.items()}, **liquid))
-        result = Result(self.folder, self.ledger, outcomes, dict(self.seconds))
-        write_json(self.folder / "cost.json", {"seconds": self.seconds, "steps": self.certificate.steps,
-                                               "particles": self.ready.system.particles})
+        cost = self._cost()
+        write_json(self.folder / "cost.json", cost.to_json())
         write_json(self.folder / "summary.json", self._summary(outcomes, penetration))
-        return result
+        missed = self.guard.missed(self.ledger.residual)
+        return Result(self.folder, self.ledger, outcomes, cost, [missed] if missed else [])
 
     def _summary(self, outcomes: list[Outcome], penetration: float) -> dict:
         scene, c = self.ready.scene, self.certificate
@@ -196,7 +210,7 @@ class _Run:
             "springs": len(self.ready.system.spring), "time": c.steps * c.timestep, "timestep": c.timestep,
             "steps": c.steps, "frames": len(self.ledger.rows),
             "effects": [e.name for e in self.effects],
-            "energy_residual": self.ledger.residual, "penetration": penetration,
+            "energy_residual": self.ledger.residual, "penetration": penetration, "inverted_cells": self.guard.most_inverted,
             **({"liquid_cells": int(self.ledger.rows[-1]["liquid_cells"]), "liquid_residual": self._gained()} if self.grid else {}),
             "seconds": sum(self.seconds.values()),
             "expect": [{"what": f"{o.expect.subject}.{o.expect.quantity}", "time": o.expect.time, "value": o.expect.value,
@@ -218,9 +232,6 @@ class _Run:
         step = instance.step
         when = step * self.certificate.timestep
         x, v = instance.array("x"), instance.array("v")
-        if not (np.isfinite(x).all() and np.isfinite(v).all()):
-            bad = system.names[system.object[np.argmin(np.isfinite(x).all(1) & np.isfinite(v).all(1))]]
-            raise self._diverged(f"step {step}, t = {when:.4g} s: positions of {bad} are no numbers any more")
         heights = instance.liquid_heights() if self.grid else None
         extras = {column: record(quantity, system, self.ready.models[system.names.index(name)], x, heights and heights[0])
                   for (name, quantity), column in self.recorded.items()}
@@ -230,19 +241,13 @@ class _Run:
                 raise DivergedError(f"step {step}, t = {when:.4g} s: {extras['liquid_cells']:.0f} cells of liquid, {start:.0f} at the "
                                     f"start: this must never be, please report it. The last good frame is kept in {self.folder}")
         row = self.ledger.add(when, self._energies(v) | extras)
-        if not abs(row["residual"]) <= BLOWN_UP:
+        try:
+            self.guard.energy(step, row["residual"], v)
+        except DivergedError:
             del self.ledger.rows[-1]
-            raise self._diverged(f"step {step}, t = {when:.4g} s: the energies do not add up (residual {row['residual']:.3g})")
+            raise
         out.write(step, when, x, v, heights)
         return row
-
-    def _diverged(self, what: str) -> DivergedError:
-        c = self.certificate
-        cure = ("that is why: write 'timestep auto'" if c.fraction > 1.0 else
-                "objects are probably hit or squeezed harder than their lattice stands: try a lower speed, a stiffer object or "
-                "a smaller timestep")
-        return DivergedError(f"{what}; the step is {c.fraction:.2f} of the bound, set by {c.object} ({c.cause}); {cure}. "
-                             f"The last good frame is kept in {self.folder}")
 
     def _energies(self, v: np.ndarray) -> dict[str, float]:
         """Energy of every term of the ledger [J]."""
@@ -305,16 +310,25 @@ class _Run:
     def _clock(self, what: str):
         return _Clock(self.seconds, what)
 
-    def _collect_cost(self) -> None:
-        """Split the simulation's time by effect: every style times itself."""
-        own = {fix: self.instance.fix_seconds(fix) for fix in (*self.fixes, "leapfrog") if fix != "liquid"}
-        if self.grid:
-            own |= {f"liquid {part}": self.instance.fix_value("liquid", 7 + k)
-                    for k, part in enumerate(("automaton", "occupancy", "coupling"))}
-        if any(e.name == "springs" for e in self.effects):
-            own["springs"] = self.instance.bond_seconds()
-        rest = self.seconds.pop("simulation") - sum(own.values())
-        self.seconds = {**own, "rest of the step": max(0.0, rest), **self.seconds}
+    def _collect_cost(self) -> tuple[dict[str, Part], float]:
+        """What every effect has taken in this run, and what the leap-frog has beside them [s]."""
+        parts, leapfrog = {}, self.instance.fix_seconds("leapfrog")
+        for effect in self.effects:
+            clocks = effect.clocks(self.instance)
+            span = self.ready.verdicts[effect.name].span
+            parts[effect.name] = Part(sum(clocks.values()), str(span) if span else None, clocks if len(clocks) > 1 else {})
+            leapfrog -= clocks.get(LEAPFROG, 0.0)
+        return parts, leapfrog
+
+    def _cost(self) -> Cost:
+        """The account of the whole run, to be asked for at its end."""
+        simulation = self.seconds["simulation"]
+        rest = max(0.0, simulation - sum(p.seconds for p in self.parts.values()) - self.leapfrog)
+        other = {name: s for name, s in self.seconds.items() if name != "simulation"}
+        return Cost(
+            wall=time.perf_counter() - self.started + other.get("before the resume", 0.0), steps=self.certificate.steps,
+            particles=self.ready.system.particles, effects=self.parts,
+            other={LEAPFROG: self.leapfrog, "rest of the step": rest, **other})
 
 
 class _Clock:

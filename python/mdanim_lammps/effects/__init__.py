@@ -5,7 +5,7 @@ from .air_drag import AirDrag
 from .boundaries import Ground, Walls
 from .contact import Contact
 from .damping import Damping
-from .effect import Effect, Verdict, decide
+from .effect import Effect, Load, Verdict, decide
 from .gravity import Gravity
 from .liquid import Basin, Buoyancy, Liquid, LiquidDrag
 from .springs import Springs
@@ -14,4 +14,4 @@ EFFECTS: tuple[Effect, ...] = (
     Springs(), Damping(), Gravity(), Contact(), Ground(), Walls(), Basin(), AirDrag(), Liquid(), Buoyancy(), LiquidDrag(),
 )
 
-__all__ = ["EFFECTS", "Effect", "Verdict", "decide"]
+__all__ = ["EFFECTS", "Effect", "Load", "Verdict", "decide"]

@@ -10,10 +10,30 @@ from .effect import Effect, Verdict
 from .springs import all_held
 
 
+LEAPFROG = "leap-frog"
+"""Clock of the integrator; what effects take of it is not counted with the integrator's own time."""
+SLOWING = 0.6
+"""Part of the leap-frog's time for a particle that goes to its drag, of air or liquid (bench/effects.py shares)."""
+
+
 def felt(scene, system) -> np.ndarray | None:
     """lambda of each particle in air [N*s/m], shape (N,); None where air drag is off."""
     on = AirDrag().called_for(scene).on and scene.effects.get(AirDrag.name) is not Switch.OFF
     return system.drag if on else None
+
+
+def slowed_share(instance) -> float:
+    """Part of the leap-frog's time that goes to drag: of the particles that feel any now, after a run mostly at rest."""
+    if "lambda" not in instance.plan.columns:
+        return 0.0
+    free = ~instance.plan.system.held
+    more = SLOWING / (1.0 - SLOWING) * np.count_nonzero(instance.array("d_lambda")[free]) / max(1, np.count_nonzero(free))
+    return more / (1.0 + more)
+
+
+def drag_forecast(load, rate, particles: int) -> float:
+    """Seconds that drag, of air or liquid, of so many particles adds to the leap-frog."""
+    return load.steps * particles * rate["leap-frog"] * SLOWING / (1.0 - SLOWING)
 
 
 class AirDrag(Effect):
@@ -32,6 +52,12 @@ class AirDrag(Effect):
 
     def friction(self, scene, system):
         return system.drag
+
+    def clocks(self, instance):
+        return {LEAPFROG: slowed_share(instance) * instance.fix_seconds("leapfrog")}
+
+    def forecast(self, load, rate):
+        return drag_forecast(load, rate, np.count_nonzero(load.system.drag[~load.system.held]))
 
     def energy(self, instance, scene, system):
         return instance.fix_scalar("leapfrog")

@@ -7,6 +7,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..model.sweep import closest
+from ..model.wording import length
 from .effect import Effect, Verdict
 from .springs import all_held
 
@@ -14,6 +16,9 @@ REACH = 1.6
 """Reach of the barrier over the spacing: the flattest of the forms measured (docs/physics-contact.md)."""
 THIN = 0.75
 """Reach of a thin object's own boundary over REACH: 1.2 spacings."""
+
+PARTNERS = 15
+"""Pairs that a particle on a surface in touch is tried with: within reach and skin, 2.35 spacings."""
 
 
 @lru_cache(maxsize=16)
@@ -50,7 +55,11 @@ class Contact(Effect):
             return Verdict(self.name, False, "one object" if scene.solids else "no objects")
         if not moving:
             return Verdict(self.name, False, "every object is held")
-        return Verdict(self.name, True, f"{len(scene.solids)} objects that may meet", scene.solids[1].spans.get("object"))
+        first, second, apart = closest(scene)
+        if apart > 0.0:
+            return Verdict(self.name, False, f"no two objects can come within reach: nearest are {first.name} and {second.name}, "
+                           f"with {length(apart)} to spare", second.spans.get("object"))
+        return Verdict(self.name, True, f"{first.name} and {second.name} may meet", second.spans.get("object"))
 
     def columns(self, scene, system):
         return {"stiffness": system.contact_stiffness, "reach": REACH * system.spacing[system.object]}
@@ -73,6 +82,13 @@ class Contact(Effect):
 
     def energy(self, instance, scene, system):
         return instance.fix_scalar(self.fix)
+
+    def forecast(self, load, rate):
+        # The surface of all but the largest object may be in touch, a third of it, a fifth of the time.
+        system = load.system
+        surface = np.add.reduceat(system.boundary.astype(int), system.first[:-1])
+        touching = float(surface.sum() - surface.max()) / 15.0
+        return load.rebuilds * system.particles * rate["contact"] + load.steps * touching * PARTNERS * rate["pair"]
 
     def penetration(self, instance, system):
         # A guard lies one spacing below its surface, so r = h means that surfaces touch; between lattice points, and for

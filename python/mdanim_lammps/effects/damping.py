@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from .effect import Effect, Verdict
-from .springs import all_held, spring_norm
+from .springs import DASHPOTS, all_held, spring_norm
 
 
 class Damping(Effect):
@@ -21,6 +21,13 @@ class Damping(Effect):
 
     def energy(self, instance, scene, system):
         return instance.damping_loss()
+
+    def clocks(self, instance):
+        return {"springs": instance.bond_seconds() * DASHPOTS}
+
+    def forecast(self, load, rate):
+        # All springs of a scene are asked for their dashpots, or none.
+        return load.steps * len(load.system.spring) * rate["spring"] * DASHPOTS / (1.0 - DASHPOTS)
 
     def drag_rate(self, scene, system):
         return 2.0 * spring_norm(system, system.damping) / system.mass

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +22,29 @@ class Verdict:
     on: bool
     reason: str
     span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """How much work a run will be, as far as that can be told before it."""
+
+    scene: Scene
+    system: System
+    on: frozenset[str]
+    """Effects that are on."""
+    steps: int
+    rebuilds: float
+    """How often neighbour lists will be rebuilt."""
+
+    @property
+    def mobile(self) -> int:
+        """Particles that can move."""
+        return self.system.particles - int(self.system.held.sum())
+
+    @property
+    def time(self) -> float:
+        """Simulated [s]."""
+        return self.scene.control.time
 
 
 class Effect:
@@ -74,6 +98,17 @@ class Effect:
 
     def energy(self, instance, scene: Scene, system: System) -> float:
         """What stands in its ledger column now [J]; ``instance`` is the running engine.instance.Instance."""
+        return 0.0
+
+    def clocks(self, instance) -> dict[str, float]:
+        """Wall seconds so far of each of its pieces; ``instance`` as in `energy`.
+
+        What runs under the clock of another style has its part of that clock, as ``python bench/effects.py shares`` measures it.
+        """
+        return {self.fix: instance.fix_seconds(self.fix)} if self.fix else {}
+
+    def forecast(self, load: Load, rate: Mapping[str, float]) -> float:
+        """Seconds that it will take; ``rate`` holds what this machine needs for one of each kind of work (driver/calibration.py)."""
         return 0.0
 
     def penetration(self, instance, system: System) -> float:

@@ -5,7 +5,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from .air_drag import slowed_share
 from .effect import Effect, Verdict
+
+
+PULL = 0.6
+"""Time of gravity over that of the leap-frog without drag (bench/effects.py shares)."""
 
 
 class Gravity(Effect):
@@ -23,6 +28,13 @@ class Gravity(Effect):
         g = np.array(scene.gravity)
         x, y, z = scene.gravity
         return [f"fix gravity mobile gravity {float(np.linalg.norm(g))!r} vector {x!r} {y!r} {z!r}"]
+
+    def clocks(self, instance):
+        # LAMMPS's own fix has no clock; like the leap-frog it does little more than read and write memory.
+        return {"gravity": PULL * instance.fix_seconds("leapfrog") * (1.0 - slowed_share(instance))}
+
+    def forecast(self, load, rate):
+        return load.steps * load.mobile * PULL * rate["leap-frog"]
 
     def energy(self, instance, scene, system):
         return -float(system.mass @ (instance.array("x") @ np.array(scene.gravity)))

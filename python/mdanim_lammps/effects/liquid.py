@@ -20,6 +20,17 @@ EVERY = 4
 """Steps after which the fix looks whether cells are to be updated; its own default."""
 PERIOD = 0.06
 """Time between updates of a liquid that is not level, over sqrt(cell/g); as in the fix."""
+SWEPT, AUTOMATON, OCCUPANCY, COUPLING = 4, 7, 8, 9
+"""In the fix's vector: sweeps so far, and three clocks."""
+DRAGGING = 0.07
+"""Part of the coupling's time that drag takes (bench/effects.py shares)."""
+
+PRESSING = 2.2
+"""Time of the coupling by pressure on faces over that by immersed volumes: 1.8 for a cube (bench/effects.py shares), 2.4 for a hull."""
+SWEEPS_PER_UPDATE = 2.0
+"""8 sweeps for each cell that bodies travel, and updates after a quarter of a cell; as in the fix."""
+STIR = 2.8
+"""Sweeps a second times the cell [m/s]: 8 for every cell that bodies travel, at a mean of 0.35 m/s, as in the scenes of scenes/."""
 
 
 def free_solid(scene):
@@ -60,6 +71,15 @@ class Liquid(Effect):
     def tables(self, scene, system):
         return {} if scene.liquid.model is LiquidModel.PAPER else {"cell": lattice_cells(system)}
 
+    def clocks(self, instance):
+        return {"automaton": instance.fix_value(self.fix, AUTOMATON), "occupancy": instance.fix_value(self.fix, OCCUPANCY)}
+
+    def forecast(self, load, rate):
+        grid = load.system.grid
+        sweeps = STIR * load.time / min(grid.cell)
+        solid = np.count_nonzero(~load.system.held[load.system.hexahedron].all(axis=1))
+        return sweeps * (grid.cells * rate["cell"] + solid / SWEEPS_PER_UPDATE * rate["solid"])
+
     def pace(self, scene, system):
         return PERIOD / EVERY * math.sqrt(min(system.grid.cell) / -scene.gravity[2])
 
@@ -72,7 +92,7 @@ class Liquid(Effect):
             *(["fill fill"] if fill else []),
             f"gravity {-scene.gravity[2]!r}",
             "model paper" if liquid.model is LiquidModel.PAPER else "cells i2_cell",
-            f"still held sweeps {liquid.sweeps or 'auto'} seed {scene.control.seed}",
+            f"still held sweeps {liquid.sweeps or 'auto'} every {EVERY} seed {scene.control.seed}",
         ]
         return ["group held type 5:8", f"region liquid {_block(liquid.low, liquid.high)}", *fill, " ".join(words)]
 
@@ -114,6 +134,14 @@ class Buoyancy(Effect):
     def energy(self, instance, scene, system):
         return instance.fix_scalar(Liquid.fix)
 
+    def clocks(self, instance):
+        drag = any(e.name == LiquidDrag.name for e in instance.plan.effects)
+        return {"coupling": instance.fix_value(Liquid.fix, COUPLING) * (1.0 - DRAGGING * drag)}
+
+    def forecast(self, load, rate):
+        pressure = load.scene.liquid.model is LiquidModel.PRESSURE
+        return load.steps * load.mobile * rate["coupling"] * (PRESSING if pressure else 1.0)
+
 
 class LiquidDrag(Effect):
     """-gamma rho_l V_i s_i v on the immersed part of a particle, taken by the leap-frog with the drag of air."""
@@ -143,6 +171,17 @@ class LiquidDrag(Effect):
     def energy(self, instance, scene, system):
         # The leap-frog counts what air and liquid take together; where air drag is on, that effect tells it.
         return 0.0 if air_drag.felt(scene, system) is not None else instance.fix_scalar("leapfrog")
+
+    def clocks(self, instance):
+        # Where particles are immersed is looked up for buoyancy in any case; drag adds this to it, and makes the leap-frog slower.
+        coupling = {"coupling": DRAGGING * instance.fix_value(Liquid.fix, COUPLING)}
+        if any(e.name == air_drag.AirDrag.name for e in instance.plan.effects):
+            return coupling
+        return coupling | {air_drag.LEAPFROG: air_drag.slowed_share(instance) * instance.fix_seconds("leapfrog")}
+
+    def forecast(self, load, rate):
+        coupling = load.steps * load.mobile * rate["coupling"] * DRAGGING
+        return coupling if air_drag.AirDrag.name in load.on else coupling + air_drag.drag_forecast(load, rate, load.mobile)
 
 
 def gamma(scene, system: System) -> np.ndarray:

@@ -9,6 +9,10 @@ from ..scene.scene import HoldAll
 from .effect import Effect, Verdict
 
 
+DASHPOTS = 0.64
+"""Part of the time of damped springs that goes to their dashpots (bench/effects.py shares)."""
+
+
 def all_held(solid) -> bool:
     """Whether no particle of the solid ever moves."""
     return any(isinstance(h, HoldAll) for h in solid.hold)
@@ -48,6 +52,12 @@ class Springs(Effect):
 
     def energy(self, instance, scene, system):
         return instance.elastic_energy()
+
+    def clocks(self, instance):
+        return {"springs": instance.bond_seconds() * (1.0 - DASHPOTS * instance.plan.damped)}
+
+    def forecast(self, load, rate):
+        return load.steps * len(load.system.spring) * rate["spring"]
 
 
 def spring_norm(system, weight: np.ndarray) -> np.ndarray:

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What effects cost: ``python bench/effects.py added|asleep|shares|forecast [rounds]`` prints a table in Markdown (docs/cost.md).
+
+``added``: one scene with its effects added one by one. ``asleep``: effects that are on and have nothing to do. ``shares``: parts of
+clocks that several effects share. ``forecast``: expected and measured cost of every scene of scenes/ (runs them all). Variants take
+turns, so that all of them see the same machine; figures are medians of processor time, or of the styles' own clocks; for ``shares``
+minima, because those clocks run on while others have the processor.
+"""
+
+import statistics
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+SCENES = Path(__file__).parent.parent / "scenes"
+ROUNDS = 15
+ROUND = 0.05
+"""About the length of a round [s]."""
+
+POND = """
+gravity (0, 0, -9.81)
+walls from (-60, -60, 0) cm to (60, 60, 200) cm
+ground z 0
+repeat i in 0 .. 3 {{
+  object block[i] {{
+    shape box (10, 10, 10) cm
+    position ((i - 1.5)*11.5, 0, 22) cm
+    density 500
+    elasticity 1 MPa
+    damping 0.05
+    drag 0.1
+  }}
+}}
+object plank {{
+  shape box (46, 10, 4) cm
+  position (0, 0, 29.2) cm
+  density 600
+  elasticity 1 MPa
+}}
+liquid water {{
+  basin from (-40, -20, 0) cm to (40, 20, 60) cm
+  density 1000
+  level 20 cm
+}}
+control {{
+  time 100 s
+  resolution 1 cm
+  {timestep}
+}}
+effects {{ {off} }}
+"""
+ORDER = ("springs", "gravity", "damping", "air-drag", "walls", "ground", "contact", "basin", "liquid", "buoyancy", "liquid-drag")
+
+FLIGHT = """
+gravity (0, 0, -9.81)
+{more}
+object cube {{
+  shape box (18, 18, 18) cm
+  position (0, 0, 50) m
+  density 1000
+  elasticity 1 MPa
+  velocity (0, 0, -{v})
+}}
+{other}
+control {{
+  time 100 s
+  frames 1 fps
+  resolution 1 cm
+  timestep 0.05 ms
+}}
+effects {{ {off} }}
+"""
+STONE = "object stone {{ shape box (18, 18, 18) cm position ({x}, 0, {z}) m density 1000 elasticity 1 MPa velocity (-0.01, 0, -{v}) }}"
+SEA = "liquid water {{ basin from (-50, -50, 0) cm to (50, 50, 60) cm density 1000 level 30 cm drag {drag} model {model} }}"
+
+
+class Runner:
+    """A live scene that runs in rounds."""
+
+    def __init__(self, text: str):
+        from mdanim_lammps.driver.prepare import prepare
+        from mdanim_lammps.engine.instance import Instance
+        from mdanim_lammps.scene.parse import parse_scene
+
+        self.ready = prepare(parse_scene(text))
+        self.instance = Instance(self.ready.plan)
+        self.instance.setup()
+        self.particles = self.ready.system.particles
+        self.instance.run(20)
+        start = time.process_time()
+        self.instance.run(20)
+        self.steps = max(20, round(20 * ROUND / (time.process_time() - start)))
+
+    def clocks(self) -> dict[str, float]:
+        """Seconds so far of every effect, and of the clocks that several effects share."""
+        from mdanim_lammps.effects.liquid import COUPLING
+
+        found = {e.name: sum(e.clocks(self.instance).values()) for e in self.ready.plan.effects}
+        coupling = {"coupling": self.instance.fix_value("liquid", COUPLING)} if self.ready.plan.grid else {}
+        return found | coupling | {"leapfrog": self.instance.fix_seconds("leapfrog"), "bonds": self.instance.bond_seconds()}
+
+    def round(self) -> dict[str, float]:
+        """Seconds of a step: of processor time as ``step``, and by clock."""
+        before, start = self.clocks(), time.process_time()
+        self.instance.run(self.steps)
+        step = (time.process_time() - start) / self.steps
+        return {"step": step} | {k: (s - before[k]) / self.steps for k, s in self.clocks().items()}
+
+
+def measure(texts: dict[str, str], rounds: int, of=statistics.median) -> dict[str, dict[str, float]]:
+    """Seconds of a step, by variant and clock, the median ``of`` all rounds; variants take turns."""
+    runners = {name: Runner(text) for name, text in texts.items()}
+    found = {name: [] for name in texts}
+    for _ in range(rounds):
+        for name, runner in runners.items():
+            found[name].append(runner.round())
+    for runner in runners.values():
+        runner.instance.close()
+    return {name: {k: of(r[k] for r in rows) for k in rows[0]} | {"particles": runners[name].particles}
+            for name, rows in found.items()}
+
+
+def added(rounds: int) -> None:
+    """One scene, effects added one by one, at the time step that all of them together need."""
+    from mdanim_lammps.driver.prepare import prepare
+    from mdanim_lammps.scene.parse import parse_scene
+
+    ready = prepare(parse_scene(POND.format(timestep="", off="")))
+    timestep = f"timestep {ready.certificate.timestep!r} s"
+    texts = {name: POND.format(timestep=timestep, off=" ".join(f"{o} off" for o in ORDER[k + 1:])) for k, name in enumerate(ORDER)}
+    found = measure(texts, rounds)
+    print(f"{ready.system.particles} particles, {len(ready.system.spring)} springs, {ready.plan.grid.cells} cells of liquid; "
+          f"{1 / ready.certificate.timestep:.0f} steps per second of the scene\n")
+    print("| effect | us per step | adds | adds per second of the scene |\n|---|---|---|---|")
+    last = 0.0
+    for name in ORDER:
+        step = 1e6 * found[name]["step"]
+        print(f"| {'' if name == ORDER[0] else '+ '}{name} | {step:.1f} | {step - last:+.1f} us, {100 * (step - last) / step:+.1f} % | "
+              f"{1e-6 * (step - last) / ready.certificate.timestep:+.2f} s |")
+        last = step
+
+
+def asleep(rounds: int) -> None:
+    """Effects that are on with nothing to do, against the same scene without them."""
+    cases = {
+        "contact, boxes 0.5 m apart, at rest": dict(v=0, other=STONE.format(x=0.68, z=50, v=0), off="contact"),
+        "contact, boxes 0.5 m apart, at 3 m/s": dict(v=3, other=STONE.format(x=0.68, z=50, v=3), off="contact"),
+        "ground, 49 m away, at 3 m/s": dict(v=3, more="ground z 0", off="ground"),
+        "walls, 1 m away, at 3 m/s": dict(v=3, more="walls from (-1, -1, -1) to (1, 1, 100)", off="walls"),
+        "basin, liquid, buoyancy, liquid without drag, 49 m away, at 3 m/s": dict(
+            v=3, more=SEA.format(drag=0, model="surface"), off="liquid"),
+        "the same with liquid drag": dict(v=3, more=SEA.format(drag=4, model="surface"), off="liquid"),
+        "the same with model pressure": dict(v=3, more=SEA.format(drag=4, model="pressure"), off="liquid"),
+    }
+    print("| asleep | ns per particle-step without | with | adds | by its own clock |\n|---|---|---|---|---|")
+    for name, case in cases.items():
+        off, case = case["off"], {"more": "", "other": ""} | case
+        found = measure({"without": FLIGHT.format(**case | {"off": f"{off} off" + (" basin off" if off == "liquid" else "")}),
+                         "with": FLIGHT.format(**case | {"off": ""})}, rounds)
+        own = ("basin", "liquid", "buoyancy") if off == "liquid" else (off,)
+        wall = sum(found["with"].get(e, 0.0) for e in own)
+        without, with_ = (1e9 * found[k]["step"] / found[k]["particles"] for k in ("without", "with"))
+        print(f"| {name} | {without:.2f} | {with_:.2f} | {100 * (with_ / without - 1):+.1f} % | "
+              f"{100 * wall / found['with']['step']:.2f} % |", flush=True)
+
+
+def shares(rounds: int) -> None:
+    """Parts of shared clocks, to be set in effects/*.py."""
+    plain = FLIGHT.format(more="", other="", v=3, off="").replace("-9.81", "-1e-6")  # as many rebuilds with gravity as without
+    found = measure({
+        "plain": plain, "no gravity": plain.replace("gravity (0, 0, -1e-6)", ""),
+        "damped": plain.replace("elasticity 1 MPa", "elasticity 1 MPa\n  damping 0.1"),
+        "drag": plain.replace("elasticity 1 MPa", "elasticity 1 MPa\n  drag 1")}, rounds, min)
+    step = {k: f["step"] for k, f in found.items()}
+    bare = {k: found[k]["leapfrog"] for k in found}
+    print(f"DASHPOTS  {1 - found['plain']['bonds'] / found['damped']['bonds']:.2f}   of the springs' clock")
+    print(f"SLOWING   {1 - bare['plain'] / bare['drag']:.2f}   of the leap-frog's clock")
+    print(f"PULL      {(step['plain'] - step['no gravity']) / bare['plain']:.2f}   of the leap-frog's clock without drag, by difference of steps")
+    wet = {f"{m} {d}": FLIGHT.format(more=SEA.format(drag=d, model=m), other="", v=0, off="").replace("50) m", "0.3) m")
+           .replace("density 1000\n  elas", "density 500\n  elas") for m in ("surface", "pressure") for d in (0, 4)}
+    found = measure(wet, rounds, min)
+    coupling = {k: f["coupling"] for k, f in found.items()}
+    print(f"DRAGGING  {1 - coupling['surface 0'] / coupling['surface 4']:.2f}   of the coupling's clock")
+    print(f"PRESSING  {coupling['pressure 4'] / coupling['surface 4']:.2f}   times the coupling by volumes")
+
+
+def forecasts(_: int) -> None:
+    """Expected and measured cost of all scenes; measured in processor time, which others on the machine do not stretch."""
+    from mdanim_lammps.driver.calibration import calibration
+    from mdanim_lammps.driver.forecast import forecast
+    from mdanim_lammps.driver.prepare import prepare
+    from mdanim_lammps.driver.run import simulate
+    from mdanim_lammps.scene.parse import load_scene
+
+    rates = calibration(print).rates
+    print("| scene | expected | measured | expected / measured | largest parts, expected and measured [s] |\n|---|---|---|---|---|")
+    for path in sorted(SCENES.glob("*.txt")):
+        if path.stem == "rubber":
+            continue  # a fragment that another scene includes
+        start = time.process_time()
+        ready = prepare(load_scene(path))
+        setup = time.process_time() - start
+        told = forecast(ready, rates | {"load": 0.0}, setup=setup)  # all is loaded by now
+        with tempfile.TemporaryDirectory() as folder:
+            began = time.perf_counter()
+            cost = simulate(ready, Path(folder)).cost
+            wall = time.perf_counter() - began
+        measured = time.process_time() - start
+        scale = (measured - setup) / wall  # clocks of effects tell wall time
+        largest = sorted(told.parts, key=told.parts.get, reverse=True)[:4]
+        parts = ", ".join(f"{k} {told.parts[k]:.2f} {(cost.parts[k] * scale + (setup if k == 'setup' else 0.0)):.2f}" for k in largest)
+        print(f"| {path.stem} | {told.wall:.2f} s | {measured:.2f} s | {told.wall / measured:.2f} | {parts} |", flush=True)
+
+
+if __name__ == "__main__":
+    what = {"added": added, "asleep": asleep, "shares": shares, "forecast": forecasts}
+    if len(sys.argv) < 2 or sys.argv[1] not in what:
+        sys.exit(__doc__)
+    what[sys.argv[1]](int(sys.argv[2]) if len(sys.argv) > 2 else ROUNDS)

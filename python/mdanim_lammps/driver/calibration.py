@@ -1,0 +1,313 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What this machine needs for one of each kind of work: measured once in a few small runs, and stored for all later scenes.
+
+``python -m mdanim_lammps.driver.calibration`` measures and prints. That is done in a process of its own, because loading LAMMPS
+takes its time only once in a process.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+
+from .. import __version__
+from ..effects.gravity import PULL
+from ..effects.liquid import AUTOMATON, COUPLING, OCCUPANCY, SWEEPS_PER_UPDATE, SWEPT
+from ..errors import OutputError, SetupError
+from ..results.files import write_json
+
+RATES = {
+    "load": "loading LAMMPS and what results need [s]",
+    "model": "modelling, per particle [s]",
+    "insert": "handing to LAMMPS, per particle [s]",
+    "step": "a step, whatever is in it [s]",
+    "particle": "a step of a particle, beside springs and leap-frog [s]",
+    "spring": "a step of a spring [s]",
+    "leap-frog": "a step of a particle that can move [s]",
+    "rebuild": "rebuilding lists, per particle [s]",
+    "contact": "looking for objects that meet, per particle and rebuild [s]",
+    "pair": "a step of a pair of particles within reach [s]",
+    "wall": "looking who is near a wall, per particle and rebuild [s]",
+    "coupling": "a step of a particle in a liquid [s]",
+    "cell": "a sweep of a cell of a liquid, with levelling [s]",
+    "solid": "looking where a lattice cell of a solid is in a liquid [s]",
+    "frame": "a frame: stopping, energies, writing [s]",
+    "byte": "writing a byte of the trajectory [s]",
+    "immersed": "measuring for a frame how much of a lattice cell is immersed [s]",
+}
+"""What is measured, and in which unit."""
+ROUNDS, ROUND = 25, 1e-3
+"""Least of this many rounds of about this length [s]: what else the machine does only ever adds to the time, and hardly hits every
+one of many short ones."""
+AGAIN = 3
+"""Least of this many, of what cannot be done in short rounds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """The rates of this machine."""
+
+    rates: dict[str, float]
+    """Seconds for one of each kind of work, as in RATES."""
+    stored: bool = True
+    """Whether it is kept for later; not where no file can be written."""
+
+
+def calibration(tell: Callable[[str], None] = lambda line: None) -> Calibration:
+    """The rates of this machine: stored ones, or measured now. ``tell`` is given a line when that is done.
+
+    A file that is broken, of another processor or of another version is measured again. Raises SetupError when LAMMPS or the
+    plugin cannot be used.
+    """
+    path = stored_at()
+    rates = _read(path)
+    if rates is not None:
+        return Calibration(rates)
+    if not _rates_here.cache_info().currsize:
+        tell("calibrating this machine, once, for about 3 s ...")
+    rates = _rates_here()
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_json(path, {"processor": processor(), "rates": rates})
+    except (OSError, OutputError) as error:
+        tell(f"the calibration cannot be kept, it holds for this time only: {error}; set XDG_CACHE_HOME to a folder that can be written")
+        return Calibration(rates, stored=False)
+    return Calibration(rates)
+
+
+def stored_at() -> Path:
+    """The file that holds the rates of this machine."""
+    cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    return Path(cache) / "mdanim-lammps" / f"calibration-{__version__}.json"
+
+
+@lru_cache(maxsize=1)
+def processor() -> str:
+    """Name of this machine's processor."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
+        return next(line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        return platform.processor() or platform.machine()
+
+
+def _read(path: Path) -> dict[str, float] | None:
+    """The stored rates; None where there are none that are whole, positive, and of this processor."""
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        rates = {name: float(data["rates"][name]) for name in RATES}
+        good = data["processor"] == processor() and all(0.0 < r < math.inf for r in rates.values())
+        return rates if good else None
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+@lru_cache(maxsize=1)
+def _rates_here() -> dict[str, float]:
+    done = subprocess.run([sys.executable, "-m", __name__], capture_output=True, text=True)
+    if done.returncode:
+        why = done.stderr.strip().splitlines()
+        raise SetupError(f"this machine cannot be calibrated: {why[-1] if why else 'no word why'}")
+    return json.loads(done.stdout)
+
+
+# --- measuring ----------------------------------------------------------------------------------------------
+
+CUBE = """
+gravity (0, 0, -9.81)
+ground z -1e6 m
+object cube {{
+  shape box ({n}, {n}, {n}) cm
+  position (0, 0, 0)
+  density 1000
+  elasticity 1 MPa
+  velocity ({v}, 0, 0) m/s
+}}
+object pebble {{
+  shape box ({m}, {m}, {m}) cm
+  position (0, 0, {z}) cm
+  density 1000
+  elasticity 1 MPa
+}}
+control {{
+  time 1 s
+  frames 1000 fps
+  resolution 1 cm
+}}
+"""
+POOL = """
+gravity (0, 0, -9.81)
+liquid water {
+  basin from (-16, -16, 0) cm to (16, 16, 32) cm
+  density 1000
+  level 16 cm
+}
+object block {
+  shape box (10, 10, 10) cm
+  position (0, 0, 14) cm
+  velocity (0, 0, -1.5) m/s
+  density 900
+  elasticity 2 MPa
+}
+control {
+  time 1 s
+  resolution 1 cm
+}
+"""
+SMALL, LARGE = 2, 13
+"""Cells along the edge of the two cubes."""
+FEW, MANY = 2, 22
+"""Frames whose difference tells what one takes."""
+STEPS = 240
+"""While the block sinks in."""
+
+
+def measure() -> dict[str, float]:
+    """Run the small scenes and return the rates. Raises SetupError when LAMMPS or the plugin cannot be used."""
+    start = time.process_time()
+    from ..engine.plugin import open_lammps
+    from ..results import trajectory  # noqa: F401  what a run loads
+    from .run import Instance
+
+    open_lammps()[0].close()
+    rates = {"load": time.process_time() - start}
+    _prepare(CUBE.format(n=SMALL, m=2, v=0, z=90))  # whatever is loaded by the first of all
+    small, large = (_cube(Instance, n, v=0.0) for n in (SMALL, LARGE))
+    n = large["particles"] - small["particles"]
+    rates["model"], rates["insert"] = (max(1e-9, large[k] / large["particles"]) for k in ("model", "insert"))
+    rates["spring"] = max(1e-11, large["springs"] / large["spring count"])
+    rates["leap-frog"] = max(1e-11, large["leapfrog"] / large["particles"])
+    rates["particle"] = max(1e-10, (large["rest"] - small["rest"]) / n - PULL * rates["leap-frog"])  # gravity has no clock
+    rates["step"] = max(1e-7, small["rest"] - small["particles"] * rates["particle"])
+    moving = _cube(Instance, LARGE, v=1e3)  # a rebuild in every step
+    rates["rebuild"] = max(1e-9, (moving["rest"] - large["rest"]) / large["particles"])
+    rates["contact"], rates["wall"] = (max(1e-10, moving[k] / large["particles"]) for k in ("contact", "ground"))
+    rates["pair"] = _pairs(Instance)
+    rates["coupling"], rates["cell"], rates["solid"] = _pool(Instance)
+    rates["frame"], rates["byte"] = _frames()
+    rates["immersed"] = _immersed()
+    return {name: rates[name] for name in RATES}
+
+
+def _prepare(text: str):
+    from ..scene.parse import parse_scene
+    from .prepare import prepare
+
+    return prepare(parse_scene(text))
+
+
+def _least(instance, clocks: dict[str, Callable[[], float]], rounds: int = ROUNDS) -> dict[str, float]:
+    """Seconds of a step by clock, and of all of it, in processor time, as ``whole``.
+
+    What a stretch of three times the steps takes longer, each being the least of some rounds: so what comes once with every
+    stretch, as energies do with every frame, is not in it.
+    """
+    start = time.perf_counter()
+    instance.run(5)
+    steps = max(5, round(5.0 * ROUND / (time.perf_counter() - start)))
+    clocks = {"whole": time.process_time, **clocks}
+    best = {}
+    for length in (steps, 3 * steps) * rounds:
+        before = {k: clock() for k, clock in clocks.items()}
+        instance.run(length)
+        took = {k: clock() - before[k] for k, clock in clocks.items()}
+        best[length] = {k: min(took[k], best.get(length, took)[k]) for k in clocks}
+    return {k: (best[3 * steps][k] - best[steps][k]) / (2 * steps) for k in clocks}
+
+
+def _cube(Instance, n: int, v: float) -> dict[str, float]:
+    """A cube and a pebble above ground, far from everything."""
+    start = time.process_time()
+    ready = _prepare(CUBE.format(n=n, m=2, v=v, z=90))
+    modelled = time.process_time()
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        inserted = time.process_time()
+        fixes = {fix: (lambda fix=fix: instance.fix_seconds(fix)) for fix in ("leapfrog", "contact", "ground")}
+        found = _least(instance, {"springs": instance.bond_seconds, **fixes})
+    rest = found["whole"] - sum(found[k] for k in ("springs", *fixes))
+    return {**found, "rest": rest, "particles": ready.system.particles, "spring count": len(ready.plan.bonds),
+            "model": modelled - start, "insert": inserted - modelled}
+
+
+def _pairs(Instance) -> float:
+    """A cube that lies on another: seconds of a pair of particles in a step."""
+    with Instance(_prepare(CUBE.format(n=12, m=12, v=0, z=12.0001)).plan) as instance:
+        instance.setup()
+        pairs = instance.fix_value("contact", 1)  # before they bounce off each other
+        found = _least(instance, {"contact": lambda: instance.fix_seconds("contact")}, rounds=5)
+        return max(1e-10, found["contact"] / pairs)
+
+
+def _pool(Instance) -> tuple[float, float, float]:
+    """A block that sinks in: seconds of a particle in a step, of a cell in a sweep, and of a lattice cell when cells are updated."""
+    ready = _prepare(POOL)
+    found = []
+    for _ in range(AGAIN):
+        with Instance(ready.plan) as instance:
+            instance.setup()
+            before = [instance.fix_value("liquid", k) for k in (SWEPT, AUTOMATON, OCCUPANCY)]
+            instance.run(STEPS)
+            swept, automaton, occupancy = (instance.fix_value("liquid", k) - b for k, b in zip((SWEPT, AUTOMATON, OCCUPANCY), before))
+            coupling = _least(instance, {"coupling": lambda: instance.fix_value("liquid", COUPLING)}, rounds=10)["coupling"]
+        swept = max(1.0, swept)
+        found.append((coupling / ready.system.particles, automaton / swept / ready.plan.grid.cells,
+                      occupancy / (swept / SWEEPS_PER_UPDATE) / len(ready.system.hexahedron)))
+    return tuple(max(1e-11, min(values)) for values in zip(*found))
+
+
+def _frames() -> tuple[float, float]:
+    """Seconds of a frame and of a byte of it, from runs of two sizes that write more than they compute."""
+    from ..results.trajectory import trajectory_bytes
+
+    found = []
+    for n in (SMALL, LARGE):
+        ready = _prepare(CUBE.format(n=n, m=2, v=0, z=90))
+        control = ready.scene.control
+        size = trajectory_bytes(ready.models, 100, control.save, control.single, None) / 100
+        few, many = (min(_run(ready, frames) for _ in range(AGAIN)) for frames in (FEW, MANY))
+        found.append(((many - few) / (MANY - FEW), size))
+    (small, few), (large, many) = found
+    each = max(1e-11, (large - small) / (many - few))
+    return max(1e-6, small - each * few), each
+
+
+def _run(ready, frames: int) -> float:
+    """Seconds of a run of so many frames, of one step each."""
+    from .run import simulate
+
+    ready = replace(ready, certificate=replace(ready.certificate, steps_per_frame=1, frames=frames))
+    with tempfile.TemporaryDirectory() as folder:
+        start = time.process_time()
+        simulate(ready, Path(folder))
+        return time.process_time() - start
+
+
+def _immersed() -> float:
+    """Seconds of a lattice cell whose immersed share is measured."""
+    import numpy as np
+
+    from ..results.expect import immersed_share
+
+    system = _prepare(POOL).system
+    corners, height = system.position[system.hexahedron], np.zeros(system.grid.shape[1::-1])
+    found = []
+    for _ in range(AGAIN):
+        start = time.process_time()
+        immersed_share(corners, system.grid, height)
+        found.append(time.process_time() - start)
+    return max(1e-10, min(found) / len(corners))
+
+
+if __name__ == "__main__":
+    print(json.dumps(measure()))

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The guard: looks at the state of every frame, and stops a run that is no animation any more, with the cause and a way out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..certificate import wave_speed
+from ..engine.geometry import Geometry
+from ..errors import DivergedError, Problem
+from ..scene.scene import Accuracy, Scene
+from .prepare import Prepared
+
+CLASSES = {Accuracy.PREVIEW: 1e-2, Accuracy.BALANCED: 1e-3, Accuracy.REFERENCE: 1e-4}
+"""Largest energy residual that a scene without losses is to have, by its accuracy; a target error counts as balanced."""
+GENEROUS, LEAST = 50.0, 0.05
+"""The run stops at this multiple of the class, and never below this residual."""
+RINGS = 10.0
+"""Times that a wave crosses an object until cells that are inside out count as stuck: in a hard impact some at the surface are so for a
+moment, and come back."""
+FLOWN_APART = ("lost its bond partner", "Bond atoms", "Lost atoms", "Non-numeric", "Out of range atoms", "out of range")
+"""What LAMMPS says when particles are where they should not be."""
+
+
+@dataclass(frozen=True)
+class _Side:
+    """A plane that pushes objects back: they belong above it when ``sign`` is 1, below when it is -1."""
+
+    name: str
+    axis: int
+    sign: int
+    at: float
+    """[m]"""
+
+
+class Guard:
+    """What it has seen of a run so far."""
+
+    def __init__(self, ready: Prepared, folder: Path):
+        self.ready, self.folder = ready, folder
+        self.geometry = Geometry(ready.system)
+        on = {e.name for e in ready.plan.effects}
+        self.sides = _sides(ready.scene, on)
+        self.contact = "contact" in on
+        self.free = np.logical_or.reduceat(~ready.system.held, ready.system.first[:-1])
+        """Solids of which something can move, bool, shape (M,)."""
+        self.limit = max(LEAST, GENEROUS * energy_class(ready.scene))
+        self.since = np.full(len(ready.system.hexahedron), -1)
+        """Step since which each cell has been inside out at every frame, -1 where it is not, shape (C,)."""
+        self.most_inverted = 0
+        extent = [f.reduceat(ready.system.position, ready.system.first[:-1]) for f in (np.maximum, np.minimum)]
+        self.patience = RINGS * (extent[0] - extent[1]).max(1) / wave_speed(ready.system) / ready.certificate.timestep
+        """Steps that a cell of each solid may stay inside out, shape (M,)."""
+
+    def look(self, step: int, x: np.ndarray, v: np.ndarray) -> None:
+        """Raise DivergedError when positions [m] and velocities [m/s], both (N, 3), are not those of bodies in their places."""
+        system = self.ready.system
+        if (i := self.geometry.not_finite(x, v)) is not None:
+            raise self.stopped(step, "its positions are no numbers any more", system.object[i], "time step", "amplitude", "load")
+        self._look_at_cells(step, x)
+        low, high = self.geometry.boxes(x)
+        self._look_at_sides(step, low, high)
+        if self.contact and (pair := self.geometry.sunk(x)):
+            raise self.stopped(step, f"it is inside {system.names[pair[1]]}", pair[0], "closing speed", "time step", "amplitude",
+                               "thinnest part")
+
+    def _look_at_cells(self, step: int, x: np.ndarray) -> None:
+        inverted = self.geometry.inverted(x)
+        if not inverted.any():
+            self.since[:] = -1
+            return
+        self.most_inverted = max(self.most_inverted, int(np.count_nonzero(inverted)))
+        self.since = np.where(inverted, np.where(self.since < 0, step, self.since), -1)
+        cells = np.flatnonzero(inverted)
+        owner = self.ready.system.object[self.ready.system.hexahedron[cells, 0]]
+        stuck = owner[step - self.since[cells] > self.patience[owner]]
+        if len(stuck) and not self.ready.insist:
+            count = np.bincount(stuck)
+            m = int(count.argmax())
+            raise self.stopped(step, f"{count[m]} of its {np.diff(self.geometry.first_cell)[m]} cells have been inside out since step "
+                               f"{self.since[cells].min()}; springs cannot tell mirrored from right, so they would stay so", m, "amplitude",
+                               "load", "time step", "closing speed")
+
+    def _look_at_sides(self, step: int, low: np.ndarray, high: np.ndarray) -> None:
+        """An object has left when all of its box is beyond a plane, by more than a spacing."""
+        system = self.ready.system
+        for side in self.sides:
+            beyond = side.at - high[:, side.axis] if side.sign > 0 else low[:, side.axis] - side.at
+            gone = (beyond > system.spacing) & self.free
+            if gone.any():
+                m = int(np.where(gone, beyond, -np.inf).argmax())
+                raise self.stopped(step, f"it has left {side.name}: all of it is beyond {'xyz'[side.axis]} = {side.at:g} m, by "
+                                   f"{beyond[m]:.3g} m", m, "time step", "amplitude", "load")
+
+    def energy(self, step: int, residual: float, v: np.ndarray) -> None:
+        """Raise DivergedError when the energies do not add up any more. ``residual`` as in results/ledger.py."""
+        if not abs(residual) <= self.limit:
+            raise self.stopped(step, f"the energies do not add up, residual {residual:.3g}; its particles are the fastest", self.fastest(v),
+                               "time step", "amplitude", "load", "closing speed")
+
+    def broke(self, step: int, error: DivergedError, v: np.ndarray) -> DivergedError:
+        """The error for LAMMPS's own end of a run in the steps up to this one; ``v`` are the velocities it has left."""
+        words = " ".join(str(error).split())
+        if any(sign in words for sign in FLOWN_APART):
+            return self.stopped(step, words, self.fastest(v), "time step", "amplitude", "load", "closing speed")
+        return DivergedError(f"{self._when(step)}: {words}\n  {self._kept()}")
+
+    def fastest(self, v: np.ndarray) -> int:
+        """The solid with the fastest particle for its wave speed, or one that is not finite."""
+        system = self.ready.system
+        if len(v) < system.particles:  # LAMMPS has lost some
+            return system.names.index(self.ready.certificate.object)
+        speed = np.nan_to_num(np.maximum.reduceat(np.abs(v).max(1), system.first[:-1]), nan=np.inf)
+        return int((speed / wave_speed(system)).argmax())
+
+    def stopped(self, step: int, what: str, m: int, *margins: str) -> DivergedError:
+        """The error that stops the run at a step for what solid ``m`` does; the first of these margins that is passed says why."""
+        c = self.ready.certificate
+        passed = {found.name: found for found in reversed(c.margins) if found.severity != "ok"}
+        why = next((passed[name] for name in margins if name in passed), None)
+        cause, cure = (why.text, why.hint) if why else (
+            f"every limit of the certificate is kept (time step {c.fraction:.2f} of the bound), so it is probably hit or squeezed harder "
+            "than its lattice stands", "try a lower speed, a stiffer object or a smaller timestep")
+        return DivergedError(
+            f"{self._when(step)}: {self.ready.system.names[m]}: {what}.\n  cause: {cause}\n  change: {cure}\n  {self._kept()}")
+
+    def _when(self, step: int) -> str:
+        return f"step {step}, t = {step * self.ready.certificate.timestep:.4g} s"
+
+    def _kept(self) -> str:
+        return f"the last good frame and checkpoint are kept in {self.folder}"
+
+    def missed(self, residual: float) -> Problem | None:
+        """A warning when a finished run has missed the class of energy that its accuracy stands for."""
+        scene, goal = self.ready.scene, energy_class(self.ready.scene)
+        if residual <= goal:
+            return None
+        return Problem(
+            scene.control.spans.get("accuracy"),
+            f"the energy residual {residual:.2e} is above {goal:g}, which 'accuracy {_accuracy(scene).value}' stands for",
+            "where it matters, write a smaller timestep or a higher accuracy", severity="warning")
+
+
+def _accuracy(scene: Scene) -> Accuracy:
+    return scene.control.accuracy if isinstance(scene.control.accuracy, Accuracy) else Accuracy.BALANCED
+
+
+def energy_class(scene: Scene) -> float:
+    """Energy residual that the scene's accuracy stands for [-]."""
+    return CLASSES[_accuracy(scene)]
+
+
+def _sides(scene: Scene, on: set[str]) -> list[_Side]:
+    """Every plane that pushes back."""
+    sides = []
+    if "ground" in on:
+        sides.append(_Side("the ground", 2, 1, scene.ground))
+    if "walls" in on:
+        sides += [_Side("the walls", a, sign, at[a]) for sign, at in ((1, scene.walls.low), (-1, scene.walls.high)) for a in range(3)]
+    if "basin" in on:
+        liquid = scene.liquid
+        sides.append(_Side("the basin", 2, 1, liquid.low[2]))
+        sides += [_Side("the basin", a, sign, at[a]) for sign, at in ((1, liquid.low), (-1, liquid.high)) for a in range(2)]
+    return sides

@@ -1,0 +1,284 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Where every solid can get to until the end of a scene, and whether any two come within reach of each other.
+
+From the scene alone, and never too small: a false "can meet" costs time, a false "cannot" lets objects pass through each
+other. The bounds are derived in docs/cost.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from ..scene import scene as kinds
+from ..scene.scene import Box, HoldAll, HoldFaces, LiquidModel, Scene, Shape, Solid, Switch
+from . import mesh, shapes
+from .spacing import choose_spacing
+from .springs import equivalent_modulus
+
+STRETCH = 1.5
+"""Most that a body grows, over its size and over (largest speed inside it) / (wave speed): all of that energy in one even strain
+is sqrt(1.2) of it along a line; half as much again for bodies that are not even."""
+SLACK = 1.1
+"""Size of a body over its size as it is drawn."""
+REACH = 2.5
+"""What a surface reaches beyond the shape, over the spacing: half the reach of a barrier (0.8 of a cell), corners of cells that stand
+out (0.87 of a cell), cells up to 1.2 spacings long, and a fifth on top."""
+SAG = 2.0
+"""Margin on the deflection of a clamped bar."""
+BLOCK = 1 << 20
+"""Pairs looked at in one go."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sweeps:
+    """A box for each of M solids that holds it, and half the reach of contact around it, at all times."""
+
+    low: np.ndarray
+    """[m], shape (M, 3)."""
+    high: np.ndarray
+    """[m], shape (M, 3)."""
+    fixed: np.ndarray
+    """Solids that are held entirely, bool, shape (M,): two of them never are in contact."""
+
+
+def can_meet(scene: Scene) -> tuple[Solid, Solid] | None:
+    """Two solids that may come within reach of each other, or None where no two can. Raises SceneError for a mesh that is no body."""
+    first, second, apart = closest(scene)
+    return None if apart > 0.0 else (first, second)
+
+
+def closest(scene: Scene) -> tuple[Solid, Solid, float]:
+    """Two solids of which one can move, and what stays between their boxes at least, along one axis [m].
+
+    The first two found whose boxes overlap, with 0.0; where there are none, those whose boxes come nearest. Raises SceneError for a
+    mesh that is no body, ValueError where no solid can meet another: one solid, or all held.
+    """
+    swept = sweeps(scene)
+    if len(swept.fixed) < 2 or swept.fixed.all():
+        raise ValueError("two solids are needed, of which one can move")
+    if (pairs := next(_overlaps(swept), None)) is not None:
+        i, j = pairs[0]
+        return scene.solids[i], scene.solids[j], 0.0
+    grown = 0.1 * float((swept.high - swept.low).mean())
+    while not (pairs := list(_overlaps(Sweeps(swept.low - grown, swept.high, swept.fixed)))):
+        grown *= 2.0
+    i, j = np.concatenate(pairs).T
+    apart = np.maximum(swept.low[i] - swept.high[j], swept.low[j] - swept.high[i]).max(axis=1)
+    k = int(np.argmin(apart))
+    return scene.solids[i[k]], scene.solids[j[k]], float(apart[k])
+
+
+# --- boxes --------------------------------------------------------------------------------------------------
+
+def sweeps(scene: Scene) -> Sweeps:
+    """Where every solid can get to.
+
+    Along an axis on which nothing but gravity and drag of air acts, the centre of mass moves on its parabola. Along one on which a
+    wall, the ground or a liquid may act, it gets no further than at the largest speed that energy allows. Raises SceneError for a
+    mesh that is no body.
+    """
+    bodies = _Bodies(scene)
+    limit_low, limit_high = _limits(scene)
+    low, high = _flight(scene, bodies)
+    calm = bodies.size(bodies.tip)  # as large as it gets by its own spin
+    wild = bodies.size(bodies.speed)
+    wet_below = _wet_below(scene)
+
+    def touched(radius):
+        reached = (low - radius[:, None] <= limit_low) | (high + radius[:, None] >= limit_high)
+        wet = (low - radius[:, None])[:, 2] <= wet_below
+        return reached | wet[:, None], wet
+
+    hit = touched(calm)[0].any(axis=1)
+    radius = np.where(hit, wild, calm)
+    by_axis, _ = touched(radius)
+    by_axis[~hit] = False
+    far = bodies.speed * scene.control.time
+    # What has bounced somewhere may come down in a liquid that its parabola misses.
+    bounced = hit & (bodies.position[:, 2] - far - radius <= wet_below)
+    by_axis |= bounced[:, None]
+    low = np.where(by_axis, np.maximum(bodies.position - far[:, None], limit_low - radius[:, None]), low)
+    high = np.where(by_axis, np.minimum(bodies.position + far[:, None], limit_high + radius[:, None]), high)
+    low, high = np.minimum(low, bodies.position), np.maximum(high, bodies.position)
+
+    half = np.repeat(radius[:, None], 3, axis=1)
+    held = bodies.clamped | bodies.fixed
+    low[held] = high[held] = bodies.middle[held]
+    half[bodies.fixed] = bodies.half[bodies.fixed] + REACH * bodies.h
+    half[bodies.clamped] = _clamped(scene, bodies)[bodies.clamped] + REACH * bodies.h
+    return Sweeps(low - half, high + half, bodies.fixed)
+
+
+class _Bodies:
+    """What the bounds need of every solid."""
+
+    def __init__(self, scene: Scene):
+        solids = scene.solids
+        self.h = choose_spacing(scene)[0]
+        self.position = np.array([s.position for s in solids], float)
+        self.velocity = np.array([s.velocity for s in solids], float)
+        self.drag = np.array([s.drag > 0.0 for s in solids]) & on(scene, "air-drag")
+        self.radius = np.array([bounding_radius(s.shape) for s in solids])
+        self.fixed = np.array([any(isinstance(h, HoldAll) for h in s.hold) for s in solids])
+        loose = not on(scene, "springs")
+        self.clamped = np.array([bool(s.hold) for s in solids]) & ~self.fixed & (not loose)
+        extents = [shapes.extent(s.shape) for s in solids]
+        rotation = np.array([s.rotation for s in solids], float)
+        centre, half = (np.array([0.5 * (b + sign * a) for a, b in extents]) for sign in (1.0, -1.0))
+        self.middle = self.position + np.einsum("mij,mj->mi", rotation, centre)
+        self.half = np.einsum("mij,mj->mi", np.abs(rotation), half)
+        self.density = np.array([s.density if s.density is not None else s.mass / shapes.volume(s.shape) for s in solids])
+        self.mass = self.density * np.array([shapes.volume(s.shape) for s in solids])
+        young = np.array([equivalent_modulus(np.full(3, self.h), s.elasticity) for s in solids])
+        self.wave = np.sqrt(1.2 * young / self.density)
+        self.tip = np.linalg.norm([s.spin for s in solids], axis=1) * self.radius
+        """Speed of the outermost point around the centre of mass [m/s]."""
+        self.loose = self.tip * scene.control.time if loose else np.zeros(len(solids))
+        self.pull = _pull(scene, self)
+        self.speed = _speed(scene, self)
+
+    def size(self, speed: np.ndarray) -> np.ndarray:
+        """Radius that a body stays within when this much speed [m/s] turns into deformation [m], shape (M,)."""
+        return self.radius * (SLACK + STRETCH * speed / self.wave) + REACH * self.h + self.loose
+
+
+@lru_cache(maxsize=4096)
+def bounding_radius(shape: Shape) -> float:
+    """Distance of the outermost point from the centre of mass [m]; of a cone not quite the least that would do."""
+    match shape:
+        case kinds.Sphere():
+            return shape.radius
+        case kinds.Ellipsoid():
+            return max(shape.radii)
+        case kinds.Cylinder():
+            return float(np.hypot(shape.radius, shape.height / 2))
+        case kinds.Torus():
+            return shape.major + shape.minor
+        case kinds.Mesh():
+            return float(np.linalg.norm(mesh.load(shape).points, axis=1).max())
+        case _:
+            return float(np.linalg.norm(np.abs(shapes.extent(shape)).max(axis=0)))
+
+
+def on(scene: Scene, effect: str) -> bool:
+    """Whether a scene leaves an effect on."""
+    return scene.effects.get(effect) is not Switch.OFF
+
+
+def _gravity(scene: Scene) -> np.ndarray:
+    return np.array(scene.gravity, float) * on(scene, "gravity")
+
+
+def _limits(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """Planes across each axis that push solids back, the innermost ones [m], each of shape (3,); infinite where there is none."""
+    low, high = np.full(3, -np.inf), np.full(3, np.inf)
+    if scene.ground is not None and on(scene, "ground"):
+        low[2] = scene.ground
+    if scene.walls is not None and on(scene, "walls"):
+        low, high = np.maximum(low, scene.walls.low), np.minimum(high, scene.walls.high)
+    if scene.liquid is not None and on(scene, "basin"):
+        low = np.maximum(low, scene.liquid.low)
+        high[:2] = np.minimum(high[:2], scene.liquid.high[:2])
+    return low, high
+
+
+def _wet_below(scene: Scene) -> float:
+    """Height below which liquid may be [m]: waves rise up to the brim of the basin."""
+    there = scene.liquid is not None and on(scene, "liquid") and on(scene, "gravity")
+    return scene.liquid.high[2] if there else -np.inf
+
+
+def _pull(scene: Scene, bodies: _Bodies) -> np.ndarray:
+    """Largest force of gravity and liquid over the mass [m/s^2], shape (M,)."""
+    g = float(np.linalg.norm(_gravity(scene)))
+    if not np.isfinite(_wet_below(scene)):
+        return np.full(len(bodies.mass), g)
+    liquid = scene.liquid
+    if liquid.model is LiquidModel.PRESSURE:  # a hull whose whole width is pressed on from below, at the deepest
+        lift = liquid.density * (2.0 * bodies.radius) ** 2 * (liquid.high[2] - liquid.low[2]) / bodies.mass
+    else:
+        lift = liquid.density / bodies.density
+    return g * (1.0 + lift)
+
+
+def _speed(scene: Scene, bodies: _Bodies) -> np.ndarray:
+    """Largest speed that energy allows [m/s], shape (M,): v^2 = v0^2 + (spin) + 2 * pull * way.
+
+    The way is the height above the highest floor where gravity alone pulls, down; else it is v * time at most.
+    """
+    start = (bodies.velocity**2).sum(axis=1) + bodies.tip**2
+    gained = bodies.pull * scene.control.time
+    most = gained + np.sqrt(gained**2 + start)
+    g = _gravity(scene)
+    floor = _limits(scene)[0][2]
+    if np.isfinite(_wet_below(scene)) or g[0] or g[1] or g[2] > 0.0 or not np.isfinite(floor):
+        return most
+    way = np.maximum(0.0, bodies.position[:, 2] - floor) + bodies.radius
+    return np.minimum(most, np.sqrt(start + 2.0 * bodies.pull * way))
+
+
+def _flight(scene: Scene, bodies: _Bodies) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest point of every centre of mass in free flight along each axis [m], each of shape (M, 3)."""
+    v, g, time = bodies.velocity, _gravity(scene), scene.control.time
+    end = v * time + 0.5 * g * time**2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        turns = -v / g  # when it stands still along this axis
+        apex = np.where((turns > 0.0) & (turns < time), -0.5 * v**2 / g, 0.0)
+    apex = np.nan_to_num(apex)
+    low, high = np.minimum(np.minimum(end, apex), 0.0), np.maximum(np.maximum(end, apex), 0.0)
+    # Drag of air holds back both parts of the way, so what v and g do is at most what each does alone.
+    coasts, falls = np.where(apex != 0.0, apex, v * time), np.broadcast_to(0.5 * g * time**2, v.shape)
+    slowed = bodies.drag[:, None]
+    low = np.where(slowed, np.minimum(coasts, 0.0) + np.minimum(falls, 0.0), low)
+    high = np.where(slowed, np.maximum(coasts, 0.0) + np.maximum(falls, 0.0), high)
+    return bodies.position + low, bodies.position + high
+
+
+def _clamped(scene: Scene, bodies: _Bodies) -> np.ndarray:
+    """Half edges of the box that a partly held solid stays in [m], shape (M, 3).
+
+    Held somewhere it may swing around there like a pendulum. A cuboid held at whole faces bends by twice the deflection of a
+    cantilever, 1.5 rho g L^4 / (E t^2), and as far as its own velocity takes it, 1.7 v L^2 / (c t).
+    """
+    speed = np.sqrt((bodies.velocity**2).sum(axis=1) + bodies.tip**2 + 4.0 * bodies.pull * bodies.radius)
+    pendulum = 3.0 * bodies.radius * (SLACK + STRETCH * speed / bodies.wave)
+    half = np.repeat(pendulum[:, None], 3, axis=1)
+    for k in np.flatnonzero(bodies.clamped):
+        solid = scene.solids[k]
+        if not (isinstance(solid.shape, Box) and any(isinstance(h, HoldFaces) for h in solid.hold)):
+            continue
+        length, thin, c = 2.0 * bodies.radius[k], min(solid.shape.size), bodies.wave[k]
+        moving = np.linalg.norm(solid.velocity) + bodies.tip[k]
+        sag = 2.0 * 1.8 * bodies.pull[k] * length**4 / (c * thin) ** 2 + 1.7 * moving * length**2 / (c * thin)
+        half[k] = np.minimum(half[k], SLACK * bodies.half[k] + SAG * sag)
+    return half
+
+
+# --- pairs --------------------------------------------------------------------------------------------------
+
+def _overlaps(swept: Sweeps) -> Iterator[np.ndarray]:
+    """Pairs of solids whose boxes overlap and of which one can move, in blocks of shape (P, 2): sort and sweep."""
+    n = len(swept.low)
+    sorted_by = [np.argsort(swept.low[:, axis], kind="stable") for axis in range(3)]
+    stops = [np.searchsorted(swept.low[o, a], swept.high[o, a], side="right") for a, o in enumerate(sorted_by)]
+    axis = min(range(3), key=lambda a: int(stops[a].sum()))  # the one along which the fewest overlap
+    order, stop = sorted_by[axis], stops[axis]
+    count = np.maximum(stop - np.arange(n) - 1, 0)
+    before = np.concatenate([[0], np.cumsum(count)])
+    first = 0
+    while first < n:
+        last = max(first + 1, int(np.searchsorted(before, before[first] + BLOCK, side="right")) - 1)
+        here = np.arange(first, last)
+        a = np.repeat(here, count[here])
+        b = a + 1 + np.arange(len(a)) - np.repeat(before[here] - before[first], count[here])
+        i, j = order[a], order[b]
+        meet = (swept.low[i] <= swept.high[j]).all(axis=1) & (swept.low[j] <= swept.high[i]).all(axis=1)
+        meet &= ~(swept.fixed[i] & swept.fixed[j])
+        if meet.any():
+            pairs = np.sort(np.column_stack([i[meet], j[meet]]), axis=1)
+            yield pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
+        first = last

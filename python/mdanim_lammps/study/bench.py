@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Measures settings of one scene under a budget: what a run will cost, which is next, what was left out."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+
+from ..driver.prepare import Prepared
+from ..driver.run import Interrupted
+from ..errors import DivergedError, RefusedError, SceneError
+from ..scene.scene import Scene
+from .measure import Sample, TooLong, measure
+from .setting import Setting
+from .store import Point, Store
+
+BUDGET = 120.0
+"""Wall time of a study [s]."""
+REPEATS = 3
+"""Runs of a point, as far as the budget goes: the least that has a median."""
+FOR_REPEATS = 0.2
+"""Share of the budget that new points leave for repeats: without a spread there is no ranking."""
+
+
+class Bench:
+    """Measures settings of one scene, cheapest first, until a budget is spent."""
+
+    def __init__(self, scene: Scene, ready: Prepared, own: Setting, store: Store, budget: float, watch: Callable[[str], None]):
+        self.scene, self.ready, self.own, self.store, self.watch = scene, ready, own, store, watch
+        self.budget, self.start = budget, time.perf_counter()
+
+    @property
+    def left(self) -> float:
+        """Seconds of the budget that are left."""
+        return self.budget - (time.perf_counter() - self.start)
+
+    def predict(self, setting: Setting) -> float | None:
+        """Wall seconds that a run of this setting will take, from the measured point nearest in work; None before any."""
+        known = [p for p in self.store.points.values() if p.wall]
+        if not known:
+            return None
+        work = self._work(setting)
+        near = min(known, key=lambda p: abs(math.log(self._work(p.setting) / work)))
+        return min(near.wall) * work / self._work(near.setting)
+
+    def _work(self, setting: Setting) -> float:
+        """Particle-steps over those of the scene's own setting: particles go with cells^3, steps with cells over the fraction."""
+        steps = (self.own.fraction or 1.0) / (setting.fraction or 1.0) * (setting.cells / self.own.cells)
+        return steps * (setting.cells / self.own.cells) ** 3
+
+    def measure_all(self, wanted: Sequence[Setting]) -> dict[Setting, str]:
+        """Measure what is not measured yet, then repeat; returns what was left out and why."""
+        left = {}
+        for setting in sorted(wanted, key=self._work):
+            if self._has(setting):
+                continue
+            # All others are compared with the scene's own setting: they leave room for it, and for repeats.
+            waiting = setting != self.own and not self._has(self.own)
+            room = FOR_REPEATS * self.budget + ((self.predict(self.own) or 0.0) if waiting else 0.0)
+            share = self.left if setting == self.own else self.left - room
+            expected = self.predict(setting)
+            if expected is not None and expected > share:
+                left[setting] = f"would take about {expected:.2g} s, more than is left of the budget"
+                continue
+            try:
+                self.measure(setting, limit=max(share, 1.0))
+            except TooLong as stopped:
+                left[setting] = f"{stopped}, more than is left of the budget"
+        self._repeat(wanted)
+        return left | {s: p.problem for s in wanted if (p := self.store.points.get(s.key)) and p.problem}
+
+    def _has(self, setting: Setting) -> bool:
+        """Whether a setting has been measured."""
+        point = self.store.points.get(setting.key)
+        return bool(point and point.tracks)
+
+    def _repeat(self, wanted: Sequence[Setting]) -> None:
+        """Run points again, cheapest first, round after round, as long as they fit."""
+        points = [p for s in wanted if (p := self.store.points.get(s.key)) and p.tracks]
+        for runs in range(1, REPEATS):
+            for point in sorted(points, key=lambda p: min(p.wall)):
+                if len(point.seconds) <= runs and max(point.wall) <= self.left:
+                    try:
+                        self.measure(point.setting, limit=max(2.0 * self.left, 1.0))
+                    except TooLong:
+                        continue
+
+    def measure(self, setting: Setting, *, limit: float = math.inf) -> Point:
+        """Run one setting once more and store it. Raises TooLong, and Interrupted with the way to go on."""
+        point = self.store.points.get(setting.key)
+        repeat = len(point.seconds) if point else 0
+        expected = self.predict(setting)
+        guess = f"about {expected:.2g} s" if expected is not None else "the first"
+        self.watch(f"{setting}{f', run {repeat + 1}' if repeat else ''}: {guess}; {max(0.0, self.left):.0f} s of the budget left")
+        try:
+            # Only the automaton draws numbers: without a liquid another seed changes nothing.
+            sample: Sample = measure(self.scene, setting, self.store.folder, limit=limit, repeat=repeat)
+        except (SceneError, RefusedError, DivergedError) as error:
+            problem = error.problems[0].message if isinstance(error, SceneError) else str(error).splitlines()[0]
+            self.store.fail(setting, problem)
+            return self.store.points[setting.key]
+        except (Interrupted, KeyboardInterrupt) as error:
+            raise Interrupted(f"interrupted; {len(self.store.points)} points are kept in {self.store.folder}, "
+                              "the same command goes on") from error
+        return self.store.add(sample)

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""How far two runs are apart, what a ladder of runs converges to and how fast, and whether it converges at all.
+
+A run is its track: centres of mass [m], shape (F, M, 3), of M objects in F frames at the same times. Everything here is a
+pure function of tracks.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+ROUND_OFF = 1e-9
+"""Differences below this, relative to the extent of the motion, are no errors of a setting."""
+CONVERGENT = 0.3
+"""Differences above this share of the extent are no small errors any more: they do not follow a power of the step."""
+HIGHEST = 4.5
+"""Nothing here converges faster: a steeper fall is chance."""
+PART = 0.01
+"""Two runs have parted once they differ by this share of the extent."""
+
+
+def extent(track: np.ndarray) -> float:
+    """Farthest that any centre of mass gets from where it started [m]."""
+    return float(np.linalg.norm(track - track[0], axis=-1).max())
+
+
+def moving(track: np.ndarray) -> np.ndarray:
+    """Objects that move at all, bool, shape (M,): those that never do would make every error look smaller."""
+    return (track != track[0]).any(axis=(0, 2))
+
+
+def distance(a: np.ndarray, b: np.ndarray) -> float:
+    """Root mean square over frames and moving objects of the distance between two tracks [m]."""
+    which = moving(b)
+    return float(np.sqrt(((a - b)[:, which] ** 2).sum(-1).mean())) if which.any() else 0.0
+
+
+def extrapolate(fine: np.ndarray, coarse: np.ndarray, ratio: float, order: float) -> np.ndarray:
+    """Richardson's limit of x = x* + C s^order from two runs whose steps s are in the given ratio > 1."""
+    return fine + (fine - coarse) / (ratio**order - 1.0)
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """What a ladder of runs says about its own limit."""
+
+    limit: np.ndarray
+    """Best estimate of the motion [m], shape (F, M, 3): Richardson's limit, or the finest run where there is no order."""
+    errors: tuple[float, ...]
+    """Of each run against the limit, relative to the extent, coarsest first; nan for a finest run that is its own limit."""
+    order: float | None
+    """Observed order, None where errors follow no power of the step."""
+    used: int = 0
+    """Runs in the fit."""
+    why: str = ""
+    """Why there is no order."""
+    doubt: float = 0.0
+    """How far the limit itself may be off: without an order, as far as the finest run is from the one before it."""
+
+
+def converge(steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float) -> Convergence:
+    """Find the limit of a ladder and the order in which it is approached.
+
+    The order is the slope of log error over log step, least squares over the convergent part, against Richardson's limit
+    of the two finest runs for that same order: both are found together by iteration. A fit against the finest run would
+    flatter the runs next to it. The finest run itself is left out of the fit; with three runs this is the usual formula
+    for three grids; of more runs half must converge. The convergent part reaches from the finest run as far as errors grow with the step and stay below
+    CONVERGENT.
+
+    Args:
+        steps: time step, spacing or the like of each run, falling.
+        tracks: of each run [m], each of shape (F, M, 3); two at least.
+        scale: extent of the motion [m].
+    """
+    tracks = [np.asarray(t) for t in tracks]
+    if scale == 0.0:
+        return Convergence(tracks[-1], (0.0,) * len(tracks), None, why="nothing moves")
+    plain = [distance(t, tracks[-1]) / scale for t in tracks[:-1]]
+
+    def no_order(why: str) -> Convergence:
+        return Convergence(tracks[-1], (*plain, math.nan), None, why=why, doubt=plain[-1])
+
+    if max(plain) < ROUND_OFF:
+        return Convergence(tracks[-1], (*plain, 0.0), None, why="all runs agree to round-off")
+    if len(tracks) < 3:
+        return no_order("an order takes three runs")
+    size = np.log(np.asarray(steps, float))
+    order, seen = 2.0, []
+    for _ in range(50):
+        limit = extrapolate(tracks[-1], tracks[-2], steps[-2] / steps[-1], order)
+        errors = np.array([distance(t, limit) for t in tracks]) / scale
+        first = _convergent(errors)
+        inside = slice(first, len(tracks) - 1)
+        if len(size[inside]) < max(2, len(tracks) // 2):
+            return no_order("too few runs converge")
+        found = float(np.polyfit(size[inside], np.log(errors[inside]), 1)[0])
+        if not 0.5 < found < HIGHEST:
+            return no_order("errors hardly fall from run to run")
+        seen.append(found)
+        if abs(found - order) < 1e-4:
+            break
+        order = 0.5 * (order + found)
+    else:
+        return no_order("errors follow no power of the step")
+    return Convergence(limit, tuple(map(float, errors)), found, used=len(tracks) - 1 - first)
+
+
+def _convergent(errors: np.ndarray) -> int:
+    """Index of the coarsest run of the convergent part."""
+    first = len(errors) - 2
+    while first > 0 and errors[first] < errors[first - 1] < CONVERGENT:
+        first -= 1
+    return first if ROUND_OFF < errors[first] < CONVERGENT else len(errors)
+
+
+@dataclass(frozen=True, slots=True)
+class Growth:
+    """How the difference between two runs grows: a scene that forgets how it began has no order in any ladder."""
+
+    folding: float
+    """Time in which the difference grows e-fold, mean over the run up to where the runs have parted [s]; inf: it does not."""
+    parted: float | None
+    """Time from which the difference stays above PART of the extent [s]; None: it never does."""
+
+
+def growth(times: np.ndarray, a: np.ndarray, b: np.ndarray, scale: float) -> Growth:
+    """How two runs of neighbouring settings part.
+
+    Args:
+        times: of the frames [s], shape (F,).
+        a, b: tracks [m], shape (F, M, 3).
+        scale: extent of the motion [m].
+    """
+    which = moving(b)
+    apart = np.sqrt(((a - b)[:, which] ** 2).sum(-1).mean(-1)) / scale if which.any() else np.zeros(len(times))
+    near = np.flatnonzero(apart <= PART)
+    last = int(near[-1]) + 1
+    parted = float(times[last]) if last < len(times) else None
+    known = np.flatnonzero((apart > ROUND_OFF) & (np.arange(len(times)) <= last))
+    if len(known) < 3:
+        return Growth(math.inf, parted)
+    slope = float(np.polyfit(times[known], np.log(apart[known]), 1)[0])
+    return Growth(1.0 / slope if slope > 0.0 else math.inf, parted)

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""One point of a study: a run without movie in a folder of its own that is thrown away; its track and its seconds stay."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..driver.prepare import prepare
+from ..driver.run import Progress, simulate
+from ..results.trajectory import Trajectory
+from ..scene.scene import Scene
+from .setting import Setting, frames_only, with_setting
+
+TRIED = 0.5
+"""Wall seconds [s] after which a run's own pace tells whether it can be done in time."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """What one run of a point has left."""
+
+    setting: Setting
+    timestep: float
+    """[s]"""
+    steps: int
+    particles: int
+    seconds: float
+    """Wall time of the simulation, without building models and writing files [s]."""
+    wall: float
+    """Wall time of everything [s]."""
+    drift: float
+    """Largest energy residual [-]."""
+    found: tuple[float, ...]
+    """What the scene's ``expect`` lines found, in their order."""
+    times: np.ndarray
+    """Of the frames [s], shape (F,)."""
+    center: np.ndarray
+    """Centres of mass [m], shape (F, M, 3)."""
+
+
+class TooLong(Exception):
+    """A run that would not end within its limit was stopped; ``seconds`` is what it would have taken."""
+
+    def __init__(self, seconds: float):
+        super().__init__(f"would take about {seconds:.3g} s")
+        self.seconds = seconds
+
+
+def measure(scene: Scene, setting: Setting, folder: Path, *, limit: float = float("inf"), repeat: int = 0,
+            watch: Callable[[Progress], None] | None = None) -> Sample:
+    """Run a scene with a setting in a temporary folder inside ``folder``.
+
+    Raises TooLong when the run turns out to need more than ``limit`` seconds of wall time in all, and SceneError,
+    RefusedError, DivergedError, OutputError and Interrupted as any run does.
+    """
+    start = time.perf_counter()
+    ready = prepare(frames_only(with_setting(scene, setting, repeat=repeat)))
+    last: list[Progress] = []
+
+    def look(p: Progress) -> None:
+        last[:] = [p]
+        if (wall := time.perf_counter() - start) > TRIED and p.step:
+            needed = wall + p.seconds * (p.steps - p.step) / p.step
+            if needed > limit:
+                raise TooLong(needed)
+        if watch:
+            watch(p)
+
+    temporary = Path(tempfile.mkdtemp(prefix=f"{setting.key}-", dir=folder))
+    try:
+        result = simulate(ready, temporary, watch=look)
+        with Trajectory(temporary) as t:
+            times, center = (np.array(a[:], float) for a in (t.times, t.centers))
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+    c = ready.certificate
+    return Sample(setting, c.timestep, c.steps, ready.system.particles, last[0].seconds, time.perf_counter() - start,
+                  result.ledger.residual, tuple(float(o.found) for o in result.outcomes), times, center)

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What a study leaves for people and programs: table, CSV, study.json, and a plot of error over seconds."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..results.files import write_whole
+from .analysis import Rated
+from .error import distance
+from .store import Store
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from .study import Study
+
+COLORS = {"time step": "#1f77b4", "resolution": "#d62728", "sweeps": "#2ca02c"}
+
+
+def write_report(study: Study, store: Store, budget: float) -> None:
+    """Write study.json, study.csv and study.png. Raises OutputError."""
+    a = study.analysis
+    store.write({
+        "scene": study.scene.name, "budget": budget, "own": a.own.key, "extent": a.scale, "chaotic": a.chaotic,
+        "advice": study.advice, "left_out": study.left_out,
+        "growth": a.growth and {"folding": _finite(a.growth.folding), "parted": a.growth.parted},
+        "ladders": {name: {
+            "points": [s.key for s in a.measured[name]], "errors": [_finite(e) for e in c.errors],
+            "order": c.order, "used": c.used, "why": c.why,
+        } for name, c in a.ladders.items()},
+        "points": {key: {
+            "seconds": r.seconds.middle, "seconds_spread": r.seconds.spread, "error": r.error.middle,
+            "error_spread": r.error.spread, "expect_error": r.closed, "energy_drift": max(r.point.drift), "pareto": r.front,
+        } for key, r in a.rated.items()},
+    })
+    write_whole(store.folder / "study.csv", lambda part: _write_csv(study, part))
+    write_whole(store.folder / "study.png", lambda part: draw(study, part))
+
+
+def _finite(x: float) -> float | None:
+    return x if math.isfinite(x) else None
+
+
+def _write_csv(study: Study, path: Path) -> None:
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        out = csv.writer(file)
+        out.writerow(["setting", "ladders", "cells", "fraction", "sweeps", "timestep", "particles", "steps", "runs", "seconds",
+                      "seconds_spread", "error", "error_spread", "expect_error", "energy_drift", "pareto"])
+        for key, r in study.analysis.rated.items():
+            s, p = r.point.setting, r.point
+            out.writerow([key, " + ".join(_where(study, r)), s.cells, s.fraction, "auto" if s.sweeps is None else s.sweeps,
+                          p.timestep, p.particles, p.steps, len(p.seconds), r.seconds.middle, r.seconds.spread, r.error.middle,
+                          r.error.spread, "" if r.closed is None else r.closed, max(p.drift), int(r.front)])
+
+
+def _where(study: Study, r: Rated) -> list[str]:
+    """Names of the ladders that a point stands in."""
+    return [name for name, settings in study.analysis.measured.items() if r.point.setting in settings]
+
+
+def table(study: Study) -> Table:
+    """The points, cheapest first; those on the Pareto front are marked."""
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    a = study.analysis
+    closed = any(r.closed is not None for r in a.rated.values())
+    swept = any(r.point.setting.sweeps is not None for r in a.rated.values())
+    out = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for name in ("", "cells", "step/bound", *(["sweeps"] if swept else []), "particles", "seconds", "error",
+                 *(["off expect"] if closed else []), "energy drift", "ladder"):
+        out.add_column(name, justify="left" if name in ("", "ladder") else "right")
+    for r in a.rated.values():
+        s = r.point.setting
+        out.add_row(
+            "*" if r.front else "", f"{s.cells:g}", f"{s.fraction:.2f}" if s.fraction else "auto",
+            *(["auto" if s.sweeps is None else str(s.sweeps)] if swept else []), f"{r.point.particles}",
+            _spread(r.seconds.middle, r.seconds.spread, len(r.point.seconds)),
+            f"{100 * r.error.middle:.3g} %",
+            *(["" if r.closed is None else f"{100 * r.closed:.3g} %"] if closed else []), f"{max(r.point.drift):.1e}",
+            " + ".join(_where(study, r)) + (", own" if s == a.own else ""))
+    return out
+
+
+def _spread(middle: float, spread: float, runs: int) -> str:
+    told = f" ± {spread / 2:.1g}" if runs > 1 and spread > 1e-12 * middle else ""
+    return f"{middle:.3g}{told}"
+
+
+def order_lines(study: Study) -> list[str]:
+    """One line per ladder: its order, or why it has none, or why it was left out."""
+    lines = []
+    for name, c in study.analysis.ladders.items():
+        own = distance(study.analysis.rated[study.analysis.own.key].point.tracks[0], c.limit) / (study.analysis.scale or 1.0)
+        what = f"order {c.order:.2f} from {c.used} runs and their limit" if c.order is not None else f"no order: {c.why}"
+        off = f"; the scene's own setting is {100 * own:.2g} % off its limit" if own else ""
+        if c.doubt:
+            off += f"; the limit is the finest run, taken to be as far off as it is from the run before it, {100 * c.doubt:.2g} %"
+        lines.append(f"{name}: {what}{off}")
+    g = study.analysis.growth
+    if study.analysis.chaotic and math.isfinite(g.folding):
+        lines.append(f"runs part: differences grow e-fold every {g.folding:.2g} s, beyond 1 % of the motion from t = {g.parted:.3g} s on")
+    return lines + [f"{name}: left out, {why}" for name, why in study.left_out.items()]
+
+
+def draw(study: Study, path: Path) -> None:
+    """Error over seconds, both logarithmic, a line per ladder, the Pareto front marked."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    a = study.analysis
+    figure = Figure(figsize=(7.0, 4.6), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot(xscale="log", yscale="log", xlabel="wall time of simulation [s]",
+                              ylabel="error relative to the motion [%]", title=f"{study.scene.name}: what accuracy costs")
+    least = 0.5 * min((r.error.middle for r in a.rated.values() if r.error.middle > 0.0), default=1e-12)
+    place = {key: (r.seconds.middle, 100 * max(r.error.middle, least)) for key, r in a.rated.items()}
+    for name, settings in a.measured.items():
+        order = a.ladders[name].order
+        label = name + (f" (order {order:.1f})" if order is not None else "")
+        axes.plot(*zip(*(place[s.key] for s in settings)), "o-", color=COLORS[name], label=label, markersize=5)
+        for s in settings:
+            text = {"time step": f"{s.fraction:.2g}", "resolution": f"{s.cells:g}", "sweeps": "auto" if s.sweeps is None else f"{s.sweeps}"}[name]
+            axes.annotate(text, place[s.key], xytext=(5, -11 if name == "resolution" else 5), textcoords="offset points", fontsize=8, color=COLORS[name])
+    for key, r in a.rated.items():
+        axes.errorbar(*place[key], xerr=r.seconds.spread / 2, yerr=50 * r.error.spread, fmt="none", ecolor="gray", zorder=0)
+    front = [place[key] for key, r in a.rated.items() if r.front]
+    axes.plot(*zip(*front), "o", markersize=12, markerfacecolor="none", markeredgecolor="black", label="Pareto front")
+    axes.plot(*place[a.own.key], "k+", markersize=14, label="the scene's own setting")
+    axes.grid(True, which="both", alpha=0.25)
+    axes.legend(fontsize=8)
+    figure.savefig(path, dpi=130, format="png", metadata={"Software": None})

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What a study varies, how a scene takes it on, and the ladders around a scene's own setting."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass, replace
+
+from .. import __version__
+from ..certificate import fit_steps
+from ..driver.prepare import Prepared, prepare
+from ..model.spacing import choose_spacing
+from ..scene.lock import lock_text
+from ..scene.scene import Accuracy, Mesh, Render, Save, Scene
+
+LADDERS = ("time step", "resolution", "sweeps", "contact")
+LARGEST = 0.9
+"""Largest time step of a ladder over the bound."""
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """One point of a study."""
+
+    cells: float
+    """Across the thinnest part."""
+    fraction: float
+    """Time step over the certified bound; 0 where nothing vibrates and the step is left to ``auto``."""
+    sweeps: int | None = None
+    """Of the liquid's automaton per update; None is ``auto``."""
+
+    @property
+    def key(self) -> str:
+        """``c4-f0.5``: its name in files."""
+        return f"c{self.cells:g}-f{self.fraction:.4g}" + (f"-s{self.sweeps}" if self.sweeps is not None else "")
+
+    def __str__(self) -> str:
+        sweeps = "" if self.sweeps is None else f", {self.sweeps} sweep{'' if self.sweeps == 1 else 's'}"
+        step = f", {self.fraction:.2f} of the bound" if self.fraction else ""
+        return f"{self.cells:g} cells{step}{sweeps}"
+
+
+@dataclass(frozen=True, slots=True)
+class Ladder:
+    """Settings that differ in one thing, coarsest first."""
+
+    name: str
+    settings: tuple[Setting, ...]
+
+    def step(self, setting: Setting) -> float:
+        """What goes to zero along the ladder, up to a factor."""
+        match self.name:
+            case "time step":
+                return setting.fraction
+            case "resolution":
+                return 1.0 / setting.cells
+            case _:
+                return 1.0 / setting.sweeps
+
+
+def thinnest(scene: Scene) -> float:
+    """Length that counts as the thinnest part [m]: spacing = thinnest / cells, for ``balanced`` 4. Raises SceneError.
+
+    The same for all settings of a scene.
+    """
+    control = replace(scene.control, resolution=None, accuracy=Accuracy.BALANCED)
+    return choose_spacing(replace(scene, control=control))[0] * Accuracy.BALANCED.cells
+
+
+def own_setting(scene: Scene, ready: Prepared) -> Setting:
+    """The setting that a scene runs with by itself."""
+    c = ready.certificate
+    sweeps = scene.liquid.sweeps if scene.liquid else None
+    cells = round(thinnest(scene) / choose_spacing(scene)[0], 6)
+    return Setting(cells, c.fraction if math.isfinite(c.bound) else 0.0, sweeps)
+
+
+def with_setting(scene: Scene, setting: Setting, *, repeat: int = 0) -> Scene:
+    """The scene with a setting; a repeat of a scene with liquid has another seed for its automaton.
+
+    Raises SceneError where an object is thinner than the spacing.
+    """
+    control = replace(scene.control, resolution=thinnest(scene) / setting.cells, timestep=None,
+                      seed=scene.control.seed + repeat)
+    scene = replace(scene, control=control)
+    if setting.sweeps is not None:
+        scene = replace(scene, liquid=replace(scene.liquid, sweeps=setting.sweeps))
+    if setting.fraction:
+        bound = prepare(scene).certificate.bound
+        scene = replace(scene, control=replace(scene.control, timestep=setting.fraction * bound * (1.0 + 1e-9)))
+    return scene
+
+
+def frames_only(scene: Scene) -> Scene:
+    """The scene with as little in its trajectory as there can be; centres of mass stay in double precision."""
+    return replace(scene, control=replace(scene.control, save=Save.BOUNDARY, single=True))
+
+
+def ladders(scene: Scene, ready: Prepared, own: Setting) -> tuple[list[Ladder], dict[str, str]]:
+    """The ladders around a setting, and for each that is left out why."""
+    out, left = [], {}
+    if own.fraction:
+        steps = {}
+        for k in (1, 0, -1, -2, -3, -4):
+            fraction = own.fraction * 2.0 ** (k / 2)
+            if fraction <= LARGEST:
+                # Steps that come to the same number per frame are one point; the scene's own keeps its name.
+                steps.setdefault(fit_steps(scene, fraction * ready.certificate.bound * (1.0 + 1e-9))[0], fraction)
+        out.append(Ladder("time step", tuple(replace(own, fraction=f) for f in steps.values())))
+    else:
+        left["time step"] = "nothing in the scene vibrates, every step is stable"
+    n = own.cells
+    cells = sorted({n, *(max(1, round(n * x)) for x in (0.5, 0.75, 1.5, 2.0))})
+    cells = [c for c in cells if c == n or abs(c - n) >= 0.5]
+    out.append(Ladder("resolution", tuple(replace(own, cells=c) for c in cells)))
+    if ready.plan.grid is not None:
+        out.append(Ladder("sweeps", tuple(replace(own, sweeps=k) for k in (1, 2, 4, 8, 16))))
+    else:
+        left["sweeps"] = "no liquid"
+    if ready.verdicts["contact"].on:
+        left["contact"] = "the scene language has no setting for contact, only on and off"
+    else:
+        left["contact"] = ready.verdicts["contact"].reason
+    return out, left
+
+
+def scene_hash(scene: Scene) -> str:
+    """A word that is the same for scenes that move alike when run with the same setting.
+
+    Accuracy, time step, resolution, sweeps, what is saved and how pictures look are left out; the program's version, what
+    counts as the thinnest part, and what stands in mesh files count.
+    """
+    control = replace(scene.control, accuracy=Accuracy.BALANCED, timestep=None, resolution=None, save=Save.ALL, single=False)
+    liquid = scene.liquid and replace(scene.liquid, sweeps=None)
+    bare = replace(scene, name="scene", title="", control=control, liquid=liquid, render=Render())
+    digest = hashlib.sha256(f"{__version__}\n{thinnest(scene)!r}\n{lock_text(bare)}".encode())
+    for solid in scene.solids:
+        if isinstance(solid.shape, Mesh):
+            digest.update(solid.shape.path.read_bytes())
+    return digest.hexdigest()

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A study from beginning to end: the scene's own setting, the ladders around it, and what comes of them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..driver.prepare import prepare
+from ..errors import DivergedError, RefusedError, UsageError
+from ..scene.scene import Scene
+from .analysis import Analysis, advice, analyse
+from .bench import BUDGET, Bench
+from .report import write_report
+from .setting import LADDERS, Ladder, ladders, own_setting, scene_hash
+from .store import Point, Store
+from .target import find_choice, store_choice, stored_choice, wanted, with_choice
+
+
+@dataclass(frozen=True)
+class Study:
+    """What a study has left."""
+
+    scene: Scene
+    folder: Path
+    points: dict[str, Point]
+    ladders: tuple[Ladder, ...]
+    analysis: Analysis
+    left_out: dict[str, str]
+    """Ladders and points that were not measured, and why."""
+
+    @property
+    def advice(self) -> str:
+        """One plain sentence."""
+        return advice(self.analysis)
+
+
+def run_study(scene: Scene, folder: Path, *, budget: float = BUDGET, only: Sequence[str] = (), force: bool = False,
+              watch: Callable[[str], None] = lambda line: None) -> Study:
+    """Measure ladders around a scene's own setting for ``budget`` seconds of wall time; leaves study.json, .csv and .png.
+
+    Points that ``folder`` holds already are not measured again; every new one is stored as soon as it is there.
+
+    Args:
+        folder: of the study, usually SCENE.out/study.
+        only: names of ladders (LADDERS); empty is all.
+        force: throw away a study of another scene.
+        watch: is told what goes on, one line at a time.
+
+    Raises SceneError, OutputError; RefusedError when the budget is too small for the scene's own setting, DivergedError when
+    that diverges; Interrupted after Ctrl-C, with all finished points kept.
+    """
+    if unknown := [name for name in only if name not in LADDERS]:
+        raise UsageError(f"there is no ladder '{unknown[0]}'; known are {', '.join(LADDERS)}")
+    start = time.perf_counter()
+    store = Store(folder, scene_hash(scene), force=force)
+    if wanted(scene):
+        # The scene's own setting has to be found first; a stored one that misses its target may be improved on.
+        choice = stored_choice(scene)
+        if choice is None or not choice.met:
+            found = find_choice(scene, budget=budget / 2.0, store=store, watch=watch)
+            if choice is None or found.met or found.reached < choice.reached:
+                store_choice(scene, choice := found)
+        watch(f"accuracy error {100 * choice.error:g} %: {choice}{'' if choice.met else ', not met'}")
+        scene = with_choice(scene, choice)
+    ready = prepare(scene)
+    own = store.named(own_setting(scene, ready), ready.certificate.timestep)
+    found, left = ladders(scene, ready, own)
+    found = [ladder for ladder in found if not only or ladder.name in only]
+    left = {name: why for name, why in left.items() if not only or name in only}
+    bench = Bench(scene, ready, own, store, budget - (time.perf_counter() - start), watch)
+    settings = list(dict.fromkeys([own, *(s for ladder in found for s in ladder.settings)]))
+    left |= {str(s): why for s, why in bench.measure_all(settings).items()}
+    point = store.points.get(own.key)
+    if point is None:
+        raise RefusedError(f"the scene's own setting ({own}) {left[str(own)]}; give it more with --budget")
+    if not point.tracks:
+        raise DivergedError(f"the scene's own setting ({own}) cannot be measured: {point.problem}")
+    analysis = analyse(store.points, found, own, store.times, scene.expects, ready.system.names)
+    study = Study(scene, folder, store.points, tuple(found), analysis, left)
+    write_report(study, store, budget)
+    return study

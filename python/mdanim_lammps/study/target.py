@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""``accuracy error p %``: the cheapest setting that meets a target, found once and stored beside the scene."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+from ..driver.prepare import prepare
+from ..errors import DivergedError, OutputError, Problem
+from ..results.files import read_json, write_json
+from ..scene.scene import Accuracy, Scene
+from .analysis import Analysis, analyse
+from .bench import BUDGET, Bench
+from .error import ROUND_OFF, distance, extent
+from .measure import TooLong
+from .setting import Ladder, Setting, own_setting, scene_hash, thinnest
+from .store import FILE, Store
+
+START = (2, 3, 4)
+"""Cells across of the first runs: three are the least that show an order."""
+TIME_SHARE = 0.25
+"""Share of the target that the time step may use up; what is left is for the resolution, which costs far more."""
+CLOSE = 0.87
+"""A coarser setting is only tried when it promises to be this much coarser: 0.87 cells cost little more than half as much."""
+MARGIN = 0.97
+"""Aim a little below the target: the estimate of an error is as good as the limit it is measured against."""
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A setting that was found for a target."""
+
+    error: float
+    """The target, a fraction."""
+    cells: float
+    fraction: float
+    resolution: float
+    """[m]"""
+    timestep: float | None
+    """[s]; None where nothing vibrates."""
+    reached: float
+    """Estimated error of this setting, a fraction."""
+    closed: float | None
+    """Largest error against the closed forms of the scene, a fraction; None without any."""
+    seconds: float
+    """Wall time of simulation [s]."""
+
+    @property
+    def met(self) -> bool:
+        """Whether the target is met."""
+        return max(self.reached, self.closed or 0.0) <= self.error
+
+    def __str__(self) -> str:
+        got = f"estimated {100 * self.reached:.2g} %" + ("" if (self.closed or 0.0) < ROUND_OFF else f", closed form {100 * self.closed:.2g} %")
+        step = f", time step {self.timestep:.3g} s" if self.timestep else ""
+        return f"{self.cells:g} cells across{step} ({got})"
+
+
+def wanted(scene: Scene) -> bool:
+    """Whether a scene names a target and leaves something to choose."""
+    control = scene.control
+    return not isinstance(control.accuracy, Accuracy) and None in (control.resolution, control.timestep)
+
+
+def choice_file(scene: Scene) -> Path | None:
+    """``SCENE.accuracy.json`` beside the scene; None for a scene without a file."""
+    return scene.path and scene.path.with_name(f"{scene.name}.accuracy.json")
+
+
+def stored_choice(scene: Scene) -> Choice | None:
+    """The choice beside the scene, when it is for this scene and this target. Raises OutputError for a broken file."""
+    path = choice_file(scene)
+    if path is None or not path.exists():
+        return None
+    data = read_json(path)
+    try:
+        choice = Choice(**data["choice"])
+    except (KeyError, TypeError) as error:
+        raise OutputError(f"{path} is no stored accuracy ({error}); delete it, and the next run makes a new one") from error
+    return choice if data["scene"] == _digest(scene) and choice.error == scene.control.accuracy else None
+
+
+def store_choice(scene: Scene, choice: Choice) -> None:
+    """Write the choice beside the scene. Raises OutputError."""
+    if (path := choice_file(scene)) is not None:
+        write_json(path, {"scene": _digest(scene), "choice": asdict(choice), "met": choice.met})
+
+
+def with_choice(scene: Scene, choice: Choice) -> Scene:
+    """The scene with the setting of a choice; what the scene itself says about resolution and time step stays."""
+    c = scene.control
+    return replace(scene, control=replace(c, resolution=c.resolution if c.resolution is not None else choice.resolution,
+                                          timestep=c.timestep if c.timestep is not None else choice.timestep))
+
+
+def _digest(scene: Scene) -> str:
+    """The scene's hash without its accuracy line; a resolution or time step that it fixes counts."""
+    c = scene.control
+    return f"{scene_hash(scene)} {c.resolution!r} {c.timestep!r}"
+
+
+def find_choice(scene: Scene, *, budget: float = BUDGET, store: Store | None = None,
+                watch: Callable[[str], None] = lambda line: None) -> Choice:
+    """Measure until a setting meets the target of ``accuracy error p %``, or the budget is spent.
+
+    The resolution is refined from 2 cells on; each next number of cells follows from the order seen so far. The time step is
+    the largest one of the accuracy classes whose own error stays below a quarter of the target. The error is that of
+    docs/accuracy.md, and where the scene states closed forms at least as sharp as the target, these must be met too.
+
+    Args:
+        scene: with a target.
+        budget: wall time [s].
+        store: a study of this scene whose points are used again; None measures in a temporary folder.
+        watch: is told what goes on, one line at a time.
+
+    Raises DivergedError when no setting could be found, and what measuring raises.
+    """
+    if store is not None:
+        return _Search(scene, store, budget, watch).go()
+    with tempfile.TemporaryDirectory(prefix="mdanim-") as temporary:
+        return _Search(scene, Store(Path(temporary), scene_hash(scene)), budget, watch).go()
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """A scene whose target, if it has one, has become a setting."""
+
+    scene: Scene
+    line: str = ""
+    """Where the setting comes from; empty for a scene without a target."""
+    warning: Problem | None = None
+    """That the target is not met, or has not been looked for yet."""
+
+
+def settle(scene: Scene, *, make: bool, budget: float = BUDGET, study: Path | None = None,
+           watch: Callable[[str], None] = lambda line: None) -> Settled:
+    """Turn ``accuracy error p %`` into a setting: the one stored beside the scene, or, with ``make``, one found now.
+
+    Without either the scene stays as it is, and counts as ``balanced``. ``study`` is the folder of a study whose points are
+    used where they are of this scene.
+    """
+    if not wanted(scene):
+        return Settled(scene)
+    what, path = f"error {100 * scene.control.accuracy:g} %", choice_file(scene)
+    span = scene.control.spans.get("accuracy")
+    choice, source = stored_choice(scene), f"from {path.name}" if path else "found now"
+    if choice is None:
+        if not make:
+            told = f"accuracy {what}: no setting is known yet; 'run' looks for one first, for {budget:.0f} s at most"
+            return Settled(scene, told, Problem(span, f"the setting for {what} is not known yet; 'balanced' is shown",
+                                                f"mdanim-lammps study {scene.path or scene.name}", severity="warning"))
+        known = study and (study / FILE).exists() and read_json(study / FILE).get("hash") == scene_hash(scene)
+        choice = find_choice(scene, budget=budget, store=Store(study, scene_hash(scene)) if known else None, watch=watch)
+        store_choice(scene, choice)
+        source = f"found now, kept in {path.name}" if path else "found now"
+    warning = None if choice.met else Problem(
+        span, f"{what} is not reached: the best that was found in the time given is {choice}",
+        "give it more time with 'mdanim-lammps study SCENE --budget \"10 min\"', or ask for less", severity="warning")
+    return Settled(with_choice(scene, choice), f"accuracy {what}: {choice}, {source}", warning)
+
+
+class _Search:
+    """Goes down one ladder, of resolutions or, where the scene fixes those, of time steps, until the target is met."""
+
+    def __init__(self, scene: Scene, store: Store, budget: float, watch: Callable[[str], None]):
+        self.scene, self.store, self.target = scene, store, scene.control.accuracy
+        self.ready = prepare(scene)
+        self.own = own_setting(scene, self.ready)
+        self.bench = Bench(scene, self.ready, self.own, store, budget, watch)
+        self.name = "resolution" if scene.control.resolution is None else "time step"
+        self.step_error = 0.0  # of the time step at START[0] cells, relative to the extent
+
+    def go(self) -> Choice:
+        done = [s for s in self._first() if self._run(s)]
+        while len(done) > 1 and (setting := self._next(self._analyse(done), done)) is not None and self._run(setting):
+            done.append(setting)
+        if len(done) < 2:
+            problem = next((p.problem for p in self.store.points.values() if p.problem), "the budget was too small for two runs")
+            raise DivergedError(f"accuracy error {100 * self.target:g} %: no setting could be found: {problem}")
+        a = self._analyse(done)
+        meeting = [s for s in done if self._error(a, s) <= self.target]
+        best = min(meeting, key=lambda s: a.rated[s.key].seconds.middle) if meeting else min(done, key=lambda s: self._error(a, s))
+        point = a.rated[best.key].point
+        return Choice(self.target, best.cells, best.fraction, thinnest(self.scene) / best.cells,
+                      point.timestep if best.fraction else None, a.rated[best.key].error.middle + self._from_step(best),
+                      a.rated[best.key].closed, a.rated[best.key].seconds.middle)
+
+    def _first(self) -> list[Setting]:
+        """The settings that are measured in any case."""
+        if not self.own.fraction:
+            return [replace(self.own, cells=n) for n in START]
+        if self.name == "time step":
+            return [replace(self.own, fraction=Accuracy.PREVIEW.fraction / x) for x in (1.0, 2.0**0.5, 2.0)]
+        fraction = self._fraction() if self.scene.control.timestep is None else self.own.fraction
+        return [replace(self.own, cells=n, fraction=fraction) for n in START]
+
+    def _fraction(self) -> float:
+        """The largest time step of the accuracy classes whose error takes no more than its share of the target.
+
+        Measured with few cells, by a run with half the step: at second order the error of the longer one is 4/3 of the
+        difference. With more cells the step, and its error, are smaller.
+        """
+        longest = Accuracy.PREVIEW.fraction
+        long, short = (replace(self.own, cells=START[0], fraction=f) for f in (longest, longest / 2.0))
+        if not (self._run(long) and self._run(short)):
+            return Accuracy.REFERENCE.fraction
+        a, b = (self.store.points[s.key].tracks[0] for s in (long, short))
+        off = 4.0 / 3.0 * distance(a, b) / extent(b) if extent(b) else 0.0
+        fractions = [f for c in Accuracy if off * ((f := c.fraction) / longest) ** 2 <= TIME_SHARE * self.target]
+        chosen = max(fractions, default=Accuracy.REFERENCE.fraction)
+        self.step_error = off * (chosen / longest) ** 2
+        return chosen
+
+    def _from_step(self, setting: Setting) -> float:
+        """Error that the time step adds: with the spacing, the step shrinks, and its error with the square."""
+        return self.step_error * (START[0] / setting.cells) ** 2
+
+    def _next(self, a: Analysis, done: list[Setting]) -> Setting | None:
+        """The setting to measure next; None when the cheapest that meets the target is found, as near as makes sense."""
+        values = [self._value(s) for s in done]
+        known = max(done, key=self._value)
+        order = a.ladders[self.name].order or 2.0
+        error = self._error(a, known)
+        needed = self._value(known) * (error / (MARGIN * self.target)) ** (1.0 / order)
+        failing = max((self._value(s) for s in done if self._error(a, s) > self.target), default=0.0)
+        meeting = min((self._value(s) for s in done if self._error(a, s) <= self.target), default=None)
+        if meeting is None:
+            # Never more than twice as fine in one go: what lies ahead is known only by extrapolation.
+            value = min(max(self._round(needed), self._round(1.01 * failing)), 2.0 * failing)
+        elif meeting in values[:1]:
+            return None
+        else:
+            value = max(self._round(needed), self._round(1.01 * failing))
+            if value > CLOSE * meeting:
+                return None
+        return replace(known, cells=value) if self.name == "resolution" else replace(known, fraction=1.0 / value)
+
+    def _value(self, setting: Setting) -> float:
+        """What grows as the setting gets finer: cells across, or steps per bound."""
+        return setting.cells if self.name == "resolution" else 1.0 / setting.fraction
+
+    def _round(self, value: float) -> float:
+        """Up to whole cells."""
+        return float(math.ceil(value)) if self.name == "resolution" else value
+
+    def _error(self, a: Analysis, setting: Setting) -> float:
+        """Error that counts against the target."""
+        rated = a.rated[setting.key]
+        return max(rated.error.middle + self._from_step(setting), rated.closed or 0.0)
+
+    def _analyse(self, done: list[Setting]) -> Analysis:
+        settings = tuple(sorted(done, key=self._value))
+        return analyse({s.key: self.store.points[s.key] for s in done}, [Ladder(self.name, settings)], settings[-1],
+                       self.store.times, self.scene.expects, self.ready.system.names, sharpness=self.target)
+
+    def _run(self, setting: Setting) -> bool:
+        """Measure a setting that is not measured yet; whether it is there now."""
+        point = self.store.points.get(setting.key)
+        if point and point.tracks:
+            return True
+        expected = self.bench.predict(setting)
+        if expected is not None and expected > self.bench.left:
+            self.bench.watch(f"{setting} would take about {expected:.2g} s, more than the {max(0.0, self.bench.left):.0f} s left")
+            return False
+        try:
+            return bool(self.bench.measure(setting, limit=max(self.bench.left, 1.0)).tracks)
+        except TooLong:
+            return False

@@ -1,0 +1,242 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The guard: every kind of breakdown stops the run with step, object, cause and cure, and keeps what was good."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+from mdanim_lammps import Trajectory
+from mdanim_lammps.driver.guard import CLASSES, GENEROUS, LEAST, Guard, energy_class
+from mdanim_lammps.driver.prepare import prepare
+from mdanim_lammps.driver.run import simulate, write_inputs
+from mdanim_lammps.engine.geometry import Geometry
+from mdanim_lammps.engine.plugin import open_lammps
+from mdanim_lammps.errors import DivergedError, ExitCode
+from mdanim_lammps.results.checkpoint import Checkpoint
+from mdanim_lammps.results.ledger import Ledger
+from mdanim_lammps.scene.parse import load_scene
+from mdanim_lammps.scene.scene import Accuracy
+
+HIT = """
+{world}
+object ball {{
+  shape {shape}
+  position (0, 0, 30) cm
+  density 1000
+  elasticity {young} kPa
+  velocity (0, 0, {speed})
+}}
+{more}
+control {{
+  time {time} s
+  frames 100 fps
+  resolution 2.5 cm
+  {control}
+}}
+"""
+
+
+def hit(shape="box (10, 10, 10) cm", young=20.0, speed=-1.0, world="ground z 0", more="", time=0.3, control=""):
+    """A cube above something, thrown down."""
+    return HIT.format(shape=shape, young=young, speed=speed, world=world, more=more, time=time, control=control)
+
+
+def run(text, folder, *, insist=False):
+    """Run a scene; returns the result and the Prepared."""
+    path = folder / "hit.txt"
+    path.write_text(text)
+    ready = prepare(load_scene(path), allow_unstable=insist)
+    out = folder / "hit.out"
+    out.mkdir()
+    write_inputs(ready, out)
+    return simulate(ready, out), ready
+
+
+BLOCK = "object block { shape box (30, 30, 30) cm position (0, 0, 5) cm density 1000 elasticity 2 kPa hold all }"
+
+
+@pytest.mark.parametrize(("text", "insist", "told"), [
+    pytest.param(hit(young=100, control="timestep 5 ms"), True,
+                 ["ball: the energies do not add up, residual", "of what ball bears", "timestep auto"], id="time step above the bound"),
+    pytest.param(hit(young=100, time=2, control="timestep 10 ms").replace("100 fps", "1 fps"), True,
+                 ["ball: (LAMMPS stopped|its positions)", "of what ball bears", "timestep auto"], id="far above, few frames"),
+    pytest.param(hit(young=1, speed=-20), False,
+                 ["ball: it has left the ground: all of it is beyond z = 0 m", "of the wave speed", "write elasticity"],
+                 id="thrown through the ground"),
+    pytest.param(hit(shape="sphere 6 cm", young=2, speed=-3, time=6), False,
+                 [r"ball: \d+ of its \d+ cells have been inside out since step", "of the wave speed", "write elasticity"], id="crumpled"),
+    pytest.param(hit(young=2, speed=-6, world="", more=BLOCK), False,
+                 ["ball: it is inside block", "at 6 m/s", "lower speed"], id="into another object"),
+])
+def test_a_breakdown_stops_the_run(tmp_path, text, insist, told):
+    """Name the step, the object, the cause and what to change; keep good frames and the checkpoint."""
+    with pytest.raises(DivergedError) as caught:
+        run(text, tmp_path, insist=insist)
+    assert caught.value.exit_code == ExitCode.DIVERGED == 6
+    lines = str(caught.value).split("\n")
+    assert re.match(r"step \d+, t = [\d.e-]+ s: " + told[0], lines[0])
+    for start, words, line in zip(("  cause: ", "  change: "), told[1:], lines[1:]):
+        assert line.startswith(start) and re.search(words, line)
+    assert lines[3] == f"  the last good frame and checkpoint are kept in {tmp_path / 'hit.out'}"
+    step = int(lines[0].split()[1].rstrip(","))
+    with Trajectory(tmp_path / "hit.out") as t:
+        assert t.steps[-1] < step or "LAMMPS" in lines[0]
+        assert all(np.isfinite(t.position(i)).all() for i in range(len(t)))
+        assert len(Ledger.read(tmp_path / "hit.out" / "ledger.csv").rows) == len(t)
+    assert Checkpoint.read(tmp_path / "hit.out" / "checkpoint").step <= t.steps[-1]
+
+
+def test_inverted_cells_are_only_counted_where_the_user_insists(tmp_path):
+    """Go on with crumpled cells under --allow-unstable, and say in the summary how many there were."""
+    result, _ = run(hit(shape="sphere 6 cm", young=2, speed=-3, time=1.5), tmp_path, insist=True)
+    assert json.loads((result.folder / "summary.json").read_text())["inverted_cells"] >= 1
+    (tmp_path / "kind").mkdir()
+    result, _ = run(hit(), tmp_path / "kind")
+    assert json.loads((result.folder / "summary.json").read_text())["inverted_cells"] == 0
+
+
+def test_a_class_of_energy_that_is_missed_is_told(tmp_path):
+    """Warn at the end of a run, at the scene line, with the residual found; be silent where it was met."""
+    hard = hit(young=100, speed=-3, control="accuracy reference\n timestep 1.4 ms")
+    (tmp_path / "hard").mkdir()
+    (tmp_path / "kind").mkdir()
+    result, _ = run(hard, tmp_path / "hard")
+    assert 1e-4 < result.ledger.residual < LEAST
+    assert [w.severity for w in result.warnings] == ["warning"]
+    assert "'accuracy reference' stands for" in result.warnings[0].message and result.warnings[0].span.text.strip() == "accuracy reference"
+    result, _ = run(hit(young=100, world=""), tmp_path / "kind")
+    assert result.ledger.residual < 1e-3 and not result.warnings
+
+
+@pytest.mark.parametrize("accuracy", list(Accuracy))
+def test_the_energy_guard_is_generous(prepared, tmp_path, accuracy):
+    """Stop at fifty times the class, and never below 0.05; give no number no pass."""
+    ready = prepared(hit(control=f"accuracy {accuracy.value}"))
+    guard = Guard(ready, tmp_path)
+    v = ready.system.velocity
+    limit = max(LEAST, GENEROUS * CLASSES[accuracy])
+    assert energy_class(ready.scene) == CLASSES[accuracy]
+    guard.energy(10, 0.99 * limit, v)
+    guard.energy(10, -0.99 * limit, v)
+    for residual in (1.01 * limit, -1.01 * limit, np.nan):
+        with pytest.raises(DivergedError, match="the energies do not add up"):
+            guard.energy(10, residual, v)
+
+
+def test_what_lammps_says_is_passed_on(prepared, tmp_path):
+    """Blame an object and the time step only where particles have flown apart; other ends speak for themselves."""
+    ready = prepared(hit(young=1, speed=-20))
+    guard = Guard(ready, tmp_path)
+    flown = guard.broke(7, DivergedError("LAMMPS stopped: ERROR: Bond atoms 1 2\nmissing"), ready.system.velocity)
+    assert "ball: LAMMPS stopped: ERROR: Bond atoms 1 2 missing" in str(flown) and "  change: write elasticity" in str(flown)
+    assert "ball: LAMMPS" in str(guard.broke(7, DivergedError("LAMMPS stopped: Lost atoms"), ready.system.velocity[:5]))
+    other = str(guard.broke(7, DivergedError("LAMMPS stopped: ERROR: no open cell is left"), ready.system.velocity))
+    assert other.startswith("step 7, t = ") and "no open cell" in other and "cause" not in other and str(tmp_path) in other
+
+
+# --- the plugin's loops ---------------------------------------------------------------------------------------------
+
+TWO = """
+object a {{ shape {a} position (0, 0, 0) density 1000 elasticity 100 kPa {more} }}
+object b {{ shape {b} position (0, 0, 1) m density 1000 elasticity 100 kPa {more} }}
+control {{ time 1 s resolution 2 cm }}
+"""
+BOX, SHEET = "box (10, 10, 10) cm", "box (20, 20, 2) cm"
+
+
+@pytest.fixture
+def two(prepared):
+    """Make the Geometry and the positions of two objects, the second moved to ``at`` [m]."""
+    open_lammps()[0].close()  # which maps the libraries that the plugin is linked to
+
+    def make(a=BOX, b=BOX, at=(0.0, 0.0, 1.0), more=""):
+        system = prepared(TWO.format(a=a, b=b, more=more)).system
+        x = system.position.copy()
+        x[system.first[1]:] += np.array(at) - [0.0, 0.0, 1.0]
+        return Geometry(system), x
+    return make
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("where", ["x", "v"])
+def test_what_is_not_finite_is_found(two, value, where):
+    """Find the first particle with one bad number; the largest finite ones are fine."""
+    geometry, x = two()
+    v = np.zeros_like(x)
+    v[0] = x[-1] = np.finfo(float).max
+    assert geometry.not_finite(x, v) is None
+    {"x": x, "v": v}[where][[37, 40], [2, 0]] = value
+    assert geometry.not_finite(x, v) == 37
+
+
+def test_boxes_hold_their_objects(two):
+    """Give the lowest and highest particle along each axis."""
+    geometry, x = two(a="sphere 7 cm", at=(0.3, 0.2, -0.1))
+    x += np.random.default_rng(1).normal(0.0, 0.01, x.shape)
+    low, high = geometry.boxes(x)
+    first = geometry.system.first
+    for m in range(2):
+        part = x[first[m]:first[m + 1]]
+        assert np.array_equal(low[m], part.min(0)) and np.array_equal(high[m], part.max(0))
+
+
+@pytest.mark.parametrize(("change", "expected"), [
+    pytest.param(lambda x: x, 0, id="as it is"),
+    pytest.param(lambda x: x[:, [1, 2, 0]], 0, id="rotated"),
+    pytest.param(lambda x: x * [1.0, 1.0, 0.05], 0, id="pressed flat"),
+    pytest.param(lambda x: x * [1.0, 1.0, -1.0], 250, id="mirrored"),
+    pytest.param(lambda x: x * [1.0, 1.0, 0.0], 250, id="no thickness"),
+])
+def test_inverted_cells_are_counted(two, change, expected):
+    """See a mirrored cell, and no turned or squeezed one."""
+    geometry, x = two()
+    assert np.count_nonzero(geometry.inverted(np.ascontiguousarray(change(x)))) == expected
+
+
+def test_a_corner_pushed_through_its_cell_inverts_it(two):
+    """Name the one cell."""
+    geometry, x = two()
+    x[0] += 0.03  # a cell and a half along each edge of 2 cm
+    assert np.flatnonzero(geometry.inverted(x)).tolist() == [0]
+
+
+@pytest.mark.parametrize(("b", "at", "more", "found"), [
+    pytest.param(BOX, (0.0, 0.0, 0.11), "", None, id="apart"),
+    pytest.param(BOX, (0.003, 0.007, 0.091), "", None, id="0.45 of a cell deep, as in the hardest contact"),
+    pytest.param(BOX, (0.003, 0.007, 0.065), "", {0, 1}, id="almost two cells deep"),
+    pytest.param(BOX, (0.0, 0.0, 0.0), "", {0, 1}, id="all of it"),
+    pytest.param(BOX, (0.0, 0.0, 0.0), "hold all", None, id="both held: they may overlap"),
+    pytest.param("sphere 3 cm", (0.01, 0.0, 0.0), "", (1, 0), id="a small one within"),
+    pytest.param(SHEET, (0.0, 0.0, 0.055), "", None, id="a sheet on it"),
+    pytest.param(SHEET, (0.0, 0.0, 0.005), "", (1, 0), id="a sheet in it"),
+    pytest.param("torus 12 cm 4 cm", (0.0, 0.0, 0.0), "", None, id="a ring around it: the ring's middle is in the box"),
+])
+def test_objects_inside_each_other_are_found(two, b, at, more, found):
+    """Tell depth beyond contact from contact, whatever the boxes say."""
+    geometry, x = two(b=b, at=at, more=more)
+    pair = geometry.sunk(x)
+    assert (pair if not isinstance(found, set) else set(pair or ())) == found
+
+
+def test_a_sheet_that_holds_the_centre_of_another_is_entered(two):
+    """Ask for the centre where a body has no deeper cells: two crossed sheets, and two on each other."""
+    for angle, at, found in ((1, (0.0, 0.0, 0.0), True), (0, (0.0, 0.0, 0.021), False)):
+        geometry, x = two(a=SHEET, b=SHEET, at=at)
+        part = x[geometry.system.first[1]:]
+        if angle:
+            part[:] = part[:, [0, 2, 1]]
+        assert (geometry.sunk(x) is not None) == found
+
+
+def test_the_command_line_ends_with_six(tmp_path, capsys):
+    """Print the message on stderr, without a traceback, and exit with 6."""
+    from mdanim_lammps.cli import main
+
+    (tmp_path / "hit.txt").write_text(hit(young=1, speed=-20))
+    with pytest.raises(SystemExit) as caught:
+        main([str(tmp_path / "hit.txt"), "--no-movie", "-q"])
+    error = capsys.readouterr().err
+    assert caught.value.code == 6
+    assert "mdanim-lammps: error: step" in error and "change: write elasticity" in error and "Traceback" not in error
