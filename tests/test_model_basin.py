@@ -3,6 +3,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -210,3 +211,27 @@ def test_a_body_must_leave_liquid_beside_it(across, along, fits):
     if not fits:
         assert found[0].line == 2 and "fills the basin from wall to wall but for 10 cm" in found[0].message
     assert not problems(block(Box((across, along, 0.3)), hold=(HoldAll(),)), volume=0.3)
+
+
+BOAT = Mesh(Path(__file__).parents[1] / "scenes/meshes/boat.stl", 0.01)
+
+
+def test_an_open_hull_is_told():
+    """Warn of the boat under model surface, not of a duck, nor under model pressure."""
+    def told(shape, **liquid):
+        made = scene(block(shape, "boat"), resolution=0.03, liquid=replace(WATER, high=(2.0, 2.0, 2.0), **liquid))
+        return basin.open_hulls(made, build_models(made))
+
+    (warning,) = told(BOAT)
+    assert warning.severity == "warning" and "boat is open and hollow" in warning.message
+    assert "model pressure" in warning.hint
+    assert not told(BOAT, model=LiquidModel.PRESSURE)
+    assert not told(Mesh(BOAT.path.with_name("duck.stl"), 0.03))
+
+
+def test_what_a_hull_encloses():
+    """The boat's inside is about as large as its planks: the hull without them, 118 l, less 60 l."""
+    made = scene(block(BOAT, "boat"), resolution=0.025, liquid=replace(WATER, high=(2.0, 2.0, 2.0)))
+    (model,) = build_models(made)
+    # Whole cells of 2.5 cm on planks of 7 cm.
+    assert basin.enclosed(made.solids[0], model) == pytest.approx(58 / 60, abs=0.1)

@@ -12,7 +12,7 @@ from ..certificate import warnings as margin_warnings
 from ..effects import EFFECTS, Verdict, decide
 from ..engine.plan import Plan, make_plan
 from ..errors import Problem, SceneError
-from ..model.basin import check_basin
+from ..model.basin import check_basin, open_hulls
 from ..model.build import build_models
 from ..model.model import Model
 from ..model.overlap import check_geometry
@@ -64,7 +64,7 @@ def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[i
     system = assemble(models, scene)
     certificate = certify(scene, system, verdicts, allow_unstable=allow_unstable)
     plan = make_plan(scene, system, verdicts, certificate)
-    warnings += margin_warnings(certificate)
+    warnings += margin_warnings(certificate) + (open_hulls(scene, models) if verdicts["liquid"].on else [])
     return Prepared(scene, tuple(models), system, verdicts, (*scene.warnings, *warnings), certificate, plan, allow_unstable)
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import Problem
-from ..scene.scene import Liquid, LiquidModel, Scene, Solid, Switch, Vector
+from ..scene.scene import Liquid, LiquidModel, Mesh, Scene, Solid, Switch, Vector
 from . import shapes
 from .model import Model
 from .spacing import available_memory, choose_spacing
@@ -198,6 +198,45 @@ def _too_full(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem
             f"for {free:.4g} m^3 more", "fewer objects, less liquid, or a higher basin",
         )]
     return too_big
+
+
+HOLLOW = 0.2
+"""Room that a body encloses, over its own volume, from which it is taken for a hull."""
+
+
+def open_hulls(scene: Scene, models: Sequence[Model]) -> list[Problem]:
+    """Warn of bodies that enclose air which model surface knows nothing of."""
+    if scene.liquid is None or scene.liquid.model is not LiquidModel.SURFACE:
+        return []
+    return [Problem(
+        solid.spans.get("shape") or solid.spans.get("object"),
+        f"{solid.name} is open and hollow: model surface lifts it by its material alone, not by the air in it",
+        f"write model pressure in liquid {scene.liquid.name}",
+        severity="warning",
+    ) for solid, model in zip(scene.solids, models)
+        if isinstance(solid.shape, Mesh) and not model.held.all() and enclosed(solid, model) > HOLLOW]
+
+
+def enclosed(solid: Solid, model: Model) -> float:
+    """Room in a body that would hold liquid poured in from above, its +z axis up, over the body's own volume [-].
+
+    Empty cells of its lattice that no way within their layer or below leads out of: layer by layer from the bottom.
+    """
+    from scipy.ndimage import label
+
+    body = (model.position - solid.position) @ np.array(solid.rotation)
+    corner = body[model.hexahedron[:, 0]]
+    at = np.rint((corner - corner.min(axis=0)) / model.cell).astype(int)
+    filled = np.zeros(at.max(axis=0) + 3, bool)
+    filled[tuple((at + 1).T)] = True
+    holds, below = 0, np.zeros(filled.shape[:2], bool)  # cells of the layer below that keep liquid in
+    for layer in np.moveaxis(filled, 2, 0)[1:-1]:
+        region, _ = label(~layer)
+        leaks = np.unique(np.concatenate([region[~layer & ~below & (region != region[0, 0])], [region[0, 0]]]))
+        kept = ~layer & ~np.isin(region, leaks)
+        holds += int(kept.sum())
+        below = layer | kept
+    return holds / len(at)
 
 
 def _within(models: Sequence[Model], low: Vector, high: Vector) -> np.ndarray:

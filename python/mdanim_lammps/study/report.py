@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from ..results.files import write_whole
 from .analysis import Rated
-from .error import distance
+from .error import ROUND_OFF, distance
 from .store import Store
 
 if TYPE_CHECKING:
@@ -81,9 +81,13 @@ def table(study: Study) -> Table:
             *(["auto" if s.sweeps is None else str(s.sweeps)] if swept else []), f"{r.point.particles}",
             _spread(r.seconds.middle, r.seconds.spread, len(r.point.seconds)),
             f"{100 * r.error.middle:.3g} %",
-            *(["" if r.closed is None else f"{100 * r.closed:.3g} %"] if closed else []), f"{max(r.point.drift):.1e}",
+            *([_off(r.closed)] if closed else []), f"{max(r.point.drift):.1e}",
             " + ".join(_where(study, r)) + (", own" if s == a.own else ""))
     return out
+
+
+def _off(x: float | None) -> str:
+    return "" if x is None else f"{100 * x:.3g} %" if x > ROUND_OFF else "0"
 
 
 def _spread(middle: float, spread: float, runs: int) -> str:
