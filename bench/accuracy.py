@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What accuracy costs: prints the tables of docs/accuracy.md.
 
-``python bench/accuracy.py [--budget SECONDS] [--plots FOLDER] [PART ...]`` with parts out of beam, float, cantilever, crowd (a study
-of each scene under the budget), classes (energy drift and seconds of preview, balanced, reference) and target (``accuracy
+``python bench/accuracy.py [--budget SECONDS] [--plots FOLDER] [PART ...]`` with parts out of beam, float, cantilever,
+crowd (a study of each scene under the budget), classes (energy drift and seconds of preview, balanced, reference) and target (``accuracy
 error 2 %`` on the cantilever against Timoshenko).
 """
 
@@ -59,6 +59,7 @@ def cantilever(target: float, young: float = 80e6):
 
 def study(name: str, budget: float, plots: Path | None) -> None:
     """Print the study of a scene."""
+    from mdanim_lammps.study.error import ROUND_OFF
     from mdanim_lammps.study.report import order_lines
     from mdanim_lammps.study.study import run_study
 
@@ -73,7 +74,7 @@ def study(name: str, budget: float, plots: Path | None) -> None:
     for r in a.rated.values():
         s, p = r.point.setting, r.point
         where = [n for n, settings in a.measured.items() if s in settings] + (["own"] if s == a.own else [])
-        closed = "" if r.closed is None else f"{100 * r.closed:.2g} %"
+        closed = "" if r.closed is None else f"{100 * r.closed:.2g} %" if r.closed > ROUND_OFF else "0"
         seconds = f"{r.seconds.middle:.3g}" + (f" ± {r.seconds.spread / 2:.1g}" if len(p.seconds) > 1 else "")
         print(f"| {'*' if r.front else ''} | {s.cells:g} | {s.fraction:.2f} | {'auto' if s.sweeps is None else s.sweeps} | {p.particles} | "
               f"{seconds} | {100 * r.error.middle:.2g} % | {closed} | {max(p.drift):.0e} | {', '.join(where)} |")
@@ -93,7 +94,7 @@ def closed_scenes():
         yield f"{name}.txt", load(name, time)
 
 
-def classes(only: str = "") -> None:
+def classes() -> None:
     """Print energy drift and seconds of the three classes."""
     from mdanim_lammps.errors import DivergedError
     from mdanim_lammps.scene.scene import Accuracy
@@ -128,9 +129,9 @@ def target(percent: float = 2.0, budget: float = 600.0):
     swing = max(1.0 - e.value for e in scene.expects)
     rows = [(p, max(abs(f - e.value) for f, e in zip(p.found[0], scene.expects)) / swing) for p in points if p.tracks]
     print("\n| cells | step / bound | seconds | against Timoshenko | |\n|---|---|---|---|---|")
-    for p, off in sorted(rows, key=lambda row: min(row[0].seconds)):
+    for p, off in sorted(rows, key=lambda row: row[0].work):
         mark = "chosen" if (p.setting.cells, p.setting.fraction) == (choice.cells, choice.fraction) else ""
-        print(f"| {p.setting.cells:g} | {p.setting.fraction:.2f} | {min(p.seconds):.3g} | {100 * off:.2g} % | {mark} |")
+        print(f"| {p.setting.cells:g} | {p.setting.fraction:.2f} | {min(p.seconds):.3g} | {100 * off:.3g} % | {mark} |")
     print(f"\n> accuracy error {percent:g} %: {choice}", flush=True)
     return choice, rows
 

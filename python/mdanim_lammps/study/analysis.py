@@ -97,7 +97,8 @@ def analyse(points: Mapping[str, Point], ladders: Sequence[Ladder], own: Setting
     doubt = math.sqrt(sum(c.doubt**2 for c in found.values()))
     errors = {key: [math.hypot(distance(t, best) / scale, doubt) if scale else 0.0 for t in p.tracks] for key, p in run.items()}
     wobble = max(ALIKE, _usual(errors.values(), 0.0))  # not 0 only where repeats have another seed, that is with a liquid
-    rated = {key: Rated(p, _duration(p.seconds, noise), _value(errors[key], wobble), _closed(p, expects, truths)) for key, p in run.items()}
+    rated = {key: Rated(p, _duration(p.seconds, noise), _value(errors[key], wobble), _closed(p, expects, truths))
+             for key, p in run.items()}
     front = pareto({key: (r.seconds, r.error) for key, r in rated.items()})
     rated = {key: Rated(r.point, r.seconds, r.error, r.closed, key in front)
              for key, r in sorted(rated.items(), key=lambda item: item[1].seconds.middle)}

@@ -107,7 +107,8 @@ def order_lines(study: Study) -> list[str]:
         lines.append(f"{name}: {what}{off}")
     g = study.analysis.growth
     if study.analysis.chaotic and math.isfinite(g.folding):
-        lines.append(f"runs part: differences grow e-fold every {g.folding:.2g} s, beyond 1 % of the motion from t = {g.parted:.3g} s on")
+        lines.append(f"runs part: differences grow e-fold every {g.folding:.2g} s, "
+                     f"beyond 1 % of the motion from t = {g.parted:.3g} s on")
     return lines + [f"{name}: left out, {why}" for name, why in study.left_out.items()]
 
 
@@ -128,8 +129,9 @@ def draw(study: Study, path: Path) -> None:
         label = name + (f" (order {order:.1f})" if order is not None else "")
         axes.plot(*zip(*(place[s.key] for s in settings)), "o-", color=COLORS[name], label=label, markersize=5)
         for s in settings:
-            text = {"time step": f"{s.fraction:.2g}", "resolution": f"{s.cells:g}", "sweeps": "auto" if s.sweeps is None else f"{s.sweeps}"}[name]
-            axes.annotate(text, place[s.key], xytext=(5, -11 if name == "resolution" else 5), textcoords="offset points", fontsize=8, color=COLORS[name])
+            text = {"time step": f"{s.fraction:.2g}", "resolution": f"{s.cells:g}", "sweeps": f"{s.sweeps}"}[name]
+            axes.annotate(text, place[s.key], xytext=(5, -11 if name == "resolution" else 5),
+                          textcoords="offset points", fontsize=8, color=COLORS[name])
     for key, r in a.rated.items():
         axes.errorbar(*place[key], xerr=r.seconds.spread / 2, yerr=50 * r.error.spread, fmt="none", ecolor="gray", zorder=0)
     front = [place[key] for key, r in a.rated.items() if r.front]
