@@ -204,3 +204,13 @@ def test_a_body_overlaps_itself(shape):
 def test_a_scene_without_solids_has_no_problem():
     """Have nothing to say about an empty scene."""
     assert check_geometry(scene(), ()) == []
+
+
+@pytest.mark.parametrize("room", ["walls", "basin"])
+def test_an_object_wider_than_its_room_is_told_once_an_axis(room):
+    """No move helps, so none is offered: the width and the room are told, with a guess at the cause."""
+    low, high = (-1.0, -1.0, 0.0), (1.0, 3.0, 9.0)
+    where = {"walls": Walls(low, high)} if room == "walls" else {"liquid": Liquid("water", low, high, 1000.0, volume=1.0)}
+    (found,) = problems(solid(Box((4.0, 3.0, 1.0)), "slab", position=(0.0, 1.0, 2.0), mass=1.0), **where)
+    assert "slab is 4 m wide along x" in found.message and "only 2 m" in found.message
+    assert "unit" in found.hint

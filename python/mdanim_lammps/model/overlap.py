@@ -84,12 +84,30 @@ def _limits(scene: Scene) -> list[_Limit]:
     return limits
 
 
+def _rooms(scene: Scene) -> list[tuple[str, tuple, tuple]]:
+    """What has a wall on both sides along x and y: its name, lower and upper corner [m]."""
+    rooms = [("the space between the walls is", scene.walls)] if scene.walls is not None else []
+    rooms += [("the basin is", scene.liquid)] if scene.liquid is not None else []
+    return [(what, box.low, box.high) for what, box in rooms]
+
+
 def _outside(scene: Scene, bodies: _Bodies) -> list[Problem]:
     problems = []
+    too_wide = np.zeros((len(bodies.models), 3), bool)  # no move helps along these axes
+    for what, low, high in _rooms(scene):
+        room = np.subtract(high, low)[:2]
+        size = (bodies.high - bodies.low)[:, :2]
+        for i, axis in zip(*np.nonzero((size > room + bodies.hair) & ~bodies.fixed[:, None])):
+            solid, too_wide[i, axis] = scene.solids[i], True
+            problems.append(Problem(
+                solid.spans.get("shape") or _span(solid),
+                f"{solid.name} is {length(size[i, axis])} wide along {'xyz'[axis]}, {what} only {length(room[axis])}",
+                "make it smaller (is a unit missing?), or the room larger",
+            ))
     for limit in _limits(scene):
         edge = bodies.low if limit.sign > 0 else bodies.high
         out = limit.sign * (limit.at - edge[:, limit.axis])
-        for i in np.flatnonzero((out > bodies.hair) & ~bodies.fixed):
+        for i in np.flatnonzero((out > bodies.hair) & ~bodies.fixed & ~too_wide[:, limit.axis]):
             solid = scene.solids[i]
             problems.append(Problem(
                 _span(solid), f"{solid.name} is {length(out[i])} {limit.what}",
