@@ -535,6 +535,7 @@ bool FixMdanimLiquid::due()
 // Liquid leaves the cells that have become solid; returns how many have changed.
 long FixMdanimLiquid::make_room()
 {
+  const Lap lap(automaton_seconds);
   try {
     return automaton->displace(solid.data(), static_cast<std::uint64_t>(update->ntimestep));
   } catch (const std::runtime_error &problem) {
@@ -546,30 +547,36 @@ long FixMdanimLiquid::make_room()
 void FixMdanimLiquid::update_liquid()
 {
   count_moving();
-  long changed = 0;
-  const auto now = static_cast<std::uint64_t>(update->ntimestep);
-  {
-    const Lap lap(automaton_seconds);
-    changed = make_room();
-    if (changed || !calm) {
-      // A front goes on by one cell in a move: half a cell of wave between moves makes its speed 2 sqrt(g
-      // depth), that of the front of a broken dam.
-      crossed += std::sqrt(g * top * cell.z) * waited * update->dt / shortest;
-      const bool wave = crossed >= 0.5;
-      const int due = std::max(static_cast<int>(SWEEPS_PER_CELL * travel + 0.5), wave || changed ? 1 : 0);
-      const int most = sweeps ? sweeps : std::min(due, MOST_SWEEPS);
-      for (int k = 0; k < most; ++k) automaton->sweep(now * MOST_SWEEPS + k);
-      swept += most;
-      if (model == Model::SURFACE && (wave || changed) &&
-          leveller.move(automaton->cells, seed, now, wave ? LEVEL_RATE * crossed : 0.0, changed))
-        automaton->poured();
-      if (wave) crossed = 0.0;
-    }
-  }
-  if (changed || !calm) raise_surface(false);
+  const long changed = make_room();
+  if (changed || !calm) flow(changed);
   travel = 0.0;
   waited = 0;
   if (low.z + top * cell.z > watched_top) watch();
+}
+
+// Lets the liquid move: sweeps, and the level rule as often as a wave has gone half a cell or solids have
+// changed cells.
+void FixMdanimLiquid::flow(long changed)
+{
+  bool levelled = false;
+  int most = 0;
+  {
+    const Lap lap(automaton_seconds);
+    const auto now = static_cast<std::uint64_t>(update->ntimestep);
+    // A front goes on by one cell in a move: half a cell of wave between moves makes its speed 2 sqrt(g
+    // depth), that of the front of a broken dam.
+    crossed += std::sqrt(g * top * cell.z) * waited * update->dt / shortest;
+    const bool wave = crossed >= 0.5;
+    const int wanted = std::max(static_cast<int>(SWEEPS_PER_CELL * travel + 0.5), wave || changed ? 1 : 0);
+    most = sweeps ? sweeps : std::min(wanted, MOST_SWEEPS);
+    for (int k = 0; k < most; ++k) automaton->sweep(now * MOST_SWEEPS + k);
+    swept += most;
+    levelled = model == Model::SURFACE && (wave || changed);
+    if (levelled && leveller.move(automaton->cells, seed, now, wave ? LEVEL_RATE * crossed : 0.0, changed))
+      automaton->poured();
+    if (wave) crossed = 0.0;
+  }
+  if (changed || most || levelled) raise_surface(levelled);
 }
 
 // --- solids in the liquid ---

@@ -82,6 +82,7 @@ class FixMdanimLiquid : public Fix {
 
   bool due();
   void update_liquid();
+  void flow(long changed);
   void watch();
   void couple();
   bool over_basin(const double *x) const;
