@@ -325,18 +325,26 @@ def dropped(on: str):
     return play
 
 
-PLATES = [
-    Case(
-        f"plate of one cell, block at {speed:g} c",
-        block("plate", (12, 6, 1), (0, 0, 0), more="hold faces x")
-        + block("b", (3, 3, 3), (0, 0, 3.7), more=velocity(z=-speed * C))
-        + CONTROL,
-        dropped("plate"),
-        {"energy drift": 1e-3 if speed <= 0.4 else 1e-2, "passed": 0},
-        "a plate with nothing inside is its own barrier, with a reach of 1.2 h",
-    )
-    for speed in (0.1, 0.4, 0.8)
-]
+def struck(kind: str, size, height: float, speeds, why: str) -> list[Case]:
+    """A small block comes down on something one cell thick that is clamped at its ends."""
+    return [
+        Case(
+            f"{kind} of one cell, block at {speed:g} c",
+            block(kind, size, (0, 0, 0), more="hold faces x")
+            + block("b", (3, 3, 3), (0, 0, height), more=velocity(z=-speed * C))
+            + CONTROL,
+            dropped(kind),
+            {"energy drift": 1e-3 if speed <= 0.4 else 1e-2, "passed": 0},
+            why,
+        )
+        for speed in speeds
+    ]
+
+
+PLATES = struck(
+    "plate", (12, 6, 1), 3.7, (0.1, 0.4, 0.8),
+    "a plate with nothing inside is its own barrier, with a reach of 1.2 h",
+)  # fmt: skip
 PLATE_PASSES_AT = {1: 0.5, 2: 0.7, 3: 0.8}
 """Cells of a clamped plate, and the speed over C from which a block of 5 cells goes through it (bench/stability.py)."""
 
@@ -360,18 +368,7 @@ PLATES += [
     )
     for cells, fast in PLATE_PASSES_AT.items()
 ]
-NEEDLES = [
-    Case(
-        f"needle of one cell, block at {speed:g} c",
-        block("needle", (20, 1, 1), (0, 0, 0), more="hold faces x")
-        + block("b", (3, 3, 3), (0, 0, 3), more=velocity(z=-speed * C))
-        + CONTROL,
-        dropped("needle"),
-        {"energy drift": 1e-3 if speed <= 0.4 else 1e-2, "passed": 0},
-        "thin both ways: every particle of it is an edge",
-    )
-    for speed in (0.1, 0.8)
-]
+NEEDLES = struck("needle", (20, 1, 1), 3, (0.1, 0.8), "thin both ways: every particle of it is an edge")
 
 
 def crossed(speed: float) -> str:
