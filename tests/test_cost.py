@@ -11,7 +11,8 @@ import pytest
 from mdanim_lammps.driver import calibration as calibrating
 from mdanim_lammps.driver.calibration import RATES, calibration, stored_at
 from mdanim_lammps.driver.forecast import fastest, forecast, rebuilds
-from mdanim_lammps.driver.run import _Run, simulate
+from mdanim_lammps.driver.run import simulate
+from mdanim_lammps.driver.source import Account, add_clocks
 from mdanim_lammps.effects import EFFECTS
 from mdanim_lammps.report import check_json, cost_line, forecast_line
 from mdanim_lammps.results.cost import Cost, Part
@@ -88,13 +89,15 @@ def test_no_second_is_counted_twice(pond):
         plan=ready.plan, bond_seconds=lambda: 100.0, fix_seconds=lambda fix: 10.0 if fix == "leapfrog" else 0.0,
         fix_value=lambda fix, k: {7: 1.0, 8: 2.0, 9: 4.0}[k], array=lambda name: ready.plan.columns["lambda"])
     clocks = {e.name: e.clocks(instance) for e in EFFECTS}
-    leapfrog = _Run._collect_cost(SimpleNamespace(instance=instance, effects=EFFECTS, ready=ready))[1]
+    account = Account()
+    add_clocks(account, instance)
+    assert account.effects == clocks
     assert sum(clocks["springs"].values()) + sum(clocks["damping"].values()) == pytest.approx(100.0)
     assert clocks["liquid"] == {"automaton": 1.0, "occupancy": 2.0}
     assert clocks["buoyancy"]["coupling"] + clocks["liquid-drag"]["coupling"] == pytest.approx(4.0)
     # Half of the particles have drag of air: each costs the leap-frog 1/(1 - 0.6) = 2.5 times as much as one without.
     assert sum(c.get("leap-frog", 0.0) for c in clocks.values()) == pytest.approx(10.0 * 0.75 / 1.75)
-    assert leapfrog == pytest.approx(10.0 / 1.75)
+    assert account.leapfrog == pytest.approx(10.0 / 1.75)
 
 
 def test_cost_json_is_the_cost(pond):

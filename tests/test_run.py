@@ -230,6 +230,20 @@ def stop_at(frame):
     return watch
 
 
+def test_a_file_named_stop_stops_the_run(tmp_path):
+    """Stop as Ctrl-C does, and take the file away, so that the next run is not stopped by it."""
+    (tmp_path / "fall.txt").write_text(FALL)
+    folder = tmp_path / "fall.out"
+
+    def watch(progress):
+        if progress.frame == 2:
+            (folder / "stop").touch()
+    with pytest.raises(Interrupted, match="resume"):
+        Scene.load(tmp_path / "fall.txt").run(folder, watch=watch)
+    assert Checkpoint.read(folder / "checkpoint").frame == 2
+    assert not (folder / "stop").exists()
+
+
 def test_interrupt_during_an_impact_resumes_bit_for_bit(tmp_path):
     """Stop while objects are pressed together and dashpots work; the resumed film is that of the run that never stopped."""
     text = FALL.replace("drag 2", "drag 2\n damping 0.1").replace("spin (1, 2, 3)", "spin (1, 2, 3)\n damping 0.1")

@@ -176,8 +176,8 @@ def measure() -> dict[str, float]:
     """Run the small scenes and return the rates. Raises SetupError when LAMMPS or the plugin cannot be used."""
     start = time.process_time()
     from ..engine.plugin import open_lammps
-    from ..results import trajectory  # noqa: F401  what a run loads
-    from .run import Instance
+    from . import run  # noqa: F401  what a run loads
+    from ..engine.instance import Instance
 
     open_lammps()[0].close()
     rates = {"load": time.process_time() - start}

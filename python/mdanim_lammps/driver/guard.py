@@ -11,6 +11,7 @@ import numpy as np
 from ..certificate import wave_speed
 from ..engine.geometry import Geometry
 from ..errors import DivergedError, Problem
+from ..model.system import System
 from ..scene.scene import Accuracy, Scene
 from .prepare import Prepared
 
@@ -98,23 +99,17 @@ class Guard:
     def energy(self, step: int, residual: float, v: np.ndarray) -> None:
         """Raise DivergedError when the energies do not add up any more. ``residual`` as in results/ledger.py."""
         if not abs(residual) <= self.limit:
-            raise self.stopped(step, f"the energies do not add up, residual {residual:.3g}; its particles are the fastest", self.fastest(v),
+            raise self.stopped(step, f"the energies do not add up, residual {residual:.3g}; its particles are the fastest",
+                               fastest(self.ready.system, v),
                                "time step", "amplitude", "load", "closing speed")
 
-    def broke(self, step: int, error: DivergedError, v: np.ndarray) -> DivergedError:
-        """The error for LAMMPS's own end of a run in the steps up to this one; ``v`` are the velocities it has left."""
+    def broke(self, step: int, error: DivergedError, solid: int | None) -> DivergedError:
+        """The error for LAMMPS's own end of a run in the steps up to this one; ``solid`` is the `fastest`."""
         words = " ".join(str(error).split())
         if any(sign in words for sign in FLOWN_APART):
-            return self.stopped(step, words, self.fastest(v), "time step", "amplitude", "load", "closing speed")
+            suspect = self.ready.system.names.index(self.ready.certificate.object) if solid is None else solid
+            return self.stopped(step, words, suspect, "time step", "amplitude", "load", "closing speed")
         return DivergedError(f"{self._when(step)}: {words}\n  {self._kept()}")
-
-    def fastest(self, v: np.ndarray) -> int:
-        """The solid with the fastest particle for its wave speed, or one that is not finite."""
-        system = self.ready.system
-        if len(v) < system.particles:  # LAMMPS has lost some
-            return system.names.index(self.ready.certificate.object)
-        speed = np.nan_to_num(np.maximum.reduceat(np.abs(v).max(1), system.first[:-1]), nan=np.inf)
-        return int((speed / wave_speed(system)).argmax())
 
     def stopped(self, step: int, what: str, m: int, *margins: str) -> DivergedError:
         """The error that stops the run at a step for what solid ``m`` does; the first of these margins that is passed says why."""
@@ -142,6 +137,17 @@ class Guard:
             scene.control.spans.get("accuracy"),
             f"the energy residual {residual:.2e} is above {goal:g}, which 'accuracy {_accuracy(scene).value}' stands for",
             "where it matters, write a smaller timestep or a higher accuracy", severity="warning")
+
+
+def fastest(system: System, v: np.ndarray) -> int | None:
+    """The solid with the fastest particle for its wave speed, or one that is not finite; None when LAMMPS has lost particles.
+
+    v [m/s], shape (N, 3).
+    """
+    if len(v) < system.particles:
+        return None
+    speed = np.nan_to_num(np.maximum.reduceat(np.abs(v).max(1), system.first[:-1]), nan=np.inf)
+    return int((speed / wave_speed(system)).argmax())
 
 
 def _accuracy(scene: Scene) -> Accuracy:

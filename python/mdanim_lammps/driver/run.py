@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The sequential program (Wcislo 1999, fig. 11): frames of a plan, one after the other, and what they leave behind."""
+"""A run: frames of a plan, one after the other, wherever they come from, and what they leave behind."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from .. import __version__
 from ..effects.air_drag import LEAPFROG
 from ..engine.commands import input_script
 from ..engine.data_file import write_data
-from ..engine.instance import Instance
 from ..errors import DivergedError, ExitCode, MdanimError, OutputError, Problem
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, Part
@@ -25,11 +24,15 @@ from ..results.expect import Measured, Outcome, evaluate, record, recorded
 from ..results.files import write_json, write_whole
 from ..results.ledger import Ledger
 from ..results.trajectory import Trajectory, TrajectoryWriter
+from .energy import ledger_terms
 from .guard import Guard
 from .prepare import Prepared
+from .source import Account, Broken, Frame, Sequential, Source
 
 CHECKPOINT_SECONDS = 10.0
 """Wall time between checkpoints: a killed run loses at most this much, and a fast one does not write all the time."""
+STOP = "stop"
+"""A file of this name in the run's folder stops the run as Ctrl-C does."""
 
 
 @dataclass
@@ -83,14 +86,15 @@ def write_inputs(ready: Prepared, folder: Path) -> None:
     write_whole(folder / f"in.{plan.name}", input_script(plan))
 
 
-def simulate(ready: Prepared, folder: Path, *, watch: Callable[[Progress], None] | None = None,
-             resume: Checkpoint | None = None, started: float | None = None) -> Result:
+def simulate(ready: Prepared, folder: Path, *, watch: Callable[[Progress], None] | None = None, resume: Checkpoint | None = None,
+             started: float | None = None, source: Source | None = None) -> Result:
     """Run all frames (or go on from a checkpoint), leaving trajectory.h5, ledger.csv, checkpoint and summary.json in ``folder``.
 
     ``started`` is what ``time.perf_counter()`` gave when the work for this run began, so that loading and modelling are in its cost;
-    None is now. Raises DivergedError with the last good frame kept, Interrupted after Ctrl-C, OutputError when the disk is full.
+    None is now. ``source`` gives the frames; None is one LAMMPS instance in this process. Raises DivergedError with the last good
+    frame kept, Interrupted after Ctrl-C or when a file ``stop`` appears in the folder, OutputError when the disk is full.
     """
-    run = _Run(ready, folder, resume, time.perf_counter() if started is None else started)
+    run = _Run(ready, folder, resume, time.perf_counter() if started is None else started, source or Sequential(ready.plan))
     return run.go(watch or (lambda progress: None))
 
 
@@ -106,8 +110,8 @@ def run_id(ready: Prepared) -> str:
 class _Run:
     """The state of one run; only its methods know the order of things."""
 
-    def __init__(self, ready: Prepared, folder: Path, resume: Checkpoint | None, started: float):
-        self.ready, self.folder, self.resume = ready, folder, resume
+    def __init__(self, ready: Prepared, folder: Path, resume: Checkpoint | None, started: float, source: Source):
+        self.ready, self.folder, self.resume, self.source = ready, folder, resume, source
         self.certificate = ready.certificate
         self.effects = ready.plan.effects
         self.started = started
@@ -116,77 +120,67 @@ class _Run:
         self.carried = dict(resume.carried) if resume else {}
         if "seconds" in self.carried:
             self.seconds["before the resume"] = self.carried.pop("seconds")
+        self.penetration = self.carried.pop("penetration", 0.0)
+        """Deepest that a boundary particle has been below a surface so far, before a resume too [m]."""
         self.first_step = resume.step if resume else 0
         self.run_id = run_id(ready)
         if resume and resume.run != self.run_id:
             raise OutputError(f"{folder / 'checkpoint'} is of another run: scene, time step or program have changed since; "
                               "run the scene again with --force")
-        terms = ("kinetic", *dict.fromkeys(e.ledger for e in self.effects if e.ledger))
         self.recorded = recorded(ready.scene.expects)
         self.grid = ready.plan.grid
-        self.ledger = Ledger(terms, (*self.recorded.values(), *(("liquid_cells",) if self.grid else ())))
+        self.ledger = Ledger(ledger_terms(self.effects), (*self.recorded.values(), *(("liquid_cells",) if self.grid else ())))
 
     # --- the order of things ----------------------------------------------------------------------------------------
 
     def go(self, watch: Callable[[Progress], None]) -> Result:
         c = self.certificate
         lengths = [c.steps_per_frame] * c.frames + ([c.last_steps] if c.last_steps else [])
-        with Instance(self.ready.plan) as self.instance, _Interrupt() as stopped, self._open_trajectory() as out:
+        frame, last = self.resume.frame if self.resume else 0, len(lengths)
+        with self.source, _Stop(self.folder) as stop, self._open_trajectory() as out:
+            start = self.source.begin(self.resume)
             if self.resume:
-                self.instance.restore(self.resume.step, self.resume.x, self.resume.v, self.resume.f, self.resume.liquid)
-                self._reread_ledger(self.resume.frame)
-                frame = self.resume.frame
+                self._reread_ledger(frame)
             else:
-                self.instance.setup()
-                self.before = self.instance.array("f").copy()
-                frame = 0
-                self._record(out)
+                self._record(out, start)
             self.seconds["setup"] = time.perf_counter() - self.started
-            with self._clock("output"):
-                if not self.resume:
-                    self._save(out, 0)
+            if start:
+                with self._clock("output"):
+                    self._save(out, 0, start)
             saved = time.perf_counter()
-            saved_frame = frame
             try:
-                for frame in range(frame + 1, len(lengths) + 1):
+                while frame < last:
+                    frame += 1
                     with self._clock("simulation"):
-                        self._advance(lengths[frame - 1])
+                        now = self._advance(frame, lengths[frame - 1])
                     with self._clock("guard"):
-                        self.guard.look(self.instance.step, self.instance.array("x"), self.instance.array("v"))
+                        self.guard.look(now.step, now.x, now.v)
                     with self._clock("output"):
-                        row = self._record(out)
-                        if time.perf_counter() - saved > CHECKPOINT_SECONDS or frame == len(lengths) or stopped.is_set():
-                            self._save(out, frame)
-                            saved, saved_frame = time.perf_counter(), frame
-                    with self._clock("output"):
-                        watch(Progress(frame, len(lengths), self.instance.step, c.steps, row["time"], row["residual"],
+                        row = self._record(out, now)
+                        watch(Progress(frame, len(lengths), now.step, c.steps, row["time"], row["residual"],
                                        self.seconds["simulation"], self.first_step, self._gained()))
-                    if stopped.is_set() and frame < len(lengths):
-                        if saved_frame != frame:
-                            self._save(out, frame)
-                        insist = " --allow-unstable" if c.fraction > 1.0 else ""
-                        raise Interrupted(f"interrupted at t = {row['time']:.4g} s; go on with: "
-                                          f"mdanim-lammps resume {self.folder}{insist}")
+                        if stop.is_set():
+                            last = self.source.stop(frame)
+                        if now.kept and (frame == last or time.perf_counter() - saved > CHECKPOINT_SECONDS):
+                            self._save(out, frame, now)
+                            saved = time.perf_counter()
             finally:
                 self._close_ledger()
-            self.parts, self.leapfrog = self._collect_cost()
-            penetration = self._penetration()
+            if last < len(lengths):
+                insist = " --allow-unstable" if c.fraction > 1.0 else ""
+                raise Interrupted(f"interrupted at t = {row['time']:.4g} s; go on with: mdanim-lammps resume {self.folder}{insist}")
+            account = self.source.account()
             closing = time.perf_counter()
         self.seconds["output"] += time.perf_counter() - closing
-        return self._finish(penetration)
+        return self._finish(account)
 
-    def _advance(self, steps: int) -> None:
-        """Run to the next frame and keep the forces of the step before it: how they change tells how stiff the motion is."""
-        instance = self.instance
+    def _advance(self, frame: int, steps: int) -> Frame:
         try:
-            if steps > 1:
-                instance.run(steps - 1)
-            self.before = instance.array("f").copy()
-            instance.run(1)
-        except DivergedError as error:
-            raise self.guard.broke(instance.step, error, instance.array("v")) from error
+            return self.source.advance(frame, steps)
+        except Broken as broken:
+            raise self.guard.broke(broken.step, broken.error, broken.solid) from broken
 
-    def _finish(self, penetration: float) -> Result:
+    def _finish(self, account: Account) -> Result:
         with self._clock("output"):
             with Trajectory(self.folder) as trajectory:
                 liquid = {} if self.grid is None else {
@@ -194,15 +188,15 @@ class _Run:
                     "level": trajectory.liquid_levels}
                 outcomes = evaluate(self.ready.scene.expects, Measured(
                     trajectory.names, trajectory.times, trajectory.centers, trajectory.center_velocities,
-                    self.ledger.array("residual"), penetration,
+                    self.ledger.array("residual"), self.penetration,
                     {what: self.ledger.array(column) for what, column in self.recorded.items()}, **liquid))
-        cost = self._cost()
+        cost = self._cost(account)
         write_json(self.folder / "cost.json", cost.to_json())
-        write_json(self.folder / "summary.json", self._summary(outcomes, penetration))
+        write_json(self.folder / "summary.json", self._summary(outcomes))
         missed = self.guard.missed(self.ledger.residual)
         return Result(self.folder, self.ledger, outcomes, cost, [missed] if missed else [])
 
-    def _summary(self, outcomes: list[Outcome], penetration: float) -> dict:
+    def _summary(self, outcomes: list[Outcome]) -> dict:
         scene, c = self.ready.scene, self.certificate
         return {
             "title": scene.title, "scene": scene.name, "done": True,
@@ -210,7 +204,7 @@ class _Run:
             "springs": len(self.ready.system.spring), "time": c.steps * c.timestep, "timestep": c.timestep,
             "steps": c.steps, "frames": len(self.ledger.rows),
             "effects": [e.name for e in self.effects],
-            "energy_residual": self.ledger.residual, "penetration": penetration, "inverted_cells": self.guard.most_inverted,
+            "energy_residual": self.ledger.residual, "penetration": self.penetration, "inverted_cells": self.guard.most_inverted,
             **({"liquid_cells": int(self.ledger.rows[-1]["liquid_cells"]), "liquid_residual": self._gained()} if self.grid else {}),
             "seconds": sum(self.seconds.values()),
             "expect": [{"what": f"{o.expect.subject}.{o.expect.quantity}", "time": o.expect.time, "value": o.expect.value,
@@ -226,75 +220,38 @@ class _Run:
         return TrajectoryWriter(path, self.ready.scene, self.ready.models, dt=c.timestep,
                                 steps_per_frame=c.steps_per_frame, scene_text=self.ready.lock, grid=self.grid)
 
-    def _record(self, out: TrajectoryWriter) -> dict[str, float]:
+    def _record(self, out: TrajectoryWriter, now: Frame) -> dict[str, float]:
         """Check the state, then append it to ledger and trajectory. Raises DivergedError before anything bad is written."""
-        instance, system = self.instance, self.ready.system
-        step = instance.step
-        when = step * self.certificate.timestep
-        x, v = instance.array("x"), instance.array("v")
-        heights = instance.liquid_heights() if self.grid else None
-        extras = {column: record(quantity, system, self.ready.models[system.names.index(name)], x, heights and heights[0])
+        system, when, pool = self.ready.system, now.step * self.certificate.timestep, now.pool
+        extras = {column: record(quantity, system, self.ready.models[system.names.index(name)], now.x, pool and pool.heights[0])
                   for (name, quantity), column in self.recorded.items()}
-        if self.grid:
-            extras["liquid_cells"], start = instance.fix_value("liquid", 0), instance.fix_value("liquid", 1)
-            if extras["liquid_cells"] != start:
-                raise DivergedError(f"step {step}, t = {when:.4g} s: {extras['liquid_cells']:.0f} cells of liquid, {start:.0f} at the "
-                                    f"start: this must never be, please report it. The last good frame is kept in {self.folder}")
-        row = self.ledger.add(when, self._energies(v) | extras)
-        try:
-            self.guard.energy(step, row["residual"], v)
-        except DivergedError:
-            del self.ledger.rows[-1]
-            raise
-        out.write(step, when, x, v, heights)
+        if pool:
+            extras["liquid_cells"] = pool.cells
+            if pool.cells != pool.start:
+                raise DivergedError(f"step {now.step}, t = {when:.4g} s: {pool.cells} cells of liquid, {pool.start} at the start: this must "
+                                    f"never be, please report it. The last good frame is kept in {self.folder}")
+        # Losses before a resume are carried over.
+        row = self.ledger.weigh(when, {t: e + self.carried.get(t, 0.0) for t, e in now.energies.items()} | extras)
+        self.guard.energy(now.step, row["residual"], now.v)
+        self.ledger.rows.append(row)
+        self.penetration = max(self.penetration, now.penetration)
+        out.write(now.step, when, now.x, now.v, pool and pool.heights)
         return row
-
-    def _energies(self, v: np.ndarray) -> dict[str, float]:
-        """Energy of every term of the ledger [J]."""
-        system, instance, scene = self.ready.system, self.instance, self.ready.scene
-        energies = dict.fromkeys(self.ledger.terms, 0.0)
-        energies["kinetic"] = self._kinetic(v)
-        for effect in self.effects:
-            if effect.ledger:
-                energies[effect.ledger] += effect.energy(instance, scene, system)
-        for term in energies:
-            energies[term] += self.carried.get(term, 0.0)  # losses before a resume
-        return energies
-
-    def _kinetic(self, v: np.ndarray) -> float:
-        """Kinetic energy [J], corrected so that the sum of all energies is what leap-frog conserves, to fourth order in dt.
-
-        That is T + U + dt^2 (v.U''.v / 12 - F.F / 24 m), the energy of the nearby system whose exact motion the steps are (Hairer,
-        Lubich & Wanner, Geometric Numerical Integration, IX.3); without it a vibration of frequency w seems to hold
-        (w dt)^2/24 too little, and an impact to lose what goes into vibrations.
-        """
-        mass, dt, f = self.ready.system.mass, self.certificate.timestep, self.instance.array("f")
-        half = v - 0.5 * dt * f / mass[:, None]  # v(n-1/2)
-        bent = -dt * np.einsum("id,id->i", half, f - self.before) / 12.0
-        swung = dt**2 * np.einsum("id,id->i", f, f) / (24.0 * mass)
-        free = ~self.ready.system.held
-        return float((0.5 * mass * np.einsum("id,id->i", v, v) + bent - swung)[free].sum())
 
     def _gained(self) -> int | None:
         """Whole cells of liquid more than at the start: 0, or something is wrong; None without a liquid."""
         rows = self.ledger.rows
         return int(rows[-1]["liquid_cells"] - rows[0]["liquid_cells"]) if self.grid else None
 
-    def _penetration(self) -> float:
-        """Deepest that a boundary particle has been below a surface in this run [m]."""
-        depths = [e.penetration(self.instance, self.ready.system) for e in self.effects]
-        return max([self.carried.get("penetration", 0.0), *depths])
-
-    def _save(self, out: TrajectoryWriter, frame: int) -> None:
+    def _save(self, out: TrajectoryWriter, frame: int, now: Frame) -> None:
         """Make everything up to this frame safe; the checkpoint last, so that it never is ahead of the trajectory."""
         out.flush()
         self._close_ledger()
         carried = {t: self.ledger.rows[-1][t] for t in self.ledger.terms if t.endswith("_loss")}
-        carried["penetration"] = self._penetration()
+        carried["penetration"] = self.penetration
         carried["seconds"] = sum(self.seconds.values())
-        liquid = self.instance.liquid_state() if self.grid else None
-        Checkpoint(self.instance.step, frame, *(self.instance.array(a) for a in "xvf"), carried, self.run_id, liquid).write(
-            self.folder / "checkpoint")
+        x, v, f, liquid = self.source.state()
+        Checkpoint(now.step, frame, x, v, f, carried, self.run_id, liquid).write(self.folder / "checkpoint")
 
     def _reread_ledger(self, frame: int) -> None:
         """Take the rows up to the checkpoint's frame."""
@@ -310,25 +267,18 @@ class _Run:
     def _clock(self, what: str):
         return _Clock(self.seconds, what)
 
-    def _collect_cost(self) -> tuple[dict[str, Part], float]:
-        """What every effect has taken in this run, and what the leap-frog has beside them [s]."""
-        parts, leapfrog = {}, self.instance.fix_seconds("leapfrog")
-        for effect in self.effects:
-            clocks = effect.clocks(self.instance)
-            span = self.ready.verdicts[effect.name].span
-            parts[effect.name] = Part(sum(clocks.values()), str(span) if span else None, clocks if len(clocks) > 1 else {})
-            leapfrog -= clocks.get(LEAPFROG, 0.0)
-        return parts, leapfrog
-
-    def _cost(self) -> Cost:
+    def _cost(self, account: Account) -> Cost:
         """The account of the whole run, to be asked for at its end."""
-        simulation = self.seconds["simulation"]
-        rest = max(0.0, simulation - sum(p.seconds for p in self.parts.values()) - self.leapfrog)
+        parts = {}
+        for effect in self.effects:
+            span, clocks = self.ready.verdicts[effect.name].span, account.effects.get(effect.name, {})
+            parts[effect.name] = Part(sum(clocks.values()), str(span) if span else None, clocks if len(clocks) > 1 else {})
+        known = sum(p.seconds for p in parts.values()) + account.leapfrog + sum(account.other.values())
         other = {name: s for name, s in self.seconds.items() if name != "simulation"}
         return Cost(
             wall=time.perf_counter() - self.started + other.get("before the resume", 0.0), steps=self.certificate.steps,
-            particles=self.ready.system.particles, effects=self.parts,
-            other={LEAPFROG: self.leapfrog, "rest of the step": rest, **other})
+            particles=self.ready.system.particles, effects=parts,
+            other={LEAPFROG: account.leapfrog, "rest of the step": max(0.0, self.seconds["simulation"] - known), **account.other, **other})
 
 
 class _Clock:
@@ -344,17 +294,25 @@ class _Clock:
         self.account[self.what] = self.account.get(self.what, 0.0) + time.perf_counter() - self.start
 
 
-class _Interrupt:
-    """Turns Ctrl-C and SIGTERM into an event, so that a frame is finished before the run stops."""
+class _Stop:
+    """Whether to stop after the frame: Ctrl-C and SIGTERM ask for it, and a file ``stop`` in the run's folder."""
 
-    def __enter__(self) -> threading.Event:
-        event = threading.Event()
+    def __init__(self, folder: Path):
+        self.file = folder / STOP
+        self.asked = threading.Event()
         self.old = {}
+
+    def __enter__(self) -> "_Stop":
+        self.file.unlink(missing_ok=True)  # of a run before this one
         if threading.current_thread() is threading.main_thread():
             for number in (signal.SIGINT, signal.SIGTERM):
-                self.old[number] = signal.signal(number, lambda *_: event.set())
-        return event
+                self.old[number] = signal.signal(number, lambda *_: self.asked.set())
+        return self
+
+    def is_set(self) -> bool:
+        return self.asked.is_set() or self.file.exists()
 
     def __exit__(self, *_) -> None:
+        self.file.unlink(missing_ok=True)
         for number, handler in self.old.items():
             signal.signal(number, handler)

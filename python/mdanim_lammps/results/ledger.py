@@ -39,8 +39,12 @@ class Ledger:
     def columns(self) -> tuple[str, ...]:
         return ("time", *self.terms, "residual", *self.extras)
 
-    def add(self, time: float, values: Mapping[str, float]) -> dict[str, float]:
-        """Append a row with these energies and extras; returns it."""
+    def add(self, time: float, values: Mapping[str, float]) -> None:
+        """Append a row with these energies and extras."""
+        self.rows.append(self.weigh(time, values))
+
+    def weigh(self, time: float, values: Mapping[str, float]) -> dict[str, float]:
+        """The row that would come next, with these energies and extras and the residual that they make."""
         row = {"time": time, **{t: float(values[t]) for t in (*self.terms, *self.extras)}}
         first = self.rows[0] if self.rows else row
         potentials = {t: row[t] for t in POTENTIALS if t in self.terms}
@@ -50,7 +54,6 @@ class Ledger:
         change = sum(row[t] - first[t] for t in self.terms)
         scale = self._peak - sum(self._lowest.values())
         row["residual"] = change / scale if scale else 0.0
-        self.rows.append(row)
         return row
 
     @property

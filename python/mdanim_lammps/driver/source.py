@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Where the frames of a run come from: one instance in this process, or executors on many (driver/supervisor.py)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from ..effects.air_drag import LEAPFROG
+from ..engine.instance import Instance
+from ..engine.plan import Plan
+from ..errors import DivergedError
+from ..results.checkpoint import Checkpoint
+from .energy import energies
+from .guard import fastest
+
+
+@dataclass(frozen=True)
+class Pool:
+    """The liquid at a frame."""
+
+    heights: tuple[np.ndarray, np.ndarray]
+    """As `Instance.liquid_heights`."""
+    cells: int
+    """Whole cells of liquid now."""
+    start: int
+    """The same before step 0."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The whole scene at the end of a window."""
+
+    step: int
+    x: np.ndarray
+    """[m], in tag order, shape (N, 3); valid until the next frame is asked for, as ``v`` is."""
+    v: np.ndarray
+    """[m/s], shape (N, 3)."""
+    energies: dict[str, float]
+    """Every term of the ledger [J]; what is lost (``*_loss``) counts from the start of this run, not from before a resume."""
+    penetration: float
+    """Deepest that a boundary particle has been below a surface in this run [m]."""
+    pool: Pool | None = None
+    """None without a liquid."""
+    kept: bool = True
+    """Whether `Source.state` can be asked for."""
+
+
+@dataclass
+class Account:
+    """Where the time of a simulation went [s], so far."""
+
+    effects: dict[str, dict[str, float]] = field(default_factory=dict)
+    """Clocks of each effect, by its name."""
+    leapfrog: float = 0.0
+    """The integrator without what effects take of it."""
+    other: dict[str, float] = field(default_factory=dict)
+    """Work that is no effect's: moving objects, waiting for others."""
+
+
+class Broken(Exception):
+    """LAMMPS has ended a run by itself; the guard says why."""
+
+    def __init__(self, step: int, error: DivergedError, solid: int | None):
+        super().__init__(str(error))
+        self.step, self.error = step, error
+        self.solid = solid
+        """The solid that is fastest for its wave speed; None when LAMMPS has lost particles."""
+
+
+class Source(Protocol):
+    """Gives the frames of a run in order. A context manager."""
+
+    def begin(self, resume: Checkpoint | None) -> Frame | None:
+        """Take up the start, and give frame 0; or the state of a checkpoint, and give nothing."""
+
+    def advance(self, frame: int, steps: int) -> Frame:
+        """The state so many steps later, which is frame ``frame``. Raises Broken, DivergedError."""
+
+    def stop(self, frame: int) -> int:
+        """Make an end soon after frame ``frame``; returns the last frame that will come, which is a kept one."""
+
+    def state(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]:
+        """x, v, f and the liquid's state at the last frame, as `Checkpoint` stores them."""
+
+    def account(self) -> Account:
+        """Where the time went."""
+
+
+class Sequential:
+    """All objects in one LAMMPS instance in this process: Wcislo 1999, fig. 11."""
+
+    def __init__(self, plan: Plan):
+        self.plan = plan
+
+    def __enter__(self) -> "Sequential":
+        self.instance = Instance(self.plan)
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.instance.close()
+
+    def begin(self, resume):
+        if resume:
+            self.instance.restore(resume.step, resume.x, resume.v, resume.f, resume.liquid)
+            return None
+        self.instance.setup()
+        self.before = self.instance.array("f").copy()
+        return self._frame()
+
+    def advance(self, frame, steps):
+        self.before = run_window(self.instance, steps)
+        return self._frame()
+
+    def stop(self, frame):
+        return frame
+
+    def state(self):
+        liquid = self.instance.liquid_state() if self.plan.grid else None
+        return *(self.instance.array(a) for a in "xvf"), liquid
+
+    def account(self):
+        account = Account()
+        add_clocks(account, self.instance)
+        return account
+
+    def _frame(self) -> Frame:
+        instance = self.instance
+        return Frame(instance.step, instance.array("x"), instance.array("v"), energies(instance, self.before), penetration(instance),
+                     pool(instance))
+
+
+def run_window(instance: Instance, steps: int) -> np.ndarray:
+    """Run so many steps; returns the forces of the step before the last, shape (N, 3): how they change tells how stiff the motion is.
+
+    Raises Broken.
+    """
+    try:
+        if steps > 1:
+            instance.run(steps - 1)
+        before = instance.array("f").copy()
+        instance.run(1)
+    except DivergedError as error:
+        raise Broken(instance.step, error, fastest(instance.plan.system, instance.array("v"))) from error
+    return before
+
+
+def penetration(instance: Instance) -> float:
+    """Deepest that a boundary particle has been below a surface since the instance was set up [m]."""
+    return max([0.0, *(e.penetration(instance, instance.plan.system) for e in instance.plan.effects)])
+
+
+def pool(instance: Instance) -> Pool | None:
+    """The liquid now."""
+    if instance.plan.grid is None:
+        return None
+    return Pool(instance.liquid_heights(), *(int(instance.fix_value("liquid", n)) for n in (0, 1)))
+
+
+def add_clocks(account: Account, instance: Instance) -> None:
+    """Add what an instance has taken since it was made."""
+    account.leapfrog += instance.fix_seconds("leapfrog")
+    for effect in instance.plan.effects:
+        mine = account.effects.setdefault(effect.name, {})
+        for clock, seconds in effect.clocks(instance).items():
+            mine[clock] = mine.get(clock, 0.0) + seconds
+            if clock == LEAPFROG:
+                account.leapfrog -= seconds
