@@ -153,11 +153,59 @@ void FixMdanimLeapfrog::initial_integrate(int)
 void FixMdanimLeapfrog::drift()
 {
   const Lap lap(seconds);
+  if (!trace.empty()) {
+    drift_and_trace();
+    return;
+  }
   double *const *x = atom->x, *const *v = atom->v;
   const int *mask = atom->mask, nlocal = atom->nlocal;
   const double dt = update->dt;
   for (int i = 0; i < nlocal; ++i)
     if (mask[i] & groupbit) add_to(x[i], dt * vec3(v[i]));
+}
+
+// The same, and the box of each object grows to where its particles are now. Those of an object mostly stand side by side: their box
+// stays in registers until the object changes.
+void FixMdanimLeapfrog::drift_and_trace()
+{
+  double *const *x = atom->x, *const *v = atom->v;
+  const tagint *molecule = atom->molecule;
+  const int *mask = atom->mask, nlocal = atom->nlocal;
+  const double dt = update->dt;
+  for (int i = 0; i < nlocal;) {
+    const tagint object = molecule[i];
+    Box box;
+    for (; i < nlocal && molecule[i] == object; ++i) {
+      if (!(mask[i] & groupbit)) continue;    // it never moves: its place is in the box since the start
+      add_to(x[i], dt * vec3(v[i]));
+      box.include(x[i]);
+    }
+    trace[object - 1].unite(box);
+  }
+}
+
+std::string FixMdanimLeapfrog::start_trace(int objects)
+{
+  if (!atom->molecule_flag)
+    return "objects are told apart by molecule IDs, and there are none; use 'atom_style bond'";
+  const auto [first, last] = std::minmax_element(atom->molecule, atom->molecule + atom->nlocal);
+  tagint bounds[2] = {objects, -1};    // the largest ID, and the smallest with its sign changed
+  if (atom->nlocal) bounds[0] = *last, bounds[1] = -*first;
+  MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (bounds[0] > objects || -bounds[1] < 1)
+    return fmt::format("molecule IDs go from {} to {}, they must be within 1 and the {} objects to trace", -bounds[1],
+                       bounds[0], objects);
+  trace.assign(objects, Box());
+  for (int i = 0; i < atom->nlocal; ++i) trace[atom->molecule[i] - 1].include(atom->x[i]);
+  return "";
+}
+
+std::vector<Box> FixMdanimLeapfrog::traced_boxes() const
+{
+  std::vector<Box> all(trace.size());
+  static_assert(sizeof(Box) == 6 * sizeof(double), "a box goes over the wire as its six bounds");
+  MPI_Allreduce(trace.data(), all.data(), 6 * traced(), MPI_DOUBLE, MPI_MIN, world);
+  return all;
 }
 
 // v^{n-1/2} -> v^n, eq. (3.10).

@@ -4,8 +4,12 @@
 #ifndef LMP_FIX_MDANIM_LEAPFROG_H
 #define LMP_FIX_MDANIM_LEAPFROG_H
 
+#include "boxes.h"
 #include "fix.h"
 #include "particle_value.h"
+
+#include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -24,10 +28,17 @@ class FixMdanimLeapfrog : public Fix {
   void write_restart(FILE *) override;
   void restart(char *) override;
 
+  // For trace_c.cpp, all ranks together: where each object, molecule 1 to M, has been since start_trace, its place then included.
+  // Empty, or why there can be no trace.
+  std::string start_trace(int objects);
+  int traced() const { return static_cast<int>(trace.size()); }    // objects; 0 when off
+  std::vector<mdanim::Box> traced_boxes() const;
+
  private:
   template <class Half> void half_step(Half half);
   template <class Drag, class Half> void half_step_with_drag(Half half);
   void drift();
+  void drift_and_trace();
   double largest_phi_here() const;
 
   bool has_drag = false, exponential = false;
@@ -36,6 +47,7 @@ class FixMdanimLeapfrog : public Fix {
   double lost = 0.0;           // energy taken by drag on this rank
   double largest_phi = 0.0;    // seen on this rank in this run
   double seconds = 0.0;
+  std::vector<mdanim::Box> trace;    // of the particles of this rank; empty when off
 };
 
 }    // namespace LAMMPS_NS

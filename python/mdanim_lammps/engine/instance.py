@@ -143,6 +143,19 @@ class Instance:
         self.setup()
         self.array("v")[:], self.array("f")[:] = v, f
 
+    def start_trace(self) -> None:
+        """Take note of where objects are now, and from now on of where every step takes them; forgets what was traced before."""
+        self._call("trace objects", self._library.mdanim_trace_start, ctypes.c_int(len(self.plan.system.names)))
+
+    def trace(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest coordinates of the particles of each object at any step since `start_trace` [m], each of shape (M, 3).
+
+        Coordinates that are no numbers are passed over. Raises SetupError when nothing is traced.
+        """
+        low, high = np.empty((2, len(self.plan.system.names), 3))
+        self._call("tell the trace", self._library.mdanim_trace, ctypes.c_int(len(low)), _pointer(low), _pointer(high))
+        return low, high
+
     def liquid_heights(self) -> tuple[np.ndarray, np.ndarray]:
         """Height of every column of cells [m], shape (ny, nx): the surface that solids feel, and the topmost liquid.
 

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Plain C functions for ctypes: where objects have been in the steps of a run. All ranks call them together. No exception leaves them.
+
+#include "abi.h"
+#include "fix_mdanim_leapfrog.h"
+
+#include "lammps.h"
+#include "modify.h"
+
+#include <cstdio>
+#include <exception>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+using namespace LAMMPS_NS;
+
+// The fix that moves all particles.
+static FixMdanimLeapfrog *leapfrog(void *handle)
+{
+  const auto found = static_cast<LAMMPS *>(handle)->modify->get_fix_by_style("^mdanim/leapfrog$");
+  if (found.size() != 1)
+    throw std::runtime_error("one fix mdanim/leapfrog is needed, there are " + std::to_string(found.size()));
+  return dynamic_cast<FixMdanimLeapfrog *>(found.front());
+}
+
+// Forget what was traced, take note of where objects 1 to `objects` (molecule IDs) are, and of where every step takes them from now
+// on. Returns 0, or 1 with a message in `error`.
+MDANIM_EXPORT int mdanim_trace_start(void *handle, int objects, char *error, int error_size)
+{
+  try {
+    const std::string why = leapfrog(handle)->start_trace(objects);
+    if (why.empty()) return 0;
+    snprintf(error, error_size, "%s", why.c_str());
+  } catch (const std::exception &e) {
+    snprintf(error, error_size, "%s", e.what());
+  }
+  return 1;
+}
+
+// Lowest and highest coordinates of the particles of each object since mdanim_trace_start; low, high (objects, 3). What is no number
+// is passed over. Returns 0, or 1 with a message in `error`.
+MDANIM_EXPORT int mdanim_trace(void *handle, int objects, double *low, double *high, char *error, int error_size)
+{
+  try {
+    const FixMdanimLeapfrog *fix = leapfrog(handle);
+    if (fix->traced() != objects)
+      throw std::runtime_error(std::to_string(fix->traced()) + " objects are traced, " + std::to_string(objects) +
+                               " are asked for; call mdanim_trace_start before");
+    const std::vector<mdanim::Box> boxes = fix->traced_boxes();
+    for (int m = 0; m < objects; ++m)
+      for (int d = 0; d < 3; ++d) {
+        low[3 * m + d] = boxes[m].low(d);
+        high[3 * m + d] = boxes[m].high(d);
+      }
+    return 0;
+  } catch (const std::exception &e) {
+    snprintf(error, error_size, "%s", e.what());
+  }
+  return 1;
+}

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Where objects have been in the steps of a run, against a look at every step."""
+
+import numpy as np
+import pytest
+
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.errors import SetupError
+
+SCENE = """
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+object stone {
+  shape box (10, 10, 5) cm
+  position (0, 0, 20) cm
+  density 2000
+  elasticity 1 MPa
+  hold all
+}
+object ball {
+  shape sphere 5 cm
+  position (2, 0, 29) cm
+  mass 0.5 kg
+  elasticity 100 kPa
+  velocity (0.5, 0, -3) m/s
+  spin (0, 30, 0)
+  drag 0.5
+}
+object beam {
+  shape box (20, 5, 5) cm
+  position (40, 0, 4) cm
+  mass 0.5 kg
+  elasticity 100 kPa
+  velocity (0, 1, -2) m/s
+  hold faces x
+}
+control { time 0.2 s  frames 50 fps  resolution 2.5 cm }
+"""
+
+
+def extremes(film, system):
+    """Lowest and highest coordinates of each object over some states of shape (N, 3)."""
+    film = np.array(film)
+    low = np.minimum.reduceat(film.min(0), system.first[:-1], axis=0)
+    return low, np.maximum.reduceat(film.max(0), system.first[:-1], axis=0)
+
+
+def test_a_trace_is_the_box_of_all_steps(prepared):
+    """Include the place at the start and every step, of held particles too; begin anew when asked."""
+    system = (plan := prepared(SCENE).plan).system
+    with Instance(plan) as instance, Instance(plan) as watched:
+        instance.setup()
+        watched.setup()
+        watched.run(3)
+        instance.run(3)
+        for steps in (200, 1, 150):
+            instance.start_trace()
+            film = [watched.array("x").copy()]
+            for _ in range(steps):
+                watched.run(1)
+                film.append(watched.array("x").copy())
+            for piece in (1, steps // 2, steps - 1 - steps // 2):
+                if piece > 0 and instance.step < watched.step:
+                    instance.run(piece)
+            assert instance.step == watched.step
+            assert np.array_equal(instance.trace(), extremes(film, system))
+        ends = np.array(extremes([film[0], film[-1]], system))
+        assert (ends != extremes(film, system)).any(), "ball and beam must turn back, otherwise their ends alone would do"
+
+
+def test_a_trace_changes_no_bit(prepared):
+    """Move particles to the same places with and without."""
+    plan = prepared(SCENE).plan
+    with Instance(plan) as plain, Instance(plan) as traced:
+        traced.start_trace()
+        for instance in (plain, traced):
+            instance.setup()
+            instance.run(300)
+        assert np.array_equal(plain.array("x"), traced.array("x")) and np.array_equal(plain.array("v"), traced.array("v"))
+
+
+def test_a_trace_that_was_not_started_is_refused(prepared):
+    """Say so instead of giving an empty box."""
+    with Instance(prepared(SCENE).plan) as instance, pytest.raises(SetupError, match="0 objects are traced, 3 are asked for"):
+        instance.trace()
+
+
+def test_objects_must_be_numbered_from_one(prepared):
+    """Refuse a molecule for which there is no box."""
+    with Instance(prepared(SCENE).plan) as instance:
+        instance._lmp.command("set atom 1 mol 4")
+        with pytest.raises(SetupError, match="molecule IDs go from 1 to 4, they must be within 1 and the 3 objects"):
+            instance.start_trace()
