@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The engine: plans, commands, data files and live instances say the same, to the last bit."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +12,8 @@ from twin import world
 from mdanim_lammps.driver.prepare import Prepared
 from mdanim_lammps.engine.commands import harmonic_coeff, input_script
 from mdanim_lammps.engine.data_file import data_text, write_data
-from mdanim_lammps.engine.instance import Instance, both_ends
-from mdanim_lammps.engine.plan import bond_kinds
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.engine.plan import bond_kinds, both_ends
 from mdanim_lammps.errors import SetupError
 
 MEETING = """
@@ -225,12 +226,10 @@ def test_restore_goes_on_bit_for_bit(prepared, text):
     with Instance(ready.plan) as first:
         first.setup()
         first.run(151)
-        x, v, f = (first.array(a).copy() for a in "xvf")
-        liquid = first.liquid_state() if ready.plan.grid else None
-        step = first.step
+        kept, step = first.state(), first.step
         first.run(151)
         with Instance(ready.plan) as second:
-            second.restore(step, x, v, f, liquid)
+            second.put(step, kept)
             second.run(151)
             assert second.step == first.step
             assert np.array_equal(state(first), state(second))
@@ -244,12 +243,12 @@ def test_a_liquid_state_of_another_grid_is_refused(prepared):
     """Say so instead of going on with other cells."""
     with Instance(prepared(SPLASH).plan) as other:
         other.setup()
-        state = other.liquid_state()
+        liquid = other.liquid_state()
     ready = prepared(SPLASH.replace("40) cm\n  density", "45) cm\n  density"))
     with Instance(ready.plan) as instance:
-        x, v, f = (instance.array(a).copy() for a in "xvf")
+        still = instance.state()
         with pytest.raises(SetupError, match="grid of 24 x 20 x 16 cells, this one has 24 x 20 x 18"):
-            instance.restore(0, x, v, f, state)
+            instance.put(0, replace(still, liquid=liquid))
 
 
 def test_a_liquid_is_read_back(prepared):

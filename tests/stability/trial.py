@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from mdanim_lammps.driver.prepare import prepare
-from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.engine.instance import Instance, State
 from mdanim_lammps.errors import DivergedError
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.scene.parse import parse_scene
@@ -48,7 +48,7 @@ class Trial:
     def put(self, x: np.ndarray) -> None:
         """Start anew, at rest, from these positions [m], shape (N, 3)."""
         still = np.zeros_like(x)
-        self.instance.restore(0, x, still, still)
+        self.instance.put(0, State(x, still, still))
         self.instance.setup()
         self.ledger.rows.clear()
         self._look(self.instance.array("f").copy())

@@ -250,8 +250,8 @@ class _Run:
         carried = {t: self.ledger.rows[-1][t] for t in self.ledger.terms if t.endswith("_loss")}
         carried["penetration"] = self.penetration
         carried["seconds"] = sum(self.seconds.values())
-        x, v, f, liquid = self.source.state()
-        Checkpoint(now.step, frame, x, v, f, carried, self.run_id, liquid).write(self.folder / "checkpoint")
+        s = self.source.state()
+        Checkpoint(now.step, frame, s.x, s.v, s.f, carried, self.run_id, s.liquid).write(self.folder / "checkpoint")
 
     def _reread_ledger(self, frame: int) -> None:
         """Take the rows up to the checkpoint's frame."""

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from ..effects.air_drag import LEAPFROG
-from ..engine.instance import Instance
+from ..engine.instance import Instance, State
 from ..engine.plan import Plan
 from ..errors import DivergedError
 from ..results.checkpoint import Checkpoint
@@ -82,8 +82,8 @@ class Source(Protocol):
     def stop(self, frame: int) -> int:
         """Make an end soon after frame ``frame``; returns the last frame that will come, which is a kept one."""
 
-    def state(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]:
-        """x, v, f and the liquid's state at the last frame, as `Checkpoint` stores them."""
+    def state(self) -> State:
+        """All that later steps depend on, at the last frame."""
 
     def account(self) -> Account:
         """Where the time went."""
@@ -104,7 +104,7 @@ class Sequential:
 
     def begin(self, resume):
         if resume:
-            self.instance.restore(resume.step, resume.x, resume.v, resume.f, resume.liquid)
+            self.instance.put(resume.step, State(resume.x, resume.v, resume.f, resume.liquid))
             return None
         self.instance.setup()
         self.before = self.instance.array("f").copy()
@@ -118,8 +118,7 @@ class Sequential:
         return frame
 
     def state(self):
-        liquid = self.instance.liquid_state() if self.plan.grid else None
-        return *(self.instance.array(a) for a in "xvf"), liquid
+        return self.instance.state()
 
     def account(self):
         account = Account()

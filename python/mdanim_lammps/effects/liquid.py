@@ -20,6 +20,8 @@ EVERY = 4
 """Steps after which the fix looks whether cells are to be updated; its own default."""
 PERIOD = 0.06
 """Time between updates of a liquid that is not level, over sqrt(cell/g); as in the fix."""
+NEAR = 8.0
+"""Cells above the liquid up to which the motion of solids counts for it; as in the fix."""
 SWEPT, AUTOMATON, OCCUPANCY, COUPLING = 4, 7, 8, 9
 """In the fix's vector: sweeps so far, and three clocks."""
 DRAGGING = 0.07
@@ -31,6 +33,11 @@ SWEEPS_PER_UPDATE = 2.0
 """8 sweeps for each cell that bodies travel, and updates after a quarter of a cell; as in the fix."""
 STIR = 2.8
 """Sweeps a second times the cell [m/s]: 8 for every cell that bodies travel, at a mean of 0.35 m/s, as in the scenes of scenes/."""
+
+
+def top_of_reach(grid) -> float:
+    """Height above which no solid matters to the liquid, however high it splashes in its basin [m]."""
+    return grid.high[2] + NEAR * grid.cell[2]
 
 
 def free_solid(scene):

