@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Which executor runs which island: collisions first, then balance, then few moves (Wcislo 1999, sec. 6.1).
+
+Pure functions of arrays that every executor has, on integers only, so that all of them decide the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+TENTH = (11, 10)
+"""Loads within this ratio of the mean, or of the largest island, are in balance."""
+LEAST = 4000
+"""Particles for each member of a team: below, talking at every step costs more than it spares."""
+GAIN = 60
+"""What every further member adds to the speed of a team, in percent of one executor; two have been measured at 140 to 180."""
+CRUMB = 64
+"""Islands that are smaller than the mean load over this are dealt out by whole runs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Team:
+    """An island that several executors run together."""
+
+    island: int
+    members: tuple[int, ...]
+    """Executors; the first one leads: it owns the objects."""
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """Who runs what in a frame."""
+
+    owner: np.ndarray
+    """Executor of every object, int64, shape (M,); of what is still, as it was."""
+    teams: tuple[Team, ...]
+    """By island; no executor is in two of them."""
+    load: np.ndarray
+    """Time that each of K executors will need [µs], int64, shape (K,)."""
+
+
+def assign(label: np.ndarray, cost: np.ndarray, owner: np.ndarray, executors: int, *, particles: np.ndarray | None = None,
+           pinned: np.ndarray | None = None, order: np.ndarray | None = None, teams: Sequence[Team] = (), gain: int = GAIN,
+           least: int = LEAST) -> Assignment:
+    """Executors for all islands: 1. no island is split; 2. loads within a tenth of the mean, or of the largest island, where
+    islands allow it; 3. what moves costs little, and nothing moves while loads are in balance.
+
+    An island stays at its home, the executor that has most of it. Where that is overloaded, large islands stay and the smallest
+    go, not more than there is too much; they go to whom has least. Only where that leaves loads out of balance by more than a
+    tenth that a new packing would spare are the large islands packed anew. Ties: lowest executor, smallest island.
+    O(M log M), a loop over K executors and over at most ``CRUMB`` K islands. Raises ValueError for a cost below 0 or an owner out of range.
+
+    :param label: island of every object, -1 for what is still, shape (M,)
+    :param cost: time of every object in a frame [µs], int64, shape (M,)
+    :param owner: executor that has it now, -1 for nobody, shape (M,)
+    :param executors: their number K
+    :param particles: of every object, shape (M,); without it there are no teams
+    :param pinned: objects that never leave their owner (a pool), bool, shape (M,)
+    :param order: a number for every object, near for objects that are near, shape (M,): what is dealt out is so by runs of it
+    :param teams: those of the frame before
+    """
+    if (cost < 0).any() or (owner < -1).any() or (owner >= executors).any():
+        raise ValueError("a cost is negative, or an owner is not one of the executors")
+    moving = np.flatnonzero(label >= 0)
+    if not len(moving):
+        return Assignment(owner.astype(np.int64), (), np.zeros(executors, np.int64))
+    isle = label[moving]
+    weight = np.maximum(total(isle, cost[moving]), 1)
+    home = _homes(isle, np.maximum(cost[moving], 1), owner[moving], executors)
+    fixed = np.zeros(len(weight), bool)
+    if pinned is not None:
+        held = np.flatnonzero(pinned & (label >= 0) & (owner >= 0))[::-1]
+        home[label[held]] = owner[held]
+        fixed[label[held]] = True
+    formed = ()
+    if particles is not None and executors > 1:
+        formed = _teams(weight, total(isle, particles[moving]), home, fixed, executors, teams, gain, least)
+
+    place = home.copy()
+    base = np.zeros(executors, np.int64)
+    for team in formed:
+        place[team.island] = team.members[0]
+        fixed[team.island] = True
+        base[list(team.members)] += _time(int(weight[team.island]), len(team.members), gain)
+    alone = fixed.copy()
+    alone[[team.island for team in formed]] = False
+    base += total(home[alone], weight[alone], executors)
+    largest = max(int(base.max()) if fixed.any() else 0, int(weight[~fixed].max(initial=0)))
+    rest = np.flatnonzero(~fixed)
+    first = moving[_firsts(isle)]
+    rank = np.argsort((first if order is None else order[first])[rest], kind="stable")
+    place[rest], load = _balance(weight[rest], home[rest], base, largest, rank)
+    new = owner.astype(np.int64)
+    new[moving] = place[isle]
+    return Assignment(new, formed, load)
+
+
+def total(group: np.ndarray, value: np.ndarray, groups: int = 0) -> np.ndarray:
+    """Sum of the values of every group, int64; exact below 2^53."""
+    return np.bincount(group, value, groups).astype(np.int64)
+
+
+def _firsts(group: np.ndarray) -> np.ndarray:
+    """Where each of the groups 0, 1 ... is met first."""
+    first = np.empty(int(group.max()) + 1, np.int64)
+    first[group[::-1]] = np.arange(len(group))[::-1]
+    return first
+
+
+def _homes(isle: np.ndarray, cost: np.ndarray, owner: np.ndarray, executors: int) -> np.ndarray:
+    """The executor that has most of each island, by cost, the lowest of equals; -1 where nobody has any of it."""
+    key = isle * (executors + 1) + owner + 1
+    sort = np.argsort(key, kind="stable")
+    key = key[sort]
+    begin = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
+    share = np.add.reduceat(cost[sort], begin)
+    island, who = np.divmod(key[begin], executors + 1)
+    share[who == 0] = 0
+    most = np.maximum.reduceat(share, np.flatnonzero(np.concatenate([[True], island[1:] != island[:-1]])))
+    top = np.flatnonzero(share == most[island])
+    return who[top][_firsts(island[top])] - 1
+
+
+# --- teams --------------------------------------------------------------------------------------------------
+
+def _time(cost: int, size: int, gain: int) -> int:
+    """What an island takes of each of ``size`` executors [µs]."""
+    return cost * 100 // (100 + gain * (size - 1))
+
+
+def _teams(weight, particles, home, fixed, executors, previous, gain, least) -> tuple[Team, ...]:
+    """Teams for islands above the mean by more than a tenth, of as many as bring them back to it; a team shrinks only when the
+    smaller one would keep to the mean. Leaders are at home where they can be, members those that were, then those with least to do.
+    """
+    most = np.minimum(particles // least, executors)
+    heavy = np.flatnonzero((most >= 2) & (weight * executors > weight.sum()))
+    heavy = [int(i) for i in heavy[np.lexsort((heavy, -weight[heavy], ~fixed[heavy]))]]
+    before = {team.members[0]: team.members for team in previous}
+    cost = {i: int(weight[i]) for i in heavy}
+    size, old = {}, {}
+    for i in heavy:
+        old[i] = before.pop(int(home[i]), ())
+        size[i] = max(1, min(len(old[i]), int(most[i])))
+
+    def spent():
+        return int(weight.sum()) + sum(size[i] * _time(cost[i], size[i], gain) - cost[i] for i in heavy)
+
+    for i in heavy:
+        while size[i] > 1 and _time(cost[i], size[i] - 1, gain) * executors <= spent():
+            size[i] -= 1
+    growing = True
+    while growing:
+        growing = False
+        for i in sorted(heavy, key=lambda i: (-_time(cost[i], size[i], gain), i)):
+            now, busy = _time(cost[i], size[i], gain), sum(s for s in size.values() if s > 1)
+            if now * executors * TENTH[1] <= spent() * TENTH[0] or size[i] >= most[i] or busy + (2 if size[i] == 1 else 1) > executors:
+                continue
+            size[i] += 1
+            after = max(_time(cost[i], size[i], gain) * executors, spent())
+            growing = after * 20 <= now * executors * 19  # else not worth it
+            if growing:
+                break
+            size[i] -= 1
+
+    wanted = [i for i in heavy if size[i] > 1]
+    load = total(home[home >= 0], weight[home >= 0], executors)
+    for i in wanted:
+        if home[i] >= 0:
+            load[home[i]] -= cost[i]
+    free, members = set(range(executors)), {}
+    for i in wanted:
+        leader = int(home[i])
+        if leader not in free:
+            if fixed[i]:
+                continue
+            leader = min(free - {int(home[j]) for j in wanted} or free, key=lambda e: (load[e], e))
+        free.remove(leader)
+        members[i] = [leader]
+    for i in members:
+        ranked = sorted(free, key=lambda e: (e not in old[i], load[e], e))[:size[i] - 1]
+        free.difference_update(ranked)
+        members[i] += sorted(ranked)
+    return tuple(Team(i, tuple(members[i])) for i in sorted(members) if len(members[i]) > 1)
+
+
+# --- balance ------------------------------------------------------------------------------------------------
+
+def _balance(weight, home, base, largest, rank) -> tuple[np.ndarray, np.ndarray]:
+    """Executors of islands, and all loads; ``base`` (K,) is what executors have to do besides, ``rank`` the order of dealing out."""
+    mean = -(-int(weight.sum() + base.sum()) // len(base))
+    cap = max(mean, largest) * TENTH[0] // TENTH[1]
+    lost = home < 0
+    stay = base + total(home[~lost], weight[~lost], len(base))
+    if not lost.any() and stay.max() <= cap:
+        return home, stay
+    kept, load = _unload(weight, home, base, cap, mean, rank)
+    if load.max() <= cap:
+        return kept, load
+    packed, new = _pack(weight, home, base, cap, mean, rank)
+    if not lost.any() and stay.max() * TENTH[1] <= min(load.max(), new.max()) * TENTH[0]:
+        return home, stay
+    return (kept, load) if load.max() * TENTH[1] <= new.max() * TENTH[0] else (packed, new)
+
+
+def _unload(weight, home, base, cap, mean, rank) -> tuple[np.ndarray, np.ndarray]:
+    """Islands stay at home up to the cap, large ones first; the others are dealt out."""
+    place = np.where(_fitting(weight, home, cap - base), home, -1)
+    load = base + total(place[place >= 0], weight[place >= 0], len(base))
+    return _deal(weight, place, home, load, cap, mean, rank)
+
+
+def _fitting(weight, home, room) -> np.ndarray:
+    """Those that stay: of each executor's islands, by size, all that still fit. What is left of the room halves with every turn."""
+    stay = np.zeros(len(weight), bool)
+    sort = np.lexsort((-weight, home))
+    bound = np.searchsorted(home[sort], np.arange(len(room) + 1))
+    for e, left in enumerate(room):
+        mine = sort[bound[e]:bound[e + 1]]
+        size = -weight[mine]
+        sum_before = np.concatenate([[0], np.cumsum(-size)])
+        at = int(np.searchsorted(size, -left))
+        while at < len(mine):
+            end = int(np.searchsorted(sum_before, sum_before[at] + left, side="right")) - 1
+            stay[mine[at:end]] = True
+            left -= sum_before[end] - sum_before[at]
+            at = max(end, int(np.searchsorted(size, -left)))
+    return stay
+
+
+def _deal(weight, place, home, load, cap, mean, rank) -> tuple[np.ndarray, np.ndarray]:
+    """Islands without a place: large ones go to whom has least, one by one, the others fill all up to one level, by runs of ``rank``."""
+    place, load = place.copy(), load.copy()
+    out = place < 0
+    large = np.flatnonzero(out & (weight * CRUMB > mean))
+    for i in large[np.argsort(-weight[large], kind="stable")]:
+        e, h = int(load.argmin()), int(home[i])
+        least = load[e] + weight[i]
+        if h >= 0 and least > cap and (load[h] + weight[i]) * TENTH[1] <= least * TENTH[0]:
+            e = h
+        place[i] = e
+        load[e] += weight[i]
+    small = rank[(place < 0)[rank]]
+    if len(small):
+        room = np.maximum(_level(load, int(weight[small].sum())) - load, 0)
+        start = np.cumsum(weight[small]) - weight[small]
+        place[small] = np.searchsorted(np.cumsum(room), start, side="right")
+        load += total(place[small], weight[small], len(load))
+    return place, load
+
+
+def _level(load: np.ndarray, amount: int) -> int:
+    """The level that ``amount`` poured into the loads comes up to, rounded up."""
+    full = np.sort(load)
+    level = (np.cumsum(full) + amount + np.arange(len(full))) // np.arange(1, len(full) + 1)
+    return int(level.min())
+
+
+def _pack(weight, home, base, cap, mean, rank) -> tuple[np.ndarray, np.ndarray]:
+    """Large islands anew, each to whom has least, the largest first; then those that do nothing else are named after the homes of
+    what they have. The others as before.
+    """
+    place, load = np.full(len(weight), -1), base.copy()
+    large = np.flatnonzero(weight * CRUMB > mean)
+    for i in large[np.argsort(-weight[large], kind="stable")]:
+        place[i] = load.argmin()
+        load[place[i]] += weight[i]
+    idle = np.flatnonzero(base == 0)
+    both = large[np.isin(place[large], idle) & np.isin(home[large], idle)]
+    common = np.zeros((len(base), len(base)), np.int64)
+    np.add.at(common, (place[both], home[both]), weight[both])
+    name, taken = np.arange(len(base)), np.zeros(len(base), bool)
+    name[idle] = -1
+    while common.any():
+        group, e = np.unravel_index(common.argmax(), common.shape)
+        name[group], taken[e] = e, True
+        common[group] = common[:, e] = 0
+    name[name < 0] = idle[~taken[idle]]
+    place[large], renamed = name[place[large]], np.empty_like(load)
+    renamed[name] = load
+    small = np.flatnonzero(place < 0)
+    place[small] = np.where(_fitting(weight[small], home[small], cap - renamed), home[small], -1)
+    load = base + total(place[place >= 0], weight[place >= 0], len(base))
+    return _deal(weight, place, home, load, cap, mean, rank)

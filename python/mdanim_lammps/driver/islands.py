@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Who may touch whom in the coming frame: reserved boxes, pairs of them that meet, islands, and still objects that these need.
+
+Pure functions of arrays that every executor has: only + - * / and comparisons of IEEE numbers, integers, and stable sorts, so that
+all of them find the same. Wcislo 1999, eq. (3.14), (3.15), (6.17).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+FEW = 200
+"""Boxes up to which every pair is tried."""
+LARGE = 4.0
+"""Edges above this many times the median are not sorted into the same grid."""
+BLOCK = 1 << 20
+"""Pairs looked at in one go."""
+CELLS = 1 << 20
+"""Most cells of a grid along an axis: three such numbers fit in 63 bits."""
+ROUNDING = 1.0 + 2.0**-20
+"""Cells are wider than the widest box by this, and numbers of cells below `CELLS`, so that no rounding hides a neighbour."""
+
+
+def reach(speed: np.ndarray, seconds: float, gravity: float, margin: float, safety: float = 1.3) -> np.ndarray:
+    """What boxes are widened by, d of eq. (6.17), read as the reach of the fastest particle until the window ends [m], shape (M,).
+
+    d = s v T + g/2 T² + margin; the guard of a window finds out where it was too small, so nothing about ``speed`` has to be proven.
+
+    :param speed: of the fastest particle of each object [m/s], shape (M,)
+    :param seconds: length of the window T [s]
+    :param gravity: magnitude g [m/s²]
+    :param margin: on top [m]
+    :param safety: s [-], for what forces add to the speed meanwhile
+    """
+    return safety * speed * seconds + (0.5 * gravity * seconds * seconds + margin)
+
+
+def boxes(low: np.ndarray, high: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Reserved boxes, eq. (6.17): boxes of particles (M, 3) [m], widened by d (M,) [m] on every side."""
+    return low - d[:, None], high + d[:, None]
+
+
+# --- pairs --------------------------------------------------------------------------------------------------
+
+def pairs(low: np.ndarray, high: np.ndarray, gap: float) -> np.ndarray:
+    """All pairs a < b of boxes that meet, eq. (3.15), when each is grown by half of ``gap`` [m]; sorted, int64, shape (P, 2).
+
+    Boxes are ``low``, ``high`` (M, 3) [m]. Every pair up to `FEW` boxes; then grids, O(M log M + pairs that are near). Raises
+    ValueError where a number is not finite, a box is turned inside out or the gap is negative.
+    """
+    if not (np.isfinite(low).all() and np.isfinite(high).all() and np.isfinite(gap)):
+        raise ValueError("a box is not finite")
+    if (low > high).any() or gap < 0.0:
+        raise ValueError("a box is turned inside out, or the gap is negative")
+    return (_all_pairs if len(low) <= FEW else _grid_pairs)(low, high, gap)
+
+
+def _all_pairs(low: np.ndarray, high: np.ndarray, gap: float) -> np.ndarray:
+    a, b = np.triu_indices(len(low), 1)
+    return np.column_stack(_meeting((low.T, high.T), (low.T, high.T), a, b, gap))
+
+
+def _grid_pairs(low: np.ndarray, high: np.ndarray, gap: float) -> np.ndarray:
+    """Boxes of similar size are sorted into a grid by their lower corners, cells as wide as the widest and the gap: who meets a
+    box lies in the 27 cells around it. Larger ones come in rounds of their own, against themselves and all smaller ones; a round
+    takes half of those that are left at least.
+    """
+    count = len(low)
+    edge = (high - low).max(axis=1)
+    order = np.argsort(edge, kind="stable")
+    edge = edge[order]
+    found = [np.empty((0, 2), np.int64)]
+    first = 0
+    while first < count:
+        last = int(np.searchsorted(edge, LARGE * edge[(first + count) // 2] + gap, side="right"))
+        key, rows = _cells(low[order[:last]], (edge[last - 1] + gap) * ROUNDING)
+        sort = first + np.argsort(key[first:], kind="stable")
+        mine, mine_key = order[sort], key[sort]
+        found += _look(low, high, gap, mine, mine, _rows_ahead(mine_key, rows))
+        if first:
+            sort = np.argsort(key[:first], kind="stable")
+            found += _look(low, high, gap, mine, order[sort], _rows_around(mine_key, key[sort], rows))
+        first = last
+    pair = np.concatenate(found)
+    code = np.minimum(pair[:, 0], pair[:, 1]) * count + np.maximum(pair[:, 0], pair[:, 1])
+    code.sort()
+    return np.column_stack(np.divmod(code, count))
+
+
+def _cells(corner: np.ndarray, cell: float) -> tuple[np.ndarray, tuple[int, int]]:
+    """Number of the cell of every corner, shape (N,), and how far apart the numbers are of neighbours along x and y; along z, one."""
+    origin = corner.min(axis=0)
+    cell = max(cell, float((corner.max(axis=0) - origin).max()) / CELLS) or 1.0
+    place = np.floor((corner - origin) / cell).astype(np.int64) + 1  # a margin of one cell: no row runs on into the next
+    _, y, z = (int(n) + 2 for n in place.max(axis=0))
+    return (place[:, 0] * y + place[:, 1]) * z + place[:, 2], (y * z, z)
+
+
+def _rows_ahead(key: np.ndarray, rows: tuple[int, int]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Slots [first, last) for each of the sorted keys: those after it in its row of cells, and half of the rows around."""
+    x, y = rows
+    yield np.arange(1, len(key) + 1), np.searchsorted(key, key + 1, side="right")
+    for row in (y, x - y, x, x + y):
+        yield np.searchsorted(key, key + (row - 1)), np.searchsorted(key, key + (row + 1), side="right")
+
+
+def _rows_around(key: np.ndarray, others: np.ndarray, rows: tuple[int, int]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Slots [first, last) among the sorted keys of others, for each key: all nine rows of cells around."""
+    x, y = rows
+    for row in (-x - y, -x, -x + y, -y, 0, y, x - y, x, x + y):
+        yield np.searchsorted(others, key + (row - 1)), np.searchsorted(others, key + (row + 1), side="right")
+
+
+def _look(low, high, gap, mine, others, rows) -> Iterator[np.ndarray]:
+    """Those boxes of ``others`` in the given slots that meet mine, in blocks of shape (P, 2)."""
+    low_a, high_a, low_b, high_b = (np.ascontiguousarray(side[who].T) for who in (mine, others) for side in (low, high))
+    for first, last in rows:
+        size = last - first
+        before = np.concatenate([[0], np.cumsum(size)])
+        start = 0
+        while start < len(mine):
+            stop = max(start + 1, int(np.searchsorted(before, before[start] + BLOCK, side="right")) - 1)
+            here = np.arange(start, stop)
+            a = np.repeat(here, size[here])
+            b = np.arange(len(a)) + np.repeat(first[here] - (before[here] - before[start]), size[here])
+            a, b = _meeting((low_a, high_a), (low_b, high_b), a, b, gap)
+            yield np.column_stack([mine[a], others[b]])
+            start = stop
+
+
+def _meeting(one, two, a, b, gap) -> tuple[np.ndarray, np.ndarray]:
+    """Those pairs of box a of one set and box b of another, (low, high) each of shape (3, M), that meet."""
+    for axis in range(3):
+        (low_a, high_a), (low_b, high_b) = ((side[axis] for side in boxes) for boxes in (one, two))
+        meet = (low_a[a] - high_b[b] <= gap) & (low_b[b] - high_a[a] <= gap)
+        a, b = a[meet], b[meet]
+    return a, b
+
+
+# --- islands ------------------------------------------------------------------------------------------------
+
+def components(count: int, pairs: np.ndarray, still: np.ndarray) -> np.ndarray:
+    """Island of every object, int64, shape (M,): numbered from 0 in the order of their smallest objects; -1 for what is still.
+
+    Objects that meet are in one island. ``still`` (M,) are held as a whole, never move and so connect nobody. Every round joins each
+    tree to the lowest one that it meets, until none meet: O(M + P) a round, a handful of rounds.
+    """
+    root = np.arange(count)
+    a, b = pairs[~(still[pairs[:, 0]] | still[pairs[:, 1]])].T
+    while len(a):
+        np.minimum.at(root, np.maximum(a, b), np.minimum(a, b))
+        while ((up := root[root]) != root).any():
+            root = up
+        a, b = root[a], root[b]
+        apart = a != b
+        a, b = a[apart], b[apart]
+    number = np.cumsum((root == np.arange(count)) & ~still) - 1
+    return np.where(still, -1, number[root])
+
+
+def guests(pairs: np.ndarray, label: np.ndarray, still: np.ndarray) -> np.ndarray:
+    """Copies of still objects that islands need: (island, object) once each, sorted, int64, shape (G, 2)."""
+    a, b = pairs.T
+    code = np.concatenate([label[x[still[y] & ~still[x]]] * len(label) + y[still[y] & ~still[x]] for x, y in ((a, b), (b, a))])
+    return np.column_stack(np.divmod(np.unique(code), len(label)))

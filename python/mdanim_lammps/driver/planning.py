@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The plan of a frame: who runs which objects, with whom, in which bundle. The supervisor (central control) and every executor
+(decentralised) call the same `plan` and must get the same fingerprint.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import islands
+from .assign import GAIN, LEAST, Team, _firsts, assign, total
+
+BUNDLE = 4000
+"""Particles up to which islands of one executor share a LAMMPS instance."""
+SPARE = 2
+"""Bundles of an executor, over those that would do, from which the thin ones are put together."""
+
+
+@dataclass(frozen=True, slots=True)
+class FramePlan:
+    """Who runs what in a frame of M objects."""
+
+    owner: np.ndarray
+    """Executor of every object, int64, shape (M,); of what is still, as it was."""
+    label: np.ndarray
+    """Island of every object, -1 for what is still, int64, shape (M,)."""
+    bundle: np.ndarray
+    """Bundle of every object, -1 for what is still, int64, shape (M,). One that keeps its number has the same executors and no object
+    that it had not before; a new one has a number above all of the plan before."""
+    guests: np.ndarray
+    """(island, still object) of all copies needed, sorted, int64, shape (G, 2)."""
+    teams: tuple[Team, ...]
+    """By island; each island of a team is a bundle of its own."""
+    load: np.ndarray
+    """Time that each of K executors will need [µs], int64, shape (K,)."""
+
+    def fingerprint(self) -> str:
+        """The same for the same plan, and for no other: 32 hexadecimal digits."""
+        digest = hashlib.blake2b(digest_size=16)
+        teams = [np.array([team.island, *team.members]) for team in self.teams]
+        for array in (self.owner, self.label, self.bundle, self.guests, self.load, *teams):
+            digest.update(np.array(array.shape, "<i8").tobytes() + array.astype("<i8").tobytes())
+        return digest.hexdigest()
+
+
+def plan(low: np.ndarray, high: np.ndarray, d: np.ndarray, cost: np.ndarray, owner: np.ndarray, executors: int, *,
+         particles: np.ndarray, still: np.ndarray, gap: float, pinned: np.ndarray | None = None, previous: FramePlan | None = None,
+         gain: int = GAIN, least: int = LEAST, room: int = BUNDLE) -> FramePlan:
+    """The plan of a frame, from what all executors have reported. O(M log M + pairs that are near). Raises ValueError for boxes that
+    are not finite or turned inside out, a cost below 0, an owner out of range.
+
+    A pool is one more object: its box, pinned and never still. After a guard was violated the same call with larger ``d`` gives
+    the plan to try again with.
+
+    :param low: boxes of the particles, eq. (3.14) [m], (M, 3), with ``high``
+    :param d: what they are widened by, eq. (6.17) [m], shape (M,)
+    :param cost: time of every object in a frame [µs], int64, shape (M,)
+    :param owner: executor that has its state, -1 for nobody yet, int64, shape (M,)
+    :param particles: of every object, int64, shape (M,)
+    :param still: objects held as a whole, bool, shape (M,)
+    :param gap: reach of contact [m]
+    :param pinned: objects that never leave their owner, bool, shape (M,)
+    :param previous: the last plan for which bundles were built
+    """
+    met = islands.pairs(*islands.boxes(low, high, d), gap)
+    label = islands.components(len(low), met, still)
+    order = z_order(low, high)
+    given = assign(label, cost, owner, executors, particles=particles, pinned=pinned, order=order, gain=gain, least=least,
+                   teams=previous.teams if previous else ())
+    bundle = bundles(label, given.owner, particles, given.teams, order=order, previous=previous, room=room)
+    return FramePlan(given.owner, label, bundle, islands.guests(met, label, still), given.teams, given.load)
+
+
+def z_order(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """A number for every box, int64, shape (M,): along Morton's curve through their middles, so that near numbers are near in space."""
+    middle = 0.5 * (low + high)
+    corner = middle.min(axis=0)
+    across = float((middle.max(axis=0) - corner).max()) or 1.0
+    place = np.minimum((middle - corner) / across * 2.0**20, 2.0**20 - 1.0).astype(np.int64)
+    code = np.zeros(len(low), np.int64)
+    for axis in range(3):
+        x = place[:, axis]
+        for shift, mask in ((32, 0x1F00000000FFFF), (16, 0x1F0000FF0000FF), (8, 0x100F00F00F00F00F), (4, 0x10C30C30C30C30C3),
+                            (2, 0x1249249249249249)):
+            x = (x | x << shift) & mask
+        code |= x << axis
+    return code
+
+
+def bundles(label: np.ndarray, owner: np.ndarray, particles: np.ndarray, teams: Sequence[Team] = (), *, order: np.ndarray | None = None,
+            previous: FramePlan | None = None, room: int = BUNDLE) -> np.ndarray:
+    """LAMMPS instances that executors run their islands in, int64, shape (M,), -1 for what is still; O(M log M).
+
+    An island stays in its bundle if all of it was there and its executor is the same: whoever joins or leaves makes nobody else move.
+    The other islands are put together along ``order``, up to ``room`` particles; larger than half of that, and those of a team, they
+    are a bundle each. Bundles only ever lose objects. So when an executor has more than `SPARE` times as many as would do, and 2, its
+    thin ones (below half of ``room``) are put together as well.
+    """
+    moving = np.flatnonzero(label >= 0)
+    bundle = np.full(len(label), -1, np.int64)
+    if not len(moving):
+        return bundle
+    isle = label[moving]
+    first = moving[_firsts(isle)]
+    size, runs = total(isle, particles[moving]), owner[first]
+    team = np.zeros(len(size), bool)
+    team[[t.island for t in teams]] = True
+    kept = np.full(len(size), -1, np.int64)
+    after = 0
+    if previous is not None:
+        kept = _kept(isle, moving, first, runs, previous)
+        after = int(previous.bundle.max(initial=-1)) + 1
+        _leave_teams(kept, first, teams, team, previous)
+        _thin_out(kept, size, runs, room)
+    out = np.flatnonzero(kept < 0)
+    rank = out[np.lexsort(((first if order is None else order[first])[out], (team | (2 * size > room))[out], runs[out]))]
+    if len(rank):
+        kept[rank] = after + _packed(size[rank], runs[rank], (team | (2 * size > room))[rank], room)
+    bundle[moving] = kept[isle]
+    return bundle
+
+
+def _kept(isle, moving, first, runs, previous) -> np.ndarray:
+    """The bundle that all of an island was in, with the executor that it has now; else -1."""
+    was = previous.bundle[first]
+    same = (previous.bundle[moving] == was[isle]) & (previous.owner[moving] == runs[isle])
+    whole = np.ones(len(first), bool)
+    whole[isle[~same]] = False
+    return np.where(whole, was, -1)
+
+
+def _leave_teams(kept, first, teams, team, previous) -> None:
+    """An island of a team keeps its bundle only if it is alone there and the team is the same, and what was a team's is not shared."""
+    before = {int(previous.bundle[np.flatnonzero(previous.label == t.island)[0]]): t.members for t in previous.teams}
+    now = {t.island: t.members for t in teams}
+    company = np.bincount(kept[kept >= 0])
+    for i in np.flatnonzero(team | np.isin(kept, list(before))):
+        if kept[i] >= 0 and (company[kept[i]] > 1 or before.get(int(kept[i])) != now.get(int(i))):
+            kept[i] = -1
+
+
+def _thin_out(kept, size, runs, room) -> None:
+    """Where an executor has too many bundles, islands of the thin ones leave them."""
+    stay = np.flatnonzero(kept >= 0)
+    if not len(stay):
+        return
+    number, of = np.unique(kept[stay], return_inverse=True)
+    held, place = total(of, size[stay]), np.empty(len(number), np.int64)
+    place[of] = runs[stay]
+    enough = -(-total(runs, np.minimum(size, room)) // room)
+    many = np.bincount(place, minlength=len(enough)) > SPARE * enough + 2
+    thin = many[place] & (2 * held < room)
+    kept[stay[thin[of]]] = -1
+
+
+def _packed(size, runs, alone, room) -> np.ndarray:
+    """Number of the bundle of each island, from 0; they come sorted by executor, with those that are alone last.
+
+    Who begins within the same length of the sum of sizes shares a bundle; the length is shorter than ``room`` by the largest of
+    them, so that no bundle exceeds it.
+    """
+    small = np.flatnonzero(~alone)
+    slot = np.zeros(len(size), np.int64)
+    if len(small):
+        begin = np.cumsum(size[small]) - size[small]
+        begin -= begin[np.searchsorted(runs[small], runs[small])]
+        slot[small] = begin // (room - int(size[small].max()) + 1)
+    slot[alone] = np.arange(len(size))[alone]
+    new = np.concatenate([[True], (np.diff(runs) != 0) | (np.diff(slot) != 0) | (np.diff(alone.astype(np.int8)) != 0)])
+    return np.cumsum(new) - 1
