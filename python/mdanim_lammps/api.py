@@ -14,9 +14,11 @@ from pathlib import Path
 from .certificate import Certificate
 from .driver.manifest import manifest
 from .driver.prepare import Prepared, prepare
+from .driver.launch import simulate_on
 from .driver.run import Result, simulate, write_inputs
 from .effects import Verdict
-from .errors import RefusedError
+from .errors import UsageError
+from .results.checkpoint import Checkpoint
 from .results.files import MARK, open_folder, write_json
 from .scene.parse import load_scene
 from .scene.scene import Scene as SceneRecord
@@ -59,19 +61,19 @@ class Scene:
         """The certified time step and what sets it. Raises SceneError, RefusedError."""
         return self.prepared.certificate
 
-    def run(self, folder: str | Path | None = None, *, executors: int = 1, force: bool = False, movie: bool = False,
-            watch=None) -> Result:
+    def run(self, folder: str | Path | None = None, *, executors: int = 1, control: str | None = None, force: bool = False,
+            movie: bool = False, watch=None) -> Result:
         """Simulate into ``folder`` (default: ``NAME.out`` beside the scene); returns ledger, outcomes and cost.
 
+        On several ``executors``, ``control`` is ``central`` (the default) or ``peers``: the frames are the same to the last bit.
         ``watch`` is called with a Progress after every frame. A scene with ``accuracy error p %`` and no setting stored beside
         it is studied first, for two minutes at most. Raises SceneError, RefusedError, DivergedError, OutputError.
         """
-        refuse_executors(executors)
         started = time.perf_counter()
         settled = settle(self.record, make=True, study=(Path(folder) if folder else default_folder(self.record)) / STUDY)
         ready = self.prepared if settled.scene is self.record else prepare(settled.scene)
         folder = open_run(ready, folder, force=force)
-        result = simulate(ready, folder, watch=watch, started=started)
+        result = run_frames(ready, folder, executors=executors, control=control, watch=watch, started=started)
         if movie:
             from .picture.movie import render_movie
 
@@ -124,9 +126,14 @@ def movie_file(folder: Path, record: SceneRecord) -> Path:
     return folder / (record.render.movie or "movie.mp4")
 
 
-def refuse_executors(executors: int) -> None:
-    """Runs on several executors are not built yet. Raises RefusedError."""
-    if executors != 1:
-        raise RefusedError(
-            f"{executors} executors were asked for, but runs of several executors are not built yet; run with one, or "
-            "'mdanim-lammps build SCENE' and then 'mpiexec -n N lmp -in in.NAME', which gives the same frames on any N")
+def run_frames(ready: Prepared, folder: Path, *, executors: int = 1, control: str | None = None, resume: Checkpoint | None = None,
+               **options) -> Result:
+    """Simulate in this process, or on executors of their own when there is more than one or a ``control`` is named.
+
+    ``options`` are those of `driver.run.simulate`. Raises what that does, and UsageError for less than one executor.
+    """
+    if executors < 1:
+        raise UsageError(f"{executors} executors: at least one is needed")
+    if executors == 1 and control is None:
+        return simulate(ready, folder, resume=resume, **options)
+    return simulate_on(executors, control or "central", ready, folder, resume=resume, **options)

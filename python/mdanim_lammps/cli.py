@@ -33,12 +33,13 @@ AllowUnstable = Annotated[bool, Parameter(negative=(), help="Insist on a time st
 Quiet = Annotated[bool, Parameter(name=["-q", "--quiet"], negative=(), help="Print errors only.")]
 Verbose = Annotated[bool, Parameter(name=["-v", "--verbose"], negative=(), help="Print every effect with its reason.")]
 Out = Annotated[Path | None, Parameter(name=["-o", "--out"], help="Output folder; default SCENE.out beside the scene.")]
+Executors = Annotated[int, Parameter(name=["-n", "--executors"], help="Processes that simulate; one more supervises them.")]
+Control = Annotated[Literal["central", "peers"] | None, Parameter(help="Who assigns objects to executors: the supervisor, or each the same.")]
 Force = Annotated[bool, Parameter(negative=(), help="Overwrite an output folder of an earlier run.")]
 
 
 @app.default
-def run(scene: Path, /, *, executors: Annotated[int, Parameter(name=["-n", "--executors"])] = 1, out: Out = None,
-        control: Literal["central", "peers"] | None = None, accuracy: Accuracy = None, set_: Set = (), force: Force = False,
+def run(scene: Path, /, *, executors: Executors = 1, out: Out = None, control: Control = None, accuracy: Accuracy = None, set_: Set = (), force: Force = False,
         movie: bool = True, allow_unstable: AllowUnstable = False, quiet: Quiet = False, verbose: Verbose = False) -> None:
     """Check, build and run a scene; leave a movie, a trajectory and a summary.
 
@@ -46,23 +47,17 @@ def run(scene: Path, /, *, executors: Annotated[int, Parameter(name=["-n", "--ex
     ----------
     scene
         The scene file.
-    executors
-        Number of executors.
-    control
-        Who assigns objects to executors.
     movie
         Make movie.mp4 at the end.
     """
-    from .api import open_run, refuse_executors
+    from .api import open_run
 
-    refuse_executors(executors)
-    if control is not None:
-        raise RefusedError("--control chooses between kinds of runs on several executors, which are not built yet; leave it out")
+    _check_executors(executors)
     record = _settle(_with_accuracy(_load(scene, set_), accuracy), make=True, quiet=quiet, out=out)
     ready = _prepare_record(record, allow_unstable=allow_unstable)
     _announce(ready, quiet, verbose)
     folder = open_run(ready, out, force=force)
-    _simulate_and_render(ready, folder, quiet=quiet, movie=movie)
+    _simulate_and_render(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control)
 
 
 @app.command
@@ -124,7 +119,7 @@ def build(scene: Path, /, *, out: Out = None, set_: Set = (), accuracy: Accuracy
 
 
 @app.command
-def resume(folder: Path, /, *, movie: bool = True, allow_unstable: AllowUnstable = False, quiet: Quiet = False) -> None:
+def resume(folder: Path, /, *, executors: Executors = 1, control: Control = None, movie: bool = True, allow_unstable: AllowUnstable = False, quiet: Quiet = False) -> None:
     """Go on from the last checkpoint of an output folder, as if it had never stopped.
 
     Parameters
@@ -136,13 +131,14 @@ def resume(folder: Path, /, *, movie: bool = True, allow_unstable: AllowUnstable
     """
     from .results.checkpoint import Checkpoint
 
+    _check_executors(executors)
     scene = _stored_scene(folder)
     if (folder / "summary.json").exists():
         raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
     checkpoint = Checkpoint.read(folder / "checkpoint")
     ready = _prepare_record(scene, allow_unstable=allow_unstable)
     _announce(ready, quiet, False)
-    _simulate_and_render(ready, folder, quiet=quiet, movie=movie, checkpoint=checkpoint)
+    _simulate_and_render(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control, resume=checkpoint)
 
 
 @app.command
@@ -280,6 +276,11 @@ def _prepare_record(scene, *, allow_unstable: bool):
     return prepare(scene, allow_unstable=allow_unstable)
 
 
+def _check_executors(executors: int) -> None:
+    if executors < 1:
+        raise UsageError(f"-n {executors}: at least one executor is needed")
+
+
 def _seconds(option: str, text: str) -> float:
     """A duration such as "2 min" in seconds."""
     from .scene.units import DimensionError, unit
@@ -326,14 +327,12 @@ def _announce(ready, quiet: bool, verbose: bool) -> None:
     print(output_line(ready), flush=True)
 
 
-def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, checkpoint=None) -> None:
-    from .api import movie_file
-    from .driver.run import simulate
+def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, **options) -> None:
+    from .api import movie_file, run_frames
     from .report import cost_line, progress_line
 
     with _bar("run", quiet) as bar:
-        result = simulate(ready, folder, resume=checkpoint, started=STARTED,
-                          watch=lambda p: bar(p.frame, p.frames, progress_line(p)))
+        result = run_frames(ready, folder, started=STARTED, watch=lambda p: bar(p.frame, p.frames, progress_line(p)), **options)
     # Before the movie: what was found must not depend on whether pictures can be made here.
     if not quiet:
         print(cost_line(result, ready.certificate.steps * ready.certificate.timestep))

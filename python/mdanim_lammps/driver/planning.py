@@ -48,7 +48,8 @@ class FramePlan:
 
 
 def plan(low: np.ndarray, high: np.ndarray, d: np.ndarray, cost: np.ndarray, owner: np.ndarray, executors: int, *,
-         particles: np.ndarray, still: np.ndarray, gap: float, pinned: np.ndarray | None = None, previous: FramePlan | None = None,
+         particles: np.ndarray, still: np.ndarray, gap: float, feels: np.ndarray | None = None, pinned: np.ndarray | None = None,
+         previous: FramePlan | None = None,
          gain: int = GAIN, least: int = LEAST, room: int = BUNDLE) -> FramePlan:
     """The plan of a frame, from what all executors have reported. O(M log M + pairs that are near). Raises ValueError for boxes that
     are not finite or turned inside out, a cost below 0, an owner out of range.
@@ -63,10 +64,13 @@ def plan(low: np.ndarray, high: np.ndarray, d: np.ndarray, cost: np.ndarray, own
     :param particles: of every object, int64, shape (M,)
     :param still: objects held as a whole, bool, shape (M,)
     :param gap: reach of contact [m]
+    :param feels: objects that all others feel, bool, shape (M,): without contact, the pool alone; None for all
     :param pinned: objects that never leave their owner, bool, shape (M,)
     :param previous: the last plan for which bundles were built
     """
     met = islands.pairs(*islands.boxes(low, high, d), gap)
+    if feels is not None:
+        met = met[feels[met].any(axis=1)]
     label = islands.components(len(low), met, still)
     order = z_order(low, high)
     given = assign(label, cost, owner, executors, particles=particles, pinned=pinned, order=order, gain=gain, least=least,

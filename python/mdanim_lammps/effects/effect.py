@@ -100,6 +100,10 @@ class Effect:
         """What stands in its ledger column now [J]; ``instance`` is the running engine.instance.Instance."""
         return 0.0
 
+    def potential(self, scene: Scene, mass: np.ndarray, x: np.ndarray) -> float:
+        """The part of its energy that particles have by their places alone [J]; mass [kg], shape (N,), x [m], shape (N, 3)."""
+        return 0.0
+
     def clocks(self, instance) -> dict[str, float]:
         """Wall seconds so far of each of its pieces; ``instance`` as in `energy`.
 

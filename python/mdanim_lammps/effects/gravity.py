@@ -37,4 +37,7 @@ class Gravity(Effect):
         return load.steps * load.mobile * PULL * rate["leap-frog"]
 
     def energy(self, instance, scene, system):
-        return -float(system.mass @ (instance.array("x") @ np.array(scene.gravity)))
+        return self.potential(scene, system.mass, instance.array("x"))
+
+    def potential(self, scene, mass, x):
+        return -float(mass @ (x @ np.array(scene.gravity)))

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from ..model.system import System
-from . import plugin
+from .plugin import open_library
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Geometry:
 
     @cached_property
     def _library(self) -> ctypes.CDLL:
-        library = ctypes.CDLL(f"{plugin.folder()}/mdanimplugin.so")
+        library = open_library()
         for function in (library.mdanim_not_finite, library.mdanim_inverted, library.mdanim_sunk):
             function.restype = ctypes.c_longlong
         library.mdanim_boxes.restype = None

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+from functools import lru_cache
 from pathlib import Path
 
 from ..errors import SetupError
@@ -56,3 +57,11 @@ def open_lammps(log: Path | None = None, comm=None):
     if library.mdanim_abi() != ABI:
         raise SetupError(f"{_FILE} has interface {library.mdanim_abi()}, {ABI} is needed; reinstall with 'pip install .'")
     return lmp, library
+
+
+@lru_cache(maxsize=1)
+def open_library() -> ctypes.CDLL:
+    """The C library of the plugin for functions that need no instance. Raises SetupError."""
+    lmp, library = open_lammps()  # maps liblammps, which the plugin needs
+    lmp.close()
+    return library

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Who decides: the supervisor for all (central control), or every executor the same (peers). Wcislo 1999, sec. 6.2 and 6.3."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from mpi4py import MPI
+
+from .messages import SUPERVISOR, Mail, Order, Report, Tag
+from .planner import Planner
+
+CONTROLS = ("central", "peers")
+
+
+class Control(Protocol):
+    """How an executor learns what to do next."""
+
+    def decide(self, report: Report) -> Order:
+        """Tell what has been, and wait for what is to come. Raises Aborted, DivergedError."""
+
+
+class Central:
+    """Reports go to the supervisor, which orders."""
+
+    def __init__(self, mail: Mail):
+        self.mail = mail
+
+    def decide(self, report):
+        self.mail.send(SUPERVISOR, Tag.REPORT, report)
+        return self.mail.take(Tag.ORDER)
+
+
+class Peers:
+    """Reports go to all executors, and each decides; that they decide alike is checked with the next reports."""
+
+    def __init__(self, mail: Mail, comm: MPI.Comm, planner: Planner):
+        self.mail, self.comm, self.planner = mail, comm, planner
+
+    def decide(self, report):
+        return self.planner.decide(self.mail.exchange(self.comm, report))
+
+
+def make_control(name: str, mail: Mail, comm: MPI.Comm, planner: Planner) -> Control:
+    """The control of this name."""
+    return Central(mail) if name == "central" else Peers(mail, comm, planner)

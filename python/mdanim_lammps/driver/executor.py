@@ -1,0 +1,278 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""An executor: simulates the objects that are its own, window by window, and hands them on when they are to be elsewhere.
+
+Wcislo 1999, sec. 6; the order of messages is in docs/distribution.md.
+"""
+
+from __future__ import annotations
+
+import time
+import traceback
+from contextlib import contextmanager
+
+import numpy as np
+from mpi4py import MPI
+
+from ..engine.instance import State
+from ..engine.part import Parts
+from ..errors import MdanimError
+from .bundle import Bundle, Wanted, wanted_bundles
+from .control import Control, make_control
+from .messages import SUPERVISOR, Aborted, Ended, Failure, Job, Kept, Mail, Moved, Order, Report, Share, Tag
+from .planner import Planner
+from .source import Account, Broken, add_clocks, penetration, pool
+
+
+def serve(world: MPI.Comm) -> None:
+    """Be an executor until the supervisor says that it is enough; all ranks but the supervisor's call this together."""
+    mail = Mail(world)
+    comm = world.Split(1, world.rank)
+    job = world.bcast(None, root=SUPERVISOR)
+    try:
+        Executor(mail, comm, job).work()
+    except Aborted:
+        mail.send(SUPERVISOR, Tag.ENDED, Ended(None))
+    except Broken as broken:
+        mail.send(SUPERVISOR, Tag.FAILED, Failure("Broken", str(broken.error), broken.step, broken.solid))
+    except MdanimError as error:
+        mail.send(SUPERVISOR, Tag.FAILED, Failure(type(error).__name__, str(error)))
+    except Exception as error:  # whatever it is, the others must hear of it
+        traceback.print_exc()
+        mail.send(SUPERVISOR, Tag.FAILED, Failure("MdanimError", f"executor {comm.rank}: {type(error).__name__}: {error}"))
+
+
+class Executor:
+    """Its objects, their states at the last frame, and the LAMMPS instances that run them."""
+
+    def __init__(self, mail: Mail, comm: MPI.Comm, job: Job):
+        self.mail, self.comm, self.job = mail, comm, job
+        self.me = comm.rank
+        self.parts = Parts(job.plan)
+        system, resume = job.plan.system, job.resume
+        self.objects = len(system.names)
+        self.first = system.first
+        self.frame = resume.frame if resume else 0
+        self.step = resume.step if resume else 0
+        # Of all particles, right for those of its own objects.
+        self.x = np.array(resume.x if resume else system.position)
+        self.v = np.array(resume.v if resume else system.velocity)
+        self.f = np.array(resume.f) if resume else np.zeros_like(self.x)
+        self.liquid = resume.liquid if resume else None
+        self.started = resume is not None
+        """False before step 0: forces come from the scene then."""
+        planner = Planner(self.parts, comm.size, job.lengths, job.safety, self.frame)
+        self.control: Control = make_control(job.control, mail, comm, planner)
+        self.bundles: list[Bundle] = []
+        self.order: Order | None = None
+        self.teams: dict[tuple[int, ...], MPI.Comm] = {}
+        self.account = Account()
+        self.moves = self.retries = 0
+        self.deepest = 0.0
+        self.spans: list[tuple[str, int, float, float]] = []
+        mail.world.Barrier()
+        self.origin = time.perf_counter()
+
+    # --- the order of things --------------------------------------------------------------------------------------
+
+    def work(self) -> None:
+        """All frames. Raises Broken, MdanimError, Aborted."""
+        try:
+            self._follow(self._decide(self._first_report()))
+            if not self.started:
+                self._commit()
+                self._send(keep=True)
+            while self.frame < len(self.job.lengths):
+                with self._span("held"):
+                    grant = self.mail.take(Tag.GRANT)
+                if grant is None:  # an end
+                    self._keep()
+                    break
+                order = self._window(self.job.lengths[self.frame])
+                self._commit()
+                self._send(grant.keep)
+                if self.frame < len(self.job.lengths):
+                    self._follow(order)
+        finally:
+            for bundle in self.bundles:
+                self._close(bundle)
+        self.mail.send(SUPERVISOR, Tag.ENDED, Ended(self.account, self.spans))
+        self.mail.flush()
+
+    def _window(self, steps: int) -> Order:
+        """Simulate to the next frame, again until no object has left its reserved box; returns what to do from there on."""
+        self.retries = 0
+        done: set[Bundle] = set()
+        while True:
+            for bundle in self.bundles:
+                if bundle not in done:
+                    with self._span("simulating"):
+                        bundle.run(steps)
+                    done.add(bundle)
+            # Who has nothing to do again is frozen at the end of the window until the others have come there too.
+            order = self._decide(self._report(steps), "frozen" if self.retries else "waiting")
+            if order.commit:
+                break
+            self.retries += 1
+            self._follow(order, again=True)
+        self.frame += 1
+        self.step += steps
+        return order
+
+    def _decide(self, report: Report, while_waiting: str = "waiting") -> Order:
+        with self._span(while_waiting):
+            return self.control.decide(report)
+
+    # --- objects --------------------------------------------------------------------------------------------------
+
+    def _follow(self, order: Order, again: bool = False) -> None:
+        """Hand on what goes elsewhere, and have the instances that are wanted; ``again``: those that have run a window stay as they
+        are, at its end, if all of their boxes are as before."""
+        before, self.order = self.order, order
+        with self._span("moving"):
+            if before is not None:
+                self._transfer(before.plan.owner, order.plan.owner)
+            wanted = wanted_bundles(order.plan, self.objects, self.me)
+            live = {b.key: b for b in self.bundles if not again or self._untouched(b, before, order)}
+            for bundle in self.bundles:
+                if all(bundle is not live.get(w.key) for w in wanted):
+                    self._close(bundle)
+            self.bundles = [live.get(w.key) or self._begin(w) for w in wanted]
+
+    @staticmethod
+    def _untouched(bundle: Bundle, before: Order, after: Order) -> bool:
+        who = bundle.members
+        return np.array_equal(before.low[who], after.low[who]) and np.array_equal(before.high[who], after.high[who])
+
+    def _transfer(self, before: np.ndarray, after: np.ndarray) -> None:
+        """Send what is another's now, and receive what has become mine."""
+        changed = np.flatnonzero((before != after) & (before >= 0))
+        for other in range(self.comm.size):
+            goes = changed[(before[changed] == self.me) & (after[changed] == other)]
+            if len(goes):
+                self.mail.send(other, Tag.OBJECTS, self._pack(goes), self.comm)
+        for other in range(self.comm.size):
+            comes = changed[(before[changed] == other) & (after[changed] == self.me)]
+            if len(comes):
+                self._unpack(comes, self.mail.take(Tag.OBJECTS, other, self.comm))
+                self.moves += len(comes)
+
+    def _rows(self, objects) -> np.ndarray:
+        """Particles of objects, the pool not counted."""
+        return np.concatenate([np.arange(0), *(np.arange(self.first[m], self.first[m + 1]) for m in objects if m < self.objects)])
+
+    def _pack(self, objects: np.ndarray) -> Moved:
+        rows = self._rows(objects)
+        return Moved(self.x[rows], self.v[rows], self.f[rows], self.liquid if self.objects in objects else None)
+
+    def _unpack(self, objects: np.ndarray, moved: Moved) -> None:
+        rows = self._rows(objects)
+        self.x[rows], self.v[rows], self.f[rows] = moved.x, moved.v, moved.f
+        if self.objects in objects:
+            self.liquid = moved.liquid
+
+    def _begin(self, wanted: Wanted) -> Bundle:
+        """A bundle with the state of the last frame; on a team, that of its leader."""
+        key = wanted.key
+        if len(key.team) > 1 and self.started:
+            everything = np.array([*key.objects, *([self.objects] if key.liquid else [])])
+            if self.me == key.team[0]:
+                for member in key.team[1:]:
+                    self.mail.send(member, Tag.TEAM, self._pack(everything), self.comm)
+            else:
+                self._unpack(everything, self.mail.take(Tag.TEAM, key.team[0], self.comm))
+        bundle = Bundle(self.parts, wanted, self._team(key.team))
+        rows = bundle.rows
+        liquid = self.liquid if key.liquid else None
+        bundle.start(self.step, State(self.x[rows], self.v[rows], self.f[rows], liquid) if self.started else None)
+        return bundle
+
+    def _team(self, members: tuple[int, ...]) -> MPI.Comm | None:
+        """The communicator of a team, its leader first; None for one executor alone."""
+        if len(members) == 1:
+            return None
+        if members not in self.teams:
+            self.teams[members] = self.comm.Create_group(self.comm.group.Incl(members))
+        return self.teams[members]
+
+    def _close(self, bundle: Bundle) -> None:
+        add_clocks(self.account, bundle.instance)
+        bundle.close()
+
+    def _leads(self, bundle: Bundle) -> bool:
+        return bundle.key.team[0] == self.me
+
+    @property
+    def own(self) -> np.ndarray:
+        """Objects that are its own and can move, ascending."""
+        mine = self.order.plan.owner[:self.objects] == self.me
+        return np.flatnonzero(mine & (self.order.plan.label[:self.objects] >= 0))
+
+    # --- what is told ---------------------------------------------------------------------------------------------
+
+    def _first_report(self) -> Report:
+        """Of all objects that can move, in equal shares: everybody knows where they begin."""
+        system = self.job.plan.system
+        can_move = np.flatnonzero(~np.logical_and.reduceat(system.held, self.first[:-1]))
+        mine = can_move[self.me::self.comm.size]
+        low, high, speed = (np.empty((len(mine), *shape)) for shape in ((3,), (3,), ()))
+        for k, m in enumerate(mine):
+            part = slice(self.first[m], self.first[m + 1])
+            low[k], high[k] = self.x[part].min(0), self.x[part].max(0)
+            speed[k] = np.sqrt(np.einsum("id,id->i", self.v[part], self.v[part]).max())
+        return Report(mine, low, high, speed, np.zeros(len(mine), np.int64))
+
+    def _report(self, steps: int) -> Report:
+        """Of all objects that it has run."""
+        scale = 1e6 * self.job.plan.certificate.steps_per_frame / steps
+        found, escaped, pool_cost = [], [], None
+        for bundle in self.bundles:
+            extent, liquid = bundle.extent(), bundle.liquid_seconds()  # together with the team
+            if not self._leads(bundle):
+                continue
+            escaped += bundle.escaped(self.order.low, self.order.high)
+            found.append((bundle.members, *extent, bundle.costs(scale, liquid)))
+            if bundle.key.liquid:
+                pool_cost = int(scale * len(bundle.key.team) * liquid)
+        empty = (np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, np.int64))
+        return Report(*(np.concatenate(arrays) for arrays in zip(empty, *found)), pool_cost, tuple(escaped),
+                      self.order.plan.fingerprint())
+
+    def _commit(self) -> None:
+        """Take the states of all instances, and the energies that go with them."""
+        self.energies: dict[str, float] = {}
+        self.pool = None
+        for bundle in self.bundles:
+            state, energies = bundle.instance.state(), bundle.energies()
+            depth, liquid = penetration(bundle.instance), pool(bundle.instance)
+            self.x[bundle.rows], self.v[bundle.rows], self.f[bundle.rows] = state.x, state.v, state.f
+            if not self._leads(bundle):
+                continue
+            self.deepest = max(self.deepest, depth)
+            for term, e in energies.items():
+                self.energies[term] = self.energies.get(term, 0.0) + e
+            if bundle.key.liquid:
+                self.liquid, self.pool = state.liquid, liquid
+        self.started = True
+
+    def _send(self, keep: bool) -> None:
+        """The share of a frame."""
+        own = self.own
+        rows = self._rows(own)
+        self.mail.send(SUPERVISOR, Tag.FRAME, Share(self.frame, own, self.x[rows], self.v[rows], self.energies, self.deepest, self.pool,
+                                                    self.moves, self.retries))
+        self.moves = 0
+        if keep:
+            self._keep()
+
+    def _keep(self) -> None:
+        """What a checkpoint needs besides."""
+        own = self.own
+        has_pool = self.order.plan.owner[-1] == self.me and self.liquid is not None
+        self.mail.send(SUPERVISOR, Tag.KEPT, Kept(self.frame, own, self.f[self._rows(own)], self.liquid if has_pool else None))
+
+    @contextmanager
+    def _span(self, kind: str):
+        """Take note of what it does from when to when."""
+        begin = time.perf_counter() - self.origin
+        yield
+        self.spans.append((kind, self.frame + 1, begin, time.perf_counter() - self.origin))

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Starts a run on several executors with mpiexec, follows it, and gives its result as `run.simulate` does."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import pickle
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import ExitCode, MdanimError, SetupError
+from ..results.checkpoint import Checkpoint
+from .prepare import Prepared
+from .run import STOP, Progress, Result
+
+MPIEXEC = "MDANIM_MPIEXEC"
+"""Environment variable with the command that starts ranks, up to ``-n``: ``mpiexec -f hosts`` on a cluster, ``srun``."""
+JOB, RESULT = "job", "result"
+SAFETY = 1.3
+"""Reach of objects over a window, over the way of their fastest particles at its start."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """What the supervisor is given."""
+
+    ready: Prepared
+    folder: Path
+    control: str
+    resume: Checkpoint | None
+    started: float
+    safety: float
+
+
+class ExecutorLost(MdanimError):
+    """A rank has died: killed, out of memory, a host gone."""
+
+    exit_code = ExitCode.ENVIRONMENT
+
+
+def simulate_on(executors: int, control: str, ready: Prepared, folder: Path, *, watch: Callable[[Progress], None] | None = None,
+                resume: Checkpoint | None = None, started: float | None = None, safety: float = SAFETY) -> Result:
+    """`run.simulate` on ``executors`` ranks and a supervising one; the same frames, to the last bit.
+
+    ``control`` is ``central`` or ``peers``. Raises what `run.simulate` does, SetupError without mpiexec, ExecutorLost when a rank dies.
+    """
+    folder = folder.resolve()
+    with tempfile.TemporaryDirectory(prefix=".ranks-", dir=folder) as exchange:
+        task = Task(ready, folder, control, resume, time.perf_counter() if started is None else started, safety)
+        (Path(exchange) / JOB).write_bytes(pickle.dumps(task, protocol=pickle.HIGHEST_PROTOCOL))
+        command = [*launcher(), "-n", str(executors + 1), sys.executable, "-m", "mdanim_lammps.driver.ranks", exchange]
+        # A session of its own: Ctrl-C is for this process, which asks the supervisor to stop after a frame.
+        ranks = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                 env=_environment(), start_new_session=True)
+        said: list[str] = []
+        hearing = threading.Thread(target=_hear, args=(ranks.stderr, said), daemon=True)
+        hearing.start()
+        with _Signals(ranks, folder):
+            for line in ranks.stdout:
+                if watch and line.startswith("{"):
+                    watch(Progress(**json.loads(line)))
+            ranks.wait()
+        hearing.join()
+        result = Path(exchange) / RESULT
+        if not result.exists():
+            raise _lost(ranks.returncode, said, folder)
+        found = pickle.loads(result.read_bytes())
+    if isinstance(found, Result):
+        return found
+    kind, module, text = found
+    raise getattr(importlib.import_module(module), kind)(text)
+
+
+def launcher() -> list[str]:
+    """The command that starts ranks: of MDANIM_MPIEXEC, beside this Python, or on the path. Raises SetupError."""
+    if os.environ.get(MPIEXEC):
+        return shlex.split(os.environ[MPIEXEC])
+    beside = Path(sys.executable).parent / "mpiexec"
+    found = str(beside) if beside.exists() else shutil.which("mpiexec")
+    if not found:
+        raise SetupError(f"there is no mpiexec; it comes with 'pip install mpich', or name one in {MPIEXEC}")
+    return [found]
+
+
+def _hear(stream, said: list[str]) -> None:
+    """Pass on what ranks say, but for mpiexec's own obituary, which is told better by `_lost`."""
+    mourning = False
+    for line in stream:
+        said.append(line)
+        mourning = mourning or line.startswith("=====")
+        if not mourning:
+            sys.stderr.write(line)
+
+
+def _environment() -> dict[str, str]:
+    """That of this process, but with one thread for each rank's linear algebra."""
+    return os.environ | {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+
+
+def _lost(code: int, said: list[str], folder: Path) -> ExecutorLost:
+    """The one message for ranks that ended without a result."""
+    words = [line.strip() for line in said if line.strip() and not set(line.strip()) <= {"="}]
+    tracebacks = [line for line in words if "Error" in line]
+    why = next((line.lstrip("= ").rstrip() for line in words if "EXIT CODE" in line or "killed" in line.lower()), f"exit code {code}")
+    if tracebacks:
+        why = tracebacks[-1]
+    go_on = f"go on with: mdanim-lammps resume {folder}" if (folder / "checkpoint").exists() else "nothing was kept yet; run it again"
+    return ExecutorLost(f"an executor was lost ({why}); all others were stopped. {go_on}")
+
+
+class _Signals:
+    """The first Ctrl-C (or SIGTERM) asks for an end after the frame; the second one ends all ranks at once."""
+
+    def __init__(self, ranks: subprocess.Popen, folder: Path):
+        self.ranks, self.folder = ranks, folder
+        self.old = {}
+        self.asked = False
+
+    def __enter__(self) -> None:
+        if threading.current_thread() is threading.main_thread():
+            for number in (signal.SIGINT, signal.SIGTERM):
+                self.old[number] = signal.signal(number, self._stop)
+
+    def _stop(self, *_) -> None:
+        if self.asked:
+            os.killpg(self.ranks.pid, signal.SIGKILL)
+        self.asked = True
+        (self.folder / STOP).touch()
+
+    def __exit__(self, *_) -> None:
+        for number, handler in self.old.items():
+            signal.signal(number, handler)
+        if self.ranks.poll() is None:
+            os.killpg(self.ranks.pid, signal.SIGKILL)

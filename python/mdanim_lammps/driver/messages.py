@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What supervisor and executors say to each other (docs/distribution.md shows the whole protocol), and how they wait for it."""
+
+from __future__ import annotations
+
+import pickle
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import IntEnum
+
+import numpy as np
+from mpi4py import MPI
+
+from ..engine.plan import Plan
+from ..results.checkpoint import Checkpoint
+from .planning import FramePlan
+from .source import Account, Pool
+
+SUPERVISOR = 0
+"""Its rank; executor e, counted from 0, has the rank e + 1."""
+EAGER = 0.001
+"""Seconds of waiting without a pause: most answers come within them, and others may have work for this processor."""
+NAP = 0.0002
+"""Seconds of a pause after that."""
+
+
+class Tag(IntEnum):
+    """What a message is."""
+
+    GRANT = 1
+    """Supervisor to executor: `Grant`, or None for an end after the last frame that was granted."""
+    ABORT = 3
+    """Supervisor to executor: an end at once; something has gone wrong elsewhere."""
+    ORDER = 4
+    """Supervisor to executor, central control: `Order`."""
+    REPORT = 5
+    """Executor to supervisor, central control: `Report`."""
+    FRAME = 6
+    """Executor to supervisor: `Share`."""
+    KEPT = 7
+    """Executor to supervisor: `Kept`."""
+    FAILED = 8
+    """Executor to supervisor: `Failure`."""
+    ENDED = 9
+    """Executor to supervisor: `Ended`."""
+    OBJECTS = 10
+    """Executor to executor: `Moved`."""
+    TEAM = 11
+    """Leader of a team to its members: `Moved`."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """All that an executor must know to begin; the same for all."""
+
+    plan: Plan
+    lengths: tuple[int, ...]
+    """Steps to each frame."""
+    control: str
+    """``central`` or ``peers``."""
+    resume: Checkpoint | None
+    safety: float
+    """Reach of an object over a window in which its fastest particle keeps its speed, see `islands.reach`."""
+
+
+@dataclass(frozen=True)
+class Grant:
+    """Leave to simulate up to a frame: the supervisor has room for it."""
+
+    frame: int
+    keep: bool
+    """Whether what a checkpoint needs is to be sent with it."""
+
+
+@dataclass(frozen=True)
+class Report:
+    """What an executor tells of its objects at the end of a window."""
+
+    objects: np.ndarray
+    """Whole numbers, int64, shape (m,)."""
+    low: np.ndarray
+    """Corners of their boxes, eq. (3.14) [m], shape (m, 3)."""
+    high: np.ndarray
+    speed: np.ndarray
+    """Of the fastest particle of each [m/s], shape (m,)."""
+    cost: np.ndarray
+    """Processor time for a frame of each [us], int64, shape (m,)."""
+    pool_cost: int | None = None
+    """The same of the liquid, from the executor that has it."""
+    escaped: tuple[int, ...] = ()
+    """Objects that have left their reserved boxes: the window must be done again."""
+    fingerprint: str = ""
+    """Of the plan that was followed: all must have followed the same."""
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is to be done next."""
+
+    plan: FramePlan
+    low: np.ndarray
+    """Corners of the boxes that are reserved for objects, eq. (6.17), the pool's last [m], shape (M, 3)."""
+    high: np.ndarray
+    commit: bool
+    """Whether the window is done; if not it starts again, from its beginning, with these wider boxes."""
+
+
+@dataclass(frozen=True)
+class Moved:
+    """Objects on their way: everything about them that changes."""
+
+    x: np.ndarray
+    """[m], of all particles of the objects, ascending, shape (n, 3)."""
+    v: np.ndarray
+    f: np.ndarray
+    """Forces [N]: dashpots see half-step velocities that x and v do not hold."""
+    liquid: np.ndarray | None = None
+    """State of the liquid's fix when it moves too."""
+
+
+@dataclass(frozen=True)
+class Share:
+    """An executor's part of a frame."""
+
+    frame: int
+    objects: np.ndarray
+    x: np.ndarray
+    v: np.ndarray
+    energies: dict[str, float]
+    penetration: float
+    pool: Pool | None
+    moves: int
+    """Objects that have come to this executor since the frame before."""
+    retries: int
+    """How often this window was begun again."""
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What a checkpoint needs beside the `Share` of a frame."""
+
+    frame: int
+    objects: np.ndarray
+    f: np.ndarray
+    liquid: np.ndarray | None
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why an executor cannot go on."""
+
+    kind: str
+    """Name of an error of errors.py, or ``Broken``."""
+    text: str
+    step: int = 0
+    solid: int | None = None
+
+
+@dataclass(frozen=True)
+class Ended:
+    """An executor's last word."""
+
+    account: Account | None
+    """None when it was told to abort."""
+    spans: list[tuple[str, int, float, float]] = field(default_factory=list)
+    """What it did when: kind, frame, begin and end [s] since all began."""
+
+
+class Aborted(Exception):
+    """The supervisor wants an end at once."""
+
+
+class Mail:
+    """Messages to and from other ranks; waiting for one sees an ABORT too."""
+
+    def __init__(self, world: MPI.Comm):
+        self.world = world
+        self.sent: list[MPI.Request] = []
+
+    def send(self, to: int, tag: Tag, message, comm: MPI.Comm | None = None) -> None:
+        """Send without waiting for the receiver."""
+        self.sent = [request for request in self.sent if not request.Test()]
+        self.sent.append((comm or self.world).isend(message, dest=to, tag=tag))
+
+    def take(self, tag: Tag, source: int = SUPERVISOR, comm: MPI.Comm | None = None):
+        """Wait for a message. Raises Aborted."""
+        return self.wait(lambda: self.peek(tag, source, comm)).recv()
+
+    def peek(self, tag: int, source: int = SUPERVISOR, comm: MPI.Comm | None = None) -> MPI.Message | None:
+        """A message that has come, not yet received; None without one."""
+        return (comm or self.world).improbe(source=source, tag=tag)
+
+    def wait(self, look: Callable[[], object]):
+        """Call ``look`` until it gives something, which is returned. Raises Aborted."""
+        begin = time.perf_counter()
+        while not (found := look()):
+            if time.perf_counter() - begin > EAGER:
+                if self.world.iprobe(source=SUPERVISOR, tag=Tag.ABORT):
+                    raise Aborted
+                time.sleep(NAP)
+        return found
+
+    def exchange(self, comm: MPI.Comm, message) -> list:
+        """Everybody's message, in the order of ranks. Raises Aborted."""
+        mine = np.frombuffer(pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL), np.uint8)
+        size = np.empty(comm.size, np.int64)
+        self.wait(comm.Iallgather(np.array([len(mine)]), size).Test)
+        all_of_them = np.empty(size.sum(), np.uint8)
+        self.wait(comm.Iallgatherv(mine, (all_of_them, size)).Test)
+        ends = np.cumsum(size)
+        return [pickle.loads(all_of_them[end - n:end].data) for end, n in zip(ends, size)]
+
+    def flush(self) -> None:
+        """Wait until everything that was sent is on its way. Raises Aborted."""
+        for request in self.sent:
+            self.wait(request.Test)
+        self.sent.clear()

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""From what executors report to what they do next. The supervisor has one of these (central control), or every executor (peers)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..engine.part import Parts
+from ..errors import DivergedError
+from . import islands
+from .messages import Order, Report
+from .planning import FramePlan, plan
+
+MARGIN = 0.05
+"""Of a spacing, on top of the reach of every object."""
+FORGET = 0.25
+"""Weight of the latest measurement in the cost of an object."""
+GUESS = 0.05
+"""Microseconds of a particle-step, before anything is measured."""
+DOUBLINGS = 60
+"""Beyond them a box has no meaning any more: something is flying away."""
+ROOM = 4.0
+"""Cells of liquid around the basin that belong to the pool's box."""
+
+
+class Planner:
+    """Boxes, costs and owners of all objects, and of the pool as one more; the same on everybody who plans."""
+
+    def __init__(self, parts: Parts, executors: int, lengths: Sequence[int], safety: float, frame: int = 0):
+        self.parts, self.executors, self.lengths, self.safety = parts, executors, lengths, safety
+        self.frame = frame
+        """The last one that is done."""
+        whole, system = parts.whole, parts.whole.system
+        self.objects = len(system.names)
+        self.pool = whole.grid is not None
+        count = self.objects + self.pool
+        self.particles = np.append(np.diff(system.first), [0] * self.pool).astype(np.int64)
+        self.still = np.append(np.logical_and.reduceat(system.held, system.first[:-1]), [False] * self.pool).astype(bool)
+        self.contact = any(e.name == "contact" for e in whole.effects)
+        self.gap = float(parts.reach.max()) if self.contact else 0.0
+        self.low, self.high, self.speed = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros(count)
+        if self.pool:
+            self.low[-1], self.high[-1] = _basin(parts)
+        steps = whole.certificate.steps_per_frame
+        self.cost = np.maximum(1, (GUESS * steps * self.particles).astype(np.int64))
+        self.measured = np.zeros(count, bool)
+        self.doublings = np.zeros(count, np.int64)
+        self.plan: FramePlan | None = None
+        for m in np.flatnonzero(self.still[:self.objects]):
+            mine = slice(system.first[m], system.first[m + 1])
+            self.low[m], self.high[m] = system.position[mine].min(0), system.position[mine].max(0)
+
+    def decide(self, reports: Sequence[Report]) -> Order:
+        """What to do after a window (or before the first), from the reports of all executors in their order.
+
+        Raises DivergedError when executors have followed different plans, or an object leaves every box.
+        """
+        if len({r.fingerprint for r in reports}) > 1:
+            raise DivergedError("executors have followed different plans: this must never be, please report it")
+        escaped = sorted({m for r in reports for m in r.escaped})
+        if escaped:
+            self.doublings[escaped] += 1
+            if self.doublings.max() > DOUBLINGS:
+                raise DivergedError(f"{self.parts.whole.system.names[escaped[0]]} leaves every box that is reserved for it")
+            return self._order(commit=False)
+        self.frame += self.plan is not None
+        for report in reports:
+            self._take(report)
+        self.doublings[:] = 0
+        return self._order(commit=True)
+
+    def _take(self, report: Report) -> None:
+        who = report.objects
+        self.low[who], self.high[who], self.speed[who] = report.low, report.high, report.speed
+        if self.plan is None:
+            return
+        cost = [report.cost]
+        if report.pool_cost is not None:
+            who, cost = np.append(who, self.objects), [report.cost, [report.pool_cost]]
+        new = np.concatenate(cost).astype(np.int64)
+        # Whole numbers only, so that all planners round alike.
+        smooth = np.where(self.measured[who], self.cost[who] + ((new - self.cost[who]) * int(256 * FORGET) >> 8), new)
+        self.cost[who], self.measured[who] = np.maximum(1, smooth), True
+
+    def reach(self) -> np.ndarray:
+        """What boxes are widened by in the coming window, eq. (6.17) [m], shape (M,), the pool's last."""
+        whole = self.parts.whole
+        steps = self.lengths[min(self.frame, len(self.lengths) - 1)]
+        d = islands.reach(self.speed, steps * whole.certificate.timestep, float(np.linalg.norm(whole.scene.gravity)),
+                          MARGIN * whole.spacing, self.safety)
+        d = d * 2.0**self.doublings
+        d[self.still] = 0.0
+        if self.pool:
+            d[-1] = 0.0
+        return d
+
+    def _order(self, commit: bool) -> Order:
+        owner = self.plan.owner if self.plan else np.full(len(self.cost), -1, np.int64)
+        d = self.reach()
+        self.plan = plan(self.low, self.high, d, self.cost, owner, self.executors, particles=self.particles, still=self.still,
+                         gap=self.gap, feels=None if self.contact else np.arange(len(self.cost)) == self.objects, previous=self.plan)
+        return Order(self.plan, *islands.boxes(self.low, self.high, d), commit)
+
+
+def _basin(parts: Parts) -> tuple[np.ndarray, np.ndarray]:
+    """The box within which an object and the liquid can matter to each other [m]."""
+    grid = parts.whole.grid
+    margin = ROOM * max(grid.cell)
+    low, high = np.array(grid.low) - margin, np.array(grid.high) + margin
+    high[2] = parts.liquid_top
+    return low, high

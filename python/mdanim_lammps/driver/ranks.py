@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What every MPI rank of a distributed run executes: ``mpiexec -n K+1 python -m mdanim_lammps.driver.ranks FOLDER``.
+
+Rank 0 is the supervisor: it takes the job that driver/launch.py has left in the folder and leaves the result there; progress goes to
+its standard output, a line of JSON for every frame. All others are executors.
+"""
+
+from __future__ import annotations
+
+import json
+import pickle
+import sys
+import traceback
+from dataclasses import asdict
+from pathlib import Path
+
+from ..errors import MdanimError
+from .launch import JOB, RESULT, Task
+from .messages import SUPERVISOR
+
+
+def main() -> None:
+    """Be the supervisor, or an executor."""
+    from mpi4py import MPI
+
+    world = MPI.COMM_WORLD
+    if world.rank != SUPERVISOR:
+        from .executor import serve
+
+        serve(world)
+        return
+    _supervise(world, Path(sys.argv[1]))
+
+
+def _supervise(world, exchange: Path) -> None:
+    from .run import simulate
+    from .supervisor import Distributed
+
+    task: Task = pickle.loads((exchange / JOB).read_bytes())
+    source = Distributed(task.ready, world, task.control, task.safety)
+    try:
+        result = simulate(task.ready, task.folder, resume=task.resume, started=task.started, source=source,
+                          watch=lambda p: print(json.dumps(asdict(p)), flush=True))
+    except MdanimError as error:
+        result = (type(error).__name__, type(error).__module__, str(error))
+    except BaseException:  # executors would wait for ever
+        traceback.print_exc()
+        sys.stderr.flush()
+        world.Abort(1)
+        raise
+    source.timeline.write(task.folder)
+    part = exchange / (RESULT + ".part")
+    part.write_bytes(pickle.dumps(result))
+    part.rename(exchange / RESULT)
+    if source.stuck:
+        world.Abort(1)
+
+
+if __name__ == "__main__":
+    main()

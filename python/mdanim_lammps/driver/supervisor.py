@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The supervisor: starts the executors, puts their shares of frames together, and under central control decides for them.
+
+It is the source of a run's frames (driver/source.py); what becomes of them is the same as in the sequential program.
+"""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+from mpi4py import MPI
+
+from .. import errors
+from ..engine.instance import State
+from ..engine.part import Parts
+from ..errors import DivergedError, MdanimError
+from ..results.timeline import Timeline
+from .energy import ledger_terms
+from .messages import SUPERVISOR, Ended, Failure, Grant, Job, Kept, Mail, Share, Tag
+from .planner import Planner
+from .prepare import Prepared
+from .source import Account, Broken, Frame, Pool
+
+CREDIT = 2
+"""Frames that executors may be ahead of what has been taken."""
+KEEP_SECONDS = 5.0
+"""Wall time between frames for which executors send what a checkpoint needs."""
+PATIENCE = 5.0
+"""Seconds that executors have to end after something has gone wrong."""
+PAUSE = 0.0002
+"""Seconds between two looks for messages."""
+
+
+class Distributed:
+    """K executors under one supervisor, on the ranks of a communicator; a `source.Source`."""
+
+    def __init__(self, ready: Prepared, world: MPI.Comm, control: str, safety: float):
+        self.ready, self.world, self.control, self.safety = ready, world, control, safety
+        self.executors = world.size - 1
+        c, system = ready.certificate, ready.system
+        self.lengths = (c.steps_per_frame,) * c.frames + ((c.last_steps,) if c.last_steps else ())
+        self.losses = {term: 0.0 for term in ledger_terms(ready.plan.effects) if term.endswith("_loss")}
+        self.resting = self._resting_energies()
+        self.sheaves: dict[int, _Sheaf] = {}
+        self.ended: dict[int, Ended] = {}
+        self.gone: set[int] = set()
+        """Executors that have said their last word."""
+        self.stuck = False
+        """Whether some executor has not ended when it was told to."""
+        self.timeline = Timeline(self.executors, control, system.names)
+
+    # --- as a source of frames ------------------------------------------------------------------------------------
+
+    def __enter__(self) -> "Distributed":
+        return self
+
+    def begin(self, resume):
+        system = self.ready.system
+        self.step = resume.step if resume else 0
+        self.start = (resume.x, resume.v, resume.f) if resume else (system.position, system.velocity, np.zeros_like(system.position))
+        self.granted = resume.frame if resume else 0
+        self.kept_at = time.perf_counter()
+        self.desk = _Desk(self.world, Job(self.ready.plan, self.lengths, self.control, resume, self.safety))
+        self.desk.start()
+        return None if resume else self._frame(0, keep=True)
+
+    def advance(self, frame, steps):
+        while self.granted < min(frame + CREDIT - 1, len(self.lengths)):
+            self._grant(self.granted + 1)
+        self.step += steps
+        return self._frame(frame, self._sheaf(frame).keep)
+
+    def stop(self, frame):
+        if self.granted < len(self.lengths):
+            self.desk.send_all(Tag.GRANT, None)
+            self._sheaf(self.granted).keep = True
+        return self.granted
+
+    def state(self):
+        return self.last_state
+
+    def account(self):
+        """Where the executors' time went, the mean of all."""
+        while len(self.ended) < self.executors:
+            self._take()
+        mean = Account()
+        for ended in self.ended.values():
+            mean.leapfrog += ended.account.leapfrog / self.executors
+            for name, clocks in ended.account.effects.items():
+                mine = mean.effects.setdefault(name, {})
+                for clock, seconds in clocks.items():
+                    mine[clock] = mine.get(clock, 0.0) + seconds / self.executors
+            begun = next((begin for kind, _, begin, _ in ended.spans if kind == "held"), 0.0)
+            for kind, _, begin, end in ended.spans:
+                if kind != "simulating" and begin >= begun:
+                    mean.other[kind] = mean.other.get(kind, 0.0) + (end - begin) / self.executors
+        return mean
+
+    def __exit__(self, kind, *_) -> None:
+        if not hasattr(self, "desk"):
+            return
+        if kind is not None:
+            self.desk.send_all(Tag.ABORT, None)
+            end = time.perf_counter() + PATIENCE
+            while len(self.gone) < self.executors and time.perf_counter() < end:
+                try:
+                    self._take(patience=0.1)
+                except (MdanimError, Broken):  # the first word was that of the cause
+                    pass
+            self.stuck = len(self.gone) < self.executors
+        self.desk.close()
+        for executor, ended in self.ended.items():
+            self.timeline.spans += [(executor, *span) for span in ended.spans]
+
+    # --- frames ---------------------------------------------------------------------------------------------------
+
+    def _grant(self, frame: int) -> None:
+        keep = frame == len(self.lengths) or time.perf_counter() - self.kept_at > KEEP_SECONDS
+        if keep:
+            self.kept_at = time.perf_counter()
+        self._sheaf(frame).keep = keep
+        self.desk.send_all(Tag.GRANT, Grant(frame, keep))
+        self.granted = frame
+
+    def _sheaf(self, frame: int) -> "_Sheaf":
+        if frame not in self.sheaves:
+            self.sheaves[frame] = _Sheaf(*(a.copy() for a in self.start))
+        return self.sheaves[frame]
+
+    def _frame(self, frame: int, keep: bool) -> Frame:
+        """Wait for all shares of a frame. Raises what an executor raised."""
+        sheaf = self._sheaf(frame)
+        while len(sheaf.shares) < self.executors or keep and sheaf.kept < self.executors:
+            self._take()
+        del self.sheaves[frame]
+        shares = [sheaf.shares[e] for e in range(self.executors)]
+        energies = dict(self.resting)
+        for share in shares:
+            for term, e in share.energies.items():
+                if term in self.losses:
+                    self.losses[term] += e
+                else:
+                    energies[term] += e
+        self.timeline.add(frame, [s.objects for s in shares], sum(s.moves for s in shares), max(s.retries for s in shares))
+        if keep:
+            self.last_state = State(sheaf.x, sheaf.v, sheaf.f, sheaf.liquid)
+        return Frame(self.step, sheaf.x, sheaf.v, energies | self.losses, max(s.penetration for s in shares),
+                     next((s.pool for s in shares if s.pool), None), keep)
+
+    def _resting_energies(self) -> dict[str, float]:
+        """What objects that never move add to the ledger [J]: executors tell of what moves."""
+        system, energies = self.ready.system, dict.fromkeys(ledger_terms(self.ready.plan.effects), 0.0)
+        still = np.repeat(np.logical_and.reduceat(system.held, system.first[:-1]), np.diff(system.first))
+        for effect in self.ready.plan.effects:
+            if effect.ledger:
+                energies[effect.ledger] += effect.potential(self.ready.scene, system.mass[still], system.position[still])
+        return energies
+
+    def _take(self, patience: float | None = None) -> None:
+        """Wait for one message and file it. Raises what an executor or the desk raised."""
+        try:
+            executor, message = self.desk.inbox.get(timeout=patience)
+        except queue.Empty:
+            return
+        system = self.ready.system
+        if isinstance(message, Share):
+            sheaf = self._sheaf(message.frame)
+            sheaf.shares[executor] = message
+            rows = _rows(system.first, message.objects)
+            sheaf.x[rows], sheaf.v[rows] = message.x, message.v
+        elif isinstance(message, Kept):
+            sheaf = self._sheaf(message.frame)
+            sheaf.kept += 1
+            sheaf.f[_rows(system.first, message.objects)] = message.f
+            sheaf.liquid = sheaf.liquid if message.liquid is None else message.liquid
+        elif isinstance(message, Ended):
+            self.gone.add(executor)
+            if message.account is not None:
+                self.ended[executor] = message
+        elif isinstance(message, Failure):
+            self.gone.add(executor)
+            if message.kind == "Broken":
+                raise Broken(message.step, DivergedError(message.text), message.solid)
+            raise getattr(errors, message.kind)(message.text)
+        else:
+            raise message
+
+
+def _rows(first: np.ndarray, objects: np.ndarray) -> np.ndarray:
+    return np.concatenate([np.arange(0), *(np.arange(first[m], first[m + 1]) for m in objects)])
+
+
+@dataclass
+class _Sheaf:
+    """A frame of which shares are still to come."""
+
+    x: np.ndarray
+    v: np.ndarray
+    f: np.ndarray
+    shares: dict[int, Share] = field(default_factory=dict)
+    """By executor."""
+    keep: bool = False
+    """Whether what a checkpoint needs comes with it."""
+    kept: int = 0
+    """Executors that have sent it."""
+    liquid: np.ndarray | None = None
+
+
+class _Desk(threading.Thread):
+    """All talk with executors, so that none of them waits while a frame is written; central control decides here."""
+
+    def __init__(self, world: MPI.Comm, job: Job):
+        super().__init__(daemon=True)
+        self.world, self.job = world, job
+        self.inbox: queue.Queue = queue.Queue()
+        """(executor, message) that the source of frames is to take."""
+        self.outbox: queue.Queue = queue.Queue()
+        self.closing = threading.Event()
+
+    def send_all(self, tag: Tag, message) -> None:
+        """Send to all executors."""
+        self.outbox.put((tag, message))
+
+    def close(self) -> None:
+        """Send what is left, then end."""
+        self.closing.set()
+        self.join()
+
+    def run(self) -> None:
+        try:
+            self._work()
+        except Exception as error:  # the main thread waits for the inbox: it must hear of everything
+            self.inbox.put((SUPERVISOR, error))
+
+    def _work(self) -> None:
+        world, job = self.world, self.job
+        world.Split(0, world.rank)
+        world.bcast(job, root=SUPERVISOR)
+        world.Barrier()
+        mail = Mail(world)
+        executors = world.size - 1
+        planner = None
+        if job.control == "central":
+            planner = Planner(Parts(job.plan), executors, job.lengths, job.safety, job.resume.frame if job.resume else 0)
+        reports = {}
+        while True:
+            closing = self.closing.is_set()
+            busy = self._send(mail, executors)
+            while (message := mail.peek(MPI.ANY_TAG, MPI.ANY_SOURCE)) is not None:
+                status = MPI.Status()
+                received, executor = message.recv(status=status), status.source - 1
+                busy = True
+                if status.tag != Tag.REPORT:
+                    self.inbox.put((executor, received))
+                    continue
+                reports[executor] = received
+                if len(reports) == executors:
+                    order = planner.decide([reports.pop(e) for e in range(executors)])
+                    for e in range(executors):
+                        mail.send(e + 1, Tag.ORDER, order)
+            if closing and not busy:
+                return
+            if not busy:
+                time.sleep(PAUSE)
+
+    def _send(self, mail: Mail, executors: int) -> bool:
+        try:
+            tag, message = self.outbox.get_nowait()
+        except queue.Empty:
+            return False
+        for e in range(executors):
+            mail.send(e + 1, tag, message)
+        return True

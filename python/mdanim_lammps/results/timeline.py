@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What the executors of a run did when, and who owned which object: timeline.json."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from .files import read_json, write_json
+
+TIMELINE = "timeline.json"
+"""Name of the file in the output folder."""
+KINDS = ("simulating", "moving", "waiting", "frozen", "held")
+"""What an executor can be at: running LAMMPS; handing objects on and building instances; waiting for the others at the frame; frozen at
+the end of a window that others do again; held by the supervisor, which has not yet taken the frames before."""
+
+
+@dataclass
+class Timeline:
+    """The log of a run on several executors."""
+
+    executors: int
+    control: str
+    """``central`` or ``peers``."""
+    names: tuple[str, ...]
+    """Of the objects."""
+    frames: list[int] = field(default_factory=list)
+    moves: list[int] = field(default_factory=list)
+    """Objects that changed their executor on the way to each frame."""
+    retries: list[int] = field(default_factory=list)
+    """How often the window before each frame was begun again."""
+    owners: list[tuple[int, int, int]] = field(default_factory=list)
+    """(frame, object, executor) whenever an object is first owned, or by another; what never moves is nobody's."""
+    spans: list[tuple[int, str, int, float, float]] = field(default_factory=list)
+    """(executor, kind, frame, begin, end), times in seconds since all executors began; kinds are `KINDS`."""
+
+    def add(self, frame: int, objects: Sequence[np.ndarray], moves: int, retries: int) -> None:
+        """Take note of a frame; ``objects`` are those of each executor, in their order."""
+        now = np.full(len(self.names), -1)
+        for executor, mine in enumerate(objects):
+            now[mine] = executor
+        before = getattr(self, "_now", np.full_like(now, -1))
+        self.owners += [(frame, int(m), int(now[m])) for m in np.flatnonzero(now != before)]
+        self._now = now
+        self.frames.append(frame)
+        self.moves.append(moves)
+        self.retries.append(retries)
+
+    def owner(self) -> np.ndarray:
+        """Executor of every object at every frame, -1 for none, int64, shape (F, M)."""
+        table = np.full((len(self.frames), len(self.names)), -1)
+        row = {frame: n for n, frame in enumerate(self.frames)}
+        for frame, m, executor in self.owners:
+            table[row[frame]:, m] = executor
+        return table
+
+    def write(self, folder: Path) -> None:
+        """Write timeline.json. Raises OutputError."""
+        write_json(folder / TIMELINE, asdict(self))
+
+    @classmethod
+    def read(cls, folder: Path) -> "Timeline":
+        """Read timeline.json of an output folder. Raises OutputError."""
+        data = read_json(folder / TIMELINE)
+        return cls(**{k: tuple(v) if k == "names" else v for k, v in data.items()})
