@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A part of a plan evolves as the same objects do in the whole, to the last bit, as long as they meet none of the others."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from mdanim_lammps.driver.prepare import prepare
+from mdanim_lammps.engine.data_file import data_text
+from mdanim_lammps.engine.instance import Instance, State
+from mdanim_lammps.engine.part import Parts
+from mdanim_lammps.engine.plan import both_ends, make_plan
+from mdanim_lammps.model.system import System
+from mdanim_lammps.scene.parse import load_scene
+
+SHELF = """
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+walls from (-1, -1, 0) m to (1.2, 1, 2) m
+object ball {
+  shape sphere 6 cm
+  position (0, 0, 20) cm
+  mass 0.5 kg
+  elasticity 100 kPa
+  velocity (0, 0, -2) m/s
+}
+object plate {
+  shape box (15, 15, 2.5) cm
+  position (40, 0, 10) cm
+  mass 0.3 kg
+  elasticity 100 kPa
+  velocity (0, 0, -1) m/s
+  spin (0, 3, 0)
+}
+object falling {
+  shape box (7.5, 7.5, 7.5) cm
+  position (1, 0, 36) cm
+  orientation axis (1, 1, 0) angle 20 deg
+  mass 0.4 kg
+  elasticity 150 kPa
+  velocity (0, 0, -5) m/s
+  damping 0.1
+}
+object feather {
+  shape box (10, 5, 5) cm
+  position (80, 0, 30) cm
+  mass 0.01 kg
+  elasticity 20 kPa
+  drag 300
+  velocity (2, 0, -3) m/s
+}
+object sheet {
+  shape box (10, 10, 2.5) cm
+  position (40, 1, 25) cm
+  mass 0.2 kg
+  elasticity 100 kPa
+  velocity (0, 0, -4) m/s
+  drag 0.5
+}
+object rock {
+  shape box (10, 10, 10) cm
+  position (-60, 0, 5) cm
+  density 2500
+  elasticity 1 MPa
+  hold all
+}
+control { time 0.2 s  frames 50 fps  resolution 2.5 cm }
+"""
+POND = """
+gravity (0, 0, -9.81) m/s^2
+liquid water {
+  basin from (-30, -25, 0) cm to (30, 25, 30) cm
+  density 1000
+  volume 45 l
+  fill from (-30, -25, 0) cm to (20, 25, 30) cm
+  MODEL
+}
+object above {
+  shape box (10, 10, 10) cm
+  position (0, 0, 120) cm
+  density 800
+  elasticity 100 kPa
+  drag 0.3
+  damping 0.1
+  spin (1, 2, 3)
+}
+object wall {
+  shape box (5, 30, 20) cm
+  position (15, -10, 10) cm
+  density 2000
+  elasticity 1 MPa
+  hold all
+}
+object higher {
+  shape box (7.5, 7.5, 7.5) cm
+  position (0, 0, 150) cm
+  density 800
+  elasticity 100 kPa
+}
+object raft {
+  shape box (15, 15, 10) cm
+  position (-8, 0, 26) cm
+  orientation euler (0, 20, 10) deg
+  density 400
+  elasticity 100 kPa
+  velocity (0, 0, -2) m/s
+  drag 0.5
+}
+control { time 0.1 s  frames 50 fps  resolution 2.5 cm  seed 5 }
+"""
+ACCOUNTS = np.s_[80:96]
+"""Bytes of a liquid's state that only tell energies, StateHead in fix_mdanim_liquid.cpp."""
+
+
+def particles(system, objects) -> np.ndarray:
+    """Their particles in the whole."""
+    return np.concatenate([np.arange(system.first[m], system.first[m + 1]) for m in objects])
+
+
+def cut(state: State, rows: np.ndarray, liquid: bool) -> State:
+    """What a part has of a state of the whole."""
+    return State(state.x[rows], state.v[rows], state.f[rows], state.liquid if liquid else None)
+
+
+def evolve(instance, steps: int) -> State:
+    """The state after these steps."""
+    instance.run(steps)
+    return instance.state()
+
+
+def equal(a: State, b: State, what: object = "") -> None:
+    """Compare every bit of what moves."""
+    for name in ("x", "v", "f"):
+        assert np.array_equal(getattr(a, name), getattr(b, name)), (name, what)
+    assert (a.liquid is None) == (b.liquid is None)
+    if a.liquid is not None:
+        assert np.array_equal(np.delete(a.liquid, ACCOUNTS), np.delete(b.liquid, ACCOUNTS)), what
+
+
+def islands(low, high, gap) -> list[tuple[int, ...]]:
+    """Objects whose boxes, each grown by its own half gap, hang together."""
+    low, high, left, found = low - gap[:, None] / 2, high + gap[:, None] / 2, set(range(len(low))), []
+    while left:
+        island, edge = set(), {min(left)}
+        while edge:
+            m = edge.pop()
+            island.add(m)
+            edge |= {int(k) for k in np.flatnonzero((low <= high[m]).all(1) & (high >= low[m]).all(1))} - island
+        left -= island
+        found.append(tuple(sorted(island)))
+    return found
+
+
+def follow(plan, starts=(1, 500), steps=400):
+    """Run the whole, and the islands that its own traces show; compare them. Gives the islands of each stretch."""
+    parts, stretches = Parts(plan), []
+    with Instance(plan) as whole:
+        whole.setup()
+        for start in starts:
+            before = evolve(whole, start - whole.step)
+            whole.start_trace()
+            after = evolve(whole, steps)
+            found = islands(*whole.trace(), parts.reach.max() * np.ones(len(parts.reach)))
+            stretches.append(found)
+            for island in found:
+                rows = particles(plan.system, island)
+                part = parts.part(island, False)
+                with Instance(part) as instance:
+                    instance.put(start, cut(before, rows, False))
+                    equal(evolve(instance, steps), cut(after, rows, False), [plan.system.names[m] for m in island])
+    return stretches
+
+
+def test_islands_of_a_crowd(scenes):
+    """Balls alone, pairs and clusters of them, taken out of the paper's crowd while they fly, meet and bounce."""
+    plan = prepare(load_scene(scenes / "crowd.txt")).plan
+    found = follow(plan, starts=(1, 1200), steps=300)
+    assert len(found[0]) > 20 and any(1 < len(island) < 20 for island in found[1])
+
+
+def test_damped_dragged_thin_and_held_objects(prepared):
+    """Take out single objects and a pair that is not side by side in the scene, with walls, strong drag, dashpots and thin plates."""
+    plan = prepared(SHELF).plan
+    assert plan.exponential, "the feather must be dragged so strongly that drag is taken exponentially"
+    found = follow(plan)
+    assert (0, 2) in found[1] and (1, 4) in found[1] and (3,) in found[1] and (5,) in found[1]
+
+
+@pytest.mark.parametrize("model", ["", "model pressure", "model paper"])
+def test_what_is_in_the_liquid_and_what_is_not(prepared, model):
+    """Take out the pond with what swims in it, and the two objects that fall far above it and meet."""
+    plan = prepared(POND.replace("MODEL", model)).plan
+    parts = Parts(plan)
+    assert plan.system.position[particles(plan.system, (0, 2)), 2].min() > parts.liquid_top
+    with Instance(plan) as whole:
+        whole.setup()
+        before = evolve(whole, 60)
+        after = evolve(whole, 300)
+    for objects, liquid in (((1, 3), True), ((0, 2), False), ((0,), False), ((2,), False)):
+        rows = particles(plan.system, objects)
+        part = parts.part(objects, liquid)
+        with Instance(part) as instance:
+            instance.put(60, cut(before, rows, liquid))
+            equal(evolve(instance, 300), cut(after, rows, liquid), objects)
+
+
+def test_the_liquid_alone(prepared):
+    """Run the pond without any object, as it goes on when all have left."""
+    text = POND.replace("MODEL", "")
+    for name in ("wall", "raft"):
+        text = text[: text.index(f"object {name}")] + text[text.index("}", text.index(f"object {name}")) + 2:]
+    plan = prepared(text).plan
+    with Instance(plan) as whole, Instance(Parts(plan).part((), True)) as alone:
+        whole.setup()
+        start = evolve(whole, 20)
+        whole.run(300)
+        alone.put(20, State(*np.zeros((3, 0, 3)), start.liquid))
+        alone.run(300)
+        assert np.array_equal(alone.liquid_state(), whole.liquid_state())
+        assert alone.fix_value("liquid", 4) > 0, "nothing has moved, so nothing is shown"
+
+
+def test_float_from_the_start(scenes):
+    """Take all that floats: the same numbers of particles, and the same pouring."""
+    plan = prepare(load_scene(scenes / "float.txt")).plan
+    with Instance(plan) as whole, Instance(Parts(plan).part((0,), True)) as part:
+        whole.setup()
+        part.setup()
+        equal(evolve(part, 100), evolve(whole, 100))
+        assert np.array_equal(part.liquid_state(), whole.liquid_state())
+
+
+def test_a_part_says_what_a_plan_of_its_own_would_say(prepared):
+    """Slice to what the same objects give in a scene of their own: system, types, tables of tags, springs at both ends."""
+    text = POND.replace("MODEL", "model pressure")
+    whole, name = prepared(text), "object higher"
+    without = text[: text.index(name)] + text[text.index("}", text.index(name)) + 2:]
+    own = prepared(without)
+    part = Parts(whole.plan).part((0, 1, 3), True)
+    own_plan = make_plan(own.scene, own.system, own.verdicts, whole.certificate)
+    for field in fields(System):
+        a, b = getattr(part.system, field.name), getattr(own_plan.system, field.name)
+        assert np.array_equal(a, b) if isinstance(b, np.ndarray) else a == b, field.name
+    for name in ("columns", "tables"):
+        a, b = getattr(part, name), getattr(own_plan, name)
+        assert a.keys() == b.keys()
+        for key in a:
+            assert np.array_equal(a[key], b[key]), key
+    assert [e.name for e in part.effects] == [e.name for e in own_plan.effects]
+    coefficients = part.coefficients[part.bond_kind - 1]
+    assert np.array_equal(coefficients, own_plan.coefficients[own_plan.bond_kind - 1])
+    assert len(part.coefficients) == len(np.unique(part.bond_kind))
+    assert np.array_equal(part.kind, own_plan.kind) and np.array_equal(part.bonds, own_plan.bonds)
+    for a, b in zip(part.ends(), both_ends(part.bonds, part.bond_kind, part.system.particles)):
+        assert np.array_equal(a, b) and a.dtype == b.dtype
+    assert len("".join(data_text(part))) > 1000
+
+
+def test_effects_with_nothing_to_act_on_are_left_out(prepared):
+    """Keep walls and ground; drop contact of one object, and of the liquid all traces in what is dry."""
+    parts = Parts(prepared(SHELF).plan)
+    assert [e.name for e in parts.part((0,), False).effects] == ["springs", "damping", "gravity", "ground", "walls", "air-drag"]
+    assert "reach" not in parts.part((0,), False).columns and "reach" in parts.part((0, 2), False).columns
+    pond = Parts(prepared(POND.replace("MODEL", "")).plan)
+    dry = pond.part((0, 2), False)
+    assert [e.name for e in dry.effects] == ["springs", "damping", "gravity", "contact", "basin", "air-drag"]
+    assert set(dry.columns) == {"stiffness", "reach", "lambda"} and not dry.tables and dry.grid is None
+    assert set(pond.part((0,), True).columns) == {"stiffness", "lambda", "volume", "gamma", "air"}
+
+
+@pytest.mark.parametrize(("objects", "liquid", "why"), [
+    pytest.param((2, 0), False, "must ascend", id="another order"),
+    pytest.param((1, 1), False, "must ascend", id="one of them twice"),
+    pytest.param((1, 6), False, "within 0 and 5", id="not there"),
+    pytest.param((-1, 2), False, "within 0 and 5", id="counted from the end"),
+    pytest.param((0,), True, "no liquid", id="no liquid"),
+    pytest.param((), False, "needs an object", id="nothing"),
+])
+def test_parts_that_are_refused(prepared, objects, liquid, why):
+    """Say what is wrong."""
+    with pytest.raises(ValueError, match=why):
+        Parts(prepared(SHELF).plan).part(objects, liquid)
+
+
+@pytest.mark.parametrize("text", [pytest.param(SHELF, id="solids"), pytest.param(POND.replace("MODEL", ""), id="liquid")])
+def test_a_state_is_put_again_and_again(prepared, text):
+    """Take back steps on a live instance, as often as wanted, and get the same bits each time."""
+    with Instance(prepared(text).plan) as instance:
+        instance.setup()
+        start = evolve(instance, 300)
+        first = evolve(instance, 150)
+        for steps in (70, 150):
+            instance.put(300, start)
+            equal(instance.state(), start)
+            again = evolve(instance, steps)
+        equal(first, again)
+        assert instance.step == 450
+
+
+def test_a_state_of_other_particles_is_refused(prepared):
+    """Say how many there are."""
+    parts = Parts(prepared(SHELF).plan)
+    with Instance(parts.part((0,), False)) as one, Instance(parts.part((2,), False)) as other:
+        other.setup()
+        with pytest.raises(ValueError, match=r"shape \(64, 3\), the plan has \d+ particles"):
+            one.put(0, other.state())
