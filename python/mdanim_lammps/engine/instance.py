@@ -38,7 +38,7 @@ class Instance:
 
     On a communicator of several ranks all of them call all methods together, with the same arguments, and all get the same answers;
     each holds the particles of its part of space. Every number of a State is the same on any number of ranks, to the last bit; energies
-    are sums over particles and agree but for rounding. When LAMMPS stops on one rank only, the error comes up there alone, and the other
+    are sums over particles and agree but for rounding, those that dashpots take to about 1e-3 (plugin/loss.h). When LAMMPS stops on one rank only, the error comes up there alone, and the other
     ranks wait for ever: who catches it is to abort them.
     """
 
@@ -181,6 +181,9 @@ class Instance:
             # A particle may be far from the rank that holds it now, farther than LAMMPS's own exchange reaches.
             self._command("delete_atoms group all compress no")
             self._insert(self.plan.ends(), state.x)
+            for command in physics(self.plan):
+                if command.startswith("group "):  # the new particles are in none yet
+                    self._command(command)
             self._command(BALANCE[0])
         else:
             self.array("x")[:] = state.x

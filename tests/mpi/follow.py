@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Follow a scene on all ranks and write what rank 0 has seen: ``mpiexec -n N python follow.py together SCENE OUT.npz``."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from mdanim_lammps.driver.prepare import prepare
+from mdanim_lammps.engine.instance import Instance, State
+from mdanim_lammps.scene.parse import load_scene
+
+FIRST, THEN = 15, 20
+"""Steps before the state that is put again, and after it."""
+SIDE = np.array([9.0, 0.0, 3.0])
+"""A place far from all objects, twice [m]."""
+
+
+def seen(instance: Instance) -> dict[str, np.ndarray]:
+    """Everything that a driver asks an instance for."""
+    state, plan = instance.state(), instance.plan
+    found = {name: getattr(state, name) for name in ("x", "v", "f")}
+    if plan.grid:
+        smooth, raw = instance.liquid_heights()
+        found |= {"liquid": state.liquid, "cells": instance.liquid_cells(), "smooth": smooth, "raw": raw}
+    if "lambda" in plan.columns:
+        found["lambda"] = instance.array("d_lambda").copy()
+    energies = [effect.energy(instance, plan.scene, plan.system) for effect in plan.effects]
+    return found | {"step": np.array(instance.step), "energies": np.array(energies),
+                    "depths": np.array([effect.penetration(instance, plan.system) for effect in plan.effects])}
+
+
+def follow(path: Path, comm=None) -> dict[str, np.ndarray]:
+    """What is seen at the start, after some steps, after more, and after those were taken back and gone again, here and elsewhere."""
+    plan = prepare(load_scene(path)).plan
+    film: dict[str, np.ndarray] = {}
+
+    def look(when: str) -> None:
+        film.update({f"{when} {name}": value for name, value in seen(instance).items()})
+
+    with Instance(plan, comm) as instance:
+        instance.setup()
+        look("start")
+        instance.run(FIRST)
+        kept = instance.state()
+        instance.start_trace()
+        instance.run(THEN)
+        low, high = instance.trace()
+        film |= {"low": low, "high": high}
+        look("end")
+        instance.put(FIRST, kept)
+        instance.run(THEN)
+        look("again")
+        clocks = [seconds for effect in plan.effects for seconds in effect.clocks(instance).values()]
+        assert np.isfinite(clocks).all() and instance.bond_seconds() > 0.0
+    with Instance(plan, comm) as instance:
+        if plan.grid is None:
+            # All particles far from the ranks that have them: a put is to bring them home from anywhere.
+            mirror = State(SIDE - kept.x, -kept.v, -kept.f)
+            instance.put(FIRST, mirror)
+            film["far"] = instance.state().x
+        instance.put(FIRST, kept)
+        instance.run(THEN)
+        look("new")
+    return film
+
+
+def together(scene: str, out: str) -> None:
+    """All ranks follow one instance, and see the same."""
+    from mpi4py import MPI
+
+    comm = MPI.COMM_WORLD
+    film = follow(Path(scene), comm)
+    for name, own in film.items():
+        root = comm.bcast(own)
+        assert np.array_equal(own, root, equal_nan=True), f"rank {comm.rank} has another {name}"
+    if comm.rank == 0:
+        np.savez(out, **film)
+
+
+def apart(scene: str, out: str) -> None:
+    """Rank 0 follows its own instance while the others follow another one together, and write theirs."""
+    from mpi4py import MPI
+
+    comm = MPI.COMM_WORLD
+    part = comm.Split(color=comm.rank == 0)
+    film = follow(Path(scene), part)
+    if part.rank == 0:
+        np.savez(f"{out}{int(comm.rank > 0)}.npz", **film)
+
+
+if __name__ == "__main__":
+    {"together": together, "apart": apart}[sys.argv[1]](*sys.argv[2:])
