@@ -1,6 +1,6 @@
 # make demo   set up .venv, run scenes/beam.txt, end with the path of the movie
 # make test   set up .venv, run the tests
-# make soak   set up .venv, run the long form of the hard cases (tests/stability)
+# make soak   set up .venv, run the long form of the hard cases (tests/stability, test_ranks.py)
 # make clean  forget everything that was built
 PYTHON ?= python3
 VENV := .venv
@@ -28,7 +28,7 @@ test: setup
 	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 soak: setup
-	$(BIN)/python -m pytest -n 2 -m soak tests/stability
+	$(BIN)/python -m pytest -n 2 -m soak tests/stability tests/test_ranks.py
 
 clean:
 	rm -rf $(VENV) build dist

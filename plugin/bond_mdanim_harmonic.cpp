@@ -23,6 +23,7 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <utility>
 
 using namespace LAMMPS_NS;
 using namespace mdanim;
@@ -89,7 +90,7 @@ void BondMdanimHarmonic::init_style()
   const auto &fixes = modify->get_fix_list();
   bonds_are_swapped = std::any_of(fixes.begin(), fixes.end(),
                                   [](const Fix *fix) { return utils::strmatch(fix->style, "^bond/"); });
-  source = Source();
+  coefficients_may_differ = true;
 }
 
 // --- rows ---
@@ -127,17 +128,16 @@ bool BondMdanimHarmonic::source_changed()
 
 void BondMdanimHarmonic::make_rows()
 {
-  struct Bond {
-    tagint tag;
-    int partner, type;
-  };
-  std::vector<Bond> row;
   const bool periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
+  const int bonds = std::accumulate(atom->num_bond, atom->num_bond + atom->nlocal, 0);
 
   rows = Rows();
   rows.first.push_back(0);
+  rows.partner.reserve(bonds);
+  rows.type.reserve(bonds);
   for (int i = 0; i < atom->nlocal; ++i) {
-    row.clear();
+    tagint before = 0;
+    bool ascending = true;
     for (int b = 0; b < atom->num_bond[i]; ++b) {
       const tagint tag = atom->bond_atom[i][b];
       const int type = atom->bond_type[i][b];
@@ -151,21 +151,40 @@ void BondMdanimHarmonic::make_rows()
             "lower the time step",
             atom->tag[i], tag, update->ntimestep);
       if (periodic) partner = domain->closest_image(i, partner);
-      row.push_back({tag, partner, type});
+      rows.partner.push_back(partner);
+      rows.type.push_back(type);
+      ascending = ascending && tag > before;
+      before = tag;
     }
-    std::sort(row.begin(), row.end(), [](const Bond &a, const Bond &b) { return a.tag < b.tag; });
-    for (const Bond &b : row) {
-      rows.partner.push_back(b.partner);
-      rows.type.push_back(b.type);
-    }
+    if (!ascending) sort_row(rows.first.back());
     rows.first.push_back(static_cast<int>(rows.partner.size()));
   }
 
   rows.upper_only = halves_suffice();
   if (rows.upper_only) drop_lower_partners();
-  for (const int type : rows.type) {
-    rows.K.push_back(spring[type].K);
-    rows.r0.push_back(spring[type].r0);
+}
+
+// The last row, from entry `begin`, in the order of its partners' tags.
+void BondMdanimHarmonic::sort_row(int begin)
+{
+  std::vector<std::pair<int, int>> row;    // partner, type
+  for (size_t b = begin; b < rows.partner.size(); ++b) row.emplace_back(rows.partner[b], rows.type[b]);
+  const tagint *tag = atom->tag;
+  std::stable_sort(row.begin(), row.end(), [tag](const auto &a, const auto &b) { return tag[a.first] < tag[b.first]; });
+  for (const auto &[partner, type] : row) {
+    rows.partner[begin] = partner;
+    rows.type[begin++] = type;
+  }
+}
+
+void BondMdanimHarmonic::look_up_coefficients()
+{
+  coefficients_may_differ = false;
+  rows.K.resize(rows.type.size());
+  rows.r0.resize(rows.type.size());
+  for (size_t b = 0; b < rows.type.size(); ++b) {
+    rows.K[b] = spring[rows.type[b]].K;
+    rows.r0[b] = spring[rows.type[b]].r0;
   }
 }
 
@@ -173,7 +192,10 @@ void BondMdanimHarmonic::drop_lower_partners()
 {
   Rows upper;
   upper.upper_only = true;
+  upper.first.reserve(rows.first.size());
   upper.first.push_back(0);
+  upper.partner.reserve(rows.partner.size() / 2);
+  upper.type.reserve(rows.partner.size() / 2);
   for (int i = 0; i < atom->nlocal; ++i) {
     for (int b = rows.first[i]; b < rows.first[i + 1]; ++b) {
       if (rows.partner[b] <= i) continue;
@@ -284,7 +306,9 @@ void BondMdanimHarmonic::compute(int eflag, int vflag)
 {
   const Lap lap(seconds);
   ev_init(eflag, vflag);
-  if (neighbor->ago == 0 && source_changed()) make_rows();
+  const bool remade = neighbor->ago == 0 && source_changed();
+  if (remade) make_rows();
+  if (remade || coefficients_may_differ) look_up_coefficients();
 
   const int nlocal = atom->nlocal;
   std::vector<Vec3> *on = nullptr;

@@ -50,6 +50,8 @@ class BondMdanimHarmonic : public Bond {
   void allocate();
   bool source_changed();
   void make_rows();
+  void sort_row(int begin);
+  void look_up_coefficients();
   bool halves_suffice() const;
   void drop_lower_partners();
   void forces(int begin, int end);
@@ -60,6 +62,7 @@ class BondMdanimHarmonic : public Bond {
 
   std::vector<mdanim::Spring> spring;    // by bond type
   bool damped = false;                   // some spring has a dashpot
+  bool coefficients_may_differ = false;    // since the rows were given theirs
   bool bonds_are_swapped = false;        // some fix changes partners during a run
   Rows rows;
   Source source;
