@@ -13,7 +13,7 @@ import numpy as np
 
 TENTH = (11, 10)
 """Loads within this ratio of the mean, or of the largest island, are in balance."""
-LEAST = 4000
+LEAST = 8000
 """Particles for each member of a team: below, talking at every step costs more than it spares."""
 GAIN = 60
 """What every further member adds to the speed of a team, in percent of one executor; two have been measured at 140 to 180."""

@@ -60,10 +60,13 @@ class Executor:
         self.liquid = resume.liquid if resume else None
         self.started = resume is not None
         """False before step 0: forces come from the scene then."""
-        planner = Planner(self.parts, comm.size, job.lengths, job.safety, self.frame)
+        planner = Planner(self.parts, comm.size, job.lengths, job.settings, self.frame)
         self.control: Control = make_control(job.control, mail, comm, planner)
         self.bundles: list[Bundle] = []
         self.order: Order | None = None
+        """What it follows."""
+        self.next: Order | None = None
+        """What it is to follow in the next window."""
         self.teams: dict[tuple[int, ...], MPI.Comm] = {}
         self.account = Account()
         self.moves = self.retries = 0
@@ -87,20 +90,27 @@ class Executor:
                 if grant is None:  # an end
                     self._keep()
                     break
-                order = self._window(self.job.lengths[self.frame])
-                self._commit()
+                self._simulate(self.step + self.job.lengths[self.frame])
                 self._send(grant.keep)
-                if self.frame < len(self.job.lengths):
-                    self._follow(order)
         finally:
             for bundle in self.bundles:
                 self._close(bundle)
         self.mail.send(SUPERVISOR, Tag.ENDED, Ended(self.account, self.spans))
         self.mail.flush()
 
-    def _window(self, steps: int) -> Order:
-        """Simulate to the next frame, again until no object has left its reserved box; returns what to do from there on."""
+    def _simulate(self, end: int) -> None:
+        """Window by window to the step of the next frame."""
         self.retries = 0
+        while self.step < end:
+            if self.next is not None:
+                self._follow(self.next)
+            self.next = self._window(self.order.steps)
+            self._commit()
+        self.frame += 1
+
+    def _window(self, steps: int) -> Order:
+        """Simulate a window, again until no object has left its reserved box; returns what to do from there on."""
+        again = False
         done: set[Bundle] = set()
         while True:
             for bundle in self.bundles:
@@ -109,14 +119,13 @@ class Executor:
                         bundle.run(steps)
                     done.add(bundle)
             # Who has nothing to do again is frozen at the end of the window until the others have come there too.
-            order = self._decide(self._report(steps), "frozen" if self.retries else "waiting")
+            order = self._decide(self._report(steps), "frozen" if again else "waiting")
             if order.commit:
-                break
+                self.step += steps
+                return order
+            again = True
             self.retries += 1
             self._follow(order, again=True)
-        self.frame += 1
-        self.step += steps
-        return order
 
     def _decide(self, report: Report, while_waiting: str = "waiting") -> Order:
         with self._span(while_waiting):

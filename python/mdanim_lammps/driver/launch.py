@@ -21,14 +21,13 @@ from pathlib import Path
 
 from ..errors import ExitCode, MdanimError, SetupError
 from ..results.checkpoint import Checkpoint
+from .planning import Settings
 from .prepare import Prepared
 from .run import STOP, Progress, Result
 
 MPIEXEC = "MDANIM_MPIEXEC"
 """Environment variable with the command that starts ranks, up to ``-n``: ``mpiexec -f hosts`` on a cluster, ``srun``."""
 JOB, RESULT = "job", "result"
-SAFETY = 1.3
-"""Reach of objects over a window, over the way of their fastest particles at its start."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +39,7 @@ class Task:
     control: str
     resume: Checkpoint | None
     started: float
-    safety: float
+    settings: Settings
 
 
 class ExecutorLost(MdanimError):
@@ -50,14 +49,15 @@ class ExecutorLost(MdanimError):
 
 
 def simulate_on(executors: int, control: str, ready: Prepared, folder: Path, *, watch: Callable[[Progress], None] | None = None,
-                resume: Checkpoint | None = None, started: float | None = None, safety: float = SAFETY) -> Result:
+                resume: Checkpoint | None = None, started: float | None = None, settings: Settings | None = None) -> Result:
     """`run.simulate` on ``executors`` ranks and a supervising one; the same frames, to the last bit.
 
     ``control`` is ``central`` or ``peers``. Raises what `run.simulate` does, SetupError without mpiexec, ExecutorLost when a rank dies.
     """
     folder = folder.resolve()
     with tempfile.TemporaryDirectory(prefix=".ranks-", dir=folder) as exchange:
-        task = Task(ready, folder, control, resume, time.perf_counter() if started is None else started, safety)
+        task = Task(ready, folder, control, resume, time.perf_counter() if started is None else started,
+                    settings or Settings())
         (Path(exchange) / JOB).write_bytes(pickle.dumps(task, protocol=pickle.HIGHEST_PROTOCOL))
         command = [*launcher(), "-n", str(executors + 1), sys.executable, "-m", "mdanim_lammps.driver.ranks", exchange]
         # A session of its own: Ctrl-C is for this process, which asks the supervisor to stop after a frame.

@@ -14,7 +14,7 @@ from mpi4py import MPI
 
 from ..engine.plan import Plan
 from ..results.checkpoint import Checkpoint
-from .planning import FramePlan
+from .planning import FramePlan, Settings
 from .source import Account, Pool
 
 SUPERVISOR = 0
@@ -60,8 +60,7 @@ class Job:
     control: str
     """``central`` or ``peers``."""
     resume: Checkpoint | None
-    safety: float
-    """Reach of an object over a window in which its fastest particle keeps its speed, see `islands.reach`."""
+    settings: Settings
 
 
 @dataclass(frozen=True)
@@ -102,6 +101,8 @@ class Order:
     low: np.ndarray
     """Corners of the boxes that are reserved for objects, eq. (6.17), the pool's last [m], shape (M, 3)."""
     high: np.ndarray
+    steps: int
+    """Of the window that is to come."""
     commit: bool
     """Whether the window is done; if not it starts again, from its beginning, with these wider boxes."""
 

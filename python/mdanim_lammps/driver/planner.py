@@ -11,7 +11,7 @@ from ..engine.part import Parts
 from ..errors import DivergedError
 from . import islands
 from .messages import Order, Report
-from .planning import FramePlan, plan
+from .planning import FramePlan, Settings, plan
 
 MARGIN = 0.05
 """Of a spacing, on top of the reach of every object."""
@@ -21,6 +21,8 @@ GUESS = 0.05
 """Microseconds of a particle-step, before anything is measured."""
 DOUBLINGS = 60
 """Beyond them a box has no meaning any more: something is flying away."""
+BALANCED = 1.25
+"""Largest load over the mean up to which a window is not made shorter."""
 ROOM = 4.0
 """Cells of liquid around the basin that belong to the pool's box."""
 
@@ -28,10 +30,14 @@ ROOM = 4.0
 class Planner:
     """Boxes, costs and owners of all objects, and of the pool as one more; the same on everybody who plans."""
 
-    def __init__(self, parts: Parts, executors: int, lengths: Sequence[int], safety: float, frame: int = 0):
-        self.parts, self.executors, self.lengths, self.safety = parts, executors, lengths, safety
+    def __init__(self, parts: Parts, executors: int, lengths: Sequence[int], settings: Settings, frame: int = 0):
+        self.parts, self.executors, self.lengths, self.settings = parts, executors, lengths, settings
         self.frame = frame
         """The last one that is done."""
+        self.done = 0
+        """Steps on the way from it to the next."""
+        self.steps = 0
+        """Of the window that executors are at."""
         whole, system = parts.whole, parts.whole.system
         self.objects = len(system.names)
         self.pool = whole.grid is not None
@@ -64,12 +70,37 @@ class Planner:
             self.doublings[escaped] += 1
             if self.doublings.max() > DOUBLINGS:
                 raise DivergedError(f"{self.parts.whole.system.names[escaped[0]]} leaves every box that is reserved for it")
-            return self._order(commit=False)
-        self.frame += self.plan is not None
+            return self._order(self.steps, commit=False)
         for report in reports:
             self._take(report)
         self.doublings[:] = 0
-        return self._order(commit=True)
+        self._advance()
+        return self._choose()
+
+    def _advance(self) -> None:
+        self.done += self.steps
+        if self.frame < len(self.lengths) and self.done == self.lengths[self.frame]:
+            self.frame, self.done = self.frame + 1, 0
+
+    def _choose(self) -> Order:
+        """The longest window that leaves the loads in balance: in a shorter one boxes are widened by less, and fewer islands merge.
+
+        Windows end at a frame at the latest. Where none is in balance, the one with the smallest largest load.
+        """
+        left = self.lengths[self.frame] - self.done if self.frame < len(self.lengths) else 1
+        before, best = self.plan, None
+        for parts in range(self.settings.finest.bit_length()):
+            steps = left >> parts
+            self.plan = before
+            order = self._order(max(1, steps), commit=True)
+            load, mean = int(order.plan.load.max(initial=0)), int(order.plan.load.sum()) // self.executors
+            if best is None or load < best[0]:
+                best = load, order
+            shorter = mean * (steps // 2) // self.lengths[min(self.frame, len(self.lengths) - 1)]
+            if self.executors == 1 or load <= BALANCED * mean and not order.plan.teams or shorter < self.settings.worth:
+                break
+        self.plan, self.steps = best[1].plan, best[1].steps
+        return best[1]
 
     def _take(self, report: Report) -> None:
         who = report.objects
@@ -84,24 +115,23 @@ class Planner:
         smooth = np.where(self.measured[who], self.cost[who] + ((new - self.cost[who]) * int(256 * FORGET) >> 8), new)
         self.cost[who], self.measured[who] = np.maximum(1, smooth), True
 
-    def reach(self) -> np.ndarray:
-        """What boxes are widened by in the coming window, eq. (6.17) [m], shape (M,), the pool's last."""
+    def reach(self, steps: int) -> np.ndarray:
+        """What boxes are widened by in a window of so many steps, eq. (6.17) [m], shape (M,), the pool's last."""
         whole = self.parts.whole
-        steps = self.lengths[min(self.frame, len(self.lengths) - 1)]
         d = islands.reach(self.speed, steps * whole.certificate.timestep, float(np.linalg.norm(whole.scene.gravity)),
-                          MARGIN * whole.spacing, self.safety)
+                          MARGIN * whole.spacing, self.settings.safety)
         d = d * 2.0**self.doublings
         d[self.still] = 0.0
         if self.pool:
             d[-1] = 0.0
         return d
 
-    def _order(self, commit: bool) -> Order:
+    def _order(self, steps: int, commit: bool) -> Order:
         owner = self.plan.owner if self.plan else np.full(len(self.cost), -1, np.int64)
-        d = self.reach()
+        d = self.reach(steps)
         self.plan = plan(self.low, self.high, d, self.cost, owner, self.executors, particles=self.particles, still=self.still,
                          gap=self.gap, feels=None if self.contact else np.arange(len(self.cost)) == self.objects, previous=self.plan)
-        return Order(self.plan, *islands.boxes(self.low, self.high, d), commit)
+        return Order(self.plan, *islands.boxes(self.low, self.high, d), steps, commit)
 
 
 def _basin(parts: Parts) -> tuple[np.ndarray, np.ndarray]:

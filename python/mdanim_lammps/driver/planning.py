@@ -21,6 +21,18 @@ SPARE = 2
 
 
 @dataclass(frozen=True, slots=True)
+class Settings:
+    """What the planner may be told otherwise, for tests and measurements; no setting changes a bit of the result."""
+
+    safety: float = 1.3
+    """Reach of objects over a window, over the way of their fastest particles at its start, see `islands.reach`."""
+    finest: int = 8
+    """Most windows to a frame, a power of two."""
+    worth: int = 10_000
+    """Microseconds of work that each executor must have in a window: below, the exchange between windows costs more than it brings."""
+
+
+@dataclass(frozen=True, slots=True)
 class FramePlan:
     """Who runs what in a frame of M objects."""
 

@@ -16,12 +16,13 @@ from pathlib import Path
 
 from ..errors import MdanimError
 from .launch import JOB, RESULT, Task
-from .messages import SUPERVISOR
 
 
 def main() -> None:
     """Be the supervisor, or an executor."""
     from mpi4py import MPI
+
+    from .messages import SUPERVISOR
 
     world = MPI.COMM_WORLD
     if world.rank != SUPERVISOR:
@@ -37,7 +38,7 @@ def _supervise(world, exchange: Path) -> None:
     from .supervisor import Distributed
 
     task: Task = pickle.loads((exchange / JOB).read_bytes())
-    source = Distributed(task.ready, world, task.control, task.safety)
+    source = Distributed(task.ready, world, task.control, task.settings)
     try:
         result = simulate(task.ready, task.folder, resume=task.resume, started=task.started, source=source,
                           watch=lambda p: print(json.dumps(asdict(p)), flush=True))

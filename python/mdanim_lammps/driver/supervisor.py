@@ -22,6 +22,7 @@ from ..results.timeline import Timeline
 from .energy import ledger_terms
 from .messages import SUPERVISOR, Ended, Failure, Grant, Job, Kept, Mail, Share, Tag
 from .planner import Planner
+from .planning import Settings
 from .prepare import Prepared
 from .source import Account, Broken, Frame, Pool
 
@@ -38,8 +39,8 @@ PAUSE = 0.0002
 class Distributed:
     """K executors under one supervisor, on the ranks of a communicator; a `source.Source`."""
 
-    def __init__(self, ready: Prepared, world: MPI.Comm, control: str, safety: float):
-        self.ready, self.world, self.control, self.safety = ready, world, control, safety
+    def __init__(self, ready: Prepared, world: MPI.Comm, control: str, settings: Settings):
+        self.ready, self.world, self.control, self.settings = ready, world, control, settings
         self.executors = world.size - 1
         c, system = ready.certificate, ready.system
         self.lengths = (c.steps_per_frame,) * c.frames + ((c.last_steps,) if c.last_steps else ())
@@ -64,7 +65,7 @@ class Distributed:
         self.start = (resume.x, resume.v, resume.f) if resume else (system.position, system.velocity, np.zeros_like(system.position))
         self.granted = resume.frame if resume else 0
         self.kept_at = time.perf_counter()
-        self.desk = _Desk(self.world, Job(self.ready.plan, self.lengths, self.control, resume, self.safety))
+        self.desk = _Desk(self.world, Job(self.ready.plan, self.lengths, self.control, resume, self.settings))
         self.desk.start()
         return None if resume else self._frame(0, keep=True)
 
@@ -245,7 +246,7 @@ class _Desk(threading.Thread):
         executors = world.size - 1
         planner = None
         if job.control == "central":
-            planner = Planner(Parts(job.plan), executors, job.lengths, job.safety, job.resume.frame if job.resume else 0)
+            planner = Planner(Parts(job.plan), executors, job.lengths, job.settings, job.resume.frame if job.resume else 0)
         reports = {}
         while True:
             closing = self.closing.is_set()
