@@ -11,23 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-TENTH = (11, 10)
-"""Loads within this ratio of the mean, or of the largest island, are in balance."""
-LEAST = 8000
-"""Particles for each member of a team: below, talking at every step costs more than it spares."""
-GAIN = 60
-"""What every further member adds to the speed of a team, in percent of one executor; two have been measured at 140 to 180."""
+from .teams import GAIN, LEAST, TENTH, Team, form, time_each
+
 CRUMB = 64
 """Islands that are smaller than the mean load over this are dealt out by whole runs."""
-
-
-@dataclass(frozen=True, slots=True)
-class Team:
-    """An island that several executors run together."""
-
-    island: int
-    members: tuple[int, ...]
-    """Executors; the first one leads: it owns the objects."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,24 +62,18 @@ def assign(label: np.ndarray, cost: np.ndarray, owner: np.ndarray, executors: in
         held = np.flatnonzero(pinned & (label >= 0) & (owner >= 0))[::-1]
         home[label[held]] = owner[held]
         fixed[label[held]] = True
+    first = moving[firsts(isle)]
+    rank = np.argsort(first if order is None else order[first], kind="stable")
+    place, load = _place(weight, home, fixed, (), executors, rank, gain)
     formed = ()
     if particles is not None and executors > 1:
-        formed = _teams(weight, total(isle, particles[moving]), home, fixed, executors, teams, gain, least)
-
-    place = home.copy()
-    base = np.zeros(executors, np.int64)
-    for team in formed:
-        place[team.island] = team.members[0]
-        fixed[team.island] = True
-        base[list(team.members)] += _time(int(weight[team.island]), len(team.members), gain)
-    alone = fixed.copy()
-    alone[[team.island for team in formed]] = False
-    base += total(home[alone], weight[alone], executors)
-    largest = max(int(base.max()) if fixed.any() else 0, int(weight[~fixed].max(initial=0)))
-    rest = np.flatnonzero(~fixed)
-    first = moving[_firsts(isle)]
-    rank = np.argsort((first if order is None else order[first])[rest], kind="stable")
-    place[rest], load = _balance(weight[rest], home[rest], base, largest, rank)
+        formed = form(weight, total(isle, particles[moving]), home, fixed, executors, teams, gain, least)
+    if formed:
+        together, new = _place(weight, home, fixed, formed, executors, rank, gain)
+        if new.max() * (19 if teams else 20) <= load.max() * (20 if teams else 19):  # a twentieth better; no worse to stay together
+            place, load = together, new
+        else:
+            formed = ()
     new = owner.astype(np.int64)
     new[moving] = place[isle]
     return Assignment(new, formed, load)
@@ -103,7 +84,7 @@ def total(group: np.ndarray, value: np.ndarray, groups: int = 0) -> np.ndarray:
     return np.bincount(group, value, groups).astype(np.int64)
 
 
-def _firsts(group: np.ndarray) -> np.ndarray:
+def firsts(group: np.ndarray) -> np.ndarray:
     """Where each of the groups 0, 1 ... is met first."""
     first = np.empty(int(group.max()) + 1, np.int64)
     first[group[::-1]] = np.arange(len(group))[::-1]
@@ -121,75 +102,32 @@ def _homes(isle: np.ndarray, cost: np.ndarray, owner: np.ndarray, executors: int
     share[who == 0] = 0
     most = np.maximum.reduceat(share, np.flatnonzero(np.concatenate([[True], island[1:] != island[:-1]])))
     top = np.flatnonzero(share == most[island])
-    return who[top][_firsts(island[top])] - 1
-
-
-# --- teams --------------------------------------------------------------------------------------------------
-
-def _time(cost: int, size: int, gain: int) -> int:
-    """What an island takes of each of ``size`` executors [µs]."""
-    return cost * 100 // (100 + gain * (size - 1))
-
-
-def _teams(weight, particles, home, fixed, executors, previous, gain, least) -> tuple[Team, ...]:
-    """Teams for islands above the mean by more than a tenth, of as many as bring them back to it; a team shrinks only when the
-    smaller one would keep to the mean. Leaders are at home where they can be, members those that were, then those with least to do.
-    """
-    most = np.minimum(particles // least, executors)
-    heavy = np.flatnonzero((most >= 2) & (weight * executors > weight.sum()))
-    heavy = [int(i) for i in heavy[np.lexsort((heavy, -weight[heavy], ~fixed[heavy]))]]
-    before = {team.members[0]: team.members for team in previous}
-    cost = {i: int(weight[i]) for i in heavy}
-    size, old = {}, {}
-    for i in heavy:
-        old[i] = before.pop(int(home[i]), ())
-        size[i] = max(1, min(len(old[i]), int(most[i])))
-
-    def spent():
-        return int(weight.sum()) + sum(size[i] * _time(cost[i], size[i], gain) - cost[i] for i in heavy)
-
-    for i in heavy:
-        while size[i] > 1 and _time(cost[i], size[i] - 1, gain) * executors <= spent():
-            size[i] -= 1
-    growing = True
-    while growing:
-        growing = False
-        for i in sorted(heavy, key=lambda i: (-_time(cost[i], size[i], gain), i)):
-            now, busy = _time(cost[i], size[i], gain), sum(s for s in size.values() if s > 1)
-            if now * executors * TENTH[1] <= spent() * TENTH[0] or size[i] >= most[i] or busy + (2 if size[i] == 1 else 1) > executors:
-                continue
-            size[i] += 1
-            after = max(_time(cost[i], size[i], gain) * executors, spent())
-            growing = after * 20 <= now * executors * 19  # else not worth it
-            if growing:
-                break
-            size[i] -= 1
-
-    wanted = [i for i in heavy if size[i] > 1]
-    load = total(home[home >= 0], weight[home >= 0], executors)
-    for i in wanted:
-        if home[i] >= 0:
-            load[home[i]] -= cost[i]
-    free, members = set(range(executors)), {}
-    for i in wanted:
-        leader = int(home[i])
-        if leader not in free:
-            if fixed[i]:
-                continue
-            leader = min(free - {int(home[j]) for j in wanted} or free, key=lambda e: (load[e], e))
-        free.remove(leader)
-        members[i] = [leader]
-    for i in members:
-        ranked = sorted(free, key=lambda e: (e not in old[i], load[e], e))[:size[i] - 1]
-        free.difference_update(ranked)
-        members[i] += sorted(ranked)
-    return tuple(Team(i, tuple(members[i])) for i in sorted(members) if len(members[i]) > 1)
+    return who[top][firsts(island[top])] - 1
 
 
 # --- balance ------------------------------------------------------------------------------------------------
 
+def _place(weight, home, fixed, teams, executors, rank, gain) -> tuple[np.ndarray, np.ndarray]:
+    """Executors of islands, and all loads, with these teams; ``fixed`` islands (I,) stay at home."""
+    place, fixed, base = home.copy(), fixed.copy(), total(home[fixed], weight[fixed], executors)
+    for team in teams:
+        i, leader = team.island, team.members[0]
+        if fixed[i]:
+            base[leader] -= weight[i]
+        place[i], fixed[i] = leader, True
+        base[list(team.members)] += time_each(int(weight[i]), len(team.members), gain)
+    largest = max(int(base.max()), int(weight[~fixed].max(initial=0)))
+    rest = np.flatnonzero(~fixed)
+    number = np.cumsum(~fixed) - 1
+    place[rest], load = _balance(weight[rest], home[rest], base, largest, number[rank[~fixed[rank]]])
+    return place, load
+
+
 def _balance(weight, home, base, largest, rank) -> tuple[np.ndarray, np.ndarray]:
-    """Executors of islands, and all loads; ``base`` (K,) is what executors have to do besides, ``rank`` the order of dealing out."""
+    """Executors of islands, and all loads; ``base`` (K,) is what executors have to do besides, ``rank`` the order of dealing out.
+
+    Repeated while that helps, so that the next frame finds nothing to do: every turn lowers the largest load, or is the last.
+    """
     mean = -(-int(weight.sum() + base.sum()) // len(base))
     cap = max(mean, largest) * TENTH[0] // TENTH[1]
     lost = home < 0
@@ -202,7 +140,8 @@ def _balance(weight, home, base, largest, rank) -> tuple[np.ndarray, np.ndarray]
     packed, new = _pack(weight, home, base, cap, mean, rank)
     if not lost.any() and stay.max() * TENTH[1] <= min(load.max(), new.max()) * TENTH[0]:
         return home, stay
-    return (kept, load) if load.max() * TENTH[1] <= new.max() * TENTH[0] else (packed, new)
+    better = kept if load.max() * TENTH[1] <= new.max() * TENTH[0] else packed
+    return _balance(weight, better, base, largest, rank)
 
 
 def _unload(weight, home, base, cap, mean, rank) -> tuple[np.ndarray, np.ndarray]:
@@ -259,14 +198,15 @@ def _level(load: np.ndarray, amount: int) -> int:
 
 
 def _pack(weight, home, base, cap, mean, rank) -> tuple[np.ndarray, np.ndarray]:
-    """Large islands anew, each to whom has least, the largest first; then those that do nothing else are named after the homes of
-    what they have. The others as before.
+    """Large islands anew, each to whom has least, the largest first, and some exchanged; then executors that do nothing else are named
+    after the homes of what they have. The other islands as before.
     """
     place, load = np.full(len(weight), -1), base.copy()
     large = np.flatnonzero(weight * CRUMB > mean)
     for i in large[np.argsort(-weight[large], kind="stable")]:
         place[i] = load.argmin()
         load[place[i]] += weight[i]
+    _exchange(weight, place, load, large, cap)
     idle = np.flatnonzero(base == 0)
     both = large[np.isin(place[large], idle) & np.isin(home[large], idle)]
     common = np.zeros((len(base), len(base)), np.int64)
@@ -284,3 +224,24 @@ def _pack(weight, home, base, cap, mean, rank) -> tuple[np.ndarray, np.ndarray]:
     place[small] = np.where(_fitting(weight[small], home[small], cap - renamed), home[small], -1)
     load = base + total(place[place >= 0], weight[place >= 0], len(base))
     return _deal(weight, place, home, load, cap, mean, rank)
+
+
+def _exchange(weight, place, load, large, cap) -> None:
+    """While the busiest is above the cap: it gives one of the large islands away, or for a smaller one, whichever evens most."""
+    executors = np.arange(len(load))
+    for _ in range(2 * len(load)):
+        busy = int(load.argmax())
+        mine, others = large[place[large] == busy], large[place[large] != busy]
+        if load[busy] <= cap or not len(mine):
+            return
+        to = np.concatenate([place[others], executors])
+        given = weight[mine][:, None] - np.concatenate([weight[others], np.zeros_like(load)])
+        after = np.maximum(load[busy] - given, load[to] + given)
+        i, k = np.unravel_index(after.argmin(), after.shape)
+        if after[i, k] >= load[busy]:
+            return
+        load[busy] -= given[i, k]
+        load[to[k]] += given[i, k]
+        if k < len(others):
+            place[others[k]] = busy
+        place[mine[i]] = to[k]

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What the plan of a frame costs, and how much it moves: ``python bench/planning.py [times|crowd]``.
+
+times: for random boxes as in a loose pile; milliseconds, the least of some rounds. The parts are measured alone.
+crowd: objects that fly about in a box and bounce off its sides, for 100 frames; means over the frames but the first.
+"""
+
+import sys
+import time
+
+import numpy as np
+
+from mdanim_lammps.driver import islands, planning
+from mdanim_lammps.driver.assign import assign
+
+EXECUTORS = 8
+
+
+def least(work, seconds: float = 1.0) -> float:
+    """Time of a call [ms], the least of at least 3 and of as many as fit."""
+    spent = []
+    while len(spent) < 3 or sum(spent) < seconds and len(spent) < 100:
+        start = time.perf_counter()
+        work()
+        spent.append(time.perf_counter() - start)
+    return 1e3 * min(spent)
+
+
+def pile(count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Boxes with edges of 0.5 to 1, one in a volume of 4."""
+    low = rng.uniform(0.0, (4.0 * count) ** (1.0 / 3.0), (count, 3))
+    return low, low + rng.uniform(0.5, 1.0, (count, 3))
+
+
+def times() -> None:
+    """One row for every number of boxes."""
+    print(f"{'boxes':>7} {'pairs':>7} {'islands':>7} | {'all pairs':>9} {'grid':>7} {'islands':>8} {'assign':>7} {'bundles':>8} "
+          f"{'order':>6} | {'first plan':>10} {'next':>7} {'balanced':>9}  [ms]")
+    for count in (10, 64, 1_000, 10_000, 100_000):
+        rng = np.random.default_rng(count)
+        low, high = pile(count, rng)
+        d = np.full(count, 0.05)
+        still = rng.random(count) < 0.05
+        particles = rng.integers(100, 1000, count)
+        known = dict(particles=particles, still=still, gap=0.1)
+        nobody = np.full(count, -1)
+        first = planning.plan(low, high, d, 2 * particles, nobody, EXECUTORS, **known)
+        reserved = *islands.boxes(low, high, d), 0.1
+        met = islands.pairs(*reserved)
+        order = planning.z_order(low, high)
+        uneven = np.where(first.owner == 0, 3 * particles, 2 * particles)
+        naive = f"{least(lambda: islands._all_pairs(*reserved)):9.2f}" if count <= 10_000 else f"{'-':>9}"
+        print(f"{count:7} {len(met):7} {first.label.max() + 1:7} | {naive} {least(lambda: islands._grid_pairs(*reserved)):7.2f} "
+              f"{least(lambda: islands.components(count, met, still)):8.2f} "
+              f"{least(lambda: assign(first.label, 2 * particles, nobody, EXECUTORS, particles=particles, order=order)):7.2f} "
+              f"{least(lambda: planning.bundles(first.label, first.owner, particles, first.teams, order=order)):8.2f} "
+              f"{least(lambda: planning.z_order(low, high)):6.2f} | "
+              f"{least(lambda: planning.plan(low, high, d, 2 * particles, nobody, EXECUTORS, **known)):10.2f} "
+              f"{least(lambda: planning.plan(low, high, d, 2 * particles, first.owner, EXECUTORS, previous=first, **known)):7.2f} "
+              f"{least(lambda: planning.plan(low, high, d, uneven, first.owner, EXECUTORS, previous=first, **known)):9.2f}")
+
+
+def crowd() -> None:
+    """One row for every crowd."""
+    print("per frame: islands; objects moved, and those that islands that join call for at least [%]; load of the busiest over the mean, the "
+          "worst of all frames; bundles, built anew [%], particles in those [%]")
+    for count, executors, volume in ((24, 4, 30.0), (100, 4, 30.0), (1_000, 2, 30.0), (1_000, 4, 30.0), (1_000, 8, 30.0), (1_000, 8, 10.0),
+                                     (10_000, 8, 30.0)):
+        print(f"{count:6} objects, one in {volume:.0f}, {executors} executors: " + _fly(count, executors, volume))
+
+
+def _fly(count: int, executors: int, volume: float, frames: int = 100) -> str:
+    rng = np.random.default_rng(count)
+    side = (volume * count) ** (1.0 / 3.0)
+    place, velocity = rng.uniform(0.0, side, (count, 3)), rng.normal(0.0, 0.1, (count, 3))
+    edge = rng.uniform(0.5, 1.0, (count, 3))
+    particles = (1000 * edge.prod(axis=1)).astype(np.int64)
+    still = np.zeros(count, bool)
+    owner, before, rows = np.full(count, -1), None, []
+    for frame in range(frames):
+        place += velocity
+        velocity = np.where((place < 0.0) & (velocity < 0.0) | (place > side) & (velocity > 0.0), -velocity, velocity)
+        speed = np.abs(velocity).max(axis=1)
+        cost = (2 * particles * rng.uniform(0.95, 1.05, count)).astype(np.int64)  # as measured clocks are
+        d = islands.reach(speed, 1.0, 0.0, 0.02)
+        plan = planning.plan(place, place + edge, d, cost, owner, executors, particles=particles, still=still, gap=0.1, previous=before)
+        if before is not None:
+            isle, at = np.unique(plan.label * executors + owner, return_counts=True)
+            most = np.zeros(plan.label.max() + 1, np.int64)
+            np.maximum.at(most, isle // executors, at)
+            new = np.unique(plan.bundle[plan.bundle > before.bundle.max()])
+            number = len(np.unique(plan.bundle))
+            rows.append((plan.label.max() + 1, 100 * (plan.owner != owner).mean(), 100 * (1 - most.sum() / count),
+                         plan.load.max() / plan.load.mean(), number, 100 * len(new) / number,
+                         100 * particles[plan.bundle > before.bundle.max()].sum() / particles.sum()))
+        owner, before = plan.owner, plan
+    mean, worst = np.mean(rows, axis=0), np.max(rows, axis=0)
+    return (f"{mean[0]:.0f}; {mean[1]:.2f}, {mean[2]:.2f}; {mean[3]:.3f}, {worst[3]:.3f}; {mean[4]:.0f}, {mean[5]:.1f}, {mean[6]:.1f}")
+
+
+if __name__ == "__main__":
+    for part in sys.argv[1:] or ("times", "crowd"):
+        {"times": times, "crowd": crowd}[part]()

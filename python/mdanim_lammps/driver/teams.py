@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Teams of executors for islands that are too heavy for one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+TENTH = (11, 10)
+"""Loads within this ratio of the mean, or of the largest island, are in balance."""
+LEAST = 8000
+"""Particles for each member of a team: below, talking at every step costs more than it spares."""
+GAIN = 60
+"""What every further member adds to the speed of a team, in percent of one executor; two have been measured at 140 to 180."""
+
+
+@dataclass(frozen=True, slots=True)
+class Team:
+    """An island that several executors run together."""
+
+    island: int
+    members: tuple[int, ...]
+    """Executors; the first one leads: it owns the objects."""
+
+
+def time_each(cost: int, size: int, gain: int) -> int:
+    """What an island takes of each of ``size`` executors [µs]."""
+    return cost * 100 // (100 + gain * (size - 1))
+
+
+def form(weight, particles, home, fixed, executors, previous, gain, least) -> tuple[Team, ...]:
+    """Teams for islands above the mean by more than a tenth, of as many as bring them back to it, if each further one spares a twentieth
+    at least; a team shrinks only when the smaller one would keep to the mean. Leaders are at home where they can be, members those
+    that were, then those with least to do. A loop over islands above the mean: fewer than K, and O(K) turns.
+
+    :param weight: cost of every island [µs], shape (I,), with its ``particles``
+    :param home: executor that has most of it, -1 for nobody, shape (I,)
+    :param fixed: islands that stay there, bool, shape (I,)
+    :param previous: teams of the frame before, known by their leaders
+    :param gain: as `GAIN` [%], and ``least`` as `LEAST`
+    """
+    most = np.minimum(particles // least, executors)
+    heavy = np.flatnonzero((most >= 2) & (weight * executors > weight.sum()))
+    heavy = [int(i) for i in heavy[np.lexsort((heavy, -weight[heavy], ~fixed[heavy]))]]
+    before = {team.members[0]: team.members for team in previous}
+    cost = {i: int(weight[i]) for i in heavy}
+    size, old = {}, {}
+    for i in heavy:
+        old[i] = before.pop(int(home[i]), ())
+        size[i] = max(1, min(len(old[i]), int(most[i])))
+
+    def spent():
+        return int(weight.sum()) + sum(size[i] * time_each(cost[i], size[i], gain) - cost[i] for i in heavy)
+
+    def shrink():
+        for i in heavy:
+            while size[i] > 1 and time_each(cost[i], size[i] - 1, gain) * executors <= spent():
+                size[i] -= 1
+
+    shrink()
+    growing = True
+    while growing:
+        growing = False
+        for i in sorted(heavy, key=lambda i: (-time_each(cost[i], size[i], gain), i)):
+            now, busy = time_each(cost[i], size[i], gain), sum(s for s in size.values() if s > 1)
+            if now * executors * TENTH[1] <= spent() * TENTH[0] or size[i] >= most[i] or busy + (2 if size[i] == 1 else 1) > executors:
+                continue
+            size[i] += 1
+            after = max(time_each(cost[i], size[i], gain) * executors, spent())
+            growing = after * 20 <= now * executors * 19  # else not worth it
+            if growing:
+                break
+            size[i] -= 1
+    shrink()
+
+    wanted = [i for i in heavy if size[i] > 1]
+    load = np.bincount(home[home >= 0], weight[home >= 0], executors)
+    for i in wanted:
+        if home[i] >= 0:
+            load[home[i]] -= cost[i]
+    free, members = set(range(executors)), {}
+    for i in wanted:
+        leader = int(home[i])
+        if leader not in free:
+            if fixed[i]:
+                continue
+            leader = min(free - {int(home[j]) for j in wanted} or free, key=lambda e: (load[e], e))
+        free.remove(leader)
+        members[i] = [leader]
+    for i in members:
+        ranked = sorted(free, key=lambda e: (e not in old[i], load[e], e))[:size[i] - 1]
+        free.difference_update(ranked)
+        members[i] += sorted(ranked)
+    return tuple(Team(i, tuple(members[i])) for i in sorted(members) if len(members[i]) > 1)
