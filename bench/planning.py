@@ -44,7 +44,8 @@ def times() -> None:
         particles = rng.integers(100, 1000, count)
         known = dict(particles=particles, still=still, gap=0.1)
         nobody = np.full(count, -1)
-        first = planning.plan(low, high, d, 2 * particles, nobody, EXECUTORS, **known)
+        where = low, high, d
+        first = planning.plan(*where, 2 * particles, nobody, EXECUTORS, **known)
         reserved = *islands.boxes(low, high, d), 0.1
         met = islands.pairs(*reserved)
         order = planning.z_order(low, high)
@@ -55,17 +56,17 @@ def times() -> None:
               f"{least(lambda: assign(first.label, 2 * particles, nobody, EXECUTORS, particles=particles, order=order)):7.2f} "
               f"{least(lambda: planning.bundles(first.label, first.owner, particles, first.teams, order=order)):8.2f} "
               f"{least(lambda: planning.z_order(low, high)):6.2f} | "
-              f"{least(lambda: planning.plan(low, high, d, 2 * particles, nobody, EXECUTORS, **known)):10.2f} "
-              f"{least(lambda: planning.plan(low, high, d, 2 * particles, first.owner, EXECUTORS, previous=first, **known)):7.2f} "
-              f"{least(lambda: planning.plan(low, high, d, uneven, first.owner, EXECUTORS, previous=first, **known)):9.2f}")
+              f"{least(lambda: planning.plan(*where, 2 * particles, nobody, EXECUTORS, **known)):10.2f} "
+              f"{least(lambda: planning.plan(*where, 2 * particles, first.owner, EXECUTORS, previous=first, **known)):7.2f} "
+              f"{least(lambda: planning.plan(*where, uneven, first.owner, EXECUTORS, previous=first, **known)):9.2f}")
 
 
 def crowd() -> None:
     """One row for every crowd."""
-    print("per frame: islands; objects moved, and those that islands that join call for at least [%]; load of the busiest over the mean, the "
-          "worst of all frames; bundles, built anew [%], particles in those [%]")
-    for count, executors, volume in ((24, 4, 30.0), (100, 4, 30.0), (1_000, 2, 30.0), (1_000, 4, 30.0), (1_000, 8, 30.0), (1_000, 8, 10.0),
-                                     (10_000, 8, 30.0)):
+    print("per frame: islands; objects moved, and those that islands that join call for at least [%]; load of the busiest over\n"
+          "the mean, the worst of all frames; bundles, built anew [%], particles in those [%]")
+    for count, executors, volume in ((24, 4, 30.0), (100, 4, 30.0), (1_000, 2, 30.0), (1_000, 4, 30.0), (1_000, 8, 30.0),
+                                     (1_000, 8, 10.0), (10_000, 8, 30.0)):
         print(f"{count:6} objects, one in {volume:.0f}, {executors} executors: " + _fly(count, executors, volume))
 
 
@@ -83,7 +84,8 @@ def _fly(count: int, executors: int, volume: float, frames: int = 100) -> str:
         speed = np.abs(velocity).max(axis=1)
         cost = (2 * particles * rng.uniform(0.95, 1.05, count)).astype(np.int64)  # as measured clocks are
         d = islands.reach(speed, 1.0, 0.0, 0.02)
-        plan = planning.plan(place, place + edge, d, cost, owner, executors, particles=particles, still=still, gap=0.1, previous=before)
+        plan = planning.plan(place, place + edge, d, cost, owner, executors, particles=particles, still=still, gap=0.1,
+                             previous=before)
         if before is not None:
             isle, at = np.unique(plan.label * executors + owner, return_counts=True)
             most = np.zeros(plan.label.max() + 1, np.int64)
@@ -95,7 +97,8 @@ def _fly(count: int, executors: int, volume: float, frames: int = 100) -> str:
                          100 * particles[plan.bundle > before.bundle.max()].sum() / particles.sum()))
         owner, before = plan.owner, plan
     mean, worst = np.mean(rows, axis=0), np.max(rows, axis=0)
-    return (f"{mean[0]:.0f}; {mean[1]:.2f}, {mean[2]:.2f}; {mean[3]:.3f}, {worst[3]:.3f}; {mean[4]:.0f}, {mean[5]:.1f}, {mean[6]:.1f}")
+    return (f"{mean[0]:.0f}; {mean[1]:.2f}, {mean[2]:.2f}; {mean[3]:.3f}, {worst[3]:.3f}; "
+            f"{mean[4]:.0f}, {mean[5]:.1f}, {mean[6]:.1f}")
 
 
 if __name__ == "__main__":

@@ -38,10 +38,11 @@ def assign(label: np.ndarray, cost: np.ndarray, owner: np.ndarray, executors: in
     An island stays at its home, the executor that has most of it. Where that is overloaded, large islands stay and the smallest
     go, not more than there is too much; they go to whom has least. Only where that leaves loads out of balance by more than a
     tenth that a new packing would spare are the large islands packed anew. Ties: lowest executor, smallest island.
-    O(M log M), a loop over K executors and over at most ``CRUMB`` K islands. Raises ValueError for a cost below 0 or an owner out of range.
+    O(M log M), a loop over K executors and over at most ``CRUMB`` K islands. Raises ValueError for a cost below 0 or an owner out
+    of range.
 
     :param label: island of every object, -1 for what is still, shape (M,)
-    :param cost: time of every object in a frame [µs], int64, shape (M,)
+    :param cost: time of every object in a frame [µs], int64, shape (M,); an island counts as 1 at least
     :param owner: executor that has it now, -1 for nobody, shape (M,)
     :param executors: their number K
     :param particles: of every object, shape (M,); without it there are no teams
@@ -70,7 +71,8 @@ def assign(label: np.ndarray, cost: np.ndarray, owner: np.ndarray, executors: in
         formed = form(weight, total(isle, particles[moving]), home, fixed, executors, teams, gain, least)
     if formed:
         together, new = _place(weight, home, fixed, formed, executors, rank, gain)
-        if new.max() * (19 if teams else 20) <= load.max() * (20 if teams else 19):  # a twentieth better; no worse to stay together
+        better, worse = (20, 19) if teams else (19, 20)  # a new team has to be better by a twentieth, an old one not much worse
+        if new.max() * worse <= load.max() * better:
             place, load = together, new
         else:
             formed = ()
@@ -152,7 +154,7 @@ def _unload(weight, home, base, cap, mean, rank) -> tuple[np.ndarray, np.ndarray
 
 
 def _fitting(weight, home, room) -> np.ndarray:
-    """Those that stay: of each executor's islands, by size, all that still fit. What is left of the room halves with every turn."""
+    """Those that stay: of each executor's islands, by size, all that still fit. The room that is left halves with every turn."""
     stay = np.zeros(len(weight), bool)
     sort = np.lexsort((-weight, home))
     bound = np.searchsorted(home[sort], np.arange(len(room) + 1))
@@ -170,7 +172,7 @@ def _fitting(weight, home, room) -> np.ndarray:
 
 
 def _deal(weight, place, home, load, cap, mean, rank) -> tuple[np.ndarray, np.ndarray]:
-    """Islands without a place: large ones go to whom has least, one by one, the others fill all up to one level, by runs of ``rank``."""
+    """Islands without a place: large ones go to whom has least, one by one; others fill all to one level, by runs of ``rank``."""
     place, load = place.copy(), load.copy()
     out = place < 0
     large = np.flatnonzero(out & (weight * CRUMB > mean))
@@ -198,8 +200,8 @@ def _level(load: np.ndarray, amount: int) -> int:
 
 
 def _pack(weight, home, base, cap, mean, rank) -> tuple[np.ndarray, np.ndarray]:
-    """Large islands anew, each to whom has least, the largest first, and some exchanged; then executors that do nothing else are named
-    after the homes of what they have. The other islands as before.
+    """Large islands anew, each to whom has least, the largest first, and some exchanged; then executors that do nothing else are
+    named after the homes of what they have. The other islands as before.
     """
     place, load = np.full(len(weight), -1), base.copy()
     large = np.flatnonzero(weight * CRUMB > mean)

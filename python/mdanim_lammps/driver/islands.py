@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Who may touch whom in the coming frame: reserved boxes, pairs of them that meet, islands, and still objects that these need.
 
-Pure functions of arrays that every executor has: only + - * / and comparisons of IEEE numbers, integers, and stable sorts, so that
-all of them find the same. Wcislo 1999, eq. (3.14), (3.15), (6.17).
+Pure functions of arrays that every executor has: only + - * / and comparisons of IEEE numbers, integers, and stable sorts, so
+that all of them find the same. Wcislo 1999, eq. (3.14), (3.15), (6.17).
 """
 
 from __future__ import annotations
@@ -24,9 +24,10 @@ ROUNDING = 1.0 + 2.0**-20
 
 
 def reach(speed: np.ndarray, seconds: float, gravity: float, margin: float, safety: float = 1.3) -> np.ndarray:
-    """What boxes are widened by, d of eq. (6.17), read as the reach of the fastest particle until the window ends [m], shape (M,).
+    """What boxes are widened by, d of eq. (6.17), read as the reach of the fastest particle in a window [m], shape (M,).
 
-    d = s v T + g/2 T² + margin; the guard of a window finds out where it was too small, so nothing about ``speed`` has to be proven.
+    d = s v T + g/2 T² + margin; the guard of a window finds out where it was too small, so nothing about
+    ``speed`` has to be proven.
 
     :param speed: of the fastest particle of each object [m/s], shape (M,)
     :param seconds: length of the window T [s]
@@ -90,7 +91,7 @@ def _grid_pairs(low: np.ndarray, high: np.ndarray, gap: float) -> np.ndarray:
 
 
 def _cells(corner: np.ndarray, cell: float) -> tuple[np.ndarray, tuple[int, int]]:
-    """Number of the cell of every corner, shape (N,), and how far apart the numbers are of neighbours along x and y; along z, one."""
+    """Number of the cell of every corner, shape (N,), and how far apart those of neighbours along x and y are; along z, one."""
     origin = corner.min(axis=0)
     cell = max(cell, float((corner.max(axis=0) - origin).max()) / CELLS) or 1.0
     place = np.floor((corner - origin) / cell).astype(np.int64) + 1  # a margin of one cell: no row runs on into the next
@@ -144,8 +145,8 @@ def _meeting(one, two, a, b, gap) -> tuple[np.ndarray, np.ndarray]:
 def components(count: int, pairs: np.ndarray, still: np.ndarray) -> np.ndarray:
     """Island of every object, int64, shape (M,): numbered from 0 in the order of their smallest objects; -1 for what is still.
 
-    Objects that meet are in one island. ``still`` (M,) are held as a whole, never move and so connect nobody. Every round joins each
-    tree to the lowest one that it meets, until none meet: O(M + P) a round, a handful of rounds.
+    Objects that meet are in one island. ``still`` (M,) are held as a whole, never move and so connect nobody. Every round joins
+    each tree to the lowest one that it meets, until none meet: O(M + P) a round, a handful of rounds.
     """
     root = np.arange(count)
     a, b = pairs[~(still[pairs[:, 0]] | still[pairs[:, 1]])].T

@@ -20,8 +20,8 @@ BUNDLE = 4000
 SPARE = 2
 """Bundles of an executor, over those that would do, from which the thin ones are put together."""
 THIN = 4
-"""Bundles below `BUNDLE` over this are thin. `python bench/planning.py crowd`, 1000 objects: with 4, 9 % of the particles are in new
-bundles in every frame; with 2, 16 %; 7 % where none are ever put together, with 1.6 times the bundles."""
+"""Bundles below `BUNDLE` over this are thin. `python bench/planning.py crowd`, 1000 objects: with 4, 9 % of the particles are in
+new bundles in every frame; with 2, 16 %; 7 % where none are ever put together, with 1.6 times the bundles."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,8 +45,8 @@ class FramePlan:
     label: np.ndarray
     """Island of every object, -1 for what is still, int64, shape (M,)."""
     bundle: np.ndarray
-    """Bundle of every object, -1 for what is still, int64, shape (M,). One that keeps its number has the same executors and no object
-    that it had not before; a new one has a number above all of the plan before."""
+    """Bundle of every object, -1 for what is still, int64, shape (M,). One that keeps its number has the same executors and no
+    object that it had not before; a new one has a number above all of the plan before."""
     guests: np.ndarray
     """(island, still object) of all copies needed, sorted, int64, shape (G, 2)."""
     teams: tuple[Team, ...]
@@ -65,10 +65,9 @@ class FramePlan:
 
 def plan(low: np.ndarray, high: np.ndarray, d: np.ndarray, cost: np.ndarray, owner: np.ndarray, executors: int, *,
          particles: np.ndarray, still: np.ndarray, gap: float, feels: np.ndarray | None = None, pinned: np.ndarray | None = None,
-         previous: FramePlan | None = None,
-         gain: int = GAIN, least: int = LEAST, room: int = BUNDLE) -> FramePlan:
-    """The plan of a frame, from what all executors have reported. O(M log M + pairs that are near). Raises ValueError for boxes that
-    are not finite or turned inside out, a cost below 0, an owner out of range.
+         previous: FramePlan | None = None, gain: int = GAIN, least: int = LEAST, room: int = BUNDLE) -> FramePlan:
+    """The plan of a frame, from what all executors have reported. O(M log M + pairs that are near). Raises ValueError for boxes
+    that are not finite or turned inside out, a cost below 0, an owner out of range.
 
     A pool is one more object: its box, pinned and never still. After a guard was violated the same call with larger ``d`` gives
     the plan to try again with.
@@ -96,7 +95,7 @@ def plan(low: np.ndarray, high: np.ndarray, d: np.ndarray, cost: np.ndarray, own
 
 
 def z_order(low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """A number for every box, int64, shape (M,): along Morton's curve through their middles, so that near numbers are near in space."""
+    """A number for every box, int64, shape (M,), along Morton's curve through their middles: near numbers are near in space."""
     middle = 0.5 * (low + high)
     corner = middle.min(axis=0)
     across = float((middle.max(axis=0) - corner).max()) or 1.0
@@ -111,14 +110,14 @@ def z_order(low: np.ndarray, high: np.ndarray) -> np.ndarray:
     return code
 
 
-def bundles(label: np.ndarray, owner: np.ndarray, particles: np.ndarray, teams: Sequence[Team] = (), *, order: np.ndarray | None = None,
-            previous: FramePlan | None = None, room: int = BUNDLE) -> np.ndarray:
+def bundles(label: np.ndarray, owner: np.ndarray, particles: np.ndarray, teams: Sequence[Team] = (), *,
+            order: np.ndarray | None = None, previous: FramePlan | None = None, room: int = BUNDLE) -> np.ndarray:
     """LAMMPS instances that executors run their islands in, int64, shape (M,), -1 for what is still; O(M log M).
 
-    An island stays in its bundle if all of it was there and its executor is the same: whoever joins or leaves makes nobody else move.
-    The other islands are put together along ``order``, up to ``room`` particles; larger than half of that, and those of a team, they
-    are a bundle each. Bundles only ever lose objects. So when an executor has more than `SPARE` times as many as would do, and 2, its
-    thin ones are put together as well.
+    An island stays in its bundle if all of it was there and its executor is the same: who joins or leaves makes nobody else move.
+    The other islands are put together along ``order``, up to ``room`` particles; those larger than half of that, and those of a
+    team, are a bundle each. Bundles only ever lose objects. So when an executor has more than `SPARE` times as many as would do,
+    and 2, its thin ones are put together as well.
     """
     moving = np.flatnonzero(label >= 0)
     bundle = np.full(len(label), -1, np.int64)
@@ -154,7 +153,7 @@ def _kept(isle, moving, first, runs, previous) -> np.ndarray:
 
 
 def _leave_teams(kept, first, teams, team, previous) -> None:
-    """An island of a team keeps its bundle only if it is alone there and the team is the same, and what was a team's is not shared."""
+    """An island of a team keeps its bundle only if it is alone there and the team is the same; one that has no team any more leaves it."""
     before = {int(previous.bundle[np.flatnonzero(previous.label == t.island)[0]]): t.members for t in previous.teams}
     now = {t.island: t.members for t in teams}
     company = np.bincount(kept[kept >= 0])

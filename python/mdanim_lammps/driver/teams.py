@@ -31,9 +31,11 @@ def time_each(cost: int, size: int, gain: int) -> int:
 
 
 def form(weight, particles, home, fixed, executors, previous, gain, least) -> tuple[Team, ...]:
-    """Teams for islands above the mean by more than a tenth, of as many as bring them back to it, if each further one spares a twentieth
-    at least; a team shrinks only when the smaller one would keep to the mean. Leaders are at home where they can be, members those
-    that were, then those with least to do. A loop over islands above the mean: fewer than K, and O(K) turns.
+    """Teams for islands above the mean by more than a tenth, of as many as bring them back to it.
+
+    Each further member spares a twentieth at least; a team shrinks only when the smaller one would keep to the mean. Leaders are
+    at home where they can be, members those that were, then those with least to do. A loop over islands above the mean: fewer
+    than K, and O(K) turns.
 
     :param weight: cost of every island [µs], shape (I,), with its ``particles``
     :param home: executor that has most of it, -1 for nobody, shape (I,)
@@ -65,7 +67,8 @@ def form(weight, particles, home, fixed, executors, previous, gain, least) -> tu
         growing = False
         for i in sorted(heavy, key=lambda i: (-time_each(cost[i], size[i], gain), i)):
             now, busy = time_each(cost[i], size[i], gain), sum(s for s in size.values() if s > 1)
-            if now * executors * TENTH[1] <= spent() * TENTH[0] or size[i] >= most[i] or busy + (2 if size[i] == 1 else 1) > executors:
+            light = now * executors * TENTH[1] <= spent() * TENTH[0]
+            if light or size[i] >= most[i] or busy + (2 if size[i] == 1 else 1) > executors:
                 continue
             size[i] += 1
             after = max(time_each(cost[i], size[i], gain) * executors, spent())
