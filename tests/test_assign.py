@@ -91,6 +91,13 @@ def test_nothing_moves_when_nothing_changes(seed, objects, executors, spread):
     assert np.array_equal(assign(label, 3 * cost, owner, executors).owner, owner)
 
 
+def test_one_call_goes_all_the_way():
+    """Find nothing to do afterwards also where the first turn leaves something to gain."""
+    cost, owner = np.array([36, 33, 9, 72, 32, 86, 47, 89, 14, 16]), np.array([1, 0, 1, 2, 2, 0, 0, 2, 2, 3])
+    found = assign(np.arange(10), cost, owner, 4).owner
+    assert np.array_equal(assign(np.arange(10), cost, found, 4).owner, found)
+
+
 @settings(max_examples=100, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), objects=st.integers(1, 40), executors=st.integers(2, 6))
 def test_names_of_executors_do_not_matter_in_balance(seed, objects, executors):
@@ -106,6 +113,7 @@ def test_names_of_executors_do_not_matter_in_balance(seed, objects, executors):
 @pytest.mark.parametrize(("label", "cost", "owner", "executors", "expected"), [
     pytest.param([0, 0, 0], [10, 10, 15], [0, 0, 1], 2, [0, 0, 0], id="an island goes to whom has most of it"),
     pytest.param([0, 0], [10, 10], [1, 0], 2, [0, 0], id="of equals, the lowest"),
+    pytest.param([0, 0], [30, 10], [-1, 1], 2, [1, 1], id="who has some of it, though nobody has most"),
     pytest.param([0, 1, 2], [50, 50, 8], [0, 1, 1], 2, [0, 1, 1], id="a little above the mean: stay"),
     pytest.param([0, 1, 2], [50, 50, 20], [0, 1, 1], 2, [0, 1, 1], id="uneven, but no other way is better"),
     pytest.param([0, 1, 2, 3], [50, 30, 20, 5], [1, 1, 1, 0], 2, [1, 0, 0, 0], id="the largest stays"),
@@ -162,6 +170,7 @@ def heavy(cost, owner, executors, teams=(), particles=None, **more):
     pytest.param([6000, 4400], [0, 1], 2, [], [6000, 4400], id="not worth it"),
     pytest.param([1590], [0], 4, [3], [0, 722, 722, 722], id="only as many as have enough particles"),
     pytest.param([790], [0], 2, [], [0, 790], id="too few particles for two"),
+    pytest.param([6100, 4100], [3, 0], 4, [2, 2], [3812, 3812, 2562, 2562], id="no more members than there are executors"),
     pytest.param([9000, 9000, 100], [0, 0, 1], 4, [2, 2], [5625, 5625, 5625, 5625], id="two teams of two"),
 ])
 def test_teams(cost, owner, executors, sizes, load):

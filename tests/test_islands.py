@@ -80,14 +80,15 @@ def test_blocks_change_nothing(monkeypatch):
     assert np.array_equal(islands._grid_pairs(low, high, 0.1), expected)
 
 
-def test_most_boxes_are_never_looked_at(monkeypatch):
-    """Try pairs that are near, also where half of the boxes are large: not as many as there are."""
+@pytest.mark.parametrize(("share", "edge"), [(0.4, 10.0), (0.002, 100.0)])
+def test_most_boxes_are_never_looked_at(monkeypatch, share, edge):
+    """Try pairs that are near, not as many as there are, also with many larger boxes or a few huge ones."""
     tried = []
     meeting = islands._meeting
     monkeypatch.setattr(islands, "_meeting", lambda one, two, a, b, gap: (tried.append(len(a)), meeting(one, two, a, b, gap))[1])
     rng = np.random.default_rng(5)
     low = rng.uniform(0.0, 200.0, (4000, 3))
-    high = low + np.where(rng.random((4000, 1)) < 0.4, 10.0, 1.0)
+    high = low + np.where(rng.random((4000, 1)) < share, edge, 1.0)
     found = islands.pairs(low, high, 0.1)
     assert sum(tried) < 20 * len(found) < 4000 * 3999 / 20
 

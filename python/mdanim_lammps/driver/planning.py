@@ -153,7 +153,7 @@ def _kept(isle, moving, first, runs, previous) -> np.ndarray:
 
 
 def _leave_teams(kept, first, teams, team, previous) -> None:
-    """An island of a team keeps its bundle only if it is alone there and the team is the same; one that has no team any more leaves it."""
+    """An island of a team keeps its bundle only if it is alone there and the team is the same; what was a team's leaves it."""
     before = {int(previous.bundle[np.flatnonzero(previous.label == t.island)[0]]): t.members for t in previous.teams}
     now = {t.island: t.members for t in teams}
     company = np.bincount(kept[kept >= 0])

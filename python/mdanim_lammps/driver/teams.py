@@ -33,9 +33,8 @@ def time_each(cost: int, size: int, gain: int) -> int:
 def form(weight, particles, home, fixed, executors, previous, gain, least) -> tuple[Team, ...]:
     """Teams for islands above the mean by more than a tenth, of as many as bring them back to it.
 
-    Each further member spares a twentieth at least; a team shrinks only when the smaller one would keep to the mean. Leaders are
-    at home where they can be, members those that were, then those with least to do. A loop over islands above the mean: fewer
-    than K, and O(K) turns.
+    A team shrinks only when the smaller one would keep to the mean. Leaders are at home where they can be, members those that were,
+    then those with least to do. A loop over islands above the mean: fewer than K, and O(K) turns.
 
     :param weight: cost of every island [µs], shape (I,), with its ``particles``
     :param home: executor that has most of it, -1 for nobody, shape (I,)
@@ -62,20 +61,13 @@ def form(weight, particles, home, fixed, executors, previous, gain, least) -> tu
                 size[i] -= 1
 
     shrink()
-    growing = True
-    while growing:
-        growing = False
-        for i in sorted(heavy, key=lambda i: (-time_each(cost[i], size[i], gain), i)):
-            now, busy = time_each(cost[i], size[i], gain), sum(s for s in size.values() if s > 1)
-            light = now * executors * TENTH[1] <= spent() * TENTH[0]
-            if light or size[i] >= most[i] or busy + (2 if size[i] == 1 else 1) > executors:
-                continue
-            size[i] += 1
-            after = max(time_each(cost[i], size[i], gain) * executors, spent())
-            growing = after * 20 <= now * executors * 19  # else not worth it
-            if growing:
-                break
-            size[i] -= 1
+    while True:
+        left = executors - sum(n for n in size.values() if n > 1)
+        short = [i for i in heavy if size[i] < most[i] and left >= (2 if size[i] == 1 else 1)
+                 and time_each(cost[i], size[i], gain) * executors * TENTH[1] > spent() * TENTH[0]]
+        if not short:
+            break
+        size[max(short, key=lambda i: (time_each(cost[i], size[i], gain), -i))] += 1
     shrink()
 
     wanted = [i for i in heavy if size[i] > 1]
