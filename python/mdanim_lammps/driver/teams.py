@@ -33,8 +33,8 @@ def time_each(cost: int, size: int, gain: int) -> int:
 def form(weight, particles, home, fixed, executors, previous, gain, least) -> tuple[Team, ...]:
     """Teams for islands above the mean by more than a tenth, of as many as bring them back to it.
 
-    A team shrinks only when the smaller one would keep to the mean. Leaders are at home where they can be, members those that were,
-    then those with least to do. A loop over islands above the mean: fewer than K, and O(K) turns.
+    A team shrinks only when the smaller one would keep to the mean. Leaders are at home where they can be, members those that
+    were, then those with least to do. A loop over islands above the mean: fewer than K, and O(K) turns.
 
     :param weight: cost of every island [µs], shape (I,), with its ``particles``
     :param home: executor that has most of it, -1 for nobody, shape (I,)
