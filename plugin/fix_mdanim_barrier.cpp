@@ -127,7 +127,6 @@ void FixMdanimBarrier::setup_post_neighbor() { post_neighbor(); }
 void FixMdanimBarrier::post_neighbor()
 {
   const Lap lap(seconds);
-  collect_own();
   find_candidates();
   if (damping > 0.0) loss.look(atom->tag, atom->nlocal);
 }
@@ -161,28 +160,28 @@ void FixMdanimBarrier::unpack_forward_comm(int n, int start, double *buf)
     own[i] = {buf[0], buf[1], buf[2], static_cast<tagint>(buf[3])};
 }
 
-// The longest reach of any pair.
-double FixMdanimBarrier::largest_reach()
+// The longest reach of any pair, and eq. (3.14) for every object, index = molecule ID; the same on all ranks.
+double FixMdanimBarrier::survey(std::vector<Box> &boxes)
 {
-  double here = 0.0, all = 0.0;
-  for (int i = 0; i < atom->nlocal; ++i)
-    if (role(i) != NONE) here = std::max(here, own[i].reach);
-  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, MPI_MAX, world);
-  return thin_bit ? std::max(1.0, thin_ratio) * all : all;
-}
-
-// Eq. (3.14) for every object, the same on all ranks; index = molecule ID.
-std::vector<Box> FixMdanimBarrier::object_boxes()
-{
+  const double *rc = reach.values(lmp);
+  const double *const *x = atom->x;
+  const tagint *object = atom->molecule;
+  const int nlocal = atom->nlocal;
   tagint largest_here = 0, largest = 0;
-  for (int i = 0; i < atom->nlocal; ++i) largest_here = std::max(largest_here, own[i].object);
+  for (int i = 0; i < nlocal; ++i) largest_here = std::max(largest_here, object[i]);
   MPI_Allreduce(&largest_here, &largest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
 
-  std::vector<Box> here(largest + 1), all(largest + 1);
-  for (int i = 0; i < atom->nlocal; ++i)
-    if (role(i) != NONE) here[own[i].object].include(atom->x[i]);
-  MPI_Allreduce(here.data(), all.data(), 6 * (largest + 1), MPI_DOUBLE, MPI_MIN, world);
-  return all;
+  double reach_here = 0.0, longest = 0.0;
+  std::vector<Box> here(largest + 1);
+  for (int i = 0; i < nlocal; ++i) {
+    if (role(i) == NONE) continue;
+    here[object[i]].include(x[i]);
+    reach_here = std::max(reach_here, rc ? rc[i] : reach.number);
+  }
+  MPI_Allreduce(&reach_here, &longest, 1, MPI_DOUBLE, MPI_MAX, world);
+  boxes.resize(here.size());
+  MPI_Allreduce(here.data(), boxes.data(), 6 * (largest + 1), MPI_DOUBLE, MPI_MIN, world);
+  return thin_bit ? std::max(1.0, thin_ratio) * longest : longest;
 }
 
 // Until the next rebuild no particle moves by more than half the skin, so pairs within reach + skin are
@@ -194,7 +193,8 @@ void FixMdanimBarrier::find_candidates()
   candidate.clear();
   pairs = 0.0;
 
-  const double range = largest_reach() + neighbor->skin;
+  std::vector<Box> boxes;
+  const double range = survey(boxes) + neighbor->skin;
   const double ghosts = std::min({comm->cutghost[0], comm->cutghost[1], comm->cutghost[2]});
   if (comm->nprocs > 1 && ghosts < range)
     error->all(
@@ -203,10 +203,10 @@ void FixMdanimBarrier::find_candidates()
         "use 'comm_modify cutoff {:.6g}'",
         id, ghosts, range, 1.001 * range);
 
-  const std::vector<Box> boxes = object_boxes();
   const auto meeting = meeting_pairs(boxes, range);
   meeting_objects = static_cast<bigint>(meeting.size());
   if (meeting.empty()) return;
+  collect_own();
 
   // Only particles within range of a partner's box can be in a pair: for each object, the box around all such
   // places.

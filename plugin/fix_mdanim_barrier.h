@@ -44,8 +44,7 @@ class FixMdanimBarrier : public Fix {
   int group_bit(int iarg, const char *word);
   int role(int i) const;
   void collect_own();
-  double largest_reach();
-  std::vector<mdanim::Box> object_boxes();
+  double survey(std::vector<mdanim::Box> &boxes);
   void find_candidates();
   struct Glance;
   struct Crowd;

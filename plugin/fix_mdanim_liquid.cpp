@@ -589,6 +589,7 @@ void FixMdanimLiquid::setup_post_neighbor()
     make_room();
     raise_surface(false);
   }
+  nobody = false;    // between two runs anything may have been set
   post_neighbor();
 }
 
@@ -605,6 +606,8 @@ void FixMdanimLiquid::watch()
   watched_top = low.z + top * cell.z;
   const double below =
       watching ? watched_top + NEAR * cell.z + 0.5 * neighbor->skin : std::numeric_limits<double>::infinity();
+  // The box holds all particles as they stood at the last rebuild: where nobody was near, and all of it is above, nobody has come.
+  if (nobody && watching && domain->boxlo[2] > below + 0.5 * neighbor->skin) return;
   double *lambda = slows ? writable(lambda_name, "lambda") : nullptr;
   const double *base = base_name.empty() ? nullptr : writable(base_name, "base");
   for (int i = 0; i < atom->nlocal; ++i) {

@@ -3,6 +3,7 @@
 
 #include "fix_mdanim_wall.h"
 
+#include "boxes.h"
 #include "stopwatch.h"
 #include "wall.h"
 
@@ -54,6 +55,8 @@ FixMdanimWall::FixMdanimWall(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg,
     error->all(FLERR, 3,
                "fix mdanim/wall: region style {} cannot tell its nearest surface; use one fix per part",
                region->style);
+  for (const char *known : {"block", "cone", "cylinder", "ellipsoid", "plane", "prism", "sphere"})
+    convex = convex || strcmp(region->style, known) == 0;
   stiffness = ParticleValue(lmp, "fix mdanim/wall: k", 4, arg[4]);
 }
 
@@ -89,6 +92,23 @@ bool FixMdanimWall::behind(const double *x, Vec3 &d)
   return true;
 }
 
+// Whether the box around all particles here, grown by a bit more than `far`, is inside: so it is in a convex region when its
+// corners are. Most of a scene's time nothing is near a wall, and this is far less work than to ask for each particle.
+bool FixMdanimWall::all_within(double far)
+{
+  if (!convex || !region->interior) return false;
+  Box box;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (atom->mask[i] & groupbit) box.include(atom->x[i]);
+  if (box.empty()) return true;
+  box = box.grown(1.001 * far);
+  for (int corner = 0; corner < 8; ++corner)
+    if (!region->match(corner & 1 ? box.high(0) : box.low(0), corner & 2 ? box.high(1) : box.low(1),
+                       corner & 4 ? box.high(2) : box.low(2)))
+      return false;
+  return true;
+}
+
 void FixMdanimWall::setup_post_neighbor() { post_neighbor(); }
 
 void FixMdanimWall::post_neighbor()
@@ -98,6 +118,7 @@ void FixMdanimWall::post_neighbor()
   watched.clear();
   region->prematch();
   const double far = 0.5 * neighbor->skin;
+  if (all_within(far)) return;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!(atom->mask[i] & groupbit)) continue;
     const double *x = atom->x[i];

@@ -30,10 +30,12 @@ class FixMdanimWall : public Fix {
 
  private:
   bool behind(const double *x, mdanim::Vec3 &d);
+  bool all_within(double far);
   void push_back(int i, const double *k);
 
   std::string region_id;
   class Region *region = nullptr;
+  bool convex = false;    // its inside, that is
   mdanim::ParticleValue stiffness;
 
   bool watching = false;    // only particles in `watched` can be behind before the next rebuild

@@ -114,8 +114,14 @@ def test_energy_of_a_bounce(tmp_path):
     lmp.close()
 
 
-def test_only_watched_particles_cost_but_none_is_missed(tmp_path):
-    """Looking at the watch list only gives the bits of looking at all particles in every step."""
+@pytest.mark.parametrize("region", [
+    "plane 0 0 0 0 0 1",
+    "block -50 50 -50 50 0 INF",
+    "sphere 1.5 1.5 60 60",
+    "sphere 1.5 1.5 -1 1 side out",  # narrower than the body: the corners of its box pass beside it
+])
+def test_only_watched_particles_cost_but_none_is_missed(tmp_path, region):
+    """Looking at the watch list only, and at the box around all before, gives the bits of looking at all particles in every step."""
     body = lab.block((3, 3, 3), (0.0, 0.0, 3.0), (0.1, 0.0, -0.8))
     found = []
     # With delay 1 lists may be late, so the wall does not rely on them.
@@ -125,7 +131,7 @@ def test_only_watched_particles_cost_but_none_is_missed(tmp_path):
             tmp_path,
             [
                 neigh,
-                "region r plane 0 0 0 0 0 1",
+                f"region r {region}",
                 "fix w all mdanim/wall r 1.0",
                 "fix run all mdanim/leapfrog",
                 "timestep 0.2",
