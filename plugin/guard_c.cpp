@@ -18,15 +18,22 @@ using namespace mdanim;
 
 namespace {
 
-// M objects as N particles and C lattice cells; those of object m are [first[m], first[m+1]) of each.
-struct Objects {
-  int count;
+// M objects as N particles and C lattice cells; those of object m are [first[m], first[m+1]) of each. The same stands in
+// engine/geometry.py.
+struct Model {
+  long long count;
   const long long *first_particle;
   const unsigned char *boundary;      // whether a particle is on the surface, (N)
   const long long *first_cell;
   const int *corner;                  // VTK order, (C, 8)
   const unsigned char *deep;          // whether a cell has no corner on the surface, (C)
   const double *spacing;              // (M)
+  const double *mass;                 // (N)
+  const unsigned char *still;         // whether an object never moves, (M)
+};
+
+// The same where it is now.
+struct Objects : Model {
   const double *x;                    // (N, 3)
 
   Vec3 at(int i) const { return vec3(x + 3 * static_cast<std::size_t>(i)); }
@@ -51,6 +58,12 @@ Edges edges(const int *corner, const double *x)
   for (int k = 0; k < 8; ++k) p[k] = vec3(x + 3 * static_cast<std::size_t>(corner[k]));
   const Vec3 d06 = p[6] - p[0], d17 = p[7] - p[1], d24 = p[4] - p[2], d35 = p[5] - p[3];    // the diagonals
   return {(d06 - d17) - (d24 - d35), (d06 + d17) - (d24 + d35), (d06 + d17) + (d24 + d35)};
+}
+
+bool inside_out(const int *corner, const double *x)
+{
+  const Edges e = edges(corner, x);
+  return !(dot(cross(e.u, e.v), e.w) > 0.0);
 }
 
 // Whether a point lies in a cell, taken as the parallelepiped of its mean edges: so a squeezed body is no deeper than a relaxed one.
@@ -100,13 +113,13 @@ bool holds(const Objects &o, int m, const Vec3 &point)
 }
 
 // Whether the centre of object a, if it lies in its own body, lies in that of b.
-bool centre_inside(const Objects &o, int a, int b, const double *mass, const Box &both)
+bool centre_inside(const Objects &o, int a, int b, const Box &both)
 {
   Vec3 sum;
   double all = 0.0;
   for (long long i = o.first_particle[a]; i < o.first_particle[a + 1]; ++i) {
-    sum += mass[i] * o.at(static_cast<int>(i));
-    all += mass[i];
+    sum += o.mass[i] * o.at(static_cast<int>(i));
+    all += o.mass[i];
   }
   const Vec3 centre = (1.0 / all) * sum;
   return both.contains(&centre.x) && holds(o, b, centre) && holds(o, a, centre);
@@ -133,50 +146,53 @@ MDANIM_EXPORT long long mdanim_not_finite(long long n, const double *x, const do
   return -1;
 }
 
-// Lowest and highest corner of the box of each object, eq. (3.14); low, high (objects, 3).
-MDANIM_EXPORT void mdanim_boxes(int objects, const long long *first, const double *x, double *low, double *high)
-{
-  for (int m = 0; m < objects; ++m) {
-    Box box;
-    for (long long i = first[m]; i < first[m + 1]; ++i) box.include(x + 3 * i);
-    for (int d = 0; d < 3; ++d) {
-      low[3 * m + d] = box.low(d);
-      high[3 * m + d] = box.high(d);
-    }
-  }
-}
-
 // Whether each cell is turned inside out: the volume spanned by the mean of its edges along each axis is not positive. corner (n, 8) in
 // VTK order, inverted (n). Returns how many are.
 MDANIM_EXPORT long long mdanim_inverted(long long n, const int *corner, const double *x, unsigned char *inverted)
 {
   long long count = 0;
   for (long long c = 0; c < n; ++c) {
-    const Edges e = edges(corner + 8 * c, x);
-    inverted[c] = !(dot(cross(e.u, e.v), e.w) > 0.0);
+    inverted[c] = inside_out(corner + 8 * c, x);
     count += inverted[c];
   }
   return count;
 }
 
+// One look at objects whose x and v are (N, 3). Returns 1 when some number is not finite, 2 when some cell is inside out, else 0; and, but
+// for 1, how far each object reaches along x, y, z, -x, -y, -z: reach (M, 6), the corners of eq. (3.14).
+MDANIM_EXPORT int mdanim_glance(const Model *model, const double *x, const double *v, double *reach)
+{
+  const Objects o{*model, x};
+  const long long n = o.first_particle[o.count], cells = o.first_cell[o.count];
+  if (mdanim_not_finite(n, x, v) >= 0) return 1;
+  for (int m = 0; m < o.count; ++m) {
+    const Box box = box_of(o, m);
+    for (int d = 0; d < 3; ++d) {
+      reach[6 * m + d] = box.high(d);
+      reach[6 * m + 3 + d] = -box.low(d);
+    }
+  }
+  for (long long c = 0; c < cells; ++c)
+    if (inside_out(o.corner + 8 * c, x)) return 2;
+  return 0;
+}
+
 // Two objects that are inside each other, more than contact ever lets them: boundary particles of one below the outermost layer of
 // cells of the other, or the centre of one in the body of the other. Writes the one that is inside, and the other, into `pair` and
 // returns how many of its points are; 0 where there are none, -1 without memory.
-// Objects with skip are not looked at with each other. mass (N), skip (M).
-MDANIM_EXPORT long long mdanim_sunk(int objects, const long long *first_particle, const unsigned char *boundary, const long long *first_cell,
-                                    const int *corner, const unsigned char *deep, const double *spacing, const double *mass,
-                                    const unsigned char *skip, const double *x, int *pair)
+// Objects that never move are not looked at with each other.
+MDANIM_EXPORT long long mdanim_sunk(const Model *model, const double *x, int *pair)
 {
   try {
-    const Objects o{objects, first_particle, boundary, first_cell, corner, deep, spacing, x};
+    const Objects o{*model, x};
     std::vector<Box> boxes;
-    for (int m = 0; m < objects; ++m) boxes.push_back(box_of(o, m));
+    for (int m = 0; m < o.count; ++m) boxes.push_back(box_of(o, m));
     long long most = 0;
     for (const auto &[a, b] : meeting_pairs(boxes, 0.0)) {
-      if (skip[a] && skip[b]) continue;
+      if (o.still[a] && o.still[b]) continue;
       const Box both = intersection(boxes[a], boxes[b]);
       for (const auto &[in, out] : {std::pair{a, b}, std::pair{b, a}}) {
-        const long long found = sunk(o, in, out, both) + centre_inside(o, in, out, mass, both);
+        const long long found = sunk(o, in, out, both) + centre_inside(o, in, out, both);
         if (found <= most) continue;
         most = found;
         pair[0] = in;

@@ -11,7 +11,7 @@ from mdanim_lammps import Trajectory
 from mdanim_lammps.driver.guard import CLASSES, GENEROUS, LEAST, Guard, energy_class, fastest
 from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.driver.run import simulate, write_inputs
-from mdanim_lammps.engine.geometry import Geometry
+from mdanim_lammps.engine.geometry import INVERTED, NOT_FINITE, Geometry
 from mdanim_lammps.engine.plugin import open_lammps
 from mdanim_lammps.errors import DivergedError, ExitCode
 from mdanim_lammps.results.checkpoint import Checkpoint
@@ -171,15 +171,22 @@ def test_what_is_not_finite_is_found(two, value, where):
     assert geometry.not_finite(x, v) == 37
 
 
-def test_boxes_hold_their_objects(two):
-    """Give the lowest and highest particle along each axis."""
+def test_a_glance_tells_how_far_objects_reach(two):
+    """Give the lowest and highest particle along each axis, and whether a number or a cell is bad."""
     geometry, x = two(a="sphere 7 cm", at=(0.3, 0.2, -0.1))
-    x += np.random.default_rng(1).normal(0.0, 0.01, x.shape)
-    low, high = geometry.boxes(x)
+    v = np.zeros_like(x)
+    x += np.random.default_rng(1).normal(0.0, 0.001, x.shape)
+    found, reach = geometry.glance(x, v)
+    assert found == 0
     first = geometry.system.first
     for m in range(2):
         part = x[first[m]:first[m + 1]]
-        assert np.array_equal(low[m], part.min(0)) and np.array_equal(high[m], part.max(0))
+        assert np.array_equal(reach[m], np.concatenate([part.max(0), -part.min(0)]))
+    x[-1, 2] -= 0.1
+    found, reach = geometry.glance(x, v)
+    assert found == INVERTED and -reach[1, 5] == x[first[1]:, 2].min()
+    v[5, 1] = np.nan
+    assert geometry.glance(x, v)[0] == NOT_FINITE
 
 
 @pytest.mark.parametrize(("change", "expected"), [

