@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What accuracy costs: prints the tables of docs/accuracy.md.
+"""What accuracy costs: prints the tables and findings of docs/accuracy.md, as they stand there.
 
 ``python bench/accuracy.py [--budget SECONDS] [--plots FOLDER] [PART ...]`` with parts out of beam, float, cantilever,
 crowd (a study of each scene under the budget), classes (energy drift and seconds of preview, balanced, reference) and target (``accuracy
@@ -11,6 +11,7 @@ import math
 import shutil
 import sys
 import tempfile
+import textwrap
 from dataclasses import replace
 from pathlib import Path
 
@@ -69,6 +70,8 @@ def study(name: str, budget: float, plots: Path | None) -> None:
             shutil.copy(found.folder / "study.png", plots / f"study-{name}.png")
     a = found.analysis
     print(f"\n### {name}.txt, {found.scene.control.time:g} s\n")
+    if plots:
+        print(f"![{name}: error over seconds]({plots.name}/study-{name}.png)\n")
     print("| | cells | step / bound | sweeps | particles | seconds | error | off expect | energy drift | ladder |")
     print("|---|---|---|---|---|---|---|---|---|---|")
     for r in a.rated.values():
@@ -80,8 +83,8 @@ def study(name: str, budget: float, plots: Path | None) -> None:
               f"{seconds} | {100 * r.error.middle:.2g} % | {closed} | {max(p.drift):.0e} | {', '.join(where)} |")
     print()
     for line in order_lines(found):
-        print(f"- {line}")
-    print(f"\n> {found.advice}", flush=True)
+        print(wrapped(f"- {line}", "  "))
+    print("\n" + wrapped(f"> {found.advice}", "> "), flush=True)
 
 
 def closed_scenes():
@@ -134,6 +137,11 @@ def target(percent: float = 2.0, budget: float = 600.0):
         print(f"| {p.setting.cells:g} | {p.setting.fraction:.2f} | {min(p.seconds):.3g} | {100 * off:.3g} % | {mark} |")
     print(f"\n> accuracy error {percent:g} %: {choice}", flush=True)
     return choice, rows
+
+
+def wrapped(text: str, indent: str) -> str:
+    """In lines as they stand in docs/."""
+    return textwrap.fill(text, 120, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
 
 
 def told(line: str) -> None:

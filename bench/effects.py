@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What effects cost: ``python bench/effects.py added|asleep|shares|forecast [rounds]`` prints a table in Markdown (docs/cost.md).
+"""What effects cost: ``python bench/effects.py added|shares|forecast [rounds]`` prints a table in Markdown (docs/cost.md).
 
-``added``: one scene with its effects added one by one. ``asleep``: effects that are on and have nothing to do. ``shares``: parts of
-clocks that several effects share. ``forecast``: expected and measured cost of every scene of scenes/ (runs them all). Variants take
-turns, so that all of them see the same machine; figures are medians of processor time, or of the styles' own clocks; for ``shares``
-minima, because those clocks run on while others have the processor.
+``added``: one scene with its effects added one by one. ``shares``: parts of clocks that several effects share, as they are to be set in
+effects/*.py. ``forecast``: expected and measured cost of every scene of scenes/ (runs them all). Variants take turns, so that all of them
+see the same machine; figures are medians of processor time, or of the styles' own clocks; for ``shares`` minima, because those clocks
+run on while others have the processor. What effects cost that are on and have nothing to do: bench/sleeping.py.
 """
 
 import statistics
@@ -62,7 +62,6 @@ object cube {{
   elasticity 1 MPa
   velocity (0, 0, -{v})
 }}
-{other}
 control {{
   time 100 s
   frames 1 fps
@@ -71,7 +70,6 @@ control {{
 }}
 effects {{ {off} }}
 """
-STONE = "object stone {{ shape box (18, 18, 18) cm position ({x}, 0, {z}) m density 1000 elasticity 1 MPa velocity (-0.01, 0, -{v}) }}"
 SEA = "liquid water {{ basin from (-50, -50, 0) cm to (50, 50, 60) cm density 1000 level 30 cm drag {drag} model {model} }}"
 
 
@@ -141,33 +139,9 @@ def added(rounds: int) -> None:
         last = step
 
 
-def asleep(rounds: int) -> None:
-    """Effects that are on with nothing to do, against the same scene without them."""
-    cases = {
-        "contact, boxes 0.5 m apart, at rest": dict(v=0, other=STONE.format(x=0.68, z=50, v=0), off="contact"),
-        "contact, boxes 0.5 m apart, at 3 m/s": dict(v=3, other=STONE.format(x=0.68, z=50, v=3), off="contact"),
-        "ground, 49 m away, at 3 m/s": dict(v=3, more="ground z 0", off="ground"),
-        "walls, 1 m away, at 3 m/s": dict(v=3, more="walls from (-1, -1, -1) to (1, 1, 100)", off="walls"),
-        "basin, liquid, buoyancy, liquid without drag, 49 m away, at 3 m/s": dict(
-            v=3, more=SEA.format(drag=0, model="surface"), off="liquid"),
-        "the same with liquid drag": dict(v=3, more=SEA.format(drag=4, model="surface"), off="liquid"),
-        "the same with model pressure": dict(v=3, more=SEA.format(drag=4, model="pressure"), off="liquid"),
-    }
-    print("| asleep | ns per particle-step without | with | adds | by its own clock |\n|---|---|---|---|---|")
-    for name, case in cases.items():
-        off, case = case["off"], {"more": "", "other": ""} | case
-        found = measure({"without": FLIGHT.format(**case | {"off": f"{off} off" + (" basin off" if off == "liquid" else "")}),
-                         "with": FLIGHT.format(**case | {"off": ""})}, rounds)
-        own = ("basin", "liquid", "buoyancy") if off == "liquid" else (off,)
-        wall = sum(found["with"].get(e, 0.0) for e in own)
-        without, with_ = (1e9 * found[k]["step"] / found[k]["particles"] for k in ("without", "with"))
-        print(f"| {name} | {without:.2f} | {with_:.2f} | {100 * (with_ / without - 1):+.1f} % | "
-              f"{100 * wall / found['with']['step']:.2f} % |", flush=True)
-
-
 def shares(rounds: int) -> None:
     """Parts of shared clocks, to be set in effects/*.py."""
-    plain = FLIGHT.format(more="", other="", v=3, off="").replace("-9.81", "-1e-6")  # as many rebuilds with gravity as without
+    plain = FLIGHT.format(more="", v=3, off="").replace("-9.81", "-1e-6")  # as many rebuilds with gravity as without
     found = measure({
         "plain": plain, "no gravity": plain.replace("gravity (0, 0, -1e-6)", ""),
         "damped": plain.replace("elasticity 1 MPa", "elasticity 1 MPa\n  damping 0.1"),
@@ -177,7 +151,7 @@ def shares(rounds: int) -> None:
     print(f"DASHPOTS  {1 - found['plain']['bonds'] / found['damped']['bonds']:.2f}   of the springs' clock")
     print(f"SLOWING   {1 - bare['plain'] / bare['drag']:.2f}   of the leap-frog's clock")
     print(f"PULL      {(step['plain'] - step['no gravity']) / bare['plain']:.2f}   of the leap-frog's clock without drag, by difference of steps")
-    wet = {f"{m} {d}": FLIGHT.format(more=SEA.format(drag=d, model=m), other="", v=0, off="").replace("50) m", "0.3) m")
+    wet = {f"{m} {d}": FLIGHT.format(more=SEA.format(drag=d, model=m), v=0, off="").replace("50) m", "0.3) m")
            .replace("density 1000\n  elas", "density 500\n  elas") for m in ("surface", "pressure") for d in (0, 4)}
     found = measure(wet, rounds, min)
     coupling = {k: f["coupling"] for k, f in found.items()}
@@ -214,7 +188,7 @@ def forecasts(_: int) -> None:
 
 
 if __name__ == "__main__":
-    what = {"added": added, "asleep": asleep, "shares": shares, "forecast": forecasts}
+    what = {"added": added, "shares": shares, "forecast": forecasts}
     if len(sys.argv) < 2 or sys.argv[1] not in what:
         sys.exit(__doc__)
     what[sys.argv[1]](int(sys.argv[2]) if len(sys.argv) > 2 else ROUNDS)

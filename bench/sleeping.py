@@ -4,7 +4,8 @@
 One live scene at a time, its particles at one place in memory: the effect's fixes are taken away and made again between short blocks
 of steps, every block from the same state, in turns of with, without, without, with. A pair of neighbouring blocks gives one ratio of
 processor time of this thread; printed is the median of all pairs with the 95 % interval of a bootstrap over them. It goes on
-until that interval is within 0.25 % either way, ``seconds`` (60) at most for each row. The first row takes away nothing.
+until that interval is within 0.25 % either way, ``seconds`` (60) at most for each row. The first row takes away nothing; `*`: above 0
+by more than the interval.
 """
 
 import sys
@@ -117,7 +118,6 @@ def main(seconds: float = 60.0) -> None:
         sure = " *" if low > 1.0 else ""
         print(f"| {name} | {1e9 * bare:.1f} | {100 * (middle - 1):+.2f} %{sure} | {100 * (low - 1):+.2f} to {100 * (high - 1):+.2f} % | {pairs} |",
               flush=True)
-    print("\n`*`: above 0 by more than the interval.")
 
 
 if __name__ == "__main__":
