@@ -9,39 +9,21 @@ models   the same for a cube of 6^3 cells set upright onto the surface, by `liqu
 speed    terminal speed under the liquid's drag over (rho_s - rho_l) g / (gamma rho_l)
 drift    what a floating cube moves sideways in 20 s, and the sweeps of the automaton in that time
 
-Without words all of them. Units: spacing 1, liquid of density 1000; elasticity 1000 Pa is a wave speed of about 1.
+Without words all of them. Units as in scenes/lab/cube.txt: spacing 1, liquid of density 1000; elasticity 1000 Pa is a wave speed of
+about 1.
 """
 
 import sys
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
-SCENE = """
-gravity (0, 0, -{g})
-liquid water {{
-  basin from (-{half}, -{half}, 0) to ({half}, {half}, {top})
-  density 1000
-  level {level}
-  {liquid}
-}}
-object cube {{
-  shape box ({side}, {side}, {side})
-  position (0.3, -0.2, {z})
-  orientation euler {turned} deg
-  density {density}
-  elasticity {young} Pa
-  velocity (0, 0, {v})
-}}
-control {{
-  time 10^6
-  frames 0.01 fps
-  resolution 1
-}}
-"""
+CUBE = Path(__file__).parent.parent / "scenes" / "lab" / "cube.txt"
 DENSITIES = (300, 500, 700, 900)
 WAYS = {
     "dropped upright": dict(),
-    "dropped tilted": dict(turned=(20, 35, 10)),
+    "dropped tilted": dict(roll=20, pitch=35, yaw=10),
     "dropped at 0.8 c": dict(fast=0.8, level=20, top=34, z=26),
     "from the bottom": dict(z=3.2),
     "20 times softer": dict(young=50, g=0.002),
@@ -52,16 +34,16 @@ SWEEPS = 4  # entry of the fix's vector
 class Pool:
     """A cube over a pool, in LAMMPS; a context manager."""
 
-    def __init__(self, fast=0.0, **what):
+    def __init__(self, fast=0.0, drag=None, model="surface", **lets):
         from mdanim_lammps.driver.prepare import prepare
         from mdanim_lammps.engine.instance import Instance
-        from mdanim_lammps.scene.parse import parse_scene
+        from mdanim_lammps.scene.parse import load_scene
+        from mdanim_lammps.scene.scene import LiquidModel
 
-        values = dict(g=0.01, half=10, top=24, level=14, liquid="", side=6, z=20, turned=(0, 0, 0), density=500, young=1000, v=0)
-        values |= what
         if fast:  # in wave speeds c
-            values["v"] = -fast * (1.2 * values["young"] / values["density"]) ** 0.5
-        self.ready = prepare(parse_scene(SCENE.format(**values)))
+            lets["v"] = -fast * (1.2 * 1000 / lets["density"]) ** 0.5
+        scene = load_scene(CUBE, overrides=lets)
+        self.ready = prepare(replace(scene, liquid=replace(scene.liquid, drag=drag, model=LiquidModel(model))))
         self.instance = Instance(self.ready.plan)
         self.instance.setup()
 
@@ -117,7 +99,7 @@ def cells() -> None:
     print("the same for a tilted drop and cubes of … cells a side")
     for side in (3, 4, 6, 8, 10):
         half, level = 1.7 * side, 2.5 * side
-        way = dict(side=side, half=half, level=level, top=level + 3 * side, z=level + side, turned=(20, 35, 10))
+        way = dict(side=side, half=half, level=level, top=level + 3 * side, z=level + side, roll=20, pitch=35, yaw=10)
         print(f"{side:<20}" + "   ".join(settled(density=d, **way) for d in DENSITIES), flush=True)
 
 
@@ -125,7 +107,7 @@ def models() -> None:
     """Print drafts under each model of the liquid."""
     print("the same for stiff ones set onto the surface upright, by model of the liquid")
     for model in ("surface", "pressure", "paper"):
-        print(f"{model:20}" + "   ".join(settled(density=d, z=17.1, young=10000, liquid=f"model {model}") for d in DENSITIES), flush=True)
+        print(f"{model:20}" + "   ".join(settled(density=d, z=17.1, young=10000, model=model) for d in DENSITIES), flush=True)
 
 
 def speed() -> None:
@@ -135,7 +117,7 @@ def speed() -> None:
     for density in (1500, 3000):
         fall, time = (density / 1000 - 1) * g / gamma, 5 * density / 1000 / gamma
         deep = int(26 + 1.2 * fall * time)
-        with Pool(density=density, liquid=f"drag {gamma}", level=deep, top=deep + 10, z=deep - 4) as pool:
+        with Pool(density=density, drag=gamma, level=deep, top=deep + 10, z=deep - 4) as pool:
             pool.run(time)
             print(f"{density / 1000:<20}{-pool.mean('v')[2] / fall:.4f}   (1 - exp(-5) = {1 - np.exp(-5):.4f})", flush=True)
 

@@ -1,46 +1,28 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Elastic bodies in the liquid against Archimedes and closed forms, from scene text to LAMMPS.
 
-Units as in physics: spacing 1, liquid of density 1000, so elasticity 1000 Pa is a wave speed of about 1.
+Units of scenes/lab/cube.txt: spacing 1, liquid of density 1000, elasticity 1000 Pa is a wave speed of about 1.
 """
+
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.scene.parse import parse_scene
+from mdanim_lammps.scene.parse import load_scene
 
-SCENE = """
-gravity (0, 0, -{g})
-liquid water {{
-  basin from (-10, -10, 0) to (10, 10, {top})
-  density 1000
-  level {level}
-  {liquid}
-}}
-object cube {{
-  shape box (6, 6, 6)
-  position (0.3, -0.2, {z})
-  orientation euler {turned} deg
-  density {density}
-  elasticity {young} Pa
-  velocity (0, 0, {v})
-}}
-control {{
-  time 10^6
-  frames 0.01 fps
-  resolution 1
-}}
-"""
+CUBE = Path(__file__).parent.parent / "scenes" / "lab" / "cube.txt"
 SIDE = 6
 UNITS, START, LEVEL = 0, 1, 2
 STRATUM = (np.arange(8) + 0.5) / 8
 
 
-def scene(**what):
-    """A cube of 6^3 cells over a pool of 20 x 20 cells."""
-    values = dict(g=0.01, top=24, level=14, liquid="", z=20, turned=(0, 0, 0), density=500, young=1000, v=0) | what
-    return prepare(parse_scene(SCENE.format(**values)))
+def scene(drag=None, **lets):
+    """A cube of 6^3 cells over a pool of 20 x 20 cells; ``lets`` as in the file, ``drag`` of the liquid."""
+    found = load_scene(CUBE, overrides=lets)
+    return prepare(replace(found, liquid=replace(found.liquid, drag=drag)))
 
 
 def immersed(system, x, level: float) -> float:
@@ -61,7 +43,7 @@ def immersed(system, x, level: float) -> float:
 WAVE = lambda density: (1.2 * 1000 / density) ** 0.5
 CASES = {
     "dropped upright": lambda density: dict(),
-    "dropped tilted": lambda density: dict(turned=(20, 35, 10)),
+    "dropped tilted": lambda density: dict(roll=20, pitch=35, yaw=10),
     "dropped fast": lambda density: dict(v=-0.8 * WAVE(density), level=20, top=34, z=26),
     "released from the bottom": lambda density: dict(z=3.2),
     "20 times softer": lambda density: dict(young=50, g=0.002),
@@ -88,7 +70,7 @@ def test_a_cube_floats_as_deep_as_archimedes_says(case, density):
 
 def test_a_heavy_cube_lies_on_the_floor():
     """Density 3: sinks, rests, and is pressed into the floor by at most 0.6 of a spacing."""
-    ready = scene(density=3000, turned=(10, 5, 0))
+    ready = scene(density=3000, roll=10, pitch=5)
     with Instance(ready.plan) as instance:
         instance.setup()
         instance.run(int(3000 / ready.certificate.timestep))
@@ -105,7 +87,7 @@ def test_terminal_speed(density):
     # As deep as ten times what the body goes while it gets up to speed.
     fall = (density / 1000 - 1) * g / gamma
     deep = int(SIDE + 60 * fall * density / 1000 / gamma / 10 + 20)
-    ready = scene(density=density, liquid=f"drag {gamma}", level=deep, top=deep + 10, z=deep - 4)
+    ready = scene(density=density, drag=gamma, level=deep, top=deep + 10, z=deep - 4)
     with Instance(ready.plan) as instance:
         instance.setup()
         instance.run(int(5 * density / 1000 / gamma / ready.certificate.timestep))
