@@ -34,10 +34,8 @@ using namespace mdanim;
 static constexpr double STATE_VERSION = 2.0;
 
 // Reasons and measurements: docs/physics-liquid.md.
-static constexpr double STRIDE = 0.25;            // of a cell that solids travel between updates
 static constexpr double SWEEPS_PER_CELL = 8.0;    // that the fastest solid travels
 static constexpr int MOST_SWEEPS = 4096;          // per update; also parts the keys of their random numbers
-static constexpr double PERIOD = 0.06;    // sqrt(cell/g) between updates while the liquid is not level
 static constexpr double LEVEL_RATE =
     0.11;    // share of exposed cells moved while a shallow-water wave crosses one cell
 static constexpr double SAMPLED = 4.0;    // cells above the liquid up to which solids are marked
@@ -130,7 +128,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
         error->all(
             FLERR, iarg,
             "fix mdanim/liquid: unknown keyword {}; it knows volume, level, fill, gravity, model, vertical, "
-            "seed, buoyancy, drag, lambda, base, cells, faces, still, sweeps and every",
+            "seed, buoyancy, drag, lambda, base, cells, faces, still, sweeps, every, stride and period",
             word);
     }
     iarg += used;
@@ -170,7 +168,7 @@ int FixMdanimLiquid::keyword(int iarg, int narg, char **arg)
 {
   const char *word = arg[iarg];
   static const char *const known[] = {"buoyancy", "drag",  "lambda", "base", "cells",
-                                      "faces",    "still", "sweeps", "every"};
+                                      "faces",    "still", "sweeps", "every", "stride", "period"};
   if (std::none_of(std::begin(known), std::end(known), [&](const char *k) { return strcmp(k, word) == 0; }))
     return 0;
   if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", word), error);
@@ -199,6 +197,11 @@ int FixMdanimLiquid::keyword(int iarg, int narg, char **arg)
     if (strcmp(value, "auto") != 0 && (sweeps < 1 || sweeps > MOST_SWEEPS))
       error->all(FLERR, iarg + 1, "fix mdanim/liquid: sweeps must be auto or 1 to {}, got {}", MOST_SWEEPS,
                  value);
+  } else if (strcmp(word, "stride") == 0 || strcmp(word, "period") == 0) {
+    double &number = strcmp(word, "stride") == 0 ? stride : period;
+    number = utils::numeric(FLERR, value, false, lmp);
+    if (!(number > 0.0))
+      error->all(FLERR, iarg + 1, "fix mdanim/liquid: {} must be > 0, got {}", word, value);
   } else {
     every = utils::inumeric(FLERR, value, false, lmp);
     if (every < 1) error->all(FLERR, iarg + 1, "fix mdanim/liquid: every must be >= 1, got {}", value);
@@ -528,8 +531,8 @@ bool FixMdanimLiquid::due()
   if (!calm) waited += every;
   if (fastest >= 0.0) travel += std::sqrt(fastest) * every * update->dt / shortest;
   else if (moving_solid) return true;    // the last one has just left
-  if (travel >= STRIDE) return true;
-  return !calm && waited * update->dt >= PERIOD * std::sqrt(shortest / g);
+  if (travel >= stride) return true;
+  return !calm && waited * update->dt >= period * std::sqrt(shortest / g);
 }
 
 // Liquid leaves the cells that have become solid; returns how many have changed.

@@ -98,7 +98,9 @@ class FixMdanimLiquid : public Fix {
   bool has_level = false;
   Model model = Model::SURFACE;
   int sweeps = 0;    // per update; 0 chooses by how far solids have travelled
-  int every = 4;
+  int every = 4;           // steps between looks whether an update is due:
+  double stride = 0.25;    // that solids travel between updates, in cells
+  double period = 0.06;    // between updates while the liquid is not level, in sqrt(cell/g)
   std::uint64_t seed = 1;
   int still_bit = 0;
   std::string corners_name, faces_name, lambda_name, base_name;    // of custom properties

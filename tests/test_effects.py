@@ -152,13 +152,13 @@ def test_the_liquid_in_lammps_terms(prepared):
         "group held type 5:8",
         "region liquid block 0.0 1.0 0.0 0.8 0.0 0.6",
         "fix liquid all mdanim/liquid liquid 1000.0 grid 20 16 12 level 0.25 gravity 9.81 cells i2_cell still held "
-        "sweeps auto every 4 seed 3",
+        "sweeps auto every 4 stride 0.25 period 0.06 seed 3",
     ]
     fill, fix = commands(prepared(pool(
         "volume 10 l\n fill from (0, 0, 0.1) m to (0.3, 0.8, 0.6) m\n model paper\n sweeps 7\n drag 2")), "liquid")[2:]
     assert fill == "region fill block 0.0 0.3 0.0 0.8 0.1 0.6"
     assert fix == ("fix liquid all mdanim/liquid liquid 1000.0 grid 20 16 12 volume 0.01 fill fill gravity 9.81 model paper "
-                   "still held sweeps 7 every 4 seed 3")
+                   "still held sweeps 7 every 4 stride 0.25 period 0.06 seed 3")
 
 
 def test_the_paper_needs_no_lattice_cells(prepared):

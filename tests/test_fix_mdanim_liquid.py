@@ -276,6 +276,29 @@ def test_level_liquid_sleeps_and_wakes(tmp_path):
     lmp.close()
 
 
+def test_updates_come_after_a_stride(tmp_path):
+    """Of a block that sinks through the pool: a longer stride has fewer, each of one sweep here, and one that is never done none."""
+    seen = []
+    for stride in (0.1, 1.0, 1e6):
+        lmp = block_in_pool(tmp_path, (3, 3, 3), (-1.5, -1.5, 4.0), ["run 80"], density=1.0, velocity=(0.0, 0.0, -0.2),
+                            pool=f"{POOL} sweeps 1 period 1e6 stride {stride}")
+        seen.append(value(lmp, "sweeps"))
+        lmp.close()
+    assert seen[0] >= 2 * seen[1] > 2 * seen[2] == 0
+
+
+def test_updates_come_after_a_period(tmp_path):
+    """Of a dam that has just broken, with nothing near it: at looks every 4 steps of 0.3, a period of 6 sees every fifth."""
+    seen = []
+    for period in (0.06, 0.6, 1e6):  # times sqrt(cell/g) = 10
+        lmp = lab.load(one(60.0), tmp_path, [
+            *BASIN, "region half block -10 0 -10 10 0 16", f"{POOL.replace('level 10', 'volume 1000 fill half')} sweeps 1 period {period}",
+            "fix move all mdanim/leapfrog", "timestep 0.3", "run 80"])
+        seen.append(value(lmp, "sweeps"))
+        lmp.close()
+    assert seen == [20, 4, 0]
+
+
 def frames(lmp, pieces):
     """Positions, velocities and cells after each of these numbers of steps."""
     out = []
@@ -414,6 +437,8 @@ def test_a_lid_from_wall_to_wall_still_floats(tmp_path):
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 still none", "no group none"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 lambda 3", "must be a per-particle property"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 lambda d_no", "make it with"),
+        ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 stride 0", "stride must be > 0, got 0"),
+        ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 period x", "Expected floating point"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 sweeps 0", "auto or 1 to"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 model wave", "surface or paper"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 0.1 gravity 1\nrun 0", "level 0.1 is less than half a cell"),

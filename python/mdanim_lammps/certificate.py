@@ -19,7 +19,7 @@ from fractions import Fraction
 import numpy as np
 
 from .effects import EFFECTS, Effect, Verdict
-from .effects.liquid import EVERY
+from .effects.liquid import EVERY, STRIDE
 from .errors import Problem, RefusedError, SceneError, Span
 from .model.basin import liquid_level
 from .model.shapes import thickness
@@ -40,8 +40,6 @@ TUNNEL = (0.5, 0.7, 0.8)
 """Closing speed over the wave speed from which a block goes through a clamped plate of 1, 2, 3 and more cells (docs/stability.md)."""
 SWEEPS = 4
 """Fewest sweeps of the automaton for each cell that the fastest solid travels; 8 are better (docs/physics-liquid.md)."""
-STRIDE = 0.25
-"""Cells that a solid travels at most before the liquid's fix updates; it looks every EVERY steps."""
 MOST_OBJECTS = 100
 """Objects whose own bound is told, the smallest first."""
 

@@ -17,9 +17,11 @@ from .springs import all_held
 
 
 EVERY = 4
-"""Steps after which the fix looks whether cells are to be updated; its own default."""
+"""Steps after which the fix looks whether cells are to be updated."""
+STRIDE = 0.25
+"""Cells that a solid travels at most between updates."""
 PERIOD = 0.06
-"""Time between updates of a liquid that is not level, over sqrt(cell/g); as in the fix."""
+"""Time between updates of a liquid that is not level, over sqrt(cell/g)."""
 NEAR = 8.0
 """Cells above the liquid up to which the motion of solids counts for it; as in the fix."""
 SWEPT, AUTOMATON, OCCUPANCY, COUPLING = 4, 7, 8, 9
@@ -29,8 +31,8 @@ DRAGGING = 0.07
 
 PRESSING = 2.2
 """Time of the coupling by pressure on faces over that by immersed volumes: 1.8 for a cube (bench/effects.py shares), 2.4 for a hull."""
-SWEEPS_PER_UPDATE = 2.0
-"""8 sweeps for each cell that bodies travel, and updates after a quarter of a cell; as in the fix."""
+SWEEPS_PER_UPDATE = 8.0 * STRIDE
+"""8 sweeps for each cell that bodies travel."""
 STIR = 2.8
 """Sweeps a second times the cell [m/s]: 8 for every cell that bodies travel, at a mean of 0.35 m/s, as in the scenes of scenes/."""
 
@@ -99,7 +101,7 @@ class Liquid(Effect):
             *(["fill fill"] if fill else []),
             f"gravity {-scene.gravity[2]!r}",
             "model paper" if liquid.model is LiquidModel.PAPER else "cells i2_cell",
-            f"still held sweeps {liquid.sweeps or 'auto'} every {EVERY} seed {scene.control.seed}",
+            f"still held sweeps {liquid.sweeps or 'auto'} every {EVERY} stride {STRIDE} period {PERIOD} seed {scene.control.seed}",
         ]
         return ["group held type 5:8", f"region liquid {_block(liquid.low, liquid.high)}", *fill, " ".join(words)]
 
