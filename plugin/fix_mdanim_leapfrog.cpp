@@ -100,7 +100,7 @@ double FixMdanimLeapfrog::largest_phi_here() const
 }
 
 // Without drag both halves are v <- v + dt/2m F.
-template <class Half> void FixMdanimLeapfrog::half_step(Half half)
+template <class Half> void FixMdanimLeapfrog::half_step(Half half, bool first)
 {
   const Lap lap(seconds);
   if (!has_drag) {
@@ -112,13 +112,13 @@ template <class Half> void FixMdanimLeapfrog::half_step(Half half)
       add_to(v[i], half_dt / mass_of(rmass, mass, type, i) * vec3(f[i]));
     }
   } else if (exponential) {
-    half_step_with_drag<Exponential>(half);
+    half_step_with_drag<Exponential>(half, first);
   } else {
-    half_step_with_drag<Implicit>(half);
+    half_step_with_drag<Implicit>(half, first);
   }
 }
 
-template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Half half)
+template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Half half, bool first)
 {
   double *const *v = atom->v, *const *f = atom->f;
   const double *rmass = atom->rmass, *mass = atom->mass, *own = lambda.values(lmp);
@@ -133,11 +133,12 @@ template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Ha
       continue;
     }
     const Vec3 before = vec3(v[i]), push = vec3(f[i]);
-    const Vec3 after = half(Drag{phi, kick}, before, push);
+    const Drag drag{phi, kick};
+    const Vec3 after = half(drag, before, push);
     v[i][0] = after.x;
     v[i][1] = after.y;
     v[i][2] = after.z;
-    loss += half_step_loss(before, after, push, m, kick);
+    loss += drag.loss(before, after, push, m, first);
     largest_phi = std::max(largest_phi, phi);
   }
   lost += force->mvv2e * loss;
@@ -146,7 +147,7 @@ template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Ha
 // v^n -> v^{n+1/2}, then r^{n+1} = r^n + dt v^{n+1/2}: the end of eq. (3.12).
 void FixMdanimLeapfrog::initial_integrate(int)
 {
-  half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.first_half(v, f); });
+  half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.first_half(v, f); }, true);
   drift();
 }
 
@@ -211,7 +212,7 @@ std::vector<Box> FixMdanimLeapfrog::traced_boxes() const
 // v^{n-1/2} -> v^n, eq. (3.10).
 void FixMdanimLeapfrog::final_integrate()
 {
-  half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.final_half(v, f); });
+  half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.final_half(v, f); }, false);
 }
 
 double FixMdanimLeapfrog::compute_scalar()

@@ -35,8 +35,8 @@ class FixMdanimLeapfrog : public Fix {
   std::vector<mdanim::Box> traced_boxes() const;
 
  private:
-  template <class Half> void half_step(Half half);
-  template <class Drag, class Half> void half_step_with_drag(Half half);
+  template <class Half> void half_step(Half half, bool first);
+  template <class Drag, class Half> void half_step_with_drag(Half half, bool first);
   void drift();
   void drift_and_trace();
   double largest_phi_here() const;

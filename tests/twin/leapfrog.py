@@ -8,20 +8,23 @@ def leapfrog(x, v, force, mass, drag, dt, steps):
     """Positions and whole-step velocities (3.10) after so many steps, and the energy that drag took.
 
     ``force(x)`` gives (N, 3); ``mass``, ``drag`` (lambda) are (N,). Starts from whole-step velocities.
-    Drag takes lambda dt v_n^2 in a whole step; in the half step before or after v_n it takes lambda dt/2 v_n
-    times the mean of v_n and the half-step velocity.
+    In the half step before or after v_n drag takes lambda dt/2 v_n times the mean of v_n and the half-step velocity;
+    and lambda dt/2 times F dt/2m times (2/3 v_half - 1/2 v_n), positive after v_n, negative before.
     """
-    taken = lambda a, b: 0.5 * dt * (drag * (a * 0.5 * (a + b)).sum(1)).sum()
+    half_drag = 0.5 * dt * drag[:, None]
+    mean = lambda whole, half: (half_drag * whole * 0.5 * (whole + half)).sum()
+    lag = lambda whole, half: (half_drag * 0.5 * push(x) * (2.0 / 3.0 * half - 0.5 * whole)).sum()
     phi = (drag * dt / (2.0 * mass))[:, None]
     push = lambda at: dt / mass[:, None] * force(at)
     half = (1.0 - phi) * v + 0.5 * push(x)  # (3.12) with v_n = (v_- + v_+) / 2 solved for v_+
-    lost = taken(v, half)
+    lost = mean(v, half) + lag(v, half)
     for _ in range(steps):
         x = x + dt * half
         old, half = half, (1.0 - phi) / (1.0 + phi) * half + push(x) / (1.0 + phi)
         v = 0.5 * (old + half)
-        lost += dt * (drag * (v**2).sum(1)).sum()
-    return x, v, lost - taken(v, half)
+        before, after = mean(v, old) - lag(v, old), mean(v, half) + lag(v, half)
+        lost += before + after
+    return x, v, lost - after
 
 
 def exponential(x, v, force, mass, drag, dt, steps):
