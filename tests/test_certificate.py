@@ -85,6 +85,31 @@ def test_contact_shortens_the_step(prepared):
     assert together == pytest.approx(alone * math.sqrt(8.0 / (8.0 + 2 * plane_stiffness(1.6) * 0.4 * 8)), rel=1e-3)
 
 
+@pytest.mark.parametrize("factor", [0.1, 4, 100])
+def test_stiffer_contact_shortens_the_step_more(prepared, factor):
+    """Scale the barrier's part of the bound, and that of the ground, with what the scene says, by --set too."""
+    two = box().replace("control", "object b {\n shape box (4, 4, 4) cm\n position (5, 0, 0) cm\n density 1000\n"
+                        " elasticity 100 kPa\n}\ncontrol")
+    told = two.replace("time 1 s", f"time 1 s\n contact-stiffness {factor}")
+    assert told != two
+    usual, c = prepared(two).certificate, prepared(told).certificate
+    barrier = 2 * plane_stiffness(1.6) * 0.4 * 8
+    assert c.bound == pytest.approx(usual.bound * math.sqrt((8.0 + barrier) / (8.0 + factor * barrier)), rel=1e-2)
+    assert margin(c, "contact").limit == pytest.approx(margin(usual, "contact").limit / math.sqrt(factor), rel=1e-9)
+    fallen = "gravity (0, 0, -9.81)\nground z -1\n"
+    walls = [margin(prepared(fallen + text).certificate, "wall").limit for text in (two, told)]
+    assert walls[1] == pytest.approx(walls[0] / math.sqrt(factor), rel=1e-9)
+
+
+def test_soft_contact_is_passed_through_sooner(prepared):
+    """Lower the speed that contact stops where it is softer, name the line to change; stiffer contact stops no more than usual."""
+    soft, usual, stiff = (margin(prepared(pile(extra="velocity (0, 0, 4)", high=10, z=15.5, control=f"contact-stiffness {f}")).certificate,
+                                 "closing speed") for f in (0.125, 1, 8))
+    assert soft.limit == pytest.approx(0.25 * usual.limit) and stiff.limit == usual.limit
+    assert (soft.severity, usual.severity) == ("warning", "ok")
+    assert "contact-stiffness" in soft.span.text and "contact-stiffness 1" in soft.hint
+
+
 def test_damping_shortens_the_step(prepared):
     """Solve dt^2 a + 2 dt b = 4 with the dashpots' part."""
     bounds = [prepared(box(extra=f"damping {zeta}" if zeta else "")).certificate.bound for zeta in (0, 0.01, 0.1, 1)]

@@ -176,11 +176,13 @@ def test_lammps_reads_back_our_data_file(prepared, tmp_path, text):
     lmp.close()
 
 
-def test_a_scene_agrees_with_its_naive_twin(prepared):
+@pytest.mark.parametrize("factor", [1.0, 3.0])
+def test_a_scene_agrees_with_its_naive_twin(prepared, factor):
     """Follow slab, cube and plate through contact, ground and drag up to the moment of impact beside a NumPy twin of every law."""
-    ready = prepared(MEETING)
+    ready = prepared(MEETING.replace("control {", f"control {{ contact-stiffness {factor}"))
     system, c = ready.system, ready.certificate
-    s, reach = system.contact_stiffness, 1.6 * system.spacing[system.object]
+    bulk = (system.young * np.cbrt(system.cell_volume))[system.object]
+    s, reach = factor * bulk * np.minimum(1.0, 2.0 * system.share), 1.6 * system.spacing[system.object]
     thin = system.layer == 4
     g = np.array(ready.scene.gravity)
     drag = system.drag if system.drag is not None else np.zeros(system.particles)
@@ -190,7 +192,7 @@ def test_a_scene_agrees_with_its_naive_twin(prepared):
                 + world.barrier_forces(x, system.object, system.boundary, thin, s, reach)[0]
                 + world.ground_forces(x, 0.0, s)[0])
 
-    steps = 48  # cube on slab and plate on ground, both pressed in
+    steps = round(48 * prepared(MEETING).certificate.timestep / c.timestep)  # cube on slab and plate on ground, pressed in
     x, v = world.leapfrog(system.position, system.velocity, force, system.mass, drag, c.timestep, steps, ~system.held)
     with Instance(ready.plan) as instance:
         instance.setup()

@@ -113,6 +113,7 @@ def scenes(draw):
         timestep=draw(st.none() | positive),
         resolution=draw(st.none() | positive),
         accuracy=draw(st.sampled_from(records.Accuracy) | st.floats(1e-6, 0.9)),
+        contact_stiffness=draw(st.floats(0.1, 100.0)),
         seed=draw(st.integers(0, 2**53 - 1)),
         save=draw(st.sampled_from(records.Save)),
         single=draw(st.booleans()),

@@ -222,6 +222,7 @@ def test_object_setting(form, value):
     ("timestep auto", "timestep", None), ("resolution 4 cm", "resolution", 0.04),
     ("accuracy preview", "accuracy", records.Accuracy.PREVIEW), ('accuracy "error 2 %"', "accuracy", 0.02),
     ('accuracy "error 0.1%"', "accuracy", 0.001), ("seed 7", "seed", 7),
+    ("contact-stiffness 4", "contact_stiffness", 4.0), ("", "contact_stiffness", 1.0),
     ("save boundary", "save", records.Save.BOUNDARY), ("save all single", "single", True),
     ("save boundary double", "single", False),
 ])  # fmt: skip
@@ -586,6 +587,13 @@ MISTAKES = [
     ("camera runs back",
      text() + "render { camera 1 s from (1, 1, 1) m look ball\ncamera 1 s from (1, 1, 1) m look ball }", 9,
      8, "the times of the cameras must rise", ""),
+    ("contact too soft", text().replace("time 3 s", "time 3 s contact-stiffness 0.01"), 7, 38, "goes from 0.1 to 100, found 0.01",
+     "4 halves"),
+    ("contact too stiff", text("let f = 1e3\n").replace("time 3 s", "time 3 s contact-stiffness f"), 8, 38,
+     "goes from 0.1 to 100, found 1000", "4 halves"),
+    ("contact with a unit", text().replace("time 3 s", "time 3 s contact-stiffness 4 N/m"), 7, 38, "contact-stiffness must be", ""),
+    ("contact with the wrong dash", text().replace("time 3 s", "time 3 s\n contact_stiffness 4"), 8, 2, "contact_stiffness",
+     "did you mean 'contact-stiffness'?"),
     ("giant picture", text() + "render { size (99999, 1) }", 8, 15, "is too large", "16384"),
 ]  # fmt: skip
 

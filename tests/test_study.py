@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What accuracy costs: errors and orders of ladders, studies that stop and go on, and the setting that meets a target."""
 
+import io
 import json
 import math
 import signal
@@ -164,7 +165,7 @@ def test_advice_for_a_scene_without_order():
     for k, s in enumerate(ladder.settings):
         wild = track()
         wild[:, 0, 0] = (-1) ** k * np.minimum(0.7, 1e-6 * (1 + k) * np.exp(TIMES / 0.06))
-        points[s.key] = Point(s, 1e-3, 100, 10, [1.0], [1.0], [1e-5], [()], [wild])
+        points[s.key] = Point(s, 1e-3, 100, 10, [1.0], [1.0], [1e-5], [0.0], [()], [wild])
     found = analyse(points, [ladder], own, TIMES, (), ["a", "b"])
     assert found.chaotic
     assert "forgets how it began" in advice(found)
@@ -292,7 +293,7 @@ def clock(monkeypatch):
     def took(scene, setting, *_, **__):
         wall = 0.5 * (setting.cells / 4.0) ** 4 * 0.5 / setting.fraction
         now[0] += wall
-        return Sample(setting, 1e-3, 100, 10, wall, wall, 0.0, (0.0,), TIMES, track(1.0 + setting.cells**-2))
+        return Sample(setting, 1e-3, 100, 10, wall, wall, 0.0, 0.0, (0.0,), TIMES, track(1.0 + setting.cells**-2))
 
     monkeypatch.setattr(bench, "measure", took)
     monkeypatch.setattr(bench, "time", SimpleNamespace(perf_counter=lambda: now[0]))
@@ -345,14 +346,57 @@ def test_unknown_ladder(tmp_path):
         run_study(parse_scene(BAR), tmp_path / "study", only=["dt"])
 
 
-def test_liquid_and_contact_ladders(scenes):
-    """Vary sweeps only with a liquid, and say that there is no word for contact."""
-    for name, swept, said in (("float", True, "one object"), ("beam", False, "only on and off")):
+def test_ladders_of_what_a_scene_has(scenes):
+    """Vary sweeps only with a liquid, contact only where something may touch, and say why not elsewhere."""
+    for name, own in (("float", {"sweeps"}), ("beam", {"contact"}), ("crowd", {"contact"}), ("spin", set())):
         scene = load_scene(scenes / f"{name}.txt")
         ready = prepare(scene)
         found, left = ladders(scene, ready, own_setting(scene, ready))
-        assert ("sweeps" in [ladder.name for ladder in found]) == swept
-        assert said in left["contact"]
+        assert {ladder.name for ladder in found} == {"time step", "resolution", *own}
+        assert set(left) == {"sweeps", "contact"} - own
+    assert left["contact"] == "nothing touches: one object, and there is neither ground nor walls"
+
+
+def test_contact_ladder_goes_with_the_scene(prepared):
+    """Take a quarter to eight times what the scene says, within what the language takes, softest first."""
+    for said, factors in (("", [0.25, 0.5, 1, 2, 4, 8]), ("contact-stiffness 0.3", [0.15, 0.3, 0.6, 1.2, 2.4]),
+                          ("contact-stiffness 40", [10, 20, 40, 80])):
+        ready = prepared(BLOCKS.format(v=1.0).replace("1000 fps", f"1000 fps {said}"))
+        own = own_setting(ready.scene, ready)
+        found, _ = ladders(ready.scene, ready, own)
+        ladder = next(ladder for ladder in found if ladder.name == "contact")
+        assert [s.contact for s in ladder.settings] == pytest.approx(factors)
+        assert own in ladder.settings
+        steps = [ladder.step(s) for s in ladder.settings]
+        assert steps == sorted(steps, reverse=True)
+        assert with_setting(ready.scene, ladder.settings[0]).control.contact_stiffness == pytest.approx(factors[0])
+    assert scene_hash(ready.scene) == scene_hash(parse_scene(BLOCKS.format(v=1.0), "blocks"))
+
+
+def test_contact_ladder_trades_depth_for_time(tmp_path, monkeypatch):
+    """Sink in less the stiffer contact is, in shorter time steps, and tell both in table, files and plot."""
+    from rich.console import Console
+
+    from mdanim_lammps.study.report import table
+
+    monkeypatch.setattr(bench, "REPEATS", 1)
+    scene = parse_scene(BLOCKS.format(v=0.2 * WAVE))
+    study = run_study(scene, tmp_path / "study", budget=30.0, only=["contact"])
+    points = [study.points[s.key] for s in study.analysis.measured["contact"]]
+    assert [p.setting.contact for p in points] == [0.25, 0.5, 1, 2, 4, 8]
+    deep = [p.penetration[0] for p in points]
+    assert deep == sorted(deep, reverse=True) and deep[0] > 4.0 * deep[2]
+    assert [p.steps for p in points] == sorted(p.steps for p in points) and points[-1].steps > 1.8 * points[2].steps
+    errors = study.analysis.ladders["contact"].errors
+    assert errors[0] > 2.0 * errors[2] > 2.0 * errors[4]
+    rows = json.loads((tmp_path / "study" / "study.json").read_text())["points"]
+    assert sorted(r["penetration"] for r in rows) == sorted(deep)
+    assert "penetration" in (tmp_path / "study" / "study.csv").read_text().splitlines()[0].split(",")
+    console = Console(width=200, file=io.StringIO())
+    console.print(table(study))
+    assert "sunk in" in console.file.getvalue()
+    again = Store(tmp_path / "study", scene_hash(scene))
+    assert {k: p.penetration for k, p in again.points.items()} == {k: p.penetration for k, p in study.points.items()}
 
 
 def test_liquid_repeats_have_another_seed(scenes, tmp_path):
@@ -475,7 +519,7 @@ def test_target_steps_back_from_an_overshoot(target_file, monkeypatch):
     def made_up(scene, setting, *_, **__):
         seen.append(setting.cells)
         work = setting.cells**4 / setting.fraction
-        return Sample(setting, 1e-3, 100, 10, work, work * 1e-6, 0.0, (0.0,), TIMES,
+        return Sample(setting, 1e-3, 100, 10, work, work * 1e-6, 0.0, 0.0, (0.0,), TIMES,
                       track(1.0 + errors.get(setting.cells, 1e-3 / setting.cells)))
 
     monkeypatch.setattr(bench, "measure", made_up)
@@ -494,7 +538,7 @@ def test_target_chooses_a_time_step(error, fraction, target_file, monkeypatch):
     """Give a quarter of the target to the time step, and count what it adds."""
     def made_up(scene, s, *_, **__):
         work = s.cells**4 / s.fraction
-        return Sample(s, 1e-3, 100, 10, work, work * 1e-6, 0.0, (0.0,), TIMES,
+        return Sample(s, 1e-3, 100, 10, work, work * 1e-6, 0.0, 0.0, (0.0,), TIMES,
                       track(1.0 + 0.08 * s.cells**-2 + error * s.fraction**2))
 
     monkeypatch.setattr(bench, "measure", made_up)

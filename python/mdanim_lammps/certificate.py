@@ -38,6 +38,8 @@ THINNEST = 2
 """Fewest cells across: one cell is 1.9 times too stiff in bending (docs/physics-solids.md)."""
 TUNNEL = (0.5, 0.7, 0.8)
 """Closing speed over the wave speed from which a block goes through a clamped plate of 1, 2, 3 and more cells (docs/stability.md)."""
+SOFTER = 2.0 / 3.0
+"""With contact softer than its standard that speed falls with this power of ``contact-stiffness`` (docs/physics-contact.md)."""
 SWEEPS = 4
 """Fewest sweeps of the automaton for each cell that the fastest solid travels; 8 are better (docs/physics-liquid.md)."""
 MOST_OBJECTS = 100
@@ -389,6 +391,8 @@ class _Margins:
         closing = np.where(self.moving, np.sqrt(apart**2 + 2.0 * self._g() * np.maximum(0.0, self._fall())), 0.0)
         # A held partner may be met at full speed, the softer of two is the one that is passed through.
         limit = np.array(TUNNEL)[np.clip(np.rint(self.cells).astype(int), 1, len(TUNNEL)) - 1] * self.wave
+        soft = system.contact_factor < 1.0
+        limit *= system.contact_factor**SOFTER if soft else 1.0
         weakest = int(limit.argmin())
         fastest = int((closing / np.minimum(limit, limit[weakest])).argmax())
         value, most = float(closing[fastest]), float(min(limit[fastest], limit[weakest]))
@@ -396,8 +400,10 @@ class _Margins:
         return [Margin(
             "closing speed", system.names[fastest], value, most, "m/s",
             f"{system.names[fastest]} may meet another object at {value:.3g} m/s; up to {most:.3g} m/s{partner} nothing passes through",
-            self._of(fastest, "velocity", "position"), "warning" if value > most else "ok",
-            hint="write a lower speed, a higher elasticity, or a resolution of three cells across the thinnest part")]
+            self.scene.control.spans.get("contact-stiffness") if soft else self._of(fastest, "velocity", "position"),
+            "warning" if value > most else "ok",
+            hint="write contact-stiffness 1, or a lower speed" if soft else
+            "write a lower speed, a higher elasticity, or a resolution of three cells across the thinnest part")]
 
     # --- load and thickness ---------------------------------------------------------------------------------------
 

@@ -56,6 +56,8 @@ class System:
     """Corners of every filled lattice cell, particle numbers in VTK order, int32, shape (C, 8)."""
     grid: Grid | None
     """Cells of the liquid's basin; None without a liquid."""
+    contact_factor: float = 1.0
+    """``control contact-stiffness`` [-]."""
 
     @property
     def particles(self) -> int:
@@ -75,10 +77,10 @@ class System:
     def contact_stiffness(self) -> np.ndarray:
         """Stiffness that a particle offers to barriers and walls [N/m], shape (N,).
 
-        E h of its solid, less where few cells stand behind it: min(1, 2 n/8), one half on an edge, a quarter in a corner
-        (docs/physics-contact.md). Two of them in series make a pair's k: 2 s_i s_j / (s_i + s_j).
+        E h of its solid times the scene's factor, less where few cells stand behind it: min(1, 2 n/8), one half on an edge, a
+        quarter in a corner (docs/physics-contact.md). Two of them in series make a pair's k: 2 s_i s_j / (s_i + s_j).
         """
-        full = self.young * np.cbrt(self.cell_volume)
+        full = self.contact_factor * self.young * np.cbrt(self.cell_volume)
         return full[self.object] * np.minimum(1.0, 2.0 * self.share)
 
     @cached_property
@@ -127,4 +129,5 @@ def assemble(models: Sequence[Model], scene: Scene) -> System:
         volume=join([m.mass * (shapes.volume(s.shape) / m.mass.sum()) for m, s in zip(models, scene.solids)]),
         hexahedron=join([m.hexahedron + o if o else m.hexahedron for m, o in zip(models, offsets)]),
         grid=scene_grid(scene),
+        contact_factor=scene.control.contact_stiffness,
     )

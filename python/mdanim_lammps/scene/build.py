@@ -28,6 +28,9 @@ def build(out: Filled, problems: Problems, name: str, source: Source) -> records
 MOST_SWEEPS = 4096
 """Most sweeps of the automaton per update that fix mdanim/liquid takes."""
 
+SOFTEST, STIFFEST = 0.1, 100.0
+"""Least and largest ``contact-stiffness``: softer, objects are passed through before they are crushed; stiffer, only time is lost."""
+
 
 class Builder:
     """Reads one Filled scene; every ``problem`` has a place."""
@@ -372,6 +375,13 @@ class Builder:
             return None
         value = block.value
         save = block.first("save")
+        contact = value("contact-stiffness", 1.0)
+        if not SOFTEST <= contact <= STIFFEST:
+            self.problem(
+                block.first("contact-stiffness").span(0),
+                f"contact-stiffness goes from {SOFTEST:g} to {STIFFEST:g}, found {contact:.6g}",
+                "1 is as stiff as the material itself; 4 halves how deep objects sink in, for a shorter time step",
+            )
         if value("frames", 30.0) * value("time") < 1.0:
             self.problem(
                 block.first("time").span(0),
@@ -381,7 +391,8 @@ class Builder:
         return records.Control(
             time=value("time"), frames=value("frames", 30.0),
             timestep=value("timestep"), resolution=value("resolution"),
-            accuracy=self.accuracy(block.first("accuracy")), seed=int(value("seed", 1.0)),
+            accuracy=self.accuracy(block.first("accuracy")), contact_stiffness=contact,
+            seed=int(value("seed", 1.0)),
             save=records.Save(value("save", "all")), single=bool(save) and save.values[1] == "single",
             spans=self.spans(block),
         )  # fmt: skip

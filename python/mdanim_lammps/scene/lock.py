@@ -77,6 +77,7 @@ def _control(c: records.Control) -> list[str]:
         ("timestep", _auto(c.timestep, "s")),
         ("resolution", _auto(c.resolution, "m")),
         ("accuracy", accuracy),
+        ("contact-stiffness", repr(c.contact_stiffness)),
         ("seed", str(c.seed)),
         ("save", f"{c.save.value} {'single' if c.single else 'double'}"),
     ])  # fmt: skip

@@ -256,6 +256,8 @@ class Control:
     """Particle spacing [m]; None is ``auto``."""
     accuracy: Accuracy | float = Accuracy.BALANCED
     """A class, or a target error as a fraction (``error 2 %`` is 0.02)."""
+    contact_stiffness: float = 1.0
+    """What objects and walls push back with, over E h [-]."""
     seed: int = 1
     save: Save = Save.ALL
     single: bool = False

@@ -178,6 +178,9 @@ WORDS = (
     Keyword("control", "resolution", "auto | <h:m>", "2 cm", "Particle spacing.", Rule.POSITIVE, "auto"),
     Keyword("control", "accuracy", 'preview | balanced | reference | <"error p %">', '"error 2 %"',
             "How finely objects are resolved, or the error that is aimed at.", default="balanced"),
+    Keyword("control", "contact-stiffness", "<factor>", "4",
+            "What objects, ground and walls push back with, over E h, the stiffness of the material behind a surface; from "
+            "0.1 to 100. Stiffer, objects sink less into each other, and time steps get shorter.", Rule.POSITIVE, "1"),
     Keyword("control", "seed", "<n>", "7", "Seed of `rand` and of the liquid.", Rule.WHOLE, "1"),
     Keyword("control", "save", "<all|boundary> [<single|double>]", "boundary single",
             "Which particles the trajectory holds, and its precision; the size is told before the run.",

@@ -21,6 +21,8 @@ REPEATS = 3
 """Runs of a point, as far as the budget goes: the least that has a median."""
 FOR_REPEATS = 0.2
 """Share of the budget that new points leave for repeats: without a spread there is no ranking."""
+PRESSED = 1.3
+"""Part of contact in the bound over that of springs, at a corner and a ``contact-stiffness`` of 1 (docs/physics-contact.md)."""
 
 
 class Bench:
@@ -45,8 +47,12 @@ class Bench:
         return min(near.wall) * work / self._work(near.setting)
 
     def _work(self, setting: Setting) -> float:
-        """Particle-steps over those of the scene's own setting: particles go with cells^3, steps with cells over the fraction."""
+        """Particle-steps over those of the scene's own setting: particles go with cells^3, steps with cells over the fraction.
+
+        Stiffer contact shortens the step where it is part of the bound.
+        """
         steps = (self.own.fraction or 1.0) / (setting.fraction or 1.0) * (setting.cells / self.own.cells)
+        steps *= math.sqrt((1.0 + PRESSED * setting.contact) / (1.0 + PRESSED * self.own.contact))
         return steps * (setting.cells / self.own.cells) ** 3
 
     def measure_all(self, wanted: Sequence[Setting]) -> dict[Setting, str]:

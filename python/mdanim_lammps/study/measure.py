@@ -14,6 +14,7 @@ import numpy as np
 
 from ..driver.prepare import prepare
 from ..driver.run import Progress, simulate
+from ..results.files import read_json
 from ..results.trajectory import Trajectory
 from ..scene.scene import Scene
 from .setting import Setting, frames_only, with_setting
@@ -37,6 +38,8 @@ class Sample:
     """Wall time of everything [s]."""
     drift: float
     """Largest energy residual [-]."""
+    penetration: float
+    """Deepest that something has been where it should not be [m]."""
     found: tuple[float, ...]
     """What the scene's ``expect`` lines found, in their order."""
     times: np.ndarray
@@ -78,8 +81,9 @@ def measure(scene: Scene, setting: Setting, folder: Path, *, limit: float = floa
         result = simulate(ready, temporary, watch=look)
         with Trajectory(temporary) as t:
             times, center = (np.array(a[:], float) for a in (t.times, t.centers))
+        penetration = read_json(temporary / "summary.json")["penetration"]
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
     c = ready.certificate
     return Sample(setting, c.timestep, c.steps, ready.system.particles, last[0].seconds, time.perf_counter() - start,
-                  result.ledger.residual, tuple(float(o.found) for o in result.outcomes), times, center)
+                  result.ledger.residual, penetration, tuple(float(o.found) for o in result.outcomes), times, center)

@@ -8,6 +8,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..model.wording import length
 from ..results.files import write_whole
 from .analysis import Rated
 from .error import ROUND_OFF, distance
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
     from .study import Study
 
-COLORS = {"time step": "#1f77b4", "resolution": "#d62728", "sweeps": "#2ca02c"}
+COLORS = {"time step": "#1f77b4", "resolution": "#d62728", "sweeps": "#2ca02c", "contact": "#9467bd"}
 
 
 def write_report(study: Study, store: Store, budget: float) -> None:
@@ -34,7 +35,7 @@ def write_report(study: Study, store: Store, budget: float) -> None:
         } for name, c in a.ladders.items()},
         "points": {key: {
             "seconds": r.seconds.middle, "seconds_spread": r.seconds.spread, "error": r.error.middle,
-            "error_spread": r.error.spread, "expect_error": r.closed, "energy_drift": max(r.point.drift), "pareto": r.front,
+            "error_spread": r.error.spread, "expect_error": r.closed, "energy_drift": max(r.point.drift), "penetration": max(r.point.penetration), "pareto": r.front,
         } for key, r in a.rated.items()},
     })
     write_whole(store.folder / "study.csv", lambda part: _write_csv(study, part))
@@ -48,13 +49,14 @@ def _finite(x: float) -> float | None:
 def _write_csv(study: Study, path: Path) -> None:
     with open(path, "w", newline="", encoding="utf-8") as file:
         out = csv.writer(file)
-        out.writerow(["setting", "ladders", "cells", "fraction", "sweeps", "timestep", "particles", "steps", "runs", "seconds",
-                      "seconds_spread", "error", "error_spread", "expect_error", "energy_drift", "pareto"])
+        out.writerow(["setting", "ladders", "cells", "fraction", "sweeps", "contact", "timestep", "particles", "steps", "runs", "seconds",
+                      "seconds_spread", "error", "error_spread", "expect_error", "energy_drift", "penetration",
+                      "pareto"])
         for key, r in study.analysis.rated.items():
             s, p = r.point.setting, r.point
             out.writerow([key, " + ".join(_where(study, r)), s.cells, s.fraction, "auto" if s.sweeps is None else s.sweeps,
-                          p.timestep, p.particles, p.steps, len(p.seconds), r.seconds.middle, r.seconds.spread, r.error.middle,
-                          r.error.spread, "" if r.closed is None else r.closed, max(p.drift), int(r.front)])
+                          s.contact, p.timestep, p.particles, p.steps, len(p.seconds), r.seconds.middle, r.seconds.spread, r.error.middle,
+                          r.error.spread, "" if r.closed is None else r.closed, max(p.drift), max(p.penetration), int(r.front)])
 
 
 def _where(study: Study, r: Rated) -> list[str]:
@@ -70,18 +72,21 @@ def table(study: Study) -> Table:
     a = study.analysis
     closed = any(r.closed is not None for r in a.rated.values())
     swept = any(r.point.setting.sweeps is not None for r in a.rated.values())
+    touched = any(r.point.setting.contact != 1.0 for r in a.rated.values())
     out = Table(box=SIMPLE_HEAD, pad_edge=False)
-    for name in ("", "cells", "step/bound", *(["sweeps"] if swept else []), "particles", "seconds", "error",
-                 *(["off expect"] if closed else []), "energy drift", "ladder"):
+    for name in ("", "cells", "step/bound", *(["sweeps"] if swept else []), *(["contact"] if touched else []), "particles", "seconds", "error",
+                 *(["off expect"] if closed else []), "energy drift", *(["sunk in"] if touched else []), "ladder"):
         out.add_column(name, justify="left" if name in ("", "ladder") else "right")
     for r in a.rated.values():
         s = r.point.setting
         out.add_row(
             "*" if r.front else "", f"{s.cells:g}", f"{s.fraction:.2f}" if s.fraction else "auto",
-            *(["auto" if s.sweeps is None else str(s.sweeps)] if swept else []), f"{r.point.particles}",
+            *(["auto" if s.sweeps is None else str(s.sweeps)] if swept else []),
+            *([f"{s.contact:g}"] if touched else []), f"{r.point.particles}",
             _spread(r.seconds.middle, r.seconds.spread, len(r.point.seconds)),
             f"{100 * r.error.middle:.3g} %",
             *([_off(r.closed)] if closed else []), f"{max(r.point.drift):.1e}",
+            *([length(max(r.point.penetration))] if touched else []),
             " + ".join(_where(study, r)) + (", own" if s == a.own else ""))
     return out
 
@@ -129,7 +134,8 @@ def draw(study: Study, path: Path) -> None:
         label = name + (f" (order {order:.1f})" if order is not None else "")
         axes.plot(*zip(*(place[s.key] for s in settings)), "o-", color=COLORS[name], label=label, markersize=5)
         for s in settings:
-            text = {"time step": f"{s.fraction:.2g}", "resolution": f"{s.cells:g}", "sweeps": f"{s.sweeps}"}[name]
+            text = {"time step": f"{s.fraction:.2g}", "resolution": f"{s.cells:g}", "sweeps": f"{s.sweeps}",
+                    "contact": f"{s.contact:g}"}[name]
             axes.annotate(text, place[s.key], xytext=(5, -11 if name == "resolution" else 5),
                           textcoords="offset points", fontsize=8, color=COLORS[name])
     for key, r in a.rated.items():

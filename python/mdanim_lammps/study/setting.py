@@ -11,12 +11,15 @@ from .. import __version__
 from ..certificate import fit_steps
 from ..driver.prepare import Prepared, prepare
 from ..model.spacing import choose_spacing
+from ..scene.build import SOFTEST, STIFFEST
 from ..scene.lock import lock_text
 from ..scene.scene import Accuracy, Mesh, Render, Save, Scene
 
 LADDERS = ("time step", "resolution", "sweeps", "contact")
 LARGEST = 0.9
 """Largest time step of a ladder over the bound."""
+TOUCHING = ("contact", "ground", "walls")
+"""Effects that push back with ``contact-stiffness`` what is likely to touch; a basin's floor and walls do so too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,16 +32,20 @@ class Setting:
     """Time step over the certified bound; 0 where nothing vibrates and the step is left to ``auto``."""
     sweeps: int | None = None
     """Of the liquid's automaton per update; None is ``auto``."""
+    contact: float = 1.0
+    """``contact-stiffness``."""
 
     @property
     def key(self) -> str:
         """``c4-f0.5``: its name in files."""
-        return f"c{self.cells:g}-f{self.fraction:.4g}" + (f"-s{self.sweeps}" if self.sweeps is not None else "")
+        sweeps = f"-s{self.sweeps}" if self.sweeps is not None else ""
+        return f"c{self.cells:g}-f{self.fraction:.4g}{sweeps}" + (f"-k{self.contact:g}" if self.contact != 1.0 else "")
 
     def __str__(self) -> str:
         sweeps = "" if self.sweeps is None else f", {self.sweeps} sweep{'' if self.sweeps == 1 else 's'}"
         step = f", {self.fraction:.2f} of the bound" if self.fraction else ""
-        return f"{self.cells:g} cells{step}{sweeps}"
+        contact = "" if self.contact == 1.0 else f", contact-stiffness {self.contact:g}"
+        return f"{self.cells:g} cells{step}{sweeps}{contact}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +62,8 @@ class Ladder:
                 return setting.fraction
             case "resolution":
                 return 1.0 / setting.cells
+            case "contact":
+                return setting.contact**-0.5  # a load goes with the square of the depth that it presses surfaces into each other
             case _:
                 return 1.0 / setting.sweeps
 
@@ -73,7 +82,7 @@ def own_setting(scene: Scene, ready: Prepared) -> Setting:
     c = ready.certificate
     sweeps = scene.liquid.sweeps if scene.liquid else None
     cells = round(thinnest(scene) / choose_spacing(scene)[0], 6)
-    return Setting(cells, c.fraction if math.isfinite(c.bound) else 0.0, sweeps)
+    return Setting(cells, c.fraction if math.isfinite(c.bound) else 0.0, sweeps, scene.control.contact_stiffness)
 
 
 def with_setting(scene: Scene, setting: Setting, *, repeat: int = 0) -> Scene:
@@ -82,7 +91,7 @@ def with_setting(scene: Scene, setting: Setting, *, repeat: int = 0) -> Scene:
     Raises SceneError where an object is thinner than the spacing.
     """
     control = replace(scene.control, resolution=thinnest(scene) / setting.cells, timestep=None,
-                      seed=scene.control.seed + repeat)
+                      seed=scene.control.seed + repeat, contact_stiffness=setting.contact)
     scene = replace(scene, control=control)
     if setting.sweeps is not None:
         scene = replace(scene, liquid=replace(scene.liquid, sweeps=setting.sweeps))
@@ -118,20 +127,22 @@ def ladders(scene: Scene, ready: Prepared, own: Setting) -> tuple[list[Ladder], 
         out.append(Ladder("sweeps", tuple(replace(own, sweeps=k) for k in (1, 2, 4, 8, 16))))
     else:
         left["sweeps"] = "no liquid"
-    if ready.verdicts["contact"].on:
-        left["contact"] = "the scene language has no setting for contact, only on and off"
+    if any(ready.verdicts[name].on for name in TOUCHING):
+        factors = (x for k in (-2, -1, 0, 1, 2, 3) if SOFTEST <= (x := own.contact * 2.0**k) <= STIFFEST)
+        out.append(Ladder("contact", tuple(replace(own, contact=x) for x in factors)))
     else:
-        left["contact"] = ready.verdicts["contact"].reason
+        left["contact"] = f"nothing touches: {ready.verdicts['contact'].reason}, and there is neither ground nor walls"
     return out, left
 
 
 def scene_hash(scene: Scene) -> str:
     """A word that is the same for scenes that move alike when run with the same setting.
 
-    Accuracy, time step, resolution, sweeps, what is saved and how pictures look are left out; the program's version, what
-    counts as the thinnest part, and what stands in mesh files count.
+    Accuracy, time step, resolution, sweeps, contact stiffness, what is saved and how pictures look are left out; the program's
+    version, what counts as the thinnest part, and what stands in mesh files count.
     """
-    control = replace(scene.control, accuracy=Accuracy.BALANCED, timestep=None, resolution=None, save=Save.ALL, single=False)
+    control = replace(scene.control, accuracy=Accuracy.BALANCED, timestep=None, resolution=None, contact_stiffness=1.0, save=Save.ALL,
+                      single=False)
     liquid = scene.liquid and replace(scene.liquid, sweeps=None)
     bare = replace(scene, name="scene", title="", control=control, liquid=liquid, render=Render())
     digest = hashlib.sha256(f"{__version__}\n{thinnest(scene)!r}\n{lock_text(bare)}".encode())

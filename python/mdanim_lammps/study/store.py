@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import os
 import shutil
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -34,6 +34,8 @@ class Point:
     """Of everything, wall time [s]."""
     drift: list[float] = field(default_factory=list)
     """Largest energy residual."""
+    penetration: list[float] = field(default_factory=list)
+    """Deepest that something has been where it should not be [m]."""
     found: list[tuple[float, ...]] = field(default_factory=list)
     """What the scene's ``expect`` lines found."""
     tracks: list[np.ndarray] = field(default_factory=list)
@@ -52,6 +54,7 @@ class Point:
         self.seconds.append(sample.seconds)
         self.wall.append(sample.wall)
         self.drift.append(sample.drift)
+        self.penetration.append(sample.penetration)
         self.found.append(sample.found)
         self.tracks.append(sample.center)
 
@@ -87,7 +90,7 @@ class Store:
         for entry in data["points"]:
             values = entry["runs"]
             point = Point(Setting(**entry["setting"]), entry["timestep"] or math.nan, entry["steps"], entry["particles"],
-                          values["seconds"], values["wall"], values["drift"],
+                          values["seconds"], values["wall"], values["drift"], values["penetration"],
                           [tuple(math.nan if x is None else x for x in f) for f in values["found"]],
                           problem=entry["problem"])
             point.tracks = [self._load(point, k) for k in range(len(point.seconds))]
@@ -96,9 +99,9 @@ class Store:
             self.times = np.load(times)
 
     def named(self, setting: Setting, timestep: float) -> Setting:
-        """The measured setting that comes to the same cells and time step [s]: as one more name for it would be one more run."""
+        """The measured setting that comes to the same but for its name: time step [s]. As one more name for it would be one more run."""
         for point in self.points.values():
-            same = (point.setting.cells, point.setting.sweeps) == (setting.cells, setting.sweeps)
+            same = replace(point.setting, fraction=setting.fraction) == setting
             if same and abs(point.timestep - timestep) <= 1e-9 * timestep:
                 return point.setting
         return setting
@@ -145,4 +148,5 @@ class Store:
         found = [[x if math.isfinite(x) else None for x in f] for f in p.found]
         return {"key": p.setting.key, "setting": asdict(p.setting), "timestep": p.timestep if p.steps else None,
                 "steps": p.steps, "particles": p.particles, "problem": p.problem,
-                "runs": {"seconds": p.seconds, "wall": p.wall, "drift": p.drift, "found": found}}
+                "runs": {"seconds": p.seconds, "wall": p.wall, "drift": p.drift, "penetration": p.penetration,
+                         "found": found}}

@@ -98,9 +98,9 @@ def with_choice(scene: Scene, choice: Choice) -> Scene:
 
 
 def _digest(scene: Scene) -> str:
-    """The scene's hash without its accuracy line; a resolution or time step that it fixes counts."""
+    """The scene's hash without its accuracy line; a resolution or time step that it fixes and its contact stiffness count."""
     c = scene.control
-    return f"{scene_hash(scene)} {c.resolution!r} {c.timestep!r}"
+    return f"{scene_hash(scene)} {c.resolution!r} {c.timestep!r} {c.contact_stiffness!r}"
 
 
 def find_choice(scene: Scene, *, budget: float = BUDGET, store: Store | None = None,
