@@ -3,16 +3,18 @@
 
 import json
 import math
+import re
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from mdanim_lammps.certificate import fit_steps, margin_lines
+from mdanim_lammps.driver.run import simulate
 from mdanim_lammps.effects import EFFECTS
 from mdanim_lammps.effects.contact import plane_stiffness
 from mdanim_lammps.engine.commands import physics
-from mdanim_lammps.errors import RefusedError, SceneError
+from mdanim_lammps.errors import DivergedError, RefusedError, SceneError
 
 BOX = """
 object a {{
@@ -164,6 +166,49 @@ def test_a_landing_that_is_too_hard_is_told(prepared, young, height, warned):
     assert bool(found) == warned
     if warned:
         assert found[0].span.line == 7 and "write elasticity" in found[0].hint
+
+
+BALL = """gravity (0, 0, -9.81)
+ground z 0
+object ball {{
+  shape {shape}
+  position (0, 0, 0.62)
+  density 1000
+  elasticity {young} kPa
+  {extra}
+}}
+control {{ time 0.8 s  frames 100 fps  resolution {h} cm }}
+"""
+"""Hits the ground at 0.15 of the wave speed with 360 kPa."""
+
+
+@pytest.mark.parametrize(("shape", "h", "young", "extra", "limit"), [
+    pytest.param("sphere 0.12", 3, 360, "", 0.125, id="8 cells: its lowest twelve fold"),
+    pytest.param("sphere 0.12", 4, 360, "", 1 / 6, id="6 cells: more of them bear the blow"),
+    pytest.param("sphere 0.12", 8, 360, "", 0.2, id="3 cells"),
+    pytest.param("sphere 0.12", 3, 600, "", 0.125, id="stiffer, so slower for its waves"),
+    pytest.param("sphere 0.12", 3, 360, "damping 0.2", 0.125, id="damped: no help"),
+    pytest.param("ellipsoid (0.12, 0.12, 0.24)", 4, 360, "", 1 / 12, id="pointed"),
+    pytest.param("box (0.24, 0.24, 0.24)", 3, 360, "", 0.2, id="flat"),
+])
+def test_a_round_body_of_many_cells_folds_up_sooner(prepared, tmp_path, shape, h, young, extra, limit):
+    """Warn of exactly the landings after which the guard finds cells inside out, with a cure that cures."""
+    ready = prepared(BALL.format(shape=shape, h=h, young=young, extra=extra))
+    found = margin(ready.certificate, "amplitude")
+    assert found.limit == pytest.approx(limit, rel=0.03)  # cells of a voxel body are a little smaller or larger than asked for
+    assert found.used > 1.0 if found.severity == "warning" else found.used < 1.0
+    if found.severity == "ok":
+        simulate(ready, tmp_path)
+        return
+    assert found.span.line == 7 and "at the spot where it lands" in found.text
+    with pytest.raises(DivergedError, match="inside out") as stopped:
+        simulate(ready, tmp_path)
+    assert found.text in str(stopped.value)
+    enough, coarser = re.search(r"write elasticity (\S+) kPa or more, resolution (\S+) mm", found.hint).groups()
+    for cure in ({"young": float(enough), "h": h}, {"young": young, "h": float(coarser) / 10}):
+        cured = prepared(BALL.format(shape=shape, extra=extra, **cure))
+        assert margin(cured.certificate, "amplitude").used < 1.2  # lattices fit a spacing only so well
+        simulate(cured, tmp_path)
 
 
 POOL = """gravity (0, 0, -9.81)

@@ -24,7 +24,7 @@ from .errors import Problem, RefusedError, SceneError, Span
 from .model.basin import liquid_level
 from .model.shapes import thickness
 from .model.system import System
-from .scene.scene import Accuracy, Scene
+from .scene.scene import Accuracy, Ellipsoid, Scene, Shape, Sphere
 
 WARN = 0.7
 """Time step over the bound above which large motion may blow up: the bound is that of small motion (docs/physics-solids.md)."""
@@ -32,6 +32,9 @@ STRONG = 0.5
 """phi = lambda dt / 2m, eq. (3.13), above which the implicit form is no good: beyond 1 it turns velocities round every step."""
 FOLDS = 0.2
 """Speed of an impact over the wave speed above which a lattice folds up and stays crumpled (docs/physics-solids.md)."""
+FOLDS_ROUND = 1.0
+"""The same times the cells across, of a ball that lands on ground or walls: the finer its lattice, the smaller the part of its cells
+that it lands on (docs/physics-solids.md)."""
 CRUSH = 0.2
 """Load over Young's modulus above which a lattice is crushed (docs/physics-solids.md)."""
 THINNEST = 2
@@ -369,16 +372,24 @@ class _Margins:
         scene, system = self.scene, self.system
         meets = len(system.names) > 1 or any(x is not None for x in (scene.ground, scene.walls, scene.liquid))
         ratio = np.where(meets, self.speed / self.wave, 0.0)
-        m = int(ratio.argmax())
-        folds = bool(ratio[m] > FOLDS)
-        others = int((ratio > FOLDS).sum()) - 1
-        enough = system.young[m] * (ratio[m] / FOLDS) ** 2
+        hard = not self.on.keys().isdisjoint(("ground", "walls")) and "liquid" not in self.on
+        spot = np.array([FOLDS_ROUND * _roundness(s.shape) if hard else np.inf for s in scene.solids]) / self.cells
+        limit = np.minimum(FOLDS, spot)
+        m = int((ratio / limit).argmax())
+        folds = ratio > limit
+        others = int(folds.sum()) - 1
+        enough = system.young[m] * (ratio[m] / limit[m]) ** 2
+        what, coarser = "a soft object folds up", ""
+        if spot[m] < FOLDS:
+            what = f"one of {self.cells[m]:.2g} cells across folds up at the spot where it lands"
+            if ratio[m] < FOLDS:
+                coarser = f", resolution {1e3 * np.cbrt(system.cell_volume[m]) * 1.1 * ratio[m] / limit[m]:.2g} mm or more"
         return Margin(
-            "amplitude", system.names[m], float(ratio[m]), FOLDS, "",
+            "amplitude", system.names[m], float(ratio[m]), float(limit[m]), "",
             f"{system.names[m]}{f' and {others} more' if others > 0 else ''} may hit at {self.speed[m]:.2g} m/s, {ratio[m]:.2f} of the wave "
-            f"speed {self.wave[m]:.2g} m/s; above about {FOLDS:g} a soft object folds up and stays crumpled",
-            self._of(m, "elasticity"), "warning" if folds else "ok",
-            hint=f"write elasticity {enough / 1e3:.2g} kPa or more, or a lower density, height or speed")
+            f"speed {self.wave[m]:.2g} m/s; above about {limit[m]:.2g} {what} and stays crumpled",
+            self._of(m, "elasticity"), "warning" if folds[m] else "ok",
+            hint=f"write elasticity {enough / 1e3:.2g} kPa or more{coarser}, or a lower density, height or speed")
 
     def _closing(self) -> list[Margin]:
         """Speed at which each solid may meet another: both fall alike, so only the start tells them apart, until one has landed."""
@@ -479,6 +490,16 @@ class _Margins:
             f"{SWEEPS} it is pushed up before it can flow away, {2 * SWEEPS} are better",
             liquid.spans.get("sweeps") or liquid.spans.get("liquid"), "warning" if few else "ok", least=True,
             hint=f"write sweeps auto, or {math.ceil(2 * SWEEPS * stride)}")]
+
+
+def _roundness(shape: Shape) -> float:
+    """Radius of curvature of the sharpest end of a ball or ellipsoid over its least half axis [-]; infinite for other shapes."""
+    match shape:
+        case Sphere():
+            return 1.0
+        case Ellipsoid():
+            return min(shape.radii) / max(shape.radii)
+    return math.inf
 
 
 def _least_of_others(values: np.ndarray) -> np.ndarray:

@@ -128,7 +128,8 @@ class Guard:
         why = next((passed[name] for name in margins if name in passed), None)
         cause, cure = (why.text, why.hint) if why else (
             f"every limit of the certificate is kept (time step {c.fraction:.2f} of the bound), so it is probably hit or squeezed harder "
-            "than its lattice stands", "try a lower speed, a stiffer object or a smaller timestep")
+            "than its lattice stands", "try a lower speed, a stiffer object, a coarser resolution (edges, corners and tips of fine lattices "
+            "fold first) or a smaller timestep")
         return DivergedError(
             f"{self._when(step)}: {self.ready.system.names[m]}: {what}.\n  cause: {cause}\n  change: {cure}\n  {self._kept()}")
 
