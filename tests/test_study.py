@@ -20,7 +20,7 @@ from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.scene.scene import Accuracy
 from mdanim_lammps.study import bench
 from mdanim_lammps.study.analysis import Value, advice, analyse, pareto, sharp
-from mdanim_lammps.study.error import converge, distance, extent, growth
+from mdanim_lammps.study.error import converge, distance, extent, growth, order_until
 from mdanim_lammps.study.measure import Sample, TooLong, measure
 from mdanim_lammps.study.setting import Ladder, Setting, ladders, own_setting, scene_hash, with_setting
 from mdanim_lammps.study.store import Point, Store
@@ -122,6 +122,24 @@ def test_no_order_where_there_is_none(sizes, why):
     assert found.order is None
     assert why in found.why
     assert found.doubt == pytest.approx(distance(tracks[-2], tracks[-1]) / 2.0 if "round-off" not in why else 0.0)
+
+
+def test_order_is_lost_at_a_blow():
+    """Find the order that holds up to a blow whose outcome follows no power of the spacing, and the time of the blow."""
+    steps, blow = [1 / 2, 1 / 3, 1 / 4, 1 / 6, 1 / 8], TIMES >= 0.4
+    tracks = [track(1.0 + 0.1 * s**2) for s in steps]
+    for t, aside in zip(tracks, (0.3, -0.4, 0.35, -0.2, 0.25)):
+        t[blow, 0, 1] += aside * (TIMES[blow] - 0.39)
+    assert converge(steps, tracks, 2.0).order is None
+    time, order = order_until(TIMES, steps, tracks, 2.0)
+    assert 0.35 < time < 0.45 and order == pytest.approx(2.0, abs=0.1)
+    assert order_until(TIMES, steps, [t[::-1] for t in tracks], 2.0) is None
+
+    own = Setting(4, 0.5)
+    ladder = Ladder("resolution", tuple(replace(own, cells=round(1 / s)) for s in steps))
+    points = {s.key: Point(s, 1e-3, 100, 10, [1.0], [1.0], [1e-5], [0.0], [()], [t]) for s, t in zip(ladder.settings, tracks)}
+    found = analyse(points, [ladder], own, TIMES, (), ["a", "b"])
+    assert "most of the error from the resolution, which follows an order (2) up to t = 0.4 s and none from then on: which" in advice(found)
 
 
 def test_growth_of_what_parts():

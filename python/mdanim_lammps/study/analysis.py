@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..scene.scene import Expect
-from .error import Convergence, Growth, converge, distance, extent, growth
+from .error import Convergence, Growth, converge, distance, extent, growth, order_until
 from .setting import Ladder, Setting
 from .store import Point
 
@@ -61,6 +61,8 @@ class Analysis:
     ladders: dict[str, Convergence]
     measured: dict[str, tuple[Setting, ...]]
     """Settings of each ladder that were measured, coarsest first."""
+    until: dict[str, tuple[float, float]]
+    """Of ladders without an order that begin with one: up to when [s], and that order."""
     growth: Growth | None
     """How the two finest runs of the time step's ladder part."""
 
@@ -82,12 +84,15 @@ def analyse(points: Mapping[str, Point], ladders: Sequence[Ladder], own: Setting
     run = {key: p for key, p in points.items() if p.tracks}
     best = run[own.key].tracks[0]
     scale = extent(best)
-    found, measured = {}, {}
+    found, measured, until = {}, {}, {}
     for ladder in ladders:
         settings = tuple(s for s in ladder.settings if s.key in run)
         if len(settings) > 1:
+            sizes, tracks = [ladder.step(s) for s in settings], [run[s.key].tracks[0] for s in settings]
             measured[ladder.name] = settings
-            found[ladder.name] = converge([ladder.step(s) for s in settings], [run[s.key].tracks[0] for s in settings], scale)
+            found[ladder.name] = c = converge(sizes, tracks, scale)
+            if c.order is None and (part := order_until(times, sizes, tracks, scale)):
+                until[ladder.name] = part
     for limit in (c.limit for c in found.values()):
         best = best + (limit - run[own.key].tracks[0])
     steps = measured.get("time step", ())
@@ -102,7 +107,7 @@ def analyse(points: Mapping[str, Point], ladders: Sequence[Ladder], own: Setting
     front = pareto({key: (r.seconds, r.error) for key, r in rated.items()})
     rated = {key: Rated(r.point, r.seconds, r.error, r.closed, key in front)
              for key, r in sorted(rated.items(), key=lambda item: item[1].seconds.middle)}
-    return Analysis(own, scale, rated, found, measured, parting)
+    return Analysis(own, scale, rated, found, measured, until, parting)
 
 
 def _usual(seen: Iterable[Sequence[float]], otherwise: float) -> float:
@@ -176,7 +181,7 @@ def advice(a: Analysis) -> str:
     if own.error.middle < 1e-6:
         says += ": no setting makes a difference that could be seen"
     elif (cause := _cause(a)):
-        says += f", most of the error from the {cause}"
+        says += f", most of the error from the {cause}" + lost(a, cause)
     if cheapest.seconds.below(own.seconds):
         says += (f"; {cheapest.point.setting} is as good in "
                  f"{_percent(cheapest.seconds.middle / own.seconds.middle, 2)} of the time")
@@ -185,6 +190,15 @@ def advice(a: Analysis) -> str:
         says += (f"; {next_.point.setting} brings {_percent(next_.error.middle)} for "
                  f"{next_.seconds.middle / own.seconds.middle:.2g} times the time")
     return says + "."
+
+
+def lost(a: Analysis, name: str) -> str:
+    """Up to when a ladder has an order, and why no longer; empty where it has one for the whole run, or never."""
+    if name not in a.until:
+        return ""
+    time, order = a.until[name]
+    why = ": which particles meet in a blow, and how, changes with every number of cells" if name == "resolution" else ""
+    return f", which follows an order ({order:.2g}) up to t = {time:.2g} s and none from then on{why}"
 
 
 def _cause(a: Analysis) -> str:

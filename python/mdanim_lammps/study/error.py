@@ -19,6 +19,8 @@ CONVERGENT = 0.3
 """Differences above this share of the extent are no small errors any more: they do not follow a power of the step."""
 HIGHEST = 4.5
 """Nothing here converges faster: a steeper fall is chance."""
+PARTS = 60
+"""Ends of a run that are tried to find out up to when it has an order."""
 PART = 0.01
 """Two runs have parted once they differ by this share of the extent."""
 
@@ -107,6 +109,23 @@ def converge(steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float)
     else:
         return no_order("errors follow no power of the step")
     return Convergence(limit, tuple(map(float, errors)), found, used=len(tracks) - 1 - first)
+
+
+def order_until(times: np.ndarray, steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float) -> tuple[float, float] | None:
+    """Up to when a ladder without an order has one [s], and that order; None where it has none from the start.
+
+    What happens then depends on more than the step: which particles meet in a blow changes with every spacing. Times are tried
+    from the beginning on, and the last one counts before the first without an order. Arguments as for `converge`.
+    """
+    seen = []
+    for frames in np.unique(np.linspace(2, len(times) - 1, PARTS).astype(int)):
+        part = converge(steps, [t[:frames] for t in tracks], scale)
+        if part.order is not None:
+            seen.append((float(times[frames - 1]), part.order))
+        elif seen:
+            break
+    # The median, for the last of them may have seen the beginning of what ends it.
+    return (seen[-1][0], float(np.median([order for _, order in seen]))) if seen else None
 
 
 def _convergent(errors: np.ndarray) -> int:

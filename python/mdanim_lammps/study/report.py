@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from ..model.wording import length
 from ..results.files import write_whole
-from .analysis import Rated
+from .analysis import Rated, lost
 from .error import ROUND_OFF, distance
 from .store import Store
 
@@ -31,7 +31,7 @@ def write_report(study: Study, store: Store, budget: float) -> None:
         "growth": a.growth and {"folding": _finite(a.growth.folding), "parted": a.growth.parted},
         "ladders": {name: {
             "points": [s.key for s in a.measured[name]], "errors": [_finite(e) for e in c.errors],
-            "order": c.order, "used": c.used, "why": c.why,
+            "order": c.order, "used": c.used, "why": c.why, "until": a.until.get(name),
         } for name, c in a.ladders.items()},
         "points": {key: {
             "seconds": r.seconds.middle, "seconds_spread": r.seconds.spread, "error": r.error.middle,
@@ -105,7 +105,7 @@ def order_lines(study: Study) -> list[str]:
     lines = []
     for name, c in study.analysis.ladders.items():
         own = distance(study.analysis.rated[study.analysis.own.key].point.tracks[0], c.limit) / (study.analysis.scale or 1.0)
-        what = f"order {c.order:.2f} from {c.used} runs and their limit" if c.order is not None else f"no order: {c.why}"
+        what = f"order {c.order:.2f} from {c.used} runs and their limit" if c.order is not None else f"no order: {c.why}{lost(study.analysis, name)}"
         off = f"; the scene's own setting is {100 * own:.2g} % off its limit" if own else ""
         if c.doubt:
             off += f"; the limit is the finest run, taken to be as far off as it is from the run before it, {100 * c.doubt:.2g} %"
