@@ -173,6 +173,9 @@ expect energy.residual = 0 +- 1e-3
     swing = track()[:, :1]
     found = sharp(scene.expects, ["bar"], swing, TIMES)
     assert found == {0: extent(swing), 1: extent(swing), 3: pytest.approx(12.0 / 2, rel=0.03)}  # a speed of 6, by differences
+    short = sharp(scene.expects, ["bar"], 0.4 * swing, TIMES)
+    assert short[0] == short[1] == 0.9  # the truth goes farther than the run
+    assert sharp(scene.expects, ["bar"], 0.1 * swing, TIMES)[1] == 0.9
 
 
 def test_advice_for_a_scene_without_order():
@@ -636,18 +639,20 @@ def test_study_command(bar_study, bar_file, capsys, monkeypatch):
         assert "expected a time above 0" in capsys.readouterr().err
 
 
-def test_cantilever_follows_timoshenko(monkeypatch):
-    """Meet a target of 8 % against the closed form in every eighth of a period, by a setting found for it."""
+@pytest.mark.parametrize("percent", [12.0, 8.0, 5.0])
+def test_cantilever_follows_timoshenko(percent, monkeypatch):
+    """Meet the target against the closed form in every eighth of a period, at no more than twice the cost of the best there is."""
     monkeypatch.syspath_prepend(Path(__file__).parent.parent / "bench")
     from accuracy import target
 
-    choice, rows = target(percent=8.0, budget=30.0)
-    _meets_at_fair_cost(choice, rows, 0.08)
+    choice, rows = target(percent=percent, budget=60.0)
+    _meets_at_fair_cost(choice, rows, percent / 100.0)
 
 
 @pytest.mark.soak
+@pytest.mark.timeout(3600)
 def test_cantilever_follows_timoshenko_to_two_percent(monkeypatch):
-    """Meet 2 % against Timoshenko at no more than twice the cost of the best point of the study."""
+    """Meet 2 % against Timoshenko at no more than twice the cost of the best point of a full ladder of cells and time steps."""
     monkeypatch.syspath_prepend(Path(__file__).parent.parent / "bench")
     from accuracy import target
 
@@ -659,4 +664,7 @@ def _meets_at_fair_cost(choice, rows, target: float) -> None:
     """The chosen point meets the target by the closed form, and none that does takes less than half its particle-steps."""
     chosen = next((p, off) for p, off in rows if (p.setting.cells, p.setting.fraction) == (choice.cells, choice.fraction))
     assert chosen[1] <= target and choice.met
-    assert chosen[0].work <= 2.0 * min(p.work for p, off in rows if off <= target)
+    assert {(n, f) for n in range(2, int(choice.cells) + 1) for f in (0.9, 0.7)} <= {
+        (p.setting.cells, p.setting.fraction) for p, _ in rows}, "not every cheaper point was measured"
+    best = min(p.work for p, off in rows if off <= target)
+    assert chosen[0].work <= 2.0 * best

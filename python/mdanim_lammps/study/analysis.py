@@ -131,17 +131,23 @@ def sharp(expects: Sequence[Expect], names: Sequence[str], track: np.ndarray, ti
           sharpness: float = SHARP) -> dict[int, float]:
     """The ``expect`` lines that state a truth to measure errors by: index to what the error is relative to, in SI.
 
-    That is the extent of the object's own motion for positions, its largest speed for velocities, the value for others.
+    That is the extent of the object's own motion for positions, that of the run or that of the truth, whichever goes farther; its
+    largest speed for velocities, the value for others.
     Residuals and penetration are bounds, not truths; so is a line whose tolerance is a larger share than ``sharpness``.
     """
-    out = {}
+    out, way = {}, {name: extent(track[:, m][:, None]) for m, name in enumerate(names)}
+    for e in expects:
+        if e.quantity.startswith("position."):
+            told = abs(e.value - track[0, names.index(e.subject), "xyz".index(e.quantity[-1])])
+            if e.tolerance <= 1.1 * sharpness * told:
+                way[e.subject] = max(way[e.subject], told)
     for k, e in enumerate(expects):
         kind = e.quantity.split(".")[0]
         if (e.subject, e.quantity) in (("energy", "residual"), ("penetration", "max"), ("liquid", "residual")):
             continue
         if kind in ("position", "velocity"):
-            own = track[:, names.index(e.subject)][:, None]
-            scale = extent(own) if kind == "position" else float(np.linalg.norm(np.gradient(own, times, axis=0), axis=-1).max())
+            own = track[:, names.index(e.subject)]
+            scale = way[e.subject] if kind == "position" else float(np.linalg.norm(np.gradient(own, times, axis=0), axis=-1).max())
         else:
             scale = abs(e.value)
         if scale > 0.0 and e.tolerance <= 1.1 * sharpness * scale:  # the scale is that of a run, itself not exact

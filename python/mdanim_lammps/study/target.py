@@ -24,10 +24,13 @@ START = (2, 3, 4)
 """Cells across of the first runs: three are the least that show an order."""
 TIME_SHARE = 0.25
 """Share of the target that the time step may use up; what is left is for the resolution, which costs far more."""
-CLOSE = 0.87
-"""A coarser setting is only tried when it promises to be this much coarser: 0.87 cells cost little more than half as much."""
+CLOSE = 0.9
+"""A coarser setting is only tried when it would be this much coarser: what is left untried costs two thirds at least, and half with the
+longest step of all."""
 MARGIN = 0.97
 """Aim a little below the target: the estimate of an error is as good as the limit it is measured against."""
+HOPE = 1.05
+"""A coarser setting is tried when it promises to come this near to the target: between two runs the promise is as good as that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,23 +224,30 @@ class _Search:
 
     def _next(self, a: Analysis, done: list[Setting]) -> Setting | None:
         """The setting to measure next; None when the cheapest that meets the target is found, as near as makes sense."""
-        values = [self._value(s) for s in done]
-        known = max(done, key=self._value)
-        order = a.ladders[self.name].order or 2.0
-        error = self._error(a, known)
-        needed = self._value(known) * (error / (MARGIN * self.target)) ** (1.0 / order)
-        failing = max((self._value(s) for s in done if self._error(a, s) > self.target), default=0.0)
-        meeting = min((self._value(s) for s in done if self._error(a, s) <= self.target), default=None)
+        known = sorted(done, key=self._value)
+        failing = [s for s in known if self._error(a, s) > self.target]
+        meeting = next((s for s in known if s not in failing), None)
         if meeting is None:
             # Never more than twice as fine in one go: what lies ahead is known only by extrapolation.
-            value = min(max(self._round(needed), self._round(1.01 * failing)), 2.0 * failing)
-        elif meeting in values[:1]:
-            return None
+            finest, order = self._value(known[-1]), a.ladders[self.name].order or 2.0
+            needed = finest * (self._error(a, known[-1]) / (MARGIN * self.target)) ** (1.0 / order)
+            value = min(max(self._round(needed), self._round(1.01 * finest)), 2.0 * finest)
         else:
-            value = max(self._round(needed), self._round(1.01 * failing))
-            if value > CLOSE * meeting:
+            coarser = [s for s in failing if self._value(s) < self._value(meeting)]
+            if not coarser:
                 return None
-        return replace(known, cells=value) if self.name == "resolution" else replace(known, fraction=1.0 / value)
+            value = self._between(a, coarser[-1], meeting)
+            if value > CLOSE * self._value(meeting):
+                return None
+        return replace(known[-1], cells=value) if self.name == "resolution" else replace(known[-1], fraction=1.0 / value)
+
+    def _between(self, a: Analysis, failing: Setting, meeting: Setting) -> float:
+        """The coarsest value between two settings that promises to meet the target, by the power of it that the two lie on."""
+        low, high = self._value(failing), self._value(meeting)
+        bad, good = self._error(a, failing), self._error(a, meeting)
+        slope = math.log(bad / good) / math.log(high / low) if good > 0.0 else math.inf
+        needed = high * (good / (HOPE * self.target)) ** (1.0 / slope) if good > 0.0 else low
+        return max(self._round(needed), self._round(1.01 * low))
 
     def _value(self, setting: Setting) -> float:
         """What grows as the setting gets finer: cells across, or steps per bound."""
