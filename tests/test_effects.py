@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Effects: on when the scene calls for them, with reason and line, and off without a trace."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -53,6 +54,13 @@ def test_each_effect_is_called_for_by_its_line(effect):
     """Switch on with the line that calls for it."""
     verdict = verdicts(FULL)[0][effect]
     assert verdict.on and verdict.span.line == LINES[effect]
+
+
+@pytest.mark.parametrize("effect", ["contact", "ground", "walls"])
+def test_what_pushes_back_tells_an_unusual_stiffness(effect):
+    """Show contact-stiffness beside what it changes, and only where it is not 1."""
+    usual, told = (verdicts(re.sub(r"control \{", f"control {{ contact-stiffness {f}\n", FULL))[0][effect].reason for f in ("1", "2.5"))
+    assert told == usual + ", 2.5 times as stiff as usual"
 
 
 @pytest.mark.parametrize("effect", [e.name for e in EFFECTS if e.name != "springs"])

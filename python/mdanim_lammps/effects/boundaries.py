@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .effect import Effect, Verdict
+from .effect import Effect, Verdict, stiffness_told
 
 
 class Boundary(Effect):
@@ -47,7 +47,7 @@ class Ground(Boundary):
     def called_for(self, scene):
         if scene.ground is None:
             return Verdict(self.name, False, "no ground in the scene")
-        return Verdict(self.name, True, f"ground at z = {scene.ground:g} m", scene.spans.get("ground"))
+        return Verdict(self.name, True, f"ground at z = {scene.ground:g} m{stiffness_told(scene)}", scene.spans.get("ground"))
 
     def region(self, scene):
         return f"plane 0 0 {scene.ground!r} 0 0 1"
@@ -60,7 +60,7 @@ class Walls(Boundary):
     def called_for(self, scene):
         if scene.walls is None:
             return Verdict(self.name, False, "no walls in the scene")
-        return Verdict(self.name, True, "walls around the scene", scene.spans.get("walls"))
+        return Verdict(self.name, True, f"walls around the scene{stiffness_told(scene)}", scene.spans.get("walls"))
 
     def region(self, scene):
         low, high = scene.walls.low, scene.walls.high

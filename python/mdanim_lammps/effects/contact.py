@@ -9,7 +9,7 @@ import numpy as np
 
 from ..model.sweep import closest
 from ..model.wording import length
-from .effect import Effect, Verdict
+from .effect import Effect, Verdict, stiffness_told
 from .springs import all_held
 
 REACH = 1.6
@@ -59,7 +59,7 @@ class Contact(Effect):
         if apart > 0.0:
             return Verdict(self.name, False, f"no two objects can come within reach: nearest are {first.name} and {second.name}, "
                            f"with {length(apart)} to spare", second.spans.get("object"))
-        return Verdict(self.name, True, f"{first.name} and {second.name} may meet", second.spans.get("object"))
+        return Verdict(self.name, True, f"{first.name} and {second.name} may meet{stiffness_told(scene)}", second.spans.get("object"))
 
     def columns(self, scene, system):
         return {"stiffness": system.contact_stiffness, "reach": REACH * system.spacing[system.object]}

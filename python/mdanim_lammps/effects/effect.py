@@ -120,6 +120,12 @@ class Effect:
         return 0.0
 
 
+def stiffness_told(scene: Scene) -> str:
+    """What the reason of an effect that pushes back adds about ``contact-stiffness``; nothing where it is the usual one."""
+    factor = scene.control.contact_stiffness
+    return "" if factor == 1.0 else f", {factor:g} times as stiff as usual"
+
+
 def decide(effects: tuple[Effect, ...], scene: Scene) -> tuple[dict[str, Verdict], list[Problem]]:
     """Verdict of each effect, by name, with the scene's own switches applied; and warnings about needed ones switched off."""
     verdicts: dict[str, Verdict] = {}
