@@ -103,7 +103,7 @@ def test_compare_and_render_use_an_output_folder(scene):
     pytest.param(["check", "alone.txt"], 3, ["no object", "hold all"], id="liquid alone"),
     pytest.param(["check", "dry.txt"], 3, ["liquid.level needs the liquid, which is off", "switch the liquid on"], id="liquid off"),
     pytest.param(["fast.txt"], 4, ["certified bound", "cube", "timestep auto"], id="step above the bound"),
-    pytest.param(["cube.txt", "-n", "4"], 4, ["executors", "mpiexec"], id="several executors"),
+    pytest.param(["cube.txt", "-n", "0"], 2, ["-n 0", "at least one"], id="no executor"),
     pytest.param(["study", "cube.txt", "--budget", "soon"], 2, ["--budget soon", "expected a time above 0"], id="study"),
     pytest.param(["render", "nowhere.out", "--size", "0", "0"], 2, ["between 2 and 8192"], id="no size"),
     pytest.param(["render", "nowhere.out", "--fps", "-3"], 2, ["--fps -3", "above 0"], id="no rate"),

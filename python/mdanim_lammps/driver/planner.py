@@ -130,7 +130,8 @@ class Planner:
         owner = self.plan.owner if self.plan else np.full(len(self.cost), -1, np.int64)
         d = self.reach(steps)
         self.plan = plan(self.low, self.high, d, self.cost, owner, self.executors, particles=self.particles, still=self.still,
-                         gap=self.gap, feels=None if self.contact else np.arange(len(self.cost)) == self.objects, previous=self.plan)
+                         gap=self.gap, feels=None if self.contact else np.arange(len(self.cost)) == self.objects, previous=self.plan,
+                         least=self.settings.least)
         return Order(self.plan, *islands.boxes(self.low, self.high, d), steps, commit)
 
 

@@ -34,6 +34,8 @@ class Settings:
     """Most windows to a frame, a power of two."""
     worth: int = 10_000
     """Microseconds of work that each executor must have in a window: below, the exchange between windows costs more than it brings."""
+    least: int = 8_000
+    """Particles for each member of a team: where processors are shared with other work, teams of less are slower than one executor."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 TENTH = (11, 10)
 """Loads within this ratio of the mean, or of the largest island, are in balance."""
-LEAST = 8000
+LEAST = 4000
 """Particles for each member of a team: below, talking at every step costs more than it spares."""
 GAIN = 60
 """What every further member adds to the speed of a team, in percent of one executor; two have been measured at 140 to 180."""
