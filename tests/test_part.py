@@ -11,6 +11,7 @@ from mdanim_lammps.engine.data_file import data_text
 from mdanim_lammps.engine.instance import Instance, State
 from mdanim_lammps.engine.part import Parts
 from mdanim_lammps.engine.plan import both_ends, make_plan
+from mdanim_lammps.errors import SetupError
 from mdanim_lammps.model.system import System
 from mdanim_lammps.scene.parse import load_scene
 
@@ -219,6 +220,16 @@ def test_the_liquid_alone(prepared):
         alone.run(300)
         assert np.array_equal(alone.liquid_state(), whole.liquid_state())
         assert alone.fix_value("liquid", 4) > 0, "nothing has moved, so nothing is shown"
+
+
+def test_the_liquid_alone_takes_one_process(prepared):
+    """Refuse several ranks before LAMMPS hangs in cutting up an empty space."""
+    class Two:
+        def Get_size(self):
+            return 2
+
+    with pytest.raises(SetupError, match="run it on one process"):
+        Instance(Parts(prepared(POND.replace("MODEL", "")).plan).part((), True), Two())
 
 
 def test_float_from_the_start(scenes):

