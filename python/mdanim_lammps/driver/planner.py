@@ -23,8 +23,8 @@ DOUBLINGS = 60
 """Beyond them a box has no meaning any more: something is flying away."""
 BALANCED = 1.25
 """Largest load over the mean up to which a window is not made shorter."""
-ROOM = 4.0
-"""Cells of liquid around the basin that belong to the pool's box."""
+ASIDE = 1000.0
+"""The pool's box beyond the basin's sides and floor, over its size: the liquid looks at heights alone."""
 
 
 class Planner:
@@ -138,7 +138,7 @@ class Planner:
 def _basin(parts: Parts) -> tuple[np.ndarray, np.ndarray]:
     """The box within which an object and the liquid can matter to each other [m]."""
     grid = parts.whole.grid
-    margin = ROOM * max(grid.cell)
+    margin = ASIDE * np.max(np.subtract(grid.high, grid.low))
     low, high = np.array(grid.low) - margin, np.array(grid.high) + margin
     high[2] = parts.liquid_top
     return low, high
