@@ -73,7 +73,7 @@ class Executor:
         self.deepest = 0.0
         self.spans: list[tuple[str, int, float, float]] = []
         mail.world.Barrier()
-        self.origin = time.perf_counter()
+        self.origin, self.cpu_origin = time.perf_counter(), time.process_time()
 
     # --- the order of things --------------------------------------------------------------------------------------
 
@@ -95,7 +95,7 @@ class Executor:
         finally:
             for bundle in self.bundles:
                 self._close(bundle)
-        self.mail.send(SUPERVISOR, Tag.ENDED, Ended(self.account, self.spans))
+        self.mail.send(SUPERVISOR, Tag.ENDED, Ended(self.account, self.spans, time.process_time() - self.cpu_origin))
         self.mail.flush()
 
     def _simulate(self, end: int) -> None:

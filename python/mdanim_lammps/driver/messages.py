@@ -166,6 +166,8 @@ class Ended:
     """None when it was told to abort."""
     spans: list[tuple[str, int, float, float]] = field(default_factory=list)
     """What it did when: kind, frame, begin and end [s] since all began."""
+    cpu: float = 0.0
+    """Processor time since all began [s]."""
 
 
 class Aborted(Exception):

@@ -64,7 +64,7 @@ class Distributed:
         self.step = resume.step if resume else 0
         self.start = (resume.x, resume.v, resume.f) if resume else (system.position, system.velocity, np.zeros_like(system.position))
         self.granted = resume.frame if resume else 0
-        self.kept_at = time.perf_counter()
+        self.kept_at, self.cpu_begun = time.perf_counter(), time.process_time()
         self.desk = _Desk(self.world, Job(self.ready.plan, self.lengths, self.control, resume, self.settings))
         self.desk.start()
         return None if resume else self._frame(0, keep=True)
@@ -116,6 +116,8 @@ class Distributed:
         self.desk.close()
         for executor, ended in self.ended.items():
             self.timeline.spans += [(executor, *span) for span in ended.spans]
+            self.timeline.cpu[executor] = ended.cpu
+        self.timeline.supervisor_cpu = time.process_time() - self.cpu_begun
 
     # --- frames ---------------------------------------------------------------------------------------------------
 

@@ -36,6 +36,13 @@ class Timeline:
     """(frame, object, executor) whenever an object is first owned, or by another; what never moves is nobody's."""
     spans: list[tuple[int, str, int, float, float]] = field(default_factory=list)
     """(executor, kind, frame, begin, end), times in seconds since all executors began; kinds are `KINDS`."""
+    cpu: list[float] = field(default_factory=list)
+    """Processor time of each executor since all began [s]; 0 for one that did not come to its end."""
+    supervisor_cpu: float = 0.0
+    """The same of the supervisor, which also writes the frames [s]."""
+
+    def __post_init__(self) -> None:
+        self.cpu = self.cpu or [0.0] * self.executors
 
     def add(self, frame: int, objects: Sequence[np.ndarray], moves: int, retries: int) -> None:
         """Take note of a frame; ``objects`` are those of each executor, in their order."""
