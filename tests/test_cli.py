@@ -107,7 +107,9 @@ def test_compare_and_render_use_an_output_folder(scene):
     pytest.param(["study", "cube.txt", "--budget", "soon"], 2, ["--budget soon", "expected a time above 0"], id="study"),
     pytest.param(["render", "nowhere.out", "--size", "0", "0"], 2, ["between 2 and 8192"], id="no size"),
     pytest.param(["render", "nowhere.out", "--fps", "-3"], 2, ["--fps -3", "above 0"], id="no rate"),
-    pytest.param(["resume", "nowhere.out"], 7, ["nowhere.out"], id="nothing to resume"),
+    pytest.param(["resume", "nowhere.out"], 7, ["error: nowhere.out does not exist; name the folder"], id="nothing to resume"),
+    pytest.param(["render", "."], 7, ["error: . has no run in it; name the folder"], id="nothing to draw"),
+    pytest.param(["render", "cube.txt"], 7, ["cube.txt is a file, not the output folder"], id="a scene in place of its folder"),
     pytest.param(["cube.txt", "--set", "nonsense"], 2, ["NAME=VALUE"], id="set without value"),
     pytest.param(["wrong.txt", "--no-movie"], 6, ["MISSED"], id="missed expectation"),
 ])
@@ -126,6 +128,27 @@ def test_exit_codes(scene, arguments, code, words):
     assert "Traceback" not in done.stderr
     for word in words:
         assert word in done.stderr
+
+
+def test_a_large_scene_is_told_before_modelling(prepared, monkeypatch, capsys):
+    """Say particles, memory and time before models are made where they are many, and nothing where they are few."""
+    from mdanim_lammps import cli, report
+
+    ready = prepared(GOOD)
+    assert report.size_line(ready.scene) is None
+    monkeypatch.setattr(report, "LARGE", 20)
+    monkeypatch.setattr("mdanim_lammps.driver.prepare.build_models", lambda *_, **__: pytest.fail("modelled"))
+    with pytest.raises(pytest.fail.Exception):
+        cli._prepare_record(ready.scene, allow_unstable=False)
+    line = capsys.readouterr().err
+    assert line.startswith("size     about 2.7e-05 million particles, spacing 5 cm set by resolution: ") and "of modelling" in line
+
+
+def test_a_movie_tells_the_time_left():
+    """Tell from the pictures so far how long the others will take."""
+    from mdanim_lammps.report import movie_line
+
+    assert movie_line(30, 120, 15.0) == "frame 30/120  45 s left"
 
 
 def test_help_lists_every_command():

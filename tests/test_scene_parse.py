@@ -282,6 +282,16 @@ def test_the_model_of_the_paper_is_flagged():
     assert parse_scene(pool()).warnings == ()
 
 
+@pytest.mark.parametrize(("ground", "told"), [(0.0, False), (-0.1, False), (0.01, True), (1.0, False)])
+def test_ground_within_a_basin_is_flagged(ground, told):
+    """Warn, at its height, where ground between floor and brim keeps solids from sinking; elsewhere it does no harm."""
+    warnings = parse_scene(f"ground z {ground} m\n" + pool()).warnings
+    assert len(warnings) == told
+    if told:
+        assert (warnings[0].severity, warnings[0].line, warnings[0].column) == ("warning", 1, 10)
+        assert "above the floor of the basin" in warnings[0].message and "ground z 0 m" in warnings[0].hint
+
+
 def test_expect_of_an_indexed_object():
     """Check one object of a repeat, in a repeat."""
     body = text(mass="i kg").replace("object ball", "object ball[i]").replace(CONTROL, "")
@@ -490,6 +500,7 @@ MISTAKES = [
     ("setting twice", text(mass="2 kg\n  mass 3 kg"), 5, 3, "mass is given twice in object ball",
      "scene:4:3"),
     ("name twice", text() + text().replace(CONTROL, ""), 8, 8, "the name ball is given twice", "scene:1:8"),
+    ("name of a liquid before", pool().replace(CONTROL, "") + text().replace("ball", "w"), 6, 8, "the name w is given twice", "scene:2:8"),
     ("reserved name", text().replace("ball", "energy"), 1, 8, "an object cannot be called energy", ""),
     ("two controls", text() + CONTROL, 8, 1, "a second control block", "scene:7:1"),
     ("no control", text().replace(CONTROL, ""), 1, 1, "the scene has no control block",

@@ -14,7 +14,7 @@ from typing import Annotated, Literal
 from cyclopts import App, CycloptsError, Parameter
 
 from . import __version__
-from .errors import ExitCode, MdanimError, RefusedError, SceneError, UsageError
+from .errors import ExitCode, MdanimError, OutputError, RefusedError, SceneError, UsageError
 
 STARTED = time.perf_counter()
 """When this process began to work: reading and modelling are part of what a run costs."""
@@ -272,7 +272,10 @@ def _settle(scene, *, make: bool, quiet: bool = False, out: Path | None = None):
 
 def _prepare_record(scene, *, allow_unstable: bool):
     from .driver.prepare import prepare
+    from .report import size_line
 
+    if line := size_line(scene):
+        print(line, file=sys.stderr, flush=True)
     return prepare(scene, allow_unstable=allow_unstable)
 
 
@@ -301,8 +304,11 @@ def _stored_scene(folder: Path):
     """The scene of an output folder, under its own name."""
     from dataclasses import replace
 
-    from .results.files import read_json
+    from .results.files import MARK, read_json
 
+    if not (folder / MARK).is_file():
+        what = "has no run in it" if folder.is_dir() else "is a file, not the output folder of a run" if folder.exists() else "does not exist"
+        raise OutputError(f"{folder} {what}; name the folder that a run has written, NAME.out beside NAME.txt or what -o said")
     manifest = read_json(folder / "manifest.json")
     scene = _load(folder / "scene.lock.txt", ())
     return replace(scene, name=Path(manifest["scene"]).stem if manifest.get("scene") else folder.stem)
@@ -355,10 +361,13 @@ def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, **opt
 
 def _render(folder: Path, scene, path: Path, *, quiet: bool, **options) -> None:
     from .picture.movie import render_movie
+    from .report import movie_line
 
+    start = time.perf_counter()
     try:
         with _bar("movie", quiet) as bar:
-            render_movie(folder, scene.render, path, progress=lambda done, total: bar(done, total, f"frame {done}/{total}"), **options)
+            render_movie(folder, scene.render, path, **options, progress=lambda done, total: bar(
+                done, total, movie_line(done, total, time.perf_counter() - start)))
     except KeyboardInterrupt:
         print(f"the movie was interrupted, the run is complete; draw it with: mdanim-lammps render {folder}", file=sys.stderr)
         raise SystemExit(ExitCode.INTERRUPTED) from None

@@ -6,8 +6,11 @@ from __future__ import annotations
 from .driver.prepare import Prepared
 from .driver.run import Progress, Result
 from .effects import Verdict
+from .model import plan_spacing
+from .model.wording import length
 from .results.cost import Cost
 from .results.trajectory import trajectory_bytes
+from .scene.scene import Scene
 
 
 def count(number: int, noun: str) -> str:
@@ -27,6 +30,23 @@ def scene_line(ready: Prepared) -> str:
     title = f"'{ready.scene.title}'  " if ready.scene.title else ""
     return (f"scene    {file}  {title}{count(len(ready.system.names), 'object')} ({count(ready.system.particles, 'particle')})"
             f"{_liquid(ready)}; effects: {', '.join(on) or 'none'}" + (f"   off: {', '.join(off)}" if off else ""))
+
+
+LARGE = 1_000_000
+"""Particles from which on modelling takes so long that it is told before."""
+MODELLING = 4e-6
+"""Processor seconds for each particle of models, springs and time step, measured at 10^6."""
+
+
+def size_line(scene: Scene) -> str | None:
+    """One line: how large the models of a scene will be, before they are made; None where that is soon done. Raises SceneError."""
+    if not scene.solids:
+        return None
+    plan = plan_spacing(scene)
+    if plan.total < LARGE:
+        return None
+    return (f"size     about {plan.total / 1e6:.2g} million particles, spacing {length(plan.h)} set by {plan.set_by}: "
+            f"{plan.memory * 1e-9:.2g} GB of {plan.available * 1e-9:.2g} GB free, about {_about(MODELLING * plan.total)} of modelling")
 
 
 def _liquid(ready: Prepared) -> str:
@@ -68,6 +88,11 @@ def progress_line(p: Progress) -> str:
     liquid = "" if p.gained is None else f"liquid residual {p.gained}  "
     return (f"t={p.time:.2f} s  step {p.step}/{p.steps}  energy residual {p.residual:.1e}  {liquid}"
             f"{1e3 * each:.2f} ms/step  {left:.0f} s left")
+
+
+def movie_line(done: int, total: int, seconds: float) -> str:
+    """The moving line of a movie, ``done`` pictures of which have taken these seconds."""
+    return f"frame {done}/{total}  {seconds / done * (total - done):.0f} s left"
 
 
 def cost_line(result: Result, simulated: float) -> str:

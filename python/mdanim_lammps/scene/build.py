@@ -58,6 +58,7 @@ class Builder:
         walls = self.walls()
         self.names_once()
         self.gravity_fits(liquids)
+        self.ground_below(liquid)
         self.inside_walls(solids, walls)
         effects = self.effects()
         render = self.render(control)
@@ -104,7 +105,7 @@ class Builder:
     def names_once(self) -> None:
         """No two blocks of one name, and no name that expect uses for something else."""
         first: dict[str, Filled] = {}
-        for block in self.blocks("object") + self.blocks("liquid"):
+        for block in (b for b in self.out.blocks if b.block in ("object", "liquid")):  # as they stand in the scene
             if block.name in first:
                 self.problem(
                     self.head(block),
@@ -119,6 +120,18 @@ class Builder:
                     "take another name",
                 )
             first.setdefault(block.name, block)
+
+    def ground_below(self, liquid: records.Liquid | None) -> None:
+        """Ground above the floor of the basin holds solids up within the liquid."""
+        ground = self.out.value("ground")
+        if liquid is None or ground is None or not liquid.low[2] < ground < liquid.high[2]:
+            return
+        self.problem(
+            self.out.first("ground").span(0),
+            f"the ground at z = {ground:.6g} m is above the floor of the basin, {liquid.low[2]:.6g} m: nothing sinks below it, liquid does",
+            f"the basin has a floor of its own: leave the ground out, or write ground z {liquid.low[2]:.6g} m",
+            severity="warning",
+        )
 
     def gravity_fits(self, liquids: list[Filled]) -> None:
         """A liquid lies flat only under gravity along -z."""
