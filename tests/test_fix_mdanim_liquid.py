@@ -345,6 +345,30 @@ def test_a_state_is_taken_up_to_the_bit(tmp_path):
     second.close()
 
 
+HEAD = np.dtype([("version", "f8"), *((n, "i8") for n in ("nx", "ny", "nz", "units", "swept", "waited", "calm")),
+                 *((n, "f8") for n in ("travel", "crossed", "work", "lost"))])
+
+
+@pytest.mark.parametrize("calm", [0, 1])
+def test_a_state_comes_back_whole(tmp_path, calm):
+    """Every number of its head and every cell, also of what never moves, is what was taken up."""
+    wall = lab.block((2, 4, 14), (-5.0, -2.0, 0.0))
+    lmp = lab.load(
+        wall, tmp_path,
+        ["fix table all property/atom i2_cell 7 ghost yes", *lattice(wall, (2, 4, 14)), *BASIN, POOL + " cells i2_cell still all", "run 8"],
+    )  # fmt: skip
+    stored = state(lmp)
+    head = stored[:HEAD.itemsize].view(HEAD)
+    assert (head["nx"], head["nz"], head["units"]) == (20, 16, value(lmp, "units"))
+    for name, number in dict(swept=77, waited=3, calm=calm, travel=0.1, crossed=0.2, work=0.3, lost=0.4).items():
+        head[name] = number
+    error = ctypes.create_string_buffer(200)
+    pointer = stored.ctypes.data_as(ctypes.c_void_p)
+    assert library().mdanim_liquid_set_state(handle(lmp), b"water", pointer, ctypes.c_longlong(len(stored)), error, 200) == 0, error.value
+    assert np.array_equal(state(lmp), stored)
+    lmp.close()
+
+
 def test_a_restart_file_goes_on(tmp_path):
     """LAMMPS's own restart holds liquid and solids; units and cells are those of the unbroken run."""
     first = block_in_pool(tmp_path, **FAST)

@@ -25,7 +25,7 @@ from mdanim_lammps.study.measure import Sample, TooLong, measure
 from mdanim_lammps.study.setting import Ladder, Setting, ladders, own_setting, scene_hash, with_setting
 from mdanim_lammps.study.store import Point, Store
 from mdanim_lammps.study.study import run_study
-from mdanim_lammps.study.target import choice_file, find_choice, settle, stored_choice
+from mdanim_lammps.study.target import choice_file, find_choice, settle, stored_choice, with_choice
 
 BAR = """
 gravity (0, 0, -9.81) m/s^2
@@ -578,6 +578,9 @@ def test_stored_target_of_another_scene_is_not_used(target_file):
     assert stored_choice(load_scene(target_file)) is None
     target_file.write_text(TARGET.replace("8 %", "9 %"))
     assert stored_choice(load_scene(target_file)) is None
+    for fixed in ("resolution 2.5 cm", "timestep 0.1 ms"):  # then something else is to be chosen
+        target_file.write_text(TARGET.replace("frames 100 fps", f"frames 100 fps\n  {fixed}"))
+        assert stored_choice(load_scene(target_file)) is None
     target_file.write_text(TARGET + "# a word\n")
     assert stored_choice(load_scene(target_file)) is not None
     choice_file(load_scene(target_file)).write_text("{}")
@@ -598,6 +601,8 @@ def test_time_step_is_chosen_where_the_resolution_is_given(target_file):
     target_file.write_text(TARGET.replace("frames 100 fps", "frames 100 fps\n resolution 5 cm").replace("8 %", "1e-3 %"))
     choice = find_choice(load_scene(target_file), budget=30.0)
     assert choice.cells == 2 and choice.met
+    control = with_choice(load_scene(target_file), replace(choice, resolution=1.0)).control
+    assert (control.resolution, control.timestep) == (0.05, choice.timestep)
     target_file.write_text(TARGET.replace("frames 100 fps", "frames 100 fps\n resolution 5 cm\n timestep 0.1 ms"))
     assert settle(load_scene(target_file), make=True).line == ""
 
