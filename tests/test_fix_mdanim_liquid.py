@@ -366,6 +366,7 @@ def test_a_state_comes_back_whole(tmp_path, calm):
     pointer = stored.ctypes.data_as(ctypes.c_void_p)
     assert library().mdanim_liquid_set_state(handle(lmp), b"water", pointer, ctypes.c_longlong(len(stored)), error, 200) == 0, error.value
     assert np.array_equal(state(lmp), stored)
+    assert np.count_nonzero(cells(lmp) == 255) == 2 * 4 * 14
     lmp.close()
 
 
