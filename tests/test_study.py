@@ -138,8 +138,9 @@ def test_order_is_lost_at_a_blow():
     own = Setting(4, 0.5)
     ladder = Ladder("resolution", tuple(replace(own, cells=round(1 / s)) for s in steps))
     points = {s.key: Point(s, 1e-3, 100, 10, [1.0], [1.0], [1e-5], [0.0], [()], [t]) for s, t in zip(ladder.settings, tracks)}
-    found = analyse(points, [ladder], own, TIMES, (), ["a", "b"])
-    assert "most of the error from the resolution, which follows an order (2) up to t = 0.4 s and none from then on: which" in advice(found)
+    said = "most of the error from the resolution, which has order 2 up to t = 0.4 s and none from then on"
+    for touching, why in ((True, ": which particles meet in a blow"), (False, ".")):
+        assert said + why in advice(analyse(points, [ladder], own, TIMES, (), ["a", "b"], touching=touching))
 
 
 def test_growth_of_what_parts():

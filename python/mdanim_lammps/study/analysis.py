@@ -63,6 +63,8 @@ class Analysis:
     """Settings of each ladder that were measured, coarsest first."""
     until: dict[str, tuple[float, float]]
     """Of ladders without an order that begin with one: up to when [s], and that order."""
+    touching: bool
+    """Whether anything may touch anything."""
     growth: Growth | None
     """How the two finest runs of the time step's ladder part."""
 
@@ -74,7 +76,8 @@ class Analysis:
 
 
 def analyse(points: Mapping[str, Point], ladders: Sequence[Ladder], own: Setting, times: np.ndarray,
-            expects: Sequence[Expect], names: Sequence[str], sharpness: float = SHARP) -> Analysis:
+            expects: Sequence[Expect], names: Sequence[str], sharpness: float = SHARP, *,
+            touching: bool = False) -> Analysis:
     """Rate every point that has run.
 
     Each ladder has a limit of its own. The best estimate of the motion is the scene's own run with the corrections of all
@@ -107,7 +110,7 @@ def analyse(points: Mapping[str, Point], ladders: Sequence[Ladder], own: Setting
     front = pareto({key: (r.seconds, r.error) for key, r in rated.items()})
     rated = {key: Rated(r.point, r.seconds, r.error, r.closed, key in front)
              for key, r in sorted(rated.items(), key=lambda item: item[1].seconds.middle)}
-    return Analysis(own, scale, rated, found, measured, until, parting)
+    return Analysis(own, scale, rated, found, measured, until, touching, parting)
 
 
 def _usual(seen: Iterable[Sequence[float]], otherwise: float) -> float:
@@ -187,7 +190,7 @@ def advice(a: Analysis) -> str:
     if own.error.middle < 1e-6:
         says += ": no setting makes a difference that could be seen"
     elif (cause := _cause(a)):
-        says += f", most of the error from the {cause}" + lost(a, cause)
+        says += f", most of the error from the {cause}" + lost(a, cause, ", which has")
     if cheapest.seconds.below(own.seconds):
         says += (f"; {cheapest.point.setting} is as good in "
                  f"{_percent(cheapest.seconds.middle / own.seconds.middle, 2)} of the time")
@@ -198,13 +201,13 @@ def advice(a: Analysis) -> str:
     return says + "."
 
 
-def lost(a: Analysis, name: str) -> str:
+def lost(a: Analysis, name: str, begin: str) -> str:
     """Up to when a ladder has an order, and why no longer; empty where it has one for the whole run, or never."""
     if name not in a.until:
         return ""
     time, order = a.until[name]
-    why = ": which particles meet in a blow, and how, changes with every number of cells" if name == "resolution" else ""
-    return f", which follows an order ({order:.2g}) up to t = {time:.2g} s and none from then on{why}"
+    why = ": which particles meet in a blow changes with every number of cells" if name == "resolution" and a.touching else ""
+    return f"{begin} order {order:.2g} up to t = {time:.2g} s and none from then on{why}"
 
 
 def _cause(a: Analysis) -> str:

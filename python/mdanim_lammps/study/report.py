@@ -105,7 +105,7 @@ def order_lines(study: Study) -> list[str]:
     lines = []
     for name, c in study.analysis.ladders.items():
         own = distance(study.analysis.rated[study.analysis.own.key].point.tracks[0], c.limit) / (study.analysis.scale or 1.0)
-        what = f"order {c.order:.2f} from {c.used} runs and their limit" if c.order is not None else f"no order: {c.why}{lost(study.analysis, name)}"
+        what = f"order {c.order:.2f} from {c.used} runs and their limit" if c.order is not None else f"no order: {c.why}{lost(study.analysis, name, '; it has')}"
         off = f"; the scene's own setting is {100 * own:.2g} % off its limit" if own else ""
         if c.doubt:
             off += f"; the limit is the finest run, taken to be as far off as it is from the run before it, {100 * c.doubt:.2g} %"

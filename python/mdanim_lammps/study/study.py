@@ -14,7 +14,7 @@ from ..scene.scene import Scene
 from .analysis import Analysis, advice, analyse
 from .bench import BUDGET, Bench
 from .report import write_report
-from .setting import LADDERS, Ladder, ladders, own_setting, scene_hash
+from .setting import LADDERS, TOUCHING, Ladder, ladders, own_setting, scene_hash
 from .store import Point, Store
 from .target import find_choice, store_choice, stored_choice, wanted, with_choice
 
@@ -78,7 +78,8 @@ def run_study(scene: Scene, folder: Path, *, budget: float = BUDGET, only: Seque
         raise RefusedError(f"the scene's own setting ({own}) {left[str(own)]}; give it more with --budget")
     if not point.tracks:
         raise DivergedError(f"the scene's own setting ({own}) cannot be measured: {point.problem}")
-    analysis = analyse(store.points, found, own, store.times, scene.expects, ready.system.names)
+    analysis = analyse(store.points, found, own, store.times, scene.expects, ready.system.names,
+                       touching=any(ready.verdicts[name].on for name in TOUCHING))
     study = Study(scene, folder, store.points, tuple(found), analysis, left)
     write_report(study, store, budget)
     return study
