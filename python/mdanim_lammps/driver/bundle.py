@@ -70,9 +70,8 @@ class Bundle:
             else np.zeros(0, bool)
         """Particles of still objects that others have too, bool, shape (n,)."""
         self.lost: dict[str, float] = {}
-        self.soaked = 0.0
-        """Seconds of the liquid so far."""
-        self.run_seconds = 0.0
+        self.run_seconds = self.liquid_seconds = 0.0
+        """Processor time of the last window, and of that the liquid's [s]."""
 
     def close(self) -> None:
         self.instance.close()
@@ -87,11 +86,15 @@ class Bundle:
 
     def run(self, steps: int) -> None:
         """Run a window. Raises Broken."""
-        begin = time.process_time()
+        begin, soaked = time.process_time(), self._soaked()
         self.instance.start_trace()
         self.before = run_window(self.instance, steps)
         self.trace = self.instance.trace()
-        self.run_seconds = time.process_time() - begin
+        self.run_seconds, self.liquid_seconds = time.process_time() - begin, self._soaked() - soaked
+
+    def _soaked(self) -> float:
+        """Seconds of the liquid so far."""
+        return self.instance.fix_seconds("liquid") if self.key.liquid else 0.0
 
     def escaped(self, low: np.ndarray, high: np.ndarray) -> list[int]:
         """Objects that have been outside of their reserved boxes, those of all objects [m], shape (M, 3), at any step of the window."""
@@ -109,21 +112,14 @@ class Bundle:
         low, high = (f.reduceat(x, first, axis=0)[which] for f in (np.minimum, np.maximum))
         return low, high, np.sqrt(np.maximum.reduceat(np.einsum("id,id->i", v, v), first)[which])
 
-    def costs(self, scale: float, liquid: float) -> np.ndarray:
-        """Processor time of each member in the last window, without ``liquid`` seconds for the liquid, times ``scale``; int64, shape (m,).
+    def costs(self, scale: float) -> np.ndarray:
+        """Processor time of each member in the last window, without the liquid's, times ``scale``; int64, shape (m,).
 
         It is told for one executor alone, so that a team counts as what it does.
         """
         particles = np.diff(self.plan.system.first)[np.isin(self.key.objects, self.members)]
-        total = scale * len(self.key.team) * max(0.0, self.run_seconds - liquid)
+        total = scale * len(self.key.team) * max(0.0, self.run_seconds - self.liquid_seconds)
         return (total * particles / max(1, particles.sum())).astype(np.int64)
-
-    def liquid_seconds(self) -> float:
-        """Of the liquid, in the last window."""
-        if not self.key.liquid:
-            return 0.0
-        before, self.soaked = self.soaked, self.instance.fix_seconds("liquid")
-        return self.soaked - before
 
     def energies(self) -> dict[str, float]:
         """Terms of the ledger [J], of what it moves; losses are those since it was asked last."""

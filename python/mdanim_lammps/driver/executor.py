@@ -16,7 +16,7 @@ from mpi4py import MPI
 from ..engine.instance import State
 from ..engine.part import Parts
 from ..errors import MdanimError
-from .bundle import Bundle, Wanted, wanted_bundles
+from .bundle import LOSS, Bundle, Wanted, wanted_bundles
 from .control import Control, make_control
 from .messages import SUPERVISOR, Aborted, Ended, Failure, Job, Kept, Mail, Moved, Order, Report, Share, Tag
 from .planner import Planner
@@ -70,6 +70,10 @@ class Executor:
         self.teams: dict[tuple[int, ...], MPI.Comm] = {}
         self.account = Account()
         self.moves = self.retries = 0
+        self.led: set[tuple[int, ...]] = set()
+        """Teams that it has led since the frame before."""
+        self.energies: dict[str, float] = {}
+        """Of its objects at the last frame; losses [J] are those since the frame before."""
         self.deepest = 0.0
         self.spans: list[tuple[str, int, float, float]] = []
         mail.world.Barrier()
@@ -78,23 +82,22 @@ class Executor:
     # --- the order of things --------------------------------------------------------------------------------------
 
     def work(self) -> None:
-        """All frames. Raises Broken, MdanimError, Aborted."""
-        try:
-            self._follow(self._decide(self._first_report()))
-            if not self.started:
-                self._commit()
-                self._send(keep=True)
-            while self.frame < len(self.job.lengths):
-                with self._span("held"):
-                    grant = self.mail.take(Tag.GRANT)
-                if grant is None:  # an end
-                    self._keep()
-                    break
-                self._simulate(self.step + self.job.lengths[self.frame])
-                self._send(grant.keep)
-        finally:
-            for bundle in self.bundles:
-                self._close(bundle)
+        """All frames. Raises Broken, MdanimError, Aborted; then its instances are left as they are, for a team's others may never come
+        to close theirs."""
+        self._follow(self._decide(self._first_report()))
+        if not self.started:
+            self._commit()
+            self._send(keep=True)
+        while self.frame < len(self.job.lengths):
+            with self._span("held"):
+                grant = self.mail.take(Tag.GRANT)
+            if grant is None:  # an end
+                self._keep()
+                break
+            self._simulate(self.step + self.job.lengths[self.frame])
+            self._send(grant.keep)
+        for bundle in self.bundles:
+            self._close(bundle)
         self.mail.send(SUPERVISOR, Tag.ENDED, Ended(self.account, self.spans, time.process_time() - self.cpu_origin))
         self.mail.flush()
 
@@ -235,20 +238,20 @@ class Executor:
         scale = 1e6 * self.job.plan.certificate.steps_per_frame / steps
         found, escaped, pool_cost = [], [], None
         for bundle in self.bundles:
-            extent, liquid = bundle.extent(), bundle.liquid_seconds()  # together with the team
+            extent = bundle.extent()  # together with the team
             if not self._leads(bundle):
                 continue
             escaped += bundle.escaped(self.order.low, self.order.high)
-            found.append((bundle.members, *extent, bundle.costs(scale, liquid)))
+            found.append((bundle.members, *extent, bundle.costs(scale)))
             if bundle.key.liquid:
-                pool_cost = int(scale * len(bundle.key.team) * liquid)
+                pool_cost = int(scale * len(bundle.key.team) * bundle.liquid_seconds)
         empty = (np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, np.int64))
         return Report(*(np.concatenate(arrays) for arrays in zip(empty, *found)), pool_cost, tuple(escaped),
                       self.order.plan.fingerprint())
 
     def _commit(self) -> None:
         """Take the states of all instances, and the energies that go with them."""
-        self.energies: dict[str, float] = {}
+        self.energies = {term: e for term, e in self.energies.items() if term.endswith(LOSS)}  # of the windows before
         self.pool = None
         for bundle in self.bundles:
             state, energies = bundle.instance.state(), bundle.energies()
@@ -257,6 +260,8 @@ class Executor:
             if not self._leads(bundle):
                 continue
             self.deepest = max(self.deepest, depth)
+            if len(bundle.key.team) > 1:
+                self.led.add(bundle.key.team)
             for term, e in energies.items():
                 self.energies[term] = self.energies.get(term, 0.0) + e
             if bundle.key.liquid:
@@ -268,8 +273,9 @@ class Executor:
         own = self.own
         rows = self._rows(own)
         self.mail.send(SUPERVISOR, Tag.FRAME, Share(self.frame, own, self.x[rows], self.v[rows], self.energies, self.deepest, self.pool,
-                                                    self.moves, self.retries))
-        self.moves = 0
+                                                    self.moves, self.retries, tuple(sorted(self.led))))
+        self.moves, self.energies = 0, {}
+        self.led.clear()
         if keep:
             self._keep()
 

@@ -134,7 +134,9 @@ class Share:
     moves: int
     """Objects that have come to this executor since the frame before."""
     retries: int
-    """How often this window was begun again."""
+    """How often windows were begun again on the way to this frame."""
+    teams: tuple[tuple[int, ...], ...] = ()
+    """Executors of the teams that it has led on the way, each once."""
 
 
 @dataclass(frozen=True)

@@ -87,17 +87,18 @@ class Planner:
 
         Windows end at a frame at the latest. Where none is in balance, the one with the smallest largest load.
         """
-        left = self.lengths[self.frame] - self.done if self.frame < len(self.lengths) else 1
+        length = self.lengths[min(self.frame, len(self.lengths) - 1)]
+        left = max(1, length - self.done)  # after the last frame too: its plan is asked for, but not followed
         before, best = self.plan, None
-        for parts in range(self.settings.finest.bit_length()):
-            steps = left >> parts
+        for halvings in range(self.settings.finest.bit_length()):
+            steps = min(left, -(-length >> halvings))
             self.plan = before
-            order = self._order(max(1, steps), commit=True)
+            order = self._order(steps, commit=True)
             load, mean = int(order.plan.load.max(initial=0)), int(order.plan.load.sum()) // self.executors
             if best is None or load < best[0]:
                 best = load, order
-            shorter = mean * (steps // 2) // self.lengths[min(self.frame, len(self.lengths) - 1)]
-            if self.executors == 1 or load <= BALANCED * mean and not order.plan.teams or shorter < self.settings.worth:
+            shorter = mean * (steps // 2) // length
+            if self.executors == 1 or steps == 1 or load <= BALANCED * mean and not order.plan.teams or shorter < self.settings.worth:
                 break
         self.plan, self.steps = best[1].plan, best[1].steps
         return best[1]

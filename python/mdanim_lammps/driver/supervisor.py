@@ -148,7 +148,8 @@ class Distributed:
                     self.losses[term] += e
                 else:
                     energies[term] += e
-        self.timeline.add(frame, [s.objects for s in shares], sum(s.moves for s in shares), max(s.retries for s in shares))
+        self.timeline.add(frame, [s.objects for s in shares], sum(s.moves for s in shares), max(s.retries for s in shares),
+                          [team for s in shares for team in s.teams])
         if keep:
             self.last_state = State(sheaf.x, sheaf.v, sheaf.f, sheaf.liquid)
         return Frame(self.step, sheaf.x, sheaf.v, energies | self.losses, max(s.penetration for s in shares),

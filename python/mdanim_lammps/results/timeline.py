@@ -31,7 +31,9 @@ class Timeline:
     moves: list[int] = field(default_factory=list)
     """Objects that changed their executor on the way to each frame."""
     retries: list[int] = field(default_factory=list)
-    """How often the window before each frame was begun again."""
+    """How often windows on the way to each frame were begun again."""
+    teams: list[tuple[int, tuple[int, ...]]] = field(default_factory=list)
+    """(frame, executors, the leading one first) of every team that has run on the way to a frame."""
     owners: list[tuple[int, int, int]] = field(default_factory=list)
     """(frame, object, executor) whenever an object is first owned, or by another; what never moves is nobody's."""
     spans: list[tuple[int, str, int, float, float]] = field(default_factory=list)
@@ -44,7 +46,8 @@ class Timeline:
     def __post_init__(self) -> None:
         self.cpu = self.cpu or [0.0] * self.executors
 
-    def add(self, frame: int, objects: Sequence[np.ndarray], moves: int, retries: int) -> None:
+    def add(self, frame: int, objects: Sequence[np.ndarray], moves: int, retries: int,
+            teams: Sequence[tuple[int, ...]] = ()) -> None:
         """Take note of a frame; ``objects`` are those of each executor, in their order."""
         now = np.full(len(self.names), -1)
         for executor, mine in enumerate(objects):
@@ -55,6 +58,7 @@ class Timeline:
         self.frames.append(frame)
         self.moves.append(moves)
         self.retries.append(retries)
+        self.teams += [(frame, team) for team in teams]
 
     def owner(self) -> np.ndarray:
         """Executor of every object at every frame, -1 for none, int64, shape (F, M)."""

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Run one scene in many ways, one after the other, in one start of MPI: ``mpiexec -n 5 python matrix.py CASES.json``.
+
+Each way is a supervisor and executors on some of the ranks, or the sequential program on one of them.
+"""
+
+import json
+import sys
+import time
+from pathlib import Path
+
+from mpi4py import MPI
+
+from mdanim_lammps.driver.executor import serve
+from mdanim_lammps.driver.planning import Settings
+from mdanim_lammps.driver.prepare import prepare
+from mdanim_lammps.driver.run import Interrupted, simulate
+from mdanim_lammps.driver.supervisor import Distributed
+from mdanim_lammps.results.checkpoint import Checkpoint
+from mdanim_lammps.scene.parse import load_scene
+
+
+def run(case: dict, ready, world) -> None:
+    """One way; ``world`` is None for the sequential program."""
+    folder = Path(case["folder"])
+    folder.mkdir(exist_ok=True)
+
+    def watch(progress):
+        if progress.frame == case.get("stop"):
+            (folder / "stop").touch()
+
+    checkpoint = Checkpoint.read(folder / "checkpoint") if case.get("resume") else None
+    source = world and Distributed(ready, world, case["control"], Settings(**case.get("settings", {})))
+    try:
+        simulate(ready, folder, resume=checkpoint, watch=watch, source=source)
+    except Interrupted:
+        assert "stop" in case
+    if source:
+        assert not source.stuck
+        source.timeline.write(folder)
+
+
+def wait(comm) -> None:
+    """A barrier that leaves the processor to others."""
+    request = comm.Ibarrier()
+    while not request.Test():
+        time.sleep(0.002)
+
+
+def main() -> None:
+    """All ways in their order; ranks that are not needed wait."""
+    everybody = MPI.COMM_WORLD
+    work = json.loads(Path(sys.argv[1]).read_text())
+    ready = prepare(load_scene(Path(work["scene"]))) if everybody.rank == 0 else None
+    for case in work["cases"]:
+        ranks = case["executors"] + 1 if case["control"] else 1
+        world = everybody.Split(0 if everybody.rank < ranks else MPI.UNDEFINED, everybody.rank)
+        if world != MPI.COMM_NULL:
+            if everybody.rank == 0:
+                run(case, ready, world if case["control"] else None)
+            else:
+                serve(world)
+        wait(everybody)
+
+
+if __name__ == "__main__":
+    main()
