@@ -68,6 +68,29 @@ class Timeline:
             table[row[frame]:, m] = executor
         return table
 
+    @property
+    def seconds(self) -> float:
+        """Wall time from the begin to the last end of all spans [s]."""
+        return max((end for *_, end in self.spans), default=0.0)
+
+    def spent(self) -> np.ndarray:
+        """Wall time of each executor by `KINDS` [s], shape (K, kinds)."""
+        spent = np.zeros((self.executors, len(KINDS)))
+        for executor, kind, _, begin, end in self.spans:
+            spent[executor, KINDS.index(kind)] += end - begin
+        return spent
+
+    def busy(self) -> np.ndarray:
+        """Part of the wall time that each executor was simulating, shape (K,)."""
+        return self.spent()[:, KINDS.index("simulating")] / (self.seconds or 1.0)
+
+    def frame_ends(self) -> dict[int, float]:
+        """When the last executor was done with a frame [s]."""
+        ends: dict[int, float] = {}
+        for _, _, frame, _, end in self.spans:
+            ends[frame] = max(end, ends.get(frame, 0.0))
+        return ends
+
     def write(self, folder: Path) -> None:
         """Write timeline.json. Raises OutputError."""
         write_json(folder / TIMELINE, asdict(self))
