@@ -55,7 +55,7 @@ def run(scene: Path, /, *, executors: Executors = 1, out: Out = None, control: C
     _check_executors(executors)
     record = _settle(_with_accuracy(_load(scene, set_), accuracy), make=True, quiet=quiet, out=out)
     ready = _prepare_record(record, allow_unstable=allow_unstable)
-    _announce(ready, quiet, verbose)
+    _announce(ready, quiet, verbose, executors, control)
     folder = open_run(ready, out, force=force)
     _simulate_and_render(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control)
 
@@ -137,7 +137,7 @@ def resume(folder: Path, /, *, executors: Executors = 1, control: Control = None
         raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
     checkpoint = Checkpoint.read(folder / "checkpoint")
     ready = _prepare_record(scene, allow_unstable=allow_unstable)
-    _announce(ready, quiet, False)
+    _announce(ready, quiet, False, executors, control)
     _simulate_and_render(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control, resume=checkpoint)
 
 
@@ -174,6 +174,29 @@ def render(folder: Path, /, *, size: tuple[int, int] | None = None, fps: float |
     _render(folder, record, path, quiet=quiet, size=size, fps=fps, frames=folder / "frames" if frames else None)
     if not quiet:
         print(f"movie    {path}" + (f"   pictures in {folder / 'frames'}" if frames else ""))
+
+
+@app.command
+def timeline(folder: Path, /, *, out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None) -> None:
+    """Draw who did what and who owned which object in a run on several executors.
+
+    Parameters
+    ----------
+    folder
+        The output folder of a run with -n.
+    out
+        The picture's file; default timeline.png in the folder.
+    """
+    from .picture.timeline import draw
+    from .results.timeline import TIMELINE, Timeline
+
+    scene = _stored_scene(folder)
+    if not (folder / TIMELINE).exists():
+        raise RefusedError(f"{folder} was simulated by one process, so there is no {TIMELINE}; "
+                           "executors are asked for with -n: mdanim-lammps SCENE -n 2")
+    path = out or folder / "timeline.png"
+    draw(Timeline.read(folder), path, scene.title or scene.name)
+    print(f"picture  {path}")
 
 
 @app.command
@@ -319,8 +342,8 @@ def _warn(ready) -> None:
         print(warning, file=sys.stderr)
 
 
-def _announce(ready, quiet: bool, verbose: bool) -> None:
-    from .report import certificate_line, effect_line, output_line, scene_line
+def _announce(ready, quiet: bool, verbose: bool, executors: int = 1, control: str | None = None) -> None:
+    from .report import certificate_line, effect_line, output_line, scene_line, who_line
 
     _warn(ready)
     if quiet:
@@ -330,18 +353,24 @@ def _announce(ready, quiet: bool, verbose: bool) -> None:
         for verdict in ready.verdicts.values():
             print(effect_line(verdict))
     print(certificate_line(ready))
-    print(output_line(ready), flush=True)
+    print(output_line(ready))
+    if line := who_line(executors, control):
+        print(line)
+    sys.stdout.flush()
 
 
 def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, **options) -> None:
     from .api import movie_file, run_frames
-    from .report import cost_line, progress_line
+    from .report import cost_line, progress_line, spread_line
+    from .results.timeline import Timeline
 
     with _bar("run", quiet) as bar:
         result = run_frames(ready, folder, started=STARTED, watch=lambda p: bar(p.frame, p.frames, progress_line(p)), **options)
     # Before the movie: what was found must not depend on whether pictures can be made here.
     if not quiet:
         print(cost_line(result, ready.certificate.steps * ready.certificate.timestep))
+        if options["executors"] > 1 or options["control"]:
+            print(spread_line(Timeline.read(folder), folder))
         print(f"ledger   energy residual {result.ledger.residual:.2e}   {folder / 'ledger.csv'}")
         for outcome in result.outcomes:
             if outcome.met:
@@ -384,12 +413,17 @@ class _bar:
             return lambda done, total, text: None
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+        from rich.table import Column
 
         console = Console(stderr=True)
         if not console.is_terminal:
             return self._line
-        self.progress = Progress(TextColumn(f"{self.name:<8}"), BarColumn(bar_width=24), TaskProgressColumn(),
-                                 TextColumn("{task.description}"), console=console)
+        narrow = console.width < 120  # what does not fit is cut off at the end, not the bar
+        columns = [Column(no_wrap=True, min_width=width) for width in (8, 10 if narrow else 24, 4)]
+        self.progress = Progress(TextColumn(f"{self.name:<8}", table_column=columns[0]),
+                                 BarColumn(bar_width=10 if narrow else 24, table_column=columns[1]),
+                                 TaskProgressColumn(table_column=columns[2]),
+                                 TextColumn("{task.description}", table_column=Column(no_wrap=True, overflow="ellipsis")), console=console)
         self.progress.start()
         self.task = self.progress.add_task("", total=None)
         return lambda done, total, text: self.progress.update(self.task, completed=done, total=total, description=text)

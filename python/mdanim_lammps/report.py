@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from .driver.prepare import Prepared
 from .driver.run import Progress, Result
 from .effects import Verdict
 from .model import plan_spacing
 from .model.wording import length
 from .results.cost import Cost
+from .results.timeline import Timeline
 from .results.trajectory import trajectory_bytes
 from .scene.scene import Scene
 
@@ -101,6 +104,22 @@ def cost_line(result: Result, simulated: float) -> str:
     parts = sorted(result.cost.parts.items(), key=lambda item: -item[1])
     shares = "  ".join(f"{name} {100 * s / total:.0f}%" for name, s in parts if s >= 0.005 * total)
     return f"cost     {shares}   total {total:.1f} s, {simulated / total:.2g} of real time"
+
+
+def who_line(executors: int, control: str | None) -> str:
+    """One line: how many executors run a scene, and who decides; empty for a run in this process."""
+    if executors == 1 and control is None:
+        return ""
+    who = "each decides alike (--control peers)" if control == "peers" else "the supervisor decides (--control central)"
+    return f"spread   over {count(executors, 'executor')} and a supervisor; {who}"
+
+
+def spread_line(timeline: Timeline, folder: Path) -> str:
+    """One line: what a run on several executors did, and how to see it."""
+    again = sum(timeline.retries)
+    return (f"spread   {count(timeline.executors, 'executor')}, {timeline.control}: {count(sum(timeline.moves), 'object')} moved, "
+            f"{count(again, 'window')} begun again, busy {100 * timeline.busy().mean():.0f} %   "
+            f"picture: mdanim-lammps timeline {folder}")
 
 
 def forecast_line(cost: Cost) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..errors import OutputError
 from ..results.files import write_whole
 from ..results.timeline import KINDS, Timeline
 from .palette import rgb
@@ -17,6 +18,8 @@ EXECUTORS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "
 """Okabe and Ito's eight, told apart by colour-blind people too; the next eight are tints of them, their numbers stand in the legend."""
 NOBODY = "#eceeef"
 """What never moves is nobody's."""
+AGAIN = {"linestyle": "none", "marker": "v", "color": "#d62728", "markersize": 5, "clip_on": False}
+"""Marks of windows that were begun again."""
 COLUMNS = 1200
 """Most columns of pixels of a panel."""
 PIECES = 240
@@ -87,11 +90,13 @@ def draw(timeline: Timeline, path: Path, title: str = "") -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
+    if not timeline.frames:
+        raise OutputError(f"{path.parent}: the run ended before its first frame, there is nothing to draw")
     count, objects = timeline.executors, len(timeline.names)
     colors = executor_colors(count)
     doing, moving, owning = (float(h) for h in (count * np.clip(3.2 / count, 0.2, 0.42), 0.6, np.clip(0.17 * objects, 1.3, 4.0)))
-    left = 0.8 if objects > NAMED else max(0.8, 0.08 * max(map(len, timeline.names)) + 0.15)
-    width, height = left + 8.0 + 1.6, 0.5 + owning + 0.1 + moving + 0.65 + doing + 1.05
+    left = 1.0 if objects > NAMED else max(0.8, 0.08 * max(map(len, timeline.names)) + 0.15)
+    width, height = left + 8.0 + (2.4 if count > 10 else 1.6), 0.5 + owning + 0.1 + moving + 0.65 + doing + 1.05
     figure = Figure(figsize=(width, height))
     FigureCanvasAgg(figure)
 
@@ -111,7 +116,7 @@ def _draw_doing(axes, timeline: Timeline, colors: np.ndarray, legend_at: float) 
     """A bar for each executor over wall time; above, the frames; on the right, how busy it was."""
     from matplotlib.patches import Patch
 
-    count, end = timeline.executors, timeline.seconds
+    count, end = timeline.executors, timeline.seconds or 1.0  # executors that were stopped at once have told nothing
     columns = COLUMNS if len(timeline.spans) <= count * PIECES else PIECES
     axes.imshow(bars(shares(timeline, columns), 24), extent=(0.0, end, count - 0.5, -0.5), aspect="auto", interpolation="nearest")
     axes.set_yticks(range(count), [f"{e}" for e in range(count)], fontsize=9)
@@ -132,8 +137,8 @@ def _draw_doing(axes, timeline: Timeline, colors: np.ndarray, legend_at: float) 
     top.set_xticks([ends[int(f)] for f in some], [str(f) for f in some], fontsize=8)
     top.set_xlabel("end of frame", fontsize=9)
     again = [ends[f] for f, n in zip(timeline.frames, timeline.retries) if n and f in ends]
-    axes.plot(again, np.full(len(again), -0.5), "v", color="#d62728", markersize=5, clip_on=False)
-    legend = [Patch(color=DOING[k], label=k) for k in KINDS]
+    marks = axes.plot(again, np.full(len(again), -0.5), label=f"window begun again ({sum(timeline.retries)})", **AGAIN)
+    legend = [*(Patch(color=DOING[k], label=k) for k in KINDS), *(marks if again else ())]
     axes.legend(handles=legend, ncols=len(legend), loc="lower left", bbox_to_anchor=(0.0, legend_at), fontsize=9, frameon=False,
                 borderaxespad=0.0, borderpad=0.0)
 
@@ -144,10 +149,7 @@ def _draw_moves(axes, timeline: Timeline) -> None:
     axes.bar(frames, moves, width=1.0, color=DOING["moving"])
     top = 1.25 * max(1.0, moves.max(initial=0.0))
     axes.set(ylim=(0.0, top), ylabel="objects\nmoved", xlim=_frame_range(timeline))
-    axes.plot(frames[retries > 0], np.full((retries > 0).sum(), top), "v", color="#d62728", markersize=5, clip_on=False,
-              label=f"window begun again ({int(retries.sum())} times)")
-    if retries.any():
-        axes.legend(fontsize=8, loc="upper right", frameon=False)
+    axes.plot(frames[retries > 0], np.full((retries > 0).sum(), top), **AGAIN)
     axes.tick_params(labelbottom=False, labelsize=8)
     axes.yaxis.get_major_locator().set_params(integer=True, nbins=3)
 
@@ -160,6 +162,7 @@ def _draw_owners(axes, timeline: Timeline, colors: np.ndarray) -> None:
     low, high = _frame_range(timeline)
     axes.imshow(ownership(owner, colors), extent=(low, high, objects, 0.0), aspect="auto", interpolation="nearest")
     axes.set_xlabel("frame")
+    axes.xaxis.get_major_locator().set_params(integer=True)
     if objects <= NAMED:
         axes.set_yticks(np.arange(objects) + 0.5, timeline.names, fontsize=8)
         axes.tick_params(axis="y", length=0)
