@@ -1,0 +1,332 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Speed over the number of executors, the paper's fig. 18: ``python bench/scaling.py [run|goals|model] [options]``.
+
+run: scenes/crowd.txt and a hail of 64 blocks by 1000 particles, in one process and on executors under both controls, in interleaved
+rounds; prints a table of medians, writes scaling.json and docs/images/scaling.png. goals: 64 blocks that meet nobody, and one object
+of 64 000 particles that two executors run as a team. model: what scaling.json says about more ranks than there are here.
+
+Options: ``--executors 1,2,4``, ``--rounds 3``, ``--frames 10`` (the first one is for warming up), ``--json FILE``, ``--plot FILE``.
+Speed is told in two ways: frames per second of wall time, from the end of frame 1 to the last, with all that is written; and
+frames per second of processor time of the executor that takes most, which other programs on the machine change less.
+"""
+
+import argparse
+import json
+import multiprocessing
+import os
+import pickle
+import statistics
+import sys
+import tempfile
+import time
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # before numpy: executors have one thread each too
+    os.environ[name] = "1"
+
+import numpy as np  # noqa: E402
+
+HERE = Path(__file__).parent
+BLOCK = """
+  object block[{n}] {{
+    shape      box (9, 9, 9) cm
+    position   {place} m
+    density    900
+    elasticity 300 kPa
+    {more}
+  }}
+"""
+END = """
+control {
+  time       4 s
+  frames     50 fps
+  resolution 1 cm
+}
+"""
+FIELD = "gravity (0, 0, -9.81) m/s^2\n{ground}repeat i in 0 .. 7 {{ repeat j in 0 .. 7 {{" + BLOCK + "}} }}" + END.replace("{", "{{").replace("}", "}}")
+SCENES = {
+    "crowd": (HERE.parent / "scenes" / "crowd.txt").read_text().replace('include "rubber.txt"', "let rubber = 150 kPa"),
+    "hail": FIELD.format(ground="ground z 0 m\n", n="i*8 + j", place="(i*0.3, j*0.3, 0.3 + 0.1*((i + 2*j) mod 5))",
+                         more="velocity (rand(-1.5, 1.5), rand(-1.5, 1.5), 0) m/s"),
+    "blocks": FIELD.format(ground="", n="i*8 + j", place="(i, j, 0)", more=""),
+    "one": "gravity (0, 0, -9.81) m/s^2\n" + BLOCK.format(n=0, place="(0, 0, 0)", more="").replace("(9, 9, 9)", "(39, 39, 39)") + END,
+}
+GOALS = {"blocks": 1.8, "one": 1.4}
+"""Speed of two executors over that of one process, by processor time of the rank that takes most."""
+COLORS = {"central": "#0072b2", "peers": "#d55e00"}
+
+
+def load(name: str, frames: int):
+    """The scene, cut to so many frames, ready to run."""
+    from mdanim_lammps.driver.prepare import prepare
+    from mdanim_lammps.scene.parse import parse_scene
+
+    scene = parse_scene(SCENES[name])
+    return prepare(replace(scene, control=replace(scene.control, time=frames / scene.control.frames), expects=()))
+
+
+def measure(ready, executors: int, control: str) -> dict:
+    """One run: frames per second by both clocks, and what the log says."""
+    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as fresh:
+        return fresh.submit(_measure, ready, executors, control).result()
+
+
+def _measure(ready, executors: int, control: str) -> dict:
+    """``executors`` 0: the program in one process, whose clock stands while it writes."""
+    from mdanim_lammps.driver.launch import simulate_on
+    from mdanim_lammps.driver.run import simulate
+    from mdanim_lammps.driver.source import Sequential
+    from mdanim_lammps.results.timeline import Timeline
+
+    class Clocked(Sequential):
+        """Sums the processor time of what an executor would do."""
+
+        cpu = 0.0
+
+        def begin(self, resume):
+            return self.timed(super().begin, resume)
+
+        def advance(self, frame, steps):
+            return self.timed(super().advance, frame, steps)
+
+        def timed(self, work, *arguments):
+            start = time.process_time()
+            try:
+                return work(*arguments)
+            finally:
+                self.cpu += time.process_time() - start
+
+    ends = []
+    with tempfile.TemporaryDirectory() as name:
+        folder, clock = Path(name), Clocked(ready.plan)
+        told = {"watch": lambda p: ends.append(time.perf_counter())}
+        if executors == 0:
+            simulate(ready, folder, source=clock, **told)
+            found = {"cpu": clock.cpu}
+        else:
+            simulate_on(executors, control, ready, folder, **told)
+            log = Timeline.read(folder)
+            found = {"cpu": max(log.cpu), "mean_cpu": float(np.mean(log.cpu)), "supervisor_cpu": log.supervisor_cpu, "moves": sum(log.moves),
+                     "again": sum(log.retries), "busy": float(log.busy().mean()), "spent": log.spent().mean(axis=0).tolist()}
+    frames = len(ends)
+    return found | {"by_wall": (frames - 1) / (ends[-1] - ends[0]), "by_cpu": frames / found["cpu"], "frames": frames}
+
+
+def rounds_of(names, cases, rounds: int, frames: int) -> tuple[dict, dict]:
+    """All runs of all cases (executors, control), interleaved; and what is known of each scene."""
+    ready = {name: load(name, frames) for name in names}
+    known = {name: {"objects": len(r.system.names), "particles": r.system.particles, "steps": r.certificate.steps_per_frame}
+             for name, r in ready.items()}
+    runs = {name: {case: [] for case in cases} for name in names}
+    for turn in range(rounds):
+        for name in names:
+            for case in cases if turn % 2 == 0 else cases[::-1]:
+                runs[name][case].append(measure(ready[name], *case))
+                print(f"round {turn + 1}: {name}, {label(case)}: {runs[name][case][-1]['by_wall']:.2f} frames/s", file=sys.stderr, flush=True)
+    return runs, known
+
+
+def label(case) -> str:
+    """What a case is called in a table."""
+    return "one process" if case[0] == 0 else f"{case[0]}, {case[1]}"
+
+
+def middle(runs: list[dict], what: str) -> float:
+    """Median over rounds."""
+    return statistics.median(r[what] for r in runs)
+
+
+def ratio(runs: list[dict], base: list[dict], what: str) -> float:
+    """Median of the ratios within rounds: what the machine does meanwhile falls out in part."""
+    return statistics.median(r[what] / b[what] for r, b in zip(runs, base))
+
+
+def table(runs: dict, known: dict, cases) -> str:
+    """Markdown."""
+    lines = []
+    for name, of in runs.items():
+        k = known[name]
+        lines += [f"{name}: {k['objects']} objects, {k['particles']} particles, {k['steps']} steps per frame, {of[cases[0]][0]['frames']} frames",
+                  "", "| executors | frames/s, wall | times | frames/s of the busiest processor | times | moved | again | supervisor [s] |",
+                  "|---|---|---|---|---|---|---|---|"]
+        base = of[cases[0]]
+        for case in cases:
+            rest = ""
+            if case[0]:
+                rest = f"{middle(of[case], 'moves'):.0f} | {middle(of[case], 'again'):.0f} | {middle(of[case], 'supervisor_cpu'):.2f}"
+            lines.append(f"| {label(case)} | {middle(of[case], 'by_wall'):.2f} | {ratio(of[case], base, 'by_wall'):.2f} | "
+                         f"{middle(of[case], 'by_cpu'):.2f} | {ratio(of[case], base, 'by_cpu'):.2f} | {rest or ' | | '} |")
+        lines.append("")
+    return "\n".join(lines)
+
+
+def draw(runs: dict, path: Path, note: str) -> None:
+    """Times as fast over the number of executors, a panel for each scene."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(4.4 * len(runs), 3.9), layout="constrained")
+    FigureCanvasAgg(figure)
+    for axes, (name, of) in zip(figure.subplots(1, len(runs), squeeze=False)[0], runs.items()):
+        base = of[(0, "")]
+        most = max(k for k, _ in of)
+        axes.plot([1, most], [1, most], color="#b0b7bd", linewidth=1.0, label="as many times as executors")
+        for control, color in COLORS.items():
+            count = sorted(k for k, c in of if c == control)
+            for what, style, told in (("by_cpu", "o-", "busiest processor"), ("by_wall", "s--", "wall")):
+                ratios = [[r[what] / b[what] for r, b in zip(of[k, control], base)] for k in count]
+                axes.plot(count, [statistics.median(r) for r in ratios], style, color=color, markersize=5, label=f"{control}, {told}")
+                axes.vlines(count, [min(r) for r in ratios], [max(r) for r in ratios], color=color, linewidth=0.8)
+        axes.set(title=name, xlabel="executors", ylabel="frames per second over one process", ylim=(0.0, None))
+        axes.xaxis.get_major_locator().set_params(integer=True)
+        axes.grid(alpha=0.25)
+        axes.legend(fontsize=7)
+    figure.text(0.995, 0.005, note, fontsize=6, ha="right", va="bottom", color="#707880")
+    figure.savefig(path, dpi=130, metadata={"Software": None})
+
+
+def run(options) -> None:
+    """Measure, print, write."""
+    cases = [(0, ""), *((k, control) for k in options.executors for control in COLORS)]
+    load_before = os.getloadavg()[0]
+    runs, known = rounds_of(["crowd", "hail"], cases, options.rounds, options.frames)
+    note = f"{os.cpu_count()} cores, {options.rounds} rounds, load of the machine {load_before:.1f} before and {os.getloadavg()[0]:.1f} after"
+    print(table(runs, known, cases))
+    print(note)
+    data = {"note": note, "known": known, "runs": {name: {f"{k} {c}".strip(): r for (k, c), r in of.items()} for name, of in runs.items()}}
+    options.json.write_text(json.dumps(data, indent=1) + "\n")
+    draw(runs, options.plot, note)
+    print(f"{options.json}   {options.plot}")
+
+
+def goals(options) -> None:
+    """Two executors against one process, and what is asked of them."""
+    cases = [(0, ""), (2, "central"), (2, "peers")]
+    runs, known = rounds_of(list(GOALS), cases, options.rounds, options.frames)
+    print(table(runs, known, cases))
+    for name, goal in GOALS.items():
+        for case in cases[1:]:
+            found = ratio(runs[name][case], runs[name][cases[0]], "by_cpu")
+            print(f"{name}, {label(case)}: {found:.2f} times as fast by processor time, goal {goal}: {'met' if found >= goal else 'missed'}")
+
+
+# --- model ------------------------------------------------------------------------------------------------------------
+
+def model(options) -> None:
+    """t_frame = max(work/K imbalance + windows (plan + exchange) + moves, supervisor): terms measured, then carried on to 10^3 ranks."""
+    data = json.loads(options.json.read_text())
+    cost = fit(data)
+    print("\n".join(f"{name:<12} {value:.3g} {unit}" for name, (value, unit) in cost.items()))
+    print("\n| particles | executors | work/K | imbalance | plan + exchange | moves | supervisor | frame [s] | times as fast | bound by |\n"
+          "|---|---|---|---|---|---|---|---|---|---|")
+    for objects, size in ((1_000, 1_000), (10_000, 1_000), (100_000, 1_000)):
+        for executors in (1, 16, 128, 1_024):
+            if objects < 4 * executors:
+                continue
+            print(row(objects, size, executors, {name: value for name, (value, _) in cost.items()}))
+
+
+def fit(data: dict) -> dict:
+    """Costs per unit, out of the runs where they show, else measured now."""
+    from mdanim_lammps.driver.messages import Order
+
+    hail, crowd = (data["runs"][name] for name in ("hail", "crowd"))
+    known = data["known"]
+    work = statistics.median(r["cpu"] / r["frames"] / known["hail"]["particles"] for r in hail["0"])
+    distributed = {name: [r for case, runs in of.items() if case != "0" for r in runs] for name, of in (("hail", hail), ("crowd", crowd))}
+    # Of the supervisor: so much for a frame, so much for a particle in it.
+    seen = {name: (known[name]["particles"], statistics.median(r["supervisor_cpu"] / r["frames"] for r in runs))
+            for name, runs in distributed.items()}
+    per_particle = (seen["hail"][1] - seen["crowd"][1]) / (seen["hail"][0] - seen["crowd"][0])
+    per_frame = max(0.0, seen["crowd"][1] - per_particle * seen["crowd"][0])
+    moving = statistics.median(r["spent"][1] * r["frames"] / max(1, r["moves"]) / r["frames"] for r in distributed["crowd"])
+    order = _plan(10_000, 8)[0]
+    message = Order(order, np.zeros((10_000, 3)), np.zeros((10_000, 3)), 100, True)
+    seconds = least(lambda: pickle.loads(pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL)))
+    return {
+        "work": (work, "s of processor time per particle and frame (hail)"),
+        "per_particle": (per_particle, "s of the supervisor per particle and frame"),
+        "per_frame": (per_frame, "s of the supervisor per frame, besides"),
+        "moved": (moving, "s of an executor for an object that comes, with its instance built anew (crowd)"),
+        "order": (seconds / 10_000, "s to pack and unpack an order, per object (central: once for each executor)"),
+        "latency": (LATENCY, "s for a message between hosts (assumed)"),
+        "wire": (1.0 / BANDWIDTH, "s per byte between hosts (assumed)"),
+    }
+
+
+LATENCY, BANDWIDTH = 2e-4, 1e9
+"""Of a message: mostly the nap of who waits for it (messages.NAP); gigabit per second times 8."""
+MOVES = 0.004
+"""Part of the objects that move in a frame: crowds of a thousand, `python bench/planning.py crowd`."""
+
+
+def _plan(objects: int, executors: int):
+    """A plan for a crowd, one object in a volume of 30 of them, and the next one after all have gone on; and the seconds of the latter."""
+    from mdanim_lammps.driver import planning
+
+    rng = np.random.default_rng(objects)
+    low = rng.uniform(0.0, (30.0 * objects) ** (1.0 / 3.0), (objects, 3))
+    edge, d = rng.uniform(0.5, 1.0, (objects, 3)), np.full(objects, 0.05)
+    cost = (1e4 * rng.uniform(0.9, 1.1, objects)).astype(np.int64)
+    known = dict(particles=np.full(objects, 1000), still=np.zeros(objects, bool), gap=0.1)
+    first = planning.plan(low, low + edge, d, cost, np.full(objects, -1), executors, **known)
+    low += rng.normal(0.0, 0.1, low.shape)
+    begin = time.process_time()
+    second = planning.plan(low, low + edge, d, cost, first.owner, executors, previous=first, **known)
+    return second, time.process_time() - begin
+
+
+def least(work, turns: int = 5) -> float:
+    """Seconds of a call, the least of some."""
+    spent = []
+    for _ in range(turns):
+        start = time.process_time()
+        work()
+        spent.append(time.process_time() - start)
+    return min(spent)
+
+
+def row(objects: int, size: int, executors: int, cost: dict) -> str:
+    """A line of the table, under the control that is faster there."""
+    particles = objects * size
+    plan, planning = _plan(objects, executors)
+    imbalance = float(plan.load.max() / plan.load.mean())
+    work = cost["work"] * particles / executors
+    report, order = 64.0 * objects, 100.0 * objects  # bytes
+    steps = np.ceil(np.log2(max(2, executors)))
+    exchange = {
+        "central": planning + executors * (cost["order"] * objects + order * cost["wire"]) + 2 * cost["latency"],
+        "peers": planning + report * cost["wire"] + steps * cost["latency"] + cost["order"] * objects,
+    }
+    if executors == 1:
+        exchange = {"central": 0.0}
+    control = min(exchange, key=exchange.get)
+    moves = MOVES * objects / executors * cost["moved"] * (executors > 1)
+    supervisor = cost["per_frame"] + cost["per_particle"] * particles
+    mine = work * imbalance + exchange[control] + moves
+    frame = max(mine, supervisor)
+    terms = {"work": work * imbalance, f"exchange ({control})": exchange[control], "moves": moves, "supervisor": supervisor if supervisor > mine else 0.0}
+    bound = max(terms, key=terms.get)
+    return (f"| {particles:,} | {executors:,} | ".replace(",", " ") + f"{work:.3g} | {imbalance:.2f} | {exchange[control]:.2g} | {moves:.2g} | "
+            f"{supervisor:.2g} | {frame:.3g} | {cost['work'] * particles / frame:.3g} | {bound} |")
+
+
+def main() -> None:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("part", nargs="?", choices=("run", "goals", "model"), default="run")
+    cores = os.cpu_count() or 1
+    default = sorted({k for k in (1, 2, 4, 8, 12, 15) if k <= max(2, cores - 1)})
+    parser.add_argument("--executors", type=lambda text: [int(k) for k in text.split(",")], default=default)
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--frames", type=int, default=10)
+    parser.add_argument("--json", type=Path, default=HERE / "scaling.json")
+    parser.add_argument("--plot", type=Path, default=HERE.parent / "docs" / "images" / "scaling.png")
+    options = parser.parse_args()
+    {"run": run, "goals": goals, "model": model}[options.part](options)
+
+
+if __name__ == "__main__":
+    main()
