@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// bond_style mdanim/harmonic. Every particle sums its own bonds, in the order of its partners' tags, and adds
-// the sum to its force once: so the bits of a force depend on neither the order of particles nor the ranks
-// that hold them.
+// bond_style mdanim/harmonic. Every particle sums its own bonds in an order that its partners' tags tell, lower tags from the
+// lowest up, higher ones from the highest down, and adds the two sums to its force once: so the bits of a force depend on neither
+// the order of particles nor the ranks that hold them.
 
 #include "bond_mdanim_harmonic.h"
 
@@ -157,6 +157,7 @@ void BondMdanimHarmonic::make_rows()
       before = tag;
     }
     if (!ascending) sort_row(rows.first.back());
+    turn_upper(i, rows.first.back());
     rows.first.push_back(static_cast<int>(rows.partner.size()));
   }
 
@@ -177,14 +178,27 @@ void BondMdanimHarmonic::sort_row(int begin)
   }
 }
 
+// The last row, which ascends, as forces are summed: lower partners from the lowest up, higher ones from the highest down.
+void BondMdanimHarmonic::turn_upper(int i, int begin)
+{
+  const tagint *tag = atom->tag, own = tag[i];
+  const auto partners = rows.partner.begin() + begin;
+  const auto upper = std::find_if(partners, rows.partner.end(), [tag, own](int j) { return tag[j] > own; });
+  const auto at = upper - rows.partner.begin();
+  std::reverse(upper, rows.partner.end());
+  std::reverse(rows.type.begin() + at, rows.type.end());
+  rows.upper.push_back(static_cast<int>(at));
+}
+
 void BondMdanimHarmonic::look_up_coefficients()
 {
   coefficients_may_differ = false;
-  rows.K.resize(rows.type.size());
-  rows.r0.resize(rows.type.size());
+  rows.push.resize(rows.type.size());
+  rows.pull.resize(rows.type.size());
   for (size_t b = 0; b < rows.type.size(); ++b) {
-    rows.K[b] = spring[rows.type[b]].K;
-    rows.r0[b] = spring[rows.type[b]].r0;
+    const Law law(spring[rows.type[b]]);
+    rows.push[b] = law.push;
+    rows.pull[b] = law.pull;
   }
 }
 
@@ -197,8 +211,8 @@ void BondMdanimHarmonic::drop_lower_partners()
   upper.partner.reserve(rows.partner.size() / 2);
   upper.type.reserve(rows.partner.size() / 2);
   for (int i = 0; i < atom->nlocal; ++i) {
-    for (int b = rows.first[i]; b < rows.first[i + 1]; ++b) {
-      if (rows.partner[b] <= i) continue;
+    upper.upper.push_back(upper.first.back());
+    for (int b = rows.upper[i]; b < rows.first[i + 1]; ++b) {
       upper.partner.push_back(rows.partner[b]);
       upper.type.push_back(rows.type[b]);
     }
@@ -222,15 +236,14 @@ bool BondMdanimHarmonic::halves_suffice() const
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
-static void spring_forces(int n, const double *__restrict K, const double *__restrict r0,
+static void spring_forces(int n, const double *__restrict push, const double *__restrict pull,
                           double *__restrict x, double *__restrict y, double *__restrict z)
 {
   for (int b = 0; b < n; ++b) {
-    const double r = std::sqrt((x[b] * x[b] + y[b] * y[b]) + z[b] * z[b]);
-    const double p = pull(K[b], r0[b], r);
-    x[b] *= p;
-    y[b] *= p;
-    z[b] *= p;
+    const double factor = force_factor(push[b], pull[b], (x[b] * x[b] + y[b] * y[b]) + z[b] * z[b]);
+    x[b] *= factor;
+    y[b] *= factor;
+    z[b] *= factor;
   }
 }
 
@@ -252,7 +265,7 @@ void BondMdanimHarmonic::forces(int begin, int end)
       stretch.z[b] = d.z;
     }
   }
-  spring_forces(n, &rows.K[base], &rows.r0[base], stretch.x.data(), stretch.y.data(), stretch.z.data());
+  spring_forces(n, &rows.push[base], &rows.pull[base], stretch.x.data(), stretch.y.data(), stretch.z.data());
 }
 
 // Add the dashpots of rows [begin, end) to `stretch`, and what each particle feels of them to `on`.
@@ -277,28 +290,30 @@ void BondMdanimHarmonic::dashpots(int begin, int end, std::vector<Vec3> &on)
 void BondMdanimHarmonic::sum_rows(int begin, int end)
 {
   double *const *f = atom->f;
+  const int base = rows.first[begin];
   for (int i = begin, b = 0; i < end; ++i) {
-    Vec3 sum;
-    for (; b < rows.first[i + 1] - rows.first[begin]; ++b) sum += {stretch.x[b], stretch.y[b], stretch.z[b]};
-    add_to(f[i], sum);
+    Vec3 lower, upper;
+    for (; b < rows.upper[i] - base; ++b) lower += {stretch.x[b], stretch.y[b], stretch.z[b]};
+    for (; b < rows.first[i + 1] - base; ++b) upper += {stretch.x[b], stretch.y[b], stretch.z[b]};
+    add_to(f[i], lower + upper);
   }
 }
 
-// Half the work, the same bits: F_j = -F_i exactly and a - F = a + (-F), so a particle that first receives
-// from its lower partners, in ascending order, and then adds its own upper ones has summed all its bonds in
-// tag order.
+// Half the work, the same bits: F_j = -F_i exactly and a - F = a + (-F), and rows come in ascending order, so that a particle has
+// received from its lower partners in theirs by the time its own row comes.
 void BondMdanimHarmonic::sum_halves(int begin, int end)
 {
   double *const *f = atom->f;
+  const int base = rows.first[begin];
   for (int i = begin, b = 0; i < end; ++i) {
-    Vec3 sum = received[i];
-    received[i] = Vec3();
-    for (; b < rows.first[i + 1] - rows.first[begin]; ++b) {
+    Vec3 upper;
+    for (; b < rows.first[i + 1] - base; ++b) {
       const Vec3 force{stretch.x[b], stretch.y[b], stretch.z[b]};
-      sum += force;
-      received[rows.partner[rows.first[begin] + b]] -= force;
+      upper += force;
+      received[rows.partner[base + b]] -= force;
     }
-    add_to(f[i], sum);
+    add_to(f[i], received[i] + upper);
+    received[i] = Vec3();
   }
 }
 
@@ -337,8 +352,9 @@ void BondMdanimHarmonic::tally()
       const int j = rows.partner[b];
       const Spring &s = spring[rows.type[b]];
       const Vec3 d = vec3(atom->x[i]) - vec3(atom->x[j]);
-      const double r = std::sqrt(dot(d, d)), e = mdanim::energy(s, r);
-      double factor = pull(s.K, s.r0, r);
+      const double r2 = dot(d, d), e = mdanim::energy(s, std::sqrt(r2));
+      const Law law(s);
+      double factor = force_factor(law.push, law.pull, r2);
       if (s.c > 0.0) factor += drag(s.c, d, vec3(atom->v[i]) - vec3(atom->v[j]));
       const double w[6] = {d.x * d.x * factor, d.y * d.y * factor, d.z * d.z * factor,
                            d.x * d.y * factor, d.x * d.z * factor, d.y * d.z * factor};
@@ -361,9 +377,9 @@ double BondMdanimHarmonic::equilibrium_distance(int type) { return spring[type].
 // Energy and -dU/dr / r of one bond, without its dashpot.
 double BondMdanimHarmonic::single(int type, double rsq, int, int, double &fforce)
 {
-  const double r = std::sqrt(rsq);
-  fforce = pull(spring[type].K, spring[type].r0, r);
-  return mdanim::energy(spring[type], r);
+  const Law law(spring[type]);
+  fforce = force_factor(law.push, law.pull, rsq);
+  return mdanim::energy(spring[type], std::sqrt(rsq));
 }
 
 void BondMdanimHarmonic::write_restart(FILE *fp) { fwrite(&spring[1], sizeof(Spring), atom->nbondtypes, fp); }
@@ -386,10 +402,10 @@ void BondMdanimHarmonic::write_data(FILE *fp)
 
 double BondMdanimHarmonic::memory_usage()
 {
-  const auto ints = rows.first.capacity() + rows.partner.capacity() + rows.type.capacity() +
+  const auto ints = rows.first.capacity() + rows.upper.capacity() + rows.partner.capacity() + rows.type.capacity() +
       source.tag.capacity() + source.partner.capacity() + source.count.capacity() + source.type.capacity();
   return Bond::memory_usage() + ints * sizeof(int) + received.capacity() * sizeof(Vec3) +
-      (2.0 * rows.K.capacity() + 3.0 * stretch.x.capacity()) * sizeof(double);
+      (2.0 * rows.push.capacity() + 3.0 * stretch.x.capacity()) * sizeof(double);
 }
 
 // For objects.cpp: "seconds" and "lost" of this rank.

@@ -31,10 +31,11 @@ class BondMdanimHarmonic : public Bond {
   void *extract(const char *, int &) override;
 
  private:
-  // Row i holds the bonds [first[i], first[i+1]) of local particle i, partners ascending by tag.
+  // Row i holds the bonds [first[i], first[i+1]) of local particle i in the order in which they are summed: lower partners
+  // ascending by tag, then, from `upper` on, upper ones descending.
   struct Rows {
-    std::vector<int> first, partner, type;    // partner: local or ghost index
-    std::vector<double> K, r0;
+    std::vector<int> first, upper, partner, type;    // partner: local or ghost index
+    std::vector<double> push, pull;                  // see Law
     bool upper_only = false;    // only partners of a higher tag, see sum_halves()
   };
   // What the rows were made from; while it is unchanged they are kept.
@@ -51,6 +52,7 @@ class BondMdanimHarmonic : public Bond {
   bool source_changed();
   void make_rows();
   void sort_row(int begin);
+  void turn_upper(int i, int begin);
   void look_up_coefficients();
   bool halves_suffice() const;
   void drop_lower_partners();

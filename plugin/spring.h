@@ -9,6 +9,8 @@
 
 #include "vec3.h"
 
+#include <cmath>
+
 namespace mdanim {
 
 struct Spring {
@@ -17,8 +19,18 @@ struct Spring {
   double c = 0.0;     // dashpot along the spring [force/velocity]; 0 for none
 };
 
-// The spring's F_i / r, so that F_i = pull r_ij. Two particles in one place have r_ij = 0, hence no force.
-inline double pull(double K, double r0, double r) { return -2.0 * (K * (r - r0)) / (r > 0.0 ? r : 1.0); }
+// What the force is made of: F_i = (push / r - pull) r_ij, since -2K (r - r0) / r = 2K r0 / r - 2K.
+struct Law {
+  double push, pull;
+  explicit Law(const Spring &s) : push(2.0 * s.K * s.r0), pull(2.0 * s.K) {}
+};
+
+// So small that it changes no r^2 that is not nothing, and two particles in one place, r_ij = 0, have no force instead of none
+// that is a number.
+constexpr double NOTHING = 1e-300;
+
+// F_i / r_ij for r^2.
+inline double force_factor(double push, double pull, double r2) { return push / std::sqrt(r2 + NOTHING) - pull; }
 
 // The dashpot's part of the same factor: F_i = -c (v_ij . n) n = [-c (v_ij . r_ij) / r^2] r_ij.
 inline double drag(double c, const Vec3 &rij, const Vec3 &vij)
