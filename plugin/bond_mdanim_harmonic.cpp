@@ -132,6 +132,7 @@ void BondMdanimHarmonic::make_rows()
   const int bonds = std::accumulate(atom->num_bond, atom->num_bond + atom->nlocal, 0);
 
   rows = Rows();
+  ++made;
   rows.first.push_back(0);
   rows.partner.reserve(bonds);
   rows.type.reserve(bonds);
@@ -228,6 +229,13 @@ bool BondMdanimHarmonic::halves_suffice() const
   const int nlocal = atom->nlocal;
   return std::is_sorted(atom->tag, atom->tag + nlocal) &&
       std::all_of(rows.partner.begin(), rows.partner.end(), [nlocal](int j) { return j < nlocal; });
+}
+
+bool BondMdanimHarmonic::halves(HalfBonds &half) const
+{
+  if (damped || !rows.upper_only || static_cast<int>(rows.first.size()) != atom->nlocal + 1) return false;
+  half = {atom->nlocal, rows.first.data(), rows.partner.data(), rows.push.data(), rows.pull.data()};
+  return true;
 }
 
 // --- forces ---

@@ -5,6 +5,7 @@
 #ifndef LMP_BOND_MDANIM_HARMONIC_H
 #define LMP_BOND_MDANIM_HARMONIC_H
 
+#include "blocks.h"
 #include "bond.h"
 #include "loss.h"
 #include "spring.h"
@@ -29,6 +30,12 @@ class BondMdanimHarmonic : public Bond {
   double single(int, double, int, int, double &) override;
   double memory_usage() override;
   void *extract(const char *, int &) override;
+
+  // For run_style mdanim, which computes most forces itself: the springs, each once. False where that is not how they are summed,
+  // or where there is more to them than springs.
+  bool halves(mdanim::HalfBonds &half) const;
+  bigint version() const { return made; }    // another number for other springs
+  void took(double more) { seconds += more; }
 
  private:
   // Row i holds the bonds [first[i], first[i+1]) of local particle i in the order in which they are summed: lower partners
@@ -67,6 +74,7 @@ class BondMdanimHarmonic : public Bond {
   bool coefficients_may_differ = false;    // since the rows were given theirs
   bool bonds_are_swapped = false;        // some fix changes partners during a run
   Rows rows;
+  bigint made = 0;    // how often
   Source source;
   Stretch stretch;
   std::vector<mdanim::Vec3> received;    // from lower partners so far, for sum_halves()

@@ -337,6 +337,13 @@ void FixMdanimBarrier::post_force(int)
   if (slowed) loss.step(v, update->dt, update->setupflag);
 }
 
+// Together with run_style mdanim, which has no ghosts.
+void FixMdanimBarrier::concerned(std::vector<int> &particles) const
+{
+  particles.insert(particles.end(), row.begin(), row.end());
+  for (const Candidate &c : candidate) particles.push_back(c.partner);
+}
+
 // --- output ---
 
 double FixMdanimBarrier::sum(double here)

@@ -6,6 +6,7 @@
 
 #include "boxes.h"
 #include "fix.h"
+#include "guest.h"
 #include "loss.h"
 #include "particle_value.h"
 
@@ -13,7 +14,7 @@
 
 namespace LAMMPS_NS {
 
-class FixMdanimBarrier : public Fix {
+class FixMdanimBarrier : public Fix, public mdanim::Guest {
  public:
   FixMdanimBarrier(class LAMMPS *, int, char **);
 
@@ -28,6 +29,8 @@ class FixMdanimBarrier : public Fix {
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
+  void concerned(std::vector<int> &particles) const override;
+  bool reads_all() const override { return damping > 0.0 && !loss.idle(); }
 
  private:
   // What a particle brings into a pair. Of ghosts it is asked from their owners at every rebuild.

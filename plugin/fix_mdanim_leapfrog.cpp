@@ -99,6 +99,18 @@ double FixMdanimLeapfrog::largest_phi_here() const
   return largest;
 }
 
+template <class Visit> void FixMdanimLeapfrog::each(Visit visit) const
+{
+  const int *mask = atom->mask, nlocal = atom->nlocal;
+  if (only) {
+    for (const int i : *only)
+      if (mask[i] & groupbit) visit(i);
+  } else {
+    for (int i = 0; i < nlocal; ++i)
+      if (mask[i] & groupbit) visit(i);
+  }
+}
+
 // Without drag both halves are v <- v + dt/2m F.
 template <class Half> void FixMdanimLeapfrog::half_step(Half half, bool first)
 {
@@ -106,11 +118,8 @@ template <class Half> void FixMdanimLeapfrog::half_step(Half half, bool first)
   if (!has_drag) {
     double *const *v = atom->v, *const *f = atom->f;
     const double *rmass = atom->rmass, *mass = atom->mass;
-    const int *mask = atom->mask, *type = atom->type, nlocal = atom->nlocal;
-    for (int i = 0; i < nlocal; ++i) {
-      if (!(mask[i] & groupbit)) continue;
-      add_to(v[i], half_dt / mass_of(rmass, mass, type, i) * vec3(f[i]));
-    }
+    const int *type = atom->type;
+    each([&](int i) { add_to(v[i], half_dt / mass_of(rmass, mass, type, i) * vec3(f[i])); });
   } else if (exponential) {
     half_step_with_drag<Exponential>(half, first);
   } else {
@@ -122,15 +131,14 @@ template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Ha
 {
   double *const *v = atom->v, *const *f = atom->f;
   const double *rmass = atom->rmass, *mass = atom->mass, *own = lambda.values(lmp);
-  const int *mask = atom->mask, *type = atom->type, nlocal = atom->nlocal;
+  const int *type = atom->type;
   double loss = 0.0;
-  for (int i = 0; i < nlocal; ++i) {
-    if (!(mask[i] & groupbit)) continue;
+  each([&](int i) {
     const double m = mass_of(rmass, mass, type, i), kick = half_dt / m;
     const double phi = (own ? own[i] : lambda.number) * kick;
     if (phi == 0.0) {    // the same bits, for what is out of the liquid
       add_to(v[i], kick * vec3(f[i]));
-      continue;
+      return;
     }
     const Vec3 before = vec3(v[i]), push = vec3(f[i]);
     const Drag drag{phi, kick};
@@ -140,29 +148,30 @@ template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Ha
     v[i][2] = after.z;
     loss += drag.loss(before, after, push, m, first);
     largest_phi = std::max(largest_phi, phi);
-  }
+  });
   lost += force->mvv2e * loss;
 }
 
 // v^n -> v^{n+1/2}, then r^{n+1} = r^n + dt v^{n+1/2}: the end of eq. (3.12).
 void FixMdanimLeapfrog::initial_integrate(int)
 {
-  half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.first_half(v, f); }, true);
+  first_half();
   drift();
 }
+
+void FixMdanimLeapfrog::first_half()
+{ half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.first_half(v, f); }, true); }
 
 void FixMdanimLeapfrog::drift()
 {
   const Lap lap(seconds);
-  if (!trace.empty()) {
+  if (!trace.empty() && !only) {
     drift_and_trace();
     return;
   }
   double *const *x = atom->x, *const *v = atom->v;
-  const int *mask = atom->mask, nlocal = atom->nlocal;
   const double dt = update->dt;
-  for (int i = 0; i < nlocal; ++i)
-    if (mask[i] & groupbit) add_to(x[i], dt * vec3(v[i]));
+  each([&](int i) { add_to(x[i], dt * vec3(v[i])); });
 }
 
 // The same, and the box of each object grows to where its particles are now. Those of an object mostly stand side by side: their box
@@ -210,9 +219,51 @@ std::vector<Box> FixMdanimLeapfrog::traced_boxes() const
 }
 
 // v^{n-1/2} -> v^n, eq. (3.10).
-void FixMdanimLeapfrog::final_integrate()
+void FixMdanimLeapfrog::final_integrate() { final_half(); }
+
+void FixMdanimLeapfrog::final_half()
+{ half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.final_half(v, f); }, false); }
+
+// --- together with run_style mdanim ---
+
+Friction FixMdanimLeapfrog::friction() const
 {
-  half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.final_half(v, f); }, false);
+  if (!has_drag) return Friction::NONE;
+  return exponential ? Friction::EXPONENTIAL : Friction::IMPLICIT;
+}
+
+Mover FixMdanimLeapfrog::mover(int i)
+{
+  if (!(atom->mask[i] & groupbit)) return {0.0, 0.0, 0.0, 0.0, 0.0};
+  const double mass = mass_of(atom->rmass, atom->mass, atom->type, i), kick = half_dt / mass, *own = lambda.values(lmp);
+  const double phi = has_drag ? (own ? own[i] : lambda.number) * kick : 0.0;
+  largest_phi = std::max(largest_phi, phi);
+  return {0.0, mass, kick, update->dt, phi};
+}
+
+void FixMdanimLeapfrog::finish_step(const std::vector<int> &particles)
+{
+  only = &particles;
+  final_half();
+  only = nullptr;
+}
+
+void FixMdanimLeapfrog::begin_step(const std::vector<int> &particles)
+{
+  only = &particles;
+  first_half();
+  drift();
+  only = nullptr;
+  if (!trace.empty())
+    for (const int i : particles)
+      if (atom->mask[i] & groupbit) trace[atom->molecule[i] - 1].include(atom->x[i]);
+}
+
+void FixMdanimLeapfrog::moved(double final_loss, double first_loss, double more_seconds)
+{
+  lost += force->mvv2e * final_loss;
+  lost += force->mvv2e * first_loss;
+  seconds += more_seconds;
 }
 
 double FixMdanimLeapfrog::compute_scalar()

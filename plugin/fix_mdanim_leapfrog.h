@@ -4,6 +4,7 @@
 #ifndef LMP_FIX_MDANIM_LEAPFROG_H
 #define LMP_FIX_MDANIM_LEAPFROG_H
 
+#include "blocks.h"
 #include "boxes.h"
 #include "fix.h"
 #include "particle_value.h"
@@ -34,7 +35,18 @@ class FixMdanimLeapfrog : public Fix {
   int traced() const { return static_cast<int>(trace.size()); }    // objects; 0 when off
   std::vector<mdanim::Box> traced_boxes() const;
 
+  // For run_style mdanim, which moves most particles itself.
+  mdanim::Friction friction() const;
+  mdanim::Mover mover(int i);
+  double *trace_bounds() { return trace.empty() ? nullptr : trace.front().bound; }
+  void finish_step(const std::vector<int> &particles);    // v^{n-1/2} -> v^n
+  void begin_step(const std::vector<int> &particles);     // v^n -> v^{n+1/2}, r^n -> r^{n+1}
+  void moved(double final_loss, double first_loss, double more_seconds);    // by others, in its name
+
  private:
+  template <class Visit> void each(Visit visit) const;
+  void first_half();
+  void final_half();
   template <class Half> void half_step(Half half, bool first);
   template <class Drag, class Half> void half_step_with_drag(Half half, bool first);
   void drift();
@@ -47,6 +59,7 @@ class FixMdanimLeapfrog : public Fix {
   double lost = 0.0;           // energy taken by drag on this rank
   double largest_phi = 0.0;    // seen on this rank in this run
   double seconds = 0.0;
+  const std::vector<int> *only = nullptr;    // particles to move now; null for all
   std::vector<mdanim::Box> trace;    // of the particles of this rank; empty when off
 };
 

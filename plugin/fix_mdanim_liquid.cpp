@@ -795,6 +795,19 @@ void FixMdanimLiquid::end_of_step()
   last_loss = loss;
 }
 
+// --- together with run_style mdanim ---
+
+// Faces push at the corners that ask for them and are read at all four, which are of one object and mostly all watched.
+void FixMdanimLiquid::concerned(std::vector<int> &particles) const
+{
+  particles.insert(particles.end(), watched.begin(), watched.end());
+  for (const Face &face : faces) particles.insert(particles.end(), face.corner, face.corner + 4);
+}
+
+// An update of the liquid looks for all bodies.
+bool FixMdanimLiquid::reads_all() const
+{ return update->ntimestep % every == 0 && !(nobody && calm && moving_solid == 0); }
+
 // --- what it tells ---
 
 double FixMdanimLiquid::compute_scalar()

@@ -7,6 +7,7 @@
 
 #include "automaton.h"
 #include "fix.h"
+#include "guest.h"
 #include "level.h"
 #include "occupancy.h"
 #include "particle_value.h"
@@ -19,7 +20,7 @@
 
 namespace LAMMPS_NS {
 
-class FixMdanimLiquid : public Fix {
+class FixMdanimLiquid : public Fix, public mdanim::Guest {
  public:
   FixMdanimLiquid(class LAMMPS *, int, char **);
 
@@ -35,6 +36,8 @@ class FixMdanimLiquid : public Fix {
   double compute_array(int, int) override;
   double memory_usage() override;
   int modify_param(int, char **) override;
+  void concerned(std::vector<int> &particles) const override;
+  bool reads_all() const override;
   void write_restart(FILE *) override;
   void restart(char *) override;
 

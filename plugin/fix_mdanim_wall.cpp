@@ -149,6 +149,9 @@ void FixMdanimWall::post_force(int)
   }
 }
 
+void FixMdanimWall::concerned(std::vector<int> &particles) const
+{ particles.insert(particles.end(), watched.begin(), watched.end()); }
+
 void FixMdanimWall::push_back(int i, const double *k)
 {
   Vec3 d;

@@ -6,6 +6,7 @@
 #define LMP_FIX_MDANIM_WALL_H
 
 #include "fix.h"
+#include "guest.h"
 #include "particle_value.h"
 #include "vec3.h"
 
@@ -14,7 +15,7 @@
 
 namespace LAMMPS_NS {
 
-class FixMdanimWall : public Fix {
+class FixMdanimWall : public Fix, public mdanim::Guest {
  public:
   FixMdanimWall(class LAMMPS *, int, char **);
 
@@ -27,6 +28,8 @@ class FixMdanimWall : public Fix {
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
+  void concerned(std::vector<int> &particles) const override;
+  bool reads_all() const override { return !watching; }
 
  private:
   bool behind(const double *x, mdanim::Vec3 &d);

@@ -5,9 +5,11 @@
 #include "abi.h"
 #include "bond_mdanim_harmonic.h"
 #include "fix_mdanim_barrier.h"
+#include "fix_mdanim_gravity.h"
 #include "fix_mdanim_leapfrog.h"
 #include "fix_mdanim_liquid.h"
 #include "fix_mdanim_wall.h"
+#include "run_mdanim.h"
 
 #include "comm.h"
 #include "lammps.h"
@@ -20,6 +22,8 @@ using mdanim::PluginRecord;
 namespace {
 
 template <class Style> void *make_bond(void *lmp) { return new Style(static_cast<LAMMPS *>(lmp)); }
+
+void *make_run(void *lmp, int narg, char **arg) { return new RunMdanim(static_cast<LAMMPS *>(lmp), narg, arg); }
 
 template <class Style> void *make_fix(void *lmp, int narg, char **arg)
 { return new Style(static_cast<LAMMPS *>(lmp), narg, arg); }
@@ -34,6 +38,13 @@ PluginRecord bond(const char *name, const char *info, void *(*creator)(void *) )
 PluginRecord fix(const char *name, const char *info, void *(*creator)(void *, int, char **) )
 {
   PluginRecord row{nullptr, "fix", name, info, "mdanim-lammps", {}, nullptr};
+  row.creator.with_arguments = creator;
+  return row;
+}
+
+PluginRecord run(const char *name, const char *info, void *(*creator)(void *, int, char **) )
+{
+  PluginRecord row{nullptr, "run", name, info, "mdanim-lammps", {}, nullptr};
   row.creator.with_arguments = creator;
   return row;
 }
@@ -62,9 +73,11 @@ MDANIM_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *register_sty
   PluginRecord styles[] = {
       bond("mdanim/harmonic", "springs in gather form", &make_bond<BondMdanimHarmonic>),
       fix("mdanim/leapfrog", "leap-frog with friction", &make_fix<FixMdanimLeapfrog>),
+      fix("mdanim/gravity", "m g on every particle", &make_fix<FixMdanimGravity>),
       fix("mdanim/barrier", "contact of objects", &make_fix<FixMdanimBarrier>),
       fix("mdanim/liquid", "liquid that solids float and sink in", &make_fix<FixMdanimLiquid>),
       fix("mdanim/wall", "walls that stand any impact", &make_fix<FixMdanimWall>),
+      run("mdanim", "verlet with springs, gravity and leap-frog in one pass", &make_run),
   };
   for (PluginRecord &style : styles) {
     style.version = static_cast<LAMMPS *>(lmp)->version;

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from .air_drag import slowed_share
 from .effect import Effect, Verdict
 
 
@@ -14,7 +13,7 @@ PULL = 0.6
 
 
 class Gravity(Effect):
-    name = "gravity"
+    name = fix = "gravity"
     ledger = "gravity"
     lost = "nothing falls"
 
@@ -25,13 +24,8 @@ class Gravity(Effect):
         return Verdict(self.name, False, "no gravity in the scene", span)
 
     def commands(self, scene, system):
-        g = np.array(scene.gravity)
         x, y, z = scene.gravity
-        return [f"fix gravity mobile gravity {float(np.linalg.norm(g))!r} vector {x!r} {y!r} {z!r}"]
-
-    def clocks(self, instance):
-        # LAMMPS's own fix has no clock; like the leap-frog it does little more than read and write memory.
-        return {"gravity": PULL * instance.fix_seconds("leapfrog") * (1.0 - slowed_share(instance))}
+        return [f"fix gravity mobile mdanim/gravity {x!r} {y!r} {z!r}"]
 
     def forecast(self, load, rate):
         return load.steps * load.mobile * PULL * rate["leap-frog"]

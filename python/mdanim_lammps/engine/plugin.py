@@ -18,8 +18,8 @@ VERSION = 20250722
 """The LAMMPS version whose headers the plugin was compiled with; its ABI is that of one version."""
 ABI = 4
 """Number of the plugin's own C interface, `mdanim_abi`."""
-STYLES = (("bond", "mdanim/harmonic"), ("fix", "mdanim/leapfrog"), ("fix", "mdanim/barrier"), ("fix", "mdanim/wall"),
-          ("fix", "mdanim/liquid"))
+STYLES = (("bond", "mdanim/harmonic"), ("fix", "mdanim/leapfrog"), ("fix", "mdanim/gravity"),
+          ("fix", "mdanim/barrier"), ("fix", "mdanim/wall"), ("fix", "mdanim/liquid"), ("integrate", "mdanim"))
 
 _FILE = Path(__file__).resolve().parent.parent / "plugin" / "mdanimplugin.so"
 

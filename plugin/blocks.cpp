@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Cutting particles into blocks, and moving them in and out.
+
+#include "blocks.h"
+
+#include "leapfrog.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+namespace mdanim {
+
+// What a block costs besides its springs, in vectors of springs.
+static constexpr int OVERHEAD = 2;
+// Cut only when at least this part of the lanes has work.
+static constexpr double WORTH_IT = 0.3;
+// Arrays that start at the same place of a page get in each other's way in the caches; they start so many doubles apart.
+static constexpr int STAGGER = 72;
+
+// --- storage ---
+
+void Doubles::assign(std::size_t n)
+{
+  constexpr std::size_t LINE = 8;
+  room.assign(n + 2 * LINE, 0.0);
+  const auto address = reinterpret_cast<std::uintptr_t>(room.data()) / sizeof(double);
+  begin = room.data() + (LINE - address % LINE) % LINE;
+  used = n;
+}
+
+void Doubles::push(const double *row, std::size_t n)
+{
+  if (!begin || used + n + 16 > room.size()) {
+    std::vector<double> old(begin, begin + used);
+    const std::size_t before = used;
+    assign(2 * (used + n));
+    std::copy(old.begin(), old.end(), begin);
+    used = before;
+  }
+  std::copy(row, row + n, begin + used);
+  used += n;
+}
+
+void Catalogue::start(int numbers)
+{
+  width = numbers;
+  count = latest = 0;
+  rows.clear();
+  known.clear();
+}
+
+unsigned Catalogue::find_or_add(const double *row)
+{
+  const std::size_t size = width * sizeof(double);
+  const auto is = [&](unsigned n) { return std::memcmp(rows.data() + static_cast<std::size_t>(n) * width, row, size) == 0; };
+  if (count && is(latest)) return latest;
+  std::uint64_t hash = 1469598103934665603u;    // FNV-1a, by words
+  for (int k = 0; k < width; ++k) {
+    std::uint64_t word;
+    std::memcpy(&word, row + k, sizeof word);
+    hash = (hash ^ word ^ word >> 29) * 1099511628211u;
+  }
+  const auto [begin, end] = known.equal_range(hash);
+  for (auto it = begin; it != end; ++it)
+    if (is(it->second)) return latest = it->second;
+  known.emplace(hash, count);
+  rows.push(row, width);
+  return latest = count++;
+}
+
+// --- cutting ---
+
+// How many particles the best cut takes into the block that ends before particle i; index 1 … N.
+std::vector<int> Blocks::lengths(const HalfBonds &bonds, const int *object) const
+{
+  std::vector<int> best(particles + 1), offsets;
+  std::vector<long> cost(particles + 1, std::numeric_limits<long>::max());
+  cost[0] = 0;
+  for (int i = 0; i < particles; ++i) {
+    offsets.clear();
+    for (int n = 1; n <= lanes && i + n <= particles; ++n) {
+      const int k = i + n - 1;
+      if (object[k] != object[i]) break;
+      for (int b = bonds.first[k]; b < bonds.first[k + 1]; ++b) {
+        const int offset = bonds.partner[b] - k;
+        if (std::find(offsets.begin(), offsets.end(), offset) == offsets.end()) offsets.push_back(offset);
+      }
+      const long total = cost[i] + OVERHEAD + static_cast<long>(offsets.size());
+      if (total <= cost[i + n]) {    // of equal ones the longer, which comes later
+        cost[i + n] = total;
+        best[i + n] = n;
+      }
+    }
+  }
+  return best;
+}
+
+bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
+{
+  particles = bonds.particles;
+  lanes = width.lanes;
+  all.clear();
+  entries.clear();
+  const std::vector<int> length = lengths(bonds, object);
+  for (int end = particles; end > 0; end -= length[end])
+    all.push_back({end - length[end], static_cast<short>(length[end]), false, 0, 0, object[end - 1] - 1});
+  std::reverse(all.begin(), all.end());
+
+  laws.start(2 * lanes);
+  home.resize(particles);
+  std::vector<int> offsets;
+  std::vector<double> law(2 * lanes);
+  int farthest = 0;
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    Block &block = all[n];
+    const int end = block.start + block.lanes;
+    offsets.clear();
+    for (int i = block.start; i < end; ++i) {
+      home[i] = static_cast<int>(n);
+      for (int b = bonds.first[i]; b < bonds.first[i + 1]; ++b) offsets.push_back(bonds.partner[b] - i);
+    }
+    std::sort(offsets.begin(), offsets.end(), std::greater<int>());
+    offsets.erase(std::unique(offsets.begin(), offsets.end()), offsets.end());
+    for (const int offset : offsets) {
+      std::fill(law.begin(), law.end(), 0.0);
+      for (int i = block.start; i < end; ++i)
+        for (int b = bonds.first[i]; b < bonds.first[i + 1]; ++b)
+          if (bonds.partner[b] - i == offset) {
+            law[i - block.start] = bonds.push[b];
+            law[lanes + i - block.start] = bonds.pull[b];
+          }
+      entries.push_back({offset, laws.find_or_add(law.data())});
+      farthest = std::max(farthest, offset);
+    }
+    block.end = static_cast<unsigned>(entries.size());
+  }
+
+  const double springs = bonds.first[particles];
+  if (entries.empty() || springs < WORTH_IT * entries.size() * lanes) {
+    forget();
+    return false;
+  }
+  int shift = 0;
+  for (Doubles *arrays : {x, v, f})
+    for (int d = 0; d < 3; ++d) arrays[d].assign(particles + farthest + 2 * lanes + STAGGER * shift++);
+  outside.clear();
+  return true;
+}
+
+// --- motion ---
+
+void Blocks::set_row(const Mover &mover, Friction friction, int lane, double *row) const
+{
+  const auto at = [&](Motion what) -> double & { return row[what * lanes + lane]; };
+  at(MASS) = mover.pulled;
+  at(KICK) = mover.kick;
+  at(DT) = mover.dt;
+  at(STAY) = at(SHARE) = 1.0;
+  at(PUSH) = mover.kick;
+  at(WEIGHT) = mover.phi == 0.0 ? 0.0 : 0.5 * mover.mass;
+  if (friction == Friction::IMPLICIT) {
+    at(STAY) = 1.0 - mover.phi;
+    at(SHARE) = 1.0 + mover.phi;
+  } else if (friction == Friction::EXPONENTIAL) {
+    const Exponential exact(mover.phi, mover.kick);
+    at(STAY) = exact.e;
+    at(PUSH) = exact.g * exact.kick;
+  }
+}
+
+const std::vector<int> &Blocks::hold_back(const std::vector<int> &wanted, bool everything)
+{
+  for (Block &block : all) block.held_back = everything;
+  for (const int i : wanted) all[home[i]].held_back = true;
+  outside.clear();
+  for (const Block &block : all)
+    if (block.held_back)
+      for (int lane = 0; lane < block.lanes; ++lane) outside.push_back(block.start + lane);
+  return outside;
+}
+
+void Blocks::take_in(const double *const *from_x, const double *const *from_v)
+{
+  for (int d = 0; d < 3; ++d) {
+    double *to_x = x[d].data(), *to_v = v[d].data();
+    for (int i = 0; i < particles; ++i) {
+      to_x[i] = from_x[i][d];
+      to_v[i] = from_v[i][d];
+    }
+  }
+}
+
+void Blocks::give_out(double *const *to_x, double *const *to_v) const
+{
+  for (int i = 0; i < particles; ++i)
+    for (int d = 0; d < 3; ++d) {
+      to_x[i][d] = x[d].data()[i];
+      to_v[i][d] = v[d].data()[i];
+    }
+}
+
+void Blocks::take_in_held_back(const double *const *from_x, const double *const *from_v)
+{
+  for (const int i : outside)
+    for (int d = 0; d < 3; ++d) {
+      x[d].data()[i] = from_x[i][d];
+      v[d].data()[i] = from_v[i][d];
+    }
+}
+
+void Blocks::give_out_held_back(double *const *to_x, double *const *to_v) const
+{
+  for (const int i : outside)
+    for (int d = 0; d < 3; ++d) {
+      to_x[i][d] = x[d].data()[i];
+      to_v[i][d] = v[d].data()[i];
+    }
+}
+
+void Blocks::fill(Pass &pass)
+{
+  pass.block = all.data();
+  pass.blocks = static_cast<int>(all.size());
+  pass.entry = entries.data();
+  pass.law = laws.data();
+  pass.motion = motions.data();
+  for (int d = 0; d < 3; ++d) {
+    pass.x[d] = x[d].data();
+    pass.v[d] = v[d].data();
+    pass.f[d] = f[d].data();
+  }
+}
+
+std::size_t Blocks::bytes() const
+{
+  std::size_t sum = all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + motions.bytes() +
+      (home.capacity() + outside.capacity()) * sizeof(int);
+  for (const Doubles *arrays : {x, v, f})
+    for (int d = 0; d < 3; ++d) sum += arrays[d].bytes();
+  return sum;
+}
+
+// --- widths ---
+
+static bool always() { return true; }
+
+#if defined(__x86_64__)
+static bool has_avx2() { return __builtin_cpu_supports("avx2"); }
+static bool has_avx512()
+{ return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"); }
+#endif
+
+static constexpr Width WIDTHS[] = {
+#if defined(__x86_64__)
+    {"avx512", 8, pass_avx512, has_avx512},
+    {"avx2", 4, pass_avx2, has_avx2},
+#endif
+    {"common", 4, pass_common, always},
+};
+
+const Width *best_width()
+{
+  return std::find_if(std::begin(WIDTHS), std::end(WIDTHS), [](const Width &w) { return w.runs_here(); });
+}
+
+const Width *width_of(const char *name)
+{
+  const auto found =
+      std::find_if(std::begin(WIDTHS), std::end(WIDTHS), [name](const Width &w) { return std::strcmp(w.name, name) == 0; });
+  return found != std::end(WIDTHS) && found->runs_here() ? found : nullptr;
+}
+
+}    // namespace mdanim

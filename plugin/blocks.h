@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Particles in blocks for the vector units, and their state in arrays of their own (pass.h).
+
+#ifndef MDANIM_BLOCKS_H
+#define MDANIM_BLOCKS_H
+
+#include "pass.h"
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+namespace mdanim {
+
+// Doubles that start on a cache line and may be read and written a vector beyond their end.
+class Doubles {
+ public:
+  void assign(std::size_t n);    // zeros
+  void push(const double *row, std::size_t n);
+  void clear() { used = 0; }
+  double *data() { return begin; }
+  const double *data() const { return begin; }
+  std::size_t bytes() const { return room.capacity() * sizeof(double); }
+
+ private:
+  std::vector<double> room;
+  double *begin = nullptr;
+  std::size_t used = 0;
+};
+
+// Distinct rows of numbers, each kept once.
+class Catalogue {
+ public:
+  void start(int width);
+  unsigned find_or_add(const double *row);
+  const double *data() const { return rows.data(); }
+  std::size_t bytes() const { return rows.bytes() + count * 32; }
+
+ private:
+  Doubles rows;
+  int width = 0;
+  unsigned count = 0, latest = 0;
+  std::unordered_multimap<std::uint64_t, unsigned> known;
+};
+
+// Half of all springs: those of particle i to particles of higher index are [first[i], first[i+1]), partners descending.
+struct HalfBonds {
+  int particles;
+  const int *first, *partner;
+  const double *push, *pull;
+};
+
+// What a particle's motion depends on.
+struct Mover {
+  double pulled;    // mass that gravity pulls at
+  double mass, kick, dt, phi;    // see Motion
+};
+
+class Blocks {
+ public:
+  // Cut the particles into blocks so that the fewest vectors of forces are to be computed. A block is of one object. Returns whether
+  // that is worth it: the springs of neighbours in the arrays must mostly lead equally far, as they do in lattices that are numbered
+  // row by row.
+  bool cut(const HalfBonds &bonds, const int *object, const Width &width);
+  void forget() { all.clear(); }
+  bool ready() const { return !all.empty(); }
+
+  template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
+  // Every block with one of these particles is held back, no other. Returns all particles of such blocks, ascending.
+  const std::vector<int> &hold_back(const std::vector<int> &particles, bool everything);
+  const std::vector<int> &held_back() const { return outside; }
+
+  void take_in(const double *const *x, const double *const *v);
+  void give_out(double *const *x, double *const *v) const;
+  // The same for the particles that are held back.
+  void take_in_held_back(const double *const *x, const double *const *v);
+  void give_out_held_back(double *const *x, double *const *v) const;
+
+  void fill(Pass &pass);
+  std::size_t bytes() const;
+
+ private:
+  std::vector<int> lengths(const HalfBonds &bonds, const int *object) const;
+  void set_row(const Mover &mover, Friction friction, int lane, double *row) const;
+
+  int particles = 0, lanes = 0;
+  std::vector<Block> all;
+  std::vector<Entry> entries;
+  std::vector<int> home;       // block of each particle
+  std::vector<int> outside;    // particles of blocks that are held back
+  Catalogue laws, motions;
+  Doubles x[3], v[3], f[3];
+};
+
+template <class Tell> void Blocks::set_motion(Friction friction, Tell mover)
+{
+  std::vector<double> row(MOTIONS * lanes);
+  motions.start(MOTIONS * lanes);
+  for (Block &block : all) {
+    for (int lane = 0; lane < lanes; ++lane) {
+      if (lane < block.lanes) set_row(mover(block.start + lane), friction, lane, row.data());
+      else set_row({0.0, 0.0, 0.0, 0.0, 0.0}, friction, lane, row.data());
+      row[OTHERS * lanes + lane] = lane < block.lanes ? 0.0 : 1.0;
+    }
+    block.motion = motions.find_or_add(row.data());
+  }
+}
+
+// The processor's best, or that of a name; null when it is unknown or does not run here.
+const Width *best_width();
+const Width *width_of(const char *name);
+
+}    // namespace mdanim
+
+#endif

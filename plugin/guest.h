@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// How a fix that adds forces works together with run_style mdanim, which keeps positions and velocities in arrays of its own.
+
+#ifndef MDANIM_GUEST_H
+#define MDANIM_GUEST_H
+
+#include <vector>
+
+namespace mdanim {
+
+class Guest {
+ public:
+  // The local particles whose x, v and f the fix reads or writes in post_force() and end_of_step(), until lists are rebuilt; the
+  // arrays of LAMMPS hold no others. Adds them to `particles`, some perhaps twice.
+  virtual void concerned(std::vector<int> &particles) const = 0;
+  // Whether it will read any particle in this step.
+  virtual bool reads_all() const { return false; }
+
+ protected:
+  ~Guest() = default;
+};
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// One step of all particles, block by block: what the vector code (pass_kernel.h) is given. Plain data alone: this header is also
+// compiled for processors that not everybody has, and nothing inline may come from there into the rest of the program.
+
+#ifndef MDANIM_PASS_H
+#define MDANIM_PASS_H
+
+namespace mdanim {
+
+// Springs from the particles of a block to those `offset` places further on.
+struct Entry {
+  int offset;
+  unsigned law;    // row of Pass::law
+};
+
+// Particles that stand side by side, one to each lane of the vector unit. Its springs are the entries from the last block's end on,
+// offsets descending.
+struct Block {
+  int start;
+  short lanes;      // of its own; what else is loaded with them belongs to others and is left as it is
+  bool held_back;   // others add to its forces before it may move
+  unsigned end;
+  unsigned motion;    // row of Pass::motion
+  int object;         // molecule - 1
+};
+
+enum class Friction { NONE, IMPLICIT, EXPONENTIAL };
+
+// A row of Pass::motion, one number for each lane.
+enum Motion { MASS, KICK, DT, OTHERS, STAY, SHARE, PUSH, WEIGHT, MOTIONS };
+// MASS what gravity pulls at; KICK dt/2m; DT the time step, 0 for what does not move; OTHERS 1 where a lane is not the block's own.
+// With friction also, see leapfrog.h: STAY 1 - phi or e; SHARE 1 + phi; PUSH g dt/2m; WEIGHT m/2, 0 where there is none.
+
+struct Pass {
+  const Block *block;
+  int blocks;
+  const Entry *entry;
+  const double *law;       // rows of push and pull (spring.h), one of each for every lane
+  const double *motion;    // see Motion
+  double *x[3], *v[3];     // x^n -> x^{n+1}, v^{n-1/2} -> v^{n+1/2}
+  double *f[3];            // what lower partners have done so far; nothing before and after a pass
+  double gravity[3];       // [velocity/time]
+  Friction friction;
+  double *total;    // (N, 3): sum of all forces on the particles of blocks that are held back
+  double *trace;    // box of each object (boxes.h), to be grown; null for none
+
+  double fastest;          // largest v^2 of what has moved
+  double final_loss, first_loss;    // to friction in either half step
+};
+
+// The same bits from each of them.
+struct Width {
+  const char *name;
+  int lanes;
+  void (*pass)(Pass &);
+  bool (*runs_here)();
+};
+
+void pass_common(Pass &);
+void pass_avx2(Pass &);
+void pass_avx512(Pass &);
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The pass over all blocks (pass.h), for vectors of LANES doubles; compiled once for each kind of processor (pass_*.cpp).
+//
+// Springs are evaluated once. Blocks come in ascending order and in each of them offsets in descending order, so that whoever
+// receives does so from its lower partners in ascending order, and a block's own sum takes its upper ones in descending order: the
+// order of bond_mdanim_harmonic.cpp, hence its bits. Lanes without a spring have push = pull = 0 and add nothing: F = 0, and a sum
+// that starts at +0 is never -0. Positions of a block can move on at once, for all that is still to come reads its own and upper ones.
+
+#include "pass.h"
+#include "spring.h"
+
+namespace mdanim {
+namespace {
+
+#define MDANIM_INLINE inline __attribute__((always_inline))
+
+typedef double Vector __attribute__((vector_size(8 * LANES)));
+
+struct __attribute__((packed, may_alias)) Unaligned {
+  Vector value;
+};
+
+MDANIM_INLINE Vector load(const double *from) { return reinterpret_cast<const Unaligned *>(from)->value; }
+
+MDANIM_INLINE void store(double *to, Vector value) { reinterpret_cast<Unaligned *>(to)->value = value; }
+
+MDANIM_INLINE Vector root(Vector a)
+{
+  Vector r;
+  for (int lane = 0; lane < LANES; ++lane) r[lane] = __builtin_sqrt(a[lane]);
+  return r;
+}
+
+MDANIM_INLINE Vector largest(Vector a, Vector b) { return a > b ? a : b; }
+
+// Half a step of leap-frog with friction and what it takes, as in leapfrog.h.
+MDANIM_INLINE Vector loss(const Vector *va, const Vector *vb, const Vector *f, Vector kick, Vector weight)
+{
+  const Vector x = (va[0] + vb[0]) * (kick * f[0] - (vb[0] - va[0])), y = (va[1] + vb[1]) * (kick * f[1] - (vb[1] - va[1])),
+               z = (va[2] + vb[2]) * (kick * f[2] - (vb[2] - va[2]));
+  return weight * ((x + y) + z);
+}
+
+// Largest and smallest coordinates of one object, as they come.
+struct Box6 {
+  Vector bound[6];
+
+  MDANIM_INLINE void open()
+  {
+    for (Vector &b : bound) b = Vector{} + __DBL_MAX__;
+  }
+  MDANIM_INLINE void include(const Vector *x, Vector others)
+  {
+    for (int d = 0; d < 3; ++d) {
+      const Vector low = others > 0.0 ? Vector{} + __DBL_MAX__ : x[d], high = others > 0.0 ? Vector{} + __DBL_MAX__ : -x[d];
+      bound[d] = low < bound[d] ? low : bound[d];
+      bound[3 + d] = high < bound[3 + d] ? high : bound[3 + d];
+    }
+  }
+  MDANIM_INLINE void close(double *box) const
+  {
+    for (int k = 0; k < 6; ++k)
+      for (int lane = 0; lane < LANES; ++lane)
+        if (bound[k][lane] < box[k]) box[k] = bound[k][lane];
+  }
+};
+
+template <Friction FRICTION, bool TRACED> MDANIM_INLINE void go(Pass &pass)
+{
+  double *const X = pass.x[0], *const Y = pass.x[1], *const Z = pass.x[2];
+  double *const FX = pass.f[0], *const FY = pass.f[1], *const FZ = pass.f[2];
+  const Entry *const entry = pass.entry;
+  const double *const law = pass.law;
+  unsigned e = 0;
+  Vector fastest{};
+  double final_loss = 0.0, first_loss = 0.0;
+  Box6 box;
+  int object = -1;
+  box.open();
+  for (int n = 0; n < pass.blocks; ++n) {
+    const Block &block = pass.block[n];
+    const int i = block.start;
+    const Vector x = load(X + i), y = load(Y + i), z = load(Z + i);
+    Vector upper_x{}, upper_y{}, upper_z{};
+    for (; e < block.end; ++e) {
+      const int j = i + entry[e].offset;
+      const double *const own = law + static_cast<unsigned long>(entry[e].law) * (2 * LANES);
+      Vector dx = x - load(X + j), dy = y - load(Y + j), dz = z - load(Z + j);
+      const Vector factor = load(own) / root(((dx * dx + dy * dy) + dz * dz) + NOTHING) - load(own + LANES);
+      dx *= factor;
+      dy *= factor;
+      dz *= factor;
+      upper_x += dx;
+      upper_y += dy;
+      upper_z += dz;
+      store(FX + j, load(FX + j) - dx);
+      store(FY + j, load(FY + j) - dy);
+      store(FZ + j, load(FZ + j) - dz);
+    }
+
+    const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
+    const Vector mass = load(motion + MASS * LANES), others = load(motion + OTHERS * LANES);
+    const Vector upper[3] = {upper_x, upper_y, upper_z}, old[3] = {x, y, z};
+    Vector f[3];
+#pragma GCC unroll 3
+    for (int d = 0; d < 3; ++d) {
+      const Vector received = load(pass.f[d] + i);
+      store(pass.f[d] + i, received * others);
+      f[d] = (received + upper[d]) + mass * pass.gravity[d];
+    }
+    if (block.held_back) {
+      for (int lane = 0; lane < block.lanes; ++lane)
+        for (int d = 0; d < 3; ++d) pass.total[3 * (i + lane) + d] = f[d][lane];
+      continue;
+    }
+
+    const Vector kick = load(motion + KICK * LANES), dt = load(motion + DT * LANES);
+    Vector first[3], middle[3], last[3], place[3], square{};
+#pragma GCC unroll 3
+    for (int d = 0; d < 3; ++d) {
+      const Vector push = FRICTION == Friction::EXPONENTIAL ? load(motion + PUSH * LANES) * f[d] : kick * f[d];
+      first[d] = load(pass.v[d] + i);
+      if (FRICTION == Friction::NONE) {
+        middle[d] = first[d] + push;
+        last[d] = middle[d] + push;
+      } else {
+        const Vector stay = load(motion + STAY * LANES);
+        middle[d] = FRICTION == Friction::IMPLICIT ? (first[d] + push) / load(motion + SHARE * LANES) : stay * first[d] + push;
+        last[d] = stay * middle[d] + push;
+      }
+      store(pass.v[d] + i, last[d]);
+      place[d] = old[d] + dt * last[d];
+      store(pass.x[d] + i, place[d]);
+      square += last[d] * last[d];
+    }
+    fastest = largest(square, fastest);
+    if (FRICTION != Friction::NONE) {
+      const Vector weight = load(motion + WEIGHT * LANES);
+      const Vector a = loss(first, middle, f, kick, weight), b = loss(middle, last, f, kick, weight);
+      for (int lane = 0; lane < block.lanes; ++lane) {
+        final_loss += a[lane];
+        first_loss += b[lane];
+      }
+    }
+    if (TRACED) {
+      if (block.object != object) {
+        if (object >= 0) box.close(pass.trace + 6 * object);
+        box.open();
+        object = block.object;
+      }
+      box.include(place, others);
+    }
+  }
+  if (TRACED && object >= 0) box.close(pass.trace + 6 * object);
+  pass.fastest = 0.0;
+  for (int lane = 0; lane < LANES; ++lane)
+    if (fastest[lane] > pass.fastest) pass.fastest = fastest[lane];
+  pass.final_loss = final_loss;
+  pass.first_loss = first_loss;
+}
+
+template <Friction FRICTION> MDANIM_INLINE void with_or_without_trace(Pass &pass)
+{
+  if (pass.trace) go<FRICTION, true>(pass);
+  else go<FRICTION, false>(pass);
+}
+
+MDANIM_INLINE void whole_pass(Pass &pass)
+{
+  switch (pass.friction) {
+  case Friction::NONE: with_or_without_trace<Friction::NONE>(pass); break;
+  case Friction::IMPLICIT: with_or_without_trace<Friction::IMPLICIT>(pass); break;
+  case Friction::EXPONENTIAL: with_or_without_trace<Friction::EXPONENTIAL>(pass); break;
+  }
+}
+
+#undef MDANIM_INLINE
+
+}    // namespace
+}    // namespace mdanim

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// run_style mdanim. A step of LAMMPS begins with a half kick and a drift and finishes with forces and the other half kick. Between two
+// outputs our pass finishes a step and begins the next at once, in arrays of its own; whoever is not known to live with that (other
+// fixes, other ranks, dashpots) gets run_style verlet as it is. The bits are the same.
+
+#include "run_mdanim.h"
+
+#include "bond_mdanim_harmonic.h"
+#include "fix_mdanim_gravity.h"
+#include "fix_mdanim_leapfrog.h"
+#include "stopwatch.h"
+
+#include "angle.h"
+#include "atom.h"
+#include "comm.h"
+#include "dihedral.h"
+#include "domain.h"
+#include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "improper.h"
+#include "kspace.h"
+#include "modify.h"
+#include "neighbor.h"
+#include "output.h"
+#include "pair.h"
+#include "timer.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace mdanim;
+
+// Parts of a pass's time (bench/step.py parts): the springs have the rest.
+static constexpr double OF_LEAPFROG = 0.08, OF_GRAVITY = 0.01;
+
+// What a fix may do in a step that we must know of.
+static constexpr int ACTS = FixConst::INITIAL_INTEGRATE | FixConst::POST_INTEGRATE | FixConst::PRE_FORCE | FixConst::PRE_REVERSE |
+    FixConst::POST_FORCE | FixConst::FINAL_INTEGRATE | FixConst::END_OF_STEP;
+
+// run_style mdanim [width common|avx2|avx512]
+RunMdanim::RunMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, arg), width(best_width())
+{
+  if (narg == 0) return;
+  if (strcmp(arg[0], "width") != 0)
+    error->all(FLERR, "run_style mdanim: unknown keyword {}; it knows width", arg[0]);
+  if (narg != 2) error->all(FLERR, "run_style mdanim: width takes one word, common, avx2 or avx512");
+  width = width_of(arg[1]);
+  if (!width) error->all(FLERR, "run_style mdanim: width {} is unknown or this processor does not have it", arg[1]);
+}
+
+void RunMdanim::init()
+{
+  Verlet::init();
+  cut_for = -1;
+}
+
+double RunMdanim::memory_usage() { return static_cast<double>(blocks.bytes()); }
+
+// --- whether we can ---
+
+// Everybody who acts in a step, if we know all of them.
+bool RunMdanim::find_players()
+{
+  bond = dynamic_cast<BondMdanimHarmonic *>(force->bond);
+  leapfrog = nullptr;
+  gravity = nullptr;
+  guests.clear();
+  if (!bond || comm->nprocs > 1 || domain->triclinic || domain->dimension != 3) return false;
+  if ((force->pair && force->pair->compute_flag) || force->angle || force->dihedral || force->improper || force->kspace)
+    return false;
+  for (int n = 0; n < modify->nfix; ++n) {
+    Fix *fix = modify->fix[n];
+    const int mask = modify->fmask[n];
+    if (auto *found = dynamic_cast<FixMdanimLeapfrog *>(fix)) {
+      if (leapfrog) return false;
+      leapfrog = found;
+    } else if (auto *found = dynamic_cast<FixMdanimGravity *>(fix)) {
+      if (gravity || !guests.empty()) return false;    // its force is added right after the springs'
+      gravity = found;
+    } else if (auto *guest = dynamic_cast<Guest *>(fix))
+      guests.push_back({fix, guest, (mask & FixConst::END_OF_STEP) != 0});
+    else if (mask & ACTS)
+      return false;
+  }
+  lists_matter = modify->n_post_neighbor || modify->n_pre_neighbor;
+  return leapfrog && !(lists_matter && !neighbor->dist_check && !neighbor->build_once);
+}
+
+// Blocks for the springs as they are now.
+bool RunMdanim::cut()
+{
+  HalfBonds half;
+  if (atom->nghost || !bond->halves(half)) return false;
+  if (cut_for != bond->version()) {
+    std::vector<int> object(atom->nlocal, 1);
+    if (atom->molecule_flag) object.assign(atom->molecule, atom->molecule + atom->nlocal);
+    worth_it = blocks.cut(half, object.data(), *width);
+    cut_for = bond->version();
+    made_for = -1;
+  }
+  return worth_it;
+}
+
+// --- the run ---
+
+void RunMdanim::run(int n)
+{
+  if (!find_players()) {
+    Verlet::run(n);
+    return;
+  }
+  made_for = -1;
+  for (int i = 0; i < n; ++i) {
+    if (timer->check_timeout(i)) {
+      update->nsteps = i;
+      break;
+    }
+    begin_step();
+    if (cut()) i += take_steps(i, n - 1 - i);
+    finish_step();
+  }
+}
+
+// The step at which somebody wants to see everything.
+bigint RunMdanim::next_stop() const
+{
+  bigint stop = output->next;
+  for (int n = 0; n < modify->nfix; ++n) {
+    const Fix *fix = modify->fix[n];
+    if (fix->force_reneighbor && fix->next_reneighbor >= update->ntimestep) stop = std::min(stop, fix->next_reneighbor);
+  }
+  return stop;
+}
+
+// Up to `most` times: finish the step that has begun and begin the next. Returns how often.
+int RunMdanim::take_steps(int step, int most)
+{
+  const bigint stop = std::min(next_stop(), update->ntimestep + most);
+  if (update->ntimestep >= stop) return 0;
+  if (lists_matter) {
+    strayed = 0.0;
+    const double *const *here = atom->x, *const *then = neighbor->get_xhold();
+    double farthest = 0.0;
+    for (int i = 0; i < atom->nlocal; ++i) {
+      const Vec3 d = vec3(here[i]) - vec3(then[i]);
+      farthest = std::max(farthest, dot(d, d));
+    }
+    strayed = std::sqrt(farthest);
+    if (!lists_last(0.0)) return 0;
+  }
+
+  timer->stamp();
+  start_blocks();
+  int taken = 0;
+  while (update->ntimestep < stop) {
+    bool see_all = false;
+    for (const Player &p : guests) see_all = see_all || p.guest->reads_all();
+    if (see_all) blocks.hold_back(wanted, true);
+    one_pass(see_all);
+    ++taken;
+    ++passed;
+    ++update->ntimestep;
+    ++neighbor->ago;
+    if ((lists_matter && !lists_last(update->dt * std::sqrt(pass.fastest))) || timer->check_timeout(step + taken)) break;
+  }
+  blocks.give_out(atom->x, atom->v);
+  timer->stamp(Timer::BOND);
+  ev_set(update->ntimestep);
+  return taken;
+}
+
+// Whether no particle can have moved so far, going `more` farther, that lists must be made anew.
+bool RunMdanim::lists_last(double more)
+{
+  strayed += more;
+  return strayed < 0.5 * neighbor->skin;
+}
+
+// Positions and velocities into the blocks, and who is to be held back.
+void RunMdanim::start_blocks()
+{
+  const Friction friction = leapfrog->friction();
+  if (made_for != neighbor->lastcall) {
+    blocks.set_motion(friction, [this](int i) {
+      Mover mover = leapfrog->mover(i);
+      if (gravity) mover.pulled = gravity->pulled(i);
+      return mover;
+    });
+    made_for = neighbor->lastcall;
+  }
+  blocks.take_in(atom->x, atom->v);
+  blocks.fill(pass);
+  pass.friction = friction;
+  pass.gravity[0] = pass.gravity[1] = pass.gravity[2] = 0.0;
+  if (gravity) {
+    const Vec3 &g = gravity->acceleration();
+    pass.gravity[0] = g.x, pass.gravity[1] = g.y, pass.gravity[2] = g.z;
+  }
+  pass.total = atom->f[0];
+  pass.trace = leapfrog->trace_bounds();
+  hold_back();
+}
+
+void RunMdanim::hold_back()
+{
+  wanted.clear();
+  for (const Player &p : guests) p.guest->concerned(wanted);
+  blocks.hold_back(wanted, false);
+}
+
+void RunMdanim::one_pass(bool guests_see_all)
+{
+  double all = 0.0;
+  {
+    const Lap lap(all);
+    width->pass(pass);
+  }
+  leapfrog->moved(pass.final_loss, pass.first_loss, OF_LEAPFROG * all);
+  const double pull = gravity ? OF_GRAVITY * all : 0.0;
+  if (gravity) gravity->took(pull);
+  bond->took(all * (1.0 - OF_LEAPFROG) - pull);
+  if (guests.empty()) return;
+  guests_turn();
+  if (guests_see_all) hold_back();    // they may have other concerns now
+}
+
+// Forces of other fixes, and the motion of those that were held back for them.
+void RunMdanim::guests_turn()
+{
+  const std::vector<int> &waiting = blocks.held_back();
+  if (!waiting.empty()) blocks.give_out_held_back(atom->x, atom->v);
+  for (const Player &p : guests) p.fix->post_force(vflag);
+  if (!waiting.empty()) leapfrog->finish_step(waiting);
+  for (const Player &p : guests)
+    if (p.acts_at_end) p.fix->end_of_step();
+  if (waiting.empty()) return;
+  leapfrog->begin_step(waiting);
+  blocks.take_in_held_back(atom->x, atom->v);
+  for (const int i : waiting) pass.fastest = std::max(pass.fastest, dot(vec3(atom->v[i]), vec3(atom->v[i])));
+}
+
+// --- a step of run_style verlet, in two parts ---
+
+void RunMdanim::begin_step()
+{
+  ev_set(++update->ntimestep);
+  timer->stamp();
+  modify->initial_integrate(vflag);
+  timer->stamp(Timer::MODIFY);
+}
+
+void RunMdanim::finish_step()
+{
+  if (neighbor->decide()) {
+    rebuild_lists();
+  } else {
+    timer->stamp();
+    comm->forward_comm();
+    timer->stamp(Timer::COMM);
+  }
+  force_clear();
+  timer->stamp();
+  force->bond->compute(eflag, vflag);
+  timer->stamp(Timer::BOND);
+  if (modify->n_post_force_any) modify->post_force(vflag);
+  modify->final_integrate();
+  if (modify->n_end_of_step) modify->end_of_step();
+  timer->stamp(Timer::MODIFY);
+  if (update->ntimestep == output->next) {
+    timer->stamp();
+    output->write(update->ntimestep);
+    timer->stamp(Timer::OUTPUT);
+  }
+}
+
+void RunMdanim::rebuild_lists()
+{
+  timer->stamp();
+  if (modify->n_pre_exchange) modify->pre_exchange();
+  timer->stamp(Timer::MODIFY);
+  domain->pbc();
+  if (domain->box_change) {
+    domain->reset_box();
+    comm->setup();
+    if (neighbor->style) neighbor->setup_bins();
+  }
+  timer->stamp();
+  comm->exchange();
+  if (atom->sortfreq > 0 && update->ntimestep >= atom->nextsort) atom->sort();
+  comm->borders();
+  timer->stamp(Timer::COMM);
+  if (modify->n_pre_neighbor) modify->pre_neighbor();
+  timer->stamp(Timer::MODIFY);
+  neighbor->build(1);
+  timer->stamp(Timer::NEIGH);
+  if (modify->n_post_neighbor) modify->post_neighbor();
+  timer->stamp(Timer::MODIFY);
+}

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// run_style mdanim: run_style verlet that takes the steps of springs, gravity and leap-frog in one pass over the particles.
+
+#ifndef LMP_RUN_MDANIM_H
+#define LMP_RUN_MDANIM_H
+
+#include "blocks.h"
+#include "guest.h"
+#include "verlet.h"
+
+namespace LAMMPS_NS {
+
+class RunMdanim : public Verlet {
+ public:
+  RunMdanim(class LAMMPS *, int, char **);
+
+  void init() override;
+  void run(int) override;
+  double memory_usage() override;
+  long long passes() const { return passed; }
+
+ private:
+  bool find_players();
+  bool cut();
+  int take_steps(int step, int most);
+  bigint next_stop() const;
+  bool lists_last(double more);
+  void start_blocks();
+  void hold_back();
+  void one_pass(bool guests_see_all);
+  void guests_turn();
+
+  void begin_step();
+  void finish_step();
+  void rebuild_lists();
+
+  const mdanim::Width *width;
+  mdanim::Blocks blocks;
+  mdanim::Pass pass = {};
+  bigint cut_for = -1;     // version of the springs
+  bool worth_it = false;
+  long long passed = 0;
+
+  // found before every run
+  class BondMdanimHarmonic *bond = nullptr;
+  class FixMdanimLeapfrog *leapfrog = nullptr;
+  class FixMdanimGravity *gravity = nullptr;
+  struct Player {
+    class Fix *fix;
+    mdanim::Guest *guest;
+    bool acts_at_end;
+  };
+  std::vector<Player> guests;
+
+  bool lists_matter = false;
+  double strayed = 0.0;        // no particle has moved farther since lists were made
+  bigint made_for = -1;        // build of lists that the blocks' motion was told after
+  std::vector<int> wanted;     // particles that guests are concerned with
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
