@@ -141,9 +141,11 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
     forget();
     return false;
   }
-  int shift = 0;
-  for (Doubles *arrays : {x, v, f})
-    for (int d = 0; d < 3; ++d) arrays[d].assign(particles + farthest + 2 * lanes + STAGGER * shift++);
+  const std::size_t room = (particles + farthest + 2 * lanes) / 512 * 512 + 512 + STAGGER;    // whole pages and a bit
+  memory.assign(9 * room);
+  double *place = memory.data();
+  for (double **arrays : {x, v, f})
+    for (int d = 0; d < 3; ++d, place += room) arrays[d] = place;
   outside.clear();
   return true;
 }
@@ -161,7 +163,7 @@ void Blocks::set_row(const Mover &mover, Friction friction, int lane, double *ro
   at(WEIGHT) = mover.phi == 0.0 ? 0.0 : 0.5 * mover.mass;
   if (friction == Friction::IMPLICIT) {
     at(STAY) = 1.0 - mover.phi;
-    at(SHARE) = 1.0 + mover.phi;
+    at(SHARE) = 1.0 / (1.0 + mover.phi);
   } else if (friction == Friction::EXPONENTIAL) {
     const Exponential exact(mover.phi, mover.kick);
     at(STAY) = exact.e;
@@ -183,7 +185,7 @@ const std::vector<int> &Blocks::hold_back(const std::vector<int> &wanted, bool e
 void Blocks::take_in(const double *const *from_x, const double *const *from_v)
 {
   for (int d = 0; d < 3; ++d) {
-    double *to_x = x[d].data(), *to_v = v[d].data();
+    double *to_x = x[d], *to_v = v[d];
     for (int i = 0; i < particles; ++i) {
       to_x[i] = from_x[i][d];
       to_v[i] = from_v[i][d];
@@ -195,8 +197,8 @@ void Blocks::give_out(double *const *to_x, double *const *to_v) const
 {
   for (int i = 0; i < particles; ++i)
     for (int d = 0; d < 3; ++d) {
-      to_x[i][d] = x[d].data()[i];
-      to_v[i][d] = v[d].data()[i];
+      to_x[i][d] = x[d][i];
+      to_v[i][d] = v[d][i];
     }
 }
 
@@ -204,8 +206,8 @@ void Blocks::take_in_held_back(const double *const *from_x, const double *const 
 {
   for (const int i : outside)
     for (int d = 0; d < 3; ++d) {
-      x[d].data()[i] = from_x[i][d];
-      v[d].data()[i] = from_v[i][d];
+      x[d][i] = from_x[i][d];
+      v[d][i] = from_v[i][d];
     }
 }
 
@@ -213,8 +215,8 @@ void Blocks::give_out_held_back(double *const *to_x, double *const *to_v) const
 {
   for (const int i : outside)
     for (int d = 0; d < 3; ++d) {
-      to_x[i][d] = x[d].data()[i];
-      to_v[i][d] = v[d].data()[i];
+      to_x[i][d] = x[d][i];
+      to_v[i][d] = v[d][i];
     }
 }
 
@@ -226,19 +228,16 @@ void Blocks::fill(Pass &pass)
   pass.law = laws.data();
   pass.motion = motions.data();
   for (int d = 0; d < 3; ++d) {
-    pass.x[d] = x[d].data();
-    pass.v[d] = v[d].data();
-    pass.f[d] = f[d].data();
+    pass.x[d] = x[d];
+    pass.v[d] = v[d];
+    pass.f[d] = f[d];
   }
 }
 
 std::size_t Blocks::bytes() const
 {
-  std::size_t sum = all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + motions.bytes() +
+  return all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + motions.bytes() + memory.bytes() +
       (home.capacity() + outside.capacity()) * sizeof(int);
-  for (const Doubles *arrays : {x, v, f})
-    for (int d = 0; d < 3; ++d) sum += arrays[d].bytes();
-  return sum;
 }
 
 // --- widths ---

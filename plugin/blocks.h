@@ -89,7 +89,8 @@ class Blocks {
   std::vector<int> home;       // block of each particle
   std::vector<int> outside;    // particles of blocks that are held back
   Catalogue laws, motions;
-  Doubles x[3], v[3], f[3];
+  Doubles memory;    // of the arrays
+  double *x[3], *v[3], *f[3];
 };
 
 template <class Tell> void Blocks::set_motion(Friction friction, Tell mover)

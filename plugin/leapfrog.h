@@ -24,8 +24,8 @@ struct Implicit {
   }
   Vec3 final_half(const Vec3 &v, const Vec3 &f) const
   {
-    const double share = 1.0 + phi;
-    return {(v.x + kick * f.x) / share, (v.y + kick * f.y) / share, (v.z + kick * f.z) / share};
+    const double share = 1.0 / (1.0 + phi);
+    return {share * (v.x + kick * f.x), share * (v.y + kick * f.y), share * (v.z + kick * f.z)};
   }
   // Energy that friction takes in the half step from va to vb. The first term is the work of F less the gain in kinetic energy,
   //   m (va + vb)/2 . (k F - (vb - va)) +- m phi k F . (2/3 h - 1/2 w),   w = v^n, h = v^{n+-1/2}, + in the first half, - in the final.

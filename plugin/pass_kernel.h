@@ -125,7 +125,7 @@ template <Friction FRICTION, bool TRACED> MDANIM_INLINE void go(Pass &pass)
         last[d] = middle[d] + push;
       } else {
         const Vector stay = load(motion + STAY * LANES);
-        middle[d] = FRICTION == Friction::IMPLICIT ? (first[d] + push) / load(motion + SHARE * LANES) : stay * first[d] + push;
+        middle[d] = FRICTION == Friction::IMPLICIT ? load(motion + SHARE * LANES) * (first[d] + push) : stay * first[d] + push;
         last[d] = stay * middle[d] + push;
       }
       store(pass.v[d] + i, last[d]);

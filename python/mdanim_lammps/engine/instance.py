@@ -100,7 +100,9 @@ class Instance:
         lmp.commands_list(physics(plan))
         if self._comm:
             lmp.commands_list(BALANCE)
-        lmp.commands_list([f"thermo {max(1, plan.certificate.steps_per_frame)}", "thermo_modify norm no"])
+        # The springs' energy is all that is asked for; LAMMPS's own choice would have their virial too.
+        lmp.commands_list([f"thermo {max(1, plan.certificate.steps_per_frame)}",
+                           f"thermo_style custom step{' ebond' if len(plan.bonds) else ''}", "thermo_modify norm no"])
 
     def _insert(self, ends: Ends, position: np.ndarray) -> None:
         """Hand all particles and springs to the plugin; each rank takes those in its part of space."""
