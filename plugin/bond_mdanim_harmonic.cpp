@@ -355,14 +355,6 @@ void BondMdanimHarmonic::compute(int eflag, int vflag)
 void BondMdanimHarmonic::tally()
 {
   const double share = rows.upper_only ? 1.0 : 0.5;
-  if (!vflag_either && !eflag_atom) {    // the energy alone, as once a frame
-    for (int i = 0; i < atom->nlocal; ++i)
-      for (int b = rows.first[i]; b < rows.first[i + 1]; ++b) {
-        const Vec3 d = vec3(atom->x[i]) - vec3(atom->x[rows.partner[b]]);
-        energy += share * mdanim::energy(spring[rows.type[b]], std::sqrt(dot(d, d)));
-      }
-    return;
-  }
   for (int i = 0; i < atom->nlocal; ++i)
     for (int b = rows.first[i]; b < rows.first[i + 1]; ++b) {
       const int j = rows.partner[b];

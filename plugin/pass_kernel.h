@@ -65,98 +65,120 @@ struct Box6 {
   }
 };
 
-template <Friction FRICTION, bool TRACED> MDANIM_INLINE void go(Pass &pass)
+// What a pass tells at its end.
+struct Tally {
+  Vector fastest{};
+  double final_loss = 0.0, first_loss = 0.0;
+  Box6 box;
+  int object = -1;    // whose box it is
+};
+
+// Springs of a block, each once; adds up what its own particles feel of them and of gravity.
+MDANIM_INLINE void feel(const Pass &pass, const Block &block, unsigned &e, double *total)
 {
   double *const X = pass.x[0], *const Y = pass.x[1], *const Z = pass.x[2];
   double *const FX = pass.f[0], *const FY = pass.f[1], *const FZ = pass.f[2];
   const Entry *const entry = pass.entry;
   const double *const law = pass.law;
-  unsigned e = 0;
-  Vector fastest{};
-  double final_loss = 0.0, first_loss = 0.0;
-  Box6 box;
-  int object = -1;
-  box.open();
-  for (int n = 0; n < pass.blocks; ++n) {
-    const Block &block = pass.block[n];
-    const int i = block.start;
-    const Vector x = load(X + i), y = load(Y + i), z = load(Z + i);
-    Vector upper_x{}, upper_y{}, upper_z{};
-    for (; e < block.end; ++e) {
-      const int j = i + entry[e].offset;
-      const double *const own = law + static_cast<unsigned long>(entry[e].law) * (2 * LANES);
-      Vector dx = x - load(X + j), dy = y - load(Y + j), dz = z - load(Z + j);
-      const Vector factor = load(own) / root(((dx * dx + dy * dy) + dz * dz) + NOTHING) - load(own + LANES);
-      dx *= factor;
-      dy *= factor;
-      dz *= factor;
-      upper_x += dx;
-      upper_y += dy;
-      upper_z += dz;
-      store(FX + j, load(FX + j) - dx);
-      store(FY + j, load(FY + j) - dy);
-      store(FZ + j, load(FZ + j) - dz);
-    }
-
-    const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
-    const Vector mass = load(motion + MASS * LANES), others = load(motion + OTHERS * LANES);
-    const Vector upper[3] = {upper_x, upper_y, upper_z}, old[3] = {x, y, z};
-    Vector f[3];
+  const int i = block.start;
+  const Vector x = load(X + i), y = load(Y + i), z = load(Z + i);
+  Vector upper_x{}, upper_y{}, upper_z{};
+  for (; e < block.end; ++e) {
+    const int j = i + entry[e].offset;
+    const double *const own = law + static_cast<unsigned long>(entry[e].law) * (2 * LANES);
+    Vector dx = x - load(X + j), dy = y - load(Y + j), dz = z - load(Z + j);
+    const Vector factor = load(own) / root(((dx * dx + dy * dy) + dz * dz) + NOTHING) - load(own + LANES);
+    dx *= factor;
+    dy *= factor;
+    dz *= factor;
+    upper_x += dx;
+    upper_y += dy;
+    upper_z += dz;
+    store(FX + j, load(FX + j) - dx);
+    store(FY + j, load(FY + j) - dy);
+    store(FZ + j, load(FZ + j) - dz);
+  }
+  const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
+  const Vector mass = load(motion + MASS * LANES), others = load(motion + OTHERS * LANES);
+  const Vector upper[3] = {upper_x, upper_y, upper_z};
 #pragma GCC unroll 3
-    for (int d = 0; d < 3; ++d) {
-      const Vector received = load(pass.f[d] + i);
-      store(pass.f[d] + i, received * others);
-      f[d] = (received + upper[d]) + mass * pass.gravity[d];
-    }
-    if (block.held_back) {
-      for (int lane = 0; lane < block.lanes; ++lane)
-        for (int d = 0; d < 3; ++d) pass.total[3 * (i + lane) + d] = f[d][lane];
-      continue;
-    }
+  for (int d = 0; d < 3; ++d) {
+    const Vector received = load(pass.f[d] + i);
+    store(pass.f[d] + i, received * others);
+    store(total + d * LANES, (received + upper[d]) + mass * pass.gravity[d]);
+  }
+}
 
-    const Vector kick = load(motion + KICK * LANES), dt = load(motion + DT * LANES);
-    Vector first[3], middle[3], last[3], place[3], square{};
+// The second half of a step and the first of the next.
+template <Friction FRICTION, bool TRACED> MDANIM_INLINE void move(const Pass &pass, const Block &block, const double *total, Tally &tally)
+{
+  const int i = block.start;
+  if (block.held_back) {
+    for (int lane = 0; lane < block.lanes; ++lane)
+      for (int d = 0; d < 3; ++d) pass.total[3 * (i + lane) + d] = total[d * LANES + lane];
+    return;
+  }
+  const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
+  const Vector kick = load(motion + KICK * LANES), dt = load(motion + DT * LANES);
+  Vector f[3], first[3], middle[3], last[3], place[3], square{};
 #pragma GCC unroll 3
-    for (int d = 0; d < 3; ++d) {
-      const Vector push = FRICTION == Friction::EXPONENTIAL ? load(motion + PUSH * LANES) * f[d] : kick * f[d];
-      first[d] = load(pass.v[d] + i);
-      if (FRICTION == Friction::NONE) {
-        middle[d] = first[d] + push;
-        last[d] = middle[d] + push;
-      } else {
-        const Vector stay = load(motion + STAY * LANES);
-        middle[d] = FRICTION == Friction::IMPLICIT ? load(motion + SHARE * LANES) * (first[d] + push) : stay * first[d] + push;
-        last[d] = stay * middle[d] + push;
-      }
-      store(pass.v[d] + i, last[d]);
-      place[d] = old[d] + dt * last[d];
-      store(pass.x[d] + i, place[d]);
-      square += last[d] * last[d];
+  for (int d = 0; d < 3; ++d) {
+    f[d] = load(total + d * LANES);
+    const Vector push = FRICTION == Friction::EXPONENTIAL ? load(motion + PUSH * LANES) * f[d] : kick * f[d];
+    first[d] = load(pass.v[d] + i);
+    if (FRICTION == Friction::NONE) {
+      middle[d] = first[d] + push;
+      last[d] = middle[d] + push;
+    } else {
+      const Vector stay = load(motion + STAY * LANES);
+      middle[d] = FRICTION == Friction::IMPLICIT ? load(motion + SHARE * LANES) * (first[d] + push) : stay * first[d] + push;
+      last[d] = stay * middle[d] + push;
     }
-    fastest = largest(square, fastest);
-    if (FRICTION != Friction::NONE) {
-      const Vector weight = load(motion + WEIGHT * LANES);
-      const Vector a = loss(first, middle, f, kick, weight), b = loss(middle, last, f, kick, weight);
-      for (int lane = 0; lane < block.lanes; ++lane) {
-        final_loss += a[lane];
-        first_loss += b[lane];
-      }
-    }
-    if (TRACED) {
-      if (block.object != object) {
-        if (object >= 0) box.close(pass.trace + 6 * object);
-        box.open();
-        object = block.object;
-      }
-      box.include(place, others);
+    store(pass.v[d] + i, last[d]);
+    place[d] = load(pass.x[d] + i) + dt * last[d];
+    store(pass.x[d] + i, place[d]);
+    square += last[d] * last[d];
+  }
+  tally.fastest = largest(square, tally.fastest);
+  if (FRICTION != Friction::NONE) {
+    const Vector weight = load(motion + WEIGHT * LANES);
+    double one[LANES], other[LANES];    // nothing in lanes of others
+    store(one, loss(first, middle, f, kick, weight));
+    store(other, loss(middle, last, f, kick, weight));
+    for (int lane = 0; lane < LANES; ++lane) {    // in the order of particles, as the leap-frog itself
+      tally.final_loss += one[lane];
+      tally.first_loss += other[lane];
     }
   }
-  if (TRACED && object >= 0) box.close(pass.trace + 6 * object);
+  if (TRACED) {
+    if (block.object != tally.object) {
+      if (tally.object >= 0) tally.box.close(pass.trace + 6 * tally.object);
+      tally.box.open();
+      tally.object = block.object;
+    }
+    tally.box.include(place, load(motion + OTHERS * LANES));
+  }
+}
+
+// A block moves while the next one's springs keep the divider busy: nothing then waits for its forces.
+template <Friction FRICTION, bool TRACED> MDANIM_INLINE void go(Pass &pass)
+{
+  double total[2][3 * LANES];
+  Tally tally;
+  tally.box.open();
+  unsigned e = 0;
+  for (int n = 0; n < pass.blocks; ++n) {
+    feel(pass, pass.block[n], e, total[n & 1]);
+    if (n) move<FRICTION, TRACED>(pass, pass.block[n - 1], total[~n & 1], tally);
+  }
+  if (pass.blocks) move<FRICTION, TRACED>(pass, pass.block[pass.blocks - 1], total[~pass.blocks & 1], tally);
+
+  if (TRACED && tally.object >= 0) tally.box.close(pass.trace + 6 * tally.object);
   pass.fastest = 0.0;
   for (int lane = 0; lane < LANES; ++lane)
-    if (fastest[lane] > pass.fastest) pass.fastest = fastest[lane];
-  pass.final_loss = final_loss;
-  pass.first_loss = first_loss;
+    if (tally.fastest[lane] > pass.fastest) pass.fastest = tally.fastest[lane];
+  pass.final_loss = tally.final_loss;
+  pass.first_loss = tally.first_loss;
 }
 
 template <Friction FRICTION> MDANIM_INLINE void with_or_without_trace(Pass &pass)

@@ -100,7 +100,7 @@ class Instance:
         lmp.commands_list(physics(plan))
         if self._comm:
             lmp.commands_list(BALANCE)
-        # The springs' energy is all that is asked for; LAMMPS's own choice would have their virial too.
+        # The springs' energy is all that is asked for.
         lmp.commands_list([f"thermo {max(1, plan.certificate.steps_per_frame)}",
                            f"thermo_style custom step{' ebond' if len(plan.bonds) else ''}", "thermo_modify norm no"])
 
