@@ -146,11 +146,10 @@ def shares(rounds: int) -> None:
         "plain": plain, "no gravity": plain.replace("gravity (0, 0, -1e-6)", ""),
         "damped": plain.replace("elasticity 1 MPa", "elasticity 1 MPa\n  damping 0.1"),
         "drag": plain.replace("elasticity 1 MPa", "elasticity 1 MPa\n  drag 1")}, rounds, min)
-    step = {k: f["step"] for k, f in found.items()}
     bare = {k: found[k]["leapfrog"] for k in found}
     print(f"DASHPOTS  {1 - found['plain']['bonds'] / found['damped']['bonds']:.2f}   of the springs' clock")
     print(f"SLOWING   {1 - bare['plain'] / bare['drag']:.2f}   of the leap-frog's clock")
-    print(f"PULL      {(step['plain'] - step['no gravity']) / bare['plain']:.2f}   of the leap-frog's clock without drag, by difference of steps")
+    print(f"PULL      {found['plain']['gravity'] / bare['plain']:.2f}   of the leap-frog's clock without drag")
     wet = {f"{m} {d}": FLIGHT.format(more=SEA.format(drag=d, model=m), v=0, off="").replace("50) m", "0.3) m")
            .replace("density 1000\n  elas", "density 500\n  elas") for m in ("surface", "pressure") for d in (0, 4)}
     found = measure(wet, rounds, min)

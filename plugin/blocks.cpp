@@ -164,6 +164,7 @@ void Blocks::set_row(const Mover &mover, Friction friction, int lane, double *ro
   if (friction == Friction::IMPLICIT) {
     at(STAY) = 1.0 - mover.phi;
     at(SHARE) = 1.0 / (1.0 + mover.phi);
+    at(PHI) = mover.phi;
   } else if (friction == Friction::EXPONENTIAL) {
     const Exponential exact(mover.phi, mover.kick);
     at(STAY) = exact.e;

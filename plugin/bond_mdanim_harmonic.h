@@ -31,7 +31,7 @@ class BondMdanimHarmonic : public Bond {
   double memory_usage() override;
   void *extract(const char *, int &) override;
 
-  // For run_style mdanim, which computes most forces itself: the springs, each once. False where that is not how they are summed,
+  // For run_style verlet/mdanim, which computes most forces itself: the springs, each once. False where that is not how they are summed,
   // or where there is more to them than springs.
   bool halves(mdanim::HalfBonds &half) const;
   bigint version() const { return made; }    // another number for other springs

@@ -337,7 +337,7 @@ void FixMdanimBarrier::post_force(int)
   if (slowed) loss.step(v, update->dt, update->setupflag);
 }
 
-// Together with run_style mdanim, which has no ghosts.
+// Together with run_style verlet/mdanim, which has no ghosts.
 void FixMdanimBarrier::concerned(std::vector<int> &particles) const
 {
   particles.insert(particles.end(), row.begin(), row.end());

@@ -224,7 +224,7 @@ void FixMdanimLeapfrog::final_integrate() { final_half(); }
 void FixMdanimLeapfrog::final_half()
 { half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.final_half(v, f); }, false); }
 
-// --- together with run_style mdanim ---
+// --- together with run_style verlet/mdanim ---
 
 Friction FixMdanimLeapfrog::friction() const
 {

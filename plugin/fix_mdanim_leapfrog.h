@@ -35,7 +35,7 @@ class FixMdanimLeapfrog : public Fix {
   int traced() const { return static_cast<int>(trace.size()); }    // objects; 0 when off
   std::vector<mdanim::Box> traced_boxes() const;
 
-  // For run_style mdanim, which moves most particles itself.
+  // For run_style verlet/mdanim, which moves most particles itself.
   mdanim::Friction friction() const;
   mdanim::Mover mover(int i);
   double *trace_bounds() { return trace.empty() ? nullptr : trace.front().bound; }

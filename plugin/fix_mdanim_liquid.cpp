@@ -795,7 +795,7 @@ void FixMdanimLiquid::end_of_step()
   last_loss = loss;
 }
 
-// --- together with run_style mdanim ---
+// --- together with run_style verlet/mdanim ---
 
 // Faces push at the corners that ask for them and are read at all four, which are of one object and mostly all watched.
 void FixMdanimLiquid::concerned(std::vector<int> &particles) const

@@ -27,9 +27,9 @@ struct Block {
 enum class Friction { NONE, IMPLICIT, EXPONENTIAL };
 
 // A row of Pass::motion, one number for each lane.
-enum Motion { MASS, KICK, DT, OTHERS, STAY, SHARE, PUSH, WEIGHT, MOTIONS };
+enum Motion { MASS, KICK, DT, OTHERS, STAY, SHARE, PUSH, WEIGHT, PHI, MOTIONS };
 // MASS what gravity pulls at; KICK dt/2m; DT the time step, 0 for what does not move; OTHERS 1 where a lane is not the block's own.
-// With friction also, see leapfrog.h: STAY 1 - phi or e; SHARE 1 / (1 + phi); PUSH g dt/2m; WEIGHT m/2, 0 where there is none.
+// With friction also, see leapfrog.h: STAY 1 - phi or e; SHARE 1 / (1 + phi); PUSH g dt/2m; WEIGHT m/2, 0 where there is none; PHI.
 
 struct Pass {
   const Block *block;

@@ -33,12 +33,17 @@ MDANIM_INLINE Vector root(Vector a)
 
 MDANIM_INLINE Vector largest(Vector a, Vector b) { return a > b ? a : b; }
 
-// Half a step of leap-frog with friction and what it takes, as in leapfrog.h.
-MDANIM_INLINE Vector loss(const Vector *va, const Vector *vb, const Vector *f, Vector kick, Vector weight)
+MDANIM_INLINE Vector dot(const Vector *a, const Vector *b) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
+
+// What friction takes in a half step from va to vb: `loss` in leapfrog.h; `lag` is h, w and their shares there, and phi 0 without it.
+MDANIM_INLINE Vector loss(const Vector *va, const Vector *vb, const Vector *push, const Vector *lag, Vector phi, Vector weight)
 {
-  const Vector x = (va[0] + vb[0]) * (kick * f[0] - (vb[0] - va[0])), y = (va[1] + vb[1]) * (kick * f[1] - (vb[1] - va[1])),
-               z = (va[2] + vb[2]) * (kick * f[2] - (vb[2] - va[2]));
-  return weight * ((x + y) + z);
+  Vector sum[3], rest[3];
+  for (int d = 0; d < 3; ++d) {
+    sum[d] = va[d] + vb[d];
+    rest[d] = push[d] - (vb[d] - va[d]);
+  }
+  return weight * (dot(sum, rest) + 2.0 * (phi * dot(push, lag)));
 }
 
 // Largest and smallest coordinates of one object, as they come.
@@ -141,10 +146,16 @@ template <Friction FRICTION, bool TRACED> MDANIM_INLINE void move(const Pass &pa
   }
   tally.fastest = largest(square, tally.fastest);
   if (FRICTION != Friction::NONE) {
-    const Vector weight = load(motion + WEIGHT * LANES);
+    const Vector weight = load(motion + WEIGHT * LANES), phi = load(motion + PHI * LANES);
+    Vector push[3], late[3], early[3];
+    for (int d = 0; d < 3; ++d) {
+      push[d] = kick * f[d];
+      late[d] = 0.5 * middle[d] - (2.0 / 3.0) * first[d];
+      early[d] = (2.0 / 3.0) * last[d] - 0.5 * middle[d];
+    }
     double one[LANES], other[LANES];    // nothing in lanes of others
-    store(one, loss(first, middle, f, kick, weight));
-    store(other, loss(middle, last, f, kick, weight));
+    store(one, loss(first, middle, push, late, phi, weight));
+    store(other, loss(middle, last, push, early, phi, weight));
     for (int lane = 0; lane < LANES; ++lane) {    // in the order of particles, as the leap-frog itself
       tally.final_loss += one[lane];
       tally.first_loss += other[lane];

@@ -9,7 +9,7 @@
 #include "fix_mdanim_leapfrog.h"
 #include "fix_mdanim_liquid.h"
 #include "fix_mdanim_wall.h"
-#include "run_mdanim.h"
+#include "verlet_mdanim.h"
 
 #include "comm.h"
 #include "lammps.h"
@@ -23,7 +23,7 @@ namespace {
 
 template <class Style> void *make_bond(void *lmp) { return new Style(static_cast<LAMMPS *>(lmp)); }
 
-void *make_run(void *lmp, int narg, char **arg) { return new RunMdanim(static_cast<LAMMPS *>(lmp), narg, arg); }
+void *make_run(void *lmp, int narg, char **arg) { return new VerletMdanim(static_cast<LAMMPS *>(lmp), narg, arg); }
 
 template <class Style> void *make_fix(void *lmp, int narg, char **arg)
 { return new Style(static_cast<LAMMPS *>(lmp), narg, arg); }
@@ -77,7 +77,7 @@ MDANIM_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *register_sty
       fix("mdanim/barrier", "contact of objects", &make_fix<FixMdanimBarrier>),
       fix("mdanim/liquid", "liquid that solids float and sink in", &make_fix<FixMdanimLiquid>),
       fix("mdanim/wall", "walls that stand any impact", &make_fix<FixMdanimWall>),
-      run("mdanim", "verlet with springs, gravity and leap-frog in one pass", &make_run),
+      run("verlet/mdanim", "verlet with springs, gravity and leap-frog in one pass", &make_run),
   };
   for (PluginRecord &style : styles) {
     style.version = static_cast<LAMMPS *>(lmp)->version;

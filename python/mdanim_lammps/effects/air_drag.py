@@ -12,7 +12,7 @@ from .springs import all_held
 
 LEAPFROG = "leap-frog"
 """Clock of the integrator; what effects take of it is not counted with the integrator's own time."""
-SLOWING = 0.6
+SLOWING = 0.3
 """Part of the leap-frog's time for a particle that goes to its drag, of air or liquid (bench/effects.py shares)."""
 
 

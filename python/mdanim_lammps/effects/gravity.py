@@ -8,8 +8,8 @@ import numpy as np
 from .effect import Effect, Verdict
 
 
-PULL = 0.6
-"""Time of gravity over that of the leap-frog without drag (bench/effects.py shares)."""
+PULL = 0.07
+"""Time of gravity over that of the leap-frog without drag, in a pass over blocks (plugin/verlet_mdanim.cpp)."""
 
 
 class Gravity(Effect):

@@ -9,7 +9,7 @@ from ..scene.scene import HoldAll
 from .effect import Effect, Verdict
 
 
-DASHPOTS = 0.64
+DASHPOTS = 0.86
 """Part of the time of damped springs that goes to their dashpots (bench/effects.py shares)."""
 
 

@@ -78,7 +78,7 @@ def physics(plan: Plan) -> list[str]:
         *effects,
         f"fix leapfrog mobile mdanim/leapfrog{drag}",
         f"timestep {plan.certificate.timestep!r}",
-        "run_style mdanim",
+        "run_style verlet/mdanim",
     ]
 
 

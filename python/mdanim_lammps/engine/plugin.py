@@ -19,7 +19,7 @@ VERSION = 20250722
 ABI = 4
 """Number of the plugin's own C interface, `mdanim_abi`."""
 STYLES = (("bond", "mdanim/harmonic"), ("fix", "mdanim/leapfrog"), ("fix", "mdanim/gravity"),
-          ("fix", "mdanim/barrier"), ("fix", "mdanim/wall"), ("fix", "mdanim/liquid"), ("integrate", "mdanim"))
+          ("fix", "mdanim/barrier"), ("fix", "mdanim/wall"), ("fix", "mdanim/liquid"), ("integrate", "verlet/mdanim"))
 
 _FILE = Path(__file__).resolve().parent.parent / "plugin" / "mdanimplugin.so"
 

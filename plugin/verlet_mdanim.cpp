@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// run_style mdanim. A step of LAMMPS begins with a half kick and a drift and finishes with forces and the other half kick. Between two
-// outputs our pass finishes a step and begins the next at once, in arrays of its own; whoever is not known to live with that (other
+// run_style verlet/mdanim. A step of LAMMPS begins with a half kick and a drift and finishes with forces and the other half kick.
+// Between two outputs our pass finishes a step and begins the next at once, in arrays of its own; whoever is not known to live with that (other
 // fixes, other ranks, dashpots) gets run_style verlet as it is. The bits are the same.
 
-#include "run_mdanim.h"
+#include "verlet_mdanim.h"
 
 #include "bond_mdanim_harmonic.h"
 #include "fix_mdanim_gravity.h"
@@ -35,36 +35,36 @@
 using namespace LAMMPS_NS;
 using namespace mdanim;
 
-// Parts of a pass's time (bench/step.py parts): the springs have the rest.
-static constexpr double OF_LEAPFROG = 0.08, OF_GRAVITY = 0.01;
+// Parts of a pass's time, as a pass without springs tells: drag is in the leap-frog's, and the springs have the rest.
+static constexpr double OF_LEAPFROG = 0.15, OF_DRAG = 0.07, OF_GRAVITY = 0.01;
 
 // What a fix may do in a step that we must know of.
 static constexpr int ACTS = FixConst::INITIAL_INTEGRATE | FixConst::POST_INTEGRATE | FixConst::PRE_FORCE | FixConst::PRE_REVERSE |
     FixConst::POST_FORCE | FixConst::FINAL_INTEGRATE | FixConst::END_OF_STEP;
 
-// run_style mdanim [width common|avx2|avx512]
-RunMdanim::RunMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, arg), width(best_width())
+// run_style verlet/mdanim [width common|avx2|avx512]
+VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, arg), width(best_width())
 {
   if (narg == 0) return;
   if (strcmp(arg[0], "width") != 0)
-    error->all(FLERR, "run_style mdanim: unknown keyword {}; it knows width", arg[0]);
-  if (narg != 2) error->all(FLERR, "run_style mdanim: width takes one word, common, avx2 or avx512");
+    error->all(FLERR, "run_style verlet/mdanim: unknown keyword {}; it knows width", arg[0]);
+  if (narg != 2) error->all(FLERR, "run_style verlet/mdanim: width takes one word, common, avx2 or avx512");
   width = width_of(arg[1]);
-  if (!width) error->all(FLERR, "run_style mdanim: width {} is unknown or this processor does not have it", arg[1]);
+  if (!width) error->all(FLERR, "run_style verlet/mdanim: width {} is unknown or this processor does not have it", arg[1]);
 }
 
-void RunMdanim::init()
+void VerletMdanim::init()
 {
   Verlet::init();
   cut_for = -1;
 }
 
-double RunMdanim::memory_usage() { return static_cast<double>(blocks.bytes()); }
+double VerletMdanim::memory_usage() { return static_cast<double>(blocks.bytes()); }
 
 // --- whether we can ---
 
 // Everybody who acts in a step, if we know all of them.
-bool RunMdanim::find_players()
+bool VerletMdanim::find_players()
 {
   bond = dynamic_cast<BondMdanimHarmonic *>(force->bond);
   leapfrog = nullptr;
@@ -92,7 +92,7 @@ bool RunMdanim::find_players()
 }
 
 // Blocks for the springs as they are now.
-bool RunMdanim::cut()
+bool VerletMdanim::cut()
 {
   HalfBonds half;
   if (atom->nghost || !bond->halves(half)) return false;
@@ -108,7 +108,7 @@ bool RunMdanim::cut()
 
 // --- the run ---
 
-void RunMdanim::run(int n)
+void VerletMdanim::run(int n)
 {
   if (!find_players()) {
     Verlet::run(n);
@@ -127,7 +127,7 @@ void RunMdanim::run(int n)
 }
 
 // The step at which somebody wants to see everything.
-bigint RunMdanim::next_stop() const
+bigint VerletMdanim::next_stop() const
 {
   bigint stop = output->next;
   for (int n = 0; n < modify->nfix; ++n) {
@@ -138,7 +138,7 @@ bigint RunMdanim::next_stop() const
 }
 
 // Up to `most` times: finish the step that has begun and begin the next. Returns how often.
-int RunMdanim::take_steps(int step, int most)
+int VerletMdanim::take_steps(int step, int most)
 {
   const bigint stop = std::min(next_stop(), update->ntimestep + most);
   if (update->ntimestep >= stop) return 0;
@@ -175,14 +175,14 @@ int RunMdanim::take_steps(int step, int most)
 }
 
 // Whether no particle can have moved so far, going `more` farther, that lists must be made anew.
-bool RunMdanim::lists_last(double more)
+bool VerletMdanim::lists_last(double more)
 {
   strayed += more;
   return strayed < 0.5 * neighbor->skin;
 }
 
 // Positions and velocities into the blocks, and who is to be held back.
-void RunMdanim::start_blocks()
+void VerletMdanim::start_blocks()
 {
   const Friction friction = leapfrog->friction();
   if (made_for != neighbor->lastcall) {
@@ -206,31 +206,32 @@ void RunMdanim::start_blocks()
   hold_back();
 }
 
-void RunMdanim::hold_back()
+void VerletMdanim::hold_back()
 {
   wanted.clear();
   for (const Player &p : guests) p.guest->concerned(wanted);
   blocks.hold_back(wanted, false);
 }
 
-void RunMdanim::one_pass(bool guests_see_all)
+void VerletMdanim::one_pass(bool guests_see_all)
 {
   double all = 0.0;
   {
     const Lap lap(all);
     width->pass(pass);
   }
-  leapfrog->moved(pass.final_loss, pass.first_loss, OF_LEAPFROG * all);
-  const double pull = gravity ? OF_GRAVITY * all : 0.0;
-  if (gravity) gravity->took(pull);
-  bond->took(all * (1.0 - OF_LEAPFROG) - pull);
+  const double moving = (OF_LEAPFROG + (pass.friction == Friction::NONE ? 0.0 : OF_DRAG)) * all;
+  const double pulling = gravity ? OF_GRAVITY * all : 0.0;
+  leapfrog->moved(pass.final_loss, pass.first_loss, moving);
+  if (gravity) gravity->took(pulling);
+  bond->took(all - moving - pulling);
   if (guests.empty()) return;
   guests_turn();
   if (guests_see_all) hold_back();    // they may have other concerns now
 }
 
 // Forces of other fixes, and the motion of those that were held back for them.
-void RunMdanim::guests_turn()
+void VerletMdanim::guests_turn()
 {
   const std::vector<int> &waiting = blocks.held_back();
   if (!waiting.empty()) blocks.give_out_held_back(atom->x, atom->v);
@@ -246,7 +247,7 @@ void RunMdanim::guests_turn()
 
 // --- a step of run_style verlet, in two parts ---
 
-void RunMdanim::begin_step()
+void VerletMdanim::begin_step()
 {
   ev_set(++update->ntimestep);
   timer->stamp();
@@ -254,7 +255,7 @@ void RunMdanim::begin_step()
   timer->stamp(Timer::MODIFY);
 }
 
-void RunMdanim::finish_step()
+void VerletMdanim::finish_step()
 {
   if (neighbor->decide()) {
     rebuild_lists();
@@ -278,7 +279,7 @@ void RunMdanim::finish_step()
   }
 }
 
-void RunMdanim::rebuild_lists()
+void VerletMdanim::rebuild_lists()
 {
   timer->stamp();
   if (modify->n_pre_exchange) modify->pre_exchange();

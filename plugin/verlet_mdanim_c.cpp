@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Plain C functions on run_style mdanim, for ctypes.
+// Plain C functions on run_style verlet/mdanim, for ctypes.
 
 #include "abi.h"
-#include "run_mdanim.h"
+#include "verlet_mdanim.h"
 
 #include "lammps.h"
 #include "update.h"
@@ -12,6 +12,6 @@ using namespace LAMMPS_NS;
 // How many steps this rank has taken by a pass over its blocks; 0 with another run style.
 MDANIM_EXPORT long long mdanim_passes(void *handle)
 {
-  const auto *run = dynamic_cast<RunMdanim *>(static_cast<LAMMPS *>(handle)->update->integrate);
+  const auto *run = dynamic_cast<VerletMdanim *>(static_cast<LAMMPS *>(handle)->update->integrate);
   return run ? run->passes() : 0;
 }

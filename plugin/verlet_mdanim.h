@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// run_style mdanim: run_style verlet that takes the steps of springs, gravity and leap-frog in one pass over the particles.
+// run_style verlet/mdanim: run_style verlet, after which it is called because fixes of LAMMPS look for that word, that takes the steps of springs, gravity and leap-frog in one pass over the particles.
 
-#ifndef LMP_RUN_MDANIM_H
-#define LMP_RUN_MDANIM_H
+#ifndef LMP_VERLET_MDANIM_H
+#define LMP_VERLET_MDANIM_H
 
 #include "blocks.h"
 #include "guest.h"
@@ -10,9 +10,9 @@
 
 namespace LAMMPS_NS {
 
-class RunMdanim : public Verlet {
+class VerletMdanim : public Verlet {
  public:
-  RunMdanim(class LAMMPS *, int, char **);
+  VerletMdanim(class LAMMPS *, int, char **);
 
   void init() override;
   void run(int) override;

@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""run_style verlet/mdanim against run_style verlet, bit for bit: shapes, effects, widths, orders of particles, pieces, ranks."""
+
+import ctypes
+from pathlib import Path
+
+import numpy as np
+import plugin_lab as lab
+import plugin_path
+import pytest
+from mdanim_lammps.driver.prepare import prepare
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.scene.parse import parse_scene
+
+WIDTHS = ("common", "avx2", "avx512")
+SOLID = "density 1000 elasticity 0.2 MPa"
+FALL = "gravity (0, 0, -9.81)\n"
+END = "control { time 10 s resolution 1 cm }\n"
+MESHES = Path(__file__).parent / "meshes"
+
+SHAPES = {
+    "block": f"object a {{ shape box (7, 6, 5) cm position (0, 0, 0) spin (3, 2, 40) rad/s {SOLID} }}",
+    "sphere": f"object a {{ shape sphere 5 cm position (0, 0, 0) {SOLID} spin (3, 2, 40) rad/s }}",
+    "plate": f"object a {{ shape box (12, 12, 1) cm position (0, 0, 0) {SOLID} spin (9, 2, 4) rad/s }}",
+    "needle": f"object a {{ shape box (1, 1, 9) cm position (0, 0, 0) {SOLID} spin (9, 2, 4) rad/s }}",
+    "several": "\n".join(f"object a{i} {{ shape box ({2 + i}, 3, {5 - i}) cm position ({9 * i}, 0, 0) cm {SOLID} spin (9, {i}, 4) rad/s }}"
+                         for i in range(4)),
+    "held": f"object a {{ shape box (9, 4, 4) cm position (0, 0, 0) {SOLID} hold face -x }}",
+}
+EFFECTS = {
+    "contact": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} velocity (1, 0.1, 0) }}\n"
+               f"object b {{ shape box (5, 6, 7) cm position (9, 0, 0.5) cm {SOLID} velocity (-1, 0, 0) }}",
+    "ground": f"ground z -5 cm\nobject a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} velocity (1, 0, -2) spin (0, 8, 0) rad/s }}",
+    "walls and contact": "walls from (-8, -8, -8) cm to (14, 8, 12) cm\n"
+                         f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOLID} velocity (2, 0, -2) }}\n"
+                         f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}",
+    "air": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} drag 0.5 velocity (3, 0, 0) }}\n"
+           f"object b {{ shape box (5, 5, 5) cm position (1, 0, 0) {SOLID} }}",
+    "liquid": f"object a {{ shape box (6, 6, 6) cm position (0, 0, 14) cm density 500 elasticity 0.2 MPa drag 0.1 }}\n"
+              f"object b {{ shape box (4, 4, 4) cm position (0, 0, 24) cm density 500 elasticity 0.2 MPa velocity (0, 0, -3) }}\n"
+              "liquid w { basin from (-10, -10, 0) cm to (10, 10, 40) cm density 1000 level 12 cm drag 4 }",
+}
+
+
+def passes(instance: Instance) -> int:
+    """How many steps were taken by passes over blocks."""
+    instance._library.mdanim_passes.restype = ctypes.c_longlong
+    return instance._library.mdanim_passes(instance._handle)
+
+
+def film(text: str, style: str, pieces=(1, 150, 149)) -> tuple[np.ndarray, list[float], np.ndarray, int]:
+    """x, v and f after every piece of a run, at its end the energies, the trace, and how many passes were taken."""
+    ready = prepare(parse_scene(FALL + text + "\n" + END))
+    with Instance(ready.plan) as instance:
+        instance._lmp.command(f"run_style {style}")
+        instance.setup()
+        instance.start_trace()
+        frames = []
+        for steps in pieces:
+            instance.run(steps)
+            frames.append([instance.array(a).copy() for a in "xvf"])
+        energies = [e.energy(instance, ready.scene, ready.system) for e in ready.plan.effects]
+        return np.array(frames), energies, np.array(instance.trace()), passes(instance)
+
+
+def supported(width: str) -> bool:
+    """Whether this processor has it."""
+    lmp = plugin_path.lammps()
+    try:
+        for command in ("region box block 0 1 0 1 0 1", "create_box 1 box", f"run_style verlet/mdanim width {width}"):
+            lmp.command(command)
+        return True
+    except Exception as error:
+        assert "this processor does not have it" in str(error)
+        return False
+    finally:
+        lmp.close()
+
+
+@pytest.mark.parametrize("name", [*SHAPES, *EFFECTS])
+def test_blocks_give_the_bits_of_verlet(name):
+    """Compare positions, velocities, forces and traces with those of the plain step, for all widths that run here."""
+    text = (SHAPES | EFFECTS)[name]
+    plain, energies, trace, none = film(text, "verlet")
+    assert none == 0 and np.abs(plain[-1, 0] - plain[0, 0]).max() > 0.002
+    widths = [w for w in WIDTHS if supported(w)]
+    assert "common" in widths
+    for width in widths:
+        found, told, seen, taken = film(text, f"verlet/mdanim width {width}")
+        assert taken > 200
+        assert np.array_equal(found, plain), width
+        assert np.array_equal(seen, trace), width
+        # Losses are sums over particles, in another order where some are held back.
+        np.testing.assert_allclose(told, energies, rtol=1e-12, atol=1e-15)
+
+
+@pytest.mark.parametrize(("name", "fix", "entry"), [
+    ("contact", "contact", 3), ("ground", "ground", 5), ("walls and contact", "walls", 5), ("liquid", "liquid", None)])
+def test_the_effects_of_these_scenes_wake_up(name, fix, entry):
+    """See pairs in touch, walls that have been met, a liquid that lifts: else the comparison above would be one of sleepers."""
+    ready = prepare(parse_scene(FALL + EFFECTS[name] + "\n" + END))
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        felt = []
+        for _ in range(15):
+            instance.run(20)
+            felt.append(instance.fix_scalar(fix) if entry is None or fix == "liquid" else instance.fix_value(fix, entry - 1))
+        assert np.abs(felt).max() > 0.0
+        assert passes(instance) > 200
+
+
+def test_pieces_of_a_run_change_no_bit():
+    """Cut a run with contact and air in pieces of 1, 2, 3 … steps."""
+    text = EFFECTS["contact"] + EFFECTS["air"].replace("object a", "object c").replace("object b", "object d").replace(
+        "(0, 0, 0)", "(0, 0, 1)").replace("(1, 0, 0)", "(1, 0, 1)")
+    whole = film(text, "verlet/mdanim", (300,))[0][-1]
+    assert np.array_equal(film(text, "verlet/mdanim", tuple(range(1, 25)))[0][-1], whole)
+
+
+def lab_state(body, folder, commands, **options) -> tuple[np.ndarray, int]:
+    """x, v and f in tag order after the commands, and how many passes were taken."""
+    lmp = lab.load(body, folder, commands, **options)
+    library = ctypes.CDLL(plugin_path.folder() + "/mdanimplugin.so")
+    library.mdanim_passes.restype = ctypes.c_longlong
+    try:
+        return (np.concatenate([lab.by_tag(lmp, a) for a in "xvf"]),
+                library.mdanim_passes(ctypes.c_void_p(getattr(lmp.lmp, "value", lmp.lmp))))
+    finally:
+        lmp.close()
+
+
+BODY = lab.shaken(lab.join(lab.block((4, 3, 2)), lab.block((2, 2, 2), (6.0, 0.0, 0.0))), 0.05)
+MOVE = ["fix pull all mdanim/gravity 0.01 -0.02 0.03", "fix run all mdanim/leapfrog", "timestep 0.2"]
+
+
+@pytest.mark.parametrize("drag", ["", " lambda 0.05", " lambda 0.4 drag exp"], ids=["free", "implicit", "exponential"])
+def test_order_of_particles_changes_no_bit(tmp_path, drag):
+    """Shuffle the data file: there are no blocks then, and the bits are those of blocks."""
+    commands = [MOVE[0], MOVE[1] + drag, MOVE[2], "run_style verlet/mdanim", "run 300"]
+    straight, taken = lab_state(BODY, tmp_path, commands)
+    shuffled, none = lab_state(BODY, tmp_path, commands, order=np.random.default_rng(5).permutation(len(BODY.x)))
+    assert (taken, none) == (299, 0)
+    assert np.array_equal(straight, shuffled)
+
+
+@pytest.mark.parametrize("stranger", ["fix other all viscous 0.01", "fix other all gravity 0.1 vector 0 0 -1",
+                                      "fix other all momentum 7 linear 1 1 1", "bond_coeff * 0.2 1.0 0.1"])
+def test_what_is_not_known_gets_the_plain_step(tmp_path, stranger):
+    """Add a fix of LAMMPS's own that acts in steps, or dashpots: no passes, and the motion of run_style verlet."""
+    found, none = lab_state(BODY, tmp_path, [stranger, *MOVE, "run_style verlet/mdanim", "run 50"])
+    plain, _ = lab_state(BODY, tmp_path, [stranger, *MOVE, "run_style verlet", "run 50"])
+    assert none == 0
+    assert np.array_equal(found, plain)
+
+
+def test_somebody_who_looks_sees_every_step_he_asks_for(tmp_path):
+    """Dump every seventh step and rebuild by a fix of LAMMPS in between: the file is the same to the last digit."""
+    texts = []
+    for style in ("verlet", "verlet/mdanim"):
+        path = tmp_path / style.replace("/", "-")
+        lab_state(BODY, tmp_path, [*MOVE, f"run_style {style}", f"dump d all custom 7 {path} id x y z vx vy vz fx",
+                                   "dump_modify d sort id format float %.17g", "fix b all balance 10 1.0 shift x 5 1.1", "run 50"])
+        texts.append(path.read_text())
+    assert texts[0] == texts[1] and texts[0].count("TIMESTEP") == 8
+
+
+def test_lists_are_rebuilt_before_anybody_has_gone_half_the_skin(tmp_path):
+    """Let a fast body pass through a region watched by a wall: it is pushed back as with run_style verlet, bit for bit."""
+    fast = lab.block((3, 3, 3), (0.0, 0.0, 0.0), (0.7, 0.0, 0.0))
+    commands = ["region room block -5 9 -5 9 -5 9", "fix wall all mdanim/wall room 3.0", "fix run all mdanim/leapfrog", "timestep 0.1"]
+    found, taken = lab_state(fast, tmp_path, [*commands, "run_style verlet/mdanim", "run 200"])
+    plain, _ = lab_state(fast, tmp_path, [*commands, "run_style verlet", "run 200"])
+    assert taken > 100
+    assert np.array_equal(found, plain)
+    assert found[: len(fast.x), 0].max() < 9.5 and found[len(fast.x): 2 * len(fast.x), 0].mean() < 0.0
+
+
+@pytest.mark.parametrize(("command", "message"), [
+    ("run_style verlet/mdanim fast", "unknown keyword fast; it knows width"),
+    ("run_style verlet/mdanim width", "width takes one word"),
+    ("run_style verlet/mdanim width avx1024", "width avx1024 is unknown or this processor does not have it"),
+    ("fix g all mdanim/gravity 0 0", "fix mdanim/gravity"),
+    ("fix g all mdanim/gravity 0 0 1 2", "gx gy gz are all it takes, got also 2"),
+])
+def test_mistakes_are_refused(tmp_path, command, message):
+    """Give one wrong word."""
+    with pytest.raises(Exception) as caught:
+        lab.load(BODY, tmp_path, [command]).close()
+    assert message in str(caught.value)
+
+
+def test_gravity_is_that_of_lammps_and_knows_its_energy(tmp_path):
+    """Compare with fix gravity, and the energy with -sum m g x."""
+    found = []
+    for line in ("fix g all gravity 0.5 vector 3 0 -4", "fix g all mdanim/gravity 0.3 0 -0.4"):
+        lmp = lab.load(BODY, tmp_path, [line, "fix run all mdanim/leapfrog", "run 0"])
+        found.append((lab.by_tag(lmp, "f"), lmp.extract_fix("g", 0, 0)))
+        lmp.close()
+    np.testing.assert_allclose(found[1][0], found[0][0], rtol=0, atol=1e-15)
+    assert found[1][1] == pytest.approx(found[0][1], rel=1e-12)
+    assert found[1][1] == pytest.approx(-(BODY.mass * (BODY.x @ [0.3, 0.0, -0.4])).sum(), rel=1e-12)
