@@ -97,15 +97,23 @@ class Grid {
 
   const std::vector<int> &order() const { return sorted; }
 
-  // Calls visit(k) for every slot in the 27 cells around x.
-  template <class Visit> void around(const double *x, Visit visit) const
+  // Calls visit(begin, end) for ranges of slots that together hold all points in the 27 cells around x.
+  template <class Visit> void ranges(const double *x, Visit visit) const
   {
     if (begin.empty()) return;
     const int p[3] = {place(x, 0), place(x, 1), place(x, 2)};
     const int low = std::max(0, p[2] - 1), high = std::min(count[2] - 1, p[2] + 1);
     for (int a = std::max(0, p[0] - 1); a <= std::min(count[0] - 1, p[0] + 1); ++a)
       for (int b = std::max(0, p[1] - 1); b <= std::min(count[1] - 1, p[1] + 1); ++b)
-        for (int k = begin[index(a, b, low)]; k < begin[index(a, b, high) + 1]; ++k) visit(k);
+        visit(begin[index(a, b, low)], begin[index(a, b, high) + 1]);
+  }
+
+  // Calls visit(k) for every one of these slots.
+  template <class Visit> void around(const double *x, Visit visit) const
+  {
+    ranges(x, [&](int from, int to) {
+      for (int k = from; k < to; ++k) visit(k);
+    });
   }
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // fix mdanim/barrier. When LAMMPS rebuilds its lists: boxes of objects, those that meet, particles where they
-// meet, pairs. Every step: each particle sums its pairs in the order of its partners' tags, so that the bits
-// of a force depend on neither the order of particles nor the ranks that hold them.
+// meet, pairs. Every step: pairs are gone through in an order in which each particle sums up its own in the order of its
+// partners' tags, so that the bits of a force depend on neither the order of particles nor the ranks that hold them.
 
 #include "fix_mdanim_barrier.h"
 
@@ -184,13 +184,148 @@ double FixMdanimBarrier::survey(std::vector<Box> &boxes)
   return thin_bit ? std::max(1.0, thin_ratio) * longest : longest;
 }
 
+// Whether this rank adds forces to a particle.
+bool FixMdanimBarrier::moves(int i) const { return i < atom->nlocal && atom->mask[i] & groupbit; }
+
+// The way from particles where boxes meet to the list of pairs.
+struct FixMdanimBarrier::Search {
+  // Particles of one object, copied one after the other.
+  struct Side {
+    std::vector<double> x, y, z;
+    std::vector<int> rank;    // in `near`
+
+    int size() const { return static_cast<int>(rank.size()); }
+    void clear()
+    {
+      x.clear();
+      y.clear();
+      z.clear();
+      rank.clear();
+    }
+    void add(const double *at, int n)
+    {
+      x.push_back(at[0]);
+      y.push_back(at[1]);
+      z.push_back(at[2]);
+      rank.push_back(n);
+    }
+  };
+  struct Found {
+    int low, high;    // in `near`
+    Law law;
+  };
+
+  const FixMdanimBarrier &fix;
+  const double range, skin;
+  std::vector<int> near, role;           // particles where boxes meet, ascending by tag
+  std::vector<int> begin, of_object;     // places in `near` of those of object n: of_object[begin[n]] to of_object[begin[n + 1] - 1]
+  std::vector<Found> found;
+
+  Search(const FixMdanimBarrier &fix, double range) : fix(fix), range(range), skin(fix.neighbor->skin) {}
+
+  // Only particles within range of a partner's box can be in a pair: `zone` is for each object the box around all such places.
+  void collect(const std::vector<Box> &zone)
+  {
+    const double *const *x = fix.atom->x;
+    const tagint *tag = fix.atom->tag;
+    for (int i = 0; i < fix.atom->nlocal + fix.atom->nghost; ++i)
+      if (zone[fix.own[i].object].contains(x[i]) && fix.role(i) != NONE) near.push_back(i);
+    const auto by_tag = [tag](int i, int j) { return tag[i] < tag[j]; };
+    if (!std::is_sorted(near.begin(), near.end(), by_tag)) std::sort(near.begin(), near.end(), by_tag);
+
+    begin.assign(zone.size() + 1, 0);
+    for (const int i : near) {
+      role.push_back(fix.role(i));
+      ++begin[fix.own[i].object + 1];
+    }
+    for (size_t n = 1; n < begin.size(); ++n) begin[n] += begin[n - 1];
+    of_object.resize(near.size());
+    std::vector<int> at(begin.begin(), begin.end() - 1);
+    for (size_t n = 0; n < near.size(); ++n) of_object[at[fix.own[near[n]].object]++] = static_cast<int>(n);
+  }
+
+  // Boundary particles of `seeking` against guards of `guarding`, the particles that form the barrier; each within range of the
+  // other object's box. Thin ones are both: a pair of them is found from one side, that with `thin_too`.
+  void search(tagint seeking, const Box &seeking_box, tagint guarding, const Box &guarding_box, bool thin_too)
+  {
+    const double *const *x = fix.atom->x;
+    const auto pick = [&](Side &side, tagint object, int wanted, const Box &inside) {
+      side.clear();
+      for (int k = begin[object]; k < begin[object + 1]; ++k) {
+        const int n = of_object[k];
+        if (role[n] & wanted && inside.contains(x[near[n]])) side.add(x[near[n]], n);
+      }
+    };
+    pick(guards, guarding, BARRIER | THIN, seeking_box.grown(range));
+    if (guards.size() == 0) return;
+    pick(seekers, seeking, BOUNDARY, guarding_box.grown(range));
+    if (seekers.size() == 0) return;
+
+    close.resize(guards.size());
+    if (static_cast<size_t>(guards.size()) * seekers.size() <= FEW) {
+      for (int s = 0; s < seekers.size(); ++s) look(s, guards, 0, guards.size(), thin_too);
+      return;
+    }
+    const Grid grid([&](int k) { return x[near[guards.rank[k]]]; }, guards.size(), range);
+    sorted.clear();
+    for (const int k : grid.order()) sorted.add(x[near[guards.rank[k]]], guards.rank[k]);
+    for (int s = 0; s < seekers.size(); ++s)
+      grid.ranges(x[near[seekers.rank[s]]], [&](int from, int to) { look(s, sorted, from, to, thin_too); });
+  }
+
+  // Counts instead of comparisons: twice as many particles take twice as long.
+  template <class Key> void sort_found(Key key)
+  {
+    std::vector<int> at(near.size() + 1, 0);
+    for (const Found &f : found) ++at[key(f) + 1];
+    for (size_t n = 1; n < at.size(); ++n) at[n] += at[n - 1];
+    std::vector<Found> order(found.size());
+    for (const Found &f : found) order[at[key(f)]++] = f;
+    found.swap(order);
+  }
+
+ private:
+  static constexpr size_t FEW = 4000;    // pairs that are tried one by one: a grid would take longer
+
+  Side seekers, guards, sorted;
+  std::vector<int> close;
+
+  // One seeker and guards in a row.
+  void look(int s, const Side &side, int from, int to, bool thin_too)
+  {
+    const double x = seekers.x[s], y = seekers.y[s], z = seekers.z[s], range2 = range * range;
+    int many = 0;
+    for (int k = from; k < to; ++k) {    // without a branch that nobody could foretell
+      const double dx = x - side.x[k], dy = y - side.y[k], dz = z - side.z[k];
+      close[many] = k;
+      many += (dx * dx + dy * dy) + dz * dz < range2;
+    }
+    for (int m = 0; m < many; ++m) consider(seekers.rank[s], side.rank[close[m]], thin_too);
+  }
+
+  void consider(int a, int b, bool thin_too)
+  {
+    if (!thin_too && role[a] & role[b] & THIN) return;
+    const int i = near[a], j = near[b];
+    const bool moves_i = fix.moves(i), moves_j = fix.moves(j);
+    if (!moves_i && !moves_j) return;
+    const Own &one = fix.own[i], &other = fix.own[j];
+    const double reach = reach_factor(role[a], role[b], fix.thin_ratio) * std::max(one.reach, other.reach);
+    const Vec3 d = vec3(fix.atom->x[i]) - vec3(fix.atom->x[j]);
+    if (reach == 0.0 || dot(d, d) >= (reach + skin) * (reach + skin)) return;
+    const double k = fix.stiffness.constant() ? fix.stiffness.number : pair_stiffness(one.stiffness, other.stiffness);
+    const bool both = fix.atom->mask[i] & fix.atom->mask[j] & fix.groupbit;
+    found.push_back({std::min(a, b), std::max(a, b), {k, reach, (moves_i + moves_j) * (both ? 0.5 : 1.0)}});
+  }
+};
+
 // Until the next rebuild no particle moves by more than half the skin, so pairs within reach + skin are
 // enough.
 void FixMdanimBarrier::find_candidates()
 {
-  row.clear();
-  first.assign(1, 0);
-  candidate.clear();
+  pair.clear();
+  law.clear();
+  particle.clear();
   pairs = 0.0;
 
   std::vector<Box> boxes;
@@ -208,85 +343,36 @@ void FixMdanimBarrier::find_candidates()
   if (meeting.empty()) return;
   collect_own();
 
-  // Only particles within range of a partner's box can be in a pair: for each object, the box around all such
-  // places.
   std::vector<Box> zone(boxes.size());
   for (const auto &[a, b] : meeting) {
     zone[a].unite(intersection(boxes[a], boxes[b].grown(range)));
     zone[b].unite(intersection(boxes[b], boxes[a].grown(range)));
   }
-  find_candidates_near(zone, range);
-}
-
-// What a first look needs of a particle: most pairs are turned down by it.
-struct FixMdanimBarrier::Glance {
-  Vec3 x;
-  tagint object;
-  int role, particle;
-};
-
-// Particles in a grid, in the order of its cells.
-struct FixMdanimBarrier::Crowd {
-  Crowd(const FixMdanimBarrier &fix, const std::vector<int> &particles, double cell)
-      : grid([&](int n) { return fix.atom->x[particles[n]]; }, static_cast<int>(particles.size()), cell)
-  {
-    glance.reserve(particles.size());
-    for (const int n : grid.order()) {
-      const int i = particles[n];
-      glance.push_back({vec3(fix.atom->x[i]), fix.own[i].object, fix.role(i), i});
-    }
+  Search search(*this, range);
+  search.collect(zone);
+  for (const auto &[a, b] : meeting) {
+    search.search(a, boxes[a], b, boxes[b], true);
+    search.search(b, boxes[b], a, boxes[a], false);
   }
+  search.sort_found([](const Search::Found &f) { return f.high; });
+  search.sort_found([](const Search::Found &f) { return f.low; });
 
-  template <class Visit> void around(const Glance &me, Visit visit) const
-  {
-    const double x[3] = {me.x.x, me.x.y, me.x.z};
-    grid.around(x, [&](int slot) { visit(glance[slot]); });
-  }
-
-  Grid grid;
-  std::vector<Glance> glance;
-};
-
-void FixMdanimBarrier::find_candidates_near(const std::vector<Box> &zone, double range)
-{
-  const double *const *x = atom->x;
-  const tagint *tag = atom->tag;
-  const double skin = neighbor->skin;
-
-  // Guards form the barrier; all others are boundary particles, which meet guards only. Most pairs are of two such others, so
-  // the two kinds stand in grids of their own.
-  std::vector<int> guards, others;
-  for (int i = 0; i < atom->nlocal + atom->nghost; ++i)
-    if (role(i) != NONE && zone[own[i].object].contains(x[i])) (role(i) == BOUNDARY ? others : guards).push_back(i);
-  const Crowd guard(*this, guards, range), other(*this, others, range);
-
-  for (const Crowd *crowd : {&guard, &other})
-    for (const Glance &me : crowd->glance) {
-      const int i = me.particle;
-      if (i >= atom->nlocal || !(atom->mask[i] & groupbit)) continue;
-      const size_t begin = candidate.size();
-      const auto consider = [&](const Glance &partner) {
-        if (partner.object == me.object) return;
-        const Vec3 d = me.x - partner.x;
-        const double r2 = dot(d, d);
-        if (r2 >= range * range) return;
-        const int j = partner.particle;
-        const double pair_reach =
-            reach_factor(me.role, partner.role, thin_ratio) * std::max(own[i].reach, own[j].reach);
-        if (pair_reach == 0.0 || r2 >= (pair_reach + skin) * (pair_reach + skin)) return;
-        const double k =
-            stiffness.constant() ? stiffness.number : pair_stiffness(own[i].stiffness, own[j].stiffness);
-        candidate.push_back({j, tag[i] < tag[j], (atom->mask[j] & groupbit) != 0, k, pair_reach});
-      };
-      guard.around(me, consider);
-      if (crowd == &guard) other.around(me, consider);
-      if (candidate.size() == begin) continue;
-      std::sort(candidate.begin() + begin, candidate.end(),
-                [tag](const Candidate &a, const Candidate &b) { return tag[a.partner] < tag[b.partner]; });
-      row.push_back(i);
-      first.push_back(static_cast<int>(candidate.size()));
+  std::vector<int> number(search.near.size(), -1);    // in `particle`
+  const auto numbered = [&](int n) {
+    if (number[n] < 0) {
+      number[n] = static_cast<int>(particle.size());
+      particle.push_back(search.near[n]);
     }
-  for (const Candidate &c : candidate) pairs += c.in_group ? 0.5 : 1.0;
+    return number[n];
+  };
+  for (const auto &[low, high, known] : search.found) {
+    const int first = numbered(low), second = numbered(high);
+    pair.push_back({first, second, known.reach * known.reach});
+    law.push_back(known);
+    pairs += known.share;
+  }
+  place.resize(particle.size());
+  touching_pair.resize(pair.size());
 }
 
 // --- forces ---
@@ -300,7 +386,7 @@ void FixMdanimBarrier::setup(int vflag)
 void FixMdanimBarrier::post_force(int)
 {
   energy = touching = 0.0;
-  if (candidate.empty() && loss.idle()) {
+  if (pair.empty() && loss.idle()) {
     loss.rest();
     return;
   }
@@ -309,31 +395,41 @@ void FixMdanimBarrier::post_force(int)
   const double *const *x = atom->x, *const *v = atom->v;
   double *const *f = atom->f;
   std::vector<Vec3> *slowed = damping > 0.0 ? &loss.forces(atom->nlocal) : nullptr;
-  for (size_t n = 0; n < row.size(); ++n) {
-    const int i = row[n];
-    Vec3 total;
-    for (int c = first[n]; c < first[n + 1]; ++c) {
-      const Candidate &pair = candidate[c];
-      const int j = pair.partner;
-      const Vec3 d = vec3(x[i]) - vec3(x[j]);
-      const double r2 = dot(d, d);
-      if (r2 >= pair.reach * pair.reach) continue;
-      const double r = std::sqrt(r2), q = 1.0 - r / pair.reach, share = pair.in_group ? 0.5 : 1.0;
-      const Vec3 normal = direction(d, r, pair.lower);
-      double push = barrier_force(power, pair.stiffness, pair.reach, q);
-      energy += share * barrier_energy(power, pair.stiffness, pair.reach, q);
-      if (damping > 0.0) {
-        const double approach = dot(vec3(v[i]) - vec3(v[j]), normal);
-        const double rate = damping * reduced_mass(own[i].mass, own[j].mass) / force->ftm2v;
-        push -= rate * q * approach;
-        (*slowed)[i] -= (rate * q * approach) * normal;
-      }
-      total += push * normal;
-      touching += share;
-      deepest = std::min(deepest, r / pair.reach);
-    }
-    add_to(f[i], total);
+
+  for (size_t n = 0; n < particle.size(); ++n) place[n] = vec3(x[particle[n]]);
+  size_t many = 0;
+  for (size_t c = 0; c < pair.size(); ++c) {    // without a branch that nobody could foretell
+    const Vec3 d = place[pair[c].low] - place[pair[c].high];
+    touching_pair[many] = static_cast<int>(c);
+    many += dot(d, d) < pair[c].reach2;
   }
+
+  total.assign(particle.size(), Vec3());
+  for (size_t m = 0; m < many; ++m) {
+    const auto &[low, high, reach2] = pair[touching_pair[m]];
+    const auto &[k, reach, share] = law[touching_pair[m]];
+    const Vec3 d = place[low] - place[high];
+    const double r = std::sqrt(dot(d, d)), q = 1.0 - r / reach;
+    const Vec3 normal = direction(d, r, true);
+    double push = barrier_force(power, k, reach, q);
+    energy += share * barrier_energy(power, k, reach, q);
+    if (damping > 0.0) {
+      const int i = particle[low], j = particle[high];
+      const double approach = dot(vec3(v[i]) - vec3(v[j]), normal);
+      const double rate = damping * reduced_mass(own[i].mass, own[j].mass) / force->ftm2v;
+      push -= rate * q * approach;
+      const Vec3 slowing = (rate * q * approach) * normal;
+      if (moves(i)) (*slowed)[i] -= slowing;
+      if (moves(j)) (*slowed)[j] += slowing;
+    }
+    const Vec3 on_low = push * normal;
+    total[low] += on_low;
+    total[high] -= on_low;
+    touching += share;
+    deepest = std::min(deepest, r / reach);
+  }
+  for (size_t n = 0; n < particle.size(); ++n)
+    if (moves(particle[n])) add_to(f[particle[n]], total[n]);
   if (slowed) loss.step(v, update->dt, update->setupflag);
 }
 
@@ -372,6 +468,6 @@ double FixMdanimBarrier::compute_vector(int n)
 
 double FixMdanimBarrier::memory_usage()
 {
-  return own.capacity() * sizeof(Own) + candidate.capacity() * sizeof(Candidate) +
-      (row.capacity() + first.capacity()) * sizeof(int);
+  return own.capacity() * sizeof(Own) + pair.capacity() * sizeof(Pair) + law.capacity() * sizeof(Law) +
+      (particle.capacity() + touching_pair.capacity()) * sizeof(int) + (place.capacity() + total.capacity()) * sizeof(Vec3);
 }

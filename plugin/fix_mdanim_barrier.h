@@ -9,6 +9,7 @@
 #include "guest.h"
 #include "loss.h"
 #include "particle_value.h"
+#include "vec3.h"
 
 #include <vector>
 
@@ -38,10 +39,15 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
     double stiffness, reach, mass;
     tagint object;    // molecule ID
   };
-  struct Candidate {
-    int partner;                // local or ghost index
-    bool lower, in_group;       // whether i has the lower tag; whether the partner feels this fix too
-    double stiffness, reach;    // of the pair
+  // Two particles that may come into reach of each other; the lower tag first, as places in `particle`.
+  struct Pair {
+    int low, high;
+    double reach2;    // square of the reach
+  };
+  // What else is known of a pair.
+  struct Law {
+    double stiffness, reach;
+    double share;    // of the pair that this rank counts: 1/2 for each end that it moves, 1 if the other end is never moved
   };
 
   int group_bit(int iarg, const char *word);
@@ -49,9 +55,8 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
   void collect_own();
   double survey(std::vector<mdanim::Box> &boxes);
   void find_candidates();
-  struct Glance;
-  struct Crowd;
-  void find_candidates_near(const std::vector<mdanim::Box> &zone, double range);
+  struct Search;
+  bool moves(int i) const;
   double sum(double here);
 
   int boundary_bit = 0, barrier_bit = 0, thin_bit = 0;
@@ -60,9 +65,15 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
   mdanim::ParticleValue stiffness, reach;
 
   std::vector<Own> own;      // local and ghost particles
-  std::vector<int> row;      // local particles that have candidates,
-  std::vector<int> first;    // theirs are [first[n], first[n+1]), ascending by tag
-  std::vector<Candidate> candidate;
+
+  // Candidates, ascending by the lower tag and then by the higher one, so that who goes through them adds up the forces on every
+  // particle in ascending order of its partners' tags.
+  std::vector<Pair> pair;
+  std::vector<Law> law;
+  std::vector<int> particle;           // that have candidates, local or ghost
+  std::vector<mdanim::Vec3> place;     // their positions in this step
+  std::vector<mdanim::Vec3> total;     // and forces
+  std::vector<int> touching_pair;      // in this step
 
   bigint meeting_objects = 0;            // pairs of objects whose boxes meet
   double pairs = 0.0, touching = 0.0;    // on this rank; a pair counts half at either end

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What benches share: interleaved rounds, medians and minima, JSON, tables in Markdown.
+
+A bench that ``bench/all.py`` prints is a module with ``measure(rounds, quick) -> rows`` and ``table(rows) -> str``; rows are dicts of
+numbers and words that JSON holds.
+"""
+
+import statistics
+import time
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Figures of one variant over all rounds."""
+
+    values: tuple[float, ...]
+
+    @property
+    def median(self) -> float:
+        return statistics.median(self.values)
+
+    @property
+    def least(self) -> float:
+        return min(self.values)
+
+    def over(self, other: "Sample") -> dict[str, float]:
+        """This over the other: by medians, by minima, and the median of the ratios of the same round."""
+        pairs = statistics.median(a / b for a, b in zip(self.values, other.values))
+        return {"medians": self.median / other.median, "minima": self.least / other.least, "rounds": pairs}
+
+
+def seconds(work: Callable[[], object], clock: Callable[[], float] = time.perf_counter) -> float:
+    """Time of a call [s]."""
+    start = clock()
+    work()
+    return clock() - start
+
+
+def interleaved(variants: dict[str, Callable[[], float]], rounds: int) -> dict[str, Sample]:
+    """Call all variants in turns, every other round backwards, so that all of them see the same machine; each gives its own figure."""
+    found: dict[str, list[float]] = {name: [] for name in variants}
+    for n in range(rounds):
+        for name in list(variants)[:: 1 if n % 2 == 0 else -1]:
+            found[name].append(variants[name]())
+    return {name: Sample(tuple(values)) for name, values in found.items()}
+
+
+def markdown(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """A table; numbers with three digits that count."""
+    def cell(value: object) -> str:
+        return f"{value:.3g}" if isinstance(value, float) and abs(value) < 1000.0 else f"{value:,.0f}" if isinstance(value, float) \
+            else f"{value:,}" if isinstance(value, int) else str(value)
+    lines = [head, ["---"] * len(head), *([cell(v) for v in row] for row in rows)]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
