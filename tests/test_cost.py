@@ -95,9 +95,9 @@ def test_no_second_is_counted_twice(pond):
     assert sum(clocks["springs"].values()) + sum(clocks["damping"].values()) == pytest.approx(100.0)
     assert clocks["liquid"] == {"automaton": 1.0, "occupancy": 2.0}
     assert clocks["buoyancy"]["coupling"] + clocks["liquid-drag"]["coupling"] == pytest.approx(4.0)
-    # Half of the particles have drag of air: each costs the leap-frog 1/(1 - 0.6) = 2.5 times as much as one without.
-    assert sum(c.get("leap-frog", 0.0) for c in clocks.values()) == pytest.approx(10.0 * 0.75 / 1.75)
-    assert account.leapfrog == pytest.approx(10.0 / 1.75)
+    # Half of the particles have drag of air: each costs the leap-frog 1/(1 - 0.3) = 10/7 times as much as one without.
+    assert sum(c.get("leap-frog", 0.0) for c in clocks.values()) == pytest.approx(10.0 * 3.0 / 17.0)
+    assert account.leapfrog == pytest.approx(10.0 * 14.0 / 17.0)
 
 
 def test_cost_json_is_the_cost(pond):
