@@ -116,7 +116,7 @@ def test_the_command_line_tells_and_draws(tmp_path):
     lines = [line for line in done.stdout.splitlines() if line.startswith("spread")]
     assert lines[0].startswith("spread   over 2 executors and a supervisor; the supervisor decides")
     assert lines[1].startswith("spread   2 executors, central: 0 objects moved, 0 windows begun again, busy ")
-    assert lines[1].endswith("mdanim-lammps timeline cube.out")
+    assert lines[1].endswith(f"mdanim-lammps timeline {tmp_path / 'cube.out'}")
     drawn = run("timeline", "cube.out", cwd=tmp_path)
     assert drawn.stdout == "picture  cube.out/timeline.png\n", drawn.stderr
     assert (tmp_path / "cube.out" / "timeline.png").stat().st_size > 5000
