@@ -1,13 +1,15 @@
 # make demo   set up .venv, run scenes/beam.txt, end with the path of the movie
 # make test   set up .venv, run the tests
 # make soak   set up .venv, run the long form of the hard cases (tests/stability, test_ranks.py)
+# make bench  set up .venv, measure all of docs/performance.md (ten minutes; python bench/all.py --quick takes one)
+# make bench-peers  set up .venv and .venv-peers, measure other programs on the same scenes (docs/performance.md)
 # make clean  forget everything that was built
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 SOURCES := pyproject.toml CMakeLists.txt $(shell find plugin python -name '*.so' -prune -o -name __pycache__ -prune -o -type f -print)
 
-.PHONY: demo test soak setup clean
+.PHONY: demo test soak bench bench-peers setup clean
 .DEFAULT_GOAL := demo
 
 setup: $(VENV)/.installed
@@ -30,5 +32,17 @@ test: setup
 soak: setup
 	$(BIN)/python -m pytest -n 2 -m soak tests/stability tests/test_ranks.py
 
+bench: setup
+	$(BIN)/python bench/all.py --write
+
+bench-peers: setup .venv-peers/.installed
+	$(BIN)/python bench/peers/all.py --write
+
+# A peer that cannot be installed here is left out of it, and its row says so.
+.venv-peers/.installed: bench/peers/requirements.txt
+	test -x .venv-peers/bin/python || $(PYTHON) -m venv .venv-peers
+	grep -v '^#' $< | while read -r line; do .venv-peers/bin/python -m pip install --quiet "$$line" || echo "not installed: $$line"; done
+	@touch $@
+
 clean:
-	rm -rf $(VENV) build dist
+	rm -rf $(VENV) .venv-peers build dist

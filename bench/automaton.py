@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Cost of the liquid's automaton: ``python bench/automaton.py [cells] [rounds]``.
 
-One grid of cells^3, one core. Printed are medians over interleaved rounds, in nanoseconds per cell and
-as multiples of a copy of the same bytes; the minima tell what a busy machine added:
+One grid of cells^3, one core. Printed are medians and minima over interleaved rounds, in nanoseconds per cell and
+as multiples of a copy of the same bytes:
 
 sweep, lively   half of the cells hold a unit, drawn at random: every layer changes at every step
 same, plain     the loops as the rules read
@@ -13,7 +13,6 @@ displace 0      solids given, none changed: the comparison alone
 displace N      the ball moves by one cell in the pool, N cells change
 """
 
-import statistics
 import sys
 import time
 from pathlib import Path
@@ -23,18 +22,15 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 import automaton_lab as lab  # noqa: E402
 
+from timing import Sample, markdown, seconds  # noqa: E402
+
 SWEEPS = 4
+GOAL = 0.5
+"""Nanoseconds of a sweep per cell at 128^3."""
 
 
-def seconds(work) -> float:
-    """Wall time of a call."""
-    start = time.perf_counter()
-    work()
-    return time.perf_counter() - start
-
-
-def main(cells: int = 128, rounds: int = 15) -> None:
-    """Measure and print."""
+def measure(rounds: int = 15, quick: bool = False, cells: int = 128) -> list[dict]:
+    """One row for each kind of work, in seconds of wall time."""
     shape = (cells,) * 3
     middle = (cells - 1) / 2
     z, y, x = np.ogrid[:cells, :cells, :cells]
@@ -74,14 +70,23 @@ def main(cells: int = 128, rounds: int = 15) -> None:
         moving.sweep(SWEEPS)
         for name, value in row.items():
             spent.setdefault(name, []).append(value)
-    median = {name: statistics.median(values) for name, values in spent.items()}
-    print(f"{cells}^3 cells, best instruction set {best}, N = {changed}, {rounds} rounds")
-    for name, value in median.items():
-        print(f"{name:<14} {1e9 * value / cells**3:8.4f} ns per cell (minimum "
-              f"{1e9 * min(spent[name]) / cells**3:8.4f})   {1e3 * value:8.4f} ms   "
-              f"{value / median['copy']:7.3f} copies")
-    each = (median["displace N"] - median["displace 0"]) / changed
-    print(f"displace: {1e6 * each:.4f} us per changed cell beyond the comparison")
+    found = {name: Sample(tuple(values)) for name, values in spent.items()}
+    return [{"work": name, "cells": cells, "changed": changed, "best": best, "median": s.median, "least": s.least,
+             "copies": s.median / found["copy"].median} for name, s in found.items()]
+
+
+def table(rows: list[dict]) -> str:
+    """In Markdown."""
+    n = rows[0]["cells"] ** 3
+    return f"{rows[0]['cells']}³ cells, best instruction set {rows[0]['best']}, N = {rows[0]['changed']}\n\n" + markdown(
+        ["work", "ns per cell, median", "minimum", "ms", "copies of the grid", "goal"],
+        [(r["work"], 1e9 * r["median"] / n, 1e9 * r["least"] / n, 1e3 * r["median"], r["copies"],
+          f"≤ {GOAL} ns" if r["work"] == "sweep, lively" else "") for r in rows])
+
+
+def main(cells: int = 128, rounds: int = 15) -> None:
+    """Measure and print."""
+    print(table(measure(rounds, cells=cells)))
 
 
 if __name__ == "__main__":

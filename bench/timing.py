@@ -9,6 +9,7 @@ import statistics
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -54,3 +55,11 @@ def markdown(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
             else f"{value:,}" if isinstance(value, int) else str(value)
     lines = [head, ["---"] * len(head), *([cell(v) for v in row] for row in rows)]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def replace_between(page: Path, name: str, text: str) -> None:
+    """Put text between the lines ``<!-- NAME: written by … -->`` and ``<!-- end of NAME -->`` of a page."""
+    lines = page.read_text(encoding="utf-8").splitlines()
+    begin = next(n for n, line in enumerate(lines) if line.startswith(f"<!-- {name}: written by "))
+    end = lines.index(f"<!-- end of {name} -->")
+    page.write_text("\n".join([*lines[: begin + 1], text.rstrip("\n"), *lines[end:]]) + "\n", encoding="utf-8")
