@@ -435,10 +435,7 @@ void FixMdanimBarrier::post_force(int)
 
 // Together with run_style verlet/mdanim, which has no ghosts.
 void FixMdanimBarrier::concerned(std::vector<int> &particles) const
-{
-  particles.insert(particles.end(), row.begin(), row.end());
-  for (const Candidate &c : candidate) particles.push_back(c.partner);
-}
+{ particles.insert(particles.end(), particle.begin(), particle.end()); }
 
 // --- output ---
 
