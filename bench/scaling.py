@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Speed over the number of executors, the paper's fig. 18: ``python bench/scaling.py [run|goals|model] [options]``.
 
-run: scenes/crowd.txt and a hail of 64 blocks by 1000 particles, in one process and on executors under both controls, in interleaved
-rounds; prints a table of medians, writes scaling.json and docs/images/scaling.png. goals: 64 blocks that meet nobody, and one object
-of 64 000 particles that two executors run as a team. model: what scaling.json says about more ranks than there are here.
+run: scenes/crowd.txt and a hail of 64 blocks by 1000 particles, in one process and on executors under both controls, in
+interleaved rounds; prints a table of medians, writes scaling.json and docs/images/scaling.png. goals: 64 blocks that meet nobody,
+and one object of 64 000 particles that two executors run as a team. model: what scaling.json says about more ranks than are here.
 
-Options: ``--executors 1,2,4``, ``--rounds 3``, ``--frames 8`` (of the hail; four times as many of the crowd), ``--json FILE``, ``--plot FILE``.
+Options: ``--executors 1,2,4``, ``--rounds 3``, ``--frames 8`` (of the hail; four times as many of the crowd), ``--json FILE``,
+``--plot FILE``.
 Speed is told in two ways: frames per second of wall time, from the end of frame 1 to the last, with all that is written; and
 frames per second of processor time of the executor that takes most, which other programs on the machine change less.
 """
@@ -29,9 +30,10 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # b
 import numpy as np  # noqa: E402
 
 HERE = Path(__file__).parent
+GRAVITY = "gravity (0, 0, -9.81) m/s^2\n"
 BLOCK = """
   object block[{n}] {{
-    shape      box (9, 9, 9) cm
+    shape      box ({edge}, {edge}, {edge}) cm
     position   {place} m
     density    900
     elasticity 300 kPa
@@ -45,13 +47,13 @@ control {
   resolution 1 cm
 }
 """
-FIELD = "gravity (0, 0, -9.81) m/s^2\n{ground}repeat i in 0 .. 7 {{ repeat j in 0 .. 7 {{" + BLOCK + "}} }}" + END.replace("{", "{{").replace("}", "}}")
+ROWS = "repeat i in 0 .. 7 {{ repeat j in 0 .. 7 {{" + BLOCK + "}} }}"
 SCENES = {
     "crowd": (HERE.parent / "scenes" / "crowd.txt").read_text().replace('include "rubber.txt"', "let rubber = 150 kPa"),
-    "hail": FIELD.format(ground="ground z 0 m\n", n="i*8 + j", place="(i*0.3, j*0.3, 0.3 + 0.1*((i + 2*j) mod 5))",
-                         more="velocity (rand(-1.5, 1.5), rand(-1.5, 1.5), 0) m/s"),
-    "blocks": FIELD.format(ground="", n="i*8 + j", place="(i, j, 0)", more=""),
-    "one": "gravity (0, 0, -9.81) m/s^2\n" + BLOCK.format(n=0, place="(0, 0, 0)", more="").replace("(9, 9, 9)", "(39, 39, 39)") + END,
+    "hail": GRAVITY + "ground z 0 m\n" + ROWS.format(n="i*8 + j", place="(i*0.3, j*0.3, 0.3 + 0.1*((i + 2*j) mod 5))", edge=9,
+                                                     more="velocity (rand(-1.5, 1.5), rand(-1.5, 1.5), 0) m/s") + END,
+    "blocks": GRAVITY + ROWS.format(n="i*8 + j", place="(i, j, 0)", edge=9, more="") + END,
+    "one": GRAVITY + BLOCK.format(n=0, place="(0, 0, 0)", edge=39, more="") + END,
 }
 GOALS = {"blocks": 1.8, "one": 1.4}
 """Speed of two executors over that of one process, by processor time of the rank that takes most."""
@@ -110,7 +112,7 @@ def _measure(ready, executors: int, control: str) -> dict:
         else:
             simulate_on(executors, control, ready, folder, **told)
             log = Timeline.read(folder)
-            found = {"cpu": max(log.cpu), "mean_cpu": float(np.mean(log.cpu)), "supervisor_cpu": log.supervisor_cpu, "moves": sum(log.moves),
+            found = {"executors": executors, "cpu": max(log.cpu), "supervisor_cpu": log.supervisor_cpu, "moves": sum(log.moves),
                      "again": sum(log.retries), "busy": float(log.busy().mean()), "spent": log.spent().mean(axis=0).tolist()}
     frames = len(ends)
     return found | {"by_wall": (frames - 1) / (ends[-1] - ends[0]), "by_cpu": frames / found["cpu"], "frames": frames}
@@ -126,7 +128,8 @@ def rounds_of(names, cases, rounds: int, frames: int) -> tuple[dict, dict]:
         for name in names:
             for case in cases if turn % 2 == 0 else cases[::-1]:
                 runs[name][case].append(measure(ready[name], *case))
-                print(f"round {turn + 1}: {name}, {label(case)}: {runs[name][case][-1]['by_wall']:.2f} frames/s", file=sys.stderr, flush=True)
+                speed = runs[name][case][-1]["by_wall"]
+                print(f"round {turn + 1}: {name}, {label(case)}: {speed:.2f} frames/s", file=sys.stderr, flush=True)
     return runs, known
 
 
@@ -150,14 +153,15 @@ def table(runs: dict, known: dict, cases) -> str:
     lines = []
     for name, of in runs.items():
         k = known[name]
-        lines += [f"{name}: {k['objects']} objects, {k['particles']} particles, {k['steps']} steps per frame, {of[cases[0]][0]['frames']} frames",
-                  "", "| executors | frames/s, wall | times | frames/s of the busiest processor | times | moved | again | supervisor [s] |",
+        lines += [f"{name}: {k['objects']} objects, {k['particles']} particles, {k['steps']} steps per frame, "
+                  f"{of[cases[0]][0]['frames']} frames", "",
+                  "| executors | frames/s, wall | times | frames/s of the busiest processor | times | moved | again | supervisor [s] |",
                   "|---|---|---|---|---|---|---|---|"]
         base = of[cases[0]]
         for case in cases:
             rest = ""
             if case[0]:
-                rest = f"{middle(of[case], 'moves'):.0f} | {middle(of[case], 'again'):.0f} | {middle(of[case], 'supervisor_cpu'):.2f}"
+                rest = " | ".join(f"{middle(of[case], what):.{n}f}" for what, n in (("moves", 0), ("again", 0), ("supervisor_cpu", 2)))
             lines.append(f"| {label(case)} | {middle(of[case], 'by_wall'):.2f} | {ratio(of[case], base, 'by_wall'):.2f} | "
                          f"{middle(of[case], 'by_cpu'):.2f} | {ratio(of[case], base, 'by_cpu'):.2f} | {rest or ' | | '} |")
         lines.append("")
@@ -177,15 +181,17 @@ def draw(runs: dict, path: Path, note: str) -> None:
         axes.plot([1, most], [1, most], color="#b0b7bd", linewidth=1.0, label="as many times as executors")
         for control, color in COLORS.items():
             count = sorted(k for k, c in of if c == control)
-            for what, style, told in (("by_cpu", "o-", "busiest processor"), ("by_wall", "s--", "wall")):
+            for what, style, told in (("by_wall", "s:", "wall"), ("by_cpu", "o-", "busiest processor")):
                 ratios = [[r[what] / b[what] for r, b in zip(of[k, control], base)] for k in count]
-                axes.plot(count, [statistics.median(r) for r in ratios], style, color=color, markersize=5, label=f"{control}, {told}")
-                axes.vlines(count, [min(r) for r in ratios], [max(r) for r in ratios], color=color, linewidth=0.8)
+                axes.plot(count, [statistics.median(r) for r in ratios], style, color=color, markersize=5,
+                          label=f"{control}, {told}")
+                if what == "by_cpu":
+                    axes.vlines(count, [min(r) for r in ratios], [max(r) for r in ratios], color=color, linewidth=0.8)
         axes.set(title=name, xlabel="executors", ylabel="frames per second over one process", ylim=(0.0, None))
         axes.xaxis.get_major_locator().set_params(integer=True)
         axes.grid(alpha=0.25)
         axes.legend(fontsize=7)
-    figure.text(0.995, 0.005, note, fontsize=6, ha="right", va="bottom", color="#707880")
+    figure.supxlabel(note, fontsize=6, x=0.995, ha="right", color="#707880")
     figure.savefig(path, dpi=130, metadata={"Software": None})
 
 
@@ -194,10 +200,12 @@ def run(options) -> None:
     cases = [(0, ""), *((k, control) for k in options.executors for control in COLORS)]
     load_before = os.getloadavg()[0]
     runs, known = rounds_of(["crowd", "hail"], cases, options.rounds, options.frames)
-    note = f"{os.cpu_count()} cores, {options.rounds} rounds, load of the machine {load_before:.1f} before and {os.getloadavg()[0]:.1f} after"
+    note = (f"{os.cpu_count()} cores, {options.rounds} rounds, load of the machine {load_before:.1f} before "
+            f"and {os.getloadavg()[0]:.1f} after")
     print(table(runs, known, cases))
     print(note)
-    data = {"note": note, "known": known, "runs": {name: {f"{k} {c}".strip(): r for (k, c), r in of.items()} for name, of in runs.items()}}
+    data = {"note": note, "known": known,
+            "runs": {name: {f"{k} {c}".strip(): r for (k, c), r in of.items()} for name, of in runs.items()}}
     options.json.write_text(json.dumps(data, indent=1) + "\n")
     draw(runs, options.plot, note)
     print(f"{options.json}   {options.plot}")
@@ -211,18 +219,23 @@ def goals(options) -> None:
     for name, goal in GOALS.items():
         for case in cases[1:]:
             found = ratio(runs[name][case], runs[name][cases[0]], "by_cpu")
-            print(f"{name}, {label(case)}: {found:.2f} times as fast by processor time, goal {goal}: {'met' if found >= goal else 'missed'}")
+            verdict = "met" if found >= goal else "missed"
+            print(f"{name}, {label(case)}: {found:.2f} times as fast by processor time, goal {goal}: {verdict}")
 
 
 # --- model ------------------------------------------------------------------------------------------------------------
 
 def model(options) -> None:
-    """t_frame = max(work/K imbalance + windows (plan + exchange) + moves, supervisor): terms measured, then carried on to 10^3 ranks."""
+    """t_frame = max(work/K imbalance + plan + exchange + moves, supervisor): terms measured, then carried on to 10^3 ranks.
+
+    A frame is one window. Supervisor and executors work at the same time, so the slower of them sets the pace. Plans are made
+    here, for a crowd of as many objects and executors: their time and the imbalance that they leave are those of the program.
+    """
     data = json.loads(options.json.read_text())
     cost = fit(data)
     print("\n".join(f"{name:<12} {value:.3g} {unit}" for name, (value, unit) in cost.items()))
-    print("\n| particles | executors | work/K | imbalance | plan + exchange | moves | supervisor | frame [s] | times as fast | bound by |\n"
-          "|---|---|---|---|---|---|---|---|---|---|")
+    print("\n| particles | executors | work/K, balanced | imbalance | plan, exchange | moves | supervisor | frame [s] | "
+          "times as fast | bound by | were it not for the supervisor |\n|---|---|---|---|---|---|---|---|---|---|---|")
     for objects, size in ((1_000, 1_000), (10_000, 1_000), (100_000, 1_000)):
         for executors in (1, 16, 128, 1_024):
             if objects < 4 * executors:
@@ -237,13 +250,14 @@ def fit(data: dict) -> dict:
     hail, crowd = (data["runs"][name] for name in ("hail", "crowd"))
     known = data["known"]
     work = statistics.median(r["cpu"] / r["frames"] / known["hail"]["particles"] for r in hail["0"])
-    distributed = {name: [r for case, runs in of.items() if case != "0" for r in runs] for name, of in (("hail", hail), ("crowd", crowd))}
+    distributed = {name: [r for case, runs in of.items() if case != "0" for r in runs]
+                   for name, of in (("hail", hail), ("crowd", crowd))}
     # Of the supervisor: so much for a frame, so much for a particle in it.
     seen = {name: (known[name]["particles"], statistics.median(r["supervisor_cpu"] / r["frames"] for r in runs))
             for name, runs in distributed.items()}
     per_particle = (seen["hail"][1] - seen["crowd"][1]) / (seen["hail"][0] - seen["crowd"][0])
     per_frame = max(0.0, seen["crowd"][1] - per_particle * seen["crowd"][0])
-    moving = statistics.median(r["spent"][1] * r["frames"] / max(1, r["moves"]) / r["frames"] for r in distributed["crowd"])
+    moving = statistics.median(r["spent"][1] * r["executors"] / r["moves"] for r in distributed["crowd"] if r["moves"])
     order = _plan(10_000, 8)[0]
     message = Order(order, np.zeros((10_000, 3)), np.zeros((10_000, 3)), 100, True)
     seconds = least(lambda: pickle.loads(pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL)))
@@ -251,7 +265,7 @@ def fit(data: dict) -> dict:
         "work": (work, "s of processor time per particle and frame (hail)"),
         "per_particle": (per_particle, "s of the supervisor per particle and frame"),
         "per_frame": (per_frame, "s of the supervisor per frame, besides"),
-        "moved": (moving, "s of an executor for an object that comes, with its instance built anew (crowd)"),
+        "moved": (moving, "s of executors for an object that moves, with instances built anew (crowd, wall time)"),
         "order": (seconds / 10_000, "s to pack and unpack an order, per object (central: once for each executor)"),
         "latency": (LATENCY, "s for a message between hosts (assumed)"),
         "wire": (1.0 / BANDWIDTH, "s per byte between hosts (assumed)"),
@@ -259,13 +273,13 @@ def fit(data: dict) -> dict:
 
 
 LATENCY, BANDWIDTH = 2e-4, 1e9
-"""Of a message: mostly the nap of who waits for it (messages.NAP); gigabit per second times 8."""
+"""Of a message [s]: mostly the nap of who waits for it (messages.NAP); of a network of ten gigabit [bytes/s]."""
 MOVES = 0.004
 """Part of the objects that move in a frame: crowds of a thousand, `python bench/planning.py crowd`."""
 
 
 def _plan(objects: int, executors: int):
-    """A plan for a crowd, one object in a volume of 30 of them, and the next one after all have gone on; and the seconds of the latter."""
+    """The second plan of a crowd, one object in a volume of 30 of them, after all have gone on a little; and its seconds."""
     from mdanim_lammps.driver import planning
 
     rng = np.random.default_rng(objects)
@@ -306,13 +320,14 @@ def row(objects: int, size: int, executors: int, cost: dict) -> str:
         exchange = {"central": 0.0}
     control = min(exchange, key=exchange.get)
     moves = MOVES * objects / executors * cost["moved"] * (executors > 1)
-    supervisor = cost["per_frame"] + cost["per_particle"] * particles
+    supervisor = cost["per_frame"] + (cost["per_particle"] + 48 * cost["wire"]) * particles
     mine = work * imbalance + exchange[control] + moves
     frame = max(mine, supervisor)
-    terms = {"work": work * imbalance, f"exchange ({control})": exchange[control], "moves": moves, "supervisor": supervisor if supervisor > mine else 0.0}
-    bound = max(terms, key=terms.get)
-    return (f"| {particles:,} | {executors:,} | ".replace(",", " ") + f"{work:.3g} | {imbalance:.2f} | {exchange[control]:.2g} | {moves:.2g} | "
-            f"{supervisor:.2g} | {frame:.3g} | {cost['work'] * particles / frame:.3g} | {bound} |")
+    terms = {"work": work * imbalance, f"exchange ({control})": exchange[control], "moves": moves}
+    bound = "supervisor" if supervisor > mine else max(terms, key=terms.get)
+    return (f"| {particles:,} | {executors:,} | ".replace(",", " ")
+            + f"{work:.3g} | {imbalance:.2f} | {exchange[control]:.2g} | {moves:.2g} | {supervisor:.2g} | {frame:.3g} | {cost['work'] * particles / frame:.3g} | {bound} | "
+            f"{cost['work'] * particles / mine:.3g} |")
 
 
 def main() -> None:

@@ -7,7 +7,8 @@ from test_cli import GOOD, run
 
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.picture.palette import rgb
-from mdanim_lammps.picture.timeline import COLUMNS, DOING, NOBODY, ROWS, SINGLE, bars, draw, edges, executor_colors, ownership, shares
+from mdanim_lammps.picture.timeline import (
+    COLUMNS, DOING, NOBODY, ROWS, SINGLE, bars, draw, edges, executor_colors, ownership, shares)
 from mdanim_lammps.results.timeline import KINDS, Timeline
 
 

@@ -117,8 +117,8 @@ def who_line(executors: int, control: str | None) -> str:
 def spread_line(timeline: Timeline, folder: Path) -> str:
     """One line: what a run on several executors did, and how to see it."""
     again = sum(timeline.retries)
-    return (f"spread   {count(timeline.executors, 'executor')}, {timeline.control}: {count(sum(timeline.moves), 'object')} moved, "
-            f"{count(again, 'window')} begun again, busy {100 * timeline.busy().mean():.0f} %   "
+    return (f"spread   {count(timeline.executors, 'executor')}, {timeline.control}: "
+            f"{count(sum(timeline.moves), 'object')} moved, {count(again, 'window')} begun again, busy {100 * timeline.busy().mean():.0f} %   "
             f"picture: mdanim-lammps timeline {folder}")
 
 

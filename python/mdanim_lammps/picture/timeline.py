@@ -15,7 +15,7 @@ from .palette import rgb
 DOING = {"simulating": "#34495e", "moving": "#f28e2b", "waiting": "#d5dade", "frozen": "#8fd0f2", "held": "#c8a2c8"}
 """Colours of `KINDS`: what brings the run on is dark, waiting is pale."""
 EXECUTORS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#2b2b2b")
-"""Okabe and Ito's eight, told apart by colour-blind people too; the next eight are tints of them, their numbers stand in the legend."""
+"""Okabe and Ito's eight, told apart by colour-blind people too; the next eight are tints of them."""
 NOBODY = "#eceeef"
 """What never moves is nobody's."""
 AGAIN = {"linestyle": "none", "marker": "v", "color": "#d62728", "markersize": 5, "clip_on": False}
@@ -41,7 +41,7 @@ def executor_colors(executors: int) -> np.ndarray:
 
 
 def shares(timeline: Timeline, columns: int) -> np.ndarray:
-    """Part of each of as many equal pieces of the wall time that each executor was at each of `KINDS`, shape (K, kinds, columns)."""
+    """Part of each of so many pieces of the wall time that each executor was at each of `KINDS`, shape (K, kinds, columns)."""
     found = np.zeros((timeline.executors, len(KINDS), columns))
     piece = timeline.seconds / columns
     for executor, kind, _, begin, end in timeline.spans:
@@ -55,7 +55,7 @@ def shares(timeline: Timeline, columns: int) -> np.ndarray:
 
 
 def bars(share: np.ndarray, height: int) -> np.ndarray:
-    """Every executor's bar, of so many pixels and a white line: colours filled up by shares, shape (K * (height + 2), columns, 3)."""
+    """Every executor's bar, so many pixels and a white line: colours filled up by shares, shape (K * (height + 2), columns, 3)."""
     level = np.cumsum(share, axis=1)  # (K, kinds, columns)
     middle = (np.arange(height)[::-1] + 0.5) / height
     kind = (level[:, :, None, :] < middle[:, None]).sum(axis=1)  # as many as are below: the next one is here
@@ -107,8 +107,8 @@ def draw(timeline: Timeline, path: Path, title: str = "") -> None:
     _draw_moves(panel(0.6 + owning, moving), timeline)
     _draw_doing(panel(1.25 + owning + moving, doing), timeline, colors, 1.0 + 0.42 / doing)
     who = "the supervisor" if timeline.control == "central" else "every executor alike"
-    figure.text(left / width, 1.0 - 0.15 / height, f"{title or 'Run'}: {count} executor{'s' * (count > 1)}, owners decided by {who}",
-                fontsize=12, va="top")
+    figure.text(left / width, 1.0 - 0.15 / height, fontsize=12, va="top",
+                s=f"{title or 'Run'}: {count} executor{'s' * (count > 1)}, owners decided by {who}")
     write_whole(path, lambda part: figure.savefig(part, dpi=130, format="png", metadata={"Software": None}))
 
 
@@ -124,7 +124,8 @@ def _draw_doing(axes, timeline: Timeline, colors: np.ndarray, legend_at: float) 
         label.set(bbox={"facecolor": color, "edgecolor": "none", "pad": 2.0, "boxstyle": "round,pad=0.25"},
                   color="white" if color @ [0.2126, 0.7152, 0.0722] < 0.5 else "black")
     axes.tick_params(axis="y", length=0, pad=7)
-    axes.set(xlabel="wall time since all executors began [s]", ylabel="executor")
+    axes.set_xlabel("wall time since all executors began [s]")
+    axes.set_ylabel("executor", labelpad=8)
     busy = timeline.busy()
     right = axes.secondary_yaxis("right")
     right.set_yticks(range(count), [f"{100 * b:.0f} %" for b in busy], fontsize=9)
@@ -176,8 +177,8 @@ def _draw_owners(axes, timeline: Timeline, colors: np.ndarray) -> None:
     legend = [Patch(color=c, label=str(e)) for e, c in enumerate(colors)]
     if (owner < 0).any():
         legend.append(Patch(color=NOBODY, label="none: never moves"))
-    axes.legend(handles=legend, title="executor", ncols=2 if len(legend) > 10 else 1, loc="upper left", bbox_to_anchor=(1.005, 1.0),
-                fontsize=8, title_fontsize=8, frameon=False, borderaxespad=0.0)
+    axes.legend(handles=legend, title="executor", ncols=2 if len(legend) > 10 else 1, loc="upper left",
+                bbox_to_anchor=(1.005, 1.0), fontsize=8, title_fontsize=8, frameon=False, borderaxespad=0.0)
 
 
 def _frame_range(timeline: Timeline) -> tuple[float, float]:
