@@ -63,10 +63,13 @@ class Timeline:
     def owner(self) -> np.ndarray:
         """Executor of every object at every frame, -1 for none, int64, shape (F, M)."""
         table = np.full((len(self.frames), len(self.names)), -1)
-        row = {frame: n for n, frame in enumerate(self.frames)}
-        for frame, m, executor in self.owners:
-            table[row[frame]:, m] = executor
-        return table
+        since = np.full_like(table, -1)
+        if self.owners:
+            frame, m, executor = np.array(self.owners).T
+            row = np.searchsorted(self.frames, frame)
+            table[row, m], since[row, m] = executor, row
+        since = np.maximum.accumulate(since, axis=0)
+        return np.where(since < 0, -1, np.take_along_axis(table, np.maximum(since, 0), axis=0))
 
     @property
     def seconds(self) -> float:
