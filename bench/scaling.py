@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Speed over the number of executors, the paper's fig. 18: ``python bench/scaling.py [run|goals|model] [options]``.
+"""Speed over the number of executors, the paper's fig. 18: ``python bench/scaling.py [run|plot|goals|model] [options]``.
 
 run: scenes/crowd.txt and a hail of 64 blocks by 1000 particles, in one process and on executors under both controls, in
-interleaved rounds; prints a table of medians, writes scaling.json and docs/images/scaling.png. goals: 64 blocks that meet nobody,
-and one object of 64 000 particles that two executors run as a team. model: what scaling.json says about more ranks than are here.
+interleaved rounds; prints a table of medians, writes scaling.json and docs/images/scaling.png (plot draws it again). goals: 64
+blocks that meet nobody, and one object of 64 000 particles that two executors run as a team. model: what scaling.json says about
+more ranks than are here.
 
 Options: ``--executors 1,2,4``, ``--rounds 3``, ``--frames 8`` (of the hail; four times as many of the crowd), ``--json FILE``,
 ``--plot FILE``.
+
 Speed is told in two ways: frames per second of wall time, from the end of frame 1 to the last, with all that is written; and
 frames per second of processor time of the executor that takes most, which other programs on the machine change less.
 """
@@ -112,7 +114,7 @@ def _measure(ready, executors: int, control: str) -> dict:
         else:
             simulate_on(executors, control, ready, folder, **told)
             log = Timeline.read(folder)
-            found = {"executors": executors, "cpu": max(log.cpu), "supervisor_cpu": log.supervisor_cpu, "moves": sum(log.moves),
+            found = {"cpu": max(log.cpu), "supervisor_cpu": log.supervisor_cpu, "moves": sum(log.moves),
                      "again": sum(log.retries), "busy": float(log.busy().mean()), "spent": log.spent().mean(axis=0).tolist()}
     frames = len(ends)
     return found | {"by_wall": (frames - 1) / (ends[-1] - ends[0]), "by_cpu": frames / found["cpu"], "frames": frames}
@@ -207,7 +209,14 @@ def run(options) -> None:
     data = {"note": note, "known": known,
             "runs": {name: {f"{k} {c}".strip(): r for (k, c), r in of.items()} for name, of in runs.items()}}
     options.json.write_text(json.dumps(data, indent=1) + "\n")
-    draw(runs, options.plot, note)
+    plot(options)
+
+
+def plot(options) -> None:
+    """The picture of scaling.json."""
+    data = json.loads(options.json.read_text())
+    runs = {name: {(int(case.split()[0]), case.partition(" ")[2]): r for case, r in of.items()} for name, of in data["runs"].items()}
+    draw(runs, options.plot, data["note"])
     print(f"{options.json}   {options.plot}")
 
 
@@ -250,14 +259,14 @@ def fit(data: dict) -> dict:
     hail, crowd = (data["runs"][name] for name in ("hail", "crowd"))
     known = data["known"]
     work = statistics.median(r["cpu"] / r["frames"] / known["hail"]["particles"] for r in hail["0"])
-    distributed = {name: [r for case, runs in of.items() if case != "0" for r in runs]
+    distributed = {name: [(int(case.split()[0]), r) for case, runs in of.items() if case != "0" for r in runs]
                    for name, of in (("hail", hail), ("crowd", crowd))}
     # Of the supervisor: so much for a frame, so much for a particle in it.
-    seen = {name: (known[name]["particles"], statistics.median(r["supervisor_cpu"] / r["frames"] for r in runs))
+    seen = {name: (known[name]["particles"], statistics.median(r["supervisor_cpu"] / r["frames"] for _, r in runs))
             for name, runs in distributed.items()}
     per_particle = (seen["hail"][1] - seen["crowd"][1]) / (seen["hail"][0] - seen["crowd"][0])
     per_frame = max(0.0, seen["crowd"][1] - per_particle * seen["crowd"][0])
-    moving = statistics.median(r["spent"][1] * r["executors"] / r["moves"] for r in distributed["crowd"] if r["moves"])
+    moving = statistics.median(r["spent"][1] * k / r["moves"] for k, r in distributed["crowd"] if r["moves"])
     order = _plan(10_000, 8)[0]
     message = Order(order, np.zeros((10_000, 3)), np.zeros((10_000, 3)), 100, True)
     seconds = least(lambda: pickle.loads(pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL)))
@@ -333,7 +342,7 @@ def row(objects: int, size: int, executors: int, cost: dict) -> str:
 def main() -> None:
     """Read the command line."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("part", nargs="?", choices=("run", "goals", "model"), default="run")
+    parser.add_argument("part", nargs="?", choices=("run", "plot", "goals", "model"), default="run")
     cores = os.cpu_count() or 1
     default = sorted({k for k in (1, 2, 4, 8, 12, 15) if k <= max(2, cores - 1)})
     parser.add_argument("--executors", type=lambda text: [int(k) for k in text.split(",")], default=default)
@@ -342,7 +351,7 @@ def main() -> None:
     parser.add_argument("--json", type=Path, default=HERE / "scaling.json")
     parser.add_argument("--plot", type=Path, default=HERE.parent / "docs" / "images" / "scaling.png")
     options = parser.parse_args()
-    {"run": run, "goals": goals, "model": model}[options.part](options)
+    {"run": run, "plot": plot, "goals": goals, "model": model}[options.part](options)
 
 
 if __name__ == "__main__":
