@@ -267,7 +267,7 @@ def fit(data: dict) -> dict:
     per_particle = (seen["hail"][1] - seen["crowd"][1]) / (seen["hail"][0] - seen["crowd"][0])
     per_frame = max(0.0, seen["crowd"][1] - per_particle * seen["crowd"][0])
     moving = statistics.median(r["spent"][1] * k / r["moves"] for k, r in distributed["crowd"] if r["moves"])
-    order = _plan(10_000, 8)[0]
+    scene, order = load("crowd", 4), _plan(10_000, 8)[0]
     message = Order(order, np.zeros((10_000, 3)), np.zeros((10_000, 3)), 100, True)
     seconds = least(lambda: pickle.loads(pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL)))
     return {
@@ -276,6 +276,7 @@ def fit(data: dict) -> dict:
         "per_frame": (per_frame, "s of the supervisor per frame, besides"),
         "moved": (moving, "s of executors for an object that moves, with instances built anew (crowd, wall time)"),
         "order": (seconds / 10_000, "s to pack and unpack an order, per object (central: once for each executor)"),
+        "memory": (len(pickle.dumps(scene.plan)) / scene.system.particles + 72, "bytes of every executor per particle of the scene"),
         "latency": (LATENCY, "s for a message between hosts (assumed)"),
         "wire": (1.0 / BANDWIDTH, "s per byte between hosts (assumed)"),
     }
