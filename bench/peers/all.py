@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Other programs on our scenes: ``python bench/peers/all.py [--write] [--limit SECONDS] [SCENE ...]`` with scenes cube, cantilever, float.
+
+Every contender runs alone in a process of its own, on one thread, for a limit of processor seconds or until the scene is over; ours by the
+Python that runs this, others by .venv-peers. A contender that cannot run, or takes too long to begin, has a row that says why.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+
+from timing import markdown, replace_between  # noqa: E402
+
+PAGE = HERE.parent.parent / "docs" / "performance.md"
+PEERS = HERE.parent.parent / ".venv-peers" / "bin" / "python"
+BEGIN = 150.0
+"""Wall seconds that a contender may take beyond its limit, building and compiling included."""
+CUBE = dict(young=5e5, density=1000.0, z=0.6, time=1.0)
+BAR = dict(length=1.0, thickness=0.1, young=5e6, density=1000.0, gravity=1.0, drag=4.0, time=3.0, exact=0.0303)
+"""The exact deflection of the tip [m] is Timoshenko's."""
+POOL = dict(width=1.0, level=0.6, side=0.3, middle=0.5, z=0.85, density=500.0, time=1.0)
+CASES = {
+    "cube": ("A cube of 1 m, E 5e5 Pa, 1000 kg/m³, falls 0.1 m onto the ground, 10 648 nodes", CUBE | {"h": 1.0 / 21.0},
+             {"ours": 1.0, "mujoco_flex": 40.0, "taichi_springs": 2.0, "openmm_springs": None, "pybullet_soft": None}),
+    "cantilever": ("A bar of 1 m × 0.1 m × 0.1 m, E 5e6 Pa, clamped, settles under 1 m/s², 4 cells thick; error of the tip's sag",
+                   BAR | {"h": 0.025}, {"ours": 1.0, "mujoco_flex": None}),
+    "cantilever, 2 cells": ("The same 2 cells thick, for what equal error costs", BAR | {"h": 0.05}, {"ours": 1.0, "mujoco_flex": None}),
+    "float": ("A box of 0.3 m, 500 kg/m³, dropped into 1 m × 1 m × 0.6 m of water, spacing 0.0288 m", POOL | {"h": 0.0288},
+              {"ours": 1.0, "lammps_sph": 300.0}),
+}
+"""Title, numbers of the scene, and contenders with the goal: how many times as much as ours they take."""
+
+
+def contender(name: str, scene: str, case: dict) -> dict:
+    """Figures of one contender, or why there are none."""
+    python = Path(sys.executable) if name == "ours" else PEERS
+    if not python.exists():
+        return {"failed": "not installed: there is no .venv-peers, see `make bench-peers`"}
+    alone = {"OMP_NUM_THREADS": "1", "OPENMM_CPU_THREADS": "1", "TI_LOG_LEVEL": "error"}
+    try:
+        done = subprocess.run([python, HERE / f"{name}.py", scene.split(",")[0], json.dumps(case)], capture_output=True, text=True,
+                              timeout=case["limit"] + BEGIN, env=os.environ | alone)
+    except subprocess.TimeoutExpired:
+        return {"failed": f"no figure within {case['limit'] + BEGIN:.0f} s"}
+    lines = done.stdout.strip().splitlines()
+    if done.returncode or not lines:
+        return {"failed": (done.stderr.strip().splitlines() or [f"ended with {done.returncode}"])[-1][:150]}
+    return json.loads(lines[-1])
+
+
+def measure(scene: str, limit: float) -> list[dict]:
+    """One row for each contender of a scene."""
+    _, case, contenders = CASES[scene]
+    with tempfile.TemporaryDirectory() as folder:
+        case = case | {"limit": limit}
+        shared = case | ({"lattice": str(Path(folder) / "lattice.npz")} if scene == "cube" else {})
+        return [{"contender": name, "goal": goal} | contender(name, scene, shared) for name, goal in contenders.items()]
+
+
+def table(rows: list[dict]) -> str:
+    """In Markdown."""
+    ours = next((r.get("cost") for r in rows if r["contender"] == "ours"), None)
+    lines = []
+    for r in rows:
+        if "failed" in r:
+            lines.append((r["contender"], "", "", "", f"**no figure:** {r['failed']}", "", "", ""))
+            continue
+        about = "~" if r["extrapolated"] else ""
+        error = f"{100 * r['error']:+.1f} %" if r.get("error") is not None else ""
+        ratio = f"{about}{r['cost'] / ours:.3g}" if ours else ""
+        size = f"{r['nodes']:,}" + (f" + {r['cells']:,} cells" if "cells" in r else "")
+        lines.append((f"{r['contender']} {r['version']}" + (f", {r['note']}" if "note" in r else ""), size, r["dt"], r["steps"],
+                      f"{about}{r['cost']:.3g}", ratio, f"≥ {r['goal']:g}" if r["goal"] and r["contender"] != "ours" else "", error))
+    return markdown(["contender", "nodes", "step [s]", "steps taken", "processor seconds per simulated second", "over ours", "goal",
+                     "error"], lines)
+
+
+def main() -> None:
+    """Measure, print, and write if asked to."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scenes", nargs="*", default=list(CASES))
+    parser.add_argument("--limit", type=float, default=30.0)
+    parser.add_argument("--write", action="store_true")
+    options = parser.parse_args()
+    busy = os.getloadavg()[0] / os.cpu_count()
+    text = (f"`python bench/peers/all.py`, {options.limit:g} processor seconds at most for each, load at the start {busy:.1f} per core"
+            + (" (**a busy machine**)" if busy > 0.3 else "") + "; ~ extrapolated from the part of the scene that fitted.\n")
+    for scene in options.scenes:
+        rows = measure(scene, options.limit)
+        part = f"**{CASES[scene][0]}**\n\n{table(rows)}\n"
+        print(part, flush=True)
+        text += "\n" + part
+    if options.write:
+        replace_between(PAGE, "peers", text)
+
+
+if __name__ == "__main__":
+    main()
