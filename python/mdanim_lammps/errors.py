@@ -128,6 +128,12 @@ class SetupError(MdanimError):
     exit_code = ExitCode.ENVIRONMENT
 
 
+class ExecutorLost(MdanimError):
+    """A rank of a distributed run has died: killed, out of memory, a host gone, or an error that nobody has foreseen."""
+
+    exit_code = ExitCode.ENVIRONMENT
+
+
 class DivergedError(MdanimError):
     """The run diverged, the ledger broke or an ``expect`` was missed; the last good state is kept."""
 

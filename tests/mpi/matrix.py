@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Run one scene in many ways, one after the other, in one start of MPI: ``mpiexec -n 5 python matrix.py CASES.json``.
+"""Run one scene in many ways, one after the other, in one start of MPI: ``mpiexec -n 5 python matrix.py CASES.json SECONDS``.
 
 Each way is a supervisor and executors on some of the ranks, or the sequential program on one of them.
 """
 
+import faulthandler
 import json
 import sys
 import time
@@ -36,7 +37,7 @@ def run(case: dict, ready, world) -> None:
     except Interrupted:
         assert "stop" in case
     if source:
-        assert not source.stuck
+        assert source.clean
         source.timeline.write(folder)
 
 
@@ -49,6 +50,7 @@ def wait(comm) -> None:
 
 def main() -> None:
     """All ways in their order; ranks that are not needed wait."""
+    faulthandler.dump_traceback_later(float(sys.argv[2]))  # who waits for whom, when all wait for ever
     everybody = MPI.COMM_WORLD
     work = json.loads(Path(sys.argv[1]).read_text())
     ready = prepare(load_scene(Path(work["scene"]))) if everybody.rank == 0 else None

@@ -105,3 +105,24 @@ HASTY = FLYING.split("control")[0].replace("1 .. 4", "1 .. 2") + "control { time
 """Frames of one step."""
 UNEVEN = FLYING.split("control")[0].replace("1 .. 4", "1 .. 3") + "control { time 0.107 s  frames 100 fps  resolution 5 cm }"
 """A last frame that is shorter than the others."""
+POOL = RAFTS.replace("time 0.24 s", "time 0.16 s")
+"""The same, shorter."""
+APART = """
+gravity (0, 0, -9.81) m/s^2
+object falling {
+  shape box (10, 10, 10) cm
+  position (0, 0, 0) m
+  density 900
+  elasticity 100 kPa
+  velocity (0, 0, -2) m/s
+}
+object hanging {
+  shape box (10, 10, 10) cm
+  position (5, 0, 0) m
+  density 900
+  elasticity 1 MPa
+  hold faces z
+}
+control { time 0.1 s  frames 100 fps  resolution 2.5 cm }
+"""
+"""One that moves fast, and one that hardly moves."""

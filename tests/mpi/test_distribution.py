@@ -26,15 +26,15 @@ WINDOWS = {"worth": 0, "finest": 8}
 """Windows shorter than a frame wherever loads are not in balance."""
 
 
-def ways(scene: Path, cases: dict[str, dict], ranks: int = 5, timeout: float = 240.0) -> dict[str, Path]:
+def ways(scene: Path, cases: dict[str, dict], ranks: int = 5, timeout: float = 60.0) -> dict[str, Path]:
     """Run a scene in all of these ways, the sequential one first; returns the folder of each."""
     folder = scene.parent
     cases = {"sequential": SEQUENTIAL} | cases
     work = [{"folder": str(folder / case.get("in", name)), **case} for name, case in cases.items()]
     (folder / "cases.json").write_text(json.dumps({"scene": str(scene), "cases": work}))
     done = subprocess.run(
-        [plugin_path.BIN / "mpiexec", "-n", str(ranks), sys.executable, "-m", "mpi4py", MATRIX, folder / "cases.json"],
-        capture_output=True, text=True, timeout=timeout, env={**plugin_path.environment(), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))})
+        [plugin_path.BIN / "mpiexec", "-n", str(ranks), sys.executable, "-m", "mpi4py", MATRIX, folder / "cases.json", str(timeout)],
+        capture_output=True, text=True, timeout=timeout + 10.0, env={**plugin_path.environment(), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))})
     assert done.returncode == 0, done.stdout + done.stderr
     return {name: folder / case.get("in", name) for name, case in cases.items()}
 
@@ -115,21 +115,111 @@ def all_the_same(found: dict[str, Path], cases: dict[str, dict]) -> dict[str, Ti
     return timelines
 
 
+def windows(timeline: Timeline) -> int:
+    """Most windows on the way to a frame: an executor waits once at the end of each, or has begun it again."""
+    waits = [frame for e, kind, frame, *_ in timeline.spans if e == 0 and kind == "waiting" and frame > 1]
+    return int(np.bincount(waits).max())
+
+
 def test_objects_that_fly_about_change_their_executors(scene):
-    """At least 30 migrations, also where reserved boxes are too small at first and where windows are shorter than a frame."""
-    cases = (matrix((2, 4), name="plain ") | matrix((3,), name="again ", settings={"safety": 0.3}) |
-             matrix((3,), name="windows ", settings=WINDOWS) | matrix((3,), ["peers"], "both ", settings=WINDOWS | {"safety": 0.3}))
+    """At least 30 migrations; also where reserved boxes are too small at first, and where windows are shorter than a frame."""
+    again, finer = {"safety": 0.3}, WINDOWS | {"finest": 4}
+    cases = (matrix((2,), name="plain ") | matrix((3,), ["central"], "again ", settings=again) |
+             matrix((3,), ["central"], "windows ", settings=finer) | matrix((3,), ["peers"], "both ", settings=again | finer))
     timelines = all_the_same(ways(scene(films.FLYING), cases), cases)
-    for way, timeline in timelines.items():
-        print(way, sum(timeline.moves), sum(timeline.retries))
+    moves = {way: sum(t.moves) for way, t in timelines.items()}
+    assert moves["both peers3"] >= 30 and moves["again central3"] >= 30, moves
+    assert sum(timelines["again central3"].retries) >= 10 and sum(timelines["both peers3"].retries) >= 10
+    assert sum(timelines["plain peers2"].retries) == 0
+    assert windows(timelines["windows central3"]) > 1 == windows(timelines["plain central2"])
+    for timeline in timelines.values():
+        # What came to an executor is what left another, and no frame is without an owner for what can move.
+        table = timeline.owner()
+        assert (table >= 0).all() and (table < timeline.executors).all()
+        assert (table[1:] != table[:-1]).sum() <= sum(timeline.moves)
+    kinds = [kind for _, kind, *_ in timelines["again central3"].spans]
+    assert kinds.count("frozen") >= 10, "who is done is frozen while others begin a window again"
 
 
-@pytest.mark.parametrize(("text", "team"), [
-    pytest.param(films.HEAVY, "block", id="solid"), pytest.param(films.RAFTS, "", id="liquid"), pytest.param(films.FLYING, "", id="islands"),
+def test_who_is_done_is_frozen(scene):
+    """Of two groups far apart only the one whose boxes were too small begins again; the other one's executor simulates once."""
+    cases = matrix((2,), settings={"safety": 0.0})
+    timelines = all_the_same(ways(scene(films.APART), cases), cases)
+    for timeline in timelines.values():
+        times = np.array([[sum(e == who and kind == "simulating" and f == frame for e, kind, f, *_ in timeline.spans)
+                           for frame in timeline.frames[1:]] for who in (0, 1)])
+        retried = np.array(timeline.retries[1:])
+        assert retried.max() > 0
+        falls = int(timeline.owner()[-1, timeline.names.index("falling")])
+        assert np.array_equal(times[falls], 1 + retried) and (times[1 - falls] == 1).all()
+
+
+@pytest.mark.parametrize(("text", "control"), [
+    pytest.param(films.HEAVY, "central", id="solid"), pytest.param(films.POOL, "peers", id="liquid"),
+    pytest.param(films.FLYING, "central", id="islands", marks=pytest.mark.soak),
 ])
-def test_a_team_runs_what_is_too_heavy_for_one(scene, text, team):
-    """Several executors run one island together."""
-    cases = matrix((2, 3), settings={"least": 50}) | matrix((3,), ["peers"], "windows ", settings=WINDOWS | {"least": 50, "safety": 0.5})
+def test_a_team_runs_what_is_too_heavy_for_one(scene, text, control):
+    """Several executors run one island together, also where its box is too small at first."""
+    cases = (matrix((2,), [control], settings={"least": 50}) |
+             matrix((3,), [control], "windows ", settings=WINDOWS | {"least": 50, "safety": 0.5}))
     timelines = all_the_same(ways(scene(text), cases), cases)
-    for way, timeline in timelines.items():
-        print(way, sum(timeline.moves), sum(timeline.retries), [max(r, default=0) for r in [timeline.retries]])
+    assert {members for _, members in timelines[f"{control}2"].teams} <= {(0, 1), (1, 0)} and timelines[f"{control}2"].teams
+    assert max(len(members) for _, members in timelines[f"windows {control}3"].teams) >= 2
+    assert sum(timelines[f"windows {control}3"].retries) > 0
+
+
+def test_a_run_goes_on_with_other_executors(scene):
+    """Stop in the middle of a collision; go on with more executors, with none, under the other control; stop again."""
+    first, after = ({"executors": k, "control": control} for k, control in ((3, "central"), (2, "peers")))
+    cases = {
+        "a": first | {"stop": 4}, "a more": first | {"executors": 4, "resume": True, "in": "a"},
+        "b": SEQUENTIAL | {"stop": 4}, "b spread": after | {"resume": True, "in": "b", "stop": 7},
+        "b alone": SEQUENTIAL | {"resume": True, "in": "b"},
+        "c": after | {"stop": 5}, "c alone": SEQUENTIAL | {"resume": True, "in": "c"},
+    }
+    found = ways(scene(films.MIXED), cases)
+    contact = Ledger.read(found["sequential"] / "ledger.csv").array("contact")
+    assert contact[4:8].min() > 0.0, "it was to be stopped while objects touch"
+    for way in ("a", "b", "c"):
+        same(found["sequential"], found[way])
+    assert checked_resumed(found["a"]) == 4
+
+
+def checked_resumed(folder: Path) -> int:
+    """Executors of the last part of a run that was stopped, found whole."""
+    assert not [p for p in folder.iterdir() if p.name.startswith(".") or p.name == "stop"]
+    return Timeline.read(folder).executors
+
+
+def test_a_liquid_goes_on_with_other_executors(scene):
+    """Stop while bodies splash; the state of the liquid goes to whoever has it next."""
+    cases = {
+        "a": {"executors": 2, "control": "central", "stop": 5}, "a more": {"executors": 3, "control": "peers", "resume": True, "in": "a"},
+        "b": SEQUENTIAL | {"stop": 5}, "b spread": {"executors": 2, "control": "peers", "resume": True, "in": "b"},
+        "team": {"executors": 2, "control": "peers", "stop": 5, "settings": {"least": 50}},
+        "team alone": SEQUENTIAL | {"resume": True, "in": "team"},
+    }
+    found = ways(scene(films.POOL), cases)
+    for way in ("a", "b", "team"):
+        same(found["sequential"], found[way])
+
+
+def test_lammps_alone_runs_the_same_film(scene):
+    """The written input under ``lmp`` ends with the bits of the distributed run."""
+    path = scene(films.MIXED.replace("frames 100 fps", "frames 25 fps"))
+    found = ways(path, matrix((2,), ["central"]))
+    from mdanim_lammps.driver.prepare import prepare
+    from mdanim_lammps.driver.run import write_inputs
+    from mdanim_lammps.results.trajectory import Trajectory
+    from mdanim_lammps.scene.parse import load_scene
+
+    ready = prepare(load_scene(path))
+    write_inputs(ready, path.parent)
+    script = path.parent / f"in.{ready.plan.name}"
+    script.write_text(script.read_text() + "\nwrite_dump all custom end.dump id x y z vx vy vz modify sort id format float %.17g\n")
+    done = plugin_path.lmp(script)
+    assert done.returncode == 0, done.stdout + done.stderr
+    rows = np.loadtxt(path.parent / "end.dump", skiprows=9)
+    with Trajectory(found["central2"]) as film:
+        last = len(film) - 1
+        assert np.array_equal(rows[:, 1:4], film.position(last)) and np.array_equal(rows[:, 4:], film.velocity(last))

@@ -38,7 +38,7 @@ def serve(world: MPI.Comm) -> None:
         mail.send(SUPERVISOR, Tag.FAILED, Failure(type(error).__name__, str(error)))
     except Exception as error:  # whatever it is, the others must hear of it
         traceback.print_exc()
-        mail.send(SUPERVISOR, Tag.FAILED, Failure("MdanimError", f"executor {comm.rank}: {type(error).__name__}: {error}"))
+        mail.send(SUPERVISOR, Tag.FAILED, Failure("ExecutorLost", f"executor {comm.rank}: {type(error).__name__}: {error}"))
 
 
 class Executor:
@@ -76,7 +76,7 @@ class Executor:
         """Of its objects at the last frame; losses [J] are those since the frame before."""
         self.deepest = 0.0
         self.spans: list[tuple[str, int, float, float]] = []
-        mail.world.Barrier()
+        mail.wait(comm.Ibarrier().Test)
         self.origin, self.cpu_origin = time.perf_counter(), time.process_time()
 
     # --- the order of things --------------------------------------------------------------------------------------

@@ -19,7 +19,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import ExitCode, MdanimError, SetupError
+from ..errors import ExecutorLost, SetupError
 from ..results.checkpoint import Checkpoint
 from .planning import Settings
 from .prepare import Prepared
@@ -40,12 +40,6 @@ class Task:
     resume: Checkpoint | None
     started: float
     settings: Settings
-
-
-class ExecutorLost(MdanimError):
-    """A rank has died: killed, out of memory, a host gone."""
-
-    exit_code = ExitCode.ENVIRONMENT
 
 
 def simulate_on(executors: int, control: str, ready: Prepared, folder: Path, *, watch: Callable[[Progress], None] | None = None,
@@ -94,11 +88,11 @@ def launcher() -> list[str]:
 
 
 def _hear(stream, said: list[str]) -> None:
-    """Pass on what ranks say, but for mpiexec's own obituary, which is told better by `_lost`."""
+    """Pass on what ranks say, but for MPI's own obituaries, which are told better by `_lost` or by the error that a run has left."""
     mourning = False
     for line in stream:
         said.append(line)
-        mourning = mourning or line.startswith("=====")
+        mourning = mourning or line.startswith(("=====", "Abort("))
         if not mourning:
             sys.stderr.write(line)
 

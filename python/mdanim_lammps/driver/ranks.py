@@ -14,7 +14,7 @@ import traceback
 from dataclasses import asdict
 from pathlib import Path
 
-from ..errors import MdanimError
+from ..errors import MdanimError, OutputError
 from .launch import JOB, RESULT, Task
 
 
@@ -34,7 +34,7 @@ def main() -> None:
 
 
 def _supervise(world, exchange: Path) -> None:
-    from .run import simulate
+    from .run import Result, simulate
     from .supervisor import Distributed
 
     task: Task = pickle.loads((exchange / JOB).read_bytes())
@@ -43,18 +43,26 @@ def _supervise(world, exchange: Path) -> None:
         result = simulate(task.ready, task.folder, resume=task.resume, started=task.started, source=source,
                           watch=lambda p: print(json.dumps(asdict(p)), flush=True))
     except MdanimError as error:
-        result = (type(error).__name__, type(error).__module__, str(error))
+        result = _told(error)
     except BaseException:  # executors would wait for ever
         traceback.print_exc()
         sys.stderr.flush()
         world.Abort(1)
         raise
-    source.timeline.write(task.folder)
+    try:
+        source.timeline.write(task.folder)
+    except OutputError as error:
+        result = _told(error) if isinstance(result, Result) else result
     part = exchange / (RESULT + ".part")
     part.write_bytes(pickle.dumps(result))
     part.rename(exchange / RESULT)
-    if source.stuck:
-        world.Abort(1)
+    if not source.clean:
+        world.Abort(1)  # executors may wait for ever for what never comes
+
+
+def _told(error: MdanimError) -> tuple[str, str, str]:
+    """What `launch.simulate_on` raises again: kind, module, text."""
+    return type(error).__name__, type(error).__module__, str(error)
 
 
 if __name__ == "__main__":

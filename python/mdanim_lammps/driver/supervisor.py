@@ -17,10 +17,10 @@ from mpi4py import MPI
 from .. import errors
 from ..engine.instance import State
 from ..engine.part import Parts
-from ..errors import DivergedError, MdanimError
+from ..errors import DivergedError
 from ..results.timeline import Timeline
 from .energy import ledger_terms
-from .messages import SUPERVISOR, Ended, Failure, Grant, Job, Kept, Mail, Share, Tag
+from .messages import SUPERVISOR, Ended, Failure, Grant, Job, Kept, Mail, Report, Share, Tag
 from .planner import Planner
 from .planning import Settings
 from .prepare import Prepared
@@ -50,8 +50,12 @@ class Distributed:
         self.ended: dict[int, Ended] = {}
         self.gone: set[int] = set()
         """Executors that have said their last word."""
-        self.stuck = False
-        """Whether some executor has not ended when it was told to."""
+        self.stopped = False
+        """Whether an end was asked for after the last frame that was granted."""
+        self.clean = False
+        """Whether all executors have come to their end; after an error they may be anywhere, and be waiting for each other."""
+        self.used: list[_Sheaf] = []
+        """Sheaves that can be filled again: they are as large as the scene."""
         self.timeline = Timeline(self.executors, control, system.names)
 
     # --- as a source of frames ------------------------------------------------------------------------------------
@@ -63,22 +67,24 @@ class Distributed:
         system = self.ready.system
         self.step = resume.step if resume else 0
         self.start = (resume.x, resume.v, resume.f) if resume else (system.position, system.velocity, np.zeros_like(system.position))
-        self.granted = resume.frame if resume else 0
+        self.granted = self.taken = resume.frame if resume else 0
+        self.last: _Sheaf | None = None
+        """That of the frame which was given out last."""
         self.kept_at, self.cpu_begun = time.perf_counter(), time.process_time()
         self.desk = _Desk(self.world, Job(self.ready.plan, self.lengths, self.control, resume, self.settings))
         self.desk.start()
         return None if resume else self._frame(0, keep=True)
 
     def advance(self, frame, steps):
-        while self.granted < min(frame + CREDIT - 1, len(self.lengths)):
+        while not self.stopped and self.granted < min(frame + CREDIT - 1, len(self.lengths)):
             self._grant(self.granted + 1)
         self.step += steps
         return self._frame(frame, self._sheaf(frame).keep)
 
     def stop(self, frame):
-        if self.granted < len(self.lengths):
+        if not self.stopped and self.granted < len(self.lengths):  # it may be asked for again after every frame that still comes
             self.desk.send_all(Tag.GRANT, None)
-            self._sheaf(self.granted).keep = True
+            self._sheaf(self.granted).keep = self.stopped = True
         return self.granted
 
     def state(self):
@@ -104,15 +110,16 @@ class Distributed:
     def __exit__(self, kind, *_) -> None:
         if not hasattr(self, "desk"):
             return
-        if kind is not None:
+        self.clean = kind is None or self.stopped and self.taken == self.granted
+        if not self.clean:
             self.desk.send_all(Tag.ABORT, None)
-            end = time.perf_counter() + PATIENCE
-            while len(self.gone) < self.executors and time.perf_counter() < end:
-                try:
-                    self._take(patience=0.1)
-                except (MdanimError, Broken):  # the first word was that of the cause
-                    pass
-            self.stuck = len(self.gone) < self.executors
+        end = time.perf_counter() + PATIENCE
+        while len(self.gone) < self.executors and time.perf_counter() < end and self.desk.is_alive():
+            try:
+                self._take(patience=0.1)
+            except Exception:  # whatever follows, the first word was that of the cause
+                self.clean = False
+        self.clean &= len(self.gone) == self.executors
         self.desk.close()
         for executor, ended in self.ended.items():
             self.timeline.spans += [(executor, *span) for span in ended.spans]
@@ -131,15 +138,19 @@ class Distributed:
 
     def _sheaf(self, frame: int) -> "_Sheaf":
         if frame not in self.sheaves:
-            self.sheaves[frame] = _Sheaf(*(a.copy() for a in self.start))
+            # What moves is overwritten in every frame, what does not is right in all of them.
+            old = self.used.pop() if self.used else None
+            self.sheaves[frame] = _Sheaf(old.x, old.v, old.f) if old else _Sheaf(*(a.copy() for a in self.start))
         return self.sheaves[frame]
 
     def _frame(self, frame: int, keep: bool) -> Frame:
         """Wait for all shares of a frame. Raises what an executor raised."""
         sheaf = self._sheaf(frame)
-        while len(sheaf.shares) < self.executors or keep and sheaf.kept < self.executors:
+        while len(sheaf.shares) < self.executors or keep and len(sheaf.kept) < self.executors:
             self._take()
-        del self.sheaves[frame]
+        if self.last:
+            self.used.append(self.last)
+        self.last, self.taken = self.sheaves.pop(frame), frame
         shares = [sheaf.shares[e] for e in range(self.executors)]
         energies = dict(self.resting)
         for share in shares:
@@ -177,8 +188,10 @@ class Distributed:
             rows = _rows(system.first, message.objects)
             sheaf.x[rows], sheaf.v[rows] = message.x, message.v
         elif isinstance(message, Kept):
+            if message.frame <= self.taken and self.last:  # sent a second time, by an end after a frame that was kept anyway
+                return
             sheaf = self._sheaf(message.frame)
-            sheaf.kept += 1
+            sheaf.kept.add(executor)
             sheaf.f[_rows(system.first, message.objects)] = message.f
             sheaf.liquid = sheaf.liquid if message.liquid is None else message.liquid
         elif isinstance(message, Ended):
@@ -209,7 +222,7 @@ class _Sheaf:
     """By executor."""
     keep: bool = False
     """Whether what a checkpoint needs comes with it."""
-    kept: int = 0
+    kept: set[int] = field(default_factory=set)
     """Executors that have sent it."""
     liquid: np.ndarray | None = None
 
@@ -244,7 +257,6 @@ class _Desk(threading.Thread):
         world, job = self.world, self.job
         world.Split(0, world.rank)
         world.bcast(job, root=SUPERVISOR)
-        world.Barrier()
         mail = Mail(world)
         executors = world.size - 1
         planner = None
@@ -263,13 +275,20 @@ class _Desk(threading.Thread):
                     continue
                 reports[executor] = received
                 if len(reports) == executors:
-                    order = planner.decide([reports.pop(e) for e in range(executors)])
-                    for e in range(executors):
-                        mail.send(e + 1, Tag.ORDER, order)
+                    self._decide(mail, planner, [reports.pop(e) for e in range(executors)])
             if closing and not busy:
                 return
             if not busy:
                 time.sleep(PAUSE)
+
+    def _decide(self, mail: Mail, planner: Planner, reports: list[Report]) -> None:
+        try:
+            order = planner.decide(reports)
+        except Exception as error:  # the main thread is told, and wants to send an ABORT from here
+            self.inbox.put((SUPERVISOR, error))
+            return
+        for e in range(len(reports)):
+            mail.send(e + 1, Tag.ORDER, order)
 
     def _send(self, mail: Mail, executors: int) -> bool:
         try:

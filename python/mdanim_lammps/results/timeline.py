@@ -102,4 +102,6 @@ class Timeline:
     def read(cls, folder: Path) -> "Timeline":
         """Read timeline.json of an output folder. Raises OutputError."""
         data = read_json(folder / TIMELINE)
-        return cls(**{k: tuple(v) if k == "names" else v for k, v in data.items()})
+        rows = {k: [tuple(row) for row in data[k]] for k in ("owners", "spans")}
+        teams = [(frame, tuple(members)) for frame, members in data["teams"]]
+        return cls(**data | rows | {"names": tuple(data["names"]), "teams": teams})
