@@ -60,8 +60,9 @@ def simulate_on(executors: int, control: str, ready: Prepared, folder: Path, *, 
         said: list[str] = []
         hearing = threading.Thread(target=_hear, args=(ranks.stderr, said), daemon=True)
         hearing.start()
-        with _Signals(ranks, folder):
+        with _Signals(ranks, folder) as signals:
             for line in ranks.stdout:
+                signals.remind()
                 if watch and line.startswith("{"):
                     watch(Progress(**json.loads(line)))
             ranks.wait()
@@ -121,10 +122,11 @@ class _Signals:
         self.old = {}
         self.asked = False
 
-    def __enter__(self) -> None:
+    def __enter__(self) -> "_Signals":
         if threading.current_thread() is threading.main_thread():
             for number in (signal.SIGINT, signal.SIGTERM):
                 self.old[number] = signal.signal(number, self._stop)
+        return self
 
     def _stop(self, *_) -> None:
         if self.asked:
@@ -132,8 +134,15 @@ class _Signals:
         self.asked = True
         (self.folder / STOP).touch()
 
+    def remind(self) -> None:
+        """Ask again: a run that had not begun yet has taken the file for that of a run before it."""
+        if self.asked:
+            (self.folder / STOP).touch()
+
     def __exit__(self, *_) -> None:
         for number, handler in self.old.items():
             signal.signal(number, handler)
         if self.ranks.poll() is None:
             os.killpg(self.ranks.pid, signal.SIGKILL)
+        elif self.asked:
+            (self.folder / STOP).unlink(missing_ok=True)
