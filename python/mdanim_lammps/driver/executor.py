@@ -23,22 +23,28 @@ from .planner import Planner
 from .source import Account, Broken, add_clocks, penetration, pool
 
 
-def serve(world: MPI.Comm) -> None:
-    """Be an executor until the supervisor says that it is enough; all ranks but the supervisor's call this together."""
+def serve(world: MPI.Comm) -> bool:
+    """Be an executor until the supervisor says that it is enough; all ranks but the supervisor's call this together.
+
+    Returns whether that was the end of the run; if not, others may wait for this rank for ever, and all are to be aborted.
+    """
     mail = Mail(world)
     comm = world.Split(1, world.rank)
     job = world.bcast(None, root=SUPERVISOR)
     try:
         Executor(mail, comm, job).work()
+        return True
     except Aborted:
-        mail.send(SUPERVISOR, Tag.ENDED, Ended(None))
+        last = Tag.ENDED, Ended(None)
     except Broken as broken:
-        mail.send(SUPERVISOR, Tag.FAILED, Failure("Broken", str(broken.error), broken.step, broken.solid))
+        last = Tag.FAILED, Failure("Broken", str(broken.error), broken.step, broken.solid)
     except MdanimError as error:
-        mail.send(SUPERVISOR, Tag.FAILED, Failure(type(error).__name__, str(error)))
+        last = Tag.FAILED, Failure(type(error).__name__, str(error))
     except Exception as error:  # whatever it is, the others must hear of it
         traceback.print_exc()
-        mail.send(SUPERVISOR, Tag.FAILED, Failure("ExecutorLost", f"executor {comm.rank}: {type(error).__name__}: {error}"))
+        last = Tag.FAILED, Failure("ExecutorLost", f"executor {comm.rank}: {type(error).__name__}: {error}")
+    world.send(last[1], SUPERVISOR, last[0])
+    return False
 
 
 class Executor:

@@ -10,12 +10,16 @@ from __future__ import annotations
 import json
 import pickle
 import sys
+import time
 import traceback
 from dataclasses import asdict
 from pathlib import Path
 
 from ..errors import MdanimError, OutputError
 from .launch import JOB, RESULT, Task
+
+FAREWELL = 60.0
+"""Seconds that an executor waits for its end."""
 
 
 def main() -> None:
@@ -28,7 +32,8 @@ def main() -> None:
     if world.rank != SUPERVISOR:
         from .executor import serve
 
-        serve(world)
+        if not serve(world):
+            time.sleep(FAREWELL)  # the supervisor is to tell what has happened before it ends all ranks, this one too
         return
     _supervise(world, Path(sys.argv[1]))
 
