@@ -31,6 +31,8 @@ using namespace mdanim;
 // Rows are worked off in stretches that stay in the first-level cache.
 static constexpr int STRETCH = 512;
 
+static bigint versions = 0;    // of the springs of all instances
+
 BondMdanimHarmonic::BondMdanimHarmonic(LAMMPS *lmp) : Bond(lmp) {}
 
 BondMdanimHarmonic::~BondMdanimHarmonic()
@@ -132,7 +134,7 @@ void BondMdanimHarmonic::make_rows()
   const int bonds = std::accumulate(atom->num_bond, atom->num_bond + atom->nlocal, 0);
 
   rows = Rows();
-  ++made;
+  made = ++versions;
   rows.first.push_back(0);
   rows.partner.reserve(bonds);
   rows.type.reserve(bonds);
@@ -196,11 +198,14 @@ void BondMdanimHarmonic::look_up_coefficients()
   coefficients_may_differ = false;
   rows.push.resize(rows.type.size());
   rows.pull.resize(rows.type.size());
+  bool same = true;
   for (size_t b = 0; b < rows.type.size(); ++b) {
     const Law law(spring[rows.type[b]]);
+    same = same && rows.push[b] == law.push && rows.pull[b] == law.pull;
     rows.push[b] = law.push;
     rows.pull[b] = law.pull;
   }
+  if (!same) made = ++versions;
 }
 
 void BondMdanimHarmonic::drop_lower_partners()

@@ -74,7 +74,7 @@ class BondMdanimHarmonic : public Bond {
   bool coefficients_may_differ = false;    // since the rows were given theirs
   bool bonds_are_swapped = false;        // some fix changes partners during a run
   Rows rows;
-  bigint made = 0;    // how often
+  bigint made = 0;    // version
   Source source;
   Stretch stretch;
   std::vector<mdanim::Vec3> received;    // from lower partners so far, for sum_halves()

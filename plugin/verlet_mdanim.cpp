@@ -53,12 +53,6 @@ VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, a
   if (!width) error->all(FLERR, "run_style verlet/mdanim: width {} is unknown or this processor does not have it", arg[1]);
 }
 
-void VerletMdanim::init()
-{
-  Verlet::init();
-  cut_for = -1;
-}
-
 double VerletMdanim::memory_usage() { return static_cast<double>(blocks.bytes()); }
 
 // --- whether we can ---
@@ -96,9 +90,11 @@ bool VerletMdanim::cut()
 {
   HalfBonds half;
   if (atom->nghost || !bond->halves(half)) return false;
-  if (cut_for != bond->version()) {
-    std::vector<int> object(atom->nlocal, 1);
-    if (atom->molecule_flag) object.assign(atom->molecule, atom->molecule + atom->nlocal);
+  const bool other_objects = made_for < 0 && atom->molecule_flag &&
+      !(static_cast<int>(object.size()) == atom->nlocal && std::equal(object.begin(), object.end(), atom->molecule));
+  if (cut_for != bond->version() || other_objects) {
+    object.assign(atom->nlocal, 1);
+    if (atom->molecule_flag) std::copy_n(atom->molecule, atom->nlocal, object.begin());
     worth_it = blocks.cut(half, object.data(), *width);
     cut_for = bond->version();
     made_for = -1;

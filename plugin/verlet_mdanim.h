@@ -14,7 +14,6 @@ class VerletMdanim : public Verlet {
  public:
   VerletMdanim(class LAMMPS *, int, char **);
 
-  void init() override;
   void run(int) override;
   double memory_usage() override;
   long long passes() const { return passed; }
@@ -37,7 +36,8 @@ class VerletMdanim : public Verlet {
   const mdanim::Width *width;
   mdanim::Blocks blocks;
   mdanim::Pass pass = {};
-  bigint cut_for = -1;     // version of the springs
+  bigint cut_for = -1;          // version of the springs
+  std::vector<int> object;      // and molecule of each particle
   bool worth_it = false;
   long long passed = 0;
 

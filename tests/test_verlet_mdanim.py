@@ -199,3 +199,13 @@ def test_gravity_is_that_of_lammps_and_knows_its_energy(tmp_path):
     np.testing.assert_allclose(found[1][0], found[0][0], rtol=0, atol=1e-15)
     assert found[1][1] == pytest.approx(found[0][1], rel=1e-12)
     assert found[1][1] == pytest.approx(-(BODY.mass * (BODY.x @ [0.3, 0.0, -0.4])).sum(), rel=1e-12)
+
+
+@pytest.mark.parametrize("change", ["bond_coeff * 0.3 1.1", "group second molecule 2\ndelete_bonds second multi remove",
+                                    "set group all mass 2.0", "timestep 0.1"])
+def test_what_changes_between_two_runs_is_noticed(tmp_path, change):
+    """Change springs, masses or the time step after a run: passes go on with what is there now."""
+    found, plain = (lab_state(BODY, tmp_path, [*MOVE, f"run_style {style}", "run 40", *change.split("\n"), "run 40", "run 20 pre no"])
+                    for style in ("verlet/mdanim", "verlet"))
+    assert found[1] == 97 and plain[1] == 0
+    assert np.array_equal(found[0], plain[0])
