@@ -12,8 +12,8 @@ def run(step: Callable[[int], None], dt: float, duration: float, limit: float, c
 
     ``extrapolated`` tells that the limit came before the duration.
     """
-    step(chunk)  # what a program does once, compiling included, is not counted
-    total, done, start = max(1, round(duration / dt)), 0, time.process_time()
+    step(1)  # what a program does once, compiling included, is not counted
+    total, done, start = max(2, round(duration / dt)) - 1, 0, time.process_time()
     while done < total and time.process_time() - start < limit:
         step(min(chunk, total - done))
         done += min(chunk, total - done)

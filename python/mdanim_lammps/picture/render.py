@@ -50,13 +50,24 @@ class Painter:
         self.trajectory = trajectory
         self.size = tuple(size or render.size)
         self.action = action or action_of(trajectory)
-        self._mesh = shaded_mesh(trajectory.catalogue, trajectory.position(0))
         self._path = CameraPath(render.camera, trajectory) if render.camera else None
         walls, pool = trajectory.catalogue.walls, trajectory.liquid
         basin = (pool.low, pool.high) if pool else None
         aspect = self.size[0] / self.size[1]
         self._still = None if self._path else automatic_view(self.action, aspect, walls, basin)
+        self._mesh = shaded_mesh(trajectory.catalogue, trajectory.position(0), self._pixel())
         self._build(render)
+
+    def _pixel(self) -> np.ndarray:
+        """What a pixel covers of each object where it comes nearest to the camera [m], shape (M,)."""
+        times = self.trajectory.times
+        stretches = np.array_split(np.arange(len(times)), len(self.action.low))
+        eyes = [np.array([self.view(float(times[n])).eye for n in frames]) for frames in stretches]
+        near = np.full(self.action.low.shape[1], np.inf)
+        for low, high, eye in zip(self.action.low, self.action.high, eyes):
+            away = np.maximum(np.maximum(low - eye[:, None], eye[:, None] - high), 0.0)
+            near = np.minimum(near, np.linalg.norm(away, axis=2).min(axis=0))
+        return 2.0 * near * np.tan(np.radians(FIELD_OF_VIEW) / 2.0) / self.size[1]
 
     def view(self, time: float) -> View:
         """Where the camera is at a simulated time [s]."""
@@ -67,7 +78,7 @@ class Painter:
         position = self.trajectory.position(index)
         vertices = self._mesh.vertices(position)
         time = float(self.trajectory.times[index])
-        self._surface.move(vertices, self._mesh.normals(vertices))
+        self._surface.move(vertices, self._mesh.normals(vertices, position))
         if self._tank:
             self._tank.show(index, position)
         self._stamp.SetInput(f"t = {time:.2f} s")

@@ -13,6 +13,11 @@ CREASE = np.radians(45.0)
 """Faces that meet at a larger angle keep a crisp edge: below the 90 degrees of a box or a cylinder's rim,
 above the facets of a round shape."""
 
+ROUNDNESS = 0.15
+"""How far a round outline may be cut short, in pixels."""
+WORTH = 1.8
+"""A mesh is made coarser if its edges may grow by this much at least; with less the triangles would only become uneven."""
+
 
 @dataclass(frozen=True)
 class ShadedMesh:
@@ -26,36 +31,129 @@ class ShadedMesh:
     """Ones where a triangle touches a vertex, ``scipy.sparse.csr_array``, shape (V, T)."""
     object_of_vertex: np.ndarray
     """int32, shape (V,)."""
+    coarse: np.ndarray
+    """Vertices of objects whose triangles were made fewer, shape (C,)."""
+    tangent: tuple
+    """Weights of stored particles in two tangents at each of these, from the fine surface; each shape (C, N)."""
 
     def vertices(self, position: np.ndarray) -> np.ndarray:
         """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3)."""
         return self.carry @ np.asarray(position, dtype=np.float64)
 
-    def normals(self, vertices: np.ndarray) -> np.ndarray:
-        """Outward unit normals, shape (V, 3): the mean over a vertex's triangles, weighted by area."""
+    def normals(self, vertices: np.ndarray, position: np.ndarray) -> np.ndarray:
+        """Outward unit normals, shape (V, 3), of ``vertices`` that were carried by ``position``.
+
+        The mean over a vertex's triangles, weighted by area; where triangles were made fewer, those of the fine surface, so that
+        shading does not tell.
+        """
         normal = self.gather @ _area_vectors(vertices, self.triangle)
+        if len(self.coarse):
+            along, across = (t @ np.asarray(position, dtype=np.float64) for t in self.tangent)
+            normal[self.coarse] = np.cross(along, across)
         length = np.linalg.norm(normal, axis=1, keepdims=True)
         return np.divide(normal, length, out=np.zeros_like(normal), where=length > 0.0)
 
 
-def shaded_mesh(catalogue: Catalogue, rest: np.ndarray) -> ShadedMesh:
+def shaded_mesh(catalogue: Catalogue, rest: np.ndarray, pixel: np.ndarray | None = None) -> ShadedMesh:
     """Prepare the mesh; where creases run is decided once, on ``rest``, so that no edge flickers.
 
     Args:
         catalogue: objects and their surfaces.
         rest: stored particle positions of undeformed objects, usually frame 0 [m], shape (N, 3).
+        pixel: what a pixel covers of each object where it is seen nearest [m], shape (M,): round objects get no more triangles
+            than show. None keeps all.
     """
     from scipy.sparse import csr_array
 
-    skin = catalogue.skin
-    corner = _split_at_creases(skin.vertices(rest), skin.triangle)
+    skin, triangle = catalogue.skin, catalogue.skin.triangle
+    vertices = skin.vertices(rest)
+    corner = _split_at_creases(vertices, triangle)
+    fewer = np.zeros(0, dtype=np.int64)
+    if pixel is not None and corner.size:
+        triangle, corner, fewer = _fewer(vertices, triangle, corner, skin.object_of_vertex, pixel)
     count = int(corner.max()) + 1 if corner.size else 0
     # Any corner that became the new vertex tells which old vertex it was.
     old = np.zeros(count, dtype=np.int64)
-    old[corner.ravel()] = skin.triangle.ravel()
+    old[corner.ravel()] = triangle.ravel()
     triangles = np.repeat(np.arange(len(corner)), 3)
     gather = csr_array((np.ones(corner.size), (corner.ravel(), triangles)), shape=(count, len(corner)))
-    return ShadedMesh(skin.carry[old], corner, gather, skin.object_of_vertex[old])
+    coarse = np.flatnonzero(np.isin(skin.object_of_vertex[old], fewer))
+    tangent = _tangents(vertices, skin.triangle, old[coarse])
+    return ShadedMesh(skin.carry[old], corner, gather, skin.object_of_vertex[old], coarse, tuple(t @ skin.carry for t in tangent))
+
+
+def _tangents(vertices: np.ndarray, triangle: np.ndarray, at: np.ndarray) -> tuple:
+    """Weights of vertices in two tangents at each of some of them, ``scipy.sparse.csr_array`` of shape (C, V) each.
+
+    With d the edges from a vertex and u, w a basis across its normal, the tangents are sum d (d.u) and sum d (d.w): as edges
+    follow a deformation F, so does their cross product follow the normal.
+    """
+    from scipy.sparse import csr_array
+
+    edge = np.concatenate([triangle[:, [0, 1]], triangle[:, [1, 2]], triangle[:, [2, 0]]])
+    edge = np.unique(np.concatenate([edge, edge[:, ::-1]]), axis=0)
+    row = np.full(len(vertices), -1, dtype=np.int64)
+    row[at] = np.arange(len(at))
+    tail, head = edge[row[edge[:, 0]] >= 0].T
+    normal = np.zeros_like(vertices)
+    for k in range(3):
+        np.add.at(normal, triangle[:, k], _area_vectors(vertices, triangle))
+    normal = normal[at] / np.maximum(np.linalg.norm(normal[at], axis=1, keepdims=True), np.finfo(float).tiny)
+    u = np.cross(normal, np.eye(3)[np.abs(normal).argmin(axis=1)])
+    u /= np.maximum(np.linalg.norm(u, axis=1, keepdims=True), np.finfo(float).tiny)
+    d = vertices[head] - vertices[tail]
+    made = []
+    for basis in (u, np.cross(normal, u)):
+        weight = np.einsum("ed,ed->e", d, basis[row[tail]])
+        made.append(csr_array((np.concatenate([weight, -weight]), (np.tile(row[tail], 2), np.concatenate([head, tail]))),
+                              shape=(len(at), len(vertices))))
+    return tuple(made)
+
+
+def _fewer(vertices: np.ndarray, triangle: np.ndarray, corner: np.ndarray, of: np.ndarray, pixel: np.ndarray):
+    """Merge vertices of round objects that are nearer to each other than the picture can show.
+
+    An outline of radius r that is drawn with edges e is cut short by e^2/8r, which is to be ROUNDNESS pixels.
+
+    Args:
+        vertices: [m], shape (V, 3).
+        triangle: vertex indices, shape (T, 3).
+        corner: the same after vertices were doubled along creases, shape (T, 3).
+        of: object of each vertex, shape (V,).
+        pixel: of each object [m], shape (M,).
+
+    Returns:
+        ``triangle`` and ``corner`` of what is left, and the objects that have fewer; those with creases keep all.
+    """
+    count, objects = len(vertices), len(pixel)
+    single = np.full(count, -1, dtype=np.int64)
+    single[triangle.ravel()] = corner.ravel()
+    creased = np.zeros(objects, dtype=bool)
+    creased[of[triangle.ravel()[single[triangle.ravel()] != corner.ravel()]]] = True
+    low, high = np.full((objects, 3), np.inf), np.full((objects, 3), -np.inf)
+    np.minimum.at(low, of, vertices)
+    np.maximum.at(high, of, vertices)
+    wanted = np.sqrt(8.0 * 0.5 * (high - low).min(axis=1) * ROUNDNESS * pixel)
+    home = of[triangle[:, 0]]
+    length = np.linalg.norm(vertices[triangle[:, 1]] - vertices[triangle[:, 0]], axis=1)
+    present = np.bincount(home, length, objects) / np.maximum(1, np.bincount(home, minlength=objects))
+    coarse = ~creased & (wanted > WORTH * present)
+    if not coarse.any():
+        return triangle, corner, np.flatnonzero(coarse)
+
+    # One vertex for each cube of space that holds any: the one nearest to their mean.
+    cell = np.floor((vertices - low[of]) / wanted[of, None]).astype(np.int64)
+    alone = np.flatnonzero(~coarse[of])
+    cell[alone] = np.stack([alone, alone, alone], axis=1)
+    _, place = np.unique(np.column_stack([of, cell]), axis=0, return_inverse=True)
+    place = place.reshape(-1)
+    mean = np.stack([np.bincount(place, vertices[:, d]) for d in range(3)], axis=1) / np.bincount(place)[:, None]
+    order = np.lexsort((np.linalg.norm(vertices - mean[place], axis=1), place))
+    chosen = order[np.searchsorted(place[order], np.arange(len(mean)))]
+    merged = chosen[place[triangle]]
+    left = (merged[:, 0] != merged[:, 1]) & (merged[:, 1] != merged[:, 2]) & (merged[:, 2] != merged[:, 0])
+    corner = np.where(coarse[home][:, None], single[merged], corner)[left]
+    return merged[left], np.unique(corner, return_inverse=True)[1].reshape(-1, 3).astype(np.int32), np.flatnonzero(coarse)
 
 
 def _area_vectors(vertices: np.ndarray, triangle: np.ndarray) -> np.ndarray:
