@@ -12,18 +12,18 @@ from mdanim_lammps.results.catalogue import catalogue_of
 from mdanim_lammps.scene import scene as records
 
 
-def prepared(*models):
-    """Mesh and positions of models at rest."""
+def prepared(*models, pixel=None):
+    """Mesh and positions of models at rest; a pixel may cover ``pixel`` [m] of each."""
     scene = records.Scene("s", records.Control(1.0), solids=tuple(solid(m, (0, 0, 0)) for m in models))
     position = np.concatenate([m.position for m in models])
-    return shaded_mesh(catalogue_of(scene, models), position), position
+    return shaded_mesh(catalogue_of(scene, models), position, pixel and np.full(len(models), pixel)), position
 
 
 def test_box_keeps_its_edges():
     """All normals of a box are those of its six faces; each corner is there three times."""
     mesh, position = prepared(box("box", (2, 1, 1), (4, 2, 2), (0, 0, 0)))
     vertices = mesh.vertices(position)
-    normals = mesh.normals(vertices)
+    normals = mesh.normals(vertices, position)
     # 26 of the 27 + 18 lattice points lie outside: 6 faces with (5*3, 5*3, 3*3) points each, all apart.
     assert len(vertices) == 2 * (5 * 3 + 5 * 3 + 3 * 3)
     np.testing.assert_allclose(np.abs(normals).max(axis=1), 1.0, rtol=0, atol=1e-12)
@@ -40,18 +40,44 @@ def test_ball_is_smooth():
     radial = (vertices - [3, 2, 1]) / 0.5
     np.testing.assert_allclose(np.linalg.norm(radial, axis=1), 1.0, rtol=0, atol=1e-6)  # the sphere's float32
     # Facets of 7.5 degrees, long ones at the poles: their mean at a vertex is off by a quarter of one.
-    assert np.einsum("vd,vd->v", mesh.normals(vertices), radial).min() > np.cos(np.radians(2.0))
+    assert np.einsum("vd,vd->v", mesh.normals(vertices, position), radial).min() > np.cos(np.radians(2.0))
+
+
+def test_distant_ball_has_fewer_triangles_and_the_same_shading():
+    """A ball 25 pixels wide: a closed surface of fewer triangles, whose normals are those of the deformed ball."""
+    model = ball("ball", 0.5, 0.1, (0, 0, 0))
+    fine, position = prepared(model)
+    mesh, _ = prepared(model, pixel=0.04)
+    assert len(mesh.coarse) == mesh.carry.shape[0]
+    assert len(mesh.triangle) < 0.5 * len(fine.triangle)
+    edges = np.sort(np.concatenate([mesh.triangle[:, [0, 1]], mesh.triangle[:, [1, 2]], mesh.triangle[:, [2, 0]]]), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] % 2 == 0).all()
+    stretch = np.array([1.3, 0.8, 1.0])
+    vertices = mesh.vertices(position * stretch)
+    normal = vertices / stretch**2  # of an ellipsoid
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    found = mesh.normals(vertices, position * stretch)
+    assert np.einsum("vd,vd->v", found, normal).min() > np.cos(np.radians(2.0))
+
+
+@pytest.mark.parametrize("pixel", [0.001, 0.04])
+def test_what_shows_is_kept(pixel):
+    """A ball seen from near keeps all its triangles, a box always."""
+    parts = (box("box", (2, 1, 1), (4, 2, 2), (0, 0, 0)), ball("ball", 0.5, 0.2, (3, 2, 1)))[: 1 if pixel > 0.01 else 2]
+    fine, _ = prepared(*parts)
+    mesh, _ = prepared(*parts, pixel=pixel)
+    assert len(mesh.coarse) == 0 and np.array_equal(mesh.triangle, fine.triangle)
 
 
 def test_creases_do_not_depend_on_the_frame():
     """A box bent into an arc keeps the same vertices, and turned bodies have turned normals."""
     mesh, position = prepared(box("box", (2, 1, 1), (4, 2, 2), (0, 0, 0)))
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    before = mesh.normals(mesh.vertices(position))
-    after = mesh.normals(mesh.vertices(position @ turn.T))
+    before = mesh.normals(mesh.vertices(position), position)
+    after = mesh.normals(mesh.vertices(position @ turn.T), position @ turn.T)
     np.testing.assert_allclose(after, before @ turn.T, rtol=0, atol=1e-12)
     bent = position + np.stack([0 * position[:, 0], 0 * position[:, 0], position[:, 0] ** 2], axis=1)
-    assert np.isfinite(mesh.normals(mesh.vertices(bent))).all()
+    assert np.isfinite(mesh.normals(mesh.vertices(bent), bent)).all()
 
 
 def test_many_objects_are_one_mesh():
@@ -72,4 +98,4 @@ def test_many_objects_are_one_mesh():
 def test_flat_triangles_give_no_nan(collapsed):
     """A body pressed to nothing has no normals, and no NaN either."""
     mesh, position = prepared(box("box", (1, 1, 1), (2, 2, 2), (0, 0, 0)))
-    assert np.isfinite(mesh.normals(mesh.vertices(position * collapsed))).all()
+    assert np.isfinite(mesh.normals(mesh.vertices(position * collapsed), position * collapsed)).all()

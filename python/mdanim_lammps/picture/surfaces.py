@@ -85,8 +85,8 @@ def shaded_mesh(catalogue: Catalogue, rest: np.ndarray, pixel: np.ndarray | None
 def _tangents(vertices: np.ndarray, triangle: np.ndarray, at: np.ndarray) -> tuple:
     """Weights of vertices in two tangents at each of some of them, ``scipy.sparse.csr_array`` of shape (C, V) each.
 
-    With d the edges from a vertex and u, w a basis across its normal, the tangents are sum d (d.u) and sum d (d.w): as edges
-    follow a deformation F, so does their cross product follow the normal.
+    With d the edges from a vertex, n its normal and u, w a basis across it, the tangents are sum d (d.u - a d.n) and sum d (d.w - b d.n),
+    with a and b such that both are across n: as edges follow a deformation, so does their cross product follow the normal.
     """
     from scipy.sparse import csr_array
 
@@ -101,11 +101,14 @@ def _tangents(vertices: np.ndarray, triangle: np.ndarray, at: np.ndarray) -> tup
     normal = normal[at] / np.maximum(np.linalg.norm(normal[at], axis=1, keepdims=True), np.finfo(float).tiny)
     u = np.cross(normal, np.eye(3)[np.abs(normal).argmin(axis=1)])
     u /= np.maximum(np.linalg.norm(u, axis=1, keepdims=True), np.finfo(float).tiny)
-    d = vertices[head] - vertices[tail]
+    d, own = vertices[head] - vertices[tail], row[tail]
+    rise = np.einsum("ed,ed->e", d, normal[own])
+    rises = np.maximum(np.bincount(own, rise**2, len(at)), np.finfo(float).tiny)
     made = []
     for basis in (u, np.cross(normal, u)):
-        weight = np.einsum("ed,ed->e", d, basis[row[tail]])
-        made.append(csr_array((np.concatenate([weight, -weight]), (np.tile(row[tail], 2), np.concatenate([head, tail]))),
+        weight = np.einsum("ed,ed->e", d, basis[own])
+        weight -= (np.bincount(own, weight * rise, len(at)) / rises)[own] * rise
+        made.append(csr_array((np.concatenate([weight, -weight]), (np.tile(own, 2), np.concatenate([head, tail]))),
                               shape=(len(at), len(vertices))))
     return tuple(made)
 
