@@ -25,7 +25,8 @@ control {{
   timestep 0.05 ms
 }}
 """
-SEA = "gravity (0, 0, -9.81)\nliquid water {{ basin from (-20, -20, 0) cm to (20, 20, 40) cm density 1000 level 20 cm drag {drag} model {model} }}"
+SEA = ("gravity (0, 0, -9.81)\nliquid water {{ basin from (-20, -20, 0) cm to (20, 20, 40) cm density 1000 level 20 cm "
+       "drag {drag} model {model} }}")
 VARIANTS = {
     "springs": {},
     "+ gravity": dict(more="gravity (0, 0, -9.81)"),

@@ -218,7 +218,7 @@ struct FixMdanimBarrier::Search {
   const FixMdanimBarrier &fix;
   const double range, skin;
   std::vector<int> near, role;           // particles where boxes meet, ascending by tag
-  std::vector<int> begin, of_object;     // places in `near` of those of object n: of_object[begin[n]] to of_object[begin[n + 1] - 1]
+  std::vector<int> begin, of_object;     // those of object n, by their places in `near`: of_object[begin[n]] to [begin[n + 1] - 1]
   std::vector<Found> found;
 
   Search(const FixMdanimBarrier &fix, double range) : fix(fix), range(range), skin(fix.neighbor->skin) {}

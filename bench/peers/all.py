@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Other programs on our scenes: ``python bench/peers/all.py [--write] [--limit SECONDS] [SCENE ...]`` with scenes cube, cantilever, float.
+"""Other programs on our scenes: ``python bench/peers/all.py [--write] [--limit SECONDS] [SCENE ...]``.
 
-Every contender runs alone in a process of its own, on one thread, for a limit of processor seconds or until the scene is over; ours by the
-Python that runs this, others by .venv-peers. A contender that cannot run, or takes too long to begin, has a row that says why.
+Scenes: cube, cantilever, "cantilever, 2 cells", float. Every contender runs alone in a process of its own, on one thread, for a
+limit of processor seconds or until the scene is over; ours by the Python that runs this, others by .venv-peers. A contender that
+cannot run, or takes too long to begin, has a row that says why.
 """
 
 import argparse

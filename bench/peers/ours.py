@@ -13,7 +13,8 @@ control {{ time {time} s  resolution {h} m }}
 """,
     "cantilever": """
 gravity (0, 0, -{gravity})
-object bar {{ shape box ({length}, {thickness}, {thickness}) m  position (0, 0, 1) m  density {density}  elasticity {young} Pa  hold face -x }}
+object bar {{ shape box ({length}, {thickness}, {thickness}) m  position (0, 0, 1) m  density {density}  elasticity {young} Pa
+  hold face -x }}
 control {{ time {time} s  resolution {h} m }}
 """,
     "float": """

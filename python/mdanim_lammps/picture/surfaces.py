@@ -85,8 +85,9 @@ def shaded_mesh(catalogue: Catalogue, rest: np.ndarray, pixel: np.ndarray | None
 def _tangents(vertices: np.ndarray, triangle: np.ndarray, at: np.ndarray) -> tuple:
     """Weights of vertices in two tangents at each of some of them, ``scipy.sparse.csr_array`` of shape (C, V) each.
 
-    With d the edges from a vertex, n its normal and u, w a basis across it, the tangents are sum d (d.u - a d.n) and sum d (d.w - b d.n),
-    with a and b such that both are across n: as edges follow a deformation, so does their cross product follow the normal.
+    With d the edges from a vertex, n its normal and u, w a basis across it, the tangents are sum d (d.u - a d.n) and
+    sum d (d.w - b d.n), with a and b such that both are across n: as edges follow a deformation, so does their cross product
+    follow the normal.
     """
     from scipy.sparse import csr_array
 
