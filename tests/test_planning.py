@@ -5,16 +5,19 @@ import os
 import subprocess
 import sys
 from dataclasses import fields, replace
+from functools import partial
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mdanim_lammps.driver import islands
-from mdanim_lammps.driver.planning import BUNDLE, FramePlan, bundles, plan, z_order
+from mdanim_lammps.driver import islands, planning
+from mdanim_lammps.driver.planning import FramePlan, z_order
 from mdanim_lammps.driver.teams import Team
 
+BUNDLE = 4000
+plan, bundles = (partial(make, room=BUNDLE) for make in (planning.plan, planning.bundles))
 KEPT = np.zeros((0, 2), np.int64)
 
 

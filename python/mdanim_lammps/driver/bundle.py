@@ -90,6 +90,8 @@ class Bundle:
         self.instance.start_trace()
         self.before = run_window(self.instance, steps)
         self.trace = self.instance.trace()
+        self.instance.start_trace()
+        self.here = self.instance.trace()  # of this moment alone
         self.run_seconds, self.liquid_seconds = time.process_time() - begin, self._soaked() - soaked
 
     def _soaked(self) -> float:
@@ -103,14 +105,14 @@ class Bundle:
         return np.intersect1d(who[out], self.members).tolist()
 
     def extent(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Boxes of its members, eq. (3.14) [m], and the speeds of their fastest particles [m/s]: shapes (m, 3), (m, 3), (m,)."""
+        """Boxes of its members after a window, eq. (3.14) [m], and the speeds of their fastest particles [m/s]: shapes (m, 3), (m, 3),
+        (m,)."""
         if not self.key.objects:
             return np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0)
-        first = self.plan.system.first[:-1]
-        x, v = self.instance.array("x"), self.instance.array("v")
+        v = self.instance.array("v")
         which = np.isin(self.key.objects, self.members)
-        low, high = (f.reduceat(x, first, axis=0)[which] for f in (np.minimum, np.maximum))
-        return low, high, np.sqrt(np.maximum.reduceat(np.einsum("id,id->i", v, v), first)[which])
+        low, high = (side[which] for side in self.here)
+        return low, high, np.sqrt(np.maximum.reduceat(np.einsum("id,id->i", v, v), self.plan.system.first[:-1])[which])
 
     def costs(self, scale: float) -> np.ndarray:
         """Processor time of each member in the last window, without the liquid's, times ``scale``; int64, shape (m,).

@@ -40,6 +40,8 @@ def serve(world: MPI.Comm) -> bool:
         last = Tag.FAILED, Failure("Broken", str(broken.error), broken.step, broken.solid)
     except MdanimError as error:
         last = Tag.FAILED, Failure(type(error).__name__, str(error))
+    except MPI.Exception:  # somebody has died, and mpiexec is about to end all of us: it has the better word
+        return False
     except Exception as error:  # whatever it is, the others must hear of it
         traceback.print_exc()
         last = Tag.FAILED, Failure("ExecutorLost", f"executor {comm.rank}: {type(error).__name__}: {error}")
@@ -260,9 +262,11 @@ class Executor:
         self.energies = {term: e for term, e in self.energies.items() if term.endswith(LOSS)}  # of the windows before
         self.pool = None
         for bundle in self.bundles:
-            state, energies = bundle.instance.state(), bundle.energies()
-            depth, liquid = penetration(bundle.instance), pool(bundle.instance)
-            self.x[bundle.rows], self.v[bundle.rows], self.f[bundle.rows] = state.x, state.v, state.f
+            instance, energies = bundle.instance, bundle.energies()
+            depth, liquid = penetration(instance), pool(instance)
+            content = instance.liquid_state() if bundle.key.liquid else None  # together with the team, as all above
+            for mine, name in ((self.x, "x"), (self.v, "v"), (self.f, "f")):
+                mine[bundle.rows] = instance.array(name)
             if not self._leads(bundle):
                 continue
             self.deepest = max(self.deepest, depth)
@@ -271,7 +275,7 @@ class Executor:
             for term, e in energies.items():
                 self.energies[term] = self.energies.get(term, 0.0) + e
             if bundle.key.liquid:
-                self.liquid, self.pool = state.liquid, liquid
+                self.liquid, self.pool = content, liquid
         self.started = True
 
     def _send(self, keep: bool) -> None:

@@ -12,6 +12,7 @@ from ..errors import DivergedError
 from . import islands
 from .messages import Order, Report
 from .planning import FramePlan, Settings, plan
+from .source import Broken
 
 MARGIN = 0.05
 """Of a spacing, on top of the reach of every object."""
@@ -61,21 +62,30 @@ class Planner:
     def decide(self, reports: Sequence[Report]) -> Order:
         """What to do after a window (or before the first), from the reports of all executors in their order.
 
-        Raises DivergedError when executors have followed different plans, or an object leaves every box.
+        Raises Broken when an object is nowhere any more, DivergedError when executors have followed different plans.
         """
+        for report in reports:
+            here = np.isfinite(np.column_stack([report.low, report.high, report.speed])).all(axis=1)
+            if not here.all():
+                raise self._flown(int(report.objects[here.argmin()]))
         if len({r.fingerprint for r in reports}) > 1:
             raise DivergedError("executors have followed different plans: this must never be, please report it")
         escaped = sorted({m for r in reports for m in r.escaped})
         if escaped:
             self.doublings[escaped] += 1
             if self.doublings.max() > DOUBLINGS:
-                raise DivergedError(f"{self.parts.whole.system.names[escaped[0]]} leaves every box that is reserved for it")
+                raise self._flown(int(self.doublings.argmax()))
             return self._order(self.steps, commit=False)
         for report in reports:
             self._take(report)
         self.doublings[:] = 0
         self._advance()
         return self._choose()
+
+    def _flown(self, m: int) -> Broken:
+        """For an object that is out of range: the guard tells why."""
+        step = sum(self.lengths[:self.frame]) + self.done + self.steps
+        return Broken(step, DivergedError("Out of range: it leaves every box that is reserved for it"), m)
 
     def _advance(self) -> None:
         self.done += self.steps

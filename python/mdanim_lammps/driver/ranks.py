@@ -39,6 +39,8 @@ def main() -> None:
 
 
 def _supervise(world, exchange: Path) -> None:
+    from mpi4py import MPI
+
     from .run import Result, simulate
     from .supervisor import Distributed
 
@@ -49,8 +51,9 @@ def _supervise(world, exchange: Path) -> None:
                           watch=lambda p: print(json.dumps(asdict(p)), flush=True))
     except MdanimError as error:
         result = _told(error)
-    except BaseException:  # executors would wait for ever
-        traceback.print_exc()
+    except BaseException as error:  # executors would wait for ever
+        if not isinstance(error, MPI.Exception):  # else somebody has died, and mpiexec has the better word
+            traceback.print_exc()
         sys.stderr.flush()
         world.Abort(1)
         raise

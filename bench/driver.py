@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What the driver of a distributed run takes of every frame beside LAMMPS: ``python bench/driver.py [executors] [control]``.
+
+1000 objects of 100 particles fly about, and some meet. Milliseconds of processor time of a frame, of the executor that took most; medians
+over the frames but the first ten, and the least. Under ``supervisor`` is what goes on beside the executors.
+"""
+
+import functools
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+SCENE = """
+gravity (0, 0, -9.81) m/s^2
+repeat i in 1 .. 10 { repeat j in 1 .. 10 { repeat k in 1 .. 10 {
+  object box[(i*10 + j)*10 + k] {
+    shape      box (12, 15, 9) cm
+    position   (i*0.45, j*0.45, k*0.45) m
+    mass       1 kg
+    elasticity 100 kPa
+    velocity   (rand(-2, 2), rand(-2, 2), rand(-2, 2)) m/s
+  }
+} } }
+control { time 0.25 s  frames 100 fps  resolution 3 cm }
+"""
+FIRST = 10
+"""Frames that are not counted."""
+PARTS = {
+    "executor": ("Executor", {"_transfer": "hand on", "_report": "report", "_commit": "copy states, energies", "_send": "send frame"}),
+    "bundle": ("Bundle", {"__init__": "build instances", "start": "put states", "run": "LAMMPS", "extent": "boxes", "energies": "energies"}),
+    "planner": ("Planner", {"decide": "plan"}),
+    "messages": ("Mail", {"exchange": "exchange"}),
+    "control": ("Central", {"decide": "wait for orders"}),
+    "supervisor": ("Distributed", {"_frame": "put together", "_take": "take a message"}),
+}
+"""Class and methods of every module of the driver, with what they are called below. Some hold others."""
+
+
+def ranks(folder: Path, control: str) -> None:
+    """What every rank does: run, and write what its methods took, frame by frame."""
+    import importlib
+
+    from mpi4py import MPI
+
+    from mdanim_lammps.driver import executor
+    from mdanim_lammps.driver.planning import Settings
+    from mdanim_lammps.driver.prepare import prepare
+    from mdanim_lammps.driver.run import simulate
+    from mdanim_lammps.driver.supervisor import Distributed
+    from mdanim_lammps.scene.parse import load_scene
+
+    world = MPI.COMM_WORLD
+    frames: list[dict[str, float]] = [{}]
+
+    def timed(method, name):
+        @functools.wraps(method)
+        def call(*arguments, **options):
+            begin = time.thread_time()
+            try:
+                return method(*arguments, **options)
+            finally:
+                frames[-1][name] = frames[-1].get(name, 0.0) + time.thread_time() - begin
+        return call
+
+    for module, (kind, methods) in PARTS.items():
+        owner = getattr(importlib.import_module(f"mdanim_lammps.driver.{module}"), kind)
+        for method, name in methods.items():
+            setattr(owner, method, timed(getattr(owner, method), name))
+    executor.wanted_bundles = timed(executor.wanted_bundles, "wanted bundles")
+    simulated = executor.Executor._simulate
+
+    def one_frame(self, end):
+        begin = time.thread_time()
+        simulated(self, end)
+        frames[-1]["all"] = time.thread_time() - begin
+        frames[-1]["bundles"] = 1e-3 * len(self.bundles)
+        frames.append({})
+
+    executor.Executor._simulate = one_frame
+    if world.rank:
+        executor.serve(world)
+    else:
+        source = Distributed(prepare(load_scene(folder / "crowd.txt")), world, control, Settings())
+        simulate(source.ready, folder, source=source, watch=lambda progress: frames.append({}))
+        source.timeline.write(folder)
+    (folder / f"{world.rank}.json").write_text(json.dumps(frames))
+
+
+def main(executors: int = 2, control: str = "central") -> None:
+    """Start the ranks, and print one row for every part."""
+    with tempfile.TemporaryDirectory() as where:
+        folder = Path(where)
+        (folder / "crowd.txt").write_text(SCENE)
+        program = [Path(sys.executable).parent / "mpiexec", "-n", str(executors + 1), sys.executable, "-m", "mpi4py", __file__, "--rank", where, control]
+        subprocess.run(program, check=True, env=os.environ | {"OMP_NUM_THREADS": "1"})
+        timeline = json.loads((folder / "timeline.json").read_text())
+        took = [[f for f in json.loads((folder / f"{rank}.json").read_text()) if f][FIRST:-2] for rank in range(executors + 1)]
+    print(f"{executors} executors, {control}: {len(timeline['names'])} objects, {sum(timeline['moves'][FIRST:]) / len(timeline['moves'][FIRST:]):.1f} "
+          f"moves and {sum(timeline['retries'][FIRST:]) / len(timeline['retries'][FIRST:]):.2f} new beginnings in a frame")
+    print(f"{'':>26} {'median':>8} {'least':>8}  [ms]")
+    for who, rows in (("executor", took[1:]), ("supervisor", took[:1])):
+        for name in dict.fromkeys(name for frames in rows for f in frames for name in f):
+            per_frame = np.array([[1e3 * f.get(name, 0.0) for f in frames[:min(map(len, rows))]] for frames in rows]).max(axis=0)
+            print(f"{who:>10} {name:>15} {np.median(per_frame):8.2f} {per_frame.min():8.2f}")
+        if who == "executor":
+            own = np.array([[1e3 * (f["all"] - f["LAMMPS"]) for f in frames if "all" in f] for frames in rows])
+            print(f"{who:>10} {'beside LAMMPS':>15} {np.median(own.max(axis=0)):8.2f} {own.max(axis=0).min():8.2f}")
+
+
+if __name__ == "__main__":
+    if "--rank" in sys.argv:
+        ranks(Path(sys.argv[2]), sys.argv[3])
+    else:
+        main(*map(int, sys.argv[1:2]), *sys.argv[2:3])
