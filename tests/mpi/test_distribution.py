@@ -3,6 +3,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -13,13 +14,11 @@ import pytest
 from mpi import scenes as films
 
 from mdanim_lammps.results.compare import compare
-from mdanim_lammps.results.cost import Cost
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.timeline import KINDS, Timeline
 
 pytestmark = pytest.mark.mpi
 MATRIX = Path(__file__).parent / "matrix.py"
-TIMES = ("seconds", "carried")
 SEQUENTIAL = {"control": None, "executors": 1}
 BOTH = ("central", "peers")
 WINDOWS = {"worth": 0, "finest": 8}
@@ -93,8 +92,8 @@ FILMS = {
     "dam": (films.DAM, matrix((2,))),
     "alone": (films.ALONE, matrix((1, 4), ["peers"]) | matrix((3,), ["central"])),
     "resting": (films.RESTING, matrix((2,))),
-    "hasty": (films.HASTY, matrix((1, 3))),
-    "uneven": (films.UNEVEN, matrix((2,)) | matrix((3,), name="windows ", settings=WINDOWS)),
+    "hasty": (films.HASTY, matrix((3,))),
+    "uneven": (films.UNEVEN, matrix((2,), ["peers"]) | matrix((3,), ["central"], "windows ", settings=WINDOWS)),
 }
 
 
@@ -154,18 +153,19 @@ def test_who_is_done_is_frozen(scene):
         assert np.array_equal(times[falls], 1 + retried) and (times[1 - falls] == 1).all()
 
 
-@pytest.mark.parametrize(("text", "control"), [
-    pytest.param(films.HEAVY, "central", id="solid"), pytest.param(films.POOL, "peers", id="liquid"),
-    pytest.param(films.FLYING, "central", id="islands", marks=pytest.mark.soak),
+@pytest.mark.parametrize(("text", "control", "more"), [
+    pytest.param(films.HEAVY, "central", 3, id="solid"), pytest.param(films.POOL, "peers", 2, id="liquid"),
+    pytest.param(films.POOL, "central", 3, id="liquid of three", marks=pytest.mark.soak),
+    pytest.param(films.FLYING, "central", 3, id="islands", marks=pytest.mark.soak),
 ])
-def test_a_team_runs_what_is_too_heavy_for_one(scene, text, control):
+def test_a_team_runs_what_is_too_heavy_for_one(scene, text, control, more):
     """Several executors run one island together, also where its box is too small at first."""
     cases = (matrix((2,), [control], settings={"least": 50}) |
-             matrix((3,), [control], "windows ", settings=WINDOWS | {"least": 50, "safety": 0.5}))
+             matrix((more,), [control], "windows ", settings=WINDOWS | {"least": 50, "safety": 0.5}))
     timelines = all_the_same(ways(scene(text), cases), cases)
     assert {members for _, members in timelines[f"{control}2"].teams} <= {(0, 1), (1, 0)} and timelines[f"{control}2"].teams
-    assert max(len(members) for _, members in timelines[f"windows {control}3"].teams) >= 2
-    assert sum(timelines[f"windows {control}3"].retries) > 0
+    assert max(len(members) for _, members in timelines[f"windows {control}{more}"].teams) >= 2
+    assert sum(timelines[f"windows {control}{more}"].retries) > 0
 
 
 def test_a_run_goes_on_with_other_executors(scene):
@@ -223,3 +223,24 @@ def test_lammps_alone_runs_the_same_film(scene):
     with Trajectory(found["central2"]) as film:
         last = len(film) - 1
         assert np.array_equal(rows[:, 1:4], film.position(last)) and np.array_equal(rows[:, 4:], film.velocity(last))
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("name", [*FILMS, "flying"])
+def test_all_films_on_any_number_of_executors(scene, name):
+    """The long form: everything under everything."""
+    cases = (matrix() | matrix((2, 4), name="windows ", settings=WINDOWS) | matrix((3,), name="again ", settings={"safety": 0.2}) |
+             matrix((2, 3), name="teams ", settings={"least": 50}))
+    text = films.FLYING if name == "flying" else FILMS[name][0]
+    all_the_same(ways(scene(text), cases, timeout=250.0), cases)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize(("name", "seconds"), [("crowd", 0.6), ("float", 2.0)])
+def test_scenes_of_the_paper(tmp_path, scenes, name, seconds):
+    """The crowd and the float, from the files as they are but shorter."""
+    text = (scenes / f"{name}.txt").read_text().replace('include "rubber.txt"', "let rubber = 150 kPa")
+    text = re.sub(r"time +\d s", f"time {seconds} s", text.split("expect")[0])
+    (tmp_path / "scene.txt").write_text(text)
+    cases = matrix((2, 3))
+    all_the_same(ways(tmp_path / "scene.txt", cases, timeout=250.0), cases)

@@ -101,7 +101,8 @@ def goes_on(place: Path, frame: int, *arguments: object) -> None:
     assert compare(place / "whole.out", folder).equal
 
 
-@pytest.mark.parametrize(("control", "victim"), [("central", 2), ("peers", 1), ("central", 0)])
+@pytest.mark.parametrize(("control", "victim"), [
+    ("central", 2), pytest.param("peers", 1, marks=pytest.mark.soak), ("central", 0)])
 def test_a_killed_rank_ends_the_run_within_seconds(place, control, victim):
     """One message, how to go on, and it does so; all other ranks end too."""
     process = begun(place, LONG, "-n", 2, "--control", control)
@@ -234,4 +235,4 @@ def test_most_of_the_wall_time_is_accounted_for(place):
     """Of a run of two executors the parts of the cost add up to the wall time."""
     ready, folder = readied(place, films.FLYING)
     result = simulate_on(2, "central", ready, folder)
-    assert 0.95 <= result.cost.covered <= 1.05, json.dumps(result.cost.to_json(), indent=1)
+    assert 0.95 <= result.cost.covered <= 1.02, json.dumps(result.cost.to_json(), indent=1)

@@ -275,6 +275,10 @@ class _Run:
             parts[effect.name] = Part(sum(clocks.values()), str(span) if span else None, clocks if len(clocks) > 1 else {})
         known = sum(p.seconds for p in parts.values()) + account.leapfrog + sum(account.other.values())
         other = {name: s for name, s in self.seconds.items() if name != "simulation"}
+        beside = max(0.0, known - self.seconds["simulation"])
+        for name in ("output", "guard"):  # what executors did meanwhile is theirs: these tell what the run has waited for
+            spared = min(beside, other.get(name, 0.0))
+            other[name], beside = other.get(name, 0.0) - spared, beside - spared
         return Cost(
             wall=time.perf_counter() - self.started + other.get("before the resume", 0.0), steps=self.certificate.steps,
             particles=self.ready.system.particles, effects=parts,

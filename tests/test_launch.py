@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""How ranks are started, and what is said when they are lost."""
+
+import io
+import shutil
+import subprocess
+import sys
+
+import pytest
+from test_run import FALL
+
+from mdanim_lammps import Scene
+from mdanim_lammps.driver import launch
+from mdanim_lammps.errors import ExitCode, SetupError, UsageError
+
+OBITUARY = """\
+Abort(1) on node 0 (rank 0 in comm 0): application called MPI_Abort(MPI_COMM_WORLD, 1) - process 0
+===================================================================================
+=   BAD TERMINATION OF ONE OF YOUR APPLICATION PROCESSES
+=   EXIT CODE: 9
+===================================================================================
+YOUR APPLICATION TERMINATED WITH THE EXIT STRING: Killed (signal 9)
+"""
+
+
+def test_without_mpiexec_it_says_where_one_comes_from(monkeypatch, tmp_path):
+    """Neither beside this Python nor on the path; nothing is left in the folder."""
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
+    monkeypatch.setattr(shutil, "which", lambda name: None)
+    monkeypatch.delenv(launch.MPIEXEC, raising=False)
+    (tmp_path / "fall.txt").write_text(FALL)
+    with pytest.raises(SetupError, match="no mpiexec; .*pip install mpich.*MDANIM_MPIEXEC"):
+        Scene.load(tmp_path / "fall.txt").run(executors=2)
+    assert not list((tmp_path / "fall.out").glob(".ranks-*"))
+    assert SetupError("").exit_code == ExitCode.ENVIRONMENT
+
+
+def test_the_environment_names_the_launcher(monkeypatch):
+    """With its own options, split as a shell does."""
+    monkeypatch.setenv(launch.MPIEXEC, "srun --mpi 'pmi 2'")
+    assert launch.launcher() == ["srun", "--mpi", "pmi 2"]
+
+
+def test_what_ranks_say_is_passed_on_but_for_obituaries(capsys):
+    """A traceback of a rank is seen, mpiexec's own words are not."""
+    said = []
+    launch._hear(io.StringIO("ValueError: from a rank\n" + OBITUARY), said)
+    assert capsys.readouterr().err == "ValueError: from a rank\n" and len(said) == 7
+
+
+@pytest.mark.parametrize(("words", "checkpoint", "told"), [
+    pytest.param(OBITUARY, True, r"lost \(EXIT CODE: 9\).*go on with: mdanim-lammps resume", id="killed"),
+    pytest.param("RuntimeError: no\nMemoryError: too large\n", True, r"lost \(MemoryError: too large\)", id="the last error is the cause"),
+    pytest.param("", False, r"lost \(exit code 7\).*nothing was kept yet", id="without a word"),
+])
+def test_lost_ranks_are_told_in_one_message(tmp_path, words, checkpoint, told):
+    """Why, and how to go on."""
+    if checkpoint:
+        (tmp_path / "checkpoint").touch()
+    error = launch._lost(7, words.splitlines(keepends=True), tmp_path)
+    assert __import__("re").search(told, str(error)) and error.exit_code == ExitCode.ENVIRONMENT
+
+
+@pytest.mark.parametrize("count", [0, -1])
+def test_no_executor_is_too_few(tmp_path, count):
+    """A usage error, from the command line and from Python."""
+    (tmp_path / "fall.txt").write_text(FALL)
+    done = subprocess.run([sys.executable, "-m", "mdanim_lammps", str(tmp_path / "fall.txt"), "-n", str(count)], capture_output=True, text=True)
+    assert done.returncode == ExitCode.USAGE and f"-n {count}: at least one executor" in done.stderr
+    assert not (tmp_path / "fall.out").exists()
+    with pytest.raises(UsageError, match="at least one"):
+        Scene.load(tmp_path / "fall.txt").run(executors=count)
