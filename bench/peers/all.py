@@ -50,8 +50,9 @@ def contender(name: str, scene: str, case: dict) -> dict:
         return {"failed": "not installed: there is no .venv-peers, see `make bench-peers`"}
     alone = {"OMP_NUM_THREADS": "1", "OPENMM_CPU_THREADS": "1", "TI_LOG_LEVEL": "error"}
     try:
-        done = subprocess.run([python, HERE / f"{name}.py", scene.split(",")[0], json.dumps(case)], capture_output=True, text=True,
-                              timeout=case["limit"] + BEGIN, env=os.environ | alone)
+        with tempfile.TemporaryDirectory() as folder:  # some leave files where they run
+            done = subprocess.run([python, HERE / f"{name}.py", scene.split(",")[0], json.dumps(case)], capture_output=True, text=True,
+                                  timeout=case["limit"] + BEGIN, env=os.environ | alone, cwd=folder)
     except subprocess.TimeoutExpired:
         return {"failed": f"no figure within {case['limit'] + BEGIN:.0f} s"}
     lines = done.stdout.strip().splitlines()

@@ -42,7 +42,7 @@ def main() -> None:
                  length=length, dt=dt)
     with Instance(plan) as instance:
         instance.setup()
-        chunk = max(1, 200_000 // system.particles)
+        chunk = ready.certificate.steps_per_frame
         start = instance.array("x").copy()
         found = run(instance.run, dt, case["time"], case["limit"], chunk)
         moved = instance.array("x") - start
