@@ -11,6 +11,7 @@ from scipy.sparse import diags
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 from twin import lattice as twin
 
+from mdanim_lammps.model import lattice as lattice_module
 from mdanim_lammps.model.lattice import AXES, OFFSETS, Cells, make_lattice
 from mdanim_lammps.model.springs import dashpots, spring_constants, stiffness
 from mdanim_lammps.scene.scene import Box, SpringConstant, Young
@@ -50,10 +51,10 @@ def stretched(body):
 
 @pytest.mark.parametrize("cells", [1, 2, 4, 6])
 def test_a_bar_is_as_stiff_as_its_material_however_thin(cells):
-    """Pull a bar 1, 2, 4 or 6 cells thick: E and nu are the material's (measured 1.000000 and 0.2500)."""
+    """Pull a bar 1, 2, 4 or 6 cells thick: E and nu are the material's (measured 0.989 to 1.000, and 0.247 to 0.254)."""
     young, nu = stretched(model(Box((12.0, cells, cells)), 1.0, elasticity=Young(7.0)))
-    assert young / 7.0 == pytest.approx(1.0, abs=0.002)
-    assert nu == pytest.approx(NU, abs=0.002)
+    assert young / 7.0 == pytest.approx(1.0, abs=0.012)
+    assert nu == pytest.approx(NU, abs=0.005)
 
 
 @pytest.mark.parametrize(("size", "cell"), [
@@ -61,17 +62,18 @@ def test_a_bar_is_as_stiff_as_its_material_however_thin(cells):
     pytest.param((6.0, 4.8, 4.8), (1.0, 1.2, 1.2), id="flat cells"),
     pytest.param((6.0, 4.4, 4.8), (1.0, 1.1, 1.2), id="three different edges"),
 ])
-def test_a_bar_of_cuboid_cells_is_isotropic_too(size, cell):
-    """Pull bars with aspects up to 1.2 (tolerance 2 %; the constants are exact, so 1e-6 is reached)."""
+def test_a_bar_of_cuboid_cells_is_isotropic_too(size, cell, monkeypatch):
+    """Pull bars with aspects up to 1.2: exactly, when no cell gives its springs more inside than outside, else within 2 %."""
     count = np.rint(np.divide(size, cell)).astype(int)
-    lattice = make_lattice(Cells(np.ones(count[::-1], bool), np.zeros(3), np.array(size)))
-
-    k = stiffness(lattice, Young(3.0))
-    assert k.min() > 0
-    body = SimpleNamespace(position=lattice.position, spring=lattice.spring, stiffness=k, share=lattice.share)
-    young, nu = stretched(body)
-    assert young / 3.0 == pytest.approx(1.0, abs=1e-6)
-    assert nu == pytest.approx(NU, abs=1e-6)
+    for inward, most in ((0, 1e-6), (lattice_module.INWARD, 0.02)):
+        monkeypatch.setattr(lattice_module, "INWARD", inward)
+        lattice = make_lattice(Cells(np.ones(count[::-1], bool), np.zeros(3), np.array(size)))
+        k = stiffness(lattice, Young(3.0))
+        assert k.min() > 0
+        body = SimpleNamespace(position=lattice.position, spring=lattice.spring, stiffness=k, share=lattice.share)
+        young, nu = stretched(body)
+        assert young / 3.0 == pytest.approx(1.0, abs=most)
+        assert nu == pytest.approx(NU, abs=most)
 
 
 def test_the_naked_lattice_of_the_paper_is_too_stiff():
@@ -153,10 +155,10 @@ def cantilever(cells):
 
 
 @pytest.mark.parametrize(("cells", "bend", "tone"), [
-    # docs/physics-solids.md: measured 0.806 and 1.114, 0.937 and 1.034, 0.980 and 1.011
-    pytest.param(2, 0.20, 0.12, id="2 cells: 20 % and 12 %"),
-    pytest.param(4, 0.07, 0.04, id="4 cells: 7 % and 4 %"),
-    pytest.param(8, 0.03, 0.02, id="8 cells: 3 % and 2 %"),
+    # docs/physics-solids.md: measured 0.912 and 1.048, 0.989 and 1.006, 0.996 and 1.003
+    pytest.param(2, 0.10, 0.06, id="2 cells: 10 % and 6 %"),
+    pytest.param(4, 0.015, 0.01, id="4 cells: 1.5 % and 1 %"),
+    pytest.param(8, 0.005, 0.005, id="8 cells: 0.5 % and 0.5 %"),
 ])
 def test_cantilever_against_timoshenko(cells, bend, tone):
     """Bend a clamped bar and let it swing: deflection and first frequency, L/t = 10."""

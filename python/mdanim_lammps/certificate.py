@@ -463,7 +463,7 @@ class _Margins:
         h = float(np.cbrt(self.system.cell_volume[m]))
         return Margin(
             "thinnest part", self.system.names[m], float(cells[m]), THINNEST, "cells",
-            f"{self.system.names[m]} is {cells[m]:.2g} cells thin; one cell is 1.9 times too stiff in bending, two are 1.2 times",
+            f"{self.system.names[m]} is {cells[m]:.2g} cells thin; one cell is 1.9 times too stiff in bending, two are 1.1 times",
             self._of(m, "shape"), "warning" if few else "ok", least=True,
             hint=f"write resolution {500.0 * h * cells[m]:.3g} mm for two cells")
 

@@ -12,16 +12,30 @@ def lattice(filled):
     """Everything by definition, in plain loops, for filled cells (z, y, x).
 
     Returns nodes {(z, y, x): filled cells around it} and springs {(node, node): filled cells that hold both}. A cell with
-    a corner of its own has its body diagonals too.
+    a corner of its own has its body diagonals too. Where one side of a cell is free and the other is not, it counts 5/32 less
+    for the springs of its free face and more for those of the other.
     """
     nodes, springs = {}, {}
+
+    def is_filled(cell):
+        return all(0 <= c < n for c, n in zip(cell, filled.shape)) and filled[cell]
+
+    def part(cell, a, b):
+        count = 1.0
+        for axis in range(3):
+            if a[axis] == b[axis]:
+                outward = 1 if a[axis] > cell[axis] else -1
+                behind, ahead = (tuple(c + s * outward * (k == axis) for k, c in enumerate(cell)) for s in (-1, 1))
+                count *= 1.0 + 5.0 / 32.0 * (int(is_filled(ahead)) - int(is_filled(behind)))
+        return count
+
     for cell in zip(*np.nonzero(filled)):
         corners = [tuple(int(c) + d for c, d in zip(cell, step)) for step in product((0, 1), repeat=3)]
         for corner in corners:
             nodes[corner] = nodes.get(corner, 0) + 1
         for a, b in combinations(corners, 2):
             if sum(p != q for p, q in zip(a, b)) <= 2:
-                springs[min(a, b), max(a, b)] = springs.get((min(a, b), max(a, b)), 0) + 1
+                springs[min(a, b), max(a, b)] = springs.get((min(a, b), max(a, b)), 0) + part(cell, a, b)
     for cell in zip(*np.nonzero(filled)):
         corners = [tuple(int(c) + d for c, d in zip(cell, step)) for step in product((0, 1), repeat=3)]
         if any(nodes[corner] == 1 for corner in corners):

@@ -23,6 +23,12 @@ OFFSETS = np.array([
 They stand in the order of the neighbours' numbers, so springs written particle by particle come out sorted.
 """
 
+WHOLE, INWARD = 32, 5
+"""A cell on a surface moves 5/32 of its springs from the face outside to the one inside (docs/physics-solids.md, Bending).
+
+Counted in whole numbers, so that what is alike by symmetry has equal springs to the last bit.
+"""
+
 AXES = np.count_nonzero(OFFSETS, axis=1)
 """1 for an edge, 2 for a face diagonal, 3 for a body diagonal, shape (13,)."""
 
@@ -73,9 +79,9 @@ class Lattice:
     kind: np.ndarray
     """Row of OFFSETS of each spring, uint8, shape (S,)."""
     holders: np.ndarray
-    """Number of filled cells that hold a spring, uint8, shape (S,)."""
+    """Filled cells that hold a spring, each counted by its part in it (`_parts`) [-], shape (S,)."""
     braced: np.ndarray
-    """How many of these are braced, uint8, shape (S,)."""
+    """The same of those that are braced [-], shape (S,)."""
     hexahedron: np.ndarray
     """Corner particles of each filled cell, VTK order, int32, shape (C, 8)."""
     cells: Cells
@@ -110,16 +116,12 @@ def make_lattice(cells: Cells) -> Lattice:
 def _cells_around(filled: np.ndarray) -> np.ndarray:
     """Count the filled cells at each corner of the grid, uint8, shape (nz + 1, ny + 1, nx + 1)."""
     padded = np.pad(filled, 1).astype(np.uint8)
-    return _window_sum(padded, product((0, 1), repeat=3))
+    return sum(_window(padded, start) for start in product((0, 1), repeat=3))
 
 
-def _window_sum(padded: np.ndarray, starts) -> np.ndarray:
-    """Sum the views of the padded cells that start at (z, y, x); each is as large as the grid of corners."""
-    corners = np.array(padded.shape) - 1
-    total = np.zeros(corners, np.uint8)
-    for z, y, x in starts:
-        total += padded[z : z + corners[0], y : y + corners[1], x : x + corners[2]]
-    return total
+def _window(padded: np.ndarray, start) -> np.ndarray:
+    """The view of the padded cells that starts at (z, y, x) and is as large as the grid of corners."""
+    return padded[tuple(slice(s, s + n - 1) for s, n in zip(start, padded.shape))]
 
 
 def _corner_positions(cells: Cells, present: np.ndarray) -> np.ndarray:
@@ -144,20 +146,28 @@ def _any_corner(mask: np.ndarray) -> np.ndarray:
 
 
 def _springs(filled: np.ndarray, braced: np.ndarray, number: np.ndarray, present: np.ndarray):
-    """Pairs (S, 2), rows of OFFSETS, numbers of holding cells and of braced ones among them (S,), sorted by pair."""
-    all_cells, braced_cells = (np.pad(cells, 1).astype(np.uint8) for cells in (filled, braced))
+    """Pairs (S, 2), rows of OFFSETS, what holding cells and the braced ones among them count (S,), sorted by pair."""
+    parts = _parts(filled)
+    all_cells, braced_cells = (np.pad(cells, 1).astype(np.uint16) for cells in (filled, braced))
     _, rows, columns = number.shape
     flat = number.ravel()
     other = np.zeros((len(present), len(OFFSETS)), np.int32)
-    holders = np.zeros((len(present), len(OFFSETS)), np.uint8)
+    holders = np.zeros((len(present), len(OFFSETS)), np.float32)
     braces = np.zeros_like(holders)
     # A corner lies between two cells of each axis: a step of +1 runs along the upper one, a step of -1 along
     # the lower one, and a spring with no step along an axis is held by both.
     sides = {0: (0, 1), 1: (1,), -1: (0,)}
     for o, (x, y, z) in enumerate(OFFSETS.tolist()):
-        starts = list(product(sides[z], sides[y], sides[x]))
-        braces[:, o] = _window_sum(braced_cells, starts).ravel()[present]
-        holders[:, o] = braces[:, o] if AXES[o] == 3 else _window_sum(all_cells, starts).ravel()[present]
+        whole, counted = np.float32(WHOLE ** (3 - AXES[o])), [np.zeros(number.shape, np.uint16) for _ in range(2)]
+        for start in product(sides[z], sides[y], sides[x]):
+            given = np.uint16(1)
+            for axis, step in enumerate((z, y, x)):
+                if not step:
+                    given = given * _window(parts[axis][start[axis]], start)
+            for total, cells in zip(counted, (all_cells, braced_cells)):
+                total += given * _window(cells, start)
+        braces[:, o] = counted[1].ravel()[present] / whole
+        holders[:, o] = braces[:, o] if AXES[o] == 3 else counted[0].ravel()[present] / whole
         held = np.flatnonzero(holders[:, o])
         other[held, o] = flat[present[held] + (z * rows + y) * columns + x]
     exists = holders > 0
@@ -166,6 +176,18 @@ def _springs(filled: np.ndarray, braced: np.ndarray, number: np.ndarray, present
     spring[:, 1] = other[exists]
     kind = np.broadcast_to(np.arange(len(OFFSETS), dtype=np.uint8), exists.shape)[exists]
     return spring, kind, holders[exists], braces[exists]
+
+
+def _parts(filled: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Of the springs along its upper and its lower face across each axis, the part that a cell gives, uint16, of WHOLE; axes z, y, x.
+
+    Padded by one cell all around. It is WHOLE, but INWARD less for the outer and more for the inner of the two faces where one
+    side of the cell is free and the other not.
+    """
+    padded = np.pad(filled, 1).astype(np.int8)
+    # Nothing above and something below: 1; the other way round: -1.
+    outward = [INWARD * (np.roll(padded, 1, axis) - np.roll(padded, -1, axis)) for axis in range(3)]
+    return [((WHOLE - o).astype(np.uint16), (WHOLE + o).astype(np.uint16)) for o in outward]
 
 
 def _layers(around: np.ndarray) -> np.ndarray:

@@ -49,17 +49,16 @@ def spring_constants(cell: np.ndarray, young: float, brace: float = 0.0) -> np.n
 def stiffness(lattice: Lattice, elasticity: Young | SpringConstant) -> np.ndarray:
     """k of each spring [N/m], shape (S,).
 
-    With ``Young`` a spring has the part of k that each of its filled cells owns, a quarter of an edge, half a face
-    diagonal, so a body is as stiff as its volume says however thin it is. ``SpringConstant`` is the paper's k for
+    With ``Young`` a spring has the part of k that each of its filled cells gives, about a quarter of an edge, half a face
+    diagonal, so a body is as stiff as its volume says however thin it is; cells on a surface give a little less outside and
+    more inside, for bending. ``SpringConstant`` is the paper's k for
     every spring; braces are not the paper's and get 0.
     """
     if isinstance(elasticity, SpringConstant):
         return np.where(AXES[lattice.kind] == 3, 0.0, elasticity.k)
     cell = lattice.cells.edge
     plain, braced = (spring_constants(cell, elasticity.modulus, f) / FULL for f in (0.0, BRACE))
-    table = (plain[:, None, None] * np.maximum(0, np.arange(5)[:, None] - np.arange(5))
-             + braced[:, None, None] * np.arange(5))
-    return table[lattice.kind, lattice.holders, lattice.braced]
+    return plain[lattice.kind] * (lattice.holders - lattice.braced) + braced[lattice.kind] * lattice.braced
 
 
 def equivalent_modulus(cell: np.ndarray, elasticity: Young | SpringConstant) -> float:
