@@ -23,11 +23,14 @@ OFFSETS = np.array([
 They stand in the order of the neighbours' numbers, so springs written particle by particle come out sorted.
 """
 
-WHOLE, INWARD = 32, 5
-"""A cell on a surface moves 5/32 of its springs from the face outside to the one inside (docs/physics-solids.md, Bending).
+INWARD = {2: 27 / 256, 3: 18 / 256}
+"""What a cell on a surface moves of its face diagonals from the face outside to the one inside, if two, three or more are in line.
 
-Counted in whole numbers, so that what is alike by symmetry has equal springs to the last bit.
+docs/physics-solids.md, Bending. Binary fractions, so that what is alike by symmetry has equal springs to the last bit.
 """
+
+EDGES = 3.0
+"""Edges move so many times what diagonals move: then a bar that is pulled stays as wide outside as it is inside."""
 
 AXES = np.count_nonzero(OFFSETS, axis=1)
 """1 for an edge, 2 for a face diagonal, 3 for a body diagonal, shape (13,)."""
@@ -147,8 +150,8 @@ def _any_corner(mask: np.ndarray) -> np.ndarray:
 
 def _springs(filled: np.ndarray, braced: np.ndarray, number: np.ndarray, present: np.ndarray):
     """Pairs (S, 2), rows of OFFSETS, what holding cells and the braced ones among them count (S,), sorted by pair."""
-    parts = _parts(filled)
-    all_cells, braced_cells = (np.pad(cells, 1).astype(np.uint16) for cells in (filled, braced))
+    inward = _inward(filled)
+    all_cells, braced_cells = (np.pad(cells, 1) for cells in (filled, braced))
     _, rows, columns = number.shape
     flat = number.ravel()
     other = np.zeros((len(present), len(OFFSETS)), np.int32)
@@ -158,16 +161,18 @@ def _springs(filled: np.ndarray, braced: np.ndarray, number: np.ndarray, present
     # the lower one, and a spring with no step along an axis is held by both.
     sides = {0: (0, 1), 1: (1,), -1: (0,)}
     for o, (x, y, z) in enumerate(OFFSETS.tolist()):
-        whole, counted = np.float32(WHOLE ** (3 - AXES[o])), [np.zeros(number.shape, np.uint16) for _ in range(2)]
+        counted, stiffened = (np.zeros(number.shape, np.float32) for _ in range(2))
+        more = EDGES if AXES[o] == 1 else 1.0
         for start in product(sides[z], sides[y], sides[x]):
-            given = np.uint16(1)
+            part = np.ones(number.shape, np.float32)
             for axis, step in enumerate((z, y, x)):
                 if not step:
-                    given = given * _window(parts[axis][start[axis]], start)
-            for total, cells in zip(counted, (all_cells, braced_cells)):
-                total += given * _window(cells, start)
-        braces[:, o] = counted[1].ravel()[present] / whole
-        holders[:, o] = braces[:, o] if AXES[o] == 3 else counted[0].ravel()[present] / whole
+                    moved = more * _window(inward[axis], start)
+                    part *= 1.0 + (moved if start[axis] else -moved)
+            counted += part * _window(all_cells, start)
+            stiffened += part * _window(braced_cells, start)
+        braces[:, o] = stiffened.ravel()[present]
+        holders[:, o] = braces[:, o] if AXES[o] == 3 else counted.ravel()[present]
         held = np.flatnonzero(holders[:, o])
         other[held, o] = flat[present[held] + (z * rows + y) * columns + x]
     exists = holders > 0
@@ -178,16 +183,22 @@ def _springs(filled: np.ndarray, braced: np.ndarray, number: np.ndarray, present
     return spring, kind, holders[exists], braces[exists]
 
 
-def _parts(filled: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Of the springs along its upper and its lower face across each axis, the part that a cell gives, uint16, of WHOLE; axes z, y, x.
+def _inward(filled: np.ndarray) -> list[np.ndarray]:
+    """What each cell moves from its upper to its lower face across the axes z, y, x [-], float32, padded by one cell all around.
 
-    Padded by one cell all around. It is WHOLE, but INWARD less for the outer and more for the inner of the two faces where one
-    side of the cell is free and the other not.
+    ``INWARD`` where only its upper side is free, less than nothing where only its lower side is, else 0.
     """
-    padded = np.pad(filled, 1).astype(np.int8)
-    # Nothing above and something below: 1; the other way round: -1.
-    outward = [INWARD * (np.roll(padded, 1, axis) - np.roll(padded, -1, axis)) for axis in range(3)]
-    return [((WHOLE - o).astype(np.uint16), (WHOLE + o).astype(np.uint16)) for o in outward]
+    padded = np.pad(filled, 1)
+    moved = []
+    for axis in range(3):
+        total = np.zeros(padded.shape, np.float32)
+        for up in (1, -1):
+            second = padded & np.roll(padded, up, axis)
+            third = second & np.roll(second, up, axis)
+            depth = np.select([third, second], [INWARD[3], INWARD[2]], 0.0)
+            total += up * depth * ~np.roll(padded, -up, axis)
+        moved.append(total)
+    return moved
 
 
 def _layers(around: np.ndarray) -> np.ndarray:
