@@ -32,7 +32,7 @@ STRONG = 0.5
 """phi = lambda dt / 2m, eq. (3.13), above which the implicit form is no good: beyond 1 it turns velocities round every step."""
 FOLDS = 0.2
 """Speed of an impact over the wave speed above which a lattice folds up and stays crumpled (docs/physics-solids.md)."""
-FOLDS_ROUND = 1.0
+FOLDS_ROUND = 0.9
 """The same times the cells across, of a ball that lands on ground or walls: the finer its lattice, the smaller the part of its cells
 that it lands on (docs/physics-solids.md)."""
 CRUSH = 0.2
@@ -463,7 +463,7 @@ class _Margins:
         h = float(np.cbrt(self.system.cell_volume[m]))
         return Margin(
             "thinnest part", self.system.names[m], float(cells[m]), THINNEST, "cells",
-            f"{self.system.names[m]} is {cells[m]:.2g} cells thin; one cell is 1.9 times too stiff in bending, two are 1.1 times",
+            f"{self.system.names[m]} is {cells[m]:.2g} cells thin; one cell is 1.9 times too stiff in bending, two are not",
             self._of(m, "shape"), "warning" if few else "ok", least=True,
             hint=f"write resolution {500.0 * h * cells[m]:.3g} mm for two cells")
 

@@ -3,11 +3,17 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import numpy as np
 from case import CONTROL, C, Case, block, refused
 from mdanim_lammps.errors import RefusedError
 from mdanim_lammps.scene.rotation import rotation_about
 from trial import Trial
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from twin.lattice import CORNER
 
 # --- large motion -------------------------------------------------------------------------------------------------
 
@@ -237,8 +243,8 @@ FALLS = [
 
 
 def at_bound(times: float) -> str:
-    """A cube in a slow spin, at a time step of so many bounds of a lone cube, 2 / sqrt(8)."""
-    step = times * 2.0 / 8.0**0.5
+    """A cube in a slow spin, at a time step of so many bounds of a lone cube, which its corners set."""
+    step = times * 2.0 / CORNER**0.5
     return (
         block("a", (4, 4, 4), (0, 0, 0), more="spin (0.02, 0, 0.05)")
         + f"control {{ time {20_000 * step!r} frames {1.0 / step!r} fps timestep {step!r} resolution 1 }}\n"

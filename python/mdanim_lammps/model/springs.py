@@ -51,8 +51,7 @@ def stiffness(lattice: Lattice, elasticity: Young | SpringConstant) -> np.ndarra
 
     With ``Young`` a spring has the part of k that each of its filled cells gives, about a quarter of an edge, half a face
     diagonal, so a body is as stiff as its volume says however thin it is; cells on a surface give a little less outside and
-    more inside, for bending. ``SpringConstant`` is the paper's k for
-    every spring; braces are not the paper's and get 0.
+    more inside, for bending. ``SpringConstant`` is the paper's k for every spring; braces are not the paper's and get 0.
     """
     if isinstance(elasticity, SpringConstant):
         return np.where(AXES[lattice.kind] == 3, 0.0, elasticity.k)
