@@ -8,7 +8,7 @@ from math import cosh, cos
 import numpy as np
 
 CORNER = 16.0 * (2.0 / 15.0 * (1.0 - 54.0 / 256.0) ** 2 + 4.0 / 15.0 * (1.0 - 18.0 / 256.0) + 0.1)
-"""Square of the frequency 2 / dt that the corner of a cube of three cells and more allows, over E/rho h^2.
+"""Square of the frequency 2 / dt that the corner of a cube of four cells and more allows, over E/rho h^2.
 
 An eighth of a cell hangs on edges of a quarter of 0.4 + 4/30, diagonals of half of 2 (0.2 - 2/30) and a brace of 0.1, which the
 surface weakens but for the brace. Along the body diagonal that is edge + 2 diagonals + brace; twice that over the mass.
@@ -20,7 +20,8 @@ def lattice(filled):
 
     Returns nodes {(z, y, x): filled cells around it} and springs {(node, node): filled cells that hold both}. A cell with
     a corner of its own has its body diagonals too. Where one side of a cell is free and the other is not, a diagonal of its
-    free face counts 18/256 less and one of the other face more (27/256 if there are but two cells in line), an edge three times that.
+    free face counts 18/256 less and one of the other face more (27/256 or 20/256 if only two or three cells are in line), an edge
+    three times that.
     """
     nodes, springs = {}, {}
 
@@ -35,8 +36,9 @@ def lattice(filled):
             if is_filled(above) == is_filled(below):
                 continue
             side = -1 if is_filled(below) else 1
-            third = tuple(c + 2 * side * u for c, u in zip(cell, up))
-            moved = (18.0 if is_filled(third) else 27.0) / 256.0 * (3.0 if len(alike) == 2 else 1.0)
+            line = [tuple(c + n * side * u for c, u in zip(cell, up)) for n in (2, 3)]
+            third, fourth = (is_filled(c) for c in line)
+            moved = (27.0 if not third else 18.0 if fourth else 20.0) / 256.0 * (3.0 if len(alike) == 2 else 1.0)
             count *= 1.0 - moved if (a[axis] > cell[axis]) == (side < 0) else 1.0 + moved
         return count
 

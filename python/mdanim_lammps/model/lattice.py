@@ -23,8 +23,8 @@ OFFSETS = np.array([
 They stand in the order of the neighbours' numbers, so springs written particle by particle come out sorted.
 """
 
-INWARD = {2: 27 / 256, 3: 18 / 256}
-"""What a cell on a surface moves of its face diagonals from the face outside to the one inside, if two, three or more are in line.
+INWARD = {2: 27 / 256, 3: 20 / 256, 4: 18 / 256}
+"""Part of its face diagonals that a cell on a surface moves from the face outside to the one inside, for 2, 3, 4 or more in line.
 
 docs/physics-solids.md, Bending. Binary fractions, so that what is alike by symmetry has equal springs to the last bit.
 """
@@ -193,10 +193,13 @@ def _inward(filled: np.ndarray) -> list[np.ndarray]:
     for axis in range(3):
         total = np.zeros(padded.shape, np.float32)
         for up in (1, -1):
-            second = padded & np.roll(padded, up, axis)
-            third = second & np.roll(second, up, axis)
-            depth = np.select([third, second], [INWARD[3], INWARD[2]], 0.0)
-            total += up * depth * ~np.roll(padded, -up, axis)
+            outer, line = ~np.roll(padded, -up, axis), padded
+            part = np.zeros(padded.shape, np.float32)
+            for count in range(2, max(INWARD) + 1):
+                # Cells with so many in line, themselves the first: those that follow are inside.
+                line = padded & np.roll(line, up, axis)
+                part[line] = INWARD[count]
+            total += up * part * outer
         moved.append(total)
     return moved
 
