@@ -16,6 +16,7 @@ from mdanim_lammps import Scene
 from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.driver.run import Interrupted
 from mdanim_lammps.errors import DivergedError, OutputError, RefusedError, UsageError
+from mdanim_lammps.model import lattice
 from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.scene.scene import Accuracy
 from mdanim_lammps.study import bench
@@ -646,23 +647,22 @@ def test_study_command(bar_study, bar_file, capsys, monkeypatch):
 
 
 @pytest.mark.parametrize("percent", [12.0, 8.0, 5.0])
-def test_cantilever_follows_timoshenko(percent, monkeypatch):
-    """Meet the target against the closed form in every eighth of a period, at no more than twice the cost of the best there is."""
+def test_a_target_that_takes_many_cells_is_met_at_fair_cost(percent, monkeypatch):
+    """Look up the ladder of a lattice that is too stiff in bending, since surface cells move nothing inward: it takes 4, 5 and 7 cells."""
     monkeypatch.syspath_prepend(Path(__file__).parent.parent / "bench")
+    monkeypatch.setattr(lattice, "INWARD", dict.fromkeys(lattice.INWARD, 0.0))
     from accuracy import target
 
     choice, rows = target(percent=percent, budget=60.0)
     _meets_at_fair_cost(choice, rows, percent / 100.0)
 
 
-@pytest.mark.soak
-@pytest.mark.timeout(3600)
 def test_cantilever_follows_timoshenko_to_two_percent(monkeypatch):
-    """Meet 2 % against Timoshenko at no more than twice the cost of the best point of a full ladder of cells and time steps."""
+    """Meet 2 % against the closed form in every eighth of a period, at no more than twice the cost of the best there is."""
     monkeypatch.syspath_prepend(Path(__file__).parent.parent / "bench")
     from accuracy import target
 
-    choice, rows = target(percent=2.0, budget=900.0)
+    choice, rows = target(percent=2.0, budget=60.0)
     _meets_at_fair_cost(choice, rows, 0.02)
 
 
