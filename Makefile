@@ -1,6 +1,6 @@
 # make demo   set up .venv, run scenes/beam.txt, end with the path of the movie
 # make test   set up .venv, run the tests
-# make soak   set up .venv, run the long form of the hard cases (tests/stability, test_ranks.py)
+# make soak   set up .venv, run the long form of the hard cases (tests/stability, test_ranks.py, tests/mpi)
 # make bench  set up .venv, measure all of docs/performance.md (ten minutes; python bench/all.py --quick takes one)
 # make bench-peers  set up .venv and .venv-peers, measure other programs on the same scenes (docs/performance.md)
 # make clean  forget everything that was built
@@ -30,7 +30,7 @@ test: setup
 	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 soak: setup
-	$(BIN)/python -m pytest -n 2 -m soak tests/stability tests/test_ranks.py
+	$(BIN)/python -m pytest -n 2 -m soak tests/stability tests/test_ranks.py tests/mpi
 
 bench: setup
 	$(BIN)/python bench/all.py --write

@@ -236,3 +236,4 @@ def test_most_of_the_wall_time_is_accounted_for(place):
     ready, folder = readied(place, films.FLYING)
     result = simulate_on(2, "central", ready, folder)
     assert 0.95 <= result.cost.covered <= 1.02, json.dumps(result.cost.to_json(), indent=1)
+    assert all(result.cost.parts[name] > 0.0 for name in ("springs", "contact", "gravity", "leap-frog", "waiting", "moving"))
