@@ -28,7 +28,8 @@ def test_of_vibrations_after_an_impact(tmp_path):
     # Without what loss() adds to v_n these are 4e-4, 1.1e-4 and 2.9e-5.
     found = [residual(tmp_path, 20.0, fraction) for fraction in (0.5, 0.25, 0.125)]
     assert found[0] < 1.5e-4
-    assert found[1] < found[0] / 4 and found[2] < found[1] / 6
+    # Over both halvings more than the 16 of second order (measured 31; 277 over three); one alone may be 5 to 9 times.
+    assert found[1] < found[0] / 4 and found[2] < found[1] / 4 and found[2] < found[0] / 24
 
 
 def test_of_flight_alone(tmp_path):

@@ -6,6 +6,7 @@ Wcislo 1999, sec. 3.1 and 5.2; formulas in docs/physics-solids.md.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import product
 
@@ -150,8 +151,12 @@ def _any_corner(mask: np.ndarray) -> np.ndarray:
 
 def _springs(filled: np.ndarray, braced: np.ndarray, number: np.ndarray, present: np.ndarray):
     """Pairs (S, 2), rows of OFFSETS, what holding cells and the braced ones among them count (S,), sorted by pair."""
+    all_cells, braced_cells = (np.pad(cells, 1).astype(np.float32) for cells in (filled, braced))
+    # What cells give to springs along their upper and their lower face; 0 where there is no cell.
     inward = _inward(filled)
-    all_cells, braced_cells = (np.pad(cells, 1) for cells in (filled, braced))
+    parts = {
+        axes: [((1.0 - more * m) * all_cells, (1.0 + more * m) * all_cells) for m in inward] for axes, more in ((1, EDGES), (2, 1.0))
+    }
     _, rows, columns = number.shape
     flat = number.ravel()
     other = np.zeros((len(present), len(OFFSETS)), np.int32)
@@ -162,14 +167,11 @@ def _springs(filled: np.ndarray, braced: np.ndarray, number: np.ndarray, present
     sides = {0: (0, 1), 1: (1,), -1: (0,)}
     for o, (x, y, z) in enumerate(OFFSETS.tolist()):
         counted, stiffened = (np.zeros(number.shape, np.float32) for _ in range(2))
-        more = EDGES if AXES[o] == 1 else 1.0
         for start in product(sides[z], sides[y], sides[x]):
-            part = np.ones(number.shape, np.float32)
-            for axis, step in enumerate((z, y, x)):
-                if not step:
-                    moved = more * _window(inward[axis], start)
-                    part *= 1.0 + (moved if start[axis] else -moved)
-            counted += part * _window(all_cells, start)
+            # A body diagonal lies in no face.
+            given = [_window(parts[AXES[o]][axis][start[axis]], start) for axis, step in enumerate((z, y, x)) if not step]
+            part = math.prod(given[1:], start=given[0]) if given else _window(all_cells, start)
+            counted += part
             stiffened += part * _window(braced_cells, start)
         braces[:, o] = stiffened.ravel()[present]
         holders[:, o] = braces[:, o] if AXES[o] == 3 else counted.ravel()[present]
