@@ -47,3 +47,11 @@ def test_whole_cells_are_written_as_whole_numbers(tmp_path):
     assert text == ["time,kinetic,residual,liquid_cells,draft.box", "0.1,0.3333333333333333,0.0,2000001,0.1"]
     back = Ledger.read(tmp_path / "ledger.csv")
     assert back.rows == ledger.rows and back.extras == ledger.extras
+
+
+def test_rounding_is_no_energy():
+    """Count energies below the floor as the floor, so that what rests does not seem to create energy out of nothing."""
+    ledger = Ledger(("kinetic", "elastic"), floor=1e-20)
+    for kinetic in (1e-31, 5e-31, 1e-10):
+        ledger.add(0.0, {"kinetic": kinetic, "elastic": 0.0})
+    assert [row["residual"] for row in ledger.rows] == pytest.approx([0.0, 4e-11, 1.0])

@@ -229,10 +229,11 @@ def test_time_step_has_order_two(bar_study):
 
 
 def test_resolution_is_what_costs_accuracy(bar_study):
-    """See errors fall with the cells, about as (h/t)^2, and far above those of the time step."""
+    """See errors fall with the cells, and far above those of the time step."""
     found = bar_study.analysis.ladders["resolution"]
     assert list(found.errors) == sorted(found.errors, reverse=True)
-    assert 1.4 < found.order < 2.3  # (h/t)^2 with a clamp, whose corners converge more slowly
+    # The springs' own (h/t)^2 of bending is taken out; what remains is the clamp, whose corners are singular: about h^1.2.
+    assert 0.9 < found.order < 2.3
     assert "most of the error from the resolution" in bar_study.advice
 
 
@@ -593,7 +594,7 @@ def test_stored_target_of_another_scene_is_not_used(target_file):
 def test_target_out_of_reach_is_told(target_file):
     """Run with the best there is and say by how much it misses, instead of meeting the target by word."""
     target_file.write_text(TARGET.replace("8 %", "0.1 %"))
-    found = settle(load_scene(target_file), make=True, budget=1.0)
+    found = settle(load_scene(target_file), make=True, budget=4.0)
     assert "is not reached" in found.warning.message
     assert found.scene.control.resolution is not None
 

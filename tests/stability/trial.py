@@ -7,6 +7,7 @@ import math
 from pathlib import Path
 
 import numpy as np
+from mdanim_lammps.driver.energy import rounding_energy
 from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.instance import Instance, State
 from mdanim_lammps.errors import DivergedError
@@ -36,7 +37,7 @@ class Trial:
         self.system, self.timestep = self.ready.system, self.ready.certificate.timestep
         self.instance = Instance(self.ready.plan)
         effects = self.ready.plan.effects
-        self.ledger = Ledger(("kinetic", *dict.fromkeys(e.ledger for e in effects if e.ledger)))
+        self.ledger = Ledger(("kinetic", *dict.fromkeys(e.ledger for e in effects if e.ledger)), floor=rounding_energy(self.system))
         self.lost_cells = 0
         try:
             self.instance.setup()

@@ -24,7 +24,7 @@ from ..results.expect import Measured, Outcome, evaluate, record, recorded
 from ..results.files import write_json, write_whole
 from ..results.ledger import Ledger
 from ..results.trajectory import Trajectory, TrajectoryWriter
-from .energy import ledger_terms
+from .energy import ledger_terms, rounding_energy
 from .guard import Guard
 from .prepare import Prepared
 from .source import Account, Broken, Frame, Sequential, Source
@@ -129,7 +129,8 @@ class _Run:
                               "run the scene again with --force")
         self.recorded = recorded(ready.scene.expects)
         self.grid = ready.plan.grid
-        self.ledger = Ledger(ledger_terms(self.effects), (*self.recorded.values(), *(("liquid_cells",) if self.grid else ())))
+        self.ledger = Ledger(ledger_terms(self.effects), (*self.recorded.values(), *(("liquid_cells",) if self.grid else ())),
+                             rounding_energy(ready.system))
 
     # --- the order of things ----------------------------------------------------------------------------------------
 

@@ -31,6 +31,8 @@ class Ledger:
     """Energy columns, ``kinetic`` first."""
     extras: tuple[str, ...] = ()
     """Further columns that are no energies, such as ``strain.NAME`` where an ``expect`` asks for it."""
+    floor: float = 0.0
+    """Energy that is nothing but rounding [J]: less than this in play counts as this much."""
     rows: list[dict[str, float]] = field(default_factory=list)
     _peak: float = 0.0
     _lowest: dict[str, float] = field(default_factory=dict)
@@ -52,7 +54,7 @@ class Ledger:
         self._lowest = {t: min(self._lowest.get(t, e), e) for t, e in potentials.items()}
         self._peak = max(self._peak, in_play) if self.rows else in_play
         change = sum(row[t] - first[t] for t in self.terms)
-        scale = self._peak - sum(self._lowest.values())
+        scale = max(self._peak - sum(self._lowest.values()), self.floor)
         row["residual"] = change / scale if scale else 0.0
         return row
 
