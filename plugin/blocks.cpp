@@ -74,19 +74,24 @@ unsigned Catalogue::find_or_add(const double *row)
 // How many particles the best cut takes into the block that ends before particle i; index 1 … N.
 std::vector<int> Blocks::lengths(const HalfBonds &bonds, const int *object) const
 {
-  std::vector<int> best(particles + 1), offsets;
+  std::vector<int> best(particles + 1);
+  int farthest = 0;
+  for (int i = 0; i < particles; ++i)
+    for (int b = bonds.first[i]; b < bonds.first[i + 1]; ++b) farthest = std::max(farthest, bonds.partner[b] - i);
+  std::vector<int> seen(farthest + 1, -1);    // first particle of the latest block that has this offset
   std::vector<long> cost(particles + 1, std::numeric_limits<long>::max());
   cost[0] = 0;
   for (int i = 0; i < particles; ++i) {
-    offsets.clear();
+    long offsets = 0;
     for (int n = 1; n <= lanes && i + n <= particles; ++n) {
       const int k = i + n - 1;
       if (object[k] != object[i]) break;
       for (int b = bonds.first[k]; b < bonds.first[k + 1]; ++b) {
-        const int offset = bonds.partner[b] - k;
-        if (std::find(offsets.begin(), offsets.end(), offset) == offsets.end()) offsets.push_back(offset);
+        int &latest = seen[bonds.partner[b] - k];
+        offsets += latest != i;
+        latest = i;
       }
-      const long total = cost[i] + OVERHEAD + static_cast<long>(offsets.size());
+      const long total = cost[i] + OVERHEAD + offsets;
       if (total <= cost[i + n]) {    // of equal ones the longer, which comes later
         cost[i + n] = total;
         best[i + n] = n;
@@ -109,27 +114,31 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
 
   laws.start(2 * lanes);
   home.resize(particles);
-  std::vector<int> offsets;
+  std::vector<int> next(lanes);    // spring of each lane
   std::vector<double> law(2 * lanes);
   int farthest = 0;
   for (std::size_t n = 0; n < all.size(); ++n) {
     Block &block = all[n];
     const int end = block.start + block.lanes;
-    offsets.clear();
     for (int i = block.start; i < end; ++i) {
       home[i] = static_cast<int>(n);
-      for (int b = bonds.first[i]; b < bonds.first[i + 1]; ++b) offsets.push_back(bonds.partner[b] - i);
+      next[i - block.start] = bonds.first[i];
     }
-    std::sort(offsets.begin(), offsets.end(), std::greater<int>());
-    offsets.erase(std::unique(offsets.begin(), offsets.end()), offsets.end());
-    for (const int offset : offsets) {
+    for (;;) {
+      int offset = 0;    // the longest that is left
+      for (int i = block.start; i < end; ++i) {
+        const int b = next[i - block.start];
+        if (b < bonds.first[i + 1]) offset = std::max(offset, bonds.partner[b] - i);
+      }
+      if (offset == 0) break;
       std::fill(law.begin(), law.end(), 0.0);
-      for (int i = block.start; i < end; ++i)
-        for (int b = bonds.first[i]; b < bonds.first[i + 1]; ++b)
-          if (bonds.partner[b] - i == offset) {
-            law[i - block.start] = bonds.push[b];
-            law[lanes + i - block.start] = bonds.pull[b];
-          }
+      for (int i = block.start; i < end; ++i) {
+        const int lane = i - block.start;
+        for (int &b = next[lane]; b < bonds.first[i + 1] && bonds.partner[b] - i == offset; ++b) {
+          law[lane] = bonds.push[b];
+          law[lanes + lane] = bonds.pull[b];
+        }
+      }
       entries.push_back({offset, laws.find_or_add(law.data())});
       farthest = std::max(farthest, offset);
     }
@@ -147,7 +156,22 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
   for (double **arrays : {x, v, f})
     for (int d = 0; d < 3; ++d, place += room) arrays[d] = place;
   outside.clear();
+  index.clear();
+  ghosts.clear();
   return true;
+}
+
+void Blocks::lie_at(const std::vector<int> &places, int own)
+{
+  index = places;
+  owned = own;
+  place.assign(own, -1);
+  ghosts.clear();
+  for (int i = 0; i < particles; ++i) {
+    if (index[i] < own) place[index[i]] = i;
+    else ghosts.push_back(i);
+  }
+  total.resize(3 * static_cast<std::size_t>(particles));
 }
 
 // --- motion ---
@@ -172,15 +196,19 @@ void Blocks::set_row(const Mover &mover, Friction friction, int lane, double *ro
   }
 }
 
-const std::vector<int> &Blocks::hold_back(const std::vector<int> &wanted, bool everything)
+void Blocks::hold_back(const std::vector<int> &wanted, bool everything)
 {
   for (Block &block : all) block.held_back = everything;
-  for (const int i : wanted) all[home[i]].held_back = true;
+  for (const int i : wanted)
+    if (!is_ghost(i)) all[home[index.empty() ? i : place[i]]].held_back = true;
   outside.clear();
   for (const Block &block : all)
     if (block.held_back)
-      for (int lane = 0; lane < block.lanes; ++lane) outside.push_back(block.start + lane);
-  return outside;
+      for (int lane = 0; lane < block.lanes; ++lane)
+        if (!is_ghost(at(block.start + lane))) outside.push_back(block.start + lane);
+  waiting.clear();
+  if (!index.empty())
+    for (const int i : outside) waiting.push_back(index[i]);
 }
 
 void Blocks::take_in(const double *const *from_x, const double *const *from_v)
@@ -188,27 +216,32 @@ void Blocks::take_in(const double *const *from_x, const double *const *from_v)
   for (int d = 0; d < 3; ++d) {
     double *to_x = x[d], *to_v = v[d];
     for (int i = 0; i < particles; ++i) {
-      to_x[i] = from_x[i][d];
-      to_v[i] = from_v[i][d];
+      const int from = at(i);
+      to_x[i] = from_x[from][d];
+      to_v[i] = from_v[from][d];
     }
+    for (const int i : ghosts) to_v[i] = 0.0;
   }
 }
 
 void Blocks::give_out(double *const *to_x, double *const *to_v) const
 {
-  for (int i = 0; i < particles; ++i)
+  for (int i = 0; i < particles; ++i) {
+    const int to = at(i);
+    if (is_ghost(to)) continue;
     for (int d = 0; d < 3; ++d) {
-      to_x[i][d] = x[d][i];
-      to_v[i][d] = v[d][i];
+      to_x[to][d] = x[d][i];
+      to_v[to][d] = v[d][i];
     }
+  }
 }
 
 void Blocks::take_in_held_back(const double *const *from_x, const double *const *from_v)
 {
   for (const int i : outside)
     for (int d = 0; d < 3; ++d) {
-      x[d][i] = from_x[i][d];
-      v[d][i] = from_v[i][d];
+      x[d][i] = from_x[at(i)][d];
+      v[d][i] = from_v[at(i)][d];
     }
 }
 
@@ -216,12 +249,33 @@ void Blocks::give_out_held_back(double *const *to_x, double *const *to_v) const
 {
   for (const int i : outside)
     for (int d = 0; d < 3; ++d) {
-      to_x[i][d] = x[d][i];
-      to_v[i][d] = v[d][i];
+      to_x[at(i)][d] = x[d][i];
+      to_v[at(i)][d] = v[d][i];
     }
 }
 
-void Blocks::fill(Pass &pass)
+void Blocks::give_out_some(const std::vector<int> &these, double *const *to_x, double *const *to_v) const
+{
+  for (const int to : these)
+    for (int d = 0; d < 3; ++d) to_x[to][d] = x[d][place[to]];
+  if (!to_v) return;
+  for (const int to : these)
+    for (int d = 0; d < 3; ++d) to_v[to][d] = v[d][place[to]];
+}
+
+void Blocks::take_in_ghosts(const double *const *from_x)
+{
+  for (const int i : ghosts)
+    for (int d = 0; d < 3; ++d) x[d][i] = from_x[index[i]][d];
+}
+
+void Blocks::give_out_forces(double *const *f) const
+{
+  if (index.empty()) return;    // the pass has written them there itself
+  for (const int i : outside) std::copy_n(&total[3 * static_cast<std::size_t>(i)], 3, f[index[i]]);
+}
+
+void Blocks::fill(Pass &pass, double *const *forces)
 {
   pass.block = all.data();
   pass.blocks = static_cast<int>(all.size());
@@ -233,12 +287,14 @@ void Blocks::fill(Pass &pass)
     pass.v[d] = v[d];
     pass.f[d] = f[d];
   }
+  pass.total = index.empty() ? forces[0] : total.data();
 }
 
 std::size_t Blocks::bytes() const
 {
   return all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + motions.bytes() + memory.bytes() +
-      (home.capacity() + outside.capacity()) * sizeof(int);
+      (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) * sizeof(int) +
+      total.capacity() * sizeof(double);
 }
 
 // --- widths ---

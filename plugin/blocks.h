@@ -63,12 +63,15 @@ class Blocks {
   // row by row.
   bool cut(const HalfBonds &bonds, const int *object, const Width &width);
   void forget() { all.clear(); }
+  // Where particles are in the arrays of LAMMPS, if not in the same order: those from `own` on are ghosts, which others move. After this
+  // everybody else's numbers are LAMMPS's: those of mover(), hold_back(), held_back().
+  void lie_at(const std::vector<int> &places, int own);
   bool ready() const { return !all.empty(); }
 
   template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
-  // Every block with one of these particles is held back, no other. Returns all particles of such blocks, ascending.
-  const std::vector<int> &hold_back(const std::vector<int> &particles, bool everything);
-  const std::vector<int> &held_back() const { return outside; }
+  // Every block with one of these particles is held back, no other; ghosts among them are left out.
+  void hold_back(const std::vector<int> &particles, bool everything);
+  const std::vector<int> &held_back() const { return index.empty() ? outside : waiting; }    // all particles of such blocks
 
   void take_in(const double *const *x, const double *const *v);
   void give_out(double *const *x, double *const *v) const;
@@ -76,11 +79,18 @@ class Blocks {
   void take_in_held_back(const double *const *x, const double *const *v);
   void give_out_held_back(double *const *x, double *const *v) const;
 
-  void fill(Pass &pass);
+  // With ghosts: state of these own particles, which other ranks wait for, velocities unless v is null; positions of theirs.
+  void give_out_some(const std::vector<int> &particles, double *const *x, double *const *v) const;
+  void take_in_ghosts(const double *const *x);
+
+  void fill(Pass &pass, double *const *f);    // f: where forces on those that are held back go
+  void give_out_forces(double *const *f) const;    // there they are after a pass and this
   std::size_t bytes() const;
 
  private:
   std::vector<int> lengths(const HalfBonds &bonds, const int *object) const;
+  int at(int i) const { return index.empty() ? i : index[i]; }
+  bool is_ghost(int place) const { return !index.empty() && place >= owned; }
   void set_row(const Mover &mover, Friction friction, int lane, double *row) const;
 
   int particles = 0, lanes = 0;
@@ -88,6 +98,10 @@ class Blocks {
   std::vector<Entry> entries;
   std::vector<int> home;       // block of each particle
   std::vector<int> outside;    // particles of blocks that are held back
+  std::vector<int> index, place;      // of a particle in LAMMPS's arrays, and back, -1 for none; empty where the orders are the same
+  std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
+  std::vector<double> total;           // see Pass, in our order
+  int owned = 0;                       // in LAMMPS's arrays, ghosts come after them
   Catalogue laws, motions;
   Doubles memory;    // of the arrays
   double *x[3], *v[3], *f[3];
@@ -99,8 +113,8 @@ template <class Tell> void Blocks::set_motion(Friction friction, Tell mover)
   motions.start(MOTIONS * lanes);
   for (Block &block : all) {
     for (int lane = 0; lane < lanes; ++lane) {
-      if (lane < block.lanes) set_row(mover(block.start + lane), friction, lane, row.data());
-      else set_row({0.0, 0.0, 0.0, 0.0, 0.0}, friction, lane, row.data());
+      const int i = lane < block.lanes ? at(block.start + lane) : -1;
+      set_row(i < 0 || is_ghost(i) ? Mover{0.0, 0.0, 0.0, 0.0, 0.0} : mover(i), friction, lane, row.data());
       row[OTHERS * lanes + lane] = lane < block.lanes ? 0.0 : 1.0;
     }
     block.motion = motions.find_or_add(row.data());

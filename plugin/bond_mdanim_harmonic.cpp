@@ -243,6 +243,13 @@ bool BondMdanimHarmonic::halves(HalfBonds &half) const
   return true;
 }
 
+bool BondMdanimHarmonic::rows_of_all(BondRows &all) const
+{
+  if (damped || static_cast<int>(rows.first.size()) != atom->nlocal + 1) return false;
+  all = {rows.first.data(), rows.upper.data(), rows.partner.data(), rows.push.data(), rows.pull.data()};
+  return true;
+}
+
 // --- forces ---
 
 // r_ij -> F_i of n springs. The clones differ in width only: + - * / sqrt round alike on all of them.

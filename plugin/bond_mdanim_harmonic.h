@@ -7,6 +7,7 @@
 
 #include "blocks.h"
 #include "bond.h"
+#include "lineup.h"
 #include "loss.h"
 #include "spring.h"
 #include "vec3.h"
@@ -34,6 +35,8 @@ class BondMdanimHarmonic : public Bond {
   // For run_style verlet/mdanim, which computes most forces itself: the springs, each once. False where that is not how they are summed,
   // or where there is more to them than springs.
   bool halves(mdanim::HalfBonds &half) const;
+  // The same as rows at both ends where some are of other ranks. False where there is more to them than springs.
+  bool rows_of_all(mdanim::BondRows &all) const;
   bigint version() const { return made; }    // another number for other springs
   void took(double more) { seconds += more; }
 

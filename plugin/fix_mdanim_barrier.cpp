@@ -433,7 +433,7 @@ void FixMdanimBarrier::post_force(int)
   if (slowed) loss.step(v, update->dt, update->setupflag);
 }
 
-// Together with run_style verlet/mdanim, which has no ghosts.
+// Together with run_style verlet/mdanim, which leaves ghosts out.
 void FixMdanimBarrier::concerned(std::vector<int> &particles) const
 { particles.insert(particles.end(), particle.begin(), particle.end()); }
 

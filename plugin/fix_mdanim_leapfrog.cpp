@@ -35,6 +35,7 @@ FixMdanimLeapfrog::FixMdanimLeapfrog(LAMMPS *lmp, int narg, char **arg) : Fix(lm
   size_vector = 2;
   extvector = 0;
   global_freq = 1;
+  comm_forward = 1;
 
   int drag_word = 0;
   for (int iarg = 3; iarg < narg; iarg += 2) {
@@ -239,6 +240,32 @@ Mover FixMdanimLeapfrog::mover(int i)
   const double phi = has_drag ? (own ? own[i] : lambda.number) * kick : 0.0;
   largest_phi = std::max(largest_phi, phi);
   return {0.0, mass, kick, update->dt, phi};
+}
+
+void FixMdanimLeapfrog::survey_ghosts(std::vector<int> &those_sent, std::vector<int> &of_all)
+{
+  sent = &those_sent;
+  objects = &of_all;
+  sent->clear();
+  objects->assign(atom->nlocal + atom->nghost, 1);
+  if (atom->molecule_flag) std::copy_n(atom->molecule, atom->nlocal, objects->begin());
+  comm->forward_comm(this);
+  std::sort(sent->begin(), sent->end());
+  sent->erase(std::unique(sent->begin(), sent->end()), sent->end());
+}
+
+int FixMdanimLeapfrog::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  for (int k = 0; k < n; ++k) {
+    if (list[k] < atom->nlocal) sent->push_back(list[k]);    // others pass ghosts on
+    buf[k] = static_cast<double>((*objects)[list[k]]);
+  }
+  return n;
+}
+
+void FixMdanimLeapfrog::unpack_forward_comm(int n, int first, double *buf)
+{
+  for (int k = 0; k < n; ++k) (*objects)[first + k] = static_cast<int>(buf[k]);
 }
 
 void FixMdanimLeapfrog::finish_step(const std::vector<int> &particles)

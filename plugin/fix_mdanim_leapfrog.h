@@ -35,7 +35,13 @@ class FixMdanimLeapfrog : public Fix {
   int traced() const { return static_cast<int>(trace.size()); }    // objects; 0 when off
   std::vector<mdanim::Box> traced_boxes() const;
 
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+
   // For run_style verlet/mdanim, which moves most particles itself.
+  // All ranks together, after a rebuild: own particles that other ranks have as ghosts, and the objects of all particles, 1 where
+  // there are no molecule IDs.
+  void survey_ghosts(std::vector<int> &sent, std::vector<int> &objects);
   mdanim::Friction friction() const;
   mdanim::Mover mover(int i);
   double *trace_bounds() { return trace.empty() ? nullptr : trace.front().bound; }
@@ -60,6 +66,7 @@ class FixMdanimLeapfrog : public Fix {
   double largest_phi = 0.0;    // seen on this rank in this run
   double seconds = 0.0;
   const std::vector<int> *only = nullptr;    // particles to move now; null for all
+  std::vector<int> *sent = nullptr, *objects = nullptr;    // while ghosts are surveyed
   std::vector<mdanim::Box> trace;    // of the particles of this rank; empty when off
 };
 

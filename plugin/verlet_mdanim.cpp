@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // run_style verlet/mdanim. A step of LAMMPS begins with a half kick and a drift and finishes with forces and the other half kick.
 // Between two outputs our pass finishes a step and begins the next at once, in arrays of its own; whoever is not known to live with that (other
-// fixes, other ranks, dashpots) gets run_style verlet as it is. The bits are the same.
+// fixes, dashpots) gets run_style verlet as it is. The bits are the same. With other ranks, ghosts are lanes that do not move: they get
+// their places before every pass, and what springs do to them is thrown away. Ranks decide together.
 
 #include "verlet_mdanim.h"
 
@@ -53,7 +54,7 @@ VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, a
   if (!width) error->all(FLERR, "run_style verlet/mdanim: width {} is unknown or this processor does not have it", arg[1]);
 }
 
-double VerletMdanim::memory_usage() { return static_cast<double>(blocks.bytes()); }
+double VerletMdanim::memory_usage() { return static_cast<double>(blocks.bytes() + line.bytes()); }
 
 // --- whether we can ---
 
@@ -64,7 +65,7 @@ bool VerletMdanim::find_players()
   leapfrog = nullptr;
   gravity = nullptr;
   guests.clear();
-  if (!bond || comm->nprocs > 1 || domain->triclinic || domain->dimension != 3) return false;
+  if (!bond || domain->triclinic || domain->dimension != 3) return false;
   if ((force->pair && force->pair->compute_flag) || force->angle || force->dihedral || force->improper || force->kspace)
     return false;
   for (int n = 0; n < modify->nfix; ++n) {
@@ -81,13 +82,15 @@ bool VerletMdanim::find_players()
     else if (mask & ACTS)
       return false;
   }
-  lists_matter = modify->n_post_neighbor || modify->n_pre_neighbor;
+  if (comm->nprocs > 1 && (domain->xperiodic || domain->yperiodic || domain->zperiodic || neighbor->build_once)) return false;
+  lists_matter = modify->n_post_neighbor || modify->n_pre_neighbor || comm->nprocs > 1;    // nobody may leave his neighbours' ranks unseen
   return leapfrog && !(lists_matter && !neighbor->dist_check && !neighbor->build_once);
 }
 
 // Blocks for the springs as they are now.
 bool VerletMdanim::cut()
 {
+  if (comm->nprocs > 1) return cut_for_ranks();
   HalfBonds half;
   if (atom->nghost || !bond->halves(half)) return false;
   const bool other_objects = made_for < 0 && atom->molecule_flag &&
@@ -102,6 +105,36 @@ bool VerletMdanim::cut()
   return worth_it;
 }
 
+// The same, once after every rebuild, if all ranks can.
+bool VerletMdanim::cut_for_ranks()
+{
+  if (decided_for == neighbor->lastcall) return worth_it;
+  decided_for = neighbor->lastcall;
+  int here = cut_line(), all = 0;
+  MPI_Allreduce(&here, &all, 1, MPI_INT, MPI_MIN, world);
+  return worth_it = all;
+}
+
+// Whether this rank's particles and their ghosts are in blocks.
+bool VerletMdanim::cut_line()
+{
+  std::vector<int> objects;
+  leapfrog->survey_ghosts(sent, objects);
+  BondRows rows;
+  if (!bond->rows_of_all(rows)) return false;
+  Lineup now(atom->nlocal, atom->nlocal + atom->nghost, atom->tag, rows);
+  std::vector<int> of_line;
+  for (const int i : now.places()) of_line.push_back(objects[i]);
+  const bool same = cut_for >= 0 && object == of_line && now.same_springs(line);
+  line = std::move(now);
+  object = std::move(of_line);
+  cut_for = 0;
+  if (!same) blocks.cut(line.halves(), object.data(), *width);
+  if (!blocks.ready()) return false;
+  blocks.lie_at(line.places(), atom->nlocal);
+  return true;
+}
+
 // --- the run ---
 
 void VerletMdanim::run(int n)
@@ -110,7 +143,7 @@ void VerletMdanim::run(int n)
     Verlet::run(n);
     return;
   }
-  made_for = -1;
+  made_for = decided_for = -1;
   for (int i = 0; i < n; ++i) {
     if (timer->check_timeout(i)) {
       update->nsteps = i;
@@ -151,9 +184,11 @@ int VerletMdanim::take_steps(int step, int most)
   }
 
   timer->stamp();
+  if (comm->nprocs > 1) comm->forward_comm();
   start_blocks();
   int taken = 0;
   while (update->ntimestep < stop) {
+    if (comm->nprocs > 1 && taken) meet_ghosts();
     bool see_all = false;
     for (const Player &p : guests) see_all = see_all || p.guest->reads_all();
     if (see_all) blocks.hold_back(wanted, true);
@@ -170,11 +205,22 @@ int VerletMdanim::take_steps(int step, int most)
   return taken;
 }
 
-// Whether no particle can have moved so far, going `more` farther, that lists must be made anew.
+// Whether no particle of any rank can have moved so far, going `more` farther, that lists must be made anew.
 bool VerletMdanim::lists_last(double more)
 {
   strayed += more;
+  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &strayed, 1, MPI_DOUBLE, MPI_MAX, world);
   return strayed < 0.5 * neighbor->skin;
+}
+
+// Other ranks see where this one's particles are, and this one theirs.
+void VerletMdanim::meet_ghosts()
+{
+  timer->stamp(Timer::BOND);
+  blocks.give_out_some(sent, atom->x, comm->ghost_velocity ? atom->v : nullptr);
+  comm->forward_comm();
+  blocks.take_in_ghosts(atom->x);
+  timer->stamp(Timer::COMM);
 }
 
 // Positions and velocities into the blocks, and who is to be held back.
@@ -190,14 +236,13 @@ void VerletMdanim::start_blocks()
     made_for = neighbor->lastcall;
   }
   blocks.take_in(atom->x, atom->v);
-  blocks.fill(pass);
+  blocks.fill(pass, atom->f);
   pass.friction = friction;
   pass.gravity[0] = pass.gravity[1] = pass.gravity[2] = 0.0;
   if (gravity) {
     const Vec3 &g = gravity->acceleration();
     pass.gravity[0] = g.x, pass.gravity[1] = g.y, pass.gravity[2] = g.z;
   }
-  pass.total = atom->f[0];
   pass.trace = leapfrog->trace_bounds();
   hold_back();
 }
@@ -230,7 +275,10 @@ void VerletMdanim::one_pass(bool guests_see_all)
 void VerletMdanim::guests_turn()
 {
   const std::vector<int> &waiting = blocks.held_back();
-  if (!waiting.empty()) blocks.give_out_held_back(atom->x, atom->v);
+  if (!waiting.empty()) {
+    blocks.give_out_held_back(atom->x, atom->v);
+    blocks.give_out_forces(atom->f);
+  }
   for (const Player &p : guests) p.fix->post_force(vflag);
   if (!waiting.empty()) leapfrog->finish_step(waiting);
   for (const Player &p : guests)
@@ -287,18 +335,14 @@ void VerletMdanim::rebuild_lists()
     if (neighbor->style) neighbor->setup_bins();
   }
   timer->stamp();
-  const int before = atom->nlocal;
-  const bool sorted = atom->sortfreq > 0 && update->ntimestep >= atom->nextsort;
   comm->exchange();
-  if (sorted) atom->sort();
+  if (atom->sortfreq > 0 && update->ntimestep >= atom->nextsort) atom->sort();
   comm->borders();
   timer->stamp(Timer::COMM);
   if (modify->n_pre_neighbor) modify->pre_neighbor();
   timer->stamp(Timer::MODIFY);
-  // LAMMPS's own list of bonds stands as long as nobody changes places: to make it again takes longer than a step.
-  const bool same = comm->nprocs == 1 && !sorted && atom->nghost == 0 && atom->nlocal == before &&
-      modify->get_fix_by_style("^bond/").empty();
-  neighbor->build(same ? 0 : 1);
+  // LAMMPS's own list of bonds takes longer than a step, and nobody here but fixes of the bond/ family would read it.
+  neighbor->build(modify->get_fix_by_style("^bond/").empty() ? 0 : 1);
   timer->stamp(Timer::NEIGH);
   if (modify->n_post_neighbor) modify->post_neighbor();
   timer->stamp(Timer::MODIFY);

@@ -6,6 +6,7 @@
 
 #include "blocks.h"
 #include "guest.h"
+#include "lineup.h"
 #include "verlet.h"
 
 namespace LAMMPS_NS {
@@ -21,6 +22,9 @@ class VerletMdanim : public Verlet {
  private:
   bool find_players();
   bool cut();
+  bool cut_for_ranks();
+  bool cut_line();
+  void meet_ghosts();
   int take_steps(int step, int most);
   bigint next_stop() const;
   bool lists_last(double more);
@@ -39,6 +43,9 @@ class VerletMdanim : public Verlet {
   bigint cut_for = -1;          // version of the springs
   std::vector<int> object;      // and molecule of each particle
   bool worth_it = false;
+  mdanim::Lineup line;            // with other ranks: what is cut
+  std::vector<int> sent;          // own particles that other ranks have as ghosts
+  bigint decided_for = -1;        // build of lists after which all ranks agreed on worth_it
   long long passed = 0;
 
   // found before every run

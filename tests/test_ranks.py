@@ -11,12 +11,17 @@ import plugin_path
 import pytest
 from mpi.follow import follow
 from test_engine import MEETING, SPLASH
+from test_verlet_mdanim import EFFECTS, MESHES, SHAPES, SOLID, film
 
+FILM = Path(__file__).parent / "mpi" / "film.py"
 FOLLOW = Path(__file__).parent / "mpi" / "follow.py"
 CYCLES = Path(__file__).parent / "mpi" / "cycles.py"
 NEARER = MEETING.replace("44) cm", "42.6) cm").replace("-4, 5) cm", "-4, 3.5) cm")
 SCENES = {"solids": NEARER.replace("drag 0.8", "drag 0.8\n  damping 0.05"), "liquid": SPLASH,
           "pressure": SPLASH.replace("volume 45 l", "volume 45 l model pressure")}
+MOVING = {**{name: SHAPES[name] for name in ("sphere", "held")}, **EFFECTS,
+          "mesh": f'object a {{ shape mesh "{MESHES / "dumbbell.obj"}" scale 1/30 position (0, 0, 0) spin (3, 2, 15) rad/s {SOLID} }}'}
+"""Scenes whose steps are taken by passes."""
 ACCOUNTS = np.s_[80:96]
 """Bytes of a liquid's state that only tell energies, StateHead in fix_mdanim_liquid.cpp."""
 
@@ -44,6 +49,22 @@ def test_ranks_see_what_one_sees(tmp_path, name, ranks):
         assert np.array_equal(film[f"again {what}"], film[f"end {what}"]) and np.array_equal(film[f"new {what}"], film[f"end {what}"])
     assert (film["end x"] != film["start x"]).any()
     assert np.abs(film["end energies"]).min() > 0.0 if name == "solids" else (film["end cells"] != film["start cells"]).any()
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize(("name", "ranks"), [(name, 2) for name in MOVING] + [("held", 3), ("walls and contact", 3), ("liquid", 4),
+                                                                             ("contact", 4), ("mesh", 4), ("air", 3)])
+def test_passes_with_ghosts_give_the_bits_of_one_rank(tmp_path, name, ranks):
+    """Film bodies that are split among ranks: the bits of run_style verlet on one, and most steps were taken by passes on all ranks."""
+    path = tmp_path / "scene.txt"
+    path.write_text(MOVING[name])
+    frames, energies, trace, _ = film(MOVING[name], "verlet")
+    on_ranks(FILM, ranks, path, tmp_path / "film.npz")
+    found = np.load(tmp_path / "film.npz")
+    assert len(set(found["taken"])) == 1 and found["taken"][0] > 200
+    assert np.array_equal(found["frames"], frames)
+    assert np.array_equal(found["trace"], trace)
+    np.testing.assert_allclose(found["energies"], energies, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.mpi

@@ -48,10 +48,10 @@ def passes(instance: Instance) -> int:
     return instance._library.mdanim_passes(instance._handle)
 
 
-def film(text: str, style: str, pieces=(1, 150, 149)) -> tuple[np.ndarray, list[float], np.ndarray, int]:
+def film(text: str, style: str, pieces=(1, 150, 149), comm=None) -> tuple[np.ndarray, list[float], np.ndarray, int]:
     """x, v and f after every piece of a run, at its end the energies, the trace, and how many passes were taken."""
     ready = prepare(parse_scene(FALL + text + "\n" + END))
-    with Instance(ready.plan) as instance:
+    with Instance(ready.plan, comm) as instance:
         instance._lmp.command(f"run_style {style}")
         instance.setup()
         instance.start_trace()

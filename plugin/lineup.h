@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Particles of a rank and those of others that they have springs to, in tag order, each spring once: what blocks.h cuts into blocks
+// where a rank does not have all particles in that order itself.
+
+#ifndef MDANIM_LINEUP_H
+#define MDANIM_LINEUP_H
+
+#include "blocks.h"
+
+#include <vector>
+
+namespace mdanim {
+
+// Springs of the particles of a rank, by index in LAMMPS's arrays. Those of particle i are [first[i], first[i+1]): to partners of lower
+// tag ascending, then, from upper[i] on, to those of higher tag descending.
+struct BondRows {
+  const int *first, *upper, *partner;
+  const double *push, *pull;
+};
+
+class Lineup {
+ public:
+  Lineup() = default;
+  // `tag` of all particles that the rank knows, its own `nlocal` ones first.
+  Lineup(int nlocal, int nall, const int *tag, const BondRows &rows);
+
+  int size() const { return static_cast<int>(index.size()); }
+  const std::vector<int> &places() const { return index; }    // in LAMMPS's arrays, of every particle of the line
+  HalfBonds halves() const;
+  // Whether the same particles have the same springs, wherever LAMMPS has them.
+  bool same_springs(const Lineup &other) const;
+  std::size_t bytes() const;
+
+ private:
+  std::vector<int> index;
+  std::vector<int> name;    // tag, with its sign changed where the particle is another rank's
+  std::vector<int> first, partner;
+  std::vector<double> push, pull;
+};
+
+}    // namespace mdanim
+
+#endif
