@@ -593,7 +593,7 @@ def test_stored_target_of_another_scene_is_not_used(target_file):
 
 def test_target_out_of_reach_is_told(target_file):
     """Run with the best there is and say by how much it misses, instead of meeting the target by word."""
-    target_file.write_text(TARGET.replace("8 %", "0.1 %"))
+    target_file.write_text(TARGET.replace("8 %", "0.001 %"))
     found = settle(load_scene(target_file), make=True, budget=4.0)
     assert "is not reached" in found.warning.message
     assert found.scene.control.resolution is not None
