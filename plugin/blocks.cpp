@@ -254,13 +254,10 @@ void Blocks::give_out_held_back(double *const *to_x, double *const *to_v) const
     }
 }
 
-void Blocks::give_out_some(const std::vector<int> &these, double *const *to_x, double *const *to_v) const
+void Blocks::give_out_places(const std::vector<int> &these, double *const *to_x) const
 {
   for (const int to : these)
     for (int d = 0; d < 3; ++d) to_x[to][d] = x[d][place[to]];
-  if (!to_v) return;
-  for (const int to : these)
-    for (int d = 0; d < 3; ++d) to_v[to][d] = v[d][place[to]];
 }
 
 void Blocks::take_in_ghosts(const double *const *from_x)
@@ -293,7 +290,8 @@ void Blocks::fill(Pass &pass, double *const *forces)
 std::size_t Blocks::bytes() const
 {
   return all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + motions.bytes() + memory.bytes() +
-      (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) * sizeof(int) +
+      (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
+          sizeof(int) +
       total.capacity() * sizeof(double);
 }
 

@@ -63,8 +63,8 @@ class Blocks {
   // row by row.
   bool cut(const HalfBonds &bonds, const int *object, const Width &width);
   void forget() { all.clear(); }
-  // Where particles are in the arrays of LAMMPS, if not in the same order: those from `own` on are ghosts, which others move. After this
-  // everybody else's numbers are LAMMPS's: those of mover(), hold_back(), held_back().
+  // Where particles are in the arrays of LAMMPS, if not in the same order: those from `own` on are ghosts, which others move.
+  // After this everybody else's numbers are LAMMPS's: those of mover(), hold_back(), held_back().
   void lie_at(const std::vector<int> &places, int own);
   bool ready() const { return !all.empty(); }
 
@@ -79,8 +79,8 @@ class Blocks {
   void take_in_held_back(const double *const *x, const double *const *v);
   void give_out_held_back(double *const *x, double *const *v) const;
 
-  // With ghosts: state of these own particles, which other ranks wait for, velocities unless v is null; positions of theirs.
-  void give_out_some(const std::vector<int> &particles, double *const *x, double *const *v) const;
+  // With ghosts: positions of these own particles, which other ranks wait for; and of theirs.
+  void give_out_places(const std::vector<int> &particles, double *const *x) const;
   void take_in_ghosts(const double *const *x);
 
   void fill(Pass &pass, double *const *f);    // f: where forces on those that are held back go
@@ -98,7 +98,7 @@ class Blocks {
   std::vector<Entry> entries;
   std::vector<int> home;       // block of each particle
   std::vector<int> outside;    // particles of blocks that are held back
-  std::vector<int> index, place;      // of a particle in LAMMPS's arrays, and back, -1 for none; empty where the orders are the same
+  std::vector<int> index, place;      // of a particle in LAMMPS's arrays, and back; `index` empty where the orders are the same
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
   std::vector<double> total;           // see Pass, in our order
   int owned = 0;                       // in LAMMPS's arrays, ghosts come after them

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Particles of a rank and those of others that they have springs to, in tag order, each spring once: what blocks.h cuts into blocks
+// Particles of a rank and those of others that they have springs to, in tag order, each spring once: what is cut into blocks
 // where a rank does not have all particles in that order itself.
 
 #ifndef MDANIM_LINEUP_H
@@ -11,8 +11,8 @@
 
 namespace mdanim {
 
-// Springs of the particles of a rank, by index in LAMMPS's arrays. Those of particle i are [first[i], first[i+1]): to partners of lower
-// tag ascending, then, from upper[i] on, to those of higher tag descending.
+// Springs of the particles of a rank, by index in LAMMPS's arrays. Those of particle i are [first[i], first[i+1]): to partners of
+// lower tag ascending, then, from upper[i] on, to those of higher tag descending.
 struct BondRows {
   const int *first, *upper, *partner;
   const double *push, *pull;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // run_style verlet/mdanim. A step of LAMMPS begins with a half kick and a drift and finishes with forces and the other half kick.
 // Between two outputs our pass finishes a step and begins the next at once, in arrays of its own; whoever is not known to live with that (other
-// fixes, dashpots) gets run_style verlet as it is. The bits are the same. With other ranks, ghosts are lanes that do not move: they get
-// their places before every pass, and what springs do to them is thrown away. Ranks decide together.
+// fixes, dashpots) gets run_style verlet as it is. The bits are the same. With other ranks, ghosts are lanes that do not move:
+// they get their places before every pass, and what springs do to them is thrown away. Ranks decide together.
 
 #include "verlet_mdanim.h"
 
@@ -82,8 +82,10 @@ bool VerletMdanim::find_players()
     else if (mask & ACTS)
       return false;
   }
-  if (comm->nprocs > 1 && (domain->xperiodic || domain->yperiodic || domain->zperiodic || neighbor->build_once)) return false;
-  lists_matter = modify->n_post_neighbor || modify->n_pre_neighbor || comm->nprocs > 1;    // nobody may leave his neighbours' ranks unseen
+  const bool periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
+  if (comm->nprocs > 1 && (periodic || neighbor->build_once || comm->ghost_velocity)) return false;    // ghosts get places alone
+  // With several ranks nobody may go beyond the neighbours of his own unseen.
+  lists_matter = modify->n_post_neighbor || modify->n_pre_neighbor || comm->nprocs > 1;
   return leapfrog && !(lists_matter && !neighbor->dist_check && !neighbor->build_once);
 }
 
@@ -217,7 +219,7 @@ bool VerletMdanim::lists_last(double more)
 void VerletMdanim::meet_ghosts()
 {
   timer->stamp(Timer::BOND);
-  blocks.give_out_some(sent, atom->x, comm->ghost_velocity ? atom->v : nullptr);
+  blocks.give_out_places(sent, atom->x);
   comm->forward_comm();
   blocks.take_in_ghosts(atom->x);
   timer->stamp(Timer::COMM);
