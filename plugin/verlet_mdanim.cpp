@@ -337,14 +337,18 @@ void VerletMdanim::rebuild_lists()
     if (neighbor->style) neighbor->setup_bins();
   }
   timer->stamp();
+  const int before = atom->nlocal;
+  const bool sorted = atom->sortfreq > 0 && update->ntimestep >= atom->nextsort;
   comm->exchange();
-  if (atom->sortfreq > 0 && update->ntimestep >= atom->nextsort) atom->sort();
+  if (sorted) atom->sort();
   comm->borders();
   timer->stamp(Timer::COMM);
   if (modify->n_pre_neighbor) modify->pre_neighbor();
   timer->stamp(Timer::MODIFY);
-  // LAMMPS's own list of bonds takes longer than a step, and nobody here but fixes of the bond/ family would read it.
-  neighbor->build(modify->get_fix_by_style("^bond/").empty() ? 0 : 1);
+  // LAMMPS's own list of bonds takes longer than a step to make; it stands as long as nobody changes places.
+  const bool same = comm->nprocs == 1 && !sorted && atom->nghost == 0 && atom->nlocal == before &&
+      modify->get_fix_by_style("^bond/").empty();
+  neighbor->build(same ? 0 : 1);
   timer->stamp(Timer::NEIGH);
   if (modify->n_post_neighbor) modify->post_neighbor();
   timer->stamp(Timer::MODIFY);
