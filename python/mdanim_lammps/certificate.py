@@ -39,7 +39,7 @@ CRUSH = 0.2
 """Load over Young's modulus above which a lattice is crushed (docs/physics-solids.md)."""
 THINNEST = 2
 """Fewest cells across: one cell is 1.9 times too stiff in bending (docs/physics-solids.md)."""
-TUNNEL = (0.5, 0.7, 0.8)
+TUNNEL = (0.5, 0.65, 0.8)
 """Closing speed over the wave speed from which a block goes through a clamped plate of 1, 2, 3 and more cells (docs/stability.md)."""
 SOFTER = 2.0 / 3.0
 """With contact softer than its standard that speed falls with this power of ``contact-stiffness`` (docs/physics-contact.md)."""

@@ -95,7 +95,7 @@ IMPACTS = [
     )
     for speed, overlap in ((0.2, 0.2), (0.5, 0.45), (0.8, 0.6), (1.0, 0.8))
 ]
-PASSES_AT = {2: 0.7, 3: 1.2, 4: 1.45, 5: 1.7}
+PASSES_AT = {2: 0.7, 3: 1.2, 4: 1.45, 5: 1.65}
 """Cells across a cube, and the closing speed over C from which two of them pass through each other (bench/stability.py)."""
 WORST = (0.5, 0.5)
 """Sideways displacement at which they do first: every corner on the middle of a face of the lattice."""
@@ -345,7 +345,7 @@ PLATES = struck(
     "plate", (12, 6, 1), 3.7, (0.1, 0.4, 0.8),
     "a plate with nothing inside is its own barrier, with a reach of 1.2 h",
 )  # fmt: skip
-PLATE_PASSES_AT = {1: 0.5, 2: 0.7, 3: 0.8}
+PLATE_PASSES_AT = {1: 0.5, 2: 0.65, 3: 0.8}
 """Cells of a clamped plate, and the speed over C from which a block of 5 cells goes through it (bench/stability.py)."""
 
 
