@@ -110,6 +110,11 @@ class Certificate:
     """The bound of each object, the smallest first, and every other limit that the scene has to keep."""
 
     @property
+    def lengths(self) -> tuple[int, ...]:
+        """Steps to each frame after the one at t = 0."""
+        return (self.steps_per_frame,) * self.frames + ((self.last_steps,) if self.last_steps else ())
+
+    @property
     def steps(self) -> int:
         """Steps of the whole run."""
         return self.steps_per_frame * self.frames + self.last_steps
@@ -260,7 +265,7 @@ class _Margins:
 
     def __init__(self, scene: Scene, system: System, on: dict[str, Effect], timestep: float):
         self.scene, self.system, self.on, self.dt = scene, system, on, timestep
-        self.moving = np.logical_or.reduceat(~system.held, system.first[:-1])
+        self.moving = ~system.still
         """Solids of which something can move, bool, shape (M,)."""
         self.wave = wave_speed(system)
         self.speed = self._speed(self._fall())
@@ -396,7 +401,7 @@ class _Margins:
         if "contact" not in self.on:
             return []
         system = self.system
-        low, high = (f.reduceat(system.velocity, system.first[:-1]) for f in (np.minimum, np.maximum))
+        low, high = system.bounds(system.velocity)
         apart = np.maximum(high - _least_of_others(low), -_least_of_others(-high) - low)
         apart = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(1))
         closing = np.where(self.moving, np.sqrt(apart**2 + 2.0 * self._g() * np.maximum(0.0, self._fall())), 0.0)
@@ -437,7 +442,7 @@ class _Margins:
     def _stress(self, g: float) -> np.ndarray:
         """rho g H of each solid and of the part of others that stands above it, less buoyancy [Pa], shape (M,)."""
         system = self.system
-        low, high = (f.reduceat(system.position, system.first[:-1]) for f in (np.minimum, np.maximum))
+        low, high = system.bounds(system.position)
         size = np.maximum(high - low, 1e-300)
         weight = system.mass_of * g * np.maximum(0.0, self._weight_left())
         floor = size[:, 0] * size[:, 1]

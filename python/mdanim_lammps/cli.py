@@ -14,7 +14,7 @@ from typing import Annotated, Literal
 from cyclopts import App, CycloptsError, Parameter
 
 from . import __version__
-from .errors import ExitCode, MdanimError, OutputError, RefusedError, SceneError, UsageError
+from .errors import ExitCode, MdanimError, OutputError, RefusedError, UsageError
 
 STARTED = time.perf_counter()
 """When this process began to work: reading and modelling are part of what a run costs."""

@@ -73,7 +73,7 @@ def certificate_line(ready: Prepared) -> str:
 def output_line(ready: Prepared) -> str:
     """One line: how large the trajectory will be."""
     c, control = ready.certificate, ready.scene.control
-    frames = 1 + c.frames + bool(c.last_steps)
+    frames = 1 + len(c.lengths)
     size = trajectory_bytes(ready.models, frames, control.save, control.single, ready.plan.grid)
     return f"output   {count(frames, 'frame')}, trajectory of {size / 1e6:.3g} MB"
 

@@ -11,12 +11,10 @@ from mpi4py import MPI
 
 from ..engine.instance import Instance, State
 from ..engine.part import Parts
+from ..results.ledger import LOSS
 from .energy import energies
 from .planning import FramePlan
 from .source import run_window
-
-LOSS = "_loss"
-"""End of the name of a ledger's term that only grows."""
 
 
 @dataclass(frozen=True)
@@ -63,8 +61,7 @@ class Bundle:
         self.key, self.members = wanted.key, wanted.members
         self.plan = parts.part(self.key.objects, self.key.liquid)
         self.instance = Instance(self.plan, comm)
-        first = parts.whole.system.first
-        self.rows = np.concatenate([np.arange(0), *(np.arange(first[m], first[m + 1]) for m in self.key.objects)])
+        self.rows = parts.whole.system.rows(self.key.objects)
         """Its particles among all."""
         self.guest = np.repeat(~np.isin(self.key.objects, self.members), np.diff(self.plan.system.first)) if self.key.objects \
             else np.zeros(0, bool)
@@ -109,10 +106,9 @@ class Bundle:
         (m,)."""
         if not self.key.objects:
             return np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0)
-        v = self.instance.array("v")
         which = np.isin(self.key.objects, self.members)
         low, high = (side[which] for side in self.here)
-        return low, high, np.sqrt(np.maximum.reduceat(np.einsum("id,id->i", v, v), self.plan.system.first[:-1])[which])
+        return low, high, self.plan.system.top_speed(self.instance.array("v"))[which]
 
     def costs(self, scale: float) -> np.ndarray:
         """Processor time of each member in the last window, without the liquid's, times ``scale``; int64, shape (m,).

@@ -7,10 +7,9 @@ from typing import Protocol
 
 from mpi4py import MPI
 
-from .messages import SUPERVISOR, Mail, Order, Report, Tag
-from .planner import Planner
-
-CONTROLS = ("central", "peers")
+from ..engine.part import Parts
+from .messages import SUPERVISOR, Job, Mail, Order, Report, Tag
+from .planner import Planner, planner_of
 
 
 class Control(Protocol):
@@ -41,6 +40,6 @@ class Peers:
         return self.planner.decide(self.mail.exchange(self.comm, report))
 
 
-def make_control(name: str, mail: Mail, comm: MPI.Comm, planner: Planner) -> Control:
-    """The control of this name."""
-    return Central(mail) if name == "central" else Peers(mail, comm, planner)
+def make_control(job: Job, parts: Parts, mail: Mail, comm: MPI.Comm) -> Control:
+    """The control that a job asks for, on the communicator of its executors."""
+    return Central(mail) if job.control == "central" else Peers(mail, comm, planner_of(job, parts, comm.size))

@@ -16,10 +16,10 @@ from mpi4py import MPI
 from ..engine.instance import State
 from ..engine.part import Parts
 from ..errors import MdanimError
-from .bundle import LOSS, Bundle, Wanted, wanted_bundles
+from ..results.ledger import LOSS
+from .bundle import Bundle, Wanted, wanted_bundles
 from .control import Control, make_control
 from .messages import SUPERVISOR, Aborted, Ended, Failure, Job, Kept, Mail, Moved, Order, Report, Share, Tag
-from .planner import Planner
 from .source import Account, Broken, add_clocks, penetration, pool
 
 
@@ -56,20 +56,18 @@ class Executor:
         self.mail, self.comm, self.job = mail, comm, job
         self.me = comm.rank
         self.parts = Parts(job.plan)
-        system, resume = job.plan.system, job.resume
-        self.objects = len(system.names)
-        self.first = system.first
+        self.system, resume = job.plan.system, job.resume
+        self.objects = len(self.system.names)
         self.frame = resume.frame if resume else 0
         self.step = resume.step if resume else 0
         # Of all particles, right for those of its own objects.
-        self.x = np.array(resume.x if resume else system.position)
-        self.v = np.array(resume.v if resume else system.velocity)
+        self.x = np.array(resume.x if resume else self.system.position)
+        self.v = np.array(resume.v if resume else self.system.velocity)
         self.f = np.array(resume.f) if resume else np.zeros_like(self.x)
         self.liquid = resume.liquid if resume else None
         self.started = resume is not None
         """False before step 0: forces come from the scene then."""
-        planner = Planner(self.parts, comm.size, job.lengths, job.settings, self.frame)
-        self.control: Control = make_control(job.control, mail, comm, planner)
+        self.control: Control = make_control(job, self.parts, mail, comm)
         self.bundles: list[Bundle] = []
         self.order: Order | None = None
         """What it follows."""
@@ -178,7 +176,7 @@ class Executor:
 
     def _rows(self, objects) -> np.ndarray:
         """Particles of objects, the pool not counted."""
-        return np.concatenate([np.arange(0), *(np.arange(self.first[m], self.first[m + 1]) for m in objects if m < self.objects)])
+        return self.system.rows(m for m in objects if m < self.objects)
 
     def _pack(self, objects: np.ndarray) -> Moved:
         rows = self._rows(objects)
@@ -231,15 +229,9 @@ class Executor:
 
     def _first_report(self) -> Report:
         """Of all objects that can move, in equal shares: everybody knows where they begin."""
-        system = self.job.plan.system
-        can_move = np.flatnonzero(~np.logical_and.reduceat(system.held, self.first[:-1]))
-        mine = can_move[self.me::self.comm.size]
-        low, high, speed = (np.empty((len(mine), *shape)) for shape in ((3,), (3,), ()))
-        for k, m in enumerate(mine):
-            part = slice(self.first[m], self.first[m + 1])
-            low[k], high[k] = self.x[part].min(0), self.x[part].max(0)
-            speed[k] = np.sqrt(np.einsum("id,id->i", self.v[part], self.v[part]).max())
-        return Report(mine, low, high, speed, np.zeros(len(mine), np.int64))
+        mine = np.flatnonzero(~self.system.still)[self.me::self.comm.size]
+        low, high = self.system.bounds(self.x)
+        return Report(mine, low[mine], high[mine], self.system.top_speed(self.v)[mine], np.zeros(len(mine), np.int64))
 
     def _report(self, steps: int) -> Report:
         """Of all objects that it has run."""

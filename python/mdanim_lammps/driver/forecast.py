@@ -34,7 +34,7 @@ def forecast(ready: Prepared, rates: dict[str, float], *, setup: float | None = 
     for effect in ready.plan.effects:
         span = ready.verdicts[effect.name].span
         effects[effect.name] = Part(effect.forecast(load, rates), str(span) if span else None)
-    frames = 1 + c.frames + bool(c.last_steps)
+    frames = 1 + len(c.lengths)
     size = trajectory_bytes(ready.models, frames, control.save, control.single, ready.plan.grid)
     looked_at = sum(len(ready.models[system.names.index(name)].hexahedron)
                     for name, quantity in recorded(scene.expects) if quantity == "immersed")

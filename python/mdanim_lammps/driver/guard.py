@@ -49,8 +49,7 @@ class Guard:
         self.planes = np.array([s.sign * s.at for s in self.sides])
         self.columns = [s.axis if s.sign > 0 else 3 + s.axis for s in self.sides]
         """Of what a glance tells of an object's reach: that towards the plane, for what is below it."""
-        free = np.logical_or.reduceat(~ready.system.held, ready.system.first[:-1])
-        self.allowed = np.where(free, ready.system.spacing, np.inf)[:, None]
+        self.allowed = np.where(ready.system.still, np.inf, ready.system.spacing)[:, None]
         """How far beyond a plane solids may be [m], shape (M, 1); those of which nothing can move, anywhere."""
         self.limit = max(LEAST, GENEROUS * energy_class(ready.scene))
         self.since = np.full(len(ready.system.hexahedron), -1)
@@ -58,8 +57,8 @@ class Guard:
         self.crumpled = False
         """Whether some cell was inside out at the last look."""
         self.most_inverted = 0
-        extent = [f.reduceat(ready.system.position, ready.system.first[:-1]) for f in (np.maximum, np.minimum)]
-        self.patience = RINGS * (extent[0] - extent[1]).max(1) / wave_speed(ready.system) / ready.certificate.timestep
+        low, high = ready.system.bounds(ready.system.position)
+        self.patience = RINGS * (high - low).max(1) / wave_speed(ready.system) / ready.certificate.timestep
         """Steps that a cell of each solid may stay inside out, shape (M,)."""
 
     def look(self, step: int, x: np.ndarray, v: np.ndarray) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from ..engine.part import Parts
 from ..errors import DivergedError
 from . import islands
-from .messages import Order, Report
+from .messages import Job, Order, Report
 from .planning import FramePlan, Settings, plan
 from .source import Broken
 
@@ -44,7 +44,7 @@ class Planner:
         self.pool = whole.grid is not None
         count = self.objects + self.pool
         self.particles = np.append(np.diff(system.first), [0] * self.pool).astype(np.int64)
-        self.still = np.append(np.logical_and.reduceat(system.held, system.first[:-1]), [False] * self.pool).astype(bool)
+        self.still = np.append(system.still, np.zeros(int(self.pool), bool))
         self.contact = any(e.name == "contact" for e in whole.effects)
         self.gap = float(parts.reach.max()) if self.contact else 0.0
         self.low, self.high, self.speed = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros(count)
@@ -55,9 +55,8 @@ class Planner:
         self.measured = np.zeros(count, bool)
         self.doublings = np.zeros(count, np.int64)
         self.plan: FramePlan | None = None
-        for m in np.flatnonzero(self.still[:self.objects]):
-            mine = slice(system.first[m], system.first[m + 1])
-            self.low[m], self.high[m] = system.position[mine].min(0), system.position[mine].max(0)
+        # Of what is still no report will come.
+        self.low[:self.objects], self.high[:self.objects] = system.bounds(system.position)
 
     def decide(self, reports: Sequence[Report]) -> Order:
         """What to do after a window (or before the first), from the reports of all executors in their order.
@@ -144,6 +143,11 @@ class Planner:
                          gap=self.gap, feels=None if self.contact else np.arange(len(self.cost)) == self.objects, previous=self.plan,
                          least=self.settings.least)
         return Order(self.plan, *islands.boxes(self.low, self.high, d), steps, commit)
+
+
+def planner_of(job: Job, parts: Parts, executors: int) -> Planner:
+    """The planner with which a job begins, or goes on."""
+    return Planner(parts, executors, job.lengths, job.settings, job.resume.frame if job.resume else 0)
 
 
 def _basin(parts: Parts) -> tuple[np.ndarray, np.ndarray]:

@@ -22,7 +22,7 @@ from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, Part
 from ..results.expect import Measured, Outcome, evaluate, record, recorded
 from ..results.files import write_json, write_whole
-from ..results.ledger import Ledger
+from ..results.ledger import LOSS, Ledger
 from ..results.trajectory import Trajectory, TrajectoryWriter
 from .energy import ledger_terms, rounding_energy
 from .guard import Guard
@@ -136,7 +136,7 @@ class _Run:
 
     def go(self, watch: Callable[[Progress], None]) -> Result:
         c = self.certificate
-        lengths = [c.steps_per_frame] * c.frames + ([c.last_steps] if c.last_steps else [])
+        lengths = c.lengths
         frame, last = self.resume.frame if self.resume else 0, len(lengths)
         with self.source, _Stop(self.folder) as stop, self._open_trajectory() as out:
             start = self.source.begin(self.resume)
@@ -248,7 +248,7 @@ class _Run:
         """Make everything up to this frame safe; the checkpoint last, so that it never is ahead of the trajectory."""
         out.flush()
         self._close_ledger()
-        carried = {t: self.ledger.rows[-1][t] for t in self.ledger.terms if t.endswith("_loss")}
+        carried = {t: self.ledger.rows[-1][t] for t in self.ledger.terms if t.endswith(LOSS)}
         carried["penetration"] = self.penetration
         carried["seconds"] = sum(self.seconds.values())
         s = self.source.state()

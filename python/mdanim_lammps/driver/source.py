@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -58,6 +59,12 @@ class Account:
     """The integrator without what effects take of it."""
     other: dict[str, float] = field(default_factory=dict)
     """Work that is no effect's: moving objects, waiting for others."""
+
+    def add(self, effect: str, clocks: Mapping[str, float], share: float = 1.0) -> None:
+        """Add a share of what an effect's clocks say."""
+        mine = self.effects.setdefault(effect, {})
+        for clock, seconds in clocks.items():
+            mine[clock] = mine.get(clock, 0.0) + share * seconds
 
 
 class Broken(Exception):
@@ -162,8 +169,6 @@ def add_clocks(account: Account, instance: Instance) -> None:
     """Add what an instance has taken since it was made."""
     account.leapfrog += instance.fix_seconds("leapfrog")
     for effect in instance.plan.effects:
-        mine = account.effects.setdefault(effect.name, {})
-        for clock, seconds in effect.clocks(instance).items():
-            mine[clock] = mine.get(clock, 0.0) + seconds
-            if clock == LEAPFROG:
-                account.leapfrog -= seconds
+        clocks = effect.clocks(instance)
+        account.add(effect.name, clocks)
+        account.leapfrog -= clocks.get(LEAPFROG, 0.0)

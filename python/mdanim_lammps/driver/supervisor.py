@@ -18,13 +18,14 @@ from .. import errors
 from ..engine.instance import State
 from ..engine.part import Parts
 from ..errors import DivergedError
+from ..results.ledger import LOSS
 from ..results.timeline import Timeline
 from .energy import ledger_terms
-from .messages import SUPERVISOR, Ended, Failure, Grant, Job, Kept, Mail, Report, Share, Tag
-from .planner import Planner
+from .messages import NAP, SUPERVISOR, Ended, Failure, Grant, Job, Kept, Mail, Report, Share, Tag
+from .planner import Planner, planner_of
 from .planning import Settings
 from .prepare import Prepared
-from .source import Account, Broken, Frame, Pool
+from .source import Account, Broken, Frame
 
 CREDIT = 2
 """Frames that executors may be ahead of what has been taken."""
@@ -32,8 +33,6 @@ KEEP_SECONDS = 5.0
 """Wall time between frames for which executors send what a checkpoint needs."""
 PATIENCE = 5.0
 """Seconds that executors have to end after something has gone wrong."""
-PAUSE = 0.0002
-"""Seconds between two looks for messages."""
 
 
 class Distributed:
@@ -42,9 +41,8 @@ class Distributed:
     def __init__(self, ready: Prepared, world: MPI.Comm, control: str, settings: Settings):
         self.ready, self.world, self.control, self.settings = ready, world, control, settings
         self.executors = world.size - 1
-        c, system = ready.certificate, ready.system
-        self.lengths = (c.steps_per_frame,) * c.frames + ((c.last_steps,) if c.last_steps else ())
-        self.losses = {term: 0.0 for term in ledger_terms(ready.plan.effects) if term.endswith("_loss")}
+        self.lengths = ready.certificate.lengths
+        self.losses = {term: 0.0 for term in ledger_terms(ready.plan.effects) if term.endswith(LOSS)}
         self.resting = self._resting_energies()
         self.sheaves: dict[int, _Sheaf] = {}
         self.ended: dict[int, Ended] = {}
@@ -56,7 +54,7 @@ class Distributed:
         """Whether all executors have come to their end; after an error they may be anywhere, and be waiting for each other."""
         self.used: list[_Sheaf] = []
         """Sheaves that can be filled again: they are as large as the scene."""
-        self.timeline = Timeline(self.executors, control, system.names)
+        self.timeline = Timeline(self.executors, control, ready.system.names)
 
     # --- as a source of frames ------------------------------------------------------------------------------------
 
@@ -98,9 +96,7 @@ class Distributed:
         for ended in self.ended.values():
             mean.leapfrog += ended.account.leapfrog / self.executors
             for name, clocks in ended.account.effects.items():
-                mine = mean.effects.setdefault(name, {})
-                for clock, seconds in clocks.items():
-                    mine[clock] = mine.get(clock, 0.0) + seconds / self.executors
+                mean.add(name, clocks, 1.0 / self.executors)
             begun = next((begin for kind, _, begin, _ in ended.spans if kind == "held"), 0.0)
             for kind, _, begin, end in ended.spans:
                 if kind != "simulating" and begin >= begun:
@@ -169,7 +165,7 @@ class Distributed:
     def _resting_energies(self) -> dict[str, float]:
         """What objects that never move add to the ledger [J]: executors tell of what moves."""
         system, energies = self.ready.system, dict.fromkeys(ledger_terms(self.ready.plan.effects), 0.0)
-        still = np.repeat(np.logical_and.reduceat(system.held, system.first[:-1]), np.diff(system.first))
+        still = system.still[system.object]
         for effect in self.ready.plan.effects:
             if effect.ledger:
                 energies[effect.ledger] += effect.potential(self.ready.scene, system.mass[still], system.position[still])
@@ -185,14 +181,14 @@ class Distributed:
         if isinstance(message, Share):
             sheaf = self._sheaf(message.frame)
             sheaf.shares[executor] = message
-            rows = _rows(system.first, message.objects)
+            rows = system.rows(message.objects)
             sheaf.x[rows], sheaf.v[rows] = message.x, message.v
         elif isinstance(message, Kept):
             if message.frame <= self.taken and self.last:  # sent a second time, by an end after a frame that was kept anyway
                 return
             sheaf = self._sheaf(message.frame)
             sheaf.kept.add(executor)
-            sheaf.f[_rows(system.first, message.objects)] = message.f
+            sheaf.f[system.rows(message.objects)] = message.f
             sheaf.liquid = sheaf.liquid if message.liquid is None else message.liquid
         elif isinstance(message, Ended):
             self.gone.add(executor)
@@ -205,10 +201,6 @@ class Distributed:
             raise getattr(errors, message.kind)(message.text)
         else:
             raise message
-
-
-def _rows(first: np.ndarray, objects: np.ndarray) -> np.ndarray:
-    return np.concatenate([np.arange(0), *(np.arange(first[m], first[m + 1]) for m in objects)])
 
 
 @dataclass
@@ -259,9 +251,7 @@ class _Desk(threading.Thread):
         world.bcast(job, root=SUPERVISOR)
         mail = Mail(world)
         executors = world.size - 1
-        planner = None
-        if job.control == "central":
-            planner = Planner(Parts(job.plan), executors, job.lengths, job.settings, job.resume.frame if job.resume else 0)
+        planner = planner_of(job, Parts(job.plan), executors) if job.control == "central" else None
         reports = {}
         while True:
             closing = self.closing.is_set()
@@ -279,7 +269,7 @@ class _Desk(threading.Thread):
             if closing and not busy:
                 return
             if not busy:
-                time.sleep(PAUSE)
+                time.sleep(NAP)
 
     def _decide(self, mail: Mail, planner: Planner, reports: list[Report]) -> None:
         try:

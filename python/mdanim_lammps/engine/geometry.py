@@ -79,7 +79,7 @@ class Geometry:
             ("first_cell", self.first_cell, np.int64), ("corner", system.hexahedron, np.int32),
             ("deep", ~system.boundary[system.hexahedron].any(1), np.uint8), ("spacing", np.cbrt(system.cell_volume), np.float64),
             ("mass", system.mass, np.float64),
-            ("still", np.logical_and.reduceat(system.held, system.first[:-1]), np.uint8))}
+            ("still", system.still, np.uint8))}
         model = _Model(len(system.names), **{name: _address(array) for name, array in arrays.items()})
         reach = np.empty((len(system.names), 6))
         return _library(), ctypes.pointer(model), arrays, reach, _address(reach)

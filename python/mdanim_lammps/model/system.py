@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -82,6 +82,27 @@ class System:
         """
         full = self.contact_factor * self.young * np.cbrt(self.cell_volume)
         return full[self.object] * np.minimum(1.0, 2.0 * self.share)
+
+    @cached_property
+    def still(self) -> np.ndarray:
+        """Solids that are held as a whole and never move, bool, shape (M,)."""
+        return np.logical_and.reduceat(self.held, self.first[:-1])
+
+    def rows(self, solids: Iterable[int]) -> np.ndarray:
+        """Particles of some solids, in their order, int64, shape (n,)."""
+        return np.concatenate([np.zeros(0, np.int64), *(np.arange(self.first[m], self.first[m + 1]) for m in solids)])
+
+    def bounds(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest components in each solid of a particle vector, shape (N, 3); each of shape (M, 3), same unit.
+
+        Of positions, its box, Wcislo 1999, eq. (3.14).
+        """
+        low, high = (f.reduceat(vector, self.first[:-1]) for f in (np.minimum, np.maximum))
+        return low, high
+
+    def top_speed(self, velocity: np.ndarray) -> np.ndarray:
+        """Speed of the fastest particle of each solid [m/s], shape (M,); velocities have the shape (N, 3)."""
+        return np.sqrt(np.maximum.reduceat(np.einsum("id,id->i", velocity, velocity), self.first[:-1]))
 
     @cached_property
     def mass_of(self) -> np.ndarray:

@@ -45,6 +45,7 @@ class Timeline:
 
     def __post_init__(self) -> None:
         self.cpu = self.cpu or [0.0] * self.executors
+        self._now = np.full(len(self.names), -1)  # owners at the last frame
 
     def add(self, frame: int, objects: Sequence[np.ndarray], moves: int, retries: int,
             teams: Sequence[tuple[int, ...]] = ()) -> None:
@@ -52,8 +53,7 @@ class Timeline:
         now = np.full(len(self.names), -1)
         for executor, mine in enumerate(objects):
             now[mine] = executor
-        before = getattr(self, "_now", np.full_like(now, -1))
-        self.owners += [(frame, int(m), int(now[m])) for m in np.flatnonzero(now != before)]
+        self.owners += [(frame, int(m), int(now[m])) for m in np.flatnonzero(now != self._now)]
         self._now = now
         self.frames.append(frame)
         self.moves.append(moves)
