@@ -26,6 +26,8 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
+static constexpr double MOST = 64.0;    // times the skin that are looked ahead where objects are apart
+
 // --- the command ---
 
 // fix ID group mdanim/barrier BOUNDARY BARRIER k rc [thin GROUP ratio] [damp gn] [power 2|3]
@@ -340,7 +342,14 @@ void FixMdanimBarrier::find_candidates()
 
   const auto meeting = meeting_pairs(boxes, range);
   meeting_objects = static_cast<bigint>(meeting.size());
-  if (meeting.empty()) return;
+  clear = 0.0;
+  if (meeting.empty()) {
+    for (double more = neighbor->skin; more <= MOST * neighbor->skin; more *= 2.0) {
+      if (!meeting_pairs(boxes, range + more).empty()) break;
+      clear = 0.5 * (neighbor->skin + more);
+    }
+    return;
+  }
   collect_own();
 
   std::vector<Box> zone(boxes.size());

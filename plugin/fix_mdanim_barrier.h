@@ -32,6 +32,7 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
   double memory_usage() override;
   void concerned(std::vector<int> &particles) const override;
   bool reads_all() const override { return damping > 0.0 && !loss.idle(); }
+  double looks_ahead() const override { return clear; }
 
  private:
   // What a particle brings into a pair. Of ghosts it is asked from their owners at every rebuild.
@@ -75,6 +76,7 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
   std::vector<mdanim::Vec3> total;     // and forces
   std::vector<int> touching_pair;      // in this step
 
+  double clear = 0.0;                    // no two objects meet before a particle has gone farther
   bigint meeting_objects = 0;            // pairs of objects whose boxes meet
   double pairs = 0.0, touching = 0.0;    // on this rank; a pair counts half at either end
   double energy = 0.0;

@@ -554,7 +554,9 @@ void FixMdanimLiquid::update_liquid()
   if (changed || !calm) flow(changed);
   travel = 0.0;
   waited = 0;
-  if (low.z + top * cell.z > watched_top) watch();
+  if (low.z + top * cell.z <= watched_top) return;
+  watch(neighbor->skin);    // who went one way since lists were made may go as far the other way
+  lowest = -std::numeric_limits<double>::infinity();    // then, that is not known
 }
 
 // Lets the liquid move: sweeps, and the level rule as often as a wave has gone half a cell or solids have
@@ -599,24 +601,28 @@ void FixMdanimLiquid::setup_post_neighbor()
 void FixMdanimLiquid::post_neighbor()
 {
   const Lap lap(coupling_seconds);
-  watch();
+  watch(0.5 * neighbor->skin);
 }
 
-// Particles that can come near the liquid before lists are rebuilt. All others have no friction from it.
-void FixMdanimLiquid::watch()
+// Particles that can come near the liquid before they have moved by `margin`. All others have no friction from it.
+void FixMdanimLiquid::watch(double margin)
 {
   watched.clear();
   watched_top = low.z + top * cell.z;
   const double below =
-      watching ? watched_top + NEAR * cell.z + 0.5 * neighbor->skin : std::numeric_limits<double>::infinity();
+      watching ? watched_top + NEAR * cell.z + margin : std::numeric_limits<double>::infinity();
   // The box holds all particles as they stood at the last rebuild: where nobody was near, and all of it is above, nobody has come.
-  if (nobody && watching && domain->boxlo[2] > below + 0.5 * neighbor->skin) return;
+  lowest = domain->boxlo[2];
+  if (nobody && watching && lowest > below + 0.5 * neighbor->skin) return;
+  lowest = std::numeric_limits<double>::infinity();
   double *lambda = slows ? writable(lambda_name, "lambda") : nullptr;
   const double *base = base_name.empty() ? nullptr : writable(base_name, "base");
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!(atom->mask[i] & groupbit)) continue;
     if (lambda) lambda[i] = base ? base[i] : 0.0;
-    if (!(atom->mask[i] & still_bit) && atom->x[i][2] < below) watched.push_back(i);
+    if (atom->mask[i] & still_bit) continue;
+    lowest = std::min(lowest, atom->x[i][2]);
+    if (atom->x[i][2] < below) watched.push_back(i);
   }
   if (!faces_name.empty()) find_faces();
   int here = !watched.empty(), any = here;
@@ -806,7 +812,11 @@ void FixMdanimLiquid::concerned(std::vector<int> &particles) const
 
 // An update of the liquid looks for all bodies.
 bool FixMdanimLiquid::reads_all() const
-{ return update->ntimestep % every == 0 && !(nobody && calm && moving_solid == 0); }
+{ return update->ntimestep % every == 0 && !asleep(); }
+
+// While the liquid is level and nobody is near it, until somebody comes.
+double FixMdanimLiquid::looks_ahead() const
+{ return watching && asleep() ? lowest - (watched_top + NEAR * cell.z) : 0.0; }
 
 // --- what it tells ---
 

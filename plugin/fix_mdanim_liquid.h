@@ -38,6 +38,7 @@ class FixMdanimLiquid : public Fix, public mdanim::Guest {
   int modify_param(int, char **) override;
   void concerned(std::vector<int> &particles) const override;
   bool reads_all() const override;
+  double looks_ahead() const override;
   void write_restart(FILE *) override;
   void restart(char *) override;
 
@@ -86,7 +87,8 @@ class FixMdanimLiquid : public Fix, public mdanim::Guest {
   bool due();
   void update_liquid();
   void flow(long changed);
-  void watch();
+  bool asleep() const { return nobody && calm && moving_solid == 0; }
+  void watch(double margin);
   void couple();
   bool over_basin(const double *x) const;
   double immersed(const mdanim::Vec3 &place) const;
@@ -138,6 +140,7 @@ class FixMdanimLiquid : public Fix, public mdanim::Guest {
   bool watching = false;
   bool nobody = false;    // no particle of any rank is near the liquid before the next rebuild of lists
   double watched_top = 0.0;
+  double lowest = 0.0;    // particle of this rank when lists were made
   std::vector<int> watched;
   std::vector<Wet> wet;
   std::vector<Face> faces;                    // of the watched particles

@@ -3,7 +3,6 @@
 
 #include "fix_mdanim_wall.h"
 
-#include "boxes.h"
 #include "stopwatch.h"
 #include "wall.h"
 
@@ -23,6 +22,7 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
+static constexpr double MOST = 65536.0;    // times half the skin that are looked ahead
 static constexpr double ANY_DEPTH = 1.0e20;    // as large as LAMMPS's INF
 
 // fix ID group mdanim/wall REGION k
@@ -92,16 +92,18 @@ bool FixMdanimWall::behind(const double *x, Vec3 &d)
   return true;
 }
 
-// Whether the box around all particles here, grown by a bit more than `far`, is inside: so it is in a convex region when its
-// corners are. Most of a scene's time nothing is near a wall, and this is far less work than to ask for each particle.
-bool FixMdanimWall::all_within(double far)
+Box FixMdanimWall::box_of_all() const
 {
-  if (!convex || !region->interior) return false;
   Box box;
   for (int i = 0; i < atom->nlocal; ++i)
     if (atom->mask[i] & groupbit) box.include(atom->x[i]);
-  if (box.empty()) return true;
-  box = box.grown(1.001 * far);
+  return box;
+}
+
+// A box is in a convex region when its corners are. Most of a scene's time nothing is near a wall, and this is far less work than to
+// ask for each particle.
+bool FixMdanimWall::is_inside(const Box &box)
+{
   for (int corner = 0; corner < 8; ++corner)
     if (!region->match(corner & 1 ? box.high(0) : box.low(0), corner & 2 ? box.high(1) : box.low(1),
                        corner & 4 ? box.high(2) : box.low(2)))
@@ -116,9 +118,14 @@ void FixMdanimWall::post_neighbor()
   if (!watching) return;
   const Lap lap(seconds);
   watched.clear();
+  clear = 0.0;
   region->prematch();
   const double far = 0.5 * neighbor->skin;
-  if (all_within(far)) return;
+  if (convex && region->interior) {
+    const Box box = box_of_all();
+    for (double more = far; more <= MOST * far && (box.empty() || is_inside(box.grown(1.001 * more))); more *= 2.0) clear = more;
+    if (clear > 0.0) return;
+  }
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!(atom->mask[i] & groupbit)) continue;
     const double *x = atom->x[i];

@@ -5,6 +5,7 @@
 #ifndef LMP_FIX_MDANIM_WALL_H
 #define LMP_FIX_MDANIM_WALL_H
 
+#include "boxes.h"
 #include "fix.h"
 #include "guest.h"
 #include "particle_value.h"
@@ -30,10 +31,12 @@ class FixMdanimWall : public Fix, public mdanim::Guest {
   double memory_usage() override;
   void concerned(std::vector<int> &particles) const override;
   bool reads_all() const override { return !watching; }
+  double looks_ahead() const override { return clear; }
 
  private:
   bool behind(const double *x, mdanim::Vec3 &d);
-  bool all_within(double far);
+  mdanim::Box box_of_all() const;
+  bool is_inside(const mdanim::Box &box);
   void push_back(int i, const double *k);
 
   std::string region_id;
@@ -43,6 +46,7 @@ class FixMdanimWall : public Fix, public mdanim::Guest {
 
   bool watching = false;    // only particles in `watched` can be behind before the next rebuild
   std::vector<int> watched;
+  double clear = 0.0;    // nobody is at the wall before somebody has gone farther
 
   double energy = 0.0;    // all on this rank
   mdanim::Vec3 on_wall;

@@ -15,6 +15,9 @@ class Guest {
   virtual void concerned(std::vector<int> &particles) const = 0;
   // Whether it will read any particle in this step.
   virtual bool reads_all() const { return false; }
+  // How far particles may go from where they stood when lists were made before it must look again, as far as it can tell: who has
+  // nothing to do until then says so here, and lists last longer than half the skin.
+  virtual double looks_ahead() const { return 0.0; }
 
  protected:
   ~Guest() = default;

@@ -32,6 +32,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace mdanim;
@@ -42,6 +43,8 @@ static constexpr double OF_LEAPFROG = 0.15, OF_DRAG = 0.07, OF_GRAVITY = 0.01;
 // What a fix may do in a step that we must know of.
 static constexpr int ACTS = FixConst::INITIAL_INTEGRATE | FixConst::POST_INTEGRATE | FixConst::PRE_FORCE | FixConst::PRE_REVERSE |
     FixConst::POST_FORCE | FixConst::FINAL_INTEGRATE | FixConst::END_OF_STEP;
+// Lists that particles may soon have left are made at once, not looked at again in a few steps.
+static constexpr double SOON = 0.8;
 
 // run_style verlet/mdanim [width common|avx2|avx512]
 VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, arg), width(best_width())
@@ -65,6 +68,7 @@ bool VerletMdanim::find_players()
   leapfrog = nullptr;
   gravity = nullptr;
   guests.clear();
+  strangers_have_lists = neighbor->nlist > 0;
   if (!bond || domain->triclinic || domain->dimension != 3) return false;
   if ((force->pair && force->pair->compute_flag) || force->angle || force->dihedral || force->improper || force->kspace)
     return false;
@@ -81,6 +85,8 @@ bool VerletMdanim::find_players()
       guests.push_back({fix, guest, (mask & FixConst::END_OF_STEP) != 0});
     else if (mask & ACTS)
       return false;
+    else if (mask & FixConst::POST_NEIGHBOR)
+      strangers_have_lists = true;
   }
   const bool periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
   if (comm->nprocs > 1 && (periodic || neighbor->build_once || comm->ghost_velocity)) return false;    // ghosts get places alone
@@ -174,14 +180,8 @@ int VerletMdanim::take_steps(int step, int most)
   const bigint stop = std::min(next_stop(), update->ntimestep + most);
   if (update->ntimestep >= stop) return 0;
   if (lists_matter) {
-    strayed = 0.0;
-    const double *const *here = atom->x, *const *then = neighbor->get_xhold();
-    double farthest = 0.0;
-    for (int i = 0; i < atom->nlocal; ++i) {
-      const Vec3 d = vec3(here[i]) - vec3(then[i]);
-      farthest = std::max(farthest, dot(d, d));
-    }
-    strayed = std::sqrt(farthest);
+    last = how_far_lists_last();
+    strayed = farthest();
     if (!lists_last(0.0)) return 0;
   }
 
@@ -189,6 +189,7 @@ int VerletMdanim::take_steps(int step, int most)
   if (comm->nprocs > 1) comm->forward_comm();
   start_blocks();
   int taken = 0;
+  bool stand = true;
   while (update->ntimestep < stop) {
     if (comm->nprocs > 1 && taken) meet_ghosts();
     bool see_all = false;
@@ -199,20 +200,66 @@ int VerletMdanim::take_steps(int step, int most)
     ++passed;
     ++update->ntimestep;
     ++neighbor->ago;
-    if ((lists_matter && !lists_last(update->dt * std::sqrt(pass.fastest))) || timer->check_timeout(step + taken)) break;
+    if (timer->check_timeout(step + taken)) break;
+    if (!lists_matter || lists_last(update->dt * std::sqrt(pass.fastest))) continue;
+    if (comm->nprocs > 1 || update->ntimestep >= stop) break;
+    stand = look_again();
+    if (!stand) break;
   }
-  blocks.give_out(atom->x, atom->v);
+  if (stand) blocks.give_out(atom->x, atom->v);
   timer->stamp(Timer::BOND);
   ev_set(update->ntimestep);
   return taken;
 }
 
-// Whether no particle of any rank can have moved so far, going `more` farther, that lists must be made anew.
+// How far any particle of this rank is from where it stood when lists were made.
+double VerletMdanim::farthest() const
+{
+  const double *const *here = atom->x, *const *then = neighbor->get_xhold();
+  double most = 0.0;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const Vec3 d = vec3(here[i]) - vec3(then[i]);
+    most = std::max(most, dot(d, d));
+  }
+  return std::sqrt(most);
+}
+
+// How far any particle may go before lists must be made anew: half the skin, and farther if nobody needs them until then. The
+// springs' partners stay who they are; with other ranks, nobody may pass by a whole rank unseen.
+double VerletMdanim::how_far_lists_last() const
+{
+  const double half = 0.5 * neighbor->skin;
+  if (strangers_have_lists) return half;
+  double far = std::numeric_limits<double>::max();
+  for (const Player &p : guests) far = std::min(far, p.guest->looks_ahead());
+  if (comm->nprocs > 1) {
+    for (int d = 0; d < 3; ++d) far = std::min(far, 0.5 * (domain->subhi[d] - domain->sublo[d]));
+    MPI_Allreduce(MPI_IN_PLACE, &far, 1, MPI_DOUBLE, MPI_MIN, world);
+  }
+  return std::max(half, far);
+}
+
+// Whether no particle of any rank can have moved so far, going `more` farther.
 bool VerletMdanim::lists_last(double more)
 {
   strayed += more;
   if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &strayed, 1, MPI_DOUBLE, MPI_MAX, world);
-  return strayed < 0.5 * neighbor->skin;
+  return strayed < last;
+}
+
+// Between two passes of a rank that is alone: sees how far particles really are and makes lists anew if need be. False where particles
+// have changed places then: the blocks do not stand any more.
+bool VerletMdanim::look_again()
+{
+  timer->stamp(Timer::BOND);
+  blocks.give_out(atom->x, atom->v);
+  strayed = farthest();
+  if (strayed < SOON * last) return true;
+  if (!rebuild_lists()) return false;
+  strayed = 0.0;
+  last = how_far_lists_last();
+  start_blocks();
+  return true;
 }
 
 // Other ranks see where this one's particles are, and this one theirs.
@@ -303,7 +350,7 @@ void VerletMdanim::begin_step()
 
 void VerletMdanim::finish_step()
 {
-  if (neighbor->decide()) {
+  if (lists_are_due()) {
     rebuild_lists();
   } else {
     timer->stamp();
@@ -325,7 +372,22 @@ void VerletMdanim::finish_step()
   }
 }
 
-void VerletMdanim::rebuild_lists()
+// As LAMMPS decides it, but later if nobody needs lists now; a file gets the box of now.
+bool VerletMdanim::lists_are_due()
+{
+  const bigint now = update->ntimestep;
+  if (!lists_matter || now == output->next_dump_any || now == output->next_restart) return neighbor->decide();
+  for (const Fix *fix : modify->get_fix_list())
+    if (fix->force_reneighbor && fix->next_reneighbor == now) return true;
+  last = how_far_lists_last();
+  if (last <= 0.5 * neighbor->skin) return neighbor->decide();
+  ++neighbor->ago;
+  strayed = farthest();
+  return !lists_last(0.0);
+}
+
+// Returns whether every particle is where it was in the arrays.
+bool VerletMdanim::rebuild_lists()
 {
   timer->stamp();
   if (modify->n_pre_exchange) modify->pre_exchange();
@@ -352,4 +414,5 @@ void VerletMdanim::rebuild_lists()
   timer->stamp(Timer::NEIGH);
   if (modify->n_post_neighbor) modify->post_neighbor();
   timer->stamp(Timer::MODIFY);
+  return same;
 }

@@ -27,7 +27,11 @@ class VerletMdanim : public Verlet {
   void meet_ghosts();
   int take_steps(int step, int most);
   bigint next_stop() const;
+  double how_far_lists_last() const;
   bool lists_last(double more);
+  bool lists_are_due();
+  bool look_again();
+  double farthest() const;
   void start_blocks();
   void hold_back();
   void one_pass(bool guests_see_all);
@@ -35,7 +39,7 @@ class VerletMdanim : public Verlet {
 
   void begin_step();
   void finish_step();
-  void rebuild_lists();
+  bool rebuild_lists();
 
   const mdanim::Width *width;
   mdanim::Blocks blocks;
@@ -60,7 +64,9 @@ class VerletMdanim : public Verlet {
   std::vector<Player> guests;
 
   bool lists_matter = false;
+  bool strangers_have_lists = false;
   double strayed = 0.0;        // no particle has moved farther since lists were made
+  double last = 0.0;           // how far any may go
   bigint made_for = -1;        // build of lists that the blocks' motion was told after
   std::vector<int> wanted;     // particles that guests are concerned with
 };

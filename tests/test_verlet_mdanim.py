@@ -154,14 +154,23 @@ def test_what_is_not_known_gets_the_plain_step(tmp_path, stranger):
 
 
 def test_somebody_who_looks_sees_every_step_he_asks_for(tmp_path):
-    """Dump every seventh step and rebuild by a fix of LAMMPS in between: the file is the same to the last digit."""
+    """Dump every seventh step and rebuild by a fix of LAMMPS in between: all of every particle is the same to the last digit.
+
+    The box is not: LAMMPS shrinks it when it makes lists, and passes need new ones at other steps. Neither is farther off than half
+    the skin.
+    """
     texts = []
     for style in ("verlet", "verlet/mdanim"):
         path = tmp_path / style.replace("/", "-")
         lab_state(BODY, tmp_path, [*MOVE, f"run_style {style}", f"dump d all custom 7 {path} id x y z vx vy vz fx",
                                    "dump_modify d sort id format float %.17g", "fix b all balance 10 1.0 shift x 5 1.1", "run 50"])
         texts.append(path.read_text())
-    assert texts[0] == texts[1] and texts[0].count("TIMESTEP") == 8
+    frames = [[part.partition("ITEM: ATOMS")[::2] for part in text.split("ITEM: TIMESTEP")[1:]] for text in texts]
+    assert len(frames[0]) == len(frames[1]) == 8
+    for (plain_head, plain), (head, found) in zip(*frames):
+        assert found == plain
+        box, plain_box = (np.array([line.split() for line in h.splitlines()[-3:]], float) for h in (head, plain_head))
+        np.testing.assert_allclose(box, plain_box, rtol=0, atol=0.4)  # the skin: either is off by half of it at most
 
 
 def test_lists_are_rebuilt_before_anybody_has_gone_half_the_skin(tmp_path):
