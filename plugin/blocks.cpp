@@ -211,6 +211,13 @@ void Blocks::hold_back(const std::vector<int> &wanted, bool everything)
     for (const int i : outside) waiting.push_back(index[i]);
 }
 
+bool Blocks::friction_acts() const
+{
+  for (std::size_t b = 0; b < all.size(); ++b)
+    if (slowed[b] && !all[b].held_back) return true;
+  return false;
+}
+
 void Blocks::take_in(const double *const *from_x, const double *const *from_v)
 {
   for (int d = 0; d < 3; ++d) {

@@ -71,6 +71,7 @@ class Blocks {
   template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
   // Every block with one of these particles is held back, no other; ghosts among them are left out.
   void hold_back(const std::vector<int> &particles, bool everything);
+  bool friction_acts() const;    // on a block that is not held back
   const std::vector<int> &held_back() const { return index.empty() ? outside : waiting; }    // all particles of such blocks
 
   void take_in(const double *const *x, const double *const *v);
@@ -97,6 +98,7 @@ class Blocks {
   std::vector<Block> all;
   std::vector<Entry> entries;
   std::vector<int> home;       // block of each particle
+  std::vector<bool> slowed;    // blocks with friction
   std::vector<int> outside;    // particles of blocks that are held back
   std::vector<int> index, place;      // of a particle in LAMMPS's arrays, and back; `index` empty where the orders are the same
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
@@ -111,13 +113,18 @@ template <class Tell> void Blocks::set_motion(Friction friction, Tell mover)
 {
   std::vector<double> row(MOTIONS * lanes);
   motions.start(MOTIONS * lanes);
+  slowed.clear();
   for (Block &block : all) {
+    bool slows = false;
     for (int lane = 0; lane < lanes; ++lane) {
       const int i = lane < block.lanes ? at(block.start + lane) : -1;
-      set_row(i < 0 || is_ghost(i) ? Mover{0.0, 0.0, 0.0, 0.0, 0.0} : mover(i), friction, lane, row.data());
+      const Mover of_lane = i < 0 || is_ghost(i) ? Mover{0.0, 0.0, 0.0, 0.0, 0.0} : mover(i);
+      slows = slows || of_lane.phi != 0.0;
+      set_row(of_lane, friction, lane, row.data());
       row[OTHERS * lanes + lane] = lane < block.lanes ? 0.0 : 1.0;
     }
     block.motion = motions.find_or_add(row.data());
+    slowed.push_back(slows);
   }
 }
 

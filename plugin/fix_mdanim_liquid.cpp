@@ -516,8 +516,16 @@ double FixMdanimLiquid::shut_in_height() const
 }
 
 // Whether it is time for an update. Depends on the state alone, so that neither ranks nor pieces of a run
-// change it.
+// change it. Counts a step only once.
 bool FixMdanimLiquid::due()
+{
+  if (update->ntimestep % every != 0) return false;
+  if (asked != update->ntimestep) is_due = find_out_whether_due();
+  asked = update->ntimestep;
+  return is_due;
+}
+
+bool FixMdanimLiquid::find_out_whether_due()
 {
   double fastest = -1.0;    // squared; -1 when no solid is near the liquid
   if (!nobody) {
@@ -595,6 +603,7 @@ void FixMdanimLiquid::setup_post_neighbor()
     raise_surface(false);
   }
   nobody = false;    // between two runs anything may have been set
+  asked = -1;
   post_neighbor();
 }
 
@@ -638,7 +647,7 @@ void FixMdanimLiquid::setup(int)
 
 void FixMdanimLiquid::post_force(int)
 {
-  if (update->ntimestep % every == 0 && due()) update_liquid();
+  if (due()) update_liquid();
   couple();
 }
 
@@ -811,8 +820,7 @@ void FixMdanimLiquid::concerned(std::vector<int> &particles) const
 }
 
 // An update of the liquid looks for all bodies.
-bool FixMdanimLiquid::reads_all() const
-{ return update->ntimestep % every == 0 && !asleep(); }
+bool FixMdanimLiquid::reads_all() { return due(); }
 
 // While the liquid is level and nobody is near it, until somebody comes.
 double FixMdanimLiquid::looks_ahead() const
@@ -974,6 +982,7 @@ std::string FixMdanimLiquid::set_state(const std::uint8_t *bytes, std::size_t si
   swept = head.swept;
   waited = head.waited;
   calm = head.calm != 0;
+  asked = -1;
   travel = head.travel;
   crossed = head.crossed;
   work = comm->me == 0 ? head.work : 0.0;

@@ -37,7 +37,7 @@ class FixMdanimLiquid : public Fix, public mdanim::Guest {
   double memory_usage() override;
   int modify_param(int, char **) override;
   void concerned(std::vector<int> &particles) const override;
-  bool reads_all() const override;
+  bool reads_all() override;
   double looks_ahead() const override;
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -85,6 +85,7 @@ class FixMdanimLiquid : public Fix, public mdanim::Guest {
   double shut_in_height() const;
 
   bool due();
+  bool find_out_whether_due();
   void update_liquid();
   void flow(long changed);
   bool asleep() const { return nobody && calm && moving_solid == 0; }
@@ -145,6 +146,8 @@ class FixMdanimLiquid : public Fix, public mdanim::Guest {
   std::vector<Wet> wet;
   std::vector<Face> faces;                    // of the watched particles
   std::vector<int> face_of, face_of_first;    // those of watched[n]: face_of[face_of_first[n]] …
+  bigint asked = -1;    // step for which it is known
+  bool is_due = false;
   double last_power = 0.0, last_loss = 0.0;
   double automaton_seconds = 0.0, occupancy_seconds = 0.0, coupling_seconds = 0.0;
 };

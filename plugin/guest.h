@@ -13,8 +13,8 @@ class Guest {
   // The local particles whose x, v and f the fix reads or writes in post_force() and end_of_step(), until lists are rebuilt; the
   // arrays of LAMMPS hold no others. Adds them to `particles`, some perhaps twice.
   virtual void concerned(std::vector<int> &particles) const = 0;
-  // Whether it will read any particle in this step.
-  virtual bool reads_all() const { return false; }
+  // Whether it will read any particle in this step. Asked once, when the step has begun.
+  virtual bool reads_all() { return false; }
   // How far particles may go from where they stood when lists were made before it must look again, as far as it can tell: who has
   // nothing to do until then says so here, and lists last longer than half the skin.
   virtual double looks_ahead() const { return 0.0; }

@@ -193,7 +193,7 @@ int VerletMdanim::take_steps(int step, int most)
   while (update->ntimestep < stop) {
     if (comm->nprocs > 1 && taken) meet_ghosts();
     bool see_all = false;
-    for (const Player &p : guests) see_all = see_all || p.guest->reads_all();
+    for (const Player &p : guests) see_all = p.guest->reads_all() || see_all;
     if (see_all) blocks.hold_back(wanted, true);
     one_pass(see_all);
     ++taken;
@@ -275,9 +275,8 @@ void VerletMdanim::meet_ghosts()
 // Positions and velocities into the blocks, and who is to be held back.
 void VerletMdanim::start_blocks()
 {
-  const Friction friction = leapfrog->friction();
   if (made_for != neighbor->lastcall) {
-    blocks.set_motion(friction, [this](int i) {
+    blocks.set_motion(leapfrog->friction(), [this](int i) {
       Mover mover = leapfrog->mover(i);
       if (gravity) mover.pulled = gravity->pulled(i);
       return mover;
@@ -286,7 +285,6 @@ void VerletMdanim::start_blocks()
   }
   blocks.take_in(atom->x, atom->v);
   blocks.fill(pass, atom->f);
-  pass.friction = friction;
   pass.gravity[0] = pass.gravity[1] = pass.gravity[2] = 0.0;
   if (gravity) {
     const Vec3 &g = gravity->acceleration();
@@ -301,6 +299,7 @@ void VerletMdanim::hold_back()
   wanted.clear();
   for (const Player &p : guests) p.guest->concerned(wanted);
   blocks.hold_back(wanted, false);
+  pass.friction = blocks.friction_acts() ? leapfrog->friction() : Friction::NONE;    // without any it is the same, and faster
 }
 
 void VerletMdanim::one_pass(bool guests_see_all)
@@ -376,7 +375,7 @@ void VerletMdanim::finish_step()
 bool VerletMdanim::lists_are_due()
 {
   const bigint now = update->ntimestep;
-  if (!lists_matter || now == output->next_dump_any || now == output->next_restart) return neighbor->decide();
+  if (neighbor->build_once || now == output->next_dump_any || now == output->next_restart) return neighbor->decide();
   for (const Fix *fix : modify->get_fix_list())
     if (fix->force_reneighbor && fix->next_reneighbor == now) return true;
   last = how_far_lists_last();
