@@ -135,8 +135,9 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
       for (int i = block.start; i < end; ++i) {
         const int lane = i - block.start;
         for (int &b = next[lane]; b < bonds.first[i + 1] && bonds.partner[b] - i == offset; ++b) {
-          law[lane] = bonds.push[b];
-          law[lanes + lane] = bonds.pull[b];
+          const Law &own = bonds.law[bonds.type[b]];
+          law[lane] = own.push;
+          law[lanes + lane] = own.pull;
         }
       }
       entries.push_back({offset, laws.find_or_add(law.data())});

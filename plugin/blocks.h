@@ -5,6 +5,7 @@
 #define MDANIM_BLOCKS_H
 
 #include "pass.h"
+#include "spring.h"
 
 #include <cstdint>
 #include <unordered_map>
@@ -46,8 +47,8 @@ class Catalogue {
 // Half of all springs: those of particle i to particles of higher index are [first[i], first[i+1]), partners descending.
 struct HalfBonds {
   int particles;
-  const int *first, *partner;
-  const double *push, *pull;
+  const int *first, *partner, *type;
+  const Law *law;    // of each type
 };
 
 // What a particle's motion depends on.

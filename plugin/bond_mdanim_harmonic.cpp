@@ -23,6 +23,7 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 using namespace LAMMPS_NS;
@@ -107,146 +108,125 @@ bool BondMdanimHarmonic::source_changed()
   bool same = atom->nghost == 0 && static_cast<int>(source.tag.size()) == nlocal &&
       std::equal(source.tag.begin(), source.tag.end(), atom->tag) &&
       std::equal(source.count.begin(), source.count.end(), atom->num_bond);
-  for (int i = 0, at = 0; same && partners_may_differ && i < nlocal; at += source.count[i++])
-    same = std::equal(atom->bond_atom[i], atom->bond_atom[i] + source.count[i], &source.partner[at]) &&
-        std::equal(atom->bond_type[i], atom->bond_type[i] + source.count[i], &source.type[at]);
+  Row row;
+  for (int i = 0; same && partners_may_differ && i < nlocal; ++i) same = !has_changed(i, row);
   if (same) return false;
 
   source = Source();
   if (atom->nghost) return true;    // indices of ghosts change with every rebuild
   source.tag.assign(atom->tag, atom->tag + nlocal);
   source.count.assign(atom->num_bond, atom->num_bond + nlocal);
-  const int bonds = std::accumulate(source.count.begin(), source.count.end(), 0);
-  source.partner.reserve(bonds + 1);    // one more, so that an address behind the last bond exists
-  source.type.reserve(bonds + 1);
-  for (int i = 0; i < nlocal; ++i) {
-    source.partner.insert(source.partner.end(), atom->bond_atom[i], atom->bond_atom[i] + source.count[i]);
-    source.type.insert(source.type.end(), atom->bond_type[i], atom->bond_type[i] + source.count[i]);
-  }
-  source.partner.push_back(0);
-  source.type.push_back(0);
   return true;
+}
+
+bool BondMdanimHarmonic::has_changed(int i, Row &row) const
+{
+  look_up(i, rows.upper_only, row);
+  const int begin = rows.first[i];
+  return static_cast<int>(row.partner.size()) != rows.first[i + 1] - begin ||
+      !std::equal(row.partner.begin(), row.partner.end(), rows.partner.begin() + begin) ||
+      !std::equal(row.type.begin(), row.type.end(), rows.type.begin() + begin);
 }
 
 void BondMdanimHarmonic::make_rows()
 {
-  const bool periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
-  const int bonds = std::accumulate(atom->num_bond, atom->num_bond + atom->nlocal, 0);
-
   rows = Rows();
   made = ++versions;
+  rows.upper_only = halves_suffice();
+  int bonds = std::accumulate(atom->num_bond, atom->num_bond + atom->nlocal, 0);
+  if (rows.upper_only) bonds = (bonds + 1) / 2;
+  rows.first.reserve(atom->nlocal + 1);
   rows.first.push_back(0);
   rows.partner.reserve(bonds);
   rows.type.reserve(bonds);
+  Row row;
+  int farthest = 0;
   for (int i = 0; i < atom->nlocal; ++i) {
-    tagint before = 0;
-    bool ascending = true;
-    for (int b = 0; b < atom->num_bond[i]; ++b) {
-      const tagint tag = atom->bond_atom[i][b];
-      const int type = atom->bond_type[i][b];
-      if (type <= 0) continue;    // switched off by delete_bonds
-      int partner = atom->map(tag);
-      if (partner < 0)
-        error->one(
-            FLERR,
-            "bond_style mdanim/harmonic: particle {} has lost its bond partner {} at step {}; if the "
-            "bodies move as they should, raise the ghost cutoff ('comm_modify cutoff'); if they fly apart, "
-            "lower the time step",
-            atom->tag[i], tag, update->ntimestep);
-      if (periodic) partner = domain->closest_image(i, partner);
-      rows.partner.push_back(partner);
-      rows.type.push_back(type);
-      ascending = ascending && tag > before;
-      before = tag;
-    }
-    if (!ascending) sort_row(rows.first.back());
-    turn_upper(i, rows.first.back());
+    look_up(i, rows.upper_only, row);
+    if (rows.upper_only && !row.partner.empty()) farthest = std::max(farthest, row.partner.front() - i);
+    if (!rows.upper_only) rows.upper.push_back(rows.first.back() + row.upper);
+    rows.partner.insert(rows.partner.end(), row.partner.begin(), row.partner.end());
+    rows.type.insert(rows.type.end(), row.type.begin(), row.type.end());
     rows.first.push_back(static_cast<int>(rows.partner.size()));
   }
-
-  rows.upper_only = halves_suffice();
-  if (rows.upper_only) drop_lower_partners();
+  received.set_up(rows.upper_only ? farthest : 0);
 }
 
-// The last row, from entry `begin`, in the order of its partners' tags.
-void BondMdanimHarmonic::sort_row(int begin)
+// The bonds of particle i in the order in which their forces are summed: lower partners from the lowest tag up, which may be left
+// out, then upper ones from the highest down.
+void BondMdanimHarmonic::look_up(int i, bool upper_only, Row &row) const
 {
-  std::vector<std::pair<int, int>> row;    // partner, type
-  for (size_t b = begin; b < rows.partner.size(); ++b) row.emplace_back(rows.partner[b], rows.type[b]);
-  const tagint *tag = atom->tag;
-  std::stable_sort(row.begin(), row.end(), [tag](const auto &a, const auto &b) { return tag[a.first] < tag[b.first]; });
-  for (const auto &[partner, type] : row) {
-    rows.partner[begin] = partner;
-    rows.type[begin++] = type;
+  const bool periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
+  const tagint *const tag = atom->tag, own = tag[i];
+  row.partner.clear();
+  row.type.clear();
+  tagint before = 0;
+  bool ascending = true;
+  for (int b = 0; b < atom->num_bond[i]; ++b) {
+    const tagint other = atom->bond_atom[i][b];
+    const int type = atom->bond_type[i][b];
+    if (type <= 0 || (upper_only && other < own)) continue;    // 0 and less: switched off by delete_bonds
+    int partner = atom->map(other);
+    if (partner < 0)
+      error->one(
+          FLERR,
+          "bond_style mdanim/harmonic: particle {} has lost its bond partner {} at step {}; if the "
+          "bodies move as they should, raise the ghost cutoff ('comm_modify cutoff'); if they fly apart, "
+          "lower the time step",
+          own, other, update->ntimestep);
+    if (periodic) partner = domain->closest_image(i, partner);
+    row.partner.push_back(partner);
+    row.type.push_back(type);
+    ascending = ascending && other > before;
+    before = other;
   }
+  if (!ascending) {
+    std::vector<std::pair<int, int>> both;    // partner, type
+    for (size_t b = 0; b < row.partner.size(); ++b) both.emplace_back(row.partner[b], row.type[b]);
+    std::stable_sort(both.begin(), both.end(), [tag](const auto &a, const auto &b) { return tag[a.first] < tag[b.first]; });
+    for (size_t b = 0; b < both.size(); ++b) std::tie(row.partner[b], row.type[b]) = both[b];
+  }
+  const auto upper = std::find_if(row.partner.begin(), row.partner.end(), [tag, own](int j) { return tag[j] > own; });
+  row.upper = static_cast<int>(upper - row.partner.begin());
+  std::reverse(upper, row.partner.end());
+  std::reverse(row.type.begin() + row.upper, row.type.end());
 }
 
-// The last row, which ascends, as forces are summed: lower partners from the lowest up, higher ones from the highest down.
-void BondMdanimHarmonic::turn_upper(int i, int begin)
-{
-  const tagint *tag = atom->tag, own = tag[i];
-  const auto partners = rows.partner.begin() + begin;
-  const auto upper = std::find_if(partners, rows.partner.end(), [tag, own](int j) { return tag[j] > own; });
-  const auto at = upper - rows.partner.begin();
-  std::reverse(upper, rows.partner.end());
-  std::reverse(rows.type.begin() + at, rows.type.end());
-  rows.upper.push_back(static_cast<int>(at));
-}
-
+// Laws of all types; another version where one differs from before.
 void BondMdanimHarmonic::look_up_coefficients()
 {
   coefficients_may_differ = false;
-  rows.push.resize(rows.type.size());
-  rows.pull.resize(rows.type.size());
-  bool same = true;
-  for (size_t b = 0; b < rows.type.size(); ++b) {
-    const Law law(spring[rows.type[b]]);
-    same = same && rows.push[b] == law.push && rows.pull[b] == law.pull;
-    rows.push[b] = law.push;
-    rows.pull[b] = law.pull;
-  }
-  if (!same) made = ++versions;
-}
-
-void BondMdanimHarmonic::drop_lower_partners()
-{
-  Rows upper;
-  upper.upper_only = true;
-  upper.first.reserve(rows.first.size());
-  upper.first.push_back(0);
-  upper.partner.reserve(rows.partner.size() / 2);
-  upper.type.reserve(rows.partner.size() / 2);
-  for (int i = 0; i < atom->nlocal; ++i) {
-    upper.upper.push_back(upper.first.back());
-    for (int b = rows.upper[i]; b < rows.first[i + 1]; ++b) {
-      upper.partner.push_back(rows.partner[b]);
-      upper.type.push_back(rows.type[b]);
-    }
-    upper.first.push_back(static_cast<int>(upper.partner.size()));
-  }
-  rows = std::move(upper);
-  received.assign(atom->nlocal, Vec3());
+  std::vector<Law> now;
+  for (const Spring &s : spring) now.emplace_back(s);
+  if (!(now == law)) made = ++versions;
+  law = std::move(now);
 }
 
 // With particles in tag order and all partners here, the lower partners of a row come before it.
 bool BondMdanimHarmonic::halves_suffice() const
 {
   const int nlocal = atom->nlocal;
-  return std::is_sorted(atom->tag, atom->tag + nlocal) &&
-      std::all_of(rows.partner.begin(), rows.partner.end(), [nlocal](int j) { return j < nlocal; });
+  if (!std::is_sorted(atom->tag, atom->tag + nlocal)) return false;
+  Row row;
+  for (int i = 0; atom->nghost && i < nlocal; ++i) {
+    look_up(i, false, row);
+    if (std::any_of(row.partner.begin(), row.partner.end(), [nlocal](int j) { return j >= nlocal; })) return false;
+  }
+  return true;
 }
 
 bool BondMdanimHarmonic::halves(HalfBonds &half) const
 {
   if (damped || !rows.upper_only || static_cast<int>(rows.first.size()) != atom->nlocal + 1) return false;
-  half = {atom->nlocal, rows.first.data(), rows.partner.data(), rows.push.data(), rows.pull.data()};
+  half = {atom->nlocal, rows.first.data(), rows.partner.data(), rows.type.data(), law.data()};
   return true;
 }
 
 bool BondMdanimHarmonic::rows_of_all(BondRows &all) const
 {
   if (damped || static_cast<int>(rows.first.size()) != atom->nlocal + 1) return false;
-  all = {rows.first.data(), rows.upper.data(), rows.partner.data(), rows.push.data(), rows.pull.data()};
+  const std::vector<int> &upper = rows.upper_only ? rows.first : rows.upper;
+  all = {rows.first.data(), upper.data(), rows.partner.data(), rows.type.data(), &law};
   return true;
 }
 
@@ -275,7 +255,7 @@ void BondMdanimHarmonic::forces(int begin, int end)
   const size_t room = n;
   if (n == 0) return;
   if (stretch.x.size() < room)
-    for (auto *array : {&stretch.x, &stretch.y, &stretch.z}) array->resize(room);
+    for (auto *array : {&stretch.x, &stretch.y, &stretch.z, &stretch.push, &stretch.pull}) array->resize(room);
   for (int i = begin, b = 0; i < end; ++i) {
     const Vec3 here = vec3(x + 3 * i);
     for (; b < rows.first[i + 1] - base; ++b) {
@@ -283,9 +263,12 @@ void BondMdanimHarmonic::forces(int begin, int end)
       stretch.x[b] = d.x;
       stretch.y[b] = d.y;
       stretch.z[b] = d.z;
+      const Law &own = law[rows.type[base + b]];
+      stretch.push[b] = own.push;
+      stretch.pull[b] = own.pull;
     }
   }
-  spring_forces(n, &rows.push[base], &rows.pull[base], stretch.x.data(), stretch.y.data(), stretch.z.data());
+  spring_forces(n, stretch.push.data(), stretch.pull.data(), stretch.x.data(), stretch.y.data(), stretch.z.data());
 }
 
 // Add the dashpots of rows [begin, end) to `stretch`, and what each particle feels of them to `on`.
@@ -319,6 +302,14 @@ void BondMdanimHarmonic::sum_rows(int begin, int end)
   }
 }
 
+void BondMdanimHarmonic::Ring::set_up(int farthest)
+{
+  int places = 1;
+  while (places <= farthest) places *= 2;
+  force.assign(places, Vec3());
+  mask = places - 1;
+}
+
 // Half the work, the same bits: F_j = -F_i exactly and a - F = a + (-F), and rows come in ascending order, so that a particle has
 // received from its lower partners in theirs by the time its own row comes.
 void BondMdanimHarmonic::sum_halves(int begin, int end)
@@ -330,10 +321,10 @@ void BondMdanimHarmonic::sum_halves(int begin, int end)
     for (; b < rows.first[i + 1] - base; ++b) {
       const Vec3 force{stretch.x[b], stretch.y[b], stretch.z[b]};
       upper += force;
-      received[rows.partner[base + b]] -= force;
+      received.of(rows.partner[base + b]) -= force;
     }
-    add_to(f[i], received[i] + upper);
-    received[i] = Vec3();
+    add_to(f[i], received.of(i) + upper);
+    received.of(i) = Vec3();
   }
 }
 
@@ -373,8 +364,8 @@ void BondMdanimHarmonic::tally()
       const Spring &s = spring[rows.type[b]];
       const Vec3 d = vec3(atom->x[i]) - vec3(atom->x[j]);
       const double r2 = dot(d, d), e = mdanim::energy(s, std::sqrt(r2));
-      const Law law(s);
-      double factor = force_factor(law.push, law.pull, r2);
+      const Law &own = law[rows.type[b]];
+      double factor = force_factor(own.push, own.pull, r2);
       if (s.c > 0.0) factor += drag(s.c, d, vec3(atom->v[i]) - vec3(atom->v[j]));
       const double w[6] = {d.x * d.x * factor, d.y * d.y * factor, d.z * d.z * factor,
                            d.x * d.y * factor, d.x * d.z * factor, d.y * d.z * factor};
@@ -397,8 +388,8 @@ double BondMdanimHarmonic::equilibrium_distance(int type) { return spring[type].
 // Energy and -dU/dr / r of one bond, without its dashpot.
 double BondMdanimHarmonic::single(int type, double rsq, int, int, double &fforce)
 {
-  const Law law(spring[type]);
-  fforce = force_factor(law.push, law.pull, rsq);
+  const Law own(spring[type]);
+  fforce = force_factor(own.push, own.pull, rsq);
   return mdanim::energy(spring[type], std::sqrt(rsq));
 }
 
@@ -423,9 +414,9 @@ void BondMdanimHarmonic::write_data(FILE *fp)
 double BondMdanimHarmonic::memory_usage()
 {
   const auto ints = rows.first.capacity() + rows.upper.capacity() + rows.partner.capacity() + rows.type.capacity() +
-      source.tag.capacity() + source.partner.capacity() + source.count.capacity() + source.type.capacity();
-  return Bond::memory_usage() + ints * sizeof(int) + received.capacity() * sizeof(Vec3) +
-      (2.0 * rows.push.capacity() + 3.0 * stretch.x.capacity()) * sizeof(double);
+      source.tag.capacity() + source.count.capacity();
+  return Bond::memory_usage() + ints * sizeof(int) + received.force.capacity() * sizeof(Vec3) +
+      law.capacity() * sizeof(Law) + 5.0 * stretch.x.capacity() * sizeof(double);
 }
 
 // For objects.cpp: "seconds" and "lost" of this rank.

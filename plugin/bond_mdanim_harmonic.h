@@ -45,27 +45,40 @@ class BondMdanimHarmonic : public Bond {
   // ascending by tag, then, from `upper` on, upper ones descending.
   struct Rows {
     std::vector<int> first, upper, partner, type;    // partner: local or ghost index
-    std::vector<double> push, pull;                  // see Law
     bool upper_only = false;    // only partners of a higher tag, see sum_halves()
   };
-  // What the rows were made from; while it is unchanged they are kept.
+  // What the rows were made from, besides the bonds themselves, which they hold; while all is unchanged they are kept.
   struct Source {
-    std::vector<tagint> tag, partner;
-    std::vector<int> count, type;
+    std::vector<tagint> tag;
+    std::vector<int> count;    // of bonds
+  };
+  // Partners and types of one row.
+  struct Row {
+    std::vector<int> partner, type;
+    int upper = 0;    // where those of higher tag begin
   };
   // The bonds of a few rows, one array per quantity, for the vector units.
   struct Stretch {
-    std::vector<double> x, y, z;    // r_ij, then F_i
+    std::vector<double> x, y, z;       // r_ij, then F_i
+    std::vector<double> push, pull;    // see Law
+  };
+  // Forces that particles have received from lower partners so far, for sum_halves(): those from the row in hand to its
+  // farthest partner, in a ring of 2^n places.
+  struct Ring {
+    std::vector<mdanim::Vec3> force;
+    int mask = 0;    // 2^n - 1
+
+    void set_up(int farthest);
+    mdanim::Vec3 &of(int i) { return force[i & mask]; }
   };
 
   void allocate();
   bool source_changed();
   void make_rows();
-  void sort_row(int begin);
-  void turn_upper(int i, int begin);
+  void look_up(int i, bool upper_only, Row &row) const;
+  bool has_changed(int i, Row &scratch) const;
   void look_up_coefficients();
   bool halves_suffice() const;
-  void drop_lower_partners();
   void forces(int begin, int end);
   void sum_rows(int begin, int end);
   void sum_halves(int begin, int end);
@@ -73,14 +86,15 @@ class BondMdanimHarmonic : public Bond {
   void tally();
 
   std::vector<mdanim::Spring> spring;    // by bond type
+  std::vector<mdanim::Law> law;          // the same
   bool damped = false;                   // some spring has a dashpot
-  bool coefficients_may_differ = false;    // since the rows were given theirs
+  bool coefficients_may_differ = false;    // since their laws were made
   bool bonds_are_swapped = false;        // some fix changes partners during a run
   Rows rows;
   bigint made = 0;    // version
   Source source;
   Stretch stretch;
-  std::vector<mdanim::Vec3> received;    // from lower partners so far, for sum_halves()
+  Ring received;
 
   mdanim::Loss loss;    // to dashpots, on this rank
   double lost = 0.0;    // when it was asked for last

@@ -7,7 +7,7 @@
 
 namespace mdanim {
 
-Lineup::Lineup(int nlocal, int nall, const int *tag, const BondRows &rows)
+Lineup::Lineup(int nlocal, int nall, const int *tag, const BondRows &rows) : law(*rows.law)
 {
   const auto [lowest, highest] = std::minmax_element(tag, tag + nall);
   std::vector<int> of_tag(nall ? *highest - *lowest + 1 : 0, -1);    // no longer than LAMMPS's own map
@@ -38,28 +38,26 @@ Lineup::Lineup(int nlocal, int nall, const int *tag, const BondRows &rows)
   each([this](int low, int, int) { ++first[low + 1]; });
   for (int s = 0; s < size(); ++s) first[s + 1] += first[s];
   partner.resize(first.back());
-  push.resize(first.back());
-  pull.resize(first.back());
+  type.resize(first.back());
   std::vector<int> next(first.begin(), first.end() - 1);
   each([&](int low, int high, int b) {
     const int at = next[low]++;
     partner[at] = high;
-    push[at] = rows.push[b];
-    pull[at] = rows.pull[b];
+    type[at] = rows.type[b];
   });
 }
 
-HalfBonds Lineup::halves() const { return {size(), first.data(), partner.data(), push.data(), pull.data()}; }
+HalfBonds Lineup::halves() const { return {size(), first.data(), partner.data(), type.data(), law.data()}; }
 
 bool Lineup::same_springs(const Lineup &other) const
 {
-  return name == other.name && first == other.first && partner == other.partner && push == other.push && pull == other.pull;
+  return name == other.name && first == other.first && partner == other.partner && type == other.type && law == other.law;
 }
 
 std::size_t Lineup::bytes() const
 {
-  return (index.capacity() + name.capacity() + first.capacity() + partner.capacity()) * sizeof(int) +
-      (push.capacity() + pull.capacity()) * sizeof(double);
+  return (index.capacity() + name.capacity() + first.capacity() + partner.capacity() + type.capacity()) * sizeof(int) +
+      law.capacity() * sizeof(Law);
 }
 
 }    // namespace mdanim

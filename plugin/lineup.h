@@ -14,8 +14,8 @@ namespace mdanim {
 // Springs of the particles of a rank, by index in LAMMPS's arrays. Those of particle i are [first[i], first[i+1]): to partners of
 // lower tag ascending, then, from upper[i] on, to those of higher tag descending.
 struct BondRows {
-  const int *first, *upper, *partner;
-  const double *push, *pull;
+  const int *first, *upper, *partner, *type;
+  const std::vector<Law> *law;    // of each type
 };
 
 class Lineup {
@@ -34,8 +34,8 @@ class Lineup {
  private:
   std::vector<int> index;
   std::vector<int> name;    // tag, with its sign changed where the particle is another rank's
-  std::vector<int> first, partner;
-  std::vector<double> push, pull;
+  std::vector<int> first, partner, type;
+  std::vector<Law> law;
 };
 
 }    // namespace mdanim

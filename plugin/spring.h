@@ -23,6 +23,7 @@ struct Spring {
 struct Law {
   double push, pull;
   explicit Law(const Spring &s) : push(2.0 * s.K * s.r0), pull(2.0 * s.K) {}
+  bool operator==(const Law &other) const { return push == other.push && pull == other.pull; }
 };
 
 // So small that it changes no r^2 that is not nothing, and two particles in one place, r_ij = 0, have no force instead of none

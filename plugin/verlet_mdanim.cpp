@@ -14,6 +14,7 @@
 #include "angle.h"
 #include "atom.h"
 #include "comm.h"
+#include "compute.h"
 #include "dihedral.h"
 #include "domain.h"
 #include "error.h"
@@ -32,6 +33,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
 
 using namespace LAMMPS_NS;
@@ -58,6 +60,39 @@ VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, a
 }
 
 double VerletMdanim::memory_usage() { return static_cast<double>(blocks.bytes() + line.bytes()); }
+
+// --- LAMMPS's list of bonds ---
+
+// Lists are about to be made for the first time after init().
+void VerletMdanim::setup(int flag)
+{
+  spare_bond_list();
+  Verlet::setup(flag);
+}
+
+void VerletMdanim::setup_minimal(int flag)
+{
+  spare_bond_list();
+  Verlet::setup_minimal(flag);
+}
+
+// Do without neighbor->bondlist, which takes 100 bytes per particle of a lattice and longer to make than many steps, where nobody can
+// want it: our bond style reads springs from the particles that have them. Of fixes and computes only those count that are known to
+// leave the list alone. It comes back with the next init().
+void VerletMdanim::spare_bond_list()
+{
+  if (!dynamic_cast<BondMdanimHarmonic *>(force->bond) || force->pair || force->angle || force->dihedral || force->improper) return;
+  const auto leaves_it = [](const char *style) {
+    static constexpr const char *OTHERS[] = {"property/atom", "balance", "temp", "pressure", "pe", "ke"};
+    return strncmp(style, "mdanim/", 7) == 0 ||
+        std::any_of(std::begin(OTHERS), std::end(OTHERS), [style](const char *other) { return strcmp(style, other) == 0; });
+  };
+  const auto &fixes = modify->get_fix_list();
+  const auto &computes = modify->get_compute_list();
+  if (std::all_of(fixes.begin(), fixes.end(), [&](const Fix *fix) { return leaves_it(fix->style); }) &&
+      std::all_of(computes.begin(), computes.end(), [&](const Compute *compute) { return leaves_it(compute->style); }))
+    neighbor->set_overlap_topo(1);    // made by who calls build_topology()
+}
 
 // --- whether we can ---
 

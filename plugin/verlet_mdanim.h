@@ -15,11 +15,14 @@ class VerletMdanim : public Verlet {
  public:
   VerletMdanim(class LAMMPS *, int, char **);
 
+  void setup(int) override;
+  void setup_minimal(int) override;
   void run(int) override;
   double memory_usage() override;
   long long passes() const { return passed; }
 
  private:
+  void spare_bond_list();
   bool find_players();
   bool cut();
   bool cut_for_ranks();
