@@ -2,6 +2,7 @@
 """run_style verlet/mdanim against run_style verlet, bit for bit: shapes, effects, widths, orders of particles, pieces, ranks."""
 
 import ctypes
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -218,3 +219,16 @@ def test_what_changes_between_two_runs_is_noticed(tmp_path, change):
                     for style in ("verlet/mdanim", "verlet"))
     assert found[1] == 97 and plain[1] == 0
     assert np.array_equal(found[0], plain[0])
+
+
+@pytest.mark.parametrize("first", [[], ["run 3"]], ids=["from the start", "after a run without"])
+def test_who_reads_the_list_of_bonds_finds_it(tmp_path, first):
+    """Let stock fix bond/break, which knows springs by LAMMPS's list of bonds alone, take the longer of two."""
+    chain = replace(lab.particles([[0.0, 0, 0], [1.5, 0, 0], [3.0, 0, 0], [6.0, 0, 0]], molecule=[1, 1, 1, 1]),
+                    bond=np.array([[0, 1], [2, 3]]), k=np.full(2, 0.1), r0=np.full(2, 1.0))
+    lmp = lab.load(chain, tmp_path, ["fix run all mdanim/leapfrog", "timestep 0.01", "run_style verlet/mdanim", *first,
+                                     "fix break all bond/break 5 1 2.5", "run 7"], special="0 1 1", cutoff=6.0)
+    force = lab.by_tag(lmp, "f")[:, 0]
+    assert force[0] == -force[1] == pytest.approx(0.05, rel=1e-2)
+    assert np.all(force[2:] == 0.0)
+    lmp.close()
