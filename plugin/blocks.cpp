@@ -109,21 +109,23 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
   entries.clear();
   const std::vector<int> length = lengths(bonds, object);
   for (int end = particles; end > 0; end -= length[end])
-    all.push_back({end - length[end], static_cast<short>(length[end]), false, 0, 0, object[end - 1] - 1});
+    all.push_back({end - length[end], static_cast<short>(length[end]), false, false, 0, 0, object[end - 1] - 1});
   std::reverse(all.begin(), all.end());
 
-  laws.start(2 * lanes);
   home.resize(particles);
+  for (std::size_t n = 0; n < all.size(); ++n) std::fill_n(&home[all[n].start], all[n].lanes, static_cast<int>(n));
+  for (int i = 0; i < particles; ++i)
+    for (int b = bonds.first[i]; b < bonds.first[i + 1]; ++b)
+      if (bonds.law[bonds.type[b]].c > 0.0) all[home[i]].damped = all[home[bonds.partner[b]]].damped = true;
+
+  laws.start(2 * lanes);
+  damped_laws.start(3 * lanes);
   std::vector<int> next(lanes);    // spring of each lane
-  std::vector<double> law(2 * lanes);
+  std::vector<double> law(3 * lanes);
   int farthest = 0;
-  for (std::size_t n = 0; n < all.size(); ++n) {
-    Block &block = all[n];
+  for (Block &block : all) {
     const int end = block.start + block.lanes;
-    for (int i = block.start; i < end; ++i) {
-      home[i] = static_cast<int>(n);
-      next[i - block.start] = bonds.first[i];
-    }
+    for (int i = block.start; i < end; ++i) next[i - block.start] = bonds.first[i];
     for (;;) {
       int offset = 0;    // the longest that is left
       for (int i = block.start; i < end; ++i) {
@@ -138,9 +140,10 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
           const Law &own = bonds.law[bonds.type[b]];
           law[lane] = own.push;
           law[lanes + lane] = own.pull;
+          if (block.damped) law[2 * lanes + lane] = own.c;
         }
       }
-      entries.push_back({offset, laws.find_or_add(law.data())});
+      entries.push_back({offset, (block.damped ? damped_laws : laws).find_or_add(law.data())});
       farthest = std::max(farthest, offset);
     }
     block.end = static_cast<unsigned>(entries.size());
@@ -152,10 +155,12 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
     return false;
   }
   const std::size_t room = (particles + farthest + 2 * lanes) / 512 * 512 + 512 + STAGGER;    // whole pages and a bit
-  memory.assign(9 * room);
+  const int kinds = damped() ? 6 : 3;
+  memory.assign(3 * kinds * room);
   double *place = memory.data();
-  for (double **arrays : {x, v, f})
-    for (int d = 0; d < 3; ++d, place += room) arrays[d] = place;
+  double **const arrays[] = {x, v, f, part, last, seen};
+  for (int kind = 0; kind < kinds; ++kind)
+    for (int d = 0; d < 3; ++d, place += room) arrays[kind][d] = place;
   outside.clear();
   index.clear();
   ghosts.clear();
@@ -228,6 +233,7 @@ void Blocks::take_in(const double *const *from_x, const double *const *from_v)
       to_x[i] = from_x[from][d];
       to_v[i] = from_v[from][d];
     }
+    if (damped()) continue;
     for (const int i : ghosts) to_v[i] = 0.0;
   }
 }
@@ -262,16 +268,65 @@ void Blocks::give_out_held_back(double *const *to_x, double *const *to_v) const
     }
 }
 
-void Blocks::give_out_places(const std::vector<int> &these, double *const *to_x) const
+void Blocks::take_in_dashpots(const std::vector<Vec3> &from_force, const std::vector<Vec3> &from_seen)
 {
-  for (const int to : these)
-    for (int d = 0; d < 3; ++d) to_x[to][d] = x[d][place[to]];
+  const auto put = [](const Vec3 &from, double *const *to, int i) { to[0][i] = from.x, to[1][i] = from.y, to[2][i] = from.z; };
+  for (int i = 0; i < particles; ++i) {
+    const int from = at(i);
+    if (is_ghost(from)) continue;
+    put(from_force[from], last, i);
+    put(from_seen[from], seen, i);
+  }
 }
 
-void Blocks::take_in_ghosts(const double *const *from_x)
+void Blocks::give_out_dashpots(std::vector<Vec3> &to_force, std::vector<Vec3> &to_seen) const
+{
+  for (int i = 0; i < particles; ++i) {
+    const int to = at(i);
+    if (is_ghost(to)) continue;
+    to_force[to] = {last[0][i], last[1][i], last[2][i]};
+    to_seen[to] = {seen[0][i], seen[1][i], seen[2][i]};
+  }
+}
+
+void Blocks::count_held_back(const double *const *from_v, DashpotSums &sums)
+{
+  for (const int i : outside) {
+    if (!all[home[i]].damped) continue;
+    const double *after = from_v[at(i)];
+    double work[3], bend[3], ahead[3];
+    for (int d = 0; d < 3; ++d) {
+      const double now = part[d][i], before = v[d][i];
+      work[d] = now * (before + after[d]);
+      bend[d] = now * (before - seen[d][i]);
+      ahead[d] = last[d][i] * (after[d] - before);
+      last[d][i] = now;
+      seen[d][i] = before;
+      part[d][i] = 0.0;
+    }
+    const auto sum = [](const double *a) { return (a[0] + a[1]) + a[2]; };
+    sums.work += sum(work);
+    sums.bend += sum(bend);
+    sums.ahead += sum(ahead);
+  }
+}
+
+void Blocks::give_out_places(const std::vector<int> &these, double *const *to_x, double *const *to_v) const
+{
+  for (const int to : these)
+    for (int d = 0; d < 3; ++d) {
+      to_x[to][d] = x[d][place[to]];
+      if (to_v) to_v[to][d] = v[d][place[to]];
+    }
+}
+
+void Blocks::take_in_ghosts(const double *const *from_x, const double *const *from_v)
 {
   for (const int i : ghosts)
-    for (int d = 0; d < 3; ++d) x[d][i] = from_x[index[i]][d];
+    for (int d = 0; d < 3; ++d) {
+      x[d][i] = from_x[index[i]][d];
+      if (damped()) v[d][i] = from_v[index[i]][d];
+    }
 }
 
 void Blocks::give_out_forces(double *const *f) const
@@ -286,18 +341,22 @@ void Blocks::fill(Pass &pass, double *const *forces)
   pass.blocks = static_cast<int>(all.size());
   pass.entry = entries.data();
   pass.law = laws.data();
+  pass.damped_law = damped() ? damped_laws.data() : nullptr;
   pass.motion = motions.data();
   for (int d = 0; d < 3; ++d) {
     pass.x[d] = x[d];
     pass.v[d] = v[d];
     pass.f[d] = f[d];
+    pass.part[d] = part[d];
+    pass.last[d] = last[d];
+    pass.seen[d] = seen[d];
   }
   pass.total = index.empty() ? forces[0] : total.data();
 }
 
 std::size_t Blocks::bytes() const
 {
-  return all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + motions.bytes() + memory.bytes() +
+  return all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + damped_laws.bytes() + motions.bytes() + memory.bytes() +
       (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
           sizeof(int) +
       total.capacity() * sizeof(double);

@@ -6,6 +6,7 @@
 
 #include "pass.h"
 #include "spring.h"
+#include "vec3.h"
 
 #include <cstdint>
 #include <unordered_map>
@@ -34,6 +35,7 @@ class Catalogue {
  public:
   void start(int width);
   unsigned find_or_add(const double *row);
+  bool empty() const { return count == 0; }
   const double *data() const { return rows.data(); }
   std::size_t bytes() const { return rows.bytes() + count * 32; }
 
@@ -68,6 +70,7 @@ class Blocks {
   // After this everybody else's numbers are LAMMPS's: those of mover(), hold_back(), held_back().
   void lie_at(const std::vector<int> &places, int own);
   bool ready() const { return !all.empty(); }
+  bool damped() const { return !damped_laws.empty(); }    // some block is
 
   template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
   // Every block with one of these particles is held back, no other; ghosts among them are left out.
@@ -81,9 +84,15 @@ class Blocks {
   void take_in_held_back(const double *const *x, const double *const *v);
   void give_out_held_back(double *const *x, double *const *v) const;
 
-  // With ghosts: positions of these own particles, which other ranks wait for; and of theirs.
-  void give_out_places(const std::vector<int> &particles, double *const *x) const;
-  void take_in_ghosts(const double *const *x);
+  // Where damped: forces of dashpots in the last step, and the velocities that they saw, of all own particles.
+  void take_in_dashpots(const std::vector<Vec3> &force, const std::vector<Vec3> &seen);
+  void give_out_dashpots(std::vector<Vec3> &force, std::vector<Vec3> &seen) const;
+  // Sums of those that are held back; they have moved, and v is where they are to be taken in from.
+  void count_held_back(const double *const *v, DashpotSums &sums);
+
+  // With ghosts: positions of these own particles, which other ranks wait for, and velocities unless v is null; and of theirs.
+  void give_out_places(const std::vector<int> &particles, double *const *x, double *const *v) const;
+  void take_in_ghosts(const double *const *x, const double *const *v);
 
   void fill(Pass &pass, double *const *f);    // f: where forces on those that are held back go
   void give_out_forces(double *const *f) const;    // there they are after a pass and this
@@ -105,9 +114,10 @@ class Blocks {
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
   std::vector<double> total;           // see Pass, in our order
   int owned = 0;                       // in LAMMPS's arrays, ghosts come after them
-  Catalogue laws, motions;
+  Catalogue laws, damped_laws, motions;
   Doubles memory;    // of the arrays
   double *x[3], *v[3], *f[3];
+  double *part[3] = {}, *last[3] = {}, *seen[3] = {};    // where damped
 };
 
 template <class Tell> void Blocks::set_motion(Friction friction, Tell mover)
@@ -123,6 +133,7 @@ template <class Tell> void Blocks::set_motion(Friction friction, Tell mover)
       slows = slows || of_lane.phi != 0.0;
       set_row(of_lane, friction, lane, row.data());
       row[OTHERS * lanes + lane] = lane < block.lanes ? 0.0 : 1.0;
+      row[COUNTS * lanes + lane] = i < 0 || is_ghost(i) ? 0.0 : 1.0;
     }
     block.motion = motions.find_or_add(row.data());
     slowed.push_back(slows);

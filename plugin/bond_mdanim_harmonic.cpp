@@ -217,14 +217,14 @@ bool BondMdanimHarmonic::halves_suffice() const
 
 bool BondMdanimHarmonic::halves(HalfBonds &half) const
 {
-  if (damped || !rows.upper_only || static_cast<int>(rows.first.size()) != atom->nlocal + 1) return false;
+  if (!rows.upper_only || static_cast<int>(rows.first.size()) != atom->nlocal + 1) return false;
   half = {atom->nlocal, rows.first.data(), rows.partner.data(), rows.type.data(), law.data()};
   return true;
 }
 
 bool BondMdanimHarmonic::rows_of_all(BondRows &all) const
 {
-  if (damped || static_cast<int>(rows.first.size()) != atom->nlocal + 1) return false;
+  if (static_cast<int>(rows.first.size()) != atom->nlocal + 1) return false;
   const std::vector<int> &upper = rows.upper_only ? rows.first : rows.upper;
   all = {rows.first.data(), upper.data(), rows.partner.data(), rows.type.data(), &law};
   return true;
@@ -277,7 +277,7 @@ void BondMdanimHarmonic::dashpots(int begin, int end, std::vector<Vec3> &on)
   const int base = rows.first[begin];
   for (int i = begin; i < end; ++i)
     for (int b = rows.first[i]; b < rows.first[i + 1]; ++b) {
-      const double c = spring[rows.type[b]].c;
+      const double c = law[rows.type[b]].c;
       if (c == 0.0) continue;
       const int j = rows.partner[b];
       const Vec3 d = vec3(atom->x[i]) - vec3(atom->x[j]), v = vec3(atom->v[i]) - vec3(atom->v[j]);

@@ -4,6 +4,7 @@
 #ifndef MDANIM_LOSS_H
 #define MDANIM_LOSS_H
 
+#include "pass.h"
 #include "vec3.h"
 
 #include <algorithm>
@@ -53,6 +54,7 @@ class Loss {
     double bend = 0.0, change = 0.0;
     if (!setup && kept >= 2)
       for (int i = 0; i < particles; ++i) bend += dot(force[i] - older[i], vec3(v[i]) - seen[i]);
+    if (!setup && kept >= 2) bend -= ahead;
     if (!setup && kept >= 1)
       for (int i = 0; i < particles; ++i) change += dot(force[i] - last[i], vec3(v[i]));
     sum -= dt / 12.0 * bend;
@@ -62,7 +64,31 @@ class Loss {
     kept = setup ? 0 : std::min(kept + 1, 2);
     seen.resize(particles);
     for (int i = 0; i < particles; ++i) seen[i] = vec3(v[i]);
+    ahead = 0.0;
   }
+
+  // Steps that others take (blocks.h), who keep F^{n-1} and v^{n-3/2} meanwhile. Before them the account of all so far is closed; v is
+  // what the next forces will see. Of the sum with F^{m+1} - F^{m-1} the second half then always goes `ahead`.
+  void close(const double *const *v, double dt)
+  {
+    sum += 0.5 * dt * (begun ? power : power - sum_of(force, v));
+    if (kept >= 2)
+      for (std::size_t i = 0; i < force.size(); ++i) ahead += dot(last[i], vec3(v[i]) - seen[i]);
+    power = tail = 0.0;
+    begun = true;
+  }
+  // One of them.
+  void passed(const DashpotSums &sums, double dt)
+  {
+    sum -= 0.5 * dt * sums.work;
+    if (kept >= 2) sum -= dt / 12.0 * (sums.bend - ahead);
+    ahead = kept >= 1 ? sums.ahead : 0.0;
+    kept = std::min(kept + 1, 2);
+  }
+  // After them: what they have kept is back in latest() and latest_seen().
+  void reopen() { last.assign(force.size(), Vec3()); }
+  std::vector<Vec3> &latest() { return force; }
+  std::vector<Vec3> &latest_seen() { return seen; }
 
   // Whether nothing has acted in the last step.
   bool idle() const { return power == 0.0 && tail == 0.0; }
@@ -90,6 +116,7 @@ class Loss {
   std::vector<long long> order;            // tags
   int kept = 0;                            // how many older forces are of the same particles
   double sum = 0.0, tail = 0.0, power = 0.0;
+  double ahead = 0.0;        // sum of F^{n-2} . (v^{n-1/2} - v^{n-3/2}), as far as `older` no longer tells it
   bool begun = false;        // the last forces were those of a setup
   bool reordered = false;
 };

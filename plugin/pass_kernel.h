@@ -74,28 +74,50 @@ struct Box6 {
 struct Tally {
   Vector fastest{};
   double final_loss = 0.0, first_loss = 0.0;
+  DashpotSums dashpots = {0.0, 0.0, 0.0};
   Box6 box;
   int object = -1;    // whose box it is
 };
 
-// Springs of a block, each once; adds up what its own particles feel of them and of gravity.
-MDANIM_INLINE void feel(const Pass &pass, const Block &block, unsigned &e, double *total)
+// Springs of a block, each once, and the dashpots beside them; adds up what its own particles feel of them and of gravity, and
+// behind that what they feel of dashpots alone.
+template <bool DAMPED> MDANIM_INLINE void feel(const Pass &pass, const Block &block, unsigned &e, double *total)
 {
+  constexpr int LAW = DAMPED ? 3 : 2;
   double *const X = pass.x[0], *const Y = pass.x[1], *const Z = pass.x[2];
   double *const FX = pass.f[0], *const FY = pass.f[1], *const FZ = pass.f[2];
   const Entry *const entry = pass.entry;
-  const double *const law = pass.law;
+  const double *const law = DAMPED ? pass.damped_law : pass.law;
   const int i = block.start;
   const Vector x = load(X + i), y = load(Y + i), z = load(Z + i);
   Vector upper_x{}, upper_y{}, upper_z{};
+  Vector v[3], part[3] = {};
+  if (DAMPED)
+    for (int d = 0; d < 3; ++d) v[d] = load(pass.v[d] + i);
   for (; e < block.end; ++e) {
     const int j = i + entry[e].offset;
-    const double *const own = law + static_cast<unsigned long>(entry[e].law) * (2 * LANES);
+    const double *const own = law + static_cast<unsigned long>(entry[e].law) * (LAW * LANES);
     Vector dx = x - load(X + j), dy = y - load(Y + j), dz = z - load(Z + j);
-    const Vector factor = load(own) / root(((dx * dx + dy * dy) + dz * dz) + NOTHING) - load(own + LANES);
+    const Vector square = ((dx * dx + dy * dy) + dz * dz) + NOTHING;
+    const Vector factor = load(own) / root(square) - load(own + LANES);
+    Vector slowing[3];
+    if (DAMPED) {
+      const Vector vx = v[0] - load(pass.v[0] + j), vy = v[1] - load(pass.v[1] + j), vz = v[2] - load(pass.v[2] + j);
+      const Vector drag = -(load(own + 2 * LANES) * ((vx * dx + vy * dy) + vz * dz)) / square;
+      slowing[0] = drag * dx, slowing[1] = drag * dy, slowing[2] = drag * dz;
+    }
     dx *= factor;
     dy *= factor;
     dz *= factor;
+    if (DAMPED) {
+      dx += slowing[0];
+      dy += slowing[1];
+      dz += slowing[2];
+      for (int d = 0; d < 3; ++d) {
+        part[d] += slowing[d];
+        store(pass.part[d] + j, load(pass.part[d] + j) - slowing[d]);
+      }
+    }
     upper_x += dx;
     upper_y += dy;
     upper_z += dz;
@@ -111,16 +133,51 @@ MDANIM_INLINE void feel(const Pass &pass, const Block &block, unsigned &e, doubl
     const Vector received = load(pass.f[d] + i);
     store(pass.f[d] + i, received * others);
     store(total + d * LANES, (received + upper[d]) + mass * pass.gravity[d]);
+    if (DAMPED) {
+      const Vector slowed = load(pass.part[d] + i);
+      store(pass.part[d] + i, slowed * others);
+      store(total + (3 + d) * LANES, slowed + part[d]);
+    }
+  }
+}
+
+// What dashpots do to the account of a block that has gone from `first` to `last`.
+MDANIM_INLINE void account(const Pass &pass, const Block &block, const double *motion, const double *part, const Vector *first,
+                           const Vector *last, DashpotSums &sums)
+{
+  const Vector others = load(motion + OTHERS * LANES), counts = load(motion + COUNTS * LANES);
+  Vector work{}, bend{}, ahead{};
+  for (int d = 0; d < 3; ++d) {
+    double *const f = pass.last[d] + block.start, *const v = pass.seen[d] + block.start;
+    const Vector now = load(part + d * LANES), before = load(f), seen = load(v);
+    work += now * (first[d] + last[d]);
+    bend += now * (first[d] - seen);
+    ahead += before * (last[d] - first[d]);
+    store(f, others > 0.0 ? before : now);
+    store(v, others > 0.0 ? seen : first[d]);
+  }
+  double one[LANES], other[LANES], third[LANES];
+  store(one, counts * work);
+  store(other, counts * bend);
+  store(third, counts * ahead);
+  for (int lane = 0; lane < LANES; ++lane) {    // in the order of particles, whatever the width
+    sums.work += one[lane];
+    sums.bend += other[lane];
+    sums.ahead += third[lane];
   }
 }
 
 // The second half of a step and the first of the next.
-template <Friction FRICTION, bool TRACED> MDANIM_INLINE void move(const Pass &pass, const Block &block, const double *total, Tally &tally)
+template <Friction FRICTION, bool TRACED, bool DAMPED>
+MDANIM_INLINE void move(const Pass &pass, const Block &block, const double *total, Tally &tally)
 {
   const int i = block.start;
   if (block.held_back) {
     for (int lane = 0; lane < block.lanes; ++lane)
-      for (int d = 0; d < 3; ++d) pass.total[3 * (i + lane) + d] = total[d * LANES + lane];
+      for (int d = 0; d < 3; ++d) {
+        pass.total[3 * (i + lane) + d] = total[d * LANES + lane];
+        if (DAMPED && block.damped) pass.part[d][i + lane] = total[(3 + d) * LANES + lane];
+      }
     return;
   }
   const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
@@ -145,6 +202,7 @@ template <Friction FRICTION, bool TRACED> MDANIM_INLINE void move(const Pass &pa
     square += last[d] * last[d];
   }
   tally.fastest = largest(square, tally.fastest);
+  if (DAMPED && block.damped) account(pass, block, motion, total + 3 * LANES, first, last, tally.dashpots);
   if (FRICTION != Friction::NONE) {
     const Vector weight = load(motion + WEIGHT * LANES), phi = load(motion + PHI * LANES);
     Vector push[3], late[3], early[3];
@@ -172,17 +230,18 @@ template <Friction FRICTION, bool TRACED> MDANIM_INLINE void move(const Pass &pa
 }
 
 // A block moves while the next one's springs keep the divider busy: nothing then waits for its forces.
-template <Friction FRICTION, bool TRACED> MDANIM_INLINE void go(Pass &pass)
+template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_INLINE void go(Pass &pass)
 {
-  double total[2][3 * LANES];
+  double total[2][(DAMPED ? 6 : 3) * LANES];
   Tally tally;
   tally.box.open();
   unsigned e = 0;
   for (int n = 0; n < pass.blocks; ++n) {
-    feel(pass, pass.block[n], e, total[n & 1]);
-    if (n) move<FRICTION, TRACED>(pass, pass.block[n - 1], total[~n & 1], tally);
+    if (DAMPED && pass.block[n].damped) feel<true>(pass, pass.block[n], e, total[n & 1]);
+    else feel<false>(pass, pass.block[n], e, total[n & 1]);
+    if (n) move<FRICTION, TRACED, DAMPED>(pass, pass.block[n - 1], total[~n & 1], tally);
   }
-  if (pass.blocks) move<FRICTION, TRACED>(pass, pass.block[pass.blocks - 1], total[~pass.blocks & 1], tally);
+  if (pass.blocks) move<FRICTION, TRACED, DAMPED>(pass, pass.block[pass.blocks - 1], total[~pass.blocks & 1], tally);
 
   if (TRACED && tally.object >= 0) tally.box.close(pass.trace + 6 * tally.object);
   pass.fastest = 0.0;
@@ -190,12 +249,19 @@ template <Friction FRICTION, bool TRACED> MDANIM_INLINE void go(Pass &pass)
     if (tally.fastest[lane] > pass.fastest) pass.fastest = tally.fastest[lane];
   pass.final_loss = tally.final_loss;
   pass.first_loss = tally.first_loss;
+  pass.dashpots = tally.dashpots;
+}
+
+template <Friction FRICTION, bool TRACED> MDANIM_INLINE void with_or_without_dashpots(Pass &pass)
+{
+  if (pass.damped_law) go<FRICTION, TRACED, true>(pass);
+  else go<FRICTION, TRACED, false>(pass);
 }
 
 template <Friction FRICTION> MDANIM_INLINE void with_or_without_trace(Pass &pass)
 {
-  if (pass.trace) go<FRICTION, true>(pass);
-  else go<FRICTION, false>(pass);
+  if (pass.trace) with_or_without_dashpots<FRICTION, true>(pass);
+  else with_or_without_dashpots<FRICTION, false>(pass);
 }
 
 MDANIM_INLINE void whole_pass(Pass &pass)

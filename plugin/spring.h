@@ -19,11 +19,11 @@ struct Spring {
   double c = 0.0;     // dashpot along the spring [force/velocity]; 0 for none
 };
 
-// What the force is made of: F_i = (push / r - pull) r_ij, since -2K (r - r0) / r = 2K r0 / r - 2K.
+// What the force is made of: F_i = (push / r - pull) r_ij, since -2K (r - r0) / r = 2K r0 / r - 2K; and the dashpot.
 struct Law {
-  double push, pull;
-  explicit Law(const Spring &s) : push(2.0 * s.K * s.r0), pull(2.0 * s.K) {}
-  bool operator==(const Law &other) const { return push == other.push && pull == other.pull; }
+  double push, pull, c;
+  explicit Law(const Spring &s) : push(2.0 * s.K * s.r0), pull(2.0 * s.K), c(s.c) {}
+  bool operator==(const Law &other) const { return push == other.push && pull == other.pull && c == other.c; }
 };
 
 // So small that it changes no r^2 that is not nothing, and two particles in one place, r_ij = 0, have no force instead of none
@@ -34,11 +34,7 @@ constexpr double NOTHING = 1e-300;
 inline double force_factor(double push, double pull, double r2) { return push / std::sqrt(r2 + NOTHING) - pull; }
 
 // The dashpot's part of the same factor: F_i = -c (v_ij . n) n = [-c (v_ij . r_ij) / r^2] r_ij.
-inline double drag(double c, const Vec3 &rij, const Vec3 &vij)
-{
-  const double r2 = dot(rij, rij);
-  return r2 > 0.0 ? -(c * dot(vij, rij)) / r2 : 0.0;
-}
+inline double drag(double c, const Vec3 &rij, const Vec3 &vij) { return -(c * dot(vij, rij)) / (dot(rij, rij) + NOTHING); }
 
 inline double energy(const Spring &s, double r) { return s.K * (r - s.r0) * (r - s.r0); }
 

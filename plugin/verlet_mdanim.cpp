@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // run_style verlet/mdanim. A step of LAMMPS begins with a half kick and a drift and finishes with forces and the other half kick.
 // Between two outputs our pass finishes a step and begins the next at once, in arrays of its own; whoever is not known to live with that (other
-// fixes, dashpots) gets run_style verlet as it is. The bits are the same. With other ranks, ghosts are lanes that do not move:
-// they get their places before every pass, and what springs do to them is thrown away. Ranks decide together.
+// fixes) gets run_style verlet as it is. The bits are the same. With other ranks, ghosts are lanes that do not move:
+// they get their places and, for dashpots, velocities before every pass, and what springs do to them is thrown away. Ranks decide together.
 
 #include "verlet_mdanim.h"
 
@@ -124,7 +124,7 @@ bool VerletMdanim::find_players()
       strangers_have_lists = true;
   }
   const bool periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
-  if (comm->nprocs > 1 && (periodic || neighbor->build_once || comm->ghost_velocity)) return false;    // ghosts get places alone
+  if (comm->nprocs > 1 && (periodic || neighbor->build_once)) return false;
   // With several ranks nobody may go beyond the neighbours of his own unseen.
   lists_matter = modify->n_post_neighbor || modify->n_pre_neighbor || comm->nprocs > 1;
   return leapfrog && !(lists_matter && !neighbor->dist_check && !neighbor->build_once);
@@ -241,10 +241,19 @@ int VerletMdanim::take_steps(int step, int most)
     stand = look_again();
     if (!stand) break;
   }
-  if (stand) blocks.give_out(atom->x, atom->v);
+  if (stand) leave_blocks();
   timer->stamp(Timer::BOND);
   ev_set(update->ntimestep);
   return taken;
+}
+
+// Positions and velocities out of the blocks, and the account of dashpots as it stands.
+void VerletMdanim::leave_blocks()
+{
+  blocks.give_out(atom->x, atom->v);
+  if (!blocks.damped()) return;
+  blocks.give_out_dashpots(bond->account().latest(), bond->account().latest_seen());
+  bond->account().reopen();
 }
 
 // How far any particle of this rank is from where it stood when lists were made.
@@ -290,6 +299,7 @@ bool VerletMdanim::look_again()
   blocks.give_out(atom->x, atom->v);
   strayed = farthest();
   if (strayed < SOON * last) return true;
+  leave_blocks();
   if (!rebuild_lists()) return false;
   strayed = 0.0;
   last = how_far_lists_last();
@@ -301,9 +311,9 @@ bool VerletMdanim::look_again()
 void VerletMdanim::meet_ghosts()
 {
   timer->stamp(Timer::BOND);
-  blocks.give_out_places(sent, atom->x);
+  blocks.give_out_places(sent, atom->x, comm->ghost_velocity ? atom->v : nullptr);
   comm->forward_comm();
-  blocks.take_in_ghosts(atom->x);
+  blocks.take_in_ghosts(atom->x, atom->v);
   timer->stamp(Timer::COMM);
 }
 
@@ -319,6 +329,10 @@ void VerletMdanim::start_blocks()
     made_for = neighbor->lastcall;
   }
   blocks.take_in(atom->x, atom->v);
+  if (blocks.damped()) {
+    bond->account().close(atom->v, update->dt);
+    blocks.take_in_dashpots(bond->account().latest(), bond->account().latest_seen());
+  }
   blocks.fill(pass, atom->f);
   pass.gravity[0] = pass.gravity[1] = pass.gravity[2] = 0.0;
   if (gravity) {
@@ -349,9 +363,11 @@ void VerletMdanim::one_pass(bool guests_see_all)
   leapfrog->moved(pass.final_loss, pass.first_loss, moving);
   if (gravity) gravity->took(pulling);
   bond->took(all - moving - pulling);
-  if (guests.empty()) return;
-  guests_turn();
-  if (guests_see_all) hold_back();    // they may have other concerns now
+  if (!guests.empty()) {
+    guests_turn();
+    if (guests_see_all) hold_back();    // they may have other concerns now
+  }
+  if (blocks.damped()) bond->account().passed(pass.dashpots, update->dt);
 }
 
 // Forces of other fixes, and the motion of those that were held back for them.
@@ -368,6 +384,7 @@ void VerletMdanim::guests_turn()
     if (p.acts_at_end) p.fix->end_of_step();
   if (waiting.empty()) return;
   leapfrog->begin_step(waiting);
+  if (blocks.damped()) blocks.count_held_back(atom->v, pass.dashpots);
   blocks.take_in_held_back(atom->x, atom->v);
   for (const int i : waiting) pass.fastest = std::max(pass.fastest, dot(vec3(atom->v[i]), vec3(atom->v[i])));
 }
@@ -410,6 +427,7 @@ void VerletMdanim::finish_step()
 bool VerletMdanim::lists_are_due()
 {
   const bigint now = update->ntimestep;
+  if (neighbor->lastcall == now) return false;    // look_again() has made them; `ago` still says so
   if (neighbor->build_once || now == output->next_dump_any || now == output->next_restart) return neighbor->decide();
   for (const Fix *fix : modify->get_fix_list())
     if (fix->force_reneighbor && fix->next_reneighbor == now) return true;

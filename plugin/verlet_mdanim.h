@@ -36,6 +36,7 @@ class VerletMdanim : public Verlet {
   bool look_again();
   double farthest() const;
   void start_blocks();
+  void leave_blocks();
   void hold_back();
   void one_pass(bool guests_see_all);
   void guests_turn();

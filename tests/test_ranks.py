@@ -19,7 +19,7 @@ CYCLES = Path(__file__).parent / "mpi" / "cycles.py"
 NEARER = MEETING.replace("44) cm", "42.6) cm").replace("-4, 5) cm", "-4, 3.5) cm")
 SCENES = {"solids": NEARER.replace("drag 0.8", "drag 0.8\n  damping 0.05"), "liquid": SPLASH,
           "pressure": SPLASH.replace("volume 45 l", "volume 45 l model pressure")}
-MOVING = {**{name: SHAPES[name] for name in ("sphere", "held")}, **EFFECTS,
+MOVING = {**{name: SHAPES[name] for name in ("sphere", "held", "damped", "damped beside others", "damped and held")}, **EFFECTS,
           "mesh": f'object a {{ shape mesh "{MESHES / "dumbbell.obj"}" scale 1/30 position (0, 0, 0) spin (3, 2, 15) rad/s '
                   f"{SOLID} }}"}
 """Scenes whose steps are taken by passes."""
@@ -54,7 +54,8 @@ def test_ranks_see_what_one_sees(tmp_path, name, ranks):
 
 @pytest.mark.mpi
 @pytest.mark.parametrize(("name", "ranks"), [(name, 2) for name in MOVING] + [
-    ("held", 3), ("walls and contact", 3), ("liquid", 4), ("contact", 4), ("mesh", 4), ("air", 3)])
+    ("held", 3), ("walls and contact", 3), ("liquid", 4), ("contact", 4), ("mesh", 4), ("air", 3),
+    ("damped", 4), ("damped beside others", 3), ("damped walls", 4), ("damped contact", 3), ("damped in liquid", 4)])
 def test_passes_with_ghosts_give_the_bits_of_one_rank(tmp_path, name, ranks):
     """Film bodies that are split among ranks: the bits of run_style verlet on one, and all ranks took most steps by passes."""
     path = tmp_path / "scene.txt"

@@ -19,6 +19,8 @@ FALL = "gravity (0, 0, -9.81)\n"
 END = "control { time 10 s resolution 1 cm }\n"
 MESHES = Path(__file__).parent / "meshes"
 
+SOFT = f"{SOLID} damping 0.1"
+
 SHAPES = {
     "block": f"object a {{ shape box (7, 6, 5) cm position (0, 0, 0) spin (3, 2, 40) rad/s {SOLID} }}",
     "sphere": f"object a {{ shape sphere 5 cm position (0, 0, 0) {SOLID} spin (3, 2, 40) rad/s }}",
@@ -26,6 +28,11 @@ SHAPES = {
     "needle": f"object a {{ shape box (1, 1, 9) cm position (0, 0, 0) {SOLID} spin (9, 2, 4) rad/s }}",
     "several": "\n".join(f"object a{i} {{ shape box ({2 + i}, 3, {5 - i}) cm position ({9 * i}, 0, 0) cm {SOLID} spin (9, {i}, 4) rad/s }}"
                          for i in range(4)),
+    "damped": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOFT} spin (30, 20, 40) rad/s }}",
+    "damped beside others": f"object a {{ shape box (5, 4, 6) cm position (0, 0, 0) {SOFT} spin (3, 40, 4) rad/s }}\n"
+                            f"object b {{ shape box (6, 5, 4) cm position (9, 0, 0) cm {SOLID} spin (40, 2, 4) rad/s }}\n"
+                            f"object c {{ shape sphere 3 cm position (-9, 0, 0) cm {SOFT} drag 0.3 spin (4, 2, 40) rad/s }}",
+    "damped and held": f"object a {{ shape box (9, 4, 4) cm position (0, 0, 0) {SOFT} hold face -x }}",
     "held": f"object a {{ shape box (9, 4, 4) cm position (0, 0, 0) {SOLID} hold face -x }}",
 }
 EFFECTS = {
@@ -37,6 +44,15 @@ EFFECTS = {
                          f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}",
     "air": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} drag 0.5 velocity (3, 0, 0) }}\n"
            f"object b {{ shape box (5, 5, 5) cm position (1, 0, 0) {SOLID} }}",
+    "damped contact": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOFT} velocity (1, 0.1, 0) }}\n"
+                      f"object b {{ shape box (5, 6, 7) cm position (9, 0, 0.5) cm {SOLID} velocity (-1, 0, 0) }}\n"
+                      f"object c {{ shape box (4, 4, 4) cm position (0, 0, 9) cm {SOFT} velocity (0, 0, -2) }}",
+    "damped walls": "walls from (-8, -8, -8) cm to (14, 8, 12) cm\n"
+                    f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOFT} velocity (2, 0, -2) }}\n"
+                    f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}",
+    "damped in liquid": "object a { shape box (6, 6, 6) cm position (0, 0, 14) cm density 500 elasticity 0.2 MPa damping 0.1 }\n"
+                        "object b { shape box (4, 4, 4) cm position (0, 0, 24) cm density 500 elasticity 0.2 MPa velocity (0, 0, -3) }\n"
+                        "liquid w { basin from (-10, -10, 0) cm to (10, 10, 40) cm density 1000 level 12 cm drag 4 }",
     "liquid": f"object a {{ shape box (6, 6, 6) cm position (0, 0, 14) cm density 500 elasticity 0.2 MPa drag 0.1 }}\n"
               f"object b {{ shape box (4, 4, 4) cm position (0, 0, 24) cm density 500 elasticity 0.2 MPa velocity (0, 0, -3) }}\n"
               "liquid w { basin from (-10, -10, 0) cm to (10, 10, 40) cm density 1000 level 12 cm drag 4 }",
@@ -145,9 +161,9 @@ def test_order_of_particles_changes_no_bit(tmp_path, drag):
 
 
 @pytest.mark.parametrize("stranger", ["fix other all viscous 0.01", "fix other all gravity 0.1 vector 0 0 -1",
-                                      "fix other all momentum 7 linear 1 1 1", "bond_coeff * 0.2 1.0 0.1"])
+                                      "fix other all momentum 7 linear 1 1 1"])
 def test_what_is_not_known_gets_the_plain_step(tmp_path, stranger):
-    """Add a fix of LAMMPS's own that acts in steps, or dashpots: no passes, and the motion of run_style verlet."""
+    """Add a fix of LAMMPS's own that acts in steps: no passes, and the motion of run_style verlet."""
     found, none = lab_state(BODY, tmp_path, [stranger, *MOVE, "run_style verlet/mdanim", "run 50"])
     plain, _ = lab_state(BODY, tmp_path, [stranger, *MOVE, "run_style verlet", "run 50"])
     assert none == 0
@@ -211,7 +227,17 @@ def test_gravity_is_that_of_lammps_and_knows_its_energy(tmp_path):
     assert found[1][1] == pytest.approx(-(BODY.mass * (BODY.x @ [0.3, 0.0, -0.4])).sum(), rel=1e-12)
 
 
-@pytest.mark.parametrize("change", ["bond_coeff * 0.3 1.1", "group second molecule 2\ndelete_bonds second multi remove",
+def test_springs_with_and_without_dashpots_in_one_block(tmp_path):
+    """Give dashpots to one type of springs alone, and other ones to the next."""
+    damp = ["bond_coeff 1 0.2 1.0 0.1", "bond_coeff 2 0.3 1.4 0.02"]
+    for some in (damp[:1], damp[1:], damp):
+        found, taken = lab_state(BODY, tmp_path, [*some, *MOVE, "run_style verlet/mdanim", "run 100"])
+        plain, _ = lab_state(BODY, tmp_path, [*some, *MOVE, "run_style verlet", "run 100"])
+        assert taken == 99
+        assert np.array_equal(found, plain)
+
+
+@pytest.mark.parametrize("change", ["bond_coeff * 0.3 1.1", "bond_coeff 1 0.2 1.0 0.1", "group second molecule 2\ndelete_bonds second multi remove",
                                     "set group all mass 2.0", "timestep 0.1"])
 def test_what_changes_between_two_runs_is_noticed(tmp_path, change):
     """Change springs, masses or the time step after a run: passes go on with what is there now."""
