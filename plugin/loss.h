@@ -51,10 +51,11 @@ class Loss {
     // Where particles were re-ordered, F^n . v^{n+1/2} is taken for the mean of F^n . v^{n-1/2} and F^{n+1} . v^{n+1/2}.
     else if (begun) sum += 0.5 * dt * power;
     else if (power != 0.0 || now != 0.0) sum += 0.5 * dt * (power + (kept ? -sum_of(last, v) : 0.5 * (power + now)));
-    double bend = 0.0, change = 0.0;
+    double change = 0.0;
+    if (setup) bend = 0.0;
+    else if (kept >= 2) bend = -ahead;    // else particles were re-ordered: that of the last step is taken once more
     if (!setup && kept >= 2)
       for (int i = 0; i < particles; ++i) bend += dot(force[i] - older[i], vec3(v[i]) - seen[i]);
-    if (!setup && kept >= 2) bend -= ahead;
     if (!setup && kept >= 1)
       for (int i = 0; i < particles; ++i) change += dot(force[i] - last[i], vec3(v[i]));
     sum -= dt / 12.0 * bend;
@@ -81,7 +82,8 @@ class Loss {
   void passed(const DashpotSums &sums, double dt)
   {
     sum -= 0.5 * dt * sums.work;
-    if (kept >= 2) sum -= dt / 12.0 * (sums.bend - ahead);
+    if (kept >= 2) bend = sums.bend - ahead;
+    sum -= dt / 12.0 * bend;
     ahead = kept >= 1 ? sums.ahead : 0.0;
     kept = std::min(kept + 1, 2);
   }
@@ -97,6 +99,7 @@ class Loss {
   void rest()
   {
     kept = 0;
+    bend = 0.0;
     begun = true;    // from nothing
   }
 
@@ -116,6 +119,7 @@ class Loss {
   std::vector<long long> order;            // tags
   int kept = 0;                            // how many older forces are of the same particles
   double sum = 0.0, tail = 0.0, power = 0.0;
+  double bend = 0.0;         // sum of (F^n - F^{n-2}) . (v^{n-1/2} - v^{n-3/2})
   double ahead = 0.0;        // sum of F^{n-2} . (v^{n-1/2} - v^{n-3/2}), as far as `older` no longer tells it
   bool begun = false;        // the last forces were those of a setup
   bool reordered = false;
