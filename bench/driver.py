@@ -32,7 +32,7 @@ control { time 0.25 s  frames 100 fps  resolution 3 cm }
 FIRST = 10
 """Frames that are not counted."""
 PARTS = {
-    "executor": ("Executor", {"_transfer": "hand on", "_report": "report", "_commit": "copy states, energies", "_send": "send frame"}),
+    "executor": ("Executor", {"_transfer": "hand on", "_report": "report", "_commit": "copy states", "_weigh": "sum energies", "_go_on": "lay aside", "_send": "send frame"}),
     "bundle": ("Bundle", {"__init__": "build instances", "start": "put states", "run": "LAMMPS", "extent": "boxes", "energies": "energies"}),
     "planner": ("Planner", {"decide": "plan"}),
     "messages": ("Mail", {"exchange": "exchange"}),

@@ -17,6 +17,10 @@ from .planning import FramePlan
 from .source import run_window
 
 
+WORTH = 0.5
+"""Least share of an instance's particles that it is kept for; the others are those of objects that it has laid aside."""
+
+
 @dataclass(frozen=True)
 class Key:
     """What makes two bundles the same."""
@@ -32,6 +36,8 @@ class Key:
 class Wanted:
     """A bundle as a plan wants it."""
 
+    number: int
+    """In the plan."""
     key: Key
     members: np.ndarray
     """Objects that it moves, int64, shape (m,); the rest of the key's are guests."""
@@ -50,7 +56,7 @@ def wanted_bundles(plan: FramePlan, objects: int, executor: int) -> list[Wanted]
         guests = plan.guests[np.isin(plan.guests[:, 0], plan.label[group]), 1]
         members = group[group < objects]
         key = Key(tuple(np.union1d(members, guests).tolist()), bool(group[-1] == objects), team_of.get(number, (executor,)))
-        found.append((number not in team_of, number, Wanted(key, members)))
+        found.append((number not in team_of, number, Wanted(number, key, members)))
     return [w for *_, w in sorted(found, key=lambda f: f[:2])]
 
 
@@ -58,28 +64,67 @@ class Bundle:
     """A live one. A context of its own: `close` ends it."""
 
     def __init__(self, parts: Parts, wanted: Wanted, comm: MPI.Comm | None):
-        self.key, self.members = wanted.key, wanted.members
-        self.plan = parts.part(self.key.objects, self.key.liquid)
+        self.objects = np.array(wanted.key.objects, np.intp)
+        """All in its instance, also those that it has laid aside."""
+        self.plan = parts.part(wanted.key.objects, wanted.key.liquid)
         self.instance = Instance(self.plan, comm)
-        self.rows = parts.whole.system.rows(self.key.objects)
+        self.rows = parts.whole.system.rows(wanted.key.objects)
         """Its particles among all."""
-        self.guest = np.repeat(~np.isin(self.key.objects, self.members), np.diff(self.plan.system.first)) if self.key.objects \
-            else np.zeros(0, bool)
-        """Particles of still objects that others have too, bool, shape (n,)."""
+        self.aside = np.zeros(len(self.objects), bool)
+        """Objects that are others' now."""
         self.lost: dict[str, float] = {}
         self.run_seconds = self.liquid_seconds = 0.0
         """Processor time of the last window, and of that the liquid's [s]."""
+        self._take(wanted)
+
+    def _take(self, wanted: Wanted) -> None:
+        self.number, self.key, self.members = wanted.number, wanted.key, wanted.members
+        self.moves = np.isin(self.objects, wanted.members)
+        """Which of its objects are its members; the others are guests, or laid aside."""
+        self.member_rows = np.flatnonzero(np.repeat(self.moves, self._particles))
+        """Particles of its members in its instance."""
+
+    @property
+    def _particles(self) -> np.ndarray:
+        """Of each object."""
+        return np.diff(self.plan.system.first) if len(self.objects) else np.zeros(0, np.int64)
+
+    # --- whom it moves --------------------------------------------------------------------------------------------
+
+    def can_be(self, wanted: Wanted) -> bool:
+        """Whether it is this bundle, once it has laid aside whom it is to have no more, and most of its work would still be for
+        something. Only instances of one executor without a liquid lay aside."""
+        if wanted.key == self.key:
+            return True
+        if wanted.number != self.number or wanted.key.liquid or self.key.liquid or len(wanted.key.team) + len(self.key.team) > 2:
+            return False
+        if not np.isin(wanted.key.objects, self.objects[~self.aside]).all():
+            return False
+        return self._particles[np.isin(self.objects, wanted.members)].sum() >= WORTH * self._particles.sum()
+
+    def become(self, wanted: Wanted) -> None:
+        """Lay aside those objects that it does not move any more; a guest that is not needed any more does no harm."""
+        out = np.isin(self.objects, np.setdiff1d(self.members, wanted.members))
+        if out.any():
+            self.instance.lay_aside(np.flatnonzero(out))
+            self.aside |= out
+        self._take(wanted)
 
     def close(self) -> None:
         self.instance.close()
 
     def start(self, step: int, state: State | None) -> None:
         """Take up a state; None is that of the scene, before step 0."""
+        self.ran = False
         if state is None:
             self.instance.setup()
             self.before = self.instance.array("f").copy()
-        else:
-            self.instance.put(step, state)
+            return
+        if self.aside.any():
+            rows = np.repeat(self.aside, self._particles)
+            state.x[rows], state.v[rows], state.f[rows] = (self.instance.array(name)[rows] for name in "xvf")
+        self.instance.put(step, state)
+        self.lost = self._losses()
 
     def run(self, steps: int) -> None:
         """Run a window. Raises Broken."""
@@ -89,6 +134,7 @@ class Bundle:
         self.trace = self.instance.trace()
         self.instance.start_trace()
         self.here = self.instance.trace()  # of this moment alone
+        self.ran = True
         self.run_seconds, self.liquid_seconds = time.process_time() - begin, self._soaked() - soaked
 
     def _soaked(self) -> float:
@@ -97,38 +143,47 @@ class Bundle:
 
     def escaped(self, low: np.ndarray, high: np.ndarray) -> list[int]:
         """Objects that have been outside of their reserved boxes, those of all objects [m], shape (M, 3), at any step of the window."""
-        who = np.array(self.key.objects, np.intp)
-        out = ((self.trace[0] < low[who]) | (self.trace[1] > high[who])).any(axis=1)
-        return np.intersect1d(who[out], self.members).tolist()
+        out = ((self.trace[0] < low[self.objects]) | (self.trace[1] > high[self.objects])).any(axis=1)
+        return self.objects[out & self.moves].tolist()
 
     def extent(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Boxes of its members after a window, eq. (3.14) [m], and the speeds of their fastest particles [m/s]: shapes (m, 3), (m, 3),
         (m,)."""
-        if not self.key.objects:
+        if not len(self.objects):
             return np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0)
-        which = np.isin(self.key.objects, self.members)
-        low, high = (side[which] for side in self.here)
-        return low, high, self.plan.system.top_speed(self.instance.array("v"))[which]
+        low, high = (side[self.moves] for side in self.here)
+        return low, high, self.plan.system.top_speed(self.instance.array("v"))[self.moves]
 
     def costs(self, scale: float) -> np.ndarray:
         """Processor time of each member in the last window, without the liquid's, times ``scale``; int64, shape (m,).
 
         It is told for one executor alone, so that a team counts as what it does.
         """
-        particles = np.diff(self.plan.system.first)[np.isin(self.key.objects, self.members)]
+        particles = self._particles[self.moves]
         total = scale * len(self.key.team) * max(0.0, self.run_seconds - self.liquid_seconds)
         return (total * particles / max(1, particles.sum())).astype(np.int64)
 
+    def _losses(self) -> dict[str, float]:
+        """What has been lost in its instance so far [J], by term of the ledger."""
+        plan, found = self.plan, {}
+        for effect in plan.effects:
+            if effect.ledger.endswith(LOSS):
+                found[effect.ledger] = found.get(effect.ledger, 0.0) + effect.energy(self.instance, plan.scene, plan.system)
+        return found
+
+    def newly_lost(self) -> dict[str, float]:
+        """Losses [J], by term of the ledger, since it was asked last."""
+        before, self.lost = self.lost, self._losses()
+        return {term: e - before.get(term, 0.0) for term, e in self.lost.items()}
+
     def energies(self) -> dict[str, float]:
-        """Terms of the ledger [J], of what it moves; losses are those since it was asked last."""
+        """Terms of the ledger [J], of what it moves, without losses."""
         plan = self.plan
         found = energies(self.instance, self.before)
-        if self.guest.any():
-            x, mass = self.instance.array("x")[self.guest], plan.system.mass[self.guest]
+        others = np.repeat(~self.moves, self._particles)
+        if others.any():
+            x, mass = self.instance.array("x")[others], plan.system.mass[others]
             for effect in plan.effects:
                 if effect.ledger:
                     found[effect.ledger] -= effect.potential(plan.scene, mass, x)
-        lost = {term: e for term, e in found.items() if term.endswith(LOSS)}
-        found |= {term: e - self.lost.get(term, 0.0) for term, e in lost.items()}
-        self.lost = lost
-        return found
+        return {term: e for term, e in found.items() if not term.endswith(LOSS)}

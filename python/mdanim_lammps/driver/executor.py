@@ -16,7 +16,6 @@ from mpi4py import MPI
 from ..engine.instance import State
 from ..engine.part import Parts
 from ..errors import MdanimError
-from ..results.ledger import LOSS
 from .bundle import Bundle, Wanted, wanted_bundles
 from .control import Control, make_control
 from .messages import SUPERVISOR, Aborted, Ended, Failure, Job, Kept, Mail, Moved, Order, Report, Share, Tag
@@ -93,6 +92,7 @@ class Executor:
         self._follow(self._decide(self._first_report()))
         if not self.started:
             self._commit()
+            self._weigh()
             self._send(keep=True)
         while self.frame < len(self.job.lengths):
             with self._span("held"):
@@ -115,18 +115,19 @@ class Executor:
                 self._follow(self.next)
             self.next = self._window(self.order.steps)
             self._commit()
+        self._weigh()
         self.frame += 1
 
     def _window(self, steps: int) -> Order:
         """Simulate a window, again until no object has left its reserved box; returns what to do from there on."""
         again = False
-        done: set[Bundle] = set()
+        for bundle in self.bundles:
+            bundle.ran = False
         while True:
             for bundle in self.bundles:
-                if bundle not in done:
+                if not bundle.ran:
                     with self._span("simulating"):
                         bundle.run(steps)
-                    done.add(bundle)
             # Who has nothing to do again is frozen at the end of the window until the others have come there too.
             order = self._decide(self._report(steps), "frozen" if again else "waiting")
             if order.commit:
@@ -150,16 +151,37 @@ class Executor:
             if before is not None:
                 self._transfer(before.plan.owner, order.plan.owner)
             wanted = wanted_bundles(order.plan, self.objects, self.me)
-            live = {b.key: b for b in self.bundles if not again or self._untouched(b, before, order)}
+            live = self._staying(wanted, before if again else None)
             for bundle in self.bundles:
-                if all(bundle is not live.get(w.key) for w in wanted):
+                if bundle not in live.values():
                     self._close(bundle)
-            self.bundles = [live.get(w.key) or self._begin(w) for w in wanted]
+            self.bundles = [self._go_on(live[w.number], w, before if again else None) if w.number in live else self._begin(w)
+                            for w in wanted]
 
-    @staticmethod
-    def _untouched(bundle: Bundle, before: Order, after: Order) -> bool:
+    def _staying(self, wanted: list[Wanted], before: Order | None) -> dict[int, Bundle]:
+        """Bundles that can be some that are wanted, by the numbers of these; ``before`` as in `_go_on`."""
+        here = [b for b in self.bundles if not before or len(b.key.team) == 1 or self._untouched(b, before)]
+        same = {b.key: b for b in here}
+        found = {w.number: same[w.key] for w in wanted if w.key in same}
+        numbered = {b.number: b for b in here if b not in found.values()}
+        for w in wanted:
+            if w.number not in found and w.number in numbered and numbered[w.number].can_be(w):
+                found[w.number] = numbered[w.number]
+        return found
+
+    def _go_on(self, bundle: Bundle, wanted: Wanted, before: Order | None) -> Bundle:
+        """A bundle that stays, without whom it has to lay aside. ``before`` is the order of a window that begins again: who has run it
+        stays at its end if nothing about him changes, others go back to its beginning."""
+        back = before and not (bundle.key == wanted.key and self._untouched(bundle, before))
+        bundle.become(wanted)
+        if back:
+            self._start(bundle)
+        return bundle
+
+    def _untouched(self, bundle: Bundle, before: Order) -> bool:
+        """Whether all of its boxes are as in the order before."""
         who = bundle.members
-        return np.array_equal(before.low[who], after.low[who]) and np.array_equal(before.high[who], after.high[who])
+        return np.array_equal(before.low[who], self.order.low[who]) and np.array_equal(before.high[who], self.order.high[who])
 
     def _transfer(self, before: np.ndarray, after: np.ndarray) -> None:
         """Send what is another's now, and receive what has become mine."""
@@ -199,10 +221,13 @@ class Executor:
             else:
                 self._unpack(everything, self.mail.take(Tag.TEAM, key.team[0], self.comm))
         bundle = Bundle(self.parts, wanted, self._team(key.team))
-        rows = bundle.rows
-        liquid = self.liquid if key.liquid else None
-        bundle.start(self.step, State(self.x[rows], self.v[rows], self.f[rows], liquid) if self.started else None)
+        self._start(bundle)
         return bundle
+
+    def _start(self, bundle: Bundle) -> None:
+        """Give a bundle the state of the last frame."""
+        rows, liquid = bundle.rows, self.liquid if bundle.key.liquid else None
+        bundle.start(self.step, State(self.x[rows], self.v[rows], self.f[rows], liquid) if self.started else None)
 
     def _team(self, members: tuple[int, ...]) -> MPI.Comm | None:
         """The communicator of a team, its leader first; None for one executor alone."""
@@ -250,25 +275,34 @@ class Executor:
                       self.order.plan.fingerprint())
 
     def _commit(self) -> None:
-        """Take the states of all instances, and the energies that go with them."""
-        self.energies = {term: e for term, e in self.energies.items() if term.endswith(LOSS)}  # of the windows before
+        """Take the states of all instances, and what was lost and how deep something was meanwhile."""
         self.pool = None
         for bundle in self.bundles:
-            instance, energies = bundle.instance, bundle.energies()
+            instance, lost = bundle.instance, bundle.newly_lost()
             depth, liquid = penetration(instance), pool(instance)
             content = instance.liquid_state() if bundle.key.liquid else None  # together with the team, as all above
             for mine, name in ((self.x, "x"), (self.v, "v"), (self.f, "f")):
-                mine[bundle.rows] = instance.array(name)
+                mine[bundle.rows[bundle.member_rows]] = instance.array(name)[bundle.member_rows]
             if not self._leads(bundle):
                 continue
             self.deepest = max(self.deepest, depth)
             if len(bundle.key.team) > 1:
                 self.led.add(bundle.key.team)
-            for term, e in energies.items():
-                self.energies[term] = self.energies.get(term, 0.0) + e
+            self._count(lost)
             if bundle.key.liquid:
                 self.liquid, self.pool = content, liquid
         self.started = True
+
+    def _weigh(self) -> None:
+        """Energies of a frame."""
+        for bundle in self.bundles:
+            energies = bundle.energies()  # together with the team
+            if self._leads(bundle):
+                self._count(energies)
+
+    def _count(self, energies: dict[str, float]) -> None:
+        for term, e in energies.items():
+            self.energies[term] = self.energies.get(term, 0.0) + e
 
     def _send(self, keep: bool) -> None:
         """The share of a frame."""

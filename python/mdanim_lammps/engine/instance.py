@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..errors import DivergedError, SetupError
 from ..model.basin import Grid
-from .commands import BALANCE, bond_coeffs, box, physics, prelude
+from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude
 from .plan import Ends, Plan
 from .plugin import open_lammps
 
@@ -214,6 +215,21 @@ class Instance:
         self.setup()
         self._write("v", state.v)
         self._write("f", state.f)
+
+    def lay_aside(self, solids: Sequence[int]) -> None:
+        """Take these solids of the plan out of what goes on, without a new setup: from now on they stand as in the plan, at rest, and
+        nobody feels them or pulls at them. For good, and on one process alone.
+        """
+        system = self.plan.system
+        rows = system.rows(solids)
+        # In no group but "all" nothing acts on them. Their springs are as long as in the plan and hold no energy. A displacement of
+        # more than the skin makes LAMMPS look anew for who is near whom, before the next forces.
+        place = system.position[rows]
+        if (np.abs(place - self.array("x")[rows]).max(1) < 2.0 * SKIN * self.plan.spacing).any():
+            place = place + 4.0 * SKIN * self.plan.spacing
+        self._local("mask", 1)[rows] = 1
+        self.array("x")[rows] = place
+        self.array("v")[rows] = self.array("f")[rows] = 0.0
 
     def _local(self, name: str, width: int = 3) -> np.ndarray:
         """View of a per-particle array of this rank, shape (n, 3), or (n,) for a width of 1."""
