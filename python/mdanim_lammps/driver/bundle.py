@@ -70,6 +70,7 @@ class Bundle:
         self.instance = Instance(self.plan, comm)
         self.rows = parts.whole.system.rows(wanted.key.objects)
         """Its particles among all."""
+        self.first = parts.whole.system.first
         self.aside = np.zeros(len(self.objects), bool)
         """Objects that are others' now."""
         self.lost: dict[str, float] = {}
@@ -81,8 +82,18 @@ class Bundle:
         self.number, self.key, self.members = wanted.number, wanted.key, wanted.members
         self.moves = np.isin(self.objects, wanted.members)
         """Which of its objects are its members; the others are guests, or laid aside."""
-        self.member_rows = np.flatnonzero(np.repeat(self.moves, self._particles))
-        """Particles of its members in its instance."""
+        self.other_rows = np.flatnonzero(np.repeat(~self.moves, self._particles))
+        """Particles in its instance that are none of its members'."""
+        self.stretches = self._stretches()
+        """Where its members' particles are in its instance, and among all."""
+
+    def _stretches(self) -> list[tuple[slice, slice]]:
+        """Members that are side by side in both are one stretch."""
+        here, there = self.plan.system.first, self.first[self.objects]
+        which = np.flatnonzero(self.moves)
+        apart = (np.diff(which) > 1) | (np.diff(self.objects[which]) > 1)
+        begin, end = (which[np.concatenate(edges)] for edges in (([True][:len(which)], apart), (apart, [True][:len(which)])))
+        return [(slice(a, b), slice(c, c + b - a)) for a, b, c in zip(here[begin].tolist(), here[end + 1].tolist(), there[begin].tolist())]
 
     @property
     def _particles(self) -> np.ndarray:
@@ -104,7 +115,10 @@ class Bundle:
 
     def become(self, wanted: Wanted) -> None:
         """Lay aside those objects that it does not move any more; a guest that is not needed any more does no harm."""
-        out = np.isin(self.objects, np.setdiff1d(self.members, wanted.members))
+        if wanted.key == self.key:
+            self.number = wanted.number
+            return
+        out = self.moves & ~np.isin(self.objects, wanted.members)
         if out.any():
             self.instance.lay_aside(np.flatnonzero(out))
             self.aside |= out
@@ -178,12 +192,5 @@ class Bundle:
 
     def energies(self) -> dict[str, float]:
         """Terms of the ledger [J], of what it moves, without losses."""
-        plan = self.plan
-        found = energies(self.instance, self.before)
-        others = np.repeat(~self.moves, self._particles)
-        if others.any():
-            x, mass = self.instance.array("x")[others], plan.system.mass[others]
-            for effect in plan.effects:
-                if effect.ledger:
-                    found[effect.ledger] -= effect.potential(plan.scene, mass, x)
+        found = energies(self.instance, self.before, self.other_rows)
         return {term: e for term, e in found.items() if not term.endswith(LOSS)}

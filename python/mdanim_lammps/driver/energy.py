@@ -8,6 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..effects import Effect
+from ..engine import geometry
 from ..engine.instance import Instance
 from ..model.system import System
 
@@ -26,14 +27,22 @@ def ledger_terms(effects: Iterable[Effect]) -> tuple[str, ...]:
     return ("kinetic", *dict.fromkeys(e.ledger for e in effects if e.ledger))
 
 
-def energies(instance: Instance, before: np.ndarray) -> dict[str, float]:
-    """Every term of the ledger [J]; ``before`` are the forces [N] of the step before, shape (N, 3)."""
+def energies(instance: Instance, before: np.ndarray, others: np.ndarray | None = None) -> dict[str, float]:
+    """Every term of the ledger [J]; ``before`` are the forces [N] of the step before, shape (N, 3).
+
+    ``others`` are particles that are not to be counted, though they are in the instance; they do not move and hold no elastic energy.
+    """
     plan = instance.plan
     found = dict.fromkeys(ledger_terms(plan.effects), 0.0)
     found["kinetic"] = kinetic(plan.system, plan.certificate.timestep, instance.array("v"), instance.array("f"), before)
     for effect in plan.effects:
         if effect.ledger:
             found[effect.ledger] += effect.energy(instance, plan.scene, plan.system)
+    if others is not None and len(others):
+        x, mass = instance.array("x")[others], plan.system.mass[others]
+        for effect in plan.effects:
+            if effect.ledger:
+                found[effect.ledger] -= effect.potential(plan.scene, mass, x)
     return found
 
 
@@ -42,11 +51,7 @@ def kinetic(system: System, dt: float, v: np.ndarray, f: np.ndarray, before: np.
 
     That is T + U + dt^2 (v.U''.v / 12 - F.F / 24 m), the energy of the nearby system whose exact motion the steps are (Hairer,
     Lubich & Wanner, Geometric Numerical Integration, IX.3); without it a vibration of frequency w seems to hold
-    (w dt)^2/24 too little, and an impact to lose what goes into vibrations. v [m/s], f and ``before`` [N], all (N, 3).
+    (w dt)^2/24 too little, and an impact to lose what goes into vibrations. U''.v is (F(n-1) - F(n)) / dt, v that of the half step
+    between. v [m/s], f and ``before`` [N], all (N, 3).
     """
-    mass = system.mass
-    half = v - 0.5 * dt * f / mass[:, None]  # v(n-1/2)
-    bent = -dt * np.einsum("id,id->i", half, f - before) / 12.0
-    swung = dt**2 * np.einsum("id,id->i", f, f) / (24.0 * mass)
-    free = ~system.held
-    return float((0.5 * mass * np.einsum("id,id->i", v, v) + bent - swung)[free].sum())
+    return geometry.kinetic(dt, system.mass, ~system.held, v, f, before)
