@@ -6,6 +6,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
+from mdanim_lammps.driver.energy import energies
 from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.data_file import data_text
 from mdanim_lammps.engine.instance import Instance, State
@@ -13,6 +14,7 @@ from mdanim_lammps.engine.part import Parts
 from mdanim_lammps.engine.plan import both_ends, make_plan
 from mdanim_lammps.errors import SetupError
 from mdanim_lammps.model.system import System
+from mdanim_lammps.results.ledger import LOSS
 from mdanim_lammps.scene.parse import load_scene
 
 SHELF = """
@@ -316,3 +318,40 @@ def test_a_state_of_other_particles_is_refused(prepared):
         other.setup()
         with pytest.raises(ValueError, match=r"shape \(64, 3\), the plan has \d+ particles"):
             one.put(0, other.state())
+
+
+def test_solids_that_are_laid_aside(prepared):
+    """Two that have met are laid aside, one in the way of the rest: that evolves, and holds energy, as it does without them."""
+    plan = prepared(SHELF).plan
+    parts, names = Parts(plan), plan.system.names
+    gone, rest = (0, 2), tuple(m for m in range(len(names)) if m not in (0, 2))
+    with Instance(plan) as instance:
+        instance.setup()
+        start = evolve(instance, 200)
+        instance.lay_aside(gone)
+        after = evolve(instance, 400)
+        rows, others = particles(plan.system, rest), particles(plan.system, gone)
+        whole = energies(instance, after.f, others)
+        assert np.ptp(after.v[others]) == 0.0
+    with Instance(parts.part(rest, False)) as alone:
+        alone.put(200, cut(start, rows, False))
+        equal(evolve(alone, 400), cut(after, rows, False), rest)
+        part = energies(alone, after.f[rows])
+    kept = [term for term in part if not term.endswith(LOSS)]
+    np.testing.assert_allclose([whole[t] for t in kept], [part[t] for t in kept], rtol=1e-12, atol=1e-12 * whole["kinetic"])
+
+
+def test_who_is_laid_aside_is_in_nobodys_way(prepared):
+    """Of two that are about to hit each other one is laid aside, and stands where it began: the other one flies on through it."""
+    plan = prepared("""
+object left { shape box (10, 10, 10) cm  position (0, 0, 0) cm  mass 1 kg  elasticity 100 kPa  velocity (2, 0, 0) m/s }
+object right { shape box (10, 10, 10) cm  position (15, 0, 0) cm  mass 1 kg  elasticity 100 kPa }
+control { time 0.2 s  frames 50 fps  resolution 5 cm }
+""").plan
+    with Instance(plan) as instance:
+        instance.setup()
+        instance.run(1)
+        instance.lay_aside([1])
+        instance.run(plan.certificate.steps - 1)
+        np.testing.assert_allclose(instance.array("v")[particles(plan.system, (0,))], [[2.0, 0.0, 0.0]] * 27, atol=1e-9)
+        assert instance.array("x")[particles(plan.system, (0,)), 0].min() > 0.3
