@@ -89,11 +89,12 @@ class Bundle:
 
     def _stretches(self) -> list[tuple[slice, slice]]:
         """Members that are side by side in both are one stretch."""
-        here, there = self.plan.system.first, self.first[self.objects]
         which = np.flatnonzero(self.moves)
-        apart = (np.diff(which) > 1) | (np.diff(self.objects[which]) > 1)
-        begin, end = (which[np.concatenate(edges)] for edges in (([True][:len(which)], apart), (apart, [True][:len(which)])))
-        return [(slice(a, b), slice(c, c + b - a)) for a, b, c in zip(here[begin].tolist(), here[end + 1].tolist(), there[begin].tolist())]
+        begins = np.ones(len(which), bool)
+        begins[1:] = (np.diff(which) > 1) | (np.diff(self.objects[which]) > 1)
+        begin, end = which[begins], which[np.roll(begins, -1)] + 1
+        here, there = self.plan.system.first, self.first[self.objects[begin]]
+        return [(slice(a, b), slice(c, c + b - a)) for a, b, c in zip(here[begin].tolist(), here[end].tolist(), there.tolist())]
 
     @property
     def _particles(self) -> np.ndarray:
