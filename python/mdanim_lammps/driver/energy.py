@@ -30,7 +30,7 @@ def ledger_terms(effects: Iterable[Effect]) -> tuple[str, ...]:
 def energies(instance: Instance, before: np.ndarray, others: np.ndarray | None = None) -> dict[str, float]:
     """Every term of the ledger [J]; ``before`` are the forces [N] of the step before, shape (N, 3).
 
-    ``others`` are particles that are not to be counted, though they are in the instance; they do not move and hold no elastic energy.
+    ``others`` are particles of the instance that are not to be counted; they do not move and hold no elastic energy.
     """
     plan = instance.plan
     found = dict.fromkeys(ledger_terms(plan.effects), 0.0)
@@ -51,7 +51,7 @@ def kinetic(system: System, dt: float, v: np.ndarray, f: np.ndarray, before: np.
 
     That is T + U + dt^2 (v.U''.v / 12 - F.F / 24 m), the energy of the nearby system whose exact motion the steps are (Hairer,
     Lubich & Wanner, Geometric Numerical Integration, IX.3); without it a vibration of frequency w seems to hold
-    (w dt)^2/24 too little, and an impact to lose what goes into vibrations. U''.v is (F(n-1) - F(n)) / dt, v that of the half step
-    between. v [m/s], f and ``before`` [N], all (N, 3).
+    (w dt)^2/24 too little, and an impact to lose what goes into vibrations. U''.v is (F(n-1) - F(n)) / dt, and v the velocity
+    between these two steps. v [m/s], f and ``before`` [N], all (N, 3).
     """
     return geometry.kinetic(dt, system.mass, ~system.held, v, f, before)

@@ -15,10 +15,10 @@ from . import islands
 from .assign import assign, firsts, total
 from .teams import GAIN, LEAST, Team
 
-BUNDLE = 16000
-"""Particles up to which islands of one executor share a LAMMPS instance. `python bench/driver.py`, 1000 objects of 120 particles on 2
-executors: of a frame the driver takes 156 ms with 4000, 101 with 8000, 78 with this, 66 where each executor has one bundle; but then
-whatever moves, or begins again, takes all with it."""
+BUNDLE = 32000
+"""Particles up to which islands of one executor share a LAMMPS instance. The scene of `bench/driver.py`, 1000 objects of 120 particles
+on 2 executors, 40 frames, medians of three rounds: of a frame the driver takes 45 ms with 8000, 30 with 16000, 25 with this, 20 where
+each executor has one bundle, and LAMMPS the same with all of them; but what begins again takes all of its bundle with it."""
 SPARE = 2
 """Bundles of an executor, over those that would do, from which the thin ones are put together."""
 THIN = 4
