@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from .effect import Effect, Verdict
-from .springs import DASHPOTS, all_held, spring_norm
+from .springs import all_held, spring_norm, time_of_dashpots
 
 
 class Damping(Effect):
@@ -23,11 +23,11 @@ class Damping(Effect):
         return instance.damping_loss()
 
     def clocks(self, instance):
-        return {"springs": instance.bond_seconds() * DASHPOTS}
+        more = time_of_dashpots(instance.plan.system)
+        return {"springs": instance.bond_seconds() * more / (1.0 + more)}
 
     def forecast(self, load, rate):
-        # All springs of a scene are asked for their dashpots, or none.
-        return load.steps * len(load.system.spring) * rate["spring"] * DASHPOTS / (1.0 - DASHPOTS)
+        return load.steps * len(load.system.spring) * rate["spring"] * time_of_dashpots(load.system)
 
     def drag_rate(self, scene, system):
         return 2.0 * spring_norm(system, system.damping) / system.mass

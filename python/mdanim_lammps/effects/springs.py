@@ -9,8 +9,15 @@ from ..scene.scene import HoldAll
 from .effect import Effect, Verdict
 
 
-DASHPOTS = 0.86
+DASHPOTS = 0.44
 """Part of the time of damped springs that goes to their dashpots (bench/effects.py shares)."""
+
+
+def time_of_dashpots(system) -> float:
+    """What dashpots take, over the time of all springs without them."""
+    if system.damping is None or not len(system.spring):
+        return 0.0
+    return DASHPOTS / (1.0 - DASHPOTS) * np.count_nonzero(system.damping) / len(system.spring)
 
 
 def all_held(solid) -> bool:
@@ -54,7 +61,8 @@ class Springs(Effect):
         return instance.elastic_energy()
 
     def clocks(self, instance):
-        return {"springs": instance.bond_seconds() * (1.0 - DASHPOTS * instance.plan.damped)}
+        more = time_of_dashpots(instance.plan.system) if instance.plan.damped else 0.0
+        return {"springs": instance.bond_seconds() / (1.0 + more)}
 
     def forecast(self, load, rate):
         return load.steps * len(load.system.spring) * rate["spring"]
