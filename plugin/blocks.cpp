@@ -356,7 +356,8 @@ void Blocks::fill(Pass &pass, double *const *forces)
 
 std::size_t Blocks::bytes() const
 {
-  return all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + damped_laws.bytes() + motions.bytes() + memory.bytes() +
+  return all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + damped_laws.bytes() +
+      motions.bytes() + memory.bytes() +
       (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
           sizeof(int) +
       total.capacity() * sizeof(double);

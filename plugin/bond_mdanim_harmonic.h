@@ -32,11 +32,12 @@ class BondMdanimHarmonic : public Bond {
   double memory_usage() override;
   void *extract(const char *, int &) override;
 
-  // For run_style verlet/mdanim, which computes most forces itself: the springs, each once. False where that is not how they are summed.
+  // For run_style verlet/mdanim, which computes most forces itself: the springs, each once. False where that is not how they are
+  // summed.
   bool halves(mdanim::HalfBonds &half) const;
   // The same as rows at both ends where some are of other ranks.
   bool rows_of_all(mdanim::BondRows &all) const;
-  mdanim::Loss &account() { return loss; }    // of dashpots
+  mdanim::Loss *account() { return damped ? &loss : nullptr; }    // of dashpots, all ranks or none
   bigint version() const { return made; }    // another number for other springs
   void took(double more) { seconds += more; }
 

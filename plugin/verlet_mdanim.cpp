@@ -251,9 +251,10 @@ int VerletMdanim::take_steps(int step, int most)
 void VerletMdanim::leave_blocks()
 {
   blocks.give_out(atom->x, atom->v);
-  if (!blocks.damped()) return;
-  blocks.give_out_dashpots(bond->account().latest(), bond->account().latest_seen());
-  bond->account().reopen();
+  Loss *account = bond->account();
+  if (!account) return;
+  if (blocks.damped()) blocks.give_out_dashpots(account->latest(), account->latest_seen());
+  account->reopen();
 }
 
 // How far any particle of this rank is from where it stood when lists were made.
@@ -329,9 +330,9 @@ void VerletMdanim::start_blocks()
     made_for = neighbor->lastcall;
   }
   blocks.take_in(atom->x, atom->v);
-  if (blocks.damped()) {
-    bond->account().close(atom->v, update->dt);
-    blocks.take_in_dashpots(bond->account().latest(), bond->account().latest_seen());
+  if (Loss *account = bond->account()) {
+    account->close(atom->v, update->dt);
+    if (blocks.damped()) blocks.take_in_dashpots(account->latest(), account->latest_seen());
   }
   blocks.fill(pass, atom->f);
   pass.gravity[0] = pass.gravity[1] = pass.gravity[2] = 0.0;
@@ -367,7 +368,7 @@ void VerletMdanim::one_pass(bool guests_see_all)
     guests_turn();
     if (guests_see_all) hold_back();    // they may have other concerns now
   }
-  if (blocks.damped()) bond->account().passed(pass.dashpots, update->dt);
+  if (Loss *account = bond->account()) account->passed(pass.dashpots, update->dt);
 }
 
 // Forces of other fixes, and the motion of those that were held back for them.
