@@ -91,6 +91,9 @@ def _measure(ready, executors: int, control: str) -> dict:
 
         cpu = 0.0
 
+        def __enter__(self):
+            return self.timed(super().__enter__)
+
         def begin(self, resume):
             return self.timed(super().begin, resume)
 

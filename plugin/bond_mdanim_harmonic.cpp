@@ -247,8 +247,19 @@ static void spring_forces(int n, const double *__restrict push, const double *__
   }
 }
 
-// Forces of the springs of rows [begin, end) into `stretch`.
-void BondMdanimHarmonic::forces(int begin, int end)
+// r_ij -> energies of n springs, in the place of K.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+static void spring_energies(int n, const double *__restrict x, const double *__restrict y, const double *__restrict z,
+                            const double *__restrict r0, double *__restrict K)
+{
+  for (int b = 0; b < n; ++b)
+    K[b] = mdanim::energy({K[b], r0[b], 0.0}, std::sqrt((x[b] * x[b] + y[b] * y[b]) + z[b] * z[b]));
+}
+
+// The springs of rows [begin, end) into `stretch`.
+void BondMdanimHarmonic::take_apart(int begin, int end)
 {
   const double *x = atom->x[0];
   const int base = rows.first[begin], n = rows.first[end] - base;
@@ -268,7 +279,29 @@ void BondMdanimHarmonic::forces(int begin, int end)
       stretch.pull[b] = own.pull;
     }
   }
-  spring_forces(n, stretch.push.data(), stretch.pull.data(), stretch.x.data(), stretch.y.data(), stretch.z.data());
+}
+
+// They become forces.
+void BondMdanimHarmonic::forces(int begin, int end)
+{
+  spring_forces(rows.first[end] - rows.first[begin], stretch.push.data(), stretch.pull.data(), stretch.x.data(), stretch.y.data(),
+                stretch.z.data());
+}
+
+// Adds up their energies; half of a bond's share goes to either end.
+void BondMdanimHarmonic::energies(int begin, int end)
+{
+  const int base = rows.first[begin], n = rows.first[end] - base;
+  stretch.K.resize(stretch.x.size());
+  stretch.r0.resize(stretch.x.size());
+  for (int b = 0; b < n; ++b) {
+    const Spring &s = spring[rows.type[base + b]];
+    stretch.K[b] = s.K;
+    stretch.r0[b] = s.r0;
+  }
+  spring_energies(n, stretch.x.data(), stretch.y.data(), stretch.z.data(), stretch.r0.data(), stretch.K.data());
+  const double share = rows.upper_only ? 1.0 : 0.5;
+  for (int b = 0; b < n; ++b) energy += share * stretch.K[b];
 }
 
 // Add the dashpots of rows [begin, end) to `stretch`, and what each particle feels of them to `on`.
@@ -345,16 +378,18 @@ void BondMdanimHarmonic::compute(int eflag, int vflag)
   for (int begin = 0, end; begin < nlocal; begin = end) {
     end = begin + 1;
     while (end < nlocal && rows.first[end + 1] - rows.first[begin] <= STRETCH) ++end;
+    take_apart(begin, end);
+    if (eflag_global) energies(begin, end);
     forces(begin, end);
     if (on) dashpots(begin, end, *on);
     if (rows.upper_only) sum_halves(begin, end);
     else sum_rows(begin, end);
   }
   if (on) loss.step(atom->v, update->dt, update->setupflag);
-  if (evflag) tally();
+  if (eflag_atom || vflag_either) tally();
 }
 
-// Energy and virial on steps that ask for them; half of a bond's share goes to either end.
+// Virial and energy of each particle on steps that ask for them.
 void BondMdanimHarmonic::tally()
 {
   const double share = rows.upper_only ? 1.0 : 0.5;
@@ -369,7 +404,6 @@ void BondMdanimHarmonic::tally()
       if (s.c > 0.0) factor += drag(s.c, d, vec3(atom->v[i]) - vec3(atom->v[j]));
       const double w[6] = {d.x * d.x * factor, d.y * d.y * factor, d.z * d.z * factor,
                            d.x * d.y * factor, d.x * d.z * factor, d.y * d.z * factor};
-      if (eflag_global) energy += share * e;
       if (vflag_global)
         for (int k = 0; k < 6; ++k) virial[k] += share * w[k];
       for (const int end : {i, j}) {
@@ -416,7 +450,7 @@ double BondMdanimHarmonic::memory_usage()
   const auto ints = rows.first.capacity() + rows.upper.capacity() + rows.partner.capacity() + rows.type.capacity() +
       source.tag.capacity() + source.count.capacity();
   return Bond::memory_usage() + ints * sizeof(int) + received.force.capacity() * sizeof(Vec3) +
-      law.capacity() * sizeof(Law) + 5.0 * stretch.x.capacity() * sizeof(double);
+      law.capacity() * sizeof(Law) + (5.0 * stretch.x.capacity() + 2.0 * stretch.K.capacity()) * sizeof(double);
 }
 
 // For objects.cpp: "seconds" and "lost" of this rank.

@@ -62,6 +62,7 @@ class BondMdanimHarmonic : public Bond {
   struct Stretch {
     std::vector<double> x, y, z;       // r_ij, then F_i
     std::vector<double> push, pull;    // see Law
+    std::vector<double> K, r0;         // of energies, see Spring
   };
   // Forces that particles have received from lower partners so far, for sum_halves(): those from the row in hand to its
   // farthest partner, in a ring of 2^n places.
@@ -80,6 +81,8 @@ class BondMdanimHarmonic : public Bond {
   bool has_changed(int i, Row &scratch) const;
   void look_up_coefficients();
   bool halves_suffice() const;
+  void take_apart(int begin, int end);
+  void energies(int begin, int end);
   void forces(int begin, int end);
   void sum_rows(int begin, int end);
   void sum_halves(int begin, int end);

@@ -47,7 +47,9 @@ class FixMdanimLeapfrog : public Fix {
   double *trace_bounds() { return trace.empty() ? nullptr : trace.front().bound; }
   void finish_step(const std::vector<int> &particles);    // v^{n-1/2} -> v^n
   void begin_step(const std::vector<int> &particles);     // v^n -> v^{n+1/2}, r^n -> r^{n+1}
-  void moved(double final_loss, double first_loss, double more_seconds);    // by others, in its name
+  bool tells_of(bigint step) const;    // whether kinetic() may be asked for at that step
+  // By others, in its name; `bend` is what bend() tells, of the particles that they have moved.
+  void moved(double final_loss, double first_loss, double bend, double more_seconds);
 
  private:
   template <class Visit> void each(Visit visit) const;
@@ -58,11 +60,14 @@ class FixMdanimLeapfrog : public Fix {
   void drift();
   void drift_and_trace();
   double largest_phi_here() const;
+  double bend() const;
+  double kinetic();
 
   bool has_drag = false, exponential = false;
   mdanim::ParticleValue lambda;
   double half_dt = 0.0;        // dt/2 in units that turn force/mass into velocity
   double lost = 0.0;           // energy taken by drag on this rank
+  double bent = 0.0;           // dt v^{n-1/2} . (F^n - F^{n-1}) on this rank, of a step n that kinetic() may be asked for at
   double largest_phi = 0.0;    // seen on this rank in this run
   double seconds = 0.0;
   const std::vector<int> *only = nullptr;    // particles to move now; null for all

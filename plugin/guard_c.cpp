@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // What the driver looks at in every frame, as plain C functions over arrays in the order of tags: whether numbers are finite, where
-// objects are, whether cells are turned inside out, whether objects are inside each other, kinetic energy. No exception leaves them.
+// objects are, whether cells are turned inside out, whether objects are inside each other. No exception leaves them.
 
 #include "abi.h"
 #include "boxes.h"
@@ -203,20 +203,4 @@ MDANIM_EXPORT long long mdanim_sunk(const Model *model, const double *x, int *pa
   } catch (const std::bad_alloc &) {
     return -1;
   }
-}
-
-// Kinetic energy of the particles that are free (n), corrected as driver/energy.py tells; dt the time step, mass (n), v, f and the forces
-// of the step before, `before` (n, 3).
-MDANIM_EXPORT double mdanim_kinetic(long long n, double dt, const double *mass, const unsigned char *free, const double *v,
-                                    const double *f, const double *before)
-{
-  double sum = 0.0;
-  for (long long i = 0; i < n; ++i) {
-    if (!free[i]) continue;
-    const Vec3 now = vec3(v + 3 * i), force = vec3(f + 3 * i);
-    const Vec3 half = now - (0.5 * dt / mass[i]) * force;    // v(n-1/2)
-    const double bent = dt * dot(half, force - vec3(before + 3 * i)) / 12.0, swung = dt * dt * dot(force, force) / (24.0 * mass[i]);
-    sum += 0.5 * mass[i] * dot(now, now) - bent - swung;
-  }
-  return sum;
 }

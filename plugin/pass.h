@@ -56,10 +56,12 @@ struct Pass {
   Friction friction;
   double *total;    // (N, 3): sum of all forces on the particles of blocks that are held back
   double *trace;    // box of each object (boxes.h), to be grown; null for none
+  bool bends;       // `bend` is asked for
 
   double fastest;          // largest v^2 of what has moved
   double final_loss, first_loss;    // to friction in either half step
   DashpotSums dashpots;             // but for what is held back
+  double bend;                      // dt v^{n+1/2} . F^n of what has moved
 };
 
 // The same bits from each of them.

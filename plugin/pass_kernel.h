@@ -73,7 +73,7 @@ struct Box6 {
 // What a pass tells at its end.
 struct Tally {
   Vector fastest{};
-  double final_loss = 0.0, first_loss = 0.0;
+  double final_loss = 0.0, first_loss = 0.0, bend = 0.0;
   DashpotSums dashpots = {0.0, 0.0, 0.0};
   Box6 box;
   int object = -1;    // whose box it is
@@ -202,6 +202,11 @@ MDANIM_INLINE void move(const Pass &pass, const Block &block, const double *tota
     square += last[d] * last[d];
   }
   tally.fastest = largest(square, tally.fastest);
+  if (pass.bends) {
+    double bend[LANES];
+    store(bend, dt * dot(last, f));
+    for (int lane = 0; lane < LANES; ++lane) tally.bend += bend[lane];
+  }
   if (DAMPED && block.damped) account(pass, block, motion, total + 3 * LANES, first, last, tally.dashpots);
   if (FRICTION != Friction::NONE) {
     const Vector weight = load(motion + WEIGHT * LANES), phi = load(motion + PHI * LANES);
@@ -249,6 +254,7 @@ template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_INLINE void go(Pas
     if (tally.fastest[lane] > pass.fastest) pass.fastest = tally.fastest[lane];
   pass.final_loss = tally.final_loss;
   pass.first_loss = tally.first_loss;
+  pass.bend = tally.bend;
   pass.dashpots = tally.dashpots;
 }
 

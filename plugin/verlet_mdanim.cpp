@@ -7,6 +7,7 @@
 #include "verlet_mdanim.h"
 
 #include "bond_mdanim_harmonic.h"
+#include "boxes.h"
 #include "fix_mdanim_gravity.h"
 #include "fix_mdanim_leapfrog.h"
 #include "stopwatch.h"
@@ -66,12 +67,14 @@ double VerletMdanim::memory_usage() { return static_cast<double>(blocks.bytes() 
 // Lists are about to be made for the first time after init().
 void VerletMdanim::setup(int flag)
 {
+  decided_for = -1;
   spare_bond_list();
   Verlet::setup(flag);
 }
 
 void VerletMdanim::setup_minimal(int flag)
 {
+  decided_for = -1;
   spare_bond_list();
   Verlet::setup_minimal(flag);
 }
@@ -186,7 +189,7 @@ void VerletMdanim::run(int n)
     Verlet::run(n);
     return;
   }
-  made_for = decided_for = -1;
+  made_for = -1;
   for (int i = 0; i < n; ++i) {
     if (timer->check_timeout(i)) {
       update->nsteps = i;
@@ -214,11 +217,7 @@ int VerletMdanim::take_steps(int step, int most)
 {
   const bigint stop = std::min(next_stop(), update->ntimestep + most);
   if (update->ntimestep >= stop) return 0;
-  if (lists_matter) {
-    last = how_far_lists_last();
-    strayed = farthest();
-    if (!lists_last(0.0)) return 0;
-  }
+  if (lists_matter && !lists_still_last()) return 0;
 
   timer->stamp();
   if (comm->nprocs > 1) comm->forward_comm();
@@ -237,7 +236,7 @@ int VerletMdanim::take_steps(int step, int most)
     ++neighbor->ago;
     if (timer->check_timeout(step + taken)) break;
     if (!lists_matter || lists_last(update->dt * std::sqrt(pass.fastest))) continue;
-    if (comm->nprocs > 1 || update->ntimestep >= stop) break;
+    if (update->ntimestep >= stop) break;
     stand = look_again();
     if (!stand) break;
   }
@@ -247,10 +246,16 @@ int VerletMdanim::take_steps(int step, int most)
   return taken;
 }
 
-// Positions and velocities out of the blocks, and the account of dashpots as it stands.
+// Positions and velocities out of the blocks.
 void VerletMdanim::leave_blocks()
 {
   blocks.give_out(atom->x, atom->v);
+  settle_dashpots();
+}
+
+// The account of dashpots as it stands.
+void VerletMdanim::settle_dashpots()
+{
   Loss *account = bond->account();
   if (!account) return;
   if (blocks.damped()) blocks.give_out_dashpots(account->latest(), account->latest_seen());
@@ -278,10 +283,49 @@ double VerletMdanim::how_far_lists_last() const
   double far = std::numeric_limits<double>::max();
   for (const Player &p : guests) far = std::min(far, p.guest->looks_ahead());
   if (comm->nprocs > 1) {
-    for (int d = 0; d < 3; ++d) far = std::min(far, 0.5 * (domain->subhi[d] - domain->sublo[d]));
-    MPI_Allreduce(MPI_IN_PLACE, &far, 1, MPI_DOUBLE, MPI_MIN, world);
+    const Margin margin = margin_of_ranks();
+    double least[] = {far, margin.way, margin.width, -strayed};
+    MPI_Allreduce(MPI_IN_PLACE, least, 4, MPI_DOUBLE, MPI_MIN, world);
+    // A share of space and a particle may each move towards the other.
+    far = std::min(least[0], -least[3] + 0.5 * (least[1] + 0.5 * least[2]));
   }
   return std::max(half, far);
+}
+
+// Where particles would be in their ranks' shares of space if the box were now put around all of them. LAMMPS hands them on to the
+// ranks beside alone: half-way through one of those is far enough.
+VerletMdanim::Margin VerletMdanim::margin_of_ranks() const
+{
+  Box now, all;
+  for (int i = 0; i < atom->nlocal; ++i) now.include(atom->x[i]);
+  MPI_Allreduce(now.bound, all.bound, 6, MPI_DOUBLE, MPI_MIN, world);
+  Margin margin;
+  for (int d = 0; d < 3; ++d) {
+    const double from = domain->boxlo[d], to = domain->boxhi[d], low = domain->sublo[d], high = domain->subhi[d];
+    const double from_now = follows(d, 0) ? all.low(d) : from, to_now = follows(d, 1) ? all.high(d) : to;
+    const double stretch = (to_now - from_now) / (to - from);
+    const bool below = low > from, above = high < to;    // ranks are there
+    if (below || above) margin.width = std::min(margin.width, stretch * (high - low));
+    if (now.empty()) continue;
+    if (below) margin.way = std::min(margin.way, now.low(d) - (from_now + stretch * (low - from)));
+    if (above) margin.way = std::min(margin.way, (from_now + stretch * (high - from)) - now.high(d));
+  }
+  return margin;
+}
+
+// Whether a side of the box goes where particles are.
+bool VerletMdanim::follows(int d, int side) const
+{
+  constexpr int SHRINK = 2;    // of LAMMPS's numbers of boundaries
+  return domain->boundary[d][side] == SHRINK;
+}
+
+// Looks how far particles really are from where lists were made, and how far they may go. Whether that is enough.
+bool VerletMdanim::lists_still_last()
+{
+  strayed = farthest();
+  last = how_far_lists_last();
+  return lists_last(0.0);
 }
 
 // Whether no particle of any rank can have moved so far, going `more` farther.
@@ -292,16 +336,15 @@ bool VerletMdanim::lists_last(double more)
   return strayed < last;
 }
 
-// Between two passes of a rank that is alone: sees how far particles really are and makes lists anew if need be. False where particles
-// have changed places then: the blocks do not stand any more.
+// Between two passes: sees how far particles really are, and a rank that is alone makes lists anew if need be. False where the blocks
+// do not stand any more.
 bool VerletMdanim::look_again()
 {
   timer->stamp(Timer::BOND);
   blocks.give_out(atom->x, atom->v);
-  strayed = farthest();
-  if (strayed < SOON * last) return true;
-  leave_blocks();
-  if (!rebuild_lists()) return false;
+  if (lists_still_last() && (comm->nprocs > 1 || strayed < SOON * last)) return true;
+  settle_dashpots();
+  if (comm->nprocs > 1 || !rebuild_lists()) return false;
   strayed = 0.0;
   last = how_far_lists_last();
   start_blocks();
@@ -355,13 +398,14 @@ void VerletMdanim::hold_back()
 void VerletMdanim::one_pass(bool guests_see_all)
 {
   double all = 0.0;
+  pass.bends = leapfrog->tells_of(update->ntimestep + 1);
   {
     const Lap lap(all);
     width->pass(pass);
   }
   const double moving = (OF_LEAPFROG + (pass.friction == Friction::NONE ? 0.0 : OF_DRAG)) * all;
   const double pulling = gravity ? OF_GRAVITY * all : 0.0;
-  leapfrog->moved(pass.final_loss, pass.first_loss, moving);
+  leapfrog->moved(pass.final_loss, pass.first_loss, pass.bend, moving);
   if (gravity) gravity->took(pulling);
   bond->took(all - moving - pulling);
   if (!guests.empty()) {
@@ -432,11 +476,10 @@ bool VerletMdanim::lists_are_due()
   if (neighbor->build_once || now == output->next_dump_any || now == output->next_restart) return neighbor->decide();
   for (const Fix *fix : modify->get_fix_list())
     if (fix->force_reneighbor && fix->next_reneighbor == now) return true;
-  last = how_far_lists_last();
+  const bool they_do = lists_still_last();
   if (last <= 0.5 * neighbor->skin) return neighbor->decide();
   ++neighbor->ago;
-  strayed = farthest();
-  return !lists_last(0.0);
+  return !they_do;
 }
 
 // Returns whether every particle is where it was in the arrays.

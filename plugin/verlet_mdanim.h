@@ -9,6 +9,8 @@
 #include "lineup.h"
 #include "verlet.h"
 
+#include <limits>
+
 namespace LAMMPS_NS {
 
 class VerletMdanim : public Verlet {
@@ -31,12 +33,20 @@ class VerletMdanim : public Verlet {
   int take_steps(int step, int most);
   bigint next_stop() const;
   double how_far_lists_last() const;
+  // Of a rank's particles from the ranks beside it, if positive, and the width of its own share of space.
+  struct Margin {
+    double way = std::numeric_limits<double>::max(), width = std::numeric_limits<double>::max();
+  };
+  Margin margin_of_ranks() const;
+  bool follows(int d, int side) const;
+  bool lists_still_last();
   bool lists_last(double more);
   bool lists_are_due();
   bool look_again();
   double farthest() const;
   void start_blocks();
   void leave_blocks();
+  void settle_dashpots();
   void hold_back();
   void one_pass(bool guests_see_all);
   void guests_turn();

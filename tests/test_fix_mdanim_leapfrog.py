@@ -25,7 +25,7 @@ def run(folder, fix, steps=50, dt=0.2, **options):
         lab.by_tag(lmp, "x"),
         lab.by_tag(lmp, "v"),
         lmp.extract_fix("run", 0, 0),
-        [lmp.extract_fix("run", 0, 1, n) for n in range(2)],
+        [lmp.extract_fix("run", 0, 1, n) for n in (0, 2)],
     )
     lmp.close()
     return result
@@ -51,6 +51,37 @@ def test_every_particle_has_its_own_drag(tmp_path):
     assert lost == pytest.approx(lost0, rel=1e-11)
     assert phi == pytest.approx((DRAG * 0.2 / 2.0 / BODY.mass).max(), rel=1e-14)
     assert 0.0 < seconds < 10.0
+
+
+@pytest.mark.parametrize("drag", [0.0, 0.3], ids=["no drag", "drag"])
+@pytest.mark.parametrize("style", ["verlet", "verlet/mdanim"])
+def test_kinetic_energy_is_that_of_the_smooth_path(tmp_path, style, drag):
+    """Work out T - dt v.(F' - F)/12 - dt^2 F.F/24m from the forces of the last two steps; at the start there is no step before."""
+    dt, m = 0.2, BODY.mass[:, None]
+    lmp = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog" + (f" lambda {drag}" if drag else ""), f"run_style {style}",
+                                    "fix_modify run energy no", f"timestep {dt}", "run 0"])
+    def told():
+        return lmp.extract_fix("run", 0, 1, 1)
+
+    swing = dt**2 * (lab.by_tag(lmp, "f") ** 2 / m).sum() / 24.0
+    assert told() == pytest.approx(lab.kinetic(BODY, lab.by_tag(lmp, "v")) - swing, rel=1e-13)
+    for steps in (7, 1, 30):
+        if steps > 1:
+            lmp.command(f"run {steps - 1} pre no")
+        before = lab.by_tag(lmp, "f")
+        lmp.command("run 1 pre no")
+        f, v = lab.by_tag(lmp, "f"), lab.by_tag(lmp, "v")
+        half = v * (1.0 + drag * dt / 2.0 / m) - 0.5 * dt * f / m  # (3.10) solved for v(n-1/2)
+        bent, swing = dt * (half * (f - before)).sum() / 12.0, dt**2 * (f**2 / m).sum() / 24.0
+        assert min(abs(bent), swing) > 1e-6 * lab.kinetic(BODY, v)
+        assert told() == pytest.approx(lab.kinetic(BODY, v) - bent - swing, rel=1e-13)
+    lmp.command("run 25 pre no")  # in one piece: by passes where there are some
+    whole = told()
+    other = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog" + (f" lambda {drag}" if drag else ""), f"timestep {dt}",
+                                      "run_style verlet", "run 63"])
+    assert whole == pytest.approx(other.extract_fix("run", 0, 1, 1), rel=1e-12)
+    other.close()
+    lmp.close()
 
 
 @pytest.mark.parametrize("drag", [1e-9, 0.3, 40.0, 1e5])

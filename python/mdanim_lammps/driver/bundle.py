@@ -133,7 +133,6 @@ class Bundle:
         self.ran = False
         if state is None:
             self.instance.setup()
-            self.before = self.instance.array("f").copy()
             return
         if self.aside.any():
             rows = np.repeat(self.aside, self._particles)
@@ -145,7 +144,7 @@ class Bundle:
         """Run a window. Raises Broken."""
         begin, soaked = time.process_time(), self._soaked()
         self.instance.start_trace()
-        self.before = run_window(self.instance, steps)
+        run_window(self.instance, steps)
         self.trace = self.instance.trace()
         self.instance.start_trace()
         self.here = self.instance.trace()  # of this moment alone
@@ -193,5 +192,5 @@ class Bundle:
 
     def energies(self) -> dict[str, float]:
         """Terms of the ledger [J], of what it moves, without losses."""
-        found = energies(self.instance, self.before, self.other_rows)
+        found = energies(self.instance, self.other_rows)
         return {term: e for term, e in found.items() if not term.endswith(LOSS)}

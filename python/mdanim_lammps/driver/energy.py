@@ -8,7 +8,6 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..effects import Effect
-from ..engine import geometry
 from ..engine.instance import Instance
 from ..model.system import System
 
@@ -27,14 +26,14 @@ def ledger_terms(effects: Iterable[Effect]) -> tuple[str, ...]:
     return ("kinetic", *dict.fromkeys(e.ledger for e in effects if e.ledger))
 
 
-def energies(instance: Instance, before: np.ndarray, others: np.ndarray | None = None) -> dict[str, float]:
-    """Every term of the ledger [J]; ``before`` are the forces [N] of the step before, shape (N, 3).
+def energies(instance: Instance, others: np.ndarray | None = None) -> dict[str, float]:
+    """Every term of the ledger [J], at the end of a `run` or after `setup`.
 
     ``others`` are particles of the instance that are not to be counted; they do not move and hold no elastic energy.
     """
     plan = instance.plan
     found = dict.fromkeys(ledger_terms(plan.effects), 0.0)
-    found["kinetic"] = kinetic(plan.system, plan.certificate.timestep, instance.array("v"), instance.array("f"), before)
+    found["kinetic"] = instance.kinetic_energy()
     for effect in plan.effects:
         if effect.ledger:
             found[effect.ledger] += effect.energy(instance, plan.scene, plan.system)
@@ -44,14 +43,3 @@ def energies(instance: Instance, before: np.ndarray, others: np.ndarray | None =
             if effect.ledger:
                 found[effect.ledger] -= effect.potential(plan.scene, mass, x)
     return found
-
-
-def kinetic(system: System, dt: float, v: np.ndarray, f: np.ndarray, before: np.ndarray) -> float:
-    """Kinetic energy [J], corrected so that the sum of all energies is what leap-frog conserves, to fourth order in dt.
-
-    That is T + U + dt^2 (v.U''.v / 12 - F.F / 24 m), the energy of the nearby system whose exact motion the steps are (Hairer,
-    Lubich & Wanner, Geometric Numerical Integration, IX.3); without it a vibration of frequency w seems to hold
-    (w dt)^2/24 too little, and an impact to lose what goes into vibrations. U''.v is (F(n-1) - F(n)) / dt, and v the velocity
-    between these two steps. v [m/s], f and ``before`` [N], all (N, 3).
-    """
-    return geometry.kinetic(dt, system.mass, ~system.held, v, f, before)

@@ -114,11 +114,10 @@ class Sequential:
             self.instance.put(resume.step, State(resume.x, resume.v, resume.f, resume.liquid))
             return None
         self.instance.setup()
-        self.before = self.instance.array("f").copy()
         return self._frame()
 
     def advance(self, frame, steps):
-        self.before = run_window(self.instance, steps)
+        run_window(self.instance, steps)
         return self._frame()
 
     def stop(self, frame):
@@ -134,23 +133,16 @@ class Sequential:
 
     def _frame(self) -> Frame:
         instance = self.instance
-        return Frame(instance.step, instance.array("x"), instance.array("v"), energies(instance, self.before), penetration(instance),
+        return Frame(instance.step, instance.array("x"), instance.array("v"), energies(instance), penetration(instance),
                      pool(instance))
 
 
-def run_window(instance: Instance, steps: int) -> np.ndarray:
-    """Run so many steps; returns the forces of the step before the last, shape (N, 3): how they change tells how stiff the motion is.
-
-    Raises Broken.
-    """
+def run_window(instance: Instance, steps: int) -> None:
+    """Run so many steps. Raises Broken."""
     try:
-        if steps > 1:
-            instance.run(steps - 1)
-        before = instance.array("f").copy()
-        instance.run(1)
+        instance.run(steps)
     except DivergedError as error:
         raise Broken(instance.step, error, fastest(instance.plan.system, instance.array("v"))) from error
-    return before
 
 
 def penetration(instance: Instance) -> float:

