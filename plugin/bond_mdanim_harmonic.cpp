@@ -105,9 +105,9 @@ bool BondMdanimHarmonic::source_changed()
   if (given) {
     if (nlocal != rows.size() || atom->nghost || !std::is_sorted(atom->tag, atom->tag + nlocal))
       error->all(FLERR,
-                 "bond_style mdanim/harmonic: springs were given for {} particles in the order of their tags, on one process; "
-                 "there are {} and {} ghosts, or another order",
-                 rows.size(), nlocal, atom->nghost);
+                 "bond_style mdanim/harmonic: springs were given for {} particles, in the order of their tags and without ghosts; at step "
+                 "{} there are {}, with {} ghosts, or in another order; if the bodies fly apart, lower the time step",
+                 rows.size(), update->ntimestep, nlocal, atom->nghost);
     return false;
   }
   const bool partners_may_differ = update->setupflag || bonds_are_swapped;
