@@ -78,7 +78,7 @@ std::vector<int> Blocks::lengths(const HalfBonds &bonds, const int *object) cons
   std::vector<int> best(particles + 1);
   int farthest = 0;
   for (int i = 0; i < particles; ++i)
-    for (int b = rows.begin(i); b < rows.end(i); ++b) farthest = std::max(farthest, rows.link(b).offset);
+    for (const SpringRows::Link &link : rows[i]) farthest = std::max(farthest, link.offset);
   std::vector<int> seen(farthest + 1, -1);    // first particle of the latest block that has this offset
   std::vector<long> cost(particles + 1, std::numeric_limits<long>::max());
   cost[0] = 0;
@@ -87,8 +87,8 @@ std::vector<int> Blocks::lengths(const HalfBonds &bonds, const int *object) cons
     for (int n = 1; n <= lanes && i + n <= particles; ++n) {
       const int k = i + n - 1;
       if (object[k] != object[i]) break;
-      for (int b = rows.begin(k); b < rows.end(k); ++b) {
-        int &latest = seen[rows.link(b).offset];
+      for (const SpringRows::Link &link : rows[k]) {
+        int &latest = seen[link.offset];
         offsets += latest != i;
         latest = i;
       }
@@ -117,29 +117,25 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
   home.resize(particles);
   for (std::size_t n = 0; n < all.size(); ++n) std::fill_n(&home[all[n].start], all[n].lanes, static_cast<int>(n));
   for (int i = 0; i < particles; ++i)
-    for (int b = rows.begin(i); b < rows.end(i); ++b)
-      if (bonds.law[rows.link(b).type].c > 0.0) all[home[i]].damped = all[home[i + rows.link(b).offset]].damped = true;
+    for (const SpringRows::Link &link : rows[i])
+      if (bonds.law[link.type].c > 0.0) all[home[i]].damped = all[home[i + link.offset]].damped = true;
 
   laws.start(2 * lanes);
   damped_laws.start(3 * lanes);
-  std::vector<int> next(lanes);    // spring of each lane
+  std::vector<SpringRows::Links> left(lanes);    // springs of each lane
   std::vector<double> law(3 * lanes);
   int farthest = 0;
   for (Block &block : all) {
-    const int end = block.start + block.lanes;
-    for (int i = block.start; i < end; ++i) next[i - block.start] = rows.begin(i);
+    for (int lane = 0; lane < block.lanes; ++lane) left[lane] = rows[block.start + lane];
     for (;;) {
       int offset = 0;    // the longest that is left
-      for (int i = block.start; i < end; ++i) {
-        const int b = next[i - block.start];
-        if (b < rows.end(i)) offset = std::max(offset, rows.link(b).offset);
-      }
+      for (int lane = 0; lane < block.lanes; ++lane)
+        if (left[lane].size()) offset = std::max(offset, left[lane].first->offset);
       if (offset == 0) break;
       std::fill(law.begin(), law.end(), 0.0);
-      for (int i = block.start; i < end; ++i) {
-        const int lane = i - block.start;
-        for (int &b = next[lane]; b < rows.end(i) && rows.link(b).offset == offset; ++b) {
-          const Law &own = bonds.law[rows.link(b).type];
+      for (int lane = 0; lane < block.lanes; ++lane) {
+        for (auto &[link, last] = left[lane]; link != last && link->offset == offset; ++link) {
+          const Law &own = bonds.law[link->type];
           law[lane] = own.push;
           law[lanes + lane] = own.pull;
           if (block.damped) law[2 * lanes + lane] = own.c;
@@ -151,7 +147,7 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
     block.end = static_cast<unsigned>(entries.size());
   }
 
-  if (entries.empty() || rows.links() < WORTH_IT * entries.size() * lanes) {
+  if (entries.empty() || rows.total() < WORTH_IT * entries.size() * lanes) {
     forget();
     return false;
   }

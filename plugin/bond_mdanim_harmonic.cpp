@@ -157,7 +157,7 @@ void BondMdanimHarmonic::adopt(SpringRows &&now, bool halves)
   made = ++versions;
   int farthest = 0;
   for (int i = 0; halves && i < rows.size(); ++i)
-    if (rows.begin(i) < rows.end(i)) farthest = std::max(farthest, rows.link(rows.begin(i)).offset);
+    if (rows[i].size()) farthest = std::max(farthest, rows[i].first->offset);
   received.set_up(farthest);
 }
 
@@ -192,7 +192,7 @@ void BondMdanimHarmonic::look_up(int i, bool halves, Row &row) const
   if (!ascending)
     std::stable_sort(link.begin(), link.end(), [&](const auto &a, const auto &b) { return tag_of(a) < tag_of(b); });
   const auto upper = std::find_if(link.begin(), link.end(), [&](const auto &l) { return tag_of(l) > own; });
-  row.upper = static_cast<int>(upper - link.begin());
+  row.lower = static_cast<int>(upper - link.begin());
   std::reverse(upper, link.end());
 }
 
@@ -260,8 +260,7 @@ void BondMdanimHarmonic::forces(int begin, int end, int n)
     for (auto *array : {&stretch.x, &stretch.y, &stretch.z, &stretch.push, &stretch.pull}) array->resize(room);
   for (int i = begin, at = 0; i < end; ++i) {
     const Vec3 here = vec3(x + 3 * i);
-    for (int b = rows.begin(i), last = rows.end(i); b < last; ++b, ++at) {
-      const SpringRows::Link link = rows.link(b);
+    for (const SpringRows::Link &link : rows[i]) {
       const Vec3 d = here - vec3(x + 3 * (i + link.offset));
       stretch.x[at] = d.x;
       stretch.y[at] = d.y;
@@ -269,6 +268,7 @@ void BondMdanimHarmonic::forces(int begin, int end, int n)
       const Law &own = law[link.type];
       stretch.push[at] = own.push;
       stretch.pull[at] = own.pull;
+      ++at;
     }
   }
   spring_forces(n, stretch.push.data(), stretch.pull.data(), stretch.x.data(), stretch.y.data(), stretch.z.data());
@@ -278,15 +278,15 @@ void BondMdanimHarmonic::forces(int begin, int end, int n)
 void BondMdanimHarmonic::dashpots(int begin, int end, std::vector<Vec3> &on)
 {
   for (int i = begin, at = 0; i < end; ++i)
-    for (int b = rows.begin(i); b < rows.end(i); ++b, ++at) {
-      const double c = law[rows.link(b).type].c;
+    for (const SpringRows::Link &link : rows[i]) {
+      const int own = at++, j = i + link.offset;
+      const double c = law[link.type].c;
       if (c == 0.0) continue;
-      const int j = i + rows.link(b).offset;
       const Vec3 d = vec3(atom->x[i]) - vec3(atom->x[j]), v = vec3(atom->v[i]) - vec3(atom->v[j]);
       const Vec3 push = drag(c, d, v) * d;
-      stretch.x[at] += push.x;
-      stretch.y[at] += push.y;
-      stretch.z[at] += push.z;
+      stretch.x[own] += push.x;
+      stretch.y[own] += push.y;
+      stretch.z[own] += push.z;
       on[i] += push;
       if (upper_only) on[j] -= push;
     }
@@ -297,8 +297,9 @@ void BondMdanimHarmonic::sum_rows(int begin, int end)
   double *const *f = atom->f;
   for (int i = begin, at = 0; i < end; ++i) {
     Vec3 lower, upper;
-    for (int b = rows.begin(i); b < rows.end(i); ++b, ++at)
-      (b < rows.upper(i) ? lower : upper) += {stretch.x[at], stretch.y[at], stretch.z[at]};
+    const int middle = at + rows.lower(i), end = at + rows[i].size();
+    for (; at < middle; ++at) lower += {stretch.x[at], stretch.y[at], stretch.z[at]};
+    for (; at < end; ++at) upper += {stretch.x[at], stretch.y[at], stretch.z[at]};
     add_to(f[i], lower + upper);
   }
 }
@@ -318,10 +319,11 @@ void BondMdanimHarmonic::sum_halves(int begin, int end)
   double *const *f = atom->f;
   for (int i = begin, at = 0; i < end; ++i) {
     Vec3 upper;
-    for (int b = rows.begin(i), last = rows.end(i); b < last; ++b, ++at) {
+    for (const SpringRows::Link &link : rows[i]) {
       const Vec3 force{stretch.x[at], stretch.y[at], stretch.z[at]};
       upper += force;
-      received.of(i + rows.link(b).offset) -= force;
+      received.of(i + link.offset) -= force;
+      ++at;
     }
     add_to(f[i], received.of(i) + upper);
     received.of(i) = Vec3();
@@ -345,7 +347,7 @@ void BondMdanimHarmonic::compute(int eflag, int vflag)
   for (int begin = 0, end; begin < nlocal; begin = end) {
     int springs = 0;
     for (end = begin; end < nlocal; ++end) {
-      const int more = rows.end(end) - rows.begin(end);
+      const int more = rows[end].size();
       if (end > begin && springs + more > STRETCH) break;
       springs += more;
     }
@@ -358,32 +360,47 @@ void BondMdanimHarmonic::compute(int eflag, int vflag)
   if (evflag) tally();
 }
 
-// Energy and virial on steps that ask for them; half of a bond's share goes to either end.
+template <class Visit> void BondMdanimHarmonic::each_spring(Visit visit) const
+{
+  const double *x = atom->x[0];
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const Vec3 here = vec3(x + 3 * i);
+    for (const SpringRows::Link &link : rows[i]) visit(i, i + link.offset, link.type, here - vec3(x + 3 * (i + link.offset)));
+  }
+}
+
+// Energy and virial on steps that ask for them; half of a bond's share goes to either end, which tallies it in its own row where
+// rows are whole.
 void BondMdanimHarmonic::tally()
 {
   const double share = upper_only ? 1.0 : 0.5;
-  for (int i = 0; i < atom->nlocal; ++i)
-    for (int b = rows.begin(i); b < rows.end(i); ++b) {
-      const SpringRows::Link link = rows.link(b);
-      const int j = i + link.offset;
-      const Spring &s = spring[link.type];
-      const Vec3 d = vec3(atom->x[i]) - vec3(atom->x[j]);
-      const double r2 = dot(d, d), e = mdanim::energy(s, std::sqrt(r2));
-      const Law &own = law[link.type];
-      double factor = force_factor(own.push, own.pull, r2);
-      if (s.c > 0.0) factor += drag(s.c, d, vec3(atom->v[i]) - vec3(atom->v[j]));
-      const double w[6] = {d.x * d.x * factor, d.y * d.y * factor, d.z * d.z * factor,
-                           d.x * d.y * factor, d.x * d.z * factor, d.y * d.z * factor};
-      if (eflag_global) energy += share * e;
-      if (vflag_global)
-        for (int k = 0; k < 6; ++k) virial[k] += share * w[k];
-      for (const int end : {i, j}) {
-        if (end == j && !upper_only) continue;    // j tallies its half in its own row
-        if (eflag_atom) eatom[end] += 0.5 * e;
-        if (vflag_atom)
-          for (int k = 0; k < 6; ++k) vatom[end][k] += 0.5 * w[k];
-      }
+  if (eflag_either) {
+    double sum = 0.0;
+    each_spring([&](int i, int j, int type, const Vec3 &d) {
+      const double e = mdanim::energy(spring[type], std::sqrt(dot(d, d)));
+      sum += share * e;
+      if (!eflag_atom) return;
+      eatom[i] += 0.5 * e;
+      if (upper_only) eatom[j] += 0.5 * e;
+    });
+    if (eflag_global) energy = sum;
+  }
+  if (!vflag_either) return;
+  double sums[6] = {};
+  each_spring([&](int i, int j, int type, const Vec3 &d) {
+    const Law &own = law[type];
+    double factor = force_factor(own.push, own.pull, dot(d, d));
+    if (own.c > 0.0) factor += drag(own.c, d, vec3(atom->v[i]) - vec3(atom->v[j]));
+    const double w[6] = {d.x * d.x * factor, d.y * d.y * factor, d.z * d.z * factor,
+                         d.x * d.y * factor, d.x * d.z * factor, d.y * d.z * factor};
+    for (int k = 0; k < 6; ++k) sums[k] += share * w[k];
+    if (!vflag_atom) return;
+    for (int k = 0; k < 6; ++k) {
+      vatom[i][k] += 0.5 * w[k];
+      if (upper_only) vatom[j][k] += 0.5 * w[k];
     }
+  });
+  if (vflag_global) std::copy(sums, sums + 6, virial);
 }
 
 // --- what LAMMPS asks besides ---

@@ -79,6 +79,7 @@ class BondMdanimHarmonic : public Bond {
   void sum_rows(int begin, int end);
   void sum_halves(int begin, int end);
   void dashpots(int begin, int end, std::vector<mdanim::Vec3> &on);
+  template <class Visit> void each_spring(Visit visit) const;    // visit(i, j, type, r_ij)
   void tally();
 
   std::vector<mdanim::Spring> spring;    // by bond type

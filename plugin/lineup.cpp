@@ -14,10 +14,7 @@ Lineup::Lineup(int nlocal, int nall, const int *tag, const BondRows &bonds) : la
   std::vector<int> of_tag(nall ? *highest - *lowest + 1 : 0, -1);    // no longer than LAMMPS's own map
   for (int i = 0; i < nlocal; ++i) of_tag[tag[i] - *lowest] = i;
   for (int i = 0; i < nlocal; ++i)
-    for (int b = here.begin(i); b < here.end(i); ++b) {
-      const int j = i + here.link(b).offset;
-      of_tag[tag[j] - *lowest] = j;
-    }
+    for (const SpringRows::Link &link : here[i]) of_tag[tag[i + link.offset] - *lowest] = i + link.offset;
   for (const int i : of_tag)
     if (i >= 0) index.push_back(i);
 
@@ -35,10 +32,11 @@ Lineup::Lineup(int nlocal, int nall, const int *tag, const BondRows &bonds) : la
     for (int s = size() - 1; s >= 0; --s) {
       const int i = index[s];
       if (i >= nlocal) continue;
-      for (int b = here.begin(i); b < here.end(i); ++b) {
-        const int j = i + here.link(b).offset;
-        if (b >= here.upper(i)) visit(s, place[j], here.link(b).type);
-        else if (j >= nlocal) visit(place[j], s, here.link(b).type);
+      int lower = here.lower(i);
+      for (const SpringRows::Link &link : here[i]) {
+        const int j = i + link.offset;
+        if (lower-- <= 0) visit(s, place[j], link.type);
+        else if (j >= nlocal) visit(place[j], s, link.type);
       }
     }
   };

@@ -10,8 +10,8 @@ namespace mdanim {
 
 bool SpringRows::same(int k, const Row &row) const
 {
-  return first[k] + row.upper == middle[k] &&
-      std::equal(row.link.begin(), row.link.end(), distinct.begin() + first[k], distinct.begin() + first[k + 1]);
+  const Links own = links(k);
+  return row.lower == lowers[k] && std::equal(row.link.begin(), row.link.end(), own.begin(), own.end());
 }
 
 void SpringRows::add(const Row &row)
@@ -21,7 +21,7 @@ void SpringRows::add(const Row &row)
     kind.push_back(kind.back());
     return;
   }
-  std::uint64_t hash = 1469598103934665603u + row.upper;    // FNV-1a, by words
+  std::uint64_t hash = 1469598103934665603u + row.lower;    // FNV-1a, by words
   for (const Link &link : row.link) {
     const std::uint64_t word = static_cast<std::uint64_t>(link.offset) << 32 ^ static_cast<std::uint32_t>(link.type);
     hash = (hash ^ word ^ word >> 29) * 1099511628211u;
@@ -32,21 +32,21 @@ void SpringRows::add(const Row &row)
     kind.push_back(found->second);
     return;
   }
-  kind.push_back(static_cast<int>(middle.size()));
+  kind.push_back(static_cast<int>(lowers.size()));
   known.emplace(hash, kind.back());
-  middle.push_back(first.back() + row.upper);
+  lowers.push_back(row.lower);
   distinct.insert(distinct.end(), row.link.begin(), row.link.end());
   first.push_back(static_cast<int>(distinct.size()));
 }
 
 bool SpringRows::operator==(const SpringRows &other) const
 {
-  return kind == other.kind && first == other.first && middle == other.middle && distinct == other.distinct;
+  return kind == other.kind && first == other.first && lowers == other.lowers && distinct == other.distinct;
 }
 
 std::size_t SpringRows::bytes() const
 {
-  return (kind.capacity() + first.capacity() + middle.capacity()) * sizeof(int) + distinct.capacity() * sizeof(Link);
+  return (kind.capacity() + first.capacity() + lowers.capacity()) * sizeof(int) + distinct.capacity() * sizeof(Link);
 }
 
 }    // namespace mdanim

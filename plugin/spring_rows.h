@@ -21,34 +21,38 @@ class SpringRows {
     int type;      // of the bond
     bool operator==(const Link &other) const { return offset == other.offset && type == other.type; }
   };
-  // In the order in which forces are summed: lower partners ascending by tag, then, from `upper` on, upper ones descending.
+  // In the order in which forces are summed: `lower` partners of lower tag, ascending, then upper ones, descending.
   struct Row {
     std::vector<Link> link;
-    int upper = 0;
+    int lower = 0;
+  };
+  struct Links {
+    const Link *first, *last;
+    const Link *begin() const { return first; }
+    const Link *end() const { return last; }
+    int size() const { return static_cast<int>(last - first); }
   };
 
   explicit SpringRows(int particles = 0) { kind.reserve(particles); }
   void add(const Row &row);                                              // of the next particle
   void close() { known.clear(); }                                        // that was the last
   bool is(int i, const Row &row) const { return same(kind[i], row); }    // the row of particle i
+  Links operator[](int i) const { return links(kind[i]); }
+  int lower(int i) const { return lowers[kind[i]]; }
 
   int size() const { return static_cast<int>(kind.size()); }
-  std::size_t links() const { return all; }    // in all rows
-  // The row of particle i: places in link().
-  int begin(int i) const { return first[kind[i]]; }
-  int upper(int i) const { return middle[kind[i]]; }
-  int end(int i) const { return first[kind[i] + 1]; }
-  const Link &link(int at) const { return distinct[at]; }
+  std::size_t total() const { return all; }    // length of all rows
 
   bool operator==(const SpringRows &other) const;
   std::size_t bytes() const;
 
  private:
+  Links links(int k) const { return {distinct.data() + first[k], distinct.data() + first[k + 1]}; }
   bool same(int k, const Row &row) const;
 
-  std::vector<int> kind;             // of row, for each particle
-  std::vector<int> first{0}, middle;    // for each kind
-  std::vector<Link> distinct;        // links of all kinds
+  std::vector<int> kind;                // of row, for each particle
+  std::vector<int> first{0}, lowers;    // for each kind
+  std::vector<Link> distinct;           // of all kinds
   std::size_t all = 0;
   std::unordered_multimap<std::size_t, int> known;    // kinds by hash, until all rows are here
 };
