@@ -374,22 +374,17 @@ template <class Visit> void BondMdanimHarmonic::each_spring(Visit visit) const
 void BondMdanimHarmonic::tally()
 {
   const double share = upper_only ? 1.0 : 0.5;
-  if (eflag_either) {
-    double sum = 0.0;
-    each_spring([&](int i, int j, int type, const Vec3 &d) {
-      const double e = mdanim::energy(spring[type], std::sqrt(dot(d, d)));
-      sum += share * e;
-      if (!eflag_atom) return;
+  double sum = 0.0, sums[6] = {};
+  each_spring([&](int i, int j, int type, const Vec3 &d) {
+    const double r2 = dot(d, d), e = mdanim::energy(spring[type], std::sqrt(r2));
+    sum += share * e;
+    if (eflag_atom) {
       eatom[i] += 0.5 * e;
       if (upper_only) eatom[j] += 0.5 * e;
-    });
-    if (eflag_global) energy = sum;
-  }
-  if (!vflag_either) return;
-  double sums[6] = {};
-  each_spring([&](int i, int j, int type, const Vec3 &d) {
+    }
+    if (!vflag_either) return;
     const Law &own = law[type];
-    double factor = force_factor(own.push, own.pull, dot(d, d));
+    double factor = force_factor(own.push, own.pull, r2);
     if (own.c > 0.0) factor += drag(own.c, d, vec3(atom->v[i]) - vec3(atom->v[j]));
     const double w[6] = {d.x * d.x * factor, d.y * d.y * factor, d.z * d.z * factor,
                          d.x * d.y * factor, d.x * d.z * factor, d.y * d.z * factor};
@@ -400,6 +395,7 @@ void BondMdanimHarmonic::tally()
       if (upper_only) vatom[j][k] += 0.5 * w[k];
     }
   });
+  if (eflag_global) energy = sum;
   if (vflag_global) std::copy(sums, sums + 6, virial);
 }
 

@@ -109,8 +109,8 @@ class Instance:
         lmp.commands_list(physics(plan))
         if self._comm:
             lmp.commands_list(BALANCE)
-        # The springs' energy is all that is asked for, not the virial for a pressure.
-        lmp.commands_list(["uncompute thermo_press", f"thermo {max(1, plan.certificate.steps_per_frame)}",
+        # The springs' energy is all that is asked for.
+        lmp.commands_list([f"thermo {max(1, plan.certificate.steps_per_frame)}",
                            f"thermo_style custom step{' ebond' if len(plan.bonds) else ''}", "thermo_modify norm no"])
 
     def _insert(self, ends: Ends | None, position: np.ndarray) -> None:
