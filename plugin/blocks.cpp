@@ -74,10 +74,11 @@ unsigned Catalogue::find_or_add(const double *row)
 // How many particles the best cut takes into the block that ends before particle i; index 1 … N.
 std::vector<int> Blocks::lengths(const HalfBonds &bonds, const int *object) const
 {
+  const SpringRows &rows = *bonds.rows;
   std::vector<int> best(particles + 1);
   int farthest = 0;
   for (int i = 0; i < particles; ++i)
-    for (int b = bonds.first[i]; b < bonds.first[i + 1]; ++b) farthest = std::max(farthest, bonds.partner[b] - i);
+    for (const SpringRows::Link &link : rows[i]) farthest = std::max(farthest, link.offset);
   std::vector<int> seen(farthest + 1, -1);    // first particle of the latest block that has this offset
   std::vector<long> cost(particles + 1, std::numeric_limits<long>::max());
   cost[0] = 0;
@@ -86,8 +87,8 @@ std::vector<int> Blocks::lengths(const HalfBonds &bonds, const int *object) cons
     for (int n = 1; n <= lanes && i + n <= particles; ++n) {
       const int k = i + n - 1;
       if (object[k] != object[i]) break;
-      for (int b = bonds.first[k]; b < bonds.first[k + 1]; ++b) {
-        int &latest = seen[bonds.partner[b] - k];
+      for (const SpringRows::Link &link : rows[k]) {
+        int &latest = seen[link.offset];
         offsets += latest != i;
         latest = i;
       }
@@ -103,7 +104,8 @@ std::vector<int> Blocks::lengths(const HalfBonds &bonds, const int *object) cons
 
 bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
 {
-  particles = bonds.particles;
+  const SpringRows &rows = *bonds.rows;
+  particles = rows.size();
   lanes = width.lanes;
   all.clear();
   entries.clear();
@@ -115,29 +117,25 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
   home.resize(particles);
   for (std::size_t n = 0; n < all.size(); ++n) std::fill_n(&home[all[n].start], all[n].lanes, static_cast<int>(n));
   for (int i = 0; i < particles; ++i)
-    for (int b = bonds.first[i]; b < bonds.first[i + 1]; ++b)
-      if (bonds.law[bonds.type[b]].c > 0.0) all[home[i]].damped = all[home[bonds.partner[b]]].damped = true;
+    for (const SpringRows::Link &link : rows[i])
+      if (bonds.law[link.type].c > 0.0) all[home[i]].damped = all[home[i + link.offset]].damped = true;
 
   laws.start(2 * lanes);
   damped_laws.start(3 * lanes);
-  std::vector<int> next(lanes);    // spring of each lane
+  std::vector<SpringRows::Links> left(lanes);    // springs of each lane
   std::vector<double> law(3 * lanes);
   int farthest = 0;
   for (Block &block : all) {
-    const int end = block.start + block.lanes;
-    for (int i = block.start; i < end; ++i) next[i - block.start] = bonds.first[i];
+    for (int lane = 0; lane < block.lanes; ++lane) left[lane] = rows[block.start + lane];
     for (;;) {
       int offset = 0;    // the longest that is left
-      for (int i = block.start; i < end; ++i) {
-        const int b = next[i - block.start];
-        if (b < bonds.first[i + 1]) offset = std::max(offset, bonds.partner[b] - i);
-      }
+      for (int lane = 0; lane < block.lanes; ++lane)
+        if (left[lane].size()) offset = std::max(offset, left[lane].first->offset);
       if (offset == 0) break;
       std::fill(law.begin(), law.end(), 0.0);
-      for (int i = block.start; i < end; ++i) {
-        const int lane = i - block.start;
-        for (int &b = next[lane]; b < bonds.first[i + 1] && bonds.partner[b] - i == offset; ++b) {
-          const Law &own = bonds.law[bonds.type[b]];
+      for (int lane = 0; lane < block.lanes; ++lane) {
+        for (auto &[link, last] = left[lane]; link != last && link->offset == offset; ++link) {
+          const Law &own = bonds.law[link->type];
           law[lane] = own.push;
           law[lanes + lane] = own.pull;
           if (block.damped) law[2 * lanes + lane] = own.c;
@@ -149,8 +147,7 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
     block.end = static_cast<unsigned>(entries.size());
   }
 
-  const double springs = bonds.first[particles];
-  if (entries.empty() || springs < WORTH_IT * entries.size() * lanes) {
+  if (entries.empty() || rows.total() < WORTH_IT * entries.size() * lanes) {
     forget();
     return false;
   }

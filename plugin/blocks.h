@@ -5,7 +5,7 @@
 #define MDANIM_BLOCKS_H
 
 #include "pass.h"
-#include "spring.h"
+#include "spring_rows.h"
 #include "vec3.h"
 
 #include <cstdint>
@@ -44,13 +44,6 @@ class Catalogue {
   int width = 0;
   unsigned count = 0, latest = 0;
   std::unordered_multimap<std::uint64_t, unsigned> known;
-};
-
-// Half of all springs: those of particle i to particles of higher index are [first[i], first[i+1]), partners descending.
-struct HalfBonds {
-  int particles;
-  const int *first, *partner, *type;
-  const Law *law;    // of each type
 };
 
 // What a particle's motion depends on.

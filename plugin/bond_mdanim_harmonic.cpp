@@ -22,8 +22,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numeric>
-#include <tuple>
 #include <utility>
 
 using namespace LAMMPS_NS;
@@ -104,6 +102,14 @@ void BondMdanimHarmonic::init_style()
 bool BondMdanimHarmonic::source_changed()
 {
   const int nlocal = atom->nlocal;
+  if (given) {
+    if (nlocal != rows.size() || atom->nghost || !std::is_sorted(atom->tag, atom->tag + nlocal))
+      error->all(FLERR,
+                 "bond_style mdanim/harmonic: springs were given for {} particles, in the order of their tags and without ghosts; at step "
+                 "{} there are {}, with {} ghosts, or in another order; if the bodies fly apart, lower the time step",
+                 rows.size(), update->ntimestep, nlocal, atom->nghost);
+    return false;
+  }
   const bool partners_may_differ = update->setupflag || bonds_are_swapped;
   bool same = atom->nghost == 0 && static_cast<int>(source.tag.size()) == nlocal &&
       std::equal(source.tag.begin(), source.tag.end(), atom->tag) &&
@@ -121,51 +127,54 @@ bool BondMdanimHarmonic::source_changed()
 
 bool BondMdanimHarmonic::has_changed(int i, Row &row) const
 {
-  look_up(i, rows.upper_only, row);
-  const int begin = rows.first[i];
-  return static_cast<int>(row.partner.size()) != rows.first[i + 1] - begin ||
-      !std::equal(row.partner.begin(), row.partner.end(), rows.partner.begin() + begin) ||
-      !std::equal(row.type.begin(), row.type.end(), rows.type.begin() + begin);
+  look_up(i, upper_only, row);
+  return !rows.is(i, row);
 }
 
 void BondMdanimHarmonic::make_rows()
 {
-  rows = Rows();
-  made = ++versions;
-  rows.upper_only = halves_suffice();
-  int bonds = std::accumulate(atom->num_bond, atom->num_bond + atom->nlocal, 0);
-  if (rows.upper_only) bonds = (bonds + 1) / 2;
-  rows.first.reserve(atom->nlocal + 1);
-  rows.first.push_back(0);
-  rows.partner.reserve(bonds);
-  rows.type.reserve(bonds);
+  const bool halves = halves_suffice();
+  SpringRows now(atom->nlocal);
   Row row;
-  int farthest = 0;
   for (int i = 0; i < atom->nlocal; ++i) {
-    look_up(i, rows.upper_only, row);
-    if (rows.upper_only && !row.partner.empty()) farthest = std::max(farthest, row.partner.front() - i);
-    if (!rows.upper_only) rows.upper.push_back(rows.first.back() + row.upper);
-    rows.partner.insert(rows.partner.end(), row.partner.begin(), row.partner.end());
-    rows.type.insert(rows.type.end(), row.type.begin(), row.type.end());
-    rows.first.push_back(static_cast<int>(rows.partner.size()));
+    look_up(i, halves, row);
+    now.add(row);
   }
-  received.set_up(rows.upper_only ? farthest : 0);
+  adopt(std::move(now), halves);
+}
+
+void BondMdanimHarmonic::take(SpringRows &&upper_rows)
+{
+  given = true;
+  adopt(std::move(upper_rows), true);
+}
+
+void BondMdanimHarmonic::adopt(SpringRows &&now, bool halves)
+{
+  now.close();
+  rows = std::move(now);
+  upper_only = halves;
+  made = ++versions;
+  int farthest = 0;
+  for (int i = 0; halves && i < rows.size(); ++i)
+    if (rows[i].size()) farthest = std::max(farthest, rows[i].first->offset);
+  received.set_up(farthest);
 }
 
 // The bonds of particle i in the order in which their forces are summed: lower partners from the lowest tag up, which may be left
 // out, then upper ones from the highest down.
-void BondMdanimHarmonic::look_up(int i, bool upper_only, Row &row) const
+void BondMdanimHarmonic::look_up(int i, bool halves, Row &row) const
 {
   const bool periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
   const tagint *const tag = atom->tag, own = tag[i];
-  row.partner.clear();
-  row.type.clear();
+  std::vector<SpringRows::Link> &link = row.link;
+  link.clear();
   tagint before = 0;
   bool ascending = true;
   for (int b = 0; b < atom->num_bond[i]; ++b) {
     const tagint other = atom->bond_atom[i][b];
     const int type = atom->bond_type[i][b];
-    if (type <= 0 || (upper_only && other < own)) continue;    // 0 and less: switched off by delete_bonds
+    if (type <= 0 || (halves && other < own)) continue;    // 0 and less: switched off by delete_bonds
     int partner = atom->map(other);
     if (partner < 0)
       error->one(
@@ -175,21 +184,16 @@ void BondMdanimHarmonic::look_up(int i, bool upper_only, Row &row) const
           "lower the time step",
           own, other, update->ntimestep);
     if (periodic) partner = domain->closest_image(i, partner);
-    row.partner.push_back(partner);
-    row.type.push_back(type);
+    link.push_back({partner - i, type});
     ascending = ascending && other > before;
     before = other;
   }
-  if (!ascending) {
-    std::vector<std::pair<int, int>> both;    // partner, type
-    for (size_t b = 0; b < row.partner.size(); ++b) both.emplace_back(row.partner[b], row.type[b]);
-    std::stable_sort(both.begin(), both.end(), [tag](const auto &a, const auto &b) { return tag[a.first] < tag[b.first]; });
-    for (size_t b = 0; b < both.size(); ++b) std::tie(row.partner[b], row.type[b]) = both[b];
-  }
-  const auto upper = std::find_if(row.partner.begin(), row.partner.end(), [tag, own](int j) { return tag[j] > own; });
-  row.upper = static_cast<int>(upper - row.partner.begin());
-  std::reverse(upper, row.partner.end());
-  std::reverse(row.type.begin() + row.upper, row.type.end());
+  const auto tag_of = [tag, i](const SpringRows::Link &l) { return tag[i + l.offset]; };
+  if (!ascending)
+    std::stable_sort(link.begin(), link.end(), [&](const auto &a, const auto &b) { return tag_of(a) < tag_of(b); });
+  const auto upper = std::find_if(link.begin(), link.end(), [&](const auto &l) { return tag_of(l) > own; });
+  row.lower = static_cast<int>(upper - link.begin());
+  std::reverse(upper, link.end());
 }
 
 // Laws of all types; another version where one differs from before.
@@ -210,23 +214,22 @@ bool BondMdanimHarmonic::halves_suffice() const
   Row row;
   for (int i = 0; atom->nghost && i < nlocal; ++i) {
     look_up(i, false, row);
-    if (std::any_of(row.partner.begin(), row.partner.end(), [nlocal](int j) { return j >= nlocal; })) return false;
+    if (std::any_of(row.link.begin(), row.link.end(), [=](const auto &l) { return i + l.offset >= nlocal; })) return false;
   }
   return true;
 }
 
 bool BondMdanimHarmonic::halves(HalfBonds &half) const
 {
-  if (!rows.upper_only || static_cast<int>(rows.first.size()) != atom->nlocal + 1) return false;
-  half = {atom->nlocal, rows.first.data(), rows.partner.data(), rows.type.data(), law.data()};
+  if (!upper_only || rows.size() != atom->nlocal) return false;
+  half = {&rows, law.data()};
   return true;
 }
 
 bool BondMdanimHarmonic::rows_of_all(BondRows &all) const
 {
-  if (static_cast<int>(rows.first.size()) != atom->nlocal + 1) return false;
-  const std::vector<int> &upper = rows.upper_only ? rows.first : rows.upper;
-  all = {rows.first.data(), upper.data(), rows.partner.data(), rows.type.data(), &law};
+  if (rows.size() != atom->nlocal) return false;
+  all = {&rows, &law};
   return true;
 }
 
@@ -258,79 +261,70 @@ static void spring_energies(int n, const double *__restrict x, const double *__r
     K[b] = mdanim::energy({K[b], r0[b], 0.0}, std::sqrt((x[b] * x[b] + y[b] * y[b]) + z[b] * z[b]));
 }
 
-// The springs of rows [begin, end) into `stretch`.
-void BondMdanimHarmonic::take_apart(int begin, int end)
+// The springs of rows [begin, end), `n` in all, into `stretch`.
+void BondMdanimHarmonic::take_apart(int begin, int end, int n)
 {
   const double *x = atom->x[0];
-  const int base = rows.first[begin], n = rows.first[end] - base;
   const size_t room = n;
   if (n == 0) return;
   if (stretch.x.size() < room)
     for (auto *array : {&stretch.x, &stretch.y, &stretch.z, &stretch.push, &stretch.pull}) array->resize(room);
-  for (int i = begin, b = 0; i < end; ++i) {
+  for (int i = begin, at = 0; i < end; ++i) {
     const Vec3 here = vec3(x + 3 * i);
-    for (; b < rows.first[i + 1] - base; ++b) {
-      const Vec3 d = here - vec3(x + 3 * rows.partner[base + b]);
-      stretch.x[b] = d.x;
-      stretch.y[b] = d.y;
-      stretch.z[b] = d.z;
-      const Law &own = law[rows.type[base + b]];
-      stretch.push[b] = own.push;
-      stretch.pull[b] = own.pull;
+    for (const SpringRows::Link &link : rows[i]) {
+      const Vec3 d = here - vec3(x + 3 * (i + link.offset));
+      stretch.x[at] = d.x;
+      stretch.y[at] = d.y;
+      stretch.z[at] = d.z;
+      const Law &own = law[link.type];
+      stretch.push[at] = own.push;
+      stretch.pull[at] = own.pull;
+      ++at;
     }
   }
 }
 
-// They become forces.
-void BondMdanimHarmonic::forces(int begin, int end)
+// Adds up the energies of the springs in `stretch`; half of a bond's share goes to either end.
+void BondMdanimHarmonic::energies(int begin, int end, int n)
 {
-  spring_forces(rows.first[end] - rows.first[begin], stretch.push.data(), stretch.pull.data(), stretch.x.data(), stretch.y.data(),
-                stretch.z.data());
-}
-
-// Adds up their energies; half of a bond's share goes to either end.
-void BondMdanimHarmonic::energies(int begin, int end)
-{
-  const int base = rows.first[begin], n = rows.first[end] - base;
   stretch.K.resize(stretch.x.size());
   stretch.r0.resize(stretch.x.size());
-  for (int b = 0; b < n; ++b) {
-    const Spring &s = spring[rows.type[base + b]];
-    stretch.K[b] = s.K;
-    stretch.r0[b] = s.r0;
-  }
+  for (int i = begin, at = 0; i < end; ++i)
+    for (const SpringRows::Link &link : rows[i]) {
+      stretch.K[at] = spring[link.type].K;
+      stretch.r0[at++] = spring[link.type].r0;
+    }
   spring_energies(n, stretch.x.data(), stretch.y.data(), stretch.z.data(), stretch.r0.data(), stretch.K.data());
-  const double share = rows.upper_only ? 1.0 : 0.5;
-  for (int b = 0; b < n; ++b) energy += share * stretch.K[b];
+  const double share = upper_only ? 1.0 : 0.5;
+  for (int at = 0; at < n; ++at) energy += share * stretch.K[at];
 }
 
 // Add the dashpots of rows [begin, end) to `stretch`, and what each particle feels of them to `on`.
 void BondMdanimHarmonic::dashpots(int begin, int end, std::vector<Vec3> &on)
 {
-  const int base = rows.first[begin];
-  for (int i = begin; i < end; ++i)
-    for (int b = rows.first[i]; b < rows.first[i + 1]; ++b) {
-      const double c = law[rows.type[b]].c;
+  for (int i = begin, at = 0; i < end; ++i)
+    for (const SpringRows::Link &link : rows[i]) {
+      const int own = at++, j = i + link.offset;
+      const double c = law[link.type].c;
       if (c == 0.0) continue;
-      const int j = rows.partner[b];
       const Vec3 d = vec3(atom->x[i]) - vec3(atom->x[j]), v = vec3(atom->v[i]) - vec3(atom->v[j]);
       const Vec3 push = drag(c, d, v) * d;
-      stretch.x[b - base] += push.x;
-      stretch.y[b - base] += push.y;
-      stretch.z[b - base] += push.z;
+      stretch.x[own] += push.x;
+      stretch.y[own] += push.y;
+      stretch.z[own] += push.z;
       on[i] += push;
-      if (rows.upper_only) on[j] -= push;
+      if (upper_only) on[j] -= push;
     }
 }
 
 void BondMdanimHarmonic::sum_rows(int begin, int end)
 {
   double *const *f = atom->f;
-  const int base = rows.first[begin];
-  for (int i = begin, b = 0; i < end; ++i) {
+  for (int i = begin, at = 0; i < end; ++i) {
     Vec3 lower, upper;
-    for (; b < rows.upper[i] - base; ++b) lower += {stretch.x[b], stretch.y[b], stretch.z[b]};
-    for (; b < rows.first[i + 1] - base; ++b) upper += {stretch.x[b], stretch.y[b], stretch.z[b]};
+    const int middle = at + rows.lower(i), end = at + rows[i].size();
+    for (; at < middle; ++at) lower += {stretch.x[at], stretch.y[at], stretch.z[at]};
+    for (; at < end; ++at) upper += {stretch.x[at], stretch.y[at], stretch.z[at]};
     add_to(f[i], lower + upper);
   }
 }
@@ -348,13 +342,13 @@ void BondMdanimHarmonic::Ring::set_up(int farthest)
 void BondMdanimHarmonic::sum_halves(int begin, int end)
 {
   double *const *f = atom->f;
-  const int base = rows.first[begin];
-  for (int i = begin, b = 0; i < end; ++i) {
+  for (int i = begin, at = 0; i < end; ++i) {
     Vec3 upper;
-    for (; b < rows.first[i + 1] - base; ++b) {
-      const Vec3 force{stretch.x[b], stretch.y[b], stretch.z[b]};
+    for (const SpringRows::Link &link : rows[i]) {
+      const Vec3 force{stretch.x[at], stretch.y[at], stretch.z[at]};
       upper += force;
-      received.of(rows.partner[base + b]) -= force;
+      received.of(i + link.offset) -= force;
+      ++at;
     }
     add_to(f[i], received.of(i) + upper);
     received.of(i) = Vec3();
@@ -376,43 +370,59 @@ void BondMdanimHarmonic::compute(int eflag, int vflag)
     on = &loss.forces(nlocal);
   }
   for (int begin = 0, end; begin < nlocal; begin = end) {
-    end = begin + 1;
-    while (end < nlocal && rows.first[end + 1] - rows.first[begin] <= STRETCH) ++end;
-    take_apart(begin, end);
-    if (eflag_global) energies(begin, end);
-    forces(begin, end);
+    int springs = 0;
+    for (end = begin; end < nlocal; ++end) {
+      const int more = rows[end].size();
+      if (end > begin && springs + more > STRETCH) break;
+      springs += more;
+    }
+    take_apart(begin, end, springs);
+    if (eflag_global) energies(begin, end, springs);
+    spring_forces(springs, stretch.push.data(), stretch.pull.data(), stretch.x.data(), stretch.y.data(), stretch.z.data());
     if (on) dashpots(begin, end, *on);
-    if (rows.upper_only) sum_halves(begin, end);
+    if (upper_only) sum_halves(begin, end);
     else sum_rows(begin, end);
   }
   if (on) loss.step(atom->v, update->dt, update->setupflag);
   if (eflag_atom || vflag_either) tally();
 }
 
-// Virial and energy of each particle on steps that ask for them.
+template <class Visit> void BondMdanimHarmonic::each_spring(Visit visit) const
+{
+  const double *x = atom->x[0];
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const Vec3 here = vec3(x + 3 * i);
+    for (const SpringRows::Link &link : rows[i]) visit(i, i + link.offset, link.type, here - vec3(x + 3 * (i + link.offset)));
+  }
+}
+
+// Virial and energy of each particle on steps that ask for them; half of a bond's share goes to either end, which tallies it in its
+// own row where rows are whole.
 void BondMdanimHarmonic::tally()
 {
-  const double share = rows.upper_only ? 1.0 : 0.5;
-  for (int i = 0; i < atom->nlocal; ++i)
-    for (int b = rows.first[i]; b < rows.first[i + 1]; ++b) {
-      const int j = rows.partner[b];
-      const Spring &s = spring[rows.type[b]];
-      const Vec3 d = vec3(atom->x[i]) - vec3(atom->x[j]);
-      const double r2 = dot(d, d), e = mdanim::energy(s, std::sqrt(r2));
-      const Law &own = law[rows.type[b]];
-      double factor = force_factor(own.push, own.pull, r2);
-      if (s.c > 0.0) factor += drag(s.c, d, vec3(atom->v[i]) - vec3(atom->v[j]));
-      const double w[6] = {d.x * d.x * factor, d.y * d.y * factor, d.z * d.z * factor,
-                           d.x * d.y * factor, d.x * d.z * factor, d.y * d.z * factor};
-      if (vflag_global)
-        for (int k = 0; k < 6; ++k) virial[k] += share * w[k];
-      for (const int end : {i, j}) {
-        if (end == j && !rows.upper_only) continue;    // j tallies its half in its own row
-        if (eflag_atom) eatom[end] += 0.5 * e;
-        if (vflag_atom)
-          for (int k = 0; k < 6; ++k) vatom[end][k] += 0.5 * w[k];
-      }
+  const double share = upper_only ? 1.0 : 0.5;
+  double sums[6] = {};
+  each_spring([&](int i, int j, int type, const Vec3 &d) {
+    const double r2 = dot(d, d);
+    if (eflag_atom) {
+      const double e = mdanim::energy(spring[type], std::sqrt(r2));
+      eatom[i] += 0.5 * e;
+      if (upper_only) eatom[j] += 0.5 * e;
     }
+    if (!vflag_either) return;
+    const Law &own = law[type];
+    double factor = force_factor(own.push, own.pull, r2);
+    if (own.c > 0.0) factor += drag(own.c, d, vec3(atom->v[i]) - vec3(atom->v[j]));
+    const double w[6] = {d.x * d.x * factor, d.y * d.y * factor, d.z * d.z * factor,
+                         d.x * d.y * factor, d.x * d.z * factor, d.y * d.z * factor};
+    for (int k = 0; k < 6; ++k) sums[k] += share * w[k];
+    if (!vflag_atom) return;
+    for (int k = 0; k < 6; ++k) {
+      vatom[i][k] += 0.5 * w[k];
+      if (upper_only) vatom[j][k] += 0.5 * w[k];
+    }
+  });
+  if (vflag_global) std::copy(sums, sums + 6, virial);
 }
 
 // --- what LAMMPS asks besides ---
@@ -447,9 +457,8 @@ void BondMdanimHarmonic::write_data(FILE *fp)
 
 double BondMdanimHarmonic::memory_usage()
 {
-  const auto ints = rows.first.capacity() + rows.upper.capacity() + rows.partner.capacity() + rows.type.capacity() +
-      source.tag.capacity() + source.count.capacity();
-  return Bond::memory_usage() + ints * sizeof(int) + received.force.capacity() * sizeof(Vec3) +
+  const auto ints = source.tag.capacity() + source.count.capacity();
+  return Bond::memory_usage() + rows.bytes() + ints * sizeof(int) + received.force.capacity() * sizeof(Vec3) +
       law.capacity() * sizeof(Law) + (5.0 * stretch.x.capacity() + 2.0 * stretch.K.capacity()) * sizeof(double);
 }
 

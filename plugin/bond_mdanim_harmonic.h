@@ -32,6 +32,10 @@ class BondMdanimHarmonic : public Bond {
   double memory_usage() override;
   void *extract(const char *, int &) override;
 
+  // From now on these springs and no others, whatever bonds particles have: those of all particles, in the order of their tags, on a
+  // rank that is alone.
+  void take(mdanim::SpringRows &&upper_rows);
+
   // For run_style verlet/mdanim, which computes most forces itself: the springs, each once. False where that is not how they are
   // summed.
   bool halves(mdanim::HalfBonds &half) const;
@@ -42,22 +46,12 @@ class BondMdanimHarmonic : public Bond {
   void took(double more) { seconds += more; }
 
  private:
-  // Row i holds the bonds [first[i], first[i+1]) of local particle i in the order in which they are summed: lower partners
-  // ascending by tag, then, from `upper` on, upper ones descending.
-  struct Rows {
-    std::vector<int> first, upper, partner, type;    // partner: local or ghost index
-    bool upper_only = false;    // only partners of a higher tag, see sum_halves()
-  };
   // What the rows were made from, besides the bonds themselves, which they hold; while all is unchanged they are kept.
   struct Source {
     std::vector<tagint> tag;
     std::vector<int> count;    // of bonds
   };
-  // Partners and types of one row.
-  struct Row {
-    std::vector<int> partner, type;
-    int upper = 0;    // where those of higher tag begin
-  };
+  using Row = mdanim::SpringRows::Row;
   // The bonds of a few rows, one array per quantity, for the vector units.
   struct Stretch {
     std::vector<double> x, y, z;       // r_ij, then F_i
@@ -77,16 +71,17 @@ class BondMdanimHarmonic : public Bond {
   void allocate();
   bool source_changed();
   void make_rows();
-  void look_up(int i, bool upper_only, Row &row) const;
+  void adopt(mdanim::SpringRows &&made_rows, bool halves);
+  void look_up(int i, bool halves, Row &row) const;
   bool has_changed(int i, Row &scratch) const;
   void look_up_coefficients();
   bool halves_suffice() const;
-  void take_apart(int begin, int end);
-  void energies(int begin, int end);
-  void forces(int begin, int end);
+  void take_apart(int begin, int end, int n);
+  void energies(int begin, int end, int n);
   void sum_rows(int begin, int end);
   void sum_halves(int begin, int end);
   void dashpots(int begin, int end, std::vector<mdanim::Vec3> &on);
+  template <class Visit> void each_spring(Visit visit) const;    // visit(i, j, type, r_ij)
   void tally();
 
   std::vector<mdanim::Spring> spring;    // by bond type
@@ -94,7 +89,9 @@ class BondMdanimHarmonic : public Bond {
   bool damped = false;                   // some spring has a dashpot
   bool coefficients_may_differ = false;    // since their laws were made
   bool bonds_are_swapped = false;        // some fix changes partners during a run
-  Rows rows;
+  mdanim::SpringRows rows;    // of local particles, to local ones and ghosts
+  bool upper_only = false;    // only partners of a higher tag, see sum_halves()
+  bool given = false;         // by take(), not by the particles
   bigint made = 0;    // version
   Source source;
   Stretch stretch;

@@ -11,18 +11,17 @@
 
 namespace mdanim {
 
-// Springs of the particles of a rank, by index in LAMMPS's arrays. Those of particle i are [first[i], first[i+1]): to partners of
-// lower tag ascending, then, from upper[i] on, to those of higher tag descending.
+// Springs of the particles of a rank, by index in LAMMPS's arrays, to lower and upper partners; and the law of each type.
 struct BondRows {
-  const int *first, *upper, *partner, *type;
-  const std::vector<Law> *law;    // of each type
+  const SpringRows *rows;
+  const std::vector<Law> *law;
 };
 
 class Lineup {
  public:
   Lineup() = default;
   // `tag` of all particles that the rank knows, its own `nlocal` ones first.
-  Lineup(int nlocal, int nall, const int *tag, const BondRows &rows);
+  Lineup(int nlocal, int nall, const int *tag, const BondRows &bonds);
 
   int size() const { return static_cast<int>(index.size()); }
   const std::vector<int> &places() const { return index; }    // in LAMMPS's arrays, of every particle of the line
@@ -34,7 +33,7 @@ class Lineup {
  private:
   std::vector<int> index;
   std::vector<int> name;    // tag, with its sign changed where the particle is another rank's
-  std::vector<int> first, partner, type;
+  SpringRows rows;
   std::vector<Law> law;
 };
 

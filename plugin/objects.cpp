@@ -2,6 +2,7 @@
 // Plain C functions on a LAMMPS handle, for ctypes. No exception leaves them.
 
 #include "abi.h"
+#include "bond_mdanim_harmonic.h"
 
 #include "atom.h"
 #include "bond.h"
@@ -15,6 +16,7 @@
 #include <exception>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace LAMMPS_NS;
@@ -33,7 +35,7 @@ std::string number(long long n) { return std::to_string(n); }
 
 void check_bonds(const Atom *atom, int n, const int *tag, const Bonds &bonds)
 {
-  if (bonds.first[n] == 0) return;
+  if (!bonds.first || bonds.first[n] == 0) return;
   if (!atom->num_bond) fail("the atom style has no bonds; use 'atom_style bond'");
   for (int i = 0; i < n; ++i) {
     const long long count = bonds.first[i + 1] - bonds.first[i];
@@ -95,7 +97,7 @@ void insert(LAMMPS *lmp, int n, const int *tag, const int *type, const int *mole
     if (molecule) atom->molecule[here] = molecule[i];
     if (rmass) atom->rmass[here] = rmass[i];
     for (int p = 0; p < properties; ++p) column[p][here] = property[static_cast<size_t>(p) * n + i];
-    if (!atom->num_bond) continue;
+    if (!bonds.first || !atom->num_bond) continue;
     const int count = static_cast<int>(bonds.first[i + 1] - bonds.first[i]);
     atom->num_bond[here] = count;
     for (int b = 0; b < count; ++b) {
@@ -103,7 +105,34 @@ void insert(LAMMPS *lmp, int n, const int *tag, const int *type, const int *mole
       atom->bond_type[here][b] = bonds.type[bonds.first[i] + b];
     }
   }
-  atom->nbonds += bonds.first[n] / 2;    // LAMMPS counts a bond once, wherever it is stored
+  if (bonds.first) atom->nbonds += bonds.first[n] / 2;    // LAMMPS counts a bond once, wherever it is stored
+}
+
+void give_springs(LAMMPS *lmp, int springs, const int *pair, const int *type)
+{
+  auto *bond = dynamic_cast<BondMdanimHarmonic *>(lmp->force->bond);
+  if (!bond) fail("springs need 'bond_style mdanim/harmonic'");
+  if (lmp->comm->nprocs > 1) fail("particles of several ranks must have their bonds themselves; give them to mdanim_insert");
+  const int n = lmp->atom->nlocal, types = lmp->atom->nbondtypes;
+  mdanim::SpringRows rows(n);
+  mdanim::SpringRows::Row row;
+  int b = 0;
+  for (int i = 0; i < n; ++i) {
+    row.link.clear();
+    for (; b < springs && pair[2 * b] == i; ++b) {
+      const int offset = pair[2 * b + 1] - i;
+      if (offset < 1 || i + offset >= n || (!row.link.empty() && row.link.back().offset >= offset)) break;
+      if (type[b] < 1 || type[b] > types)
+        fail("bond type " + number(type[b]) + " is not within 1 and " + number(types) + "; raise bond/types of create_box");
+      row.link.push_back({offset, type[b]});
+    }
+    std::reverse(row.link.begin(), row.link.end());
+    rows.add(row);
+  }
+  if (b < springs)
+    fail("springs must be sorted pairs of two of the " + number(n) + " particles, the lower first; spring " + number(b) + " is " +
+         number(pair[2 * b]) + ", " + number(pair[2 * b + 1]));
+  bond->take(std::move(rows));
 }
 
 void set_table(LAMMPS *lmp, const char *name, int columns, int n, const int *tag, const int *values)
@@ -137,7 +166,7 @@ double of_bonds(void *handle, const char *what)
 
 // Create n particles in the given order, with masses, custom properties and bonds (both ends, 1-based tags).
 // The box exists: create_box … bond/types B extra/bond/per/atom M. Arrays: tag, type, molecule (n); x, v (n,
-// 3); rmass (n) or null; property (properties, n) for names without their d_; bond_first (n + 1). Every rank
+// 3); rmass (n) or null; property (properties, n) for names without their d_; bond_first (n + 1) or null for no bonds. Every rank
 // calls it with the same arguments. Returns 0, or 1 with a message in `error`; after an error the instance is
 // to be closed.
 MDANIM_EXPORT int mdanim_insert(void *handle, int n, const int *tag, const int *type, const int *molecule,
@@ -153,6 +182,20 @@ MDANIM_EXPORT int mdanim_insert(void *handle, int n, const int *tag, const int *
     snprintf(error, error_size, "%s", e.what());
   } catch (...) {
     snprintf(error, error_size, "unknown error");
+  }
+  return 1;
+}
+
+// Springs of all particles, for a process that is alone: bond_style mdanim/harmonic keeps them itself, and the particles' own bonds
+// count no more, which take 200 bytes per particle of a lattice. Arrays: pair (springs, 2), particles from 0 in the order of their
+// tags, i < j, sorted; type (springs). The particles exist, and the bond style. Returns 0, or 1 with a message in `error`.
+MDANIM_EXPORT int mdanim_give_springs(void *handle, int springs, const int *pair, const int *type, char *error, int error_size)
+{
+  try {
+    give_springs(static_cast<LAMMPS *>(handle), springs, pair, type);
+    return 0;
+  } catch (const std::exception &e) {
+    snprintf(error, error_size, "%s", e.what());
   }
   return 1;
 }

@@ -7,6 +7,7 @@ import numpy as np
 
 from mdanim_lammps.model.basin import plan_grid
 from mdanim_lammps.model.model import Layer, Model, Surface
+from mdanim_lammps.model.springs import types
 from mdanim_lammps.results.trajectory import TrajectoryWriter
 from mdanim_lammps.scene import scene as records
 
@@ -48,8 +49,10 @@ def model(name, points, hexahedron, position, surface, held=None, mass=1.0):
     ]
     spring = np.unique(np.sort(edges.reshape(-1, 2), axis=1), axis=0).astype(np.int32)
     share = np.bincount(hexahedron.ravel(), minlength=n) / 8
-    layer = np.where(share < 1, Layer.BOUNDARY, Layer.SUB_BOUNDARY).astype(np.int32)
+    layer = np.where(share < 1, Layer.BOUNDARY, Layer.SUB_BOUNDARY).astype(np.uint8)
     where = points + np.array(position)
+    length = np.linalg.norm(points[spring[:, 0]] - points[spring[:, 1]], axis=1)
+    spring_type, constants = types(np.column_stack([np.ones(len(spring)), length, np.zeros(len(spring))]))
     return Model(
         name=name,
         position=where,
@@ -59,9 +62,8 @@ def model(name, points, hexahedron, position, surface, held=None, mass=1.0):
         layer=layer,
         held=np.zeros(n, bool) if held is None else held,
         spring=spring,
-        stiffness=np.ones(len(spring)),
-        rest=np.linalg.norm(points[spring[:, 0]] - points[spring[:, 1]], axis=1),
-        damping=None,
+        spring_type=spring_type,
+        constants=constants,
         hexahedron=hexahedron,
         cell=(0.1, 0.1, 0.1),
         young=1e5,

@@ -13,7 +13,7 @@ from mdanim_lammps.driver.prepare import Prepared
 from mdanim_lammps.engine.commands import harmonic_coeff, input_script
 from mdanim_lammps.engine.data_file import data_text, write_data
 from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.engine.plan import bond_kinds, both_ends
+from mdanim_lammps.engine.plan import both_ends
 from mdanim_lammps.errors import SetupError
 
 MEETING = """
@@ -133,15 +133,6 @@ def write_files(ready: Prepared, directory: Path):
 def test_harmonic_coeff_is_half_of_k():
     """Halve the paper's k for LAMMPS's K."""
     assert harmonic_coeff(3.0) == 1.5
-
-
-def test_bond_kinds_keep_every_bit():
-    """Give springs one type exactly when their coefficients agree in every bit."""
-    k = np.array([1.0, np.nextafter(1.0, 2.0), 1.0, 2.0])
-    r = np.array([0.1, 0.1, 0.1, 0.1])
-    kind, table = bond_kinds(k, r, None)
-    assert kind.tolist() == [1, 2, 1, 3]
-    assert np.array_equal(table[kind - 1, 0], k)
 
 
 def test_both_ends_are_ascending():

@@ -57,7 +57,7 @@ def test_what_holds_for_every_body(shape, cells, mass, position, angles, velocit
     np.testing.assert_array_equal(body.layer == Layer.SUB_BOUNDARY, touches & ~boundary)
     assert body.hexahedron.min() >= 0 and body.hexahedron.max() < n
     np.testing.assert_allclose(np.bincount(body.hexahedron.ravel(), minlength=n) / 8, body.share)
-    for array in (body.spring, body.layer, body.hexahedron, body.surface.index, body.surface.triangle):
+    for array in (body.spring, body.hexahedron, body.surface.index, body.surface.triangle):
         assert array.dtype == np.int32
 
 
@@ -180,7 +180,7 @@ def test_a_body_that_is_all_held_has_no_springs():
     """Leave springs out where nothing can move, and keep mass and surface."""
     body = model(Box((4.0, 4.0, 4.0)), 1.0, hold=(HoldAll(),), damping=0.1)
     assert body.spring.shape == (0, 2)
-    assert len(body.stiffness) == len(body.rest) == len(body.damping) == 0
+    assert len(body.stiffness) == len(body.rest) == 0 and body.damping is None
     assert body.mass.sum() == pytest.approx(1.0) and len(body.surface.triangle) == 192
 
 
@@ -201,7 +201,7 @@ def test_equal_objects_share_what_cannot_change():
     seen = []
     models = build_models(scene(*cubes, resolution=0.1), progress=lambda *count: seen.append(count))
     assert [m.name for m in models] == [c.name for c in cubes]
-    assert all(m.spring is models[0].spring and m.mass is models[0].mass for m in models)
+    assert all(m.spring is models[0].spring and m.spring_type is models[0].spring_type and m.mass is models[0].mass for m in models)
     assert not models[0].spring.flags.writeable and not models[0].mass.flags.writeable
     assert models[0].position.flags.writeable and not np.shares_memory(models[0].position, models[1].position)
     apart = models[-1].position - models[0].position

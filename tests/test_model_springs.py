@@ -13,7 +13,7 @@ from twin import lattice as twin
 
 from mdanim_lammps.model import lattice as lattice_module
 from mdanim_lammps.model.lattice import AXES, OFFSETS, Cells, make_lattice
-from mdanim_lammps.model.springs import dashpots, spring_constants, stiffness
+from mdanim_lammps.model.springs import dashpots, spring_constants, stiffness, types
 from mdanim_lammps.scene.scene import Box, SpringConstant, Young
 
 NU = 0.25
@@ -173,3 +173,14 @@ def test_cantilever_against_timoshenko(cells, bend, tone):
     deflection, frequency = cantilever(cells)
     assert deflection == pytest.approx(1.0, abs=bend)
     assert frequency == pytest.approx(1.0, abs=tone)
+
+
+def test_types_keep_every_bit():
+    """Give springs one type exactly when their constants agree in every bit, and as few bytes as the number of types allows."""
+    constants = np.full((4, 3), 0.1)
+    constants[:, 0] = 1.0, np.nextafter(1.0, 2.0), 1.0, 2.0
+    kind, table = types(constants)
+    assert kind.tolist() == [1, 2, 1, 3] and kind.dtype == np.uint8
+    assert np.array_equal(table[kind - 1], constants)
+    kind, table = types(np.repeat(np.arange(256.0), 3)[:, None] * np.ones(3))
+    assert kind.tolist() == np.repeat(np.arange(1, 257), 3).tolist() and len(table) == 256

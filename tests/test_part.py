@@ -252,9 +252,10 @@ def test_a_part_says_what_a_plan_of_its_own_would_say(prepared):
     own = prepared(without)
     part = Parts(whole.plan).part((0, 1, 3), True)
     own_plan = make_plan(own.scene, own.system, own.verdicts, whole.certificate)
-    for field in fields(System):
-        a, b = getattr(part.system, field.name), getattr(own_plan.system, field.name)
-        assert np.array_equal(a, b) if isinstance(b, np.ndarray) else a == b, field.name
+    # Types may be numbered otherwise.
+    for field in {field.name for field in fields(System)} - {"spring_type", "constants"} | {"stiffness", "rest", "damping"}:
+        a, b = getattr(part.system, field), getattr(own_plan.system, field)
+        assert np.array_equal(a, b) if isinstance(b, np.ndarray) else a == b, field
     for name in ("columns", "tables"):
         a, b = getattr(part, name), getattr(own_plan, name)
         assert a.keys() == b.keys()

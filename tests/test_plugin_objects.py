@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""mdanim_insert: an instance filled through ctypes against one filled by read_data."""
+"""mdanim_insert and its sisters: an instance filled through ctypes against one filled by read_data."""
 
 import ctypes
 from dataclasses import replace
@@ -189,6 +189,64 @@ def test_mistakes_come_back_as_text(change, message):
     status, text = insert(lmp, BODY, change.get("columns", COLUMNS), (first, partner, kind))
     assert status == 1 and message in text
     lmp.close()
+
+
+def give_springs(lmp, pair=BODY.bond, kind=None):
+    """Call the C function; returns its status and message."""
+    arrays = [np.ascontiguousarray(a, np.int32) for a in (pair, lab.bond_types(BODY)[1] if kind is None else kind)]
+    error = ctypes.create_string_buffer(256)
+    status = ctypes.CDLL(plugin_path.folder() + "/mdanimplugin.so").mdanim_give_springs(
+        ctypes.c_void_p(getattr(lmp.lmp, "value", lmp.lmp)), len(pair), *(a.ctypes.data_as(ctypes.c_void_p) for a in arrays),
+        error, len(error))
+    return status, error.value.decode()
+
+
+@pytest.fixture
+def without_bonds():
+    """An instance that holds the particles, in the order of their tags, and no bonds."""
+    lmp = empty_instance(room=0)
+    assert insert(lmp, BODY, bonds=(np.zeros(len(BODY.x) + 1, np.int64), *np.zeros((2, 1), np.int32))) == (0, "")
+    yield lmp
+    lmp.close()
+
+
+def test_springs_that_are_given_act_as_bonds_do(without_bonds, tmp_path):
+    """200 steps with contact and drag, and their energy, to the bits of an instance that reads its bonds."""
+    read = run_and_close(lab.load(BODY, tmp_path, columns=COLUMNS), [*PHYSICS, "run 200"])
+    for command in lab.springs(BODY):
+        without_bonds.command(command)
+    assert give_springs(without_bonds) == (0, "")
+    for command in ["thermo_modify norm no", *PHYSICS, "run 200"]:
+        without_bonds.command(command)
+    assert np.array_equal(lab.by_tag(without_bonds, "x"), read[0]) and np.array_equal(lab.by_tag(without_bonds, "v"), read[1])
+    assert without_bonds.get_thermo("ebond") == read[3] and without_bonds.extract_global("nbonds") == 0
+
+
+@pytest.mark.parametrize(("wrong", "message"), [
+    pytest.param({"style": "zero"}, "springs need 'bond_style mdanim/harmonic'", id="another style"),
+    pytest.param({"kind": 99}, "bond type 99 is not within 1 and", id="unknown bond type"),
+    pytest.param({"pair": BODY.bond[:, ::-1]}, "spring 0 is 1, 0", id="higher particle first"),
+    pytest.param({"pair": BODY.bond[[1, 0]]}, "spring 1 is 0, 1", id="not sorted"),
+    pytest.param({"pair": np.array([[0, len(BODY.x)]])}, f"spring 0 is 0, {len(BODY.x)}", id="no such particle"),
+])
+def test_wrong_springs_come_back_as_text(without_bonds, wrong, message):
+    """Name the first that cannot be."""
+    pair = wrong.get("pair", BODY.bond)
+    for command in [f"bond_style {wrong.get('style', 'mdanim/harmonic')}", "bond_coeff *" + " 1.0" * (2 if "style" not in wrong else 0)]:
+        without_bonds.command(command)
+    status, text = give_springs(without_bonds, pair, np.full(len(pair), wrong.get("kind", 1)))
+    assert status == 1 and message in text
+
+
+def test_springs_that_were_given_want_their_particles(without_bonds):
+    """Say so when particles come or go afterwards, instead of taking others for them."""
+    for command in lab.springs(BODY):
+        without_bonds.command(command)
+    assert give_springs(without_bonds) == (0, "")
+    for command in [*PHYSICS, "group gone id 3", "delete_atoms group gone compress no"]:
+        without_bonds.command(command)
+    with pytest.raises(Exception, match=f"springs were given for {len(BODY.x)} particles"):
+        without_bonds.command("run 0")
 
 
 TABLE = np.arange(7 * len(BODY.x), dtype=np.int32).reshape(-1, 7)

@@ -22,7 +22,8 @@ GENEROUS, LEAST = 50.0, 0.05
 RINGS = 10.0
 """Times that a wave crosses an object until cells that are inside out count as stuck: in a hard impact some at the surface are so for a
 moment, and come back."""
-FLOWN_APART = ("lost its bond partner", "Bond atoms", "Lost atoms", "Non-numeric", "Out of range atoms", "out of range")
+FLOWN_APART = (
+    "lost its bond partner", "springs were given", "Bond atoms", "Lost atoms", "Non-numeric", "Out of range atoms", "out of range")
 """What LAMMPS says when particles are where they should not be."""
 
 

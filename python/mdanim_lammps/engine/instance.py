@@ -91,17 +91,21 @@ class Instance:
         low, high = box(plan).tolist()
         # property/atom must exist before the particles, and a box before both.
         *before, columns = prelude(plan)
-        ends = plan.ends()
-        per_atom = int(np.diff(ends.first).max()) if len(plan.bonds) else 0
+        # On one process the bond style takes the springs as they are; of several, each needs those of its own particles at both ends.
+        ends = plan.ends() if self._comm and len(plan.bonds) else None
+        room = f" extra/bond/per/atom {np.diff(ends.first).max()}" if ends else ""
         bounds = " ".join(f"{a!r} {b!r}" for a, b in zip(low, high))
         lmp.commands_list([
             *before,
             columns,
             f"region box block {bounds}",
-            f"create_box 8 box bond/types {len(plan.coefficients)} extra/bond/per/atom {per_atom}" if len(plan.bonds)
-            else "create_box 8 box",
+            f"create_box 8 box bond/types {len(plan.coefficients)}{room}" if len(plan.bonds) else "create_box 8 box",
         ])
         self._insert(ends, system.position)
+        if len(plan.bonds) and not ends:
+            springs = [np.ascontiguousarray(a, np.int32) for a in (plan.bonds, plan.bond_kind)]
+            self._call(f"take {len(plan.bonds)} springs", self._library.mdanim_give_springs, ctypes.c_int(len(plan.bonds)),
+                       *map(_pointer, springs))
         if len(plan.bonds):
             lmp.commands_list([f"bond_coeff {row}" for row in bond_coeffs(plan)])
         lmp.commands_list(physics(plan))
@@ -111,8 +115,8 @@ class Instance:
         lmp.commands_list([f"thermo {max(1, plan.certificate.steps_per_frame)}",
                            f"thermo_style custom step{' ebond' if len(plan.bonds) else ''}", "thermo_modify norm no", "uncompute thermo_press"])
 
-    def _insert(self, ends: Ends, position: np.ndarray) -> None:
-        """Hand all particles and springs to the plugin; each rank takes those in its part of space."""
+    def _insert(self, ends: Ends | None, position: np.ndarray) -> None:
+        """Hand all particles, and springs if they are to have them, to the plugin; each rank takes those in its part of space."""
         plan, system = self.plan, self.plan.system
         n = system.particles
         names = list(plan.columns)
@@ -126,7 +130,7 @@ class Instance:
             f"insert {n} particles", self._library.mdanim_insert, ctypes.c_int(n),
             *(_pointer(a) for a in arrays),
             ctypes.c_int(len(names)), (ctypes.c_char_p * max(1, len(names)))(*(c.encode() for c in names)),
-            _pointer(properties), *(_pointer(a) for a in ends),
+            _pointer(properties), *(map(_pointer, ends) if ends else [None] * 3),
         )
         for name, table in plan.tables.items():
             self._call(f"set i2_{name}", self._library.mdanim_set_table, name.encode(), ctypes.c_int(table.shape[1]),
@@ -207,7 +211,7 @@ class Instance:
         if self._comm:
             # A particle may be far from the rank that holds it now, farther than LAMMPS's own exchange reaches.
             self._command("delete_atoms group all compress no")
-            self._insert(self.plan.ends(), state.x)
+            self._insert(self.plan.ends() if len(self.plan.bonds) else None, state.x)
             for command in physics(self.plan):
                 if command.startswith("group "):  # the new particles are in none yet
                     self._command(command)

@@ -66,10 +66,10 @@ class Parts:
         effects = self._effects(system, liquid)
         wanted = {name for e in effects for name in whole.asked[e.name]}
         used = self._used(objects)
-        number = np.zeros(len(whole.coefficients) + 1, np.int32)
+        number = np.zeros(len(whole.coefficients) + 1, whole.bond_kind.dtype)
         number[used] = np.arange(1, len(used) + 1)
         return Part(
-            scene=whole.scene, system=system, certificate=whole.certificate, effects=effects, kind=take(whole.kind),
+            scene=whole.scene, system=system, certificate=whole.certificate, effects=effects,
             columns={name: take(column) for name, column in whole.columns.items() if name in wanted},
             tables={name: take.tags(table) for name, table in whole.tables.items() if name in wanted},
             bonds=system.spring if len(whole.bonds) else system.spring[:0],
@@ -111,9 +111,9 @@ class Parts:
             first=np.concatenate([[0], np.cumsum(np.diff(s.first)[index])]).astype(np.int64),
             position=particle(s.position), velocity=particle(s.velocity), mass=particle(s.mass), share=particle(s.share),
             layer=particle(s.layer), held=particle(s.held),
-            spring=particle.renumber(s.spring, spring), stiffness=spring(s.stiffness), rest=spring(s.rest),
-            damping=None if s.damping is None else spring(s.damping), drag=None if s.drag is None else particle(s.drag),
-            young=s.young[index], spacing=s.spacing[index], cell_volume=s.cell_volume[index], volume=particle(s.volume),
+            spring=particle.renumber(s.spring, spring), spring_type=spring(s.spring_type), constants=s.constants,
+            drag=None if s.drag is None else particle(s.drag),
+            young=s.young[index], spacing=s.spacing[index], cell_volume=s.cell_volume[index], per_mass=s.per_mass[index],
             hexahedron=particle.renumber(s.hexahedron, cell), grid=s.grid if liquid else None,
         )
 
@@ -144,7 +144,8 @@ class Parts:
         pieces = [self._ends_of(m) for m in objects]
         count = np.concatenate([[0], *(p[0] for p in pieces)])
         partner = [p[1] + np.int32(start) if start else p[1] for p, start in zip(pieces, first)]
-        return Ends(np.cumsum(count, dtype=np.int64), _join(partner, np.int32), number[_join([p[2] for p in pieces], np.int32)])
+        return Ends(np.cumsum(count, dtype=np.int64), _join(partner, np.int32),
+                    number[_join([p[2] for p in pieces], np.int32)].astype(np.int32))
 
 
 class _Taker:

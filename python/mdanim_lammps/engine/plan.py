@@ -12,6 +12,7 @@ import numpy as np
 from ..certificate import Certificate, strong_drag
 from ..effects import EFFECTS, Effect, Verdict
 from ..model.basin import Grid
+from ..model.springs import types
 from ..model.system import System
 from ..scene.scene import Scene
 
@@ -42,8 +43,6 @@ class Plan:
     certificate: Certificate
     effects: tuple[Effect, ...]
     """Those that are on, in the order in which their forces are summed."""
-    kind: np.ndarray
-    """Atom type of each particle, int32, shape (N,)."""
     columns: dict[str, np.ndarray]
     """Per-particle properties ``d_NAME`` that some effect asks for, each of shape (N,)."""
     tables: dict[str, np.ndarray]
@@ -51,7 +50,7 @@ class Plan:
     bonds: np.ndarray
     """Springs as 0-based pairs i < j, int32, shape (S, 2)."""
     bond_kind: np.ndarray
-    """Bond type of each spring, from 1, int32, shape (S,)."""
+    """Bond type of each spring, from 1, unsigned integers, shape (S,)."""
     coefficients: np.ndarray
     """k [N/m], r0 [m], dashpot [N*s/m] of each bond type, shape (T, 3)."""
     asked: dict[str, tuple[str, ...]]
@@ -60,6 +59,11 @@ class Plan:
     """Longest cell edge of all solids of the scene [m]; skin and cutoffs follow from it."""
     exponential: bool
     """Whether drag is taken exponentially, certificate.strong_drag."""
+
+    @property
+    def kind(self) -> np.ndarray:
+        """Atom type of each particle, int32, shape (N,)."""
+        return (self.system.layer + HELD * self.system.held).astype(np.int32)
 
     def ends(self) -> Ends:
         """The springs at both ends."""
@@ -94,13 +98,14 @@ def make_plan(scene: Scene, system: System, verdicts: dict[str, Verdict], certif
         tables.update(own_tables)
         asked[effect.name] = (*own_columns, *own_tables)
     if "springs" in names:
-        dashpot = system.damping if "damping" in names else None
-        bonds, kind, coefficients = system.spring, *bond_kinds(system.stiffness, system.rest, dashpot)
+        bonds, kind = system.spring, system.spring_type
+        merged, coefficients = types(system.constants * (1.0, 1.0, float("damping" in names)))
+        if len(coefficients) < len(system.constants):
+            kind = merged[kind - 1]
     else:
-        bonds, kind, coefficients = system.spring[:0], np.zeros(0, np.int32), np.zeros((0, 3))
+        bonds, kind, coefficients = system.spring[:0], np.zeros(0, np.uint8), np.zeros((0, 3))
     return Plan(
         scene=scene, system=system, certificate=certificate, effects=effects,
-        kind=(system.layer + HELD * system.held).astype(np.int32),
         columns=columns, tables=tables, bonds=bonds, bond_kind=kind, coefficients=coefficients,
         asked=asked, spacing=float(system.spacing.max()),
         exponential=bool(strong_drag(scene, system, effects, certificate.timestep)),
@@ -117,29 +122,3 @@ def both_ends(bonds: np.ndarray, kind: np.ndarray, n: int) -> Ends:
     order = np.argsort(owner, kind="stable")
     partner = np.concatenate([i, j])[order].astype(np.int32) + np.int32(1)
     return Ends(first, partner, np.concatenate([kind, kind])[order].astype(np.int32))
-
-
-def bond_kinds(stiffness: np.ndarray, rest: np.ndarray, dashpot: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
-    """Bond type of each spring (from 1, int32, shape (S,)) and the coefficients of each type, shape (T, 3).
-
-    Springs are of one type when all bits of their coefficients agree; types are numbered by first appearance, so that they
-    do not depend on a sort of floating-point numbers.
-    """
-    table = np.zeros((len(stiffness), 3))
-    table[:, 0], table[:, 1] = stiffness, rest
-    if dashpot is not None:
-        table[:, 2] = dashpot
-    # A mixed key per row is enough to find equal rows quickly; equality itself is checked on all bits below.
-    bits = table.view(np.uint64)
-    with np.errstate(over="ignore"):
-        key = (bits[:, 0] * np.uint64(0x9E3779B97F4A7C15)) ^ (bits[:, 1] * np.uint64(0xC2B2AE3D27D4EB4F))
-        key = (key ^ (key >> np.uint64(29))) + bits[:, 2] * np.uint64(0x165667B19E3779F9)
-    _, first, inverse = np.unique(key, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    rank = np.empty(len(order), np.int32)
-    rank[order] = np.arange(1, len(order) + 1)
-    kind, coefficients = rank[inverse.reshape(-1)], table[first[order]]
-    if not np.array_equal(coefficients[kind - 1], table):  # two different rows with one key
-        coefficients, inverse = np.unique(table, axis=0, return_inverse=True)
-        kind = inverse.reshape(-1).astype(np.int32) + 1
-    return kind, coefficients

@@ -18,7 +18,7 @@ from .lattice import Lattice, make_lattice
 from .mesh import MeshError
 from .model import Model, Surface
 from .spacing import plan_spacing
-from .springs import dashpots, equivalent_modulus, rest_lengths, stiffness
+from .springs import dashpots, equivalent_modulus, rest_lengths, stiffness, types
 from .wording import length
 
 
@@ -67,9 +67,8 @@ class _Fabric:
 
     mass: np.ndarray
     spring: np.ndarray
-    stiffness: np.ndarray
-    rest: np.ndarray
-    damping: np.ndarray | None
+    spring_type: np.ndarray
+    constants: np.ndarray
     young: float
 
 
@@ -101,13 +100,13 @@ def _make_fabric(
     if rigid or not k.all():  # the paper's literal springs have no braces
         keep = (k > 0) & (not rigid)
         spring, kind, k = spring[keep], kind[keep], k[keep]
-    fabric = _Fabric(
-        mass=m, spring=spring, stiffness=k, rest=rest_lengths(edge)[kind],
-        damping=dashpots(damping, k, m, spring) if damping > 0 else None,
-        young=equivalent_modulus(edge, elasticity),
-    )
-    _freeze(fabric.mass, fabric.stiffness, fabric.rest, *([] if fabric.damping is None else [fabric.damping]))
-    return fabric
+    constants = np.zeros((len(k), 3))
+    constants[:, 0], constants[:, 1] = k, rest_lengths(edge)[kind]
+    if damping > 0:
+        constants[:, 2] = dashpots(damping, k, m, spring)
+    spring_type, constants = types(constants)
+    _freeze(m, spring_type, constants)
+    return _Fabric(m, spring, spring_type, constants, equivalent_modulus(edge, elasticity))
 
 
 def _freeze(*arrays: np.ndarray) -> None:
@@ -129,7 +128,7 @@ def _make_model(solid: Solid, workshop: _Workshop) -> Model:
     return Model(
         name=solid.name, position=arm + solid.position, velocity=velocity,
         mass=fabric.mass, share=lattice.share, layer=lattice.layer, held=held,
-        spring=fabric.spring, stiffness=fabric.stiffness, rest=fabric.rest, damping=fabric.damping,
+        spring=fabric.spring, spring_type=fabric.spring_type, constants=fabric.constants,
         drag=fabric.mass * (solid.drag / mass) if solid.drag > 0 else None, young=fabric.young,
         hexahedron=lattice.hexahedron, cell=tuple(lattice.cells.edge.tolist()), surface=body.surface,
     )

@@ -77,7 +77,7 @@ class Lattice:
     share: np.ndarray
     """n/8 for n filled cells around a particle [-], shape (N,)."""
     layer: np.ndarray
-    """Layer of each particle, int32, shape (N,)."""
+    """Layer of each particle, uint8, shape (N,)."""
     spring: np.ndarray
     """Neighbour pairs i < j, sorted, int32, shape (S, 2)."""
     kind: np.ndarray
@@ -207,7 +207,7 @@ def _inward(filled: np.ndarray) -> list[np.ndarray]:
 
 
 def _layers(around: np.ndarray) -> np.ndarray:
-    """Layer of each corner of the grid (0 where there is no particle), int32.
+    """Layer of each corner of the grid (0 where there is no particle), uint8.
 
     A boundary particle is THIN where none of the 26 lattice neighbours is off the boundary. The corner of a
     solid block is not: the particle one body diagonal further in guards it, as in all measurements of the
@@ -215,7 +215,7 @@ def _layers(around: np.ndarray) -> np.ndarray:
     """
     inner = around == 8
     boundary = (around > 0) & ~inner
-    layer = np.zeros(around.shape, np.int32)
+    layer = np.zeros(around.shape, np.uint8)
     layer[inner] = Layer.INNER
     layer[inner & _near(boundary, diagonals=2)] = Layer.SUB_BOUNDARY
     layer[boundary] = Layer.THIN

@@ -38,8 +38,32 @@ class Surface:
         return np.einsum("vk,vkd->vd", self.weight, position[self.index])
 
 
+class SpringTypes:
+    """What springs of few types are like: of records with a type for each spring, ``spring_type``, and a row of ``constants`` for each."""
+
+    __slots__ = ()
+
+    @property
+    def stiffness(self) -> np.ndarray:
+        """k of each spring, eq. (3.6) [N/m], shape (S,)."""
+        return self._constant(0)
+
+    @property
+    def rest(self) -> np.ndarray:
+        """Rest length r0 of each spring [m], shape (S,)."""
+        return self._constant(1)
+
+    @property
+    def damping(self) -> np.ndarray | None:
+        """Dashpot of each spring [N*s/m], shape (S,); None where no spring has one."""
+        return self._constant(2) if self.constants[:, 2].any() else None
+
+    def _constant(self, column: int) -> np.ndarray:
+        return self.constants[self.spring_type - 1, column]
+
+
 @dataclass(frozen=True, slots=True)
-class Model:
+class Model(SpringTypes):
     """One solid as N particles, S springs and a surface; particles are numbered row by row, x fastest."""
 
     name: str
@@ -52,17 +76,15 @@ class Model:
     share: np.ndarray
     """Filled share of the eight cells around a particle, n/8 [-], shape (N,)."""
     layer: np.ndarray
-    """Layer of each particle, int32, shape (N,)."""
+    """Layer of each particle, uint8, shape (N,)."""
     held: np.ndarray
     """Particles that never move, bool, shape (N,)."""
     spring: np.ndarray
     """Neighbour pairs i < j, 0-based, sorted by (i, j), int32, shape (S, 2)."""
-    stiffness: np.ndarray
-    """k of each spring, eq. (3.6) [N/m], shape (S,)."""
-    rest: np.ndarray
-    """Rest length r0 of each spring [m], shape (S,)."""
-    damping: np.ndarray | None
-    """Dashpot of each spring [N*s/m], shape (S,); None where the object has no internal damping."""
+    spring_type: np.ndarray
+    """Type of each spring, from 1, the smallest unsigned integers that do, shape (S,)."""
+    constants: np.ndarray
+    """k [N/m], r0 [m] and dashpot [N*s/m] of each type, in the order in which they appear, shape (T, 3)."""
     hexahedron: np.ndarray
     """Corners of every filled cell, particle indices in VTK order, int32, shape (C, 8)."""
     cell: tuple[float, float, float]

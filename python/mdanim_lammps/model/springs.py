@@ -67,6 +67,28 @@ def equivalent_modulus(cell: np.ndarray, elasticity: Young | SpringConstant) -> 
     return elasticity.modulus
 
 
+def types(constants: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Type of each spring (from 1, the smallest unsigned integers that do, shape (S,)) and the constants of each type, shape (T, 3).
+
+    Springs with the constants (S, 3) are of one type when all bits of them agree; types are numbered by first appearance, so that
+    they do not depend on a sort of floating-point numbers.
+    """
+    # A mixed key per row is enough to find equal rows quickly; equality itself is checked on all bits below.
+    bits = constants.view(np.uint64)
+    with np.errstate(over="ignore"):
+        key = (bits[:, 0] * np.uint64(0x9E3779B97F4A7C15)) ^ (bits[:, 1] * np.uint64(0xC2B2AE3D27D4EB4F))
+        key = (key ^ (key >> np.uint64(29))) + bits[:, 2] * np.uint64(0x165667B19E3779F9)
+    _, first, inverse = np.unique(key, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty(len(order), np.min_scalar_type(len(order)))
+    rank[order] = np.arange(1, len(order) + 1)
+    kind, distinct = rank[inverse.reshape(-1)], constants[first[order]]
+    if not np.array_equal(distinct[kind - 1], constants):  # two different rows with one key
+        distinct, inverse = np.unique(constants, axis=0, return_inverse=True)
+        kind = (inverse.reshape(-1) + 1).astype(np.min_scalar_type(len(distinct)))
+    return kind, distinct
+
+
 def dashpots(zeta: float, k: np.ndarray, mass: np.ndarray, spring: np.ndarray) -> np.ndarray:
     """Dashpot of each spring [N*s/m], shape (S,): c = 2 zeta sqrt(k m_ij), m_ij = m_i m_j / (m_i + m_j)."""
     mi, mj = mass[spring[:, 0]], mass[spring[:, 1]]

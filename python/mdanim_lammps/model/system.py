@@ -12,11 +12,12 @@ import numpy as np
 from ..scene.scene import Scene
 from . import shapes
 from .basin import Grid, scene_grid
-from .model import Layer, Model
+from .model import Layer, Model, SpringTypes
+from .springs import types
 
 
 @dataclass(frozen=True)
-class System:
+class System(SpringTypes):
     """M solids as N particles and S springs; particle ``i`` has the LAMMPS tag ``i + 1``, solid ``m`` the molecule ``m + 1``."""
 
     names: tuple[str, ...]
@@ -31,17 +32,15 @@ class System:
     share: np.ndarray
     """Filled share of the cells around a particle [-], shape (N,)."""
     layer: np.ndarray
-    """Layer of each particle, int32, shape (N,)."""
+    """Layer of each particle, uint8, shape (N,)."""
     held: np.ndarray
     """Particles that never move, bool, shape (N,)."""
     spring: np.ndarray
     """Neighbour pairs i < j, sorted, int32, shape (S, 2)."""
-    stiffness: np.ndarray
-    """k of each spring, eq. (3.6) [N/m], shape (S,)."""
-    rest: np.ndarray
-    """Rest length of each spring [m], shape (S,)."""
-    damping: np.ndarray | None
-    """Dashpot of each spring [N*s/m], shape (S,); None when no solid is damped."""
+    spring_type: np.ndarray
+    """Type of each spring, from 1, the smallest unsigned integers that do, shape (S,)."""
+    constants: np.ndarray
+    """k [N/m], r0 [m] and dashpot [N*s/m] of each type, shape (T, 3)."""
     drag: np.ndarray | None
     """lambda of each particle [N*s/m], shape (N,); None when no solid has air drag."""
     young: np.ndarray
@@ -50,8 +49,8 @@ class System:
     """Longest cell edge of each solid [m], shape (M,)."""
     cell_volume: np.ndarray
     """Volume of a lattice cell of each solid [m^3], shape (M,)."""
-    volume: np.ndarray
-    """Share of each particle in the true volume of its solid, V_i = m_i / rho [m^3], shape (N,)."""
+    per_mass: np.ndarray
+    """True volume of each solid over its mass [m^3/kg], shape (M,)."""
     hexahedron: np.ndarray
     """Corners of every filled lattice cell, particle numbers in VTK order, int32, shape (C, 8)."""
     grid: Grid | None
@@ -72,6 +71,11 @@ class System:
     def boundary(self) -> np.ndarray:
         """Particles on a surface, bool, shape (N,)."""
         return self.layer >= Layer.BOUNDARY
+
+    @property
+    def volume(self) -> np.ndarray:
+        """Share of each particle in the true volume of its solid, V_i = m_i / rho [m^3], shape (N,)."""
+        return self.mass * self.per_mass[self.object]
 
     @cached_property
     def contact_stiffness(self) -> np.ndarray:
@@ -123,12 +127,9 @@ def assemble(models: Sequence[Model], scene: Scene) -> System:
         # A single large solid is passed through: no second copy of a million particles.
         return arrays[0] if len(arrays) == 1 else np.concatenate(arrays)
 
-    def join_optional(name: str, length):
-        arrays = [getattr(m, name) for m in models]
-        if all(a is None for a in arrays):
-            return None
-        return join([np.zeros(length(m)) if a is None else a for a, m in zip(arrays, models)])
-
+    # Each model has types of its own.
+    merged, constants = types(np.concatenate([m.constants for m in models]))
+    start = np.cumsum([0, *(len(m.constants) for m in models)])
     offsets = first[:-1].astype(np.int32)
     return System(
         names=tuple(m.name for m in models),
@@ -140,14 +141,14 @@ def assemble(models: Sequence[Model], scene: Scene) -> System:
         layer=join([m.layer for m in models]),
         held=join([m.held for m in models]),
         spring=join([m.spring + o if o else m.spring for m, o in zip(models, offsets)]),
-        stiffness=join([m.stiffness for m in models]),
-        rest=join([m.rest for m in models]),
-        damping=join_optional("damping", lambda m: len(m.spring)),
-        drag=join_optional("drag", lambda m: len(m.position)),
+        spring_type=join([m.spring_type if len(models) == 1 else merged[s:][m.spring_type - 1] for m, s in zip(models, start)]),
+        constants=constants,
+        drag=None if all(m.drag is None for m in models) else join(
+            [np.zeros(len(m.position)) if m.drag is None else m.drag for m in models]),
         young=np.array([m.young for m in models]),
         spacing=np.array([m.spacing for m in models]),
         cell_volume=np.array([np.prod(m.cell) for m in models]),
-        volume=join([m.mass * (shapes.volume(s.shape) / m.mass.sum()) for m, s in zip(models, scene.solids)]),
+        per_mass=np.array([shapes.volume(s.shape) / m.mass.sum() for m, s in zip(models, scene.solids)]),
         hexahedron=join([m.hexahedron + o if o else m.hexahedron for m, o in zip(models, offsets)]),
         grid=scene_grid(scene),
         contact_factor=scene.control.contact_stiffness,

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Finding equal rows.
+
+#include "spring_rows.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace mdanim {
+
+bool SpringRows::same(int k, const Row &row) const
+{
+  const Links own = links(k);
+  return row.lower == lowers[k] && std::equal(row.link.begin(), row.link.end(), own.begin(), own.end());
+}
+
+void SpringRows::add(const Row &row)
+{
+  all += row.link.size();
+  if (!kind.empty() && same(kind.back(), row)) {    // mostly
+    kind.push_back(kind.back());
+    return;
+  }
+  std::uint64_t hash = 1469598103934665603u + row.lower;    // FNV-1a, by words
+  for (const Link &link : row.link) {
+    const std::uint64_t word = static_cast<std::uint64_t>(link.offset) << 32 ^ static_cast<std::uint32_t>(link.type);
+    hash = (hash ^ word ^ word >> 29) * 1099511628211u;
+  }
+  const auto [begin, end] = known.equal_range(hash);
+  const auto found = std::find_if(begin, end, [&](const auto &entry) { return same(entry.second, row); });
+  if (found != end) {
+    kind.push_back(found->second);
+    return;
+  }
+  kind.push_back(static_cast<int>(lowers.size()));
+  known.emplace(hash, kind.back());
+  lowers.push_back(row.lower);
+  distinct.insert(distinct.end(), row.link.begin(), row.link.end());
+  first.push_back(static_cast<int>(distinct.size()));
+}
+
+bool SpringRows::operator==(const SpringRows &other) const
+{
+  return kind == other.kind && first == other.first && lowers == other.lowers && distinct == other.distinct;
+}
+
+std::size_t SpringRows::bytes() const
+{
+  return (kind.capacity() + first.capacity() + lowers.capacity()) * sizeof(int) + distinct.capacity() * sizeof(Link);
+}
+
+}    // namespace mdanim
