@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from ..engine.instance import Instance, State
+from ..engine.instance import State
 from ..engine.part import Parts
+from ..engine.spares import Spares
 from ..results.ledger import LOSS
 from .energy import energies
 from .planning import FramePlan
 from .source import run_window
-
 
 WORTH = 0.5
 """Least share of an instance's particles that it is kept for; the others are those of objects that it has laid aside."""
@@ -61,13 +61,13 @@ def wanted_bundles(plan: FramePlan, objects: int, executor: int) -> list[Wanted]
 
 
 class Bundle:
-    """A live one. A context of its own: `close` ends it."""
+    """A live one. What is done with its instance in the end is its owner's."""
 
-    def __init__(self, parts: Parts, wanted: Wanted, comm: MPI.Comm | None):
+    def __init__(self, parts: Parts, wanted: Wanted, comm: MPI.Comm | None, spares: Spares):
         self.objects = np.array(wanted.key.objects, np.intp)
         """All in its instance, also those that it has laid aside."""
         self.plan = parts.part(wanted.key.objects, wanted.key.liquid)
-        self.instance = Instance(self.plan, comm)
+        self.instance = spares.instance(self.plan, comm)
         self.rows = parts.whole.system.rows(wanted.key.objects)
         """Its particles among all."""
         self.first = parts.whole.system.first
@@ -124,9 +124,6 @@ class Bundle:
             self.instance.lay_aside(np.flatnonzero(out))
             self.aside |= out
         self._take(wanted)
-
-    def close(self) -> None:
-        self.instance.close()
 
     def start(self, step: int, state: State | None) -> None:
         """Take up a state; None is that of the scene, before step 0."""

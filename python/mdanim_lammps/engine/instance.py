@@ -19,6 +19,14 @@ LIQUID = b"liquid"
 """ID of the liquid's fix (effects/liquid.py)."""
 MANY = 20_000
 """Particles from which on what making them has left free in the heap goes back to the system: 100 to 400 bytes each, in 10 ns each."""
+SMALL = 8000
+"""Particles up to which an instance is worth being filled anew: with more, putting them in takes longer than all the rest."""
+TYPES, SPRINGS = 256, 24
+"""A small one has room for so many bond types, and springs of a particle, at least: plans that come later may have more."""
+REPEATED = ("comm_modify", "bond_style")
+"""Commands before the particles that an instance takes again when it is filled anew: bond styles begin with empty accounts."""
+UNDONE = {"fix": "unfix {}", "region": "region {} delete"}
+"""What takes back a command for what acts on particles; the others may be given again."""
 GLOBAL, SCALAR, VECTOR, SIZE_VECTOR = 0, 0, 1, 3  # LAMMPS's constants for extract_fix
 
 
@@ -85,29 +93,63 @@ class Instance:
             self._lmp = None
 
     def _fill(self) -> None:
-        plan, system, lmp = self.plan, self.plan.system, self._lmp
+        plan, lmp = self.plan, self._lmp
         low, high = box(plan).tolist()
         # property/atom must exist before the particles, and a box before both.
         *before, columns = prelude(plan)
         ends = plan.ends()
-        per_atom = int(np.diff(ends.first).max()) if len(plan.bonds) else 0
+        self._types, self._per_atom = len(plan.coefficients), _most_springs(ends)
+        if self.refillable:
+            self._types, self._per_atom = max(TYPES, self._types), max(SPRINGS, self._per_atom)
         bounds = " ".join(f"{a!r} {b!r}" for a, b in zip(low, high))
         lmp.commands_list([
             *before,
             columns,
             f"region box block {bounds}",
-            f"create_box 8 box bond/types {len(plan.coefficients)} extra/bond/per/atom {per_atom}" if len(plan.bonds)
+            f"create_box 8 box bond/types {self._types} extra/bond/per/atom {self._per_atom}" if len(plan.bonds)
             else "create_box 8 box",
         ])
-        self._insert(ends, system.position)
-        if len(plan.bonds):
-            lmp.commands_list([f"bond_coeff {row}" for row in bond_coeffs(plan)])
-        lmp.commands_list(physics(plan))
+        self._populate(ends)
         if self._comm:
             lmp.commands_list(BALANCE)
         # The springs' energy is all that is asked for.
         lmp.commands_list([f"thermo {max(1, plan.certificate.steps_per_frame)}",
                            f"thermo_style custom step{' ebond' if len(plan.bonds) else ''}", "thermo_modify norm no"])
+
+    def _populate(self, ends: Ends) -> None:
+        """Particles and what acts on them, into a box that is empty."""
+        plan = self.plan
+        self._insert(ends, plan.system.position)
+        if len(plan.bonds):
+            *rows, last = bond_coeffs(plan)
+            kind, rest = last.split(" ", 1)
+            self._lmp.commands_list([f"bond_coeff {row}" for row in (*rows, f"{kind}*{self._types} {rest}")])  # LAMMPS wants all types set
+        self._lmp.commands_list(physics(plan))
+
+    @property
+    def refillable(self) -> bool:
+        """Whether it can become one of another plan: a small one, on one process, without a liquid."""
+        return self._comm is None and self.plan.grid is None and self.plan.system.particles <= SMALL
+
+    def refill(self, plan: Plan) -> bool:
+        """Become an instance of another plan, as if it had been made for it, in a fifth of the time. Returns False, with nothing done,
+        where that needs other columns, more room for springs, or a liquid, or this one is not refillable. Raises SetupError.
+        """
+        if not self.refillable or plan.grid or _fixed(plan) != _fixed(self.plan):
+            return False
+        ends = plan.ends()
+        if len(plan.coefficients) > self._types or _most_springs(ends) > self._per_atom:
+            return False
+        undo = [UNDONE[word].format(name) for word, name, *_ in map(str.split, physics(self.plan)) if word in UNDONE]
+        self.plan = plan
+        self._views.clear()
+        try:
+            self._lmp.commands_list(["delete_atoms group all compress no", *reversed(undo),  # fixes go before their regions
+                                     *(c for c in prelude(plan) if c.startswith(REPEATED)), "reset_timestep 0"])
+            self._populate(ends)
+        except Exception as error:
+            raise SetupError(f"LAMMPS does not take these particles: {error}") from error
+        return True
 
     def _insert(self, ends: Ends, position: np.ndarray) -> None:
         """Hand all particles and springs to the plugin; each rank takes those in its part of space."""
@@ -323,6 +365,16 @@ class Instance:
         """Energy that dashpots have taken so far [J]."""
         here = float(self._library.mdanim_bond_lost(self._handle))
         return sum(self._comm.allgather(here)) if self._comm else here
+
+
+def _most_springs(ends: Ends) -> int:
+    """Of a particle."""
+    return int(np.diff(ends.first).max(initial=0))
+
+
+def _fixed(plan: Plan) -> list[str]:
+    """What LAMMPS is told once, before there are particles."""
+    return [command for command in prelude(plan) if not command.startswith("comm_modify")]
 
 
 def _pointer(array: np.ndarray) -> ctypes.c_void_p:
