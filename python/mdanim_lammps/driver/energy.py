@@ -11,7 +11,7 @@ from ..effects import Effect
 from ..engine import geometry
 from ..engine.instance import Instance
 from ..model.system import System
-
+from ..results.ledger import LOSS
 
 ROUNDING = 1e-12
 """Strain that positions in double precision can hardly tell from none."""
@@ -27,22 +27,35 @@ def ledger_terms(effects: Iterable[Effect]) -> tuple[str, ...]:
     return ("kinetic", *dict.fromkeys(e.ledger for e in effects if e.ledger))
 
 
-def energies(instance: Instance, before: np.ndarray, others: np.ndarray | None = None) -> dict[str, float]:
-    """Every term of the ledger [J]; ``before`` are the forces [N] of the step before, shape (N, 3).
+def energies(instance: Instance, before: np.ndarray) -> dict[str, float]:
+    """Every term of the ledger [J]; ``before`` are the forces [N] of the step before, shape (N, 3)."""
+    return stored(instance, before) | losses(instance)
+
+
+def stored(instance: Instance, before: np.ndarray, others: np.ndarray | None = None) -> dict[str, float]:
+    """The terms of what a state holds, without losses [J]; ``before`` as in `energies`.
 
     ``others`` are particles of the instance that are not to be counted; they do not move and hold no elastic energy.
     """
     plan = instance.plan
-    found = dict.fromkeys(ledger_terms(plan.effects), 0.0)
+    effects = [e for e in plan.effects if e.ledger and not e.ledger.endswith(LOSS)]
+    found = dict.fromkeys(ledger_terms(effects), 0.0)
     found["kinetic"] = kinetic(plan.system, plan.certificate.timestep, instance.array("v"), instance.array("f"), before)
-    for effect in plan.effects:
-        if effect.ledger:
-            found[effect.ledger] += effect.energy(instance, plan.scene, plan.system)
+    for effect in effects:
+        found[effect.ledger] += effect.energy(instance, plan.scene, plan.system)
     if others is not None and len(others):
         x, mass = instance.array("x")[others], plan.system.mass[others]
-        for effect in plan.effects:
-            if effect.ledger:
-                found[effect.ledger] -= effect.potential(plan.scene, mass, x)
+        for effect in effects:
+            found[effect.ledger] -= effect.potential(plan.scene, mass, x)
+    return found
+
+
+def losses(instance: Instance) -> dict[str, float]:
+    """The terms of what has been lost since the instance was made [J]."""
+    plan, found = instance.plan, {}
+    for effect in plan.effects:
+        if effect.ledger.endswith(LOSS):
+            found[effect.ledger] = found.get(effect.ledger, 0.0) + effect.energy(instance, plan.scene, plan.system)
     return found
 
 
