@@ -92,6 +92,9 @@ class Executor:
         """All frames. Raises Broken, MdanimError, Aborted; then its instances are left as they are, for a team's others may never come
         to close theirs."""
         self._follow(self._decide(self._first_report()))
+        few = np.flatnonzero(~self.system.still)[:2]
+        if len(few) == 2:  # pairs will meet
+            self.spares.stock(self.parts.part(few, False))
         if not self.started:
             self._commit()
             self._weigh()

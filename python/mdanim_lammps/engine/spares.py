@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from .instance import Instance
+from .instance import SMALL, Instance
 from .plan import Plan
 
-MOST = 4
+MOST = 6
 """Instances that are kept, of 3 MB or less each."""
 
 
@@ -15,6 +15,11 @@ class Spares:
 
     def __init__(self):
         self.idle: list[Instance] = []
+
+    def stock(self, plan: Plan) -> None:
+        """Have as many as are kept, of a plan like those that will be asked for."""
+        while len(self.idle) < MOST and plan.system.particles <= SMALL:
+            self.keep(Instance(plan))
 
     def instance(self, plan: Plan, comm=None) -> Instance:
         """An instance of a plan; arguments and errors as of `Instance`."""
