@@ -6,7 +6,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from mdanim_lammps.driver.energy import energies
+from mdanim_lammps.driver.energy import energies, stored
 from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.data_file import data_text
 from mdanim_lammps.engine.instance import Instance, State
@@ -321,6 +321,57 @@ def test_a_state_of_other_particles_is_refused(prepared):
             one.put(0, other.state())
 
 
+@pytest.mark.parametrize("chain", [
+    pytest.param([(1, 4), (0, 2), (2, 3), (0, 1, 2, 3, 4, 5), (0, 2)], id="that meet"),
+    pytest.param([(3,), (2,), (0,), (1,)], id="alone"),
+])
+def test_an_instance_filled_anew_is_as_a_new_one(prepared, chain):
+    """Damped, dragged and thin objects, more and fewer, one after the other in one instance: bits and energies, losses from 0, of new ones."""
+    plan = prepared(SHELF).plan
+    parts = Parts(plan)
+    with Instance(plan) as whole:
+        whole.setup()
+        start = evolve(whole, 500)
+
+    def go(instance, rows):
+        instance.put(500, cut(start, rows, False))
+        state = evolve(instance, 300)
+        return state, energies(instance)
+
+    with Instance(parts.part(chain[0], False)) as used:
+        go(used, particles(plan.system, chain[0]))
+        used.lay_aside([0])
+        lost = []
+        for objects in chain[1:]:
+            part, rows = parts.part(objects, False), particles(plan.system, objects)
+            assert used.refill(part) and used.plan is part and used.step == 0
+            with Instance(part) as new:
+                found, wanted = go(used, rows), go(new, rows)
+            equal(found[0], wanted[0], objects)
+            assert found[1] == wanted[1]
+            lost += [e for term, e in found[1].items() if term.endswith(LOSS)]
+        assert min(lost) == 0.0 < max(lost)
+
+
+def test_an_instance_is_not_filled_with_what_it_has_no_place_for(prepared):
+    """Other columns, more types of springs than there is room for, and the liquid take a new one; the old one is as it was."""
+    parts = Parts(prepared(SHELF).plan)
+    pond = Parts(prepared(POND.replace("MODEL", "")).plan)
+    rich = prepared("\n".join(f"object o{k} {{ shape box (5, 5, 5) cm  position ({10 * k}, 0, 0) cm  mass 1 kg  elasticity {k} kPa }}"
+                             for k in range(1, 90)) + "control { time 0.1 s  resolution 2.5 cm }").plan
+    assert len(rich.coefficients) > 256
+    with Instance(parts.part((0,), False)) as instance, Instance(pond.part((0,), True)) as wet:
+        instance.setup()
+        before = instance.state()
+        for other in (parts.part((0, 1), False), pond.part((0,), True)):
+            assert not instance.refill(other)
+        assert not wet.refill(pond.part((0,), False))
+        equal(instance.state(), before)
+    with Instance(Parts(rich).part((0, 1), False)) as small:
+        assert not small.refill(rich)
+        assert small.refill(Parts(rich).part((3, 4), False))
+
+
 def test_solids_that_are_laid_aside(prepared):
     """Two that have met are laid aside, one in the way of the rest: that evolves, and holds energy, as it does without them."""
     plan = prepared(SHELF).plan
@@ -332,14 +383,14 @@ def test_solids_that_are_laid_aside(prepared):
         instance.lay_aside(gone)
         after = evolve(instance, 400)
         rows, others = particles(plan.system, rest), particles(plan.system, gone)
-        whole = energies(instance, others)
+        whole = stored(instance, others)
         assert np.ptp(after.v[others]) == 0.0
     with Instance(parts.part(rest, False)) as alone:
         alone.put(200, cut(start, rows, False))
         equal(evolve(alone, 400), cut(after, rows, False), rest)
-        part = energies(alone)
-    kept = [term for term in part if not term.endswith(LOSS)]
-    np.testing.assert_allclose([whole[t] for t in kept], [part[t] for t in kept], rtol=1e-12, atol=1e-12 * whole["kinetic"])
+        part = stored(alone)
+    assert whole.keys() == part.keys()
+    np.testing.assert_allclose(list(whole.values()), list(part.values()), rtol=1e-12, atol=1e-12 * whole["kinetic"])
 
 
 def test_who_is_laid_aside_is_in_nobodys_way(prepared):

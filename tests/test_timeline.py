@@ -30,6 +30,32 @@ def test_owners_of_every_frame():
     assert timeline.teams == [(7, (1, 0))]
 
 
+def test_a_resume_goes_on_with_the_log(tmp_path):
+    """Three executors after two, from frame 6 on: what was done beyond is left out, times go on, only changes of owners are told."""
+    before, now = log(), Timeline(3, "peers", ("a", "stone", "b", "c"))
+    before.spans.append((0, "simulating", 7, 0.5, 9.0))
+    before.cpu, before.supervisor_cpu = [2.0, 1.0], 0.5
+    now.add(7, [np.array([0]), np.array([3]), np.array([2])], 1, 3, [(2, 1)])
+    now.add(8, [np.array([0]), np.array([3]), np.array([2])], 0, 0)
+    now.spans.append((2, "moving", 7, 0.125, 0.25))
+    now.cpu, now.supervisor_cpu = [4.0, 5.0, 6.0], 0.25
+    both = now.after(before, 6)
+    assert both.frames == [5, 6, 7, 8] and both.moves == [0, 0, 1, 0] and both.retries == [0, 2, 3, 0]
+    assert both.owners == [(5, 0, 0), (5, 2, 0), (5, 3, 1), (7, 2, 2)] and both.teams == [(7, (2, 1))]
+    assert both.owner().tolist() == [[0, -1, 0, 1]] * 2 + [[0, -1, 2, 1]] * 2
+    assert both.spans == [*log().spans, (2, "moving", 7, 0.625, 0.75)]
+    assert (both.executors, both.control, both.cpu, both.supervisor_cpu) == (3, "peers", [6.0, 6.0, 6.0], 0.75)
+    both.write(tmp_path)
+    assert Timeline.left_in(tmp_path) == both
+
+
+def test_the_log_of_a_resume_that_came_to_no_frame():
+    """It is the log before, up to the checkpoint."""
+    both = Timeline(1, "central", log().names).after(log(), 7)
+    assert both.frames == [5, 6, 7] and both.owners == log().owners[:5] and both.teams == log().teams
+    assert (both.executors, both.cpu) == (2, [0.0, 0.0])
+
+
 def test_what_is_read_is_what_was_written(tmp_path):
     """Field by field, and plain JSON."""
     timeline = log()
@@ -43,3 +69,4 @@ def test_a_missing_timeline_is_told(tmp_path):
     """A sequential run leaves none."""
     with pytest.raises(OutputError, match="timeline.json cannot be read"):
         Timeline.read(tmp_path)
+    assert Timeline.left_in(tmp_path) is None

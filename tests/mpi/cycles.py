@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Make and close instances one after the other, and print what each leaves behind: ``python cycles.py SCENE COUNT``.
+"""Make and close instances one after the other, or fill spare ones anew, and print what each leaves behind:
+``python cycles.py SCENE COUNT new|spare``.
 
 A process of its own, for in one that has done other things memory comes and goes.
 """
@@ -11,6 +12,7 @@ from pathlib import Path
 from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.instance import Instance, State
 from mdanim_lammps.engine.part import Parts
+from mdanim_lammps.engine.spares import Spares
 from mdanim_lammps.scene.parse import load_scene
 
 WARM = 450
@@ -23,8 +25,9 @@ def residue() -> tuple[int, int]:
     return pages * os.sysconf("SC_PAGE_SIZE"), len(os.listdir("/proc/self/fd"))
 
 
-def main(scene: str, count: int) -> None:
+def main(scene: str, count: int, how: str) -> None:
     """Parts of one and of two objects, in turn, are given a state and run."""
+    spares = Spares()
     parts = Parts(prepare(load_scene(Path(scene))).plan)
     with Instance(parts.whole) as instance:
         instance.setup()
@@ -35,16 +38,20 @@ def main(scene: str, count: int) -> None:
         for k in range(cycles):
             a, b = ((1, 1), (2, 2), (1, 2))[k % 3]
             rows = slice(first[a], first[b + 1])
-            with Instance(parts.part(range(a, b + 1), False)) as instance:
-                instance.put(0, State(whole.x[rows], whole.v[rows], whole.f[rows]))
-                instance.run(2)
+            instance = spares.instance(parts.part(range(a, b + 1), False))
+            instance.put(0, State(whole.x[rows], whole.v[rows], whole.f[rows]))
+            instance.run(2)
+            spares.keep(instance)
+            if how == "new":
+                spares.close()
 
     go(WARM)
     before = residue()
     go(count)
     after = residue()
+    spares.close()
     print((after[0] - before[0]) / count, after[1] - before[1])
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], int(sys.argv[2]))
+    main(sys.argv[1], int(sys.argv[2]), sys.argv[3])

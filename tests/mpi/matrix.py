@@ -18,6 +18,7 @@ from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.driver.run import Interrupted, simulate
 from mdanim_lammps.driver.supervisor import Distributed
 from mdanim_lammps.results.checkpoint import Checkpoint
+from mdanim_lammps.results.timeline import Timeline
 from mdanim_lammps.scene.parse import load_scene
 
 
@@ -32,6 +33,8 @@ def run(case: dict, ready, world) -> None:
 
     checkpoint = Checkpoint.read(folder / "checkpoint") if case.get("resume") else None
     source = world and Distributed(ready, world, case["control"], Settings(**case.get("settings", {})))
+    if source and checkpoint:
+        source.before = Timeline.left_in(folder)
     try:
         simulate(ready, folder, resume=checkpoint, watch=watch, source=source)
     except Interrupted:

@@ -182,13 +182,11 @@ def test_a_run_goes_on_with_other_executors(scene):
     assert contact[4:8].min() > 0.0, "it was to be stopped while objects touch"
     for way in ("a", "b", "c"):
         same(found["sequential"], found[way])
-    assert checked_resumed(found["a"]) == 4
-
-
-def checked_resumed(folder: Path) -> int:
-    """Executors of the last part of a run that was stopped, found whole."""
-    assert not [p for p in folder.iterdir() if p.name.startswith(".") or p.name == "stop"]
-    return Timeline.read(folder).executors
+    timeline = checked(found["a"], 4)  # of all frames, those before the resume too
+    assert (timeline.owner() >= 0).any(axis=1).all() and min(timeline.cpu) > 0.0
+    assert timeline.owner().max() == 3 and timeline.owner()[0].max() == 2
+    spread = Timeline.read(found["b"]).frames  # the frames before and after were nobody's
+    assert spread[0] == 5 and 7 <= spread[-1] < len(timeline.frames) - 1
 
 
 def test_a_liquid_goes_on_with_other_executors(scene):

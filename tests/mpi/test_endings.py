@@ -20,6 +20,7 @@ from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.driver.run import write_inputs
 from mdanim_lammps.errors import ExecutorLost, OutputError
 from mdanim_lammps.results.compare import compare
+from mdanim_lammps.results.timeline import Timeline
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.parse import load_scene
 
@@ -121,15 +122,16 @@ def test_a_killed_rank_ends_the_run_within_seconds(place, control, victim):
 
 @pytest.mark.parametrize("control", ["central", "peers"])
 def test_ctrl_c_keeps_a_checkpoint(place, control):
-    """End with 130 after the frames that were under way, and go on in the sequential program."""
+    """End with 130 after the frames that were under way, and go on in the sequential program, or with executors: the log has both."""
     process = begun(place, LONG, "-n", 2, "--control", control)
     process.send_signal(signal.SIGINT)
     code, said = ended(process, 10.0)
     assert code == 130 and "mdanim-lammps resume" in said and "Traceback" not in said, said
     with Trajectory(place / "film.out") as film:
         frames = len(film)
-    if control == "peers":
-        goes_on(place, frames)
+    goes_on(place, frames, *(("-n", 2) if control == "central" else ()))
+    log = Timeline.read(place / "film.out").frames
+    assert log == list(range(len(log))) and (len(log) > frames if control == "central" else len(log) == frames)
 
 
 def test_ctrl_c_before_the_first_frame_is_not_forgotten(place):

@@ -4,18 +4,18 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from mpi4py import MPI
 
-from ..engine.instance import Instance, State
+from ..engine.instance import State
 from ..engine.part import Parts
-from ..results.ledger import LOSS
-from .energy import energies
+from ..engine.spares import Spares
+from .energy import losses, stored
 from .planning import FramePlan
 from .source import run_window
-
 
 WORTH = 0.5
 """Least share of an instance's particles that it is kept for; the others are those of objects that it has laid aside."""
@@ -46,28 +46,29 @@ class Wanted:
 def wanted_bundles(plan: FramePlan, objects: int, executor: int) -> list[Wanted]:
     """What an executor has to run, those of teams first; ``objects`` is the number of them, the pool not counted."""
     team_of = {int(plan.bundle[np.flatnonzero(plan.label == t.island)[0]]): t.members for t in plan.teams}
-    mine = np.isin(plan.bundle, [b for b, members in team_of.items() if executor in members])
-    mine |= (plan.owner == executor) & (plan.bundle >= 0) & ~np.isin(plan.bundle, list(team_of))
+    mine = (plan.owner == executor) & (plan.bundle >= 0)
+    for number, members in team_of.items():
+        mine[plan.bundle == number] = executor in members
     who = np.flatnonzero(mine)
     who = who[np.argsort(plan.bundle[who], kind="stable")]
     found = []
     for group in np.split(who, np.flatnonzero(np.diff(plan.bundle[who])) + 1) if len(who) else []:
         number = int(plan.bundle[group[0]])
-        guests = plan.guests[np.isin(plan.guests[:, 0], plan.label[group]), 1]
+        guests = plan.guests[np.isin(plan.guests[:, 0], plan.label[group]), 1].tolist() if len(plan.guests) else ()
         members = group[group < objects]
-        key = Key(tuple(np.union1d(members, guests).tolist()), bool(group[-1] == objects), team_of.get(number, (executor,)))
+        key = Key(tuple(sorted({*members.tolist(), *guests})), bool(group[-1] == objects), team_of.get(number, (executor,)))
         found.append((number not in team_of, number, Wanted(number, key, members)))
     return [w for *_, w in sorted(found, key=lambda f: f[:2])]
 
 
 class Bundle:
-    """A live one. A context of its own: `close` ends it."""
+    """A live one. What is done with its instance in the end is its owner's."""
 
-    def __init__(self, parts: Parts, wanted: Wanted, comm: MPI.Comm | None):
+    def __init__(self, parts: Parts, wanted: Wanted, comm: MPI.Comm | None, spares: Spares):
         self.objects = np.array(wanted.key.objects, np.intp)
         """All in its instance, also those that it has laid aside."""
         self.plan = parts.part(wanted.key.objects, wanted.key.liquid)
-        self.instance = Instance(self.plan, comm)
+        self.instance = spares.instance(self.plan, comm)
         self.rows = parts.whole.system.rows(wanted.key.objects)
         """Its particles among all."""
         self.first = parts.whole.system.first
@@ -80,7 +81,7 @@ class Bundle:
 
     def _take(self, wanted: Wanted) -> None:
         self.number, self.key, self.members = wanted.number, wanted.key, wanted.members
-        self.moves = np.isin(self.objects, wanted.members)
+        self.moves = self._among(wanted.members)
         """Which of its objects are its members; the others are guests, or laid aside."""
         self.other_rows = np.flatnonzero(np.repeat(~self.moves, self._particles))
         """Particles in its instance that are none of its members'."""
@@ -96,6 +97,12 @@ class Bundle:
         here, there = self.plan.system.first, self.first[self.objects[begin]]
         return [(slice(a, b), slice(c, c + b - a)) for a, b, c in zip(here[begin].tolist(), here[end].tolist(), there.tolist())]
 
+    def _among(self, objects: Sequence[int]) -> np.ndarray:
+        """Which of its objects are among these, bool, shape (n,)."""
+        among = np.zeros(len(self.first), bool)
+        among[np.asarray(objects, np.intp)] = True
+        return among[self.objects]
+
     @property
     def _particles(self) -> np.ndarray:
         """Of each object."""
@@ -110,23 +117,20 @@ class Bundle:
             return True
         if wanted.number != self.number or wanted.key.liquid or self.key.liquid or len(wanted.key.team) + len(self.key.team) > 2:
             return False
-        if not np.isin(wanted.key.objects, self.objects[~self.aside]).all():
+        if np.count_nonzero(self._among(wanted.key.objects) & ~self.aside) < len(wanted.key.objects):
             return False
-        return self._particles[np.isin(self.objects, wanted.members)].sum() >= WORTH * self._particles.sum()
+        return self._particles[self._among(wanted.members)].sum() >= WORTH * self._particles.sum()
 
     def become(self, wanted: Wanted) -> None:
         """Lay aside those objects that it does not move any more; a guest that is not needed any more does no harm."""
         if wanted.key == self.key:
             self.number = wanted.number
             return
-        out = self.moves & ~np.isin(self.objects, wanted.members)
+        out = self.moves & ~self._among(wanted.members)
         if out.any():
             self.instance.lay_aside(np.flatnonzero(out))
             self.aside |= out
         self._take(wanted)
-
-    def close(self) -> None:
-        self.instance.close()
 
     def start(self, step: int, state: State | None) -> None:
         """Take up a state; None is that of the scene, before step 0."""
@@ -138,7 +142,7 @@ class Bundle:
             rows = np.repeat(self.aside, self._particles)
             state.x[rows], state.v[rows], state.f[rows] = (self.instance.array(name)[rows] for name in "xvf")
         self.instance.put(step, state)
-        self.lost = self._losses()
+        self.lost = losses(self.instance)
 
     def run(self, steps: int) -> None:
         """Run a window. Raises Broken."""
@@ -177,20 +181,11 @@ class Bundle:
         total = scale * len(self.key.team) * max(0.0, self.run_seconds - self.liquid_seconds)
         return (total * particles / max(1, particles.sum())).astype(np.int64)
 
-    def _losses(self) -> dict[str, float]:
-        """What has been lost in its instance so far [J], by term of the ledger."""
-        plan, found = self.plan, {}
-        for effect in plan.effects:
-            if effect.ledger.endswith(LOSS):
-                found[effect.ledger] = found.get(effect.ledger, 0.0) + effect.energy(self.instance, plan.scene, plan.system)
-        return found
-
     def newly_lost(self) -> dict[str, float]:
         """Losses [J], by term of the ledger, since it was asked last."""
-        before, self.lost = self.lost, self._losses()
+        before, self.lost = self.lost, losses(self.instance)
         return {term: e - before.get(term, 0.0) for term, e in self.lost.items()}
 
     def energies(self) -> dict[str, float]:
         """Terms of the ledger [J], of what it moves, without losses."""
-        found = energies(self.instance, self.other_rows)
-        return {term: e for term, e in found.items() if not term.endswith(LOSS)}
+        return stored(self.instance, self.other_rows)

@@ -10,7 +10,7 @@ import numpy as np
 from ..effects import Effect
 from ..engine.instance import Instance
 from ..model.system import System
-
+from ..results.ledger import LOSS
 
 ROUNDING = 1e-12
 """Strain that positions in double precision can hardly tell from none."""
@@ -26,20 +26,33 @@ def ledger_terms(effects: Iterable[Effect]) -> tuple[str, ...]:
     return ("kinetic", *dict.fromkeys(e.ledger for e in effects if e.ledger))
 
 
-def energies(instance: Instance, others: np.ndarray | None = None) -> dict[str, float]:
-    """Every term of the ledger [J], at the end of a `run` or after `setup`.
+def energies(instance: Instance) -> dict[str, float]:
+    """Every term of the ledger [J], at the end of a `run` or after `setup`."""
+    return stored(instance) | losses(instance)
+
+
+def stored(instance: Instance, others: np.ndarray | None = None) -> dict[str, float]:
+    """The terms of what a state holds, without losses [J]; when as in `energies`.
 
     ``others`` are particles of the instance that are not to be counted; they do not move and hold no elastic energy.
     """
     plan = instance.plan
-    found = dict.fromkeys(ledger_terms(plan.effects), 0.0)
+    effects = [e for e in plan.effects if e.ledger and not e.ledger.endswith(LOSS)]
+    found = dict.fromkeys(ledger_terms(effects), 0.0)
     found["kinetic"] = instance.kinetic_energy()
-    for effect in plan.effects:
-        if effect.ledger:
-            found[effect.ledger] += effect.energy(instance, plan.scene, plan.system)
+    for effect in effects:
+        found[effect.ledger] += effect.energy(instance, plan.scene, plan.system)
     if others is not None and len(others):
         x, mass = instance.array("x")[others], plan.system.mass[others]
-        for effect in plan.effects:
-            if effect.ledger:
-                found[effect.ledger] -= effect.potential(plan.scene, mass, x)
+        for effect in effects:
+            found[effect.ledger] -= effect.potential(plan.scene, mass, x)
+    return found
+
+
+def losses(instance: Instance) -> dict[str, float]:
+    """The terms of what has been lost since the instance was made [J]."""
+    plan, found = instance.plan, {}
+    for effect in plan.effects:
+        if effect.ledger.endswith(LOSS):
+            found[effect.ledger] = found.get(effect.ledger, 0.0) + effect.energy(instance, plan.scene, plan.system)
     return found

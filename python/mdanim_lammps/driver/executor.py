@@ -15,6 +15,7 @@ from mpi4py import MPI
 
 from ..engine.instance import State
 from ..engine.part import Parts
+from ..engine.spares import Spares
 from ..errors import MdanimError
 from .bundle import Bundle, Wanted, wanted_bundles
 from .control import Control, make_control
@@ -68,6 +69,7 @@ class Executor:
         """False before step 0: forces come from the scene then."""
         self.control: Control = make_control(job, self.parts, mail, comm)
         self.bundles: list[Bundle] = []
+        self.spares = Spares()
         self.order: Order | None = None
         """What it follows."""
         self.next: Order | None = None
@@ -90,6 +92,9 @@ class Executor:
         """All frames. Raises Broken, MdanimError, Aborted; then its instances are left as they are, for a team's others may never come
         to close theirs."""
         self._follow(self._decide(self._first_report()))
+        few = np.flatnonzero(~self.system.still)[:2]
+        if len(few) == 2:  # pairs will meet
+            self.spares.stock(self.parts.part(few, False))
         if not self.started:
             self._commit()
             self._weigh()
@@ -104,6 +109,7 @@ class Executor:
             self._send(grant.keep)
         for bundle in self.bundles:
             self._close(bundle)
+        self.spares.close()
         self.mail.send(SUPERVISOR, Tag.ENDED, Ended(self.account, self.spans, time.process_time() - self.cpu_origin))
         self.mail.flush()
 
@@ -220,7 +226,7 @@ class Executor:
                     self.mail.send(member, Tag.TEAM, self._pack(everything), self.comm)
             else:
                 self._unpack(everything, self.mail.take(Tag.TEAM, key.team[0], self.comm))
-        bundle = Bundle(self.parts, wanted, self._team(key.team))
+        bundle = Bundle(self.parts, wanted, self._team(key.team), self.spares)
         self._start(bundle)
         return bundle
 
@@ -239,7 +245,7 @@ class Executor:
 
     def _close(self, bundle: Bundle) -> None:
         add_clocks(self.account, bundle.instance)
-        bundle.close()
+        self.spares.keep(bundle.instance)
 
     def _leads(self, bundle: Bundle) -> bool:
         return bundle.key.team[0] == self.me

@@ -19,10 +19,10 @@ from .source import Account, Pool
 
 SUPERVISOR = 0
 """Its rank; executor e, counted from 0, has the rank e + 1."""
-EAGER = 0.001
-"""Seconds of waiting without a pause: most answers come within them, and others may have work for this processor."""
-NAP = 0.0002
-"""Seconds of a pause after that."""
+NAP, LONG_NAP = 0.0002, 0.001
+"""Shortest and longest pause of somebody who waits [s]."""
+DROWSE = 0.02
+"""A pause over the time that he has waited: looks take processor time too."""
 
 
 class Tag(IntEnum):
@@ -200,10 +200,9 @@ class Mail:
         """Call ``look`` until it gives something, which is returned. Raises Aborted."""
         begin = time.perf_counter()
         while not (found := look()):
-            if time.perf_counter() - begin > EAGER:
-                if self.world.iprobe(source=SUPERVISOR, tag=Tag.ABORT):
-                    raise Aborted
-                time.sleep(NAP)
+            if self.world.iprobe(source=SUPERVISOR, tag=Tag.ABORT):
+                raise Aborted
+            time.sleep(min(max(NAP, DROWSE * (time.perf_counter() - begin)), LONG_NAP))
         return found
 
     def exchange(self, comm: MPI.Comm, message) -> list:

@@ -41,12 +41,14 @@ def main() -> None:
 def _supervise(world, exchange: Path) -> None:
     from mpi4py import MPI
 
+    from ..results.timeline import Timeline
     from .run import Result, simulate
     from .supervisor import Distributed
 
     task: Task = pickle.loads((exchange / JOB).read_bytes())
     source = Distributed(task.ready, world, task.control, task.settings)
     try:
+        source.before = Timeline.left_in(task.folder) if task.resume else None
         result = simulate(task.ready, task.folder, resume=task.resume, started=task.started, source=source,
                           watch=lambda p: print(json.dumps(asdict(p)), flush=True))
     except MdanimError as error:
@@ -58,7 +60,8 @@ def _supervise(world, exchange: Path) -> None:
         world.Abort(1)
         raise
     try:
-        source.timeline.write(task.folder)
+        if source.timeline.frames or not task.resume:  # else the log that is there stands
+            source.timeline.write(task.folder)
     except OutputError as error:
         result = _told(error) if isinstance(result, Result) else result
     part = exchange / (RESULT + ".part")

@@ -57,6 +57,8 @@ class Distributed:
         self.used: list[_Sheaf] = []
         """Sheaves that can be filled again: they are as large as the scene."""
         self.timeline = Timeline(self.executors, control, ready.system.names)
+        self.before: Timeline | None = None
+        """The log of a run that is resumed: in the end `timeline` begins with it."""
 
     # --- as a source of frames ------------------------------------------------------------------------------------
 
@@ -67,7 +69,7 @@ class Distributed:
         system = self.ready.system
         self.step = resume.step if resume else 0
         self.start = (resume.x, resume.v, resume.f) if resume else (system.position, system.velocity, np.zeros_like(system.position))
-        self.granted = self.taken = resume.frame if resume else 0
+        self.granted = self.taken = self.resumed_at = resume.frame if resume else 0
         self.last: _Sheaf | None = None
         """That of the frame which was given out last."""
         self.kept_at, self.cpu_begun = time.perf_counter(), time.process_time()
@@ -123,6 +125,8 @@ class Distributed:
             self.timeline.spans += [(executor, *span) for span in ended.spans]
             self.timeline.cpu[executor] = ended.cpu
         self.timeline.supervisor_cpu = time.process_time() - self.cpu_begun
+        if self.before:
+            self.timeline = self.timeline.after(self.before, self.resumed_at)
 
     # --- frames ---------------------------------------------------------------------------------------------------
 

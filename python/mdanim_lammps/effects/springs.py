@@ -61,6 +61,7 @@ class Springs(Effect):
         return instance.elastic_energy()
 
     def clocks(self, instance):
+        # A system has dashpots even where damping is switched off.
         more = time_of_dashpots(instance.plan.system) if instance.plan.damped else 0.0
         return {"springs": instance.bond_seconds() / (1.0 + more)}
 

@@ -22,9 +22,9 @@ def harmonic_coeff(k: float) -> float:
 
 def bond_coeffs(plan: Plan) -> list[str]:
     """``TYPE K r0 [c]`` for every bond type, in digits that keep every bit."""
-    rows = []
+    rows, damped = [], plan.damped
     for kind, (k, r0, c) in enumerate(plan.coefficients.tolist(), start=1):
-        rows.append(f"{kind} {harmonic_coeff(k)!r} {r0!r}" + (f" {c!r}" if plan.damped else ""))
+        rows.append(f"{kind} {harmonic_coeff(k)!r} {r0!r}" + (f" {c!r}" if damped else ""))
     return rows
 
 

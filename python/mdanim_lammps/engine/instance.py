@@ -19,6 +19,14 @@ LIQUID = b"liquid"
 """ID of the liquid's fix (effects/liquid.py)."""
 MANY = 20_000
 """Particles from which on what making them has left free in the heap goes back to the system: 100 to 400 bytes each, in 10 ns each."""
+SMALL = 8000
+"""Particles up to which an instance is worth being filled anew: with more, putting them in takes longer than all the rest."""
+TYPES = 256
+"""A small one has room for so many bond types at least: plans that come later may have more."""
+REPEATED = ("comm_modify", "bond_style")
+"""Commands before the particles that an instance takes again when it is filled anew: bond styles begin with empty accounts."""
+UNDONE = {"fix": "unfix {}", "region": "region {} delete"}
+"""What takes back a command for what acts on particles; the others may be given again."""
 GLOBAL, SCALAR, VECTOR, SIZE_VECTOR = 0, 0, 1, 3  # LAMMPS's constants for extract_fix
 
 
@@ -87,10 +95,11 @@ class Instance:
             self._lmp = None
 
     def _fill(self) -> None:
-        plan, system, lmp = self.plan, self.plan.system, self._lmp
+        plan, lmp = self.plan, self._lmp
         low, high = box(plan).tolist()
         # property/atom must exist before the particles, and a box before both.
         *before, columns = prelude(plan)
+        self._types = max(TYPES, len(plan.coefficients)) if self.refillable else len(plan.coefficients)
         # On one process the bond style takes the springs as they are; of several, each needs those of its own particles at both ends.
         ends = plan.ends() if self._comm and len(plan.bonds) else None
         room = f" extra/bond/per/atom {np.diff(ends.first).max()}" if ends else ""
@@ -99,21 +108,50 @@ class Instance:
             *before,
             columns,
             f"region box block {bounds}",
-            f"create_box 8 box bond/types {len(plan.coefficients)}{room}" if len(plan.bonds) else "create_box 8 box",
+            f"create_box 8 box bond/types {self._types}{room}" if len(plan.bonds) else "create_box 8 box",
         ])
-        self._insert(ends, system.position)
-        if len(plan.bonds) and not ends:
-            springs = [np.ascontiguousarray(a, np.int32) for a in (plan.bonds, plan.bond_kind)]
-            self._call(f"take {len(plan.bonds)} springs", self._library.mdanim_give_springs, ctypes.c_int(len(plan.bonds)),
-                       *map(_pointer, springs))
-        if len(plan.bonds):
-            lmp.commands_list([f"bond_coeff {row}" for row in bond_coeffs(plan)])
-        lmp.commands_list(physics(plan))
+        self._populate(ends)
         if self._comm:
             lmp.commands_list(BALANCE)
         # The springs' energy is all that is asked for; while there is a compute of the pressure, their virial is worked out with it.
         lmp.commands_list([f"thermo {max(1, plan.certificate.steps_per_frame)}",
                            f"thermo_style custom step{' ebond' if len(plan.bonds) else ''}", "thermo_modify norm no", "uncompute thermo_press"])
+
+    def _populate(self, ends: Ends | None) -> None:
+        """Particles and what acts on them, into a box that is empty."""
+        plan = self.plan
+        self._insert(ends, plan.system.position)
+        if len(plan.bonds) and not ends:
+            springs = [np.ascontiguousarray(a, np.int32) for a in (plan.bonds, plan.bond_kind)]
+            self._call(f"take {len(plan.bonds)} springs", self._library.mdanim_give_springs, ctypes.c_int(len(plan.bonds)),
+                       *map(_pointer, springs))
+        if len(plan.bonds):
+            *rows, last = bond_coeffs(plan)
+            kind, rest = last.split(" ", 1)
+            self._lmp.commands_list([f"bond_coeff {row}" for row in (*rows, f"{kind}*{self._types} {rest}")])  # LAMMPS wants all types set
+        self._lmp.commands_list(physics(plan))
+
+    @property
+    def refillable(self) -> bool:
+        """Whether it can become one of another plan: a small one, on one process, without a liquid."""
+        return self._comm is None and self.plan.grid is None and self.plan.system.particles <= SMALL
+
+    def refill(self, plan: Plan) -> bool:
+        """Become an instance of another plan, as if it had been made for it, in a fifth of the time. Returns False, with nothing done,
+        where that needs other columns, more types of springs, or a liquid, or this one is not refillable. Raises SetupError.
+        """
+        if not self.refillable or plan.grid or len(plan.coefficients) > self._types or _fixed(plan) != _fixed(self.plan):
+            return False
+        undo = [UNDONE[word].format(name) for word, name, *_ in map(str.split, physics(self.plan)) if word in UNDONE]
+        self.plan = plan
+        self._views.clear()
+        try:
+            self._lmp.commands_list(["delete_atoms group all compress no", *reversed(undo),  # fixes go before their regions
+                                     *(c for c in prelude(plan) if c.startswith(REPEATED)), "reset_timestep 0"])
+            self._populate(None)
+        except Exception as error:
+            raise SetupError(f"LAMMPS does not take these particles: {error}") from error
+        return True
 
     def _insert(self, ends: Ends | None, position: np.ndarray) -> None:
         """Hand all particles, and springs if they are to have them, to the plugin; each rank takes those in its part of space."""
@@ -338,6 +376,11 @@ class Instance:
         """Energy that dashpots have taken so far [J]."""
         here = float(self._library.mdanim_bond_lost(self._handle))
         return sum(self._comm.allgather(here)) if self._comm else here
+
+
+def _fixed(plan: Plan) -> list[str]:
+    """What LAMMPS is told once, before there are particles."""
+    return [command for command in prelude(plan) if not command.startswith("comm_modify")]
 
 
 def _pointer(array: np.ndarray) -> ctypes.c_void_p:

@@ -106,15 +106,16 @@ class Parts:
         s = self.whole.system
         particle, spring, cell = (_Taker(runs, first) for first in (self._particle, self._spring, self._cell))
         index = np.array(objects, np.intp)
-        return System(
-            names=tuple(s.names[m] for m in objects),
-            first=np.concatenate([[0], np.cumsum(np.diff(s.first)[index])]).astype(np.int64),
-            position=particle(s.position), velocity=particle(s.velocity), mass=particle(s.mass), share=particle(s.share),
-            layer=particle(s.layer), held=particle(s.held),
-            spring=particle.renumber(s.spring, spring), spring_type=spring(s.spring_type), constants=s.constants,
-            drag=None if s.drag is None else particle(s.drag),
-            young=s.young[index], spacing=s.spacing[index], cell_volume=s.cell_volume[index], per_mass=s.per_mass[index],
-            hexahedron=particle.renumber(s.hexahedron, cell), grid=s.grid if liquid else None,
+        return _Cut(
+            names=lambda: tuple(s.names[m] for m in objects),
+            first=lambda: np.concatenate([[0], np.cumsum(np.diff(s.first)[index])]).astype(np.int64),
+            position=lambda: particle(s.position), velocity=lambda: particle(s.velocity), mass=lambda: particle(s.mass),
+            share=lambda: particle(s.share), layer=lambda: particle(s.layer), held=lambda: particle(s.held),
+            spring=lambda: particle.renumber(s.spring, spring), spring_type=lambda: spring(s.spring_type),
+            constants=lambda: s.constants, drag=lambda: None if s.drag is None else particle(s.drag),
+            young=lambda: s.young[index], spacing=lambda: s.spacing[index], cell_volume=lambda: s.cell_volume[index],
+            per_mass=lambda: s.per_mass[index], hexahedron=lambda: particle.renumber(s.hexahedron, cell),
+            grid=lambda: s.grid if liquid else None,
         )
 
     # --- springs at both ends: kept by object, for it takes a sort to make them ---------------------------------------
@@ -142,10 +143,23 @@ class Parts:
 
     def _join_ends(self, objects: tuple[int, ...], first: np.ndarray, number: np.ndarray) -> Ends:
         pieces = [self._ends_of(m) for m in objects]
-        count = np.concatenate([[0], *(p[0] for p in pieces)])
-        partner = [p[1] + np.int32(start) if start else p[1] for p, start in zip(pieces, first)]
-        return Ends(np.cumsum(count, dtype=np.int64), _join(partner, np.int32),
-                    number[_join([p[2] for p in pieces], np.int32)].astype(np.int32))
+        count, partner, kind = (_join([p[k] for p in pieces], np.int32) for k in range(3))
+        where = np.concatenate([[0], np.cumsum(count, dtype=np.int64)])
+        shift = np.repeat(first[:-1].astype(np.int32), np.diff(where[first]))
+        return Ends(where, partner + shift, number[kind].astype(np.int32))
+
+
+class _Cut(System):
+    """A system cut out of another: an instance asks for few of its arrays, so each is made when it is first asked for."""
+
+    def __init__(self, **make: Callable[[], object]):
+        self.__dict__["make"] = make
+
+    def __getattr__(self, name: str):
+        if name not in self.__dict__["make"]:
+            raise AttributeError(name)
+        self.__dict__[name] = self.__dict__["make"][name]()
+        return self.__dict__[name]
 
 
 class _Taker:

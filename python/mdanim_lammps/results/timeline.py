@@ -60,6 +60,26 @@ class Timeline:
         self.retries.append(retries)
         self.teams += [(frame, team) for team in teams]
 
+    def after(self, before: "Timeline", frame: int) -> "Timeline":
+        """This log of a run that was resumed at a frame, with what the log before tells up to there.
+
+        Times go on from the last of those that are kept. With other numbers of executors they are those of the larger one, and processor
+        times are sums of both, with what came after that frame and is done again; the control is that of now.
+        """
+        kept = int(np.searchsorted(before.frames, frame, side="right"))
+        spans = [span for span in before.spans if span[2] <= frame]
+        begun = max((end for *_, end in spans), default=0.0)
+        frames, table = [*before.frames[:kept], *self.frames], np.concatenate([before.owner()[:kept], self.owner()])
+        changed = np.argwhere(np.diff(table, axis=0, prepend=-1))
+        executors = max(self.executors, before.executors)
+        cpu = [sum(log.cpu[e] for log in (before, self) if e < log.executors) for e in range(executors)]
+        return Timeline(
+            executors, self.control, self.names, frames, [*before.moves[:kept], *self.moves], [*before.retries[:kept], *self.retries],
+            teams=[*(team for team in before.teams if team[0] <= frame), *self.teams],
+            owners=[(frames[row], int(m), int(table[row, m])) for row, m in changed],
+            spans=[*spans, *((*what, begin + begun, end + begun) for *what, begin, end in self.spans)],
+            cpu=cpu, supervisor_cpu=before.supervisor_cpu + self.supervisor_cpu)
+
     def owner(self) -> np.ndarray:
         """Executor of every object at every frame, -1 for none, int64, shape (F, M)."""
         table = np.full((len(self.frames), len(self.names)), -1)
@@ -97,6 +117,11 @@ class Timeline:
     def write(self, folder: Path) -> None:
         """Write timeline.json. Raises OutputError."""
         write_json(folder / TIMELINE, asdict(self))
+
+    @classmethod
+    def left_in(cls, folder: Path) -> "Timeline | None":
+        """What a run has left in its folder, None where nothing is, as all of it was sequential. Raises OutputError."""
+        return cls.read(folder) if (folder / TIMELINE).exists() else None
 
     @classmethod
     def read(cls, folder: Path) -> "Timeline":
