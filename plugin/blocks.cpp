@@ -109,7 +109,7 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
   entries.clear();
   const std::vector<int> length = lengths(bonds, object);
   for (int end = particles; end > 0; end -= length[end])
-    all.push_back({end - length[end], static_cast<short>(length[end]), false, false, 0, 0, object[end - 1] - 1});
+    all.push_back({end - length[end], static_cast<short>(length[end]), false, false, 0, 0, 0, object[end - 1] - 1});
   std::reverse(all.begin(), all.end());
 
   home.resize(particles);
@@ -202,11 +202,49 @@ void Blocks::set_row(const Mover &mover, Friction friction, int lane, double *ro
   }
 }
 
+// Blocks with a particle of anybody have a row for everybody.
+void Blocks::expect(const std::vector<std::vector<int>> &particles_of)
+{
+  const auto many = static_cast<unsigned>(particles_of.size());
+  const auto each = [&](auto visit) {
+    for (unsigned n = 0; n < many; ++n)
+      for (const int i : particles_of[n])
+        if (!is_ghost(i)) visit(n, i, all[home[ours(i)]]);
+  };
+  for (Block &block : all) block.brought = 0;
+  each([&](unsigned, int, Block &block) { block.brought = many; });
+  unsigned rows = 0;
+  for (Block &block : all) rows = block.brought += rows;
+  brought.assign(static_cast<std::size_t>(rows) * 3 * lanes);
+  bringers.assign(many, {});
+  each([&](unsigned n, int i, const Block &block) {
+    const std::size_t row = block.brought - many + n;
+    bringers[n].push_back({i, row * 3 * lanes + (ours(i) - block.start)});
+  });
+}
+
+void Blocks::ask(std::size_t n, double *const *to_x, double *const *to_f) const
+{
+  for (const auto &[particle, slot] : bringers[n]) {
+    const int i = ours(particle);
+    for (int d = 0; d < 3; ++d) {
+      to_x[particle][d] = x[d][i];
+      to_f[particle][d] = 0.0;
+    }
+  }
+}
+
+void Blocks::bring(std::size_t n, const double *const *from_f)
+{
+  for (const auto &[particle, slot] : bringers[n])
+    for (int d = 0; d < 3; ++d) brought.data()[slot + d * lanes] = from_f[particle][d];
+}
+
 void Blocks::hold_back(const std::vector<int> &wanted, bool everything)
 {
   for (Block &block : all) block.held_back = everything;
   for (const int i : wanted)
-    if (!is_ghost(i)) all[home[index.empty() ? i : place[i]]].held_back = true;
+    if (!is_ghost(i)) all[home[ours(i)]].held_back = true;
   outside.clear();
   for (const Block &block : all)
     if (block.held_back)
@@ -343,6 +381,7 @@ void Blocks::fill(Pass &pass, double *const *forces)
   pass.law = laws.data();
   pass.damped_law = damped() ? damped_laws.data() : nullptr;
   pass.motion = motions.data();
+  pass.brought = brought.data();
   for (int d = 0; d < 3; ++d) {
     pass.x[d] = x[d];
     pass.v[d] = v[d];

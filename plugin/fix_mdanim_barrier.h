@@ -31,6 +31,7 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
   double compute_vector(int) override;
   double memory_usage() override;
   void concerned(std::vector<int> &particles) const override;
+  bool places_suffice() const override { return damping == 0.0; }
   bool reads_all() override { return damping > 0.0 && !loss.idle(); }
   double looks_ahead() const override { return clear; }
 

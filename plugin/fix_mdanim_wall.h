@@ -30,6 +30,7 @@ class FixMdanimWall : public Fix, public mdanim::Guest {
   double compute_vector(int) override;
   double memory_usage() override;
   void concerned(std::vector<int> &particles) const override;
+  bool places_suffice() const override { return watching; }
   bool reads_all() override { return !watching; }
   double looks_ahead() const override { return clear; }
 

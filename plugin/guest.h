@@ -13,7 +13,10 @@ class Guest {
   // The local particles whose x, v and f the fix reads or writes in post_force() and end_of_step(), until lists are rebuilt; the
   // arrays of LAMMPS hold no others. Adds them to `particles`, some perhaps twice.
   virtual void concerned(std::vector<int> &particles) const = 0;
-  // Whether it will read any particle in this step. Asked once, when the step has begun.
+  // Whether, in this whole run, post_force() depends on places alone, those of these particles, adds to each of them at most once and
+  // is all that the fix does in a step: it may then be called before the pass, which adds what it has added to nothing.
+  virtual bool places_suffice() const { return false; }
+  // Whether it will read any particle in this step. Asked once, when the step has begun, unless places suffice.
   virtual bool reads_all() { return false; }
   // How far particles may go from where they stood when lists were made before it must look again, as far as it can tell: who has
   // nothing to do until then says so here, and lists last longer than half the skin.

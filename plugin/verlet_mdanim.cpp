@@ -102,7 +102,8 @@ bool VerletMdanim::find_players()
   bond = dynamic_cast<BondMdanimHarmonic *>(force->bond);
   leapfrog = nullptr;
   gravity = nullptr;
-  guests.clear();
+  early.clear();
+  late.clear();
   strangers_have_lists = neighbor->nlist > 0;
   if (!bond || domain->triclinic || domain->dimension != 3) return false;
   if ((force->pair && force->pair->compute_flag) || force->angle || force->dihedral || force->improper || force->kspace)
@@ -114,11 +115,12 @@ bool VerletMdanim::find_players()
       if (leapfrog) return false;
       leapfrog = found;
     } else if (auto *found = dynamic_cast<FixMdanimGravity *>(fix)) {
-      if (gravity || !guests.empty()) return false;    // its force is added right after the springs'
+      if (gravity || !early.empty() || !late.empty()) return false;    // its force is added right after the springs'
       gravity = found;
-    } else if (auto *guest = dynamic_cast<Guest *>(fix))
-      guests.push_back({fix, guest, (mask & FixConst::END_OF_STEP) != 0});
-    else if (mask & ACTS)
+    } else if (auto *guest = dynamic_cast<Guest *>(fix)) {
+      // Whoever comes after a late one is late himself: forces are added in the order of fixes.
+      (guest->places_suffice() && late.empty() ? early : late).push_back({fix, guest, (mask & FixConst::END_OF_STEP) != 0});
+    } else if (mask & ACTS)
       return false;
     else if (mask & FixConst::POST_NEIGHBOR)
       strangers_have_lists = true;
@@ -228,7 +230,7 @@ int VerletMdanim::take_steps(int step, int most)
   while (update->ntimestep < stop) {
     if (comm->nprocs > 1 && taken) meet_ghosts();
     bool see_all = false;
-    for (const Player &p : guests) see_all = p.guest->reads_all() || see_all;
+    for (const Player &p : late) see_all = p.guest->reads_all() || see_all;
     if (see_all) blocks.hold_back(wanted, true);
     one_pass(see_all);
     ++taken;
@@ -276,7 +278,8 @@ double VerletMdanim::how_far_lists_last() const
   const double half = 0.5 * neighbor->skin;
   if (strangers_have_lists) return half;
   double far = std::numeric_limits<double>::max();
-  for (const Player &p : guests) far = std::min(far, p.guest->looks_ahead());
+  for (const auto *guests : {&early, &late})
+    for (const Player &p : *guests) far = std::min(far, p.guest->looks_ahead());
   if (comm->nprocs > 1) {
     for (int d = 0; d < 3; ++d) far = std::min(far, 0.5 * (domain->subhi[d] - domain->sublo[d]));
     MPI_Allreduce(MPI_IN_PLACE, &far, 1, MPI_DOUBLE, MPI_MIN, world);
@@ -318,7 +321,7 @@ void VerletMdanim::meet_ghosts()
   timer->stamp(Timer::COMM);
 }
 
-// Positions and velocities into the blocks, and who is to be held back.
+// Positions and velocities into the blocks, who brings forces, and who is to be held back.
 void VerletMdanim::start_blocks()
 {
   if (made_for != neighbor->lastcall) {
@@ -334,6 +337,9 @@ void VerletMdanim::start_blocks()
     account->close(atom->v, update->dt);
     if (blocks.damped()) blocks.take_in_dashpots(account->latest(), account->latest_seen());
   }
+  std::vector<std::vector<int>> of_early(early.size());
+  for (std::size_t n = 0; n < early.size(); ++n) early[n].guest->concerned(of_early[n]);
+  blocks.expect(of_early);
   blocks.fill(pass, atom->f);
   pass.gravity[0] = pass.gravity[1] = pass.gravity[2] = 0.0;
   if (gravity) {
@@ -347,13 +353,14 @@ void VerletMdanim::start_blocks()
 void VerletMdanim::hold_back()
 {
   wanted.clear();
-  for (const Player &p : guests) p.guest->concerned(wanted);
+  for (const Player &p : late) p.guest->concerned(wanted);
   blocks.hold_back(wanted, false);
   pass.friction = blocks.friction_acts() ? leapfrog->friction() : Friction::NONE;    // without any it is the same, and faster
 }
 
 void VerletMdanim::one_pass(bool guests_see_all)
 {
+  early_guests_turn();
   double all = 0.0;
   {
     const Lap lap(all);
@@ -364,24 +371,34 @@ void VerletMdanim::one_pass(bool guests_see_all)
   leapfrog->moved(pass.final_loss, pass.first_loss, moving);
   if (gravity) gravity->took(pulling);
   bond->took(all - moving - pulling);
-  if (!guests.empty()) {
-    guests_turn();
+  if (!late.empty()) {
+    late_guests_turn();
     if (guests_see_all) hold_back();    // they may have other concerns now
   }
   if (Loss *account = bond->account()) account->passed(pass.dashpots, update->dt);
 }
 
-// Forces of other fixes, and the motion of those that were held back for them.
-void VerletMdanim::guests_turn()
+// Forces that the pass is to add.
+void VerletMdanim::early_guests_turn()
+{
+  for (std::size_t n = 0; n < early.size(); ++n) {
+    blocks.ask(n, atom->x, atom->f);
+    early[n].fix->post_force(vflag);
+    blocks.bring(n, atom->f);
+  }
+}
+
+// Forces of the other fixes, and the motion of those that were held back for them.
+void VerletMdanim::late_guests_turn()
 {
   const std::vector<int> &waiting = blocks.held_back();
   if (!waiting.empty()) {
     blocks.give_out_held_back(atom->x, atom->v);
     blocks.give_out_forces(atom->f);
   }
-  for (const Player &p : guests) p.fix->post_force(vflag);
+  for (const Player &p : late) p.fix->post_force(vflag);
   if (!waiting.empty()) leapfrog->finish_step(waiting);
-  for (const Player &p : guests)
+  for (const Player &p : late)
     if (p.acts_at_end) p.fix->end_of_step();
   if (waiting.empty()) return;
   leapfrog->begin_step(waiting);

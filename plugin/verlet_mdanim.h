@@ -39,7 +39,8 @@ class VerletMdanim : public Verlet {
   void leave_blocks();
   void hold_back();
   void one_pass(bool guests_see_all);
-  void guests_turn();
+  void early_guests_turn();
+  void late_guests_turn();
 
   void begin_step();
   void finish_step();
@@ -65,14 +66,14 @@ class VerletMdanim : public Verlet {
     mdanim::Guest *guest;
     bool acts_at_end;
   };
-  std::vector<Player> guests;
+  std::vector<Player> early, late;    // guests whose forces are asked for before a pass, and those who come after it
 
   bool lists_matter = false;
   bool strangers_have_lists = false;
   double strayed = 0.0;        // no particle has moved farther since lists were made
   double last = 0.0;           // how far any may go
   bigint made_for = -1;        // build of lists that the blocks' motion was told after
-  std::vector<int> wanted;     // particles that guests are concerned with
+  std::vector<int> wanted;     // particles that late guests are concerned with
 };
 
 }    // namespace LAMMPS_NS
