@@ -307,6 +307,7 @@ bool VerletMdanim::look_again()
   if (!rebuild_lists()) return false;
   strayed = 0.0;
   last = how_far_lists_last();
+  if (late.empty()) made_for = neighbor->lastcall;    // nobody has changed how particles move
   start_blocks();
   return true;
 }
