@@ -206,38 +206,42 @@ void Blocks::set_row(const Mover &mover, Friction friction, int lane, double *ro
 void Blocks::expect(const std::vector<std::vector<int>> &particles_of)
 {
   const auto many = static_cast<unsigned>(particles_of.size());
-  const auto each = [&](auto visit) {
-    for (unsigned n = 0; n < many; ++n)
-      for (const int i : particles_of[n])
-        if (!is_ghost(i)) visit(n, i, all[home[ours(i)]]);
-  };
   for (Block &block : all) block.brought = 0;
-  each([&](unsigned, int, Block &block) { block.brought = many; });
+  for (const std::vector<int> &particles : particles_of)
+    for (const int i : particles)
+      if (!is_ghost(i)) all[home[ours(i)]].brought = many;
   unsigned rows = 0;
   for (Block &block : all) rows = block.brought += rows;
   brought.assign(static_cast<std::size_t>(rows) * 3 * lanes);
   bringers.assign(many, {});
-  each([&](unsigned n, int i, const Block &block) {
-    const std::size_t row = block.brought - many + n;
-    bringers[n].push_back({i, row * 3 * lanes + (ours(i) - block.start)});
-  });
-}
-
-void Blocks::ask(std::size_t n, double *const *to_x, double *const *to_f) const
-{
-  for (const auto &[particle, slot] : bringers[n]) {
-    const int i = ours(particle);
-    for (int d = 0; d < 3; ++d) {
-      to_x[particle][d] = x[d][i];
-      to_f[particle][d] = 0.0;
+  for (unsigned n = 0; n < many; ++n)
+    for (const int i : particles_of[n]) {
+      if (is_ghost(i)) {
+        bringers[n].push_back({i, GHOST});
+        continue;
+      }
+      const Block &block = all[home[ours(i)]];
+      const long row = block.brought - many + n;
+      bringers[n].push_back({ours(i), row * 3 * lanes + ours(i) - block.start});
     }
-  }
 }
 
-void Blocks::bring(std::size_t n, const double *const *from_f)
+void Blocks::tell_places(std::size_t n, const double *const *of_ghosts, std::vector<Vec3> &to) const
 {
-  for (const auto &[particle, slot] : bringers[n])
-    for (int d = 0; d < 3; ++d) brought.data()[slot + d * lanes] = from_f[particle][d];
+  to.clear();
+  for (const auto &[i, slot] : bringers[n]) to.push_back(slot == GHOST ? vec3(of_ghosts[i]) : Vec3{x[0][i], x[1][i], x[2][i]});
+}
+
+void Blocks::bring(std::size_t n, const std::vector<Vec3> &force)
+{
+  double *const to = brought.data();
+  for (std::size_t k = 0; k < force.size(); ++k) {
+    const long slot = bringers[n][k].slot;
+    if (slot == GHOST) continue;
+    to[slot] = force[k].x;
+    to[slot + lanes] = force[k].y;
+    to[slot + 2 * lanes] = force[k].z;
+  }
 }
 
 void Blocks::hold_back(const std::vector<int> &wanted, bool everything)

@@ -75,9 +75,9 @@ class Blocks {
   template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
   // Who brings forces before every pass, in the order in which they are added: the particles of each, ghosts perhaps among them.
   void expect(const std::vector<std::vector<int>> &particles);
-  // Positions of those of number n, and no forces on them; and then the forces.
-  void ask(std::size_t n, double *const *x, double *const *f) const;
-  void bring(std::size_t n, const double *const *f);
+  // Of those of number n, in the same order: positions, those of ghosts from x; and the forces on them.
+  void tell_places(std::size_t n, const double *const *x, std::vector<Vec3> &place) const;
+  void bring(std::size_t n, const std::vector<Vec3> &force);
 
   // Every block with one of these particles is held back, no other; ghosts among them are left out.
   void hold_back(const std::vector<int> &particles, bool everything);
@@ -118,9 +118,10 @@ class Blocks {
   std::vector<bool> slowed;    // blocks with friction
   std::vector<int> outside;    // particles of blocks that are held back
   struct Brought {
-    int particle;
-    std::size_t slot;    // of its force in `brought`
+    int particle;    // in our order, a ghost in LAMMPS's
+    long slot;       // of its force in `brought`
   };
+  static constexpr long GHOST = -1;    // as a slot
   std::vector<std::vector<Brought>> bringers;
   Doubles brought;    // see Pass
   std::vector<int> index, place;      // of a particle in LAMMPS's arrays, and back; `index` empty where the orders are the same

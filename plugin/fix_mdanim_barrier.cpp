@@ -328,6 +328,7 @@ void FixMdanimBarrier::find_candidates()
   pair.clear();
   law.clear();
   particle.clear();
+  unmoved.clear();
   pairs = 0.0;
 
   std::vector<Box> boxes;
@@ -380,7 +381,8 @@ void FixMdanimBarrier::find_candidates()
     law.push_back(known);
     pairs += known.share;
   }
-  place.resize(particle.size());
+  for (size_t n = 0; n < particle.size(); ++n)
+    if (!moves(particle[n])) unmoved.push_back(static_cast<int>(n));
   touching_pair.resize(pair.size());
 }
 
@@ -394,6 +396,16 @@ void FixMdanimBarrier::setup(int vflag)
 
 void FixMdanimBarrier::post_force(int)
 {
+  here.clear();
+  for (const int i : particle) here.push_back(vec3(atom->x[i]));
+  forces(here, on);
+  for (size_t n = 0; n < particle.size(); ++n) add_to(atom->f[particle[n]], on[n]);
+}
+
+// On the particles that have candidates; nothing on those that are not moved.
+void FixMdanimBarrier::forces(const std::vector<Vec3> &place, std::vector<Vec3> &total)
+{
+  total.assign(particle.size(), Vec3());
   energy = touching = 0.0;
   if (pair.empty() && loss.idle()) {
     loss.rest();
@@ -401,11 +413,9 @@ void FixMdanimBarrier::post_force(int)
   }
 
   const Lap lap(seconds);
-  const double *const *x = atom->x, *const *v = atom->v;
-  double *const *f = atom->f;
+  const double *const *v = atom->v;
   std::vector<Vec3> *slowed = damping > 0.0 ? &loss.forces(atom->nlocal) : nullptr;
 
-  for (size_t n = 0; n < particle.size(); ++n) place[n] = vec3(x[particle[n]]);
   size_t many = 0;
   for (size_t c = 0; c < pair.size(); ++c) {    // without a branch that nobody could foretell
     const Vec3 d = place[pair[c].low] - place[pair[c].high];
@@ -413,7 +423,6 @@ void FixMdanimBarrier::post_force(int)
     many += dot(d, d) < pair[c].reach2;
   }
 
-  total.assign(particle.size(), Vec3());
   for (size_t m = 0; m < many; ++m) {
     const auto &[low, high, reach2] = pair[touching_pair[m]];
     const auto &[k, reach, share] = law[touching_pair[m]];
@@ -437,8 +446,7 @@ void FixMdanimBarrier::post_force(int)
     touching += share;
     deepest = std::min(deepest, r / reach);
   }
-  for (size_t n = 0; n < particle.size(); ++n)
-    if (moves(particle[n])) add_to(f[particle[n]], total[n]);
+  for (const int n : unmoved) total[n] = Vec3();
   if (slowed) loss.step(v, update->dt, update->setupflag);
 }
 
@@ -475,5 +483,6 @@ double FixMdanimBarrier::compute_vector(int n)
 double FixMdanimBarrier::memory_usage()
 {
   return own.capacity() * sizeof(Own) + pair.capacity() * sizeof(Pair) + law.capacity() * sizeof(Law) +
-      (particle.capacity() + touching_pair.capacity()) * sizeof(int) + (place.capacity() + total.capacity()) * sizeof(Vec3);
+      (particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) +
+      (here.capacity() + on.capacity()) * sizeof(Vec3);
 }

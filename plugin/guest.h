@@ -4,6 +4,8 @@
 #ifndef MDANIM_GUEST_H
 #define MDANIM_GUEST_H
 
+#include "vec3.h"
+
 #include <vector>
 
 namespace mdanim {
@@ -13,9 +15,10 @@ class Guest {
   // The local particles whose x, v and f the fix reads or writes in post_force() and end_of_step(), until lists are rebuilt; the
   // arrays of LAMMPS hold no others. Adds them to `particles`, some perhaps twice.
   virtual void concerned(std::vector<int> &particles) const = 0;
-  // Whether, in this whole run, post_force() depends on places alone, those of these particles, adds to each of them at most once and
-  // is all that the fix does in a step: it may then be called before the pass, which adds what it has added to nothing.
+  // Whether, in this whole run, all that the fix does in a step is to add forces that depend on the places of these particles alone.
+  // It is then asked for them before the pass instead, which adds them: one force for each particle, which is named once.
   virtual bool places_suffice() const { return false; }
+  virtual void forces(const std::vector<Vec3> & /*place*/, std::vector<Vec3> & /*force*/) {}
   // Whether it will read any particle in this step. Asked once, when the step has begun, unless places suffice.
   virtual bool reads_all() { return false; }
   // How far particles may go from where they stood when lists were made before it must look again, as far as it can tell: who has

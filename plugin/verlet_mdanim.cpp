@@ -224,7 +224,8 @@ int VerletMdanim::take_steps(int step, int most)
 
   timer->stamp();
   if (comm->nprocs > 1) comm->forward_comm();
-  start_blocks();
+  blocks.take_in(atom->x, atom->v);
+  prepare_passes();
   int taken = 0;
   bool stand = true;
   while (update->ntimestep < stop) {
@@ -253,6 +254,11 @@ int VerletMdanim::take_steps(int step, int most)
 void VerletMdanim::leave_blocks()
 {
   blocks.give_out(atom->x, atom->v);
+  give_out_account();
+}
+
+void VerletMdanim::give_out_account()
+{
   Loss *account = bond->account();
   if (!account) return;
   if (blocks.damped()) blocks.give_out_dashpots(account->latest(), account->latest_seen());
@@ -303,12 +309,13 @@ bool VerletMdanim::look_again()
   blocks.give_out(atom->x, atom->v);
   strayed = farthest();
   if (strayed < SOON * last) return true;
-  leave_blocks();
+  give_out_account();
   if (!rebuild_lists()) return false;
   strayed = 0.0;
   last = how_far_lists_last();
   if (late.empty()) made_for = neighbor->lastcall;    // nobody has changed how particles move
-  start_blocks();
+  if (modify->n_pre_exchange || modify->n_pre_neighbor) blocks.take_in(atom->x, atom->v);    // nor, mostly, where they are
+  prepare_passes();
   return true;
 }
 
@@ -322,8 +329,8 @@ void VerletMdanim::meet_ghosts()
   timer->stamp(Timer::COMM);
 }
 
-// Positions and velocities into the blocks, who brings forces, and who is to be held back.
-void VerletMdanim::start_blocks()
+// What passes need to know besides positions and velocities: how particles move, who brings forces, and who is to be held back.
+void VerletMdanim::prepare_passes()
 {
   if (made_for != neighbor->lastcall) {
     blocks.set_motion(leapfrog->friction(), [this](int i) {
@@ -333,7 +340,6 @@ void VerletMdanim::start_blocks()
     });
     made_for = neighbor->lastcall;
   }
-  blocks.take_in(atom->x, atom->v);
   if (Loss *account = bond->account()) {
     account->close(atom->v, update->dt);
     if (blocks.damped()) blocks.take_in_dashpots(account->latest(), account->latest_seen());
@@ -383,9 +389,9 @@ void VerletMdanim::one_pass(bool guests_see_all)
 void VerletMdanim::early_guests_turn()
 {
   for (std::size_t n = 0; n < early.size(); ++n) {
-    blocks.ask(n, atom->x, atom->f);
-    early[n].fix->post_force(vflag);
-    blocks.bring(n, atom->f);
+    blocks.tell_places(n, atom->x, places);
+    early[n].guest->forces(places, forces);
+    blocks.bring(n, forces);
   }
 }
 

@@ -35,8 +35,9 @@ class VerletMdanim : public Verlet {
   bool lists_are_due();
   bool look_again();
   double farthest() const;
-  void start_blocks();
+  void prepare_passes();
   void leave_blocks();
+  void give_out_account();
   void hold_back();
   void one_pass(bool guests_see_all);
   void early_guests_turn();
@@ -73,6 +74,7 @@ class VerletMdanim : public Verlet {
   double strayed = 0.0;        // no particle has moved farther since lists were made
   double last = 0.0;           // how far any may go
   bigint made_for = -1;        // build of lists that the blocks' motion was told after
+  std::vector<mdanim::Vec3> places, forces;  // of the particles of an early guest
   std::vector<int> wanted;     // particles that late guests are concerned with
 };
 
