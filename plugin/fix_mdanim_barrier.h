@@ -35,6 +35,7 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
   void forces(const std::vector<mdanim::Vec3> &place, std::vector<mdanim::Vec3> &force) override;
   bool reads_all() override { return damping > 0.0 && !loss.idle(); }
   double looks_ahead() const override { return clear; }
+  bool minds_drift() const override { return false; }
 
  private:
   // What a particle brings into a pair. Of ghosts it is asked from their owners at every rebuild.

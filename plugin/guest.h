@@ -24,6 +24,8 @@ class Guest {
   // How far particles may go from where they stood when lists were made before it must look again, as far as it can tell: who has
   // nothing to do until then says so here, and lists last longer than half the skin.
   virtual double looks_ahead() const { return 0.0; }
+  // Whether a motion that all particles share counts. To who asks for distances between particles alone it does not.
+  virtual bool minds_drift() const { return true; }
 
  protected:
   ~Guest() = default;

@@ -45,8 +45,8 @@ static constexpr double OF_LEAPFROG = 0.15, OF_DRAG = 0.07, OF_GRAVITY = 0.01;
 // What a fix may do in a step that we must know of.
 static constexpr int ACTS = FixConst::INITIAL_INTEGRATE | FixConst::POST_INTEGRATE | FixConst::PRE_FORCE | FixConst::PRE_REVERSE |
     FixConst::POST_FORCE | FixConst::FINAL_INTEGRATE | FixConst::END_OF_STEP;
-// Lists that particles may soon have left are made at once, not looked at again in a few steps.
-static constexpr double SOON = 0.8;
+// Lists are made at once, not looked at again in a few steps, when less than this part of the way is left.
+static constexpr double SOON = 0.2;
 
 // run_style verlet/mdanim [width common|avx2|avx512]
 VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, arg), width(best_width())
@@ -217,8 +217,8 @@ int VerletMdanim::take_steps(int step, int most)
   const bigint stop = std::min(next_stop(), update->ntimestep + most);
   if (update->ntimestep >= stop) return 0;
   if (lists_matter) {
-    last = how_far_lists_last();
-    strayed = farthest();
+    tell_limits();
+    left = way_left();
     if (!lists_last(0.0)) return 0;
   }
 
@@ -265,40 +265,54 @@ void VerletMdanim::give_out_account()
   account->reopen();
 }
 
-// How far any particle of this rank is from where it stood when lists were made.
-double VerletMdanim::farthest() const
+// Half the skin, and farther if nobody needs lists until then. The springs' partners stay who they are; with other ranks, nobody may
+// pass by a whole rank unseen.
+void VerletMdanim::tell_limits()
+{
+  const double half = 0.5 * neighbor->skin;
+  limit = limit_but_for_drift = half;
+  if (strangers_have_lists) return;
+  double far = std::numeric_limits<double>::max(), far_but_for_drift = far;
+  for (const auto *guests : {&early, &late})
+    for (const Player &p : *guests) {
+      double &of_guest = p.guest->minds_drift() ? far : far_but_for_drift;
+      of_guest = std::min(of_guest, p.guest->looks_ahead());
+    }
+  if (comm->nprocs > 1) {
+    far = std::min(far, far_but_for_drift);
+    for (int d = 0; d < 3; ++d) far = std::min(far, 0.5 * (domain->subhi[d] - domain->sublo[d]));
+    MPI_Allreduce(MPI_IN_PLACE, &far, 1, MPI_DOUBLE, MPI_MIN, world);
+    far_but_for_drift = far;
+  }
+  limit = std::max(half, far);
+  limit_but_for_drift = std::max(half, far_but_for_drift);
+}
+
+// As particles of this rank stand now. Two of them have not come nearer to each other by more than the longest way through the box
+// around all displacements; so each has gone half of it, but for drift.
+double VerletMdanim::way_left() const
 {
   const double *const *here = atom->x, *const *then = neighbor->get_xhold();
   double most = 0.0;
+  Box box;
   for (int i = 0; i < atom->nlocal; ++i) {
     const Vec3 d = vec3(here[i]) - vec3(then[i]);
+    const double of_box[] = {d.x, d.y, d.z};
     most = std::max(most, dot(d, d));
+    box.include(of_box);
   }
-  return std::sqrt(most);
+  const double gone = std::sqrt(most);
+  if (box.empty()) return std::min(limit, limit_but_for_drift);
+  const Vec3 across{box.high(0) - box.low(0), box.high(1) - box.low(1), box.high(2) - box.low(2)};
+  return std::min(limit - gone, limit_but_for_drift - std::min(gone, 0.5 * std::sqrt(dot(across, across))));
 }
 
-// How far any particle may go before lists must be made anew: half the skin, and farther if nobody needs them until then. The
-// springs' partners stay who they are; with other ranks, nobody may pass by a whole rank unseen.
-double VerletMdanim::how_far_lists_last() const
-{
-  const double half = 0.5 * neighbor->skin;
-  if (strangers_have_lists) return half;
-  double far = std::numeric_limits<double>::max();
-  for (const auto *guests : {&early, &late})
-    for (const Player &p : *guests) far = std::min(far, p.guest->looks_ahead());
-  if (comm->nprocs > 1) {
-    for (int d = 0; d < 3; ++d) far = std::min(far, 0.5 * (domain->subhi[d] - domain->sublo[d]));
-    MPI_Allreduce(MPI_IN_PLACE, &far, 1, MPI_DOUBLE, MPI_MIN, world);
-  }
-  return std::max(half, far);
-}
-
-// Whether no particle of any rank can have moved so far, going `more` farther.
+// Whether no particle of any rank can have gone so far, going `more` farther.
 bool VerletMdanim::lists_last(double more)
 {
-  strayed += more;
-  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &strayed, 1, MPI_DOUBLE, MPI_MAX, world);
-  return strayed < last;
+  left -= more;
+  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &left, 1, MPI_DOUBLE, MPI_MIN, world);
+  return left > 0.0;
 }
 
 // Between two passes of a rank that is alone: sees how far particles really are and makes lists anew if need be. False where particles
@@ -307,12 +321,12 @@ bool VerletMdanim::look_again()
 {
   timer->stamp(Timer::BOND);
   blocks.give_out(atom->x, atom->v);
-  strayed = farthest();
-  if (strayed < SOON * last) return true;
+  left = way_left();
+  if (left > SOON * std::min(limit, limit_but_for_drift)) return true;
   give_out_account();
   if (!rebuild_lists()) return false;
-  strayed = 0.0;
-  last = how_far_lists_last();
+  tell_limits();
+  left = std::min(limit, limit_but_for_drift);
   if (late.empty()) made_for = neighbor->lastcall;    // nobody has changed how particles move
   if (modify->n_pre_exchange || modify->n_pre_neighbor) blocks.take_in(atom->x, atom->v);    // nor, mostly, where they are
   prepare_passes();
@@ -456,10 +470,10 @@ bool VerletMdanim::lists_are_due()
   if (neighbor->build_once || now == output->next_dump_any || now == output->next_restart) return neighbor->decide();
   for (const Fix *fix : modify->get_fix_list())
     if (fix->force_reneighbor && fix->next_reneighbor == now) return true;
-  last = how_far_lists_last();
-  if (last <= 0.5 * neighbor->skin) return neighbor->decide();
+  tell_limits();
+  if (std::max(limit, limit_but_for_drift) <= 0.5 * neighbor->skin) return neighbor->decide();
   ++neighbor->ago;
-  strayed = farthest();
+  left = way_left();
   return !lists_last(0.0);
 }
 

@@ -30,11 +30,11 @@ class VerletMdanim : public Verlet {
   void meet_ghosts();
   int take_steps(int step, int most);
   bigint next_stop() const;
-  double how_far_lists_last() const;
+  void tell_limits();
   bool lists_last(double more);
   bool lists_are_due();
   bool look_again();
-  double farthest() const;
+  double way_left() const;
   void prepare_passes();
   void leave_blocks();
   void give_out_account();
@@ -71,8 +71,10 @@ class VerletMdanim : public Verlet {
 
   bool lists_matter = false;
   bool strangers_have_lists = false;
-  double strayed = 0.0;        // no particle has moved farther since lists were made
-  double last = 0.0;           // how far any may go
+  // How far any particle may go from where it stood when lists were made before they must be made anew: all told, and with the drift
+  // of all particles taken off.
+  double limit = 0.0, limit_but_for_drift = 0.0;
+  double left = 0.0;           // how much farther, at least
   bigint made_for = -1;        // build of lists that the blocks' motion was told after
   std::vector<mdanim::Vec3> places, forces;  // of the particles of an early guest
   std::vector<int> wanted;     // particles that late guests are concerned with
