@@ -282,14 +282,13 @@ void Blocks::take_in(const double *const *from_x, const double *const *from_v)
 
 void Blocks::give_out(double *const *to_x, double *const *to_v) const
 {
-  for (int i = 0; i < particles; ++i) {
-    const int to = at(i);
-    if (is_ghost(to)) continue;
-    for (int d = 0; d < 3; ++d) {
-      to_x[to][d] = x[d][i];
-      to_v[to][d] = v[d][i];
-    }
-  }
+  const auto give = [this](const double *const *from, double *const *to) {
+    for (int i = 0; i < particles; ++i)
+      if (!is_ghost(at(i)))
+        for (int d = 0; d < 3; ++d) to[at(i)][d] = from[d][i];
+  };
+  if (to_x) give(x, to_x);
+  if (to_v) give(v, to_v);
 }
 
 void Blocks::take_in_held_back(const double *const *from_x, const double *const *from_v)

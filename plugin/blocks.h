@@ -85,7 +85,7 @@ class Blocks {
   const std::vector<int> &held_back() const { return index.empty() ? outside : waiting; }    // all particles of such blocks
 
   void take_in(const double *const *x, const double *const *v);
-  void give_out(double *const *x, double *const *v) const;
+  void give_out(double *const *x, double *const *v) const;    // null for what nobody wants
   // The same for the particles that are held back.
   void take_in_held_back(const double *const *x, const double *const *v);
   void give_out_held_back(double *const *x, double *const *v) const;

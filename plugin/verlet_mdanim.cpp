@@ -320,9 +320,10 @@ bool VerletMdanim::lists_last(double more)
 bool VerletMdanim::look_again()
 {
   timer->stamp(Timer::BOND);
-  blocks.give_out(atom->x, atom->v);
+  blocks.give_out(atom->x, nullptr);
   left = way_left();
   if (left > SOON * std::min(limit, limit_but_for_drift)) return true;
+  blocks.give_out(nullptr, atom->v);
   give_out_account();
   if (!rebuild_lists()) return false;
   tell_limits();
