@@ -228,19 +228,21 @@ void Blocks::expect(const std::vector<std::vector<int>> &particles_of)
 
 void Blocks::tell_places(std::size_t n, const double *const *of_ghosts, std::vector<Vec3> &to) const
 {
-  to.clear();
-  for (const auto &[i, slot] : bringers[n]) to.push_back(slot == GHOST ? vec3(of_ghosts[i]) : Vec3{x[0][i], x[1][i], x[2][i]});
+  to.resize(bringers[n].size());
+  Vec3 *next = to.data();
+  for (const auto &[i, slot] : bringers[n]) *next++ = slot == GHOST ? vec3(of_ghosts[i]) : Vec3{x[0][i], x[1][i], x[2][i]};
 }
 
 void Blocks::bring(std::size_t n, const std::vector<Vec3> &force)
 {
   double *const to = brought.data();
-  for (std::size_t k = 0; k < force.size(); ++k) {
-    const long slot = bringers[n][k].slot;
+  const Vec3 *next = force.data();
+  for (const auto &[i, slot] : bringers[n]) {
+    const Vec3 f = *next++;
     if (slot == GHOST) continue;
-    to[slot] = force[k].x;
-    to[slot + lanes] = force[k].y;
-    to[slot + 2 * lanes] = force[k].z;
+    to[slot] = f.x;
+    to[slot + lanes] = f.y;
+    to[slot + 2 * lanes] = f.z;
   }
 }
 

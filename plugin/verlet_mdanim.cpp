@@ -302,9 +302,7 @@ double VerletMdanim::way_left() const
     box.include(of_box);
   }
   const double gone = std::sqrt(most);
-  if (box.empty()) return std::min(limit, limit_but_for_drift);
-  const Vec3 across{box.high(0) - box.low(0), box.high(1) - box.low(1), box.high(2) - box.low(2)};
-  return std::min(limit - gone, limit_but_for_drift - std::min(gone, 0.5 * std::sqrt(dot(across, across))));
+  return std::min(limit - gone, limit_but_for_drift - std::min(gone, 0.5 * box.diagonal()));
 }
 
 // Whether no particle of any rank can have gone so far, going `more` farther.
