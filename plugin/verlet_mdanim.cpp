@@ -412,6 +412,7 @@ void VerletMdanim::early_guests_turn()
 void VerletMdanim::late_guests_turn()
 {
   const std::vector<int> &waiting = blocks.held_back();
+  moved_alone += static_cast<long long>(waiting.size());
   if (!waiting.empty()) {
     blocks.give_out_held_back(atom->x, atom->v);
     blocks.give_out_forces(atom->f);

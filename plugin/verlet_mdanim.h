@@ -20,6 +20,7 @@ class VerletMdanim : public Verlet {
   void run(int) override;
   double memory_usage() override;
   long long passes() const { return passed; }
+  long long held_back() const { return moved_alone; }    // particles, all passes together
 
  private:
   void spare_bond_list();
@@ -56,7 +57,7 @@ class VerletMdanim : public Verlet {
   mdanim::Lineup line;            // with other ranks: what is cut
   std::vector<int> sent;          // own particles that other ranks have as ghosts
   bigint decided_for = -1;        // build of lists after which all ranks agreed on worth_it
-  long long passed = 0;
+  long long passed = 0, moved_alone = 0;
 
   // found before every run
   class BondMdanimHarmonic *bond = nullptr;
