@@ -47,7 +47,7 @@ EFFECTS = {
                          f"object b {{ shape box (5, 6, 7) cm position (9, 0, 0.5) cm {SOLID} velocity (2, 5, 0) }}",
     "beside each other": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} velocity (1, 0, 0) }}\n"
                          f"object b {{ shape box (5, 6, 7) cm position (7.6, 0, 0) cm {SOLID} velocity (1, 0, 0) }}",
-    "all at once": "walls from (-8, -8, -8) cm to (11, 8, 12) cm\n"
+    "damped, all at once": "walls from (-8, -8, -8) cm to (11, 8, 12) cm\n"
                    f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOFT} drag 0.3 velocity (2, 0, -2) }}\n"
                    f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}\n"
                    "liquid w { basin from (-7, -7, -7) cm to (10, 7, 20) cm density 1000 level -5 cm drag 4 }",
@@ -71,9 +71,11 @@ EFFECTS = {
 # The order of forces: contact and walls, which places suffice, then one that asks for velocities, then walls again, where particles are
 # that have felt the one before.
 LATER = ("fix damped mobile mdanim/barrier boundary inner d_stiffness d_reach damp 0.5",
-         "region room block -0.078 0.105 -0.078 0.078 -0.078 0.118", "fix room mobile mdanim/wall room d_stiffness")
-BETWEEN = EFFECTS["damped walls"].replace("(14, 8, 12)", "(10.5, 8, 12)").replace("(6.5, 0, 2)", "(6.5, 0, 0)")
-"""Two blocks between walls that touch each other and the walls at the same time."""
+         "region room block -0.08 0.13 -0.08 0.08 -0.0285 0.12", "fix room mobile mdanim/wall room d_stiffness")
+BETWEEN = ("walls from (-8, -8, -2.9) cm to (13, 8, 12) cm\n"
+           f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOFT} velocity (2, 0, -2) }}\n"
+           f"object b {{ shape box (5, 5, 5) cm position (6.2, 0, 0) cm {SOLID} velocity (-2, 0, -2) }}")
+"""Two blocks that hit each other and both floors at the same time."""
 
 
 def passes(instance: Instance) -> int:
@@ -162,7 +164,7 @@ def test_forces_are_added_in_the_order_of_fixes():
 
 @pytest.mark.parametrize(("name", "more", "some"), [
     ("contact", (), False), ("beside each other", (), False), ("ground", (), False), ("damped walls", (), False),
-    ("damped walls", LATER[:1], True), ("damped walls", LATER[1:], False), ("all at once", (), True)])
+    ("damped walls", LATER[:1], True), ("damped walls", LATER[1:], False), ("damped, all at once", (), True)])
 def test_nobody_is_held_back_for_forces_of_places_alone(name, more, some):
     """Count particles that do not move in passes, while somebody pushes: those of fixes that ask for more than places."""
     ready = prepare(parse_scene(FALL + EFFECTS[name] + "\n" + END))
@@ -267,6 +269,20 @@ def test_lists_are_rebuilt_before_anybody_has_gone_half_the_skin(tmp_path):
     assert taken > 100
     assert np.array_equal(found, plain)
     assert found[: len(fast.x), 0].max() < 9.5 and found[len(fast.x): 2 * len(fast.x), 0].mean() < 0.0
+
+
+def test_only_the_group_is_pushed(tmp_path):
+    """Let contact push one of two bodies alone, the first: the other one flies on as if nobody was there."""
+    pair = lab.join(lab.block((4, 3, 3)), lab.block((3, 4, 3), (4.8, 0.0, 0.0), (-0.2, 0.0, 0.0)))
+    commands = ["group first molecule 1", "fix push first mdanim/barrier boundary inner 1.0 1.6", "fix run all mdanim/leapfrog",
+                "timestep 0.2"]
+    found, taken = lab_state(pair, tmp_path, [*commands, "run_style verlet/mdanim", "run 60"])
+    plain, none = lab_state(pair, tmp_path, [*commands, "run_style verlet", "run 60"])
+    assert (taken, none) == (59, 0)
+    assert np.array_equal(found, plain)
+    n, first = len(pair.x), pair.molecule == 1
+    np.testing.assert_allclose(found[n:2 * n][~first], pair.v[~first], rtol=0, atol=1e-12)
+    assert found[n:2 * n][first].mean(0)[0] < -0.01
 
 
 @pytest.mark.parametrize(("command", "message"), [
