@@ -111,7 +111,7 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
   entries.clear();
   const std::vector<int> length = lengths(bonds, object);
   for (int end = particles; end > 0; end -= length[end])
-    all.push_back({end - length[end], static_cast<short>(length[end]), false, false, 0, 0, object[end - 1] - 1});
+    all.push_back({end - length[end], static_cast<short>(length[end]), false, false, 0, 0, 0, object[end - 1] - 1});
   std::reverse(all.begin(), all.end());
 
   home.resize(particles);
@@ -199,11 +199,55 @@ void Blocks::set_row(const Mover &mover, Friction friction, int lane, double *ro
   }
 }
 
+// Blocks with a particle of anybody have a row for everybody.
+void Blocks::expect(const std::vector<std::vector<int>> &particles_of)
+{
+  const auto many = static_cast<unsigned>(particles_of.size());
+  for (Block &block : all) block.brought = 0;
+  for (const std::vector<int> &particles : particles_of)
+    for (const int i : particles)
+      if (!is_ghost(i)) all[home[ours(i)]].brought = many;
+  unsigned rows = 0;
+  for (Block &block : all) rows = block.brought += rows;
+  brought.assign(static_cast<std::size_t>(rows) * 3 * lanes);
+  bringers.assign(many, {});
+  for (unsigned n = 0; n < many; ++n)
+    for (const int i : particles_of[n]) {
+      if (is_ghost(i)) {
+        bringers[n].push_back({i, GHOST});
+        continue;
+      }
+      const Block &block = all[home[ours(i)]];
+      const long row = block.brought - many + n;
+      bringers[n].push_back({ours(i), row * 3 * lanes + ours(i) - block.start});
+    }
+}
+
+void Blocks::tell_places(std::size_t n, const double *const *of_ghosts, std::vector<Vec3> &to) const
+{
+  to.resize(bringers[n].size());
+  Vec3 *next = to.data();
+  for (const auto &[i, slot] : bringers[n]) *next++ = slot == GHOST ? vec3(of_ghosts[i]) : Vec3{x[0][i], x[1][i], x[2][i]};
+}
+
+void Blocks::bring(std::size_t n, const std::vector<Vec3> &force)
+{
+  double *const to = brought.data();
+  const Vec3 *next = force.data();
+  for (const auto &[i, slot] : bringers[n]) {
+    const Vec3 f = *next++;
+    if (slot == GHOST) continue;
+    to[slot] = f.x;
+    to[slot + lanes] = f.y;
+    to[slot + 2 * lanes] = f.z;
+  }
+}
+
 void Blocks::hold_back(const std::vector<int> &wanted, bool everything)
 {
   for (Block &block : all) block.held_back = everything;
   for (const int i : wanted)
-    if (!is_ghost(i)) all[home[index.empty() ? i : place[i]]].held_back = true;
+    if (!is_ghost(i)) all[home[ours(i)]].held_back = true;
   outside.clear();
   for (const Block &block : all)
     if (block.held_back)
@@ -237,14 +281,13 @@ void Blocks::take_in(const double *const *from_x, const double *const *from_v)
 
 void Blocks::give_out(double *const *to_x, double *const *to_v) const
 {
-  for (int i = 0; i < particles; ++i) {
-    const int to = at(i);
-    if (is_ghost(to)) continue;
-    for (int d = 0; d < 3; ++d) {
-      to_x[to][d] = x[d][i];
-      to_v[to][d] = v[d][i];
-    }
-  }
+  const auto give = [this](const double *const *from, double *const *to) {
+    for (int i = 0; i < particles; ++i)
+      if (!is_ghost(at(i)))
+        for (int d = 0; d < 3; ++d) to[at(i)][d] = from[d][i];
+  };
+  if (to_x) give(x, to_x);
+  if (to_v) give(v, to_v);
 }
 
 void Blocks::take_in_held_back(const double *const *from_x, const double *const *from_v)
@@ -340,6 +383,7 @@ void Blocks::fill(Pass &pass, double *const *forces)
   pass.law = laws.data();
   pass.damped_law = damped() ? damped_laws.data() : nullptr;
   pass.motion = motions.data();
+  pass.brought = brought.data();
   for (int d = 0; d < 3; ++d) {
     pass.x[d] = x[d];
     pass.v[d] = v[d];

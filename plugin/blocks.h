@@ -60,19 +60,25 @@ class Blocks {
   bool cut(const HalfBonds &bonds, const int *object, const Width &width);
   void forget() { all.clear(); }
   // Where particles are in the arrays of LAMMPS, if not in the same order: those from `own` on are ghosts, which others move.
-  // After this everybody else's numbers are LAMMPS's: those of mover(), hold_back(), held_back().
+  // After this everybody else's numbers are LAMMPS's: those of mover(), expect(), hold_back(), held_back().
   void lie_at(const std::vector<int> &places, int own);
   bool ready() const { return !all.empty(); }
   bool damped() const { return !damped_laws.empty(); }    // some block is
 
   template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
+  // Who brings forces before every pass, in the order in which they are added: the particles of each, ghosts perhaps among them.
+  void expect(const std::vector<std::vector<int>> &particles);
+  // Of those of number n, in the same order: positions, those of ghosts from x; and the forces on them.
+  void tell_places(std::size_t n, const double *const *x, std::vector<Vec3> &place) const;
+  void bring(std::size_t n, const std::vector<Vec3> &force);
+
   // Every block with one of these particles is held back, no other; ghosts among them are left out.
   void hold_back(const std::vector<int> &particles, bool everything);
   bool friction_acts() const;    // on a block that is not held back
   const std::vector<int> &held_back() const { return index.empty() ? outside : waiting; }    // all particles of such blocks
 
   void take_in(const double *const *x, const double *const *v);
-  void give_out(double *const *x, double *const *v) const;
+  void give_out(double *const *x, double *const *v) const;    // null for what nobody wants
   // The same for the particles that are held back.
   void take_in_held_back(const double *const *x, const double *const *v);
   void give_out_held_back(double *const *x, double *const *v) const;
@@ -94,6 +100,7 @@ class Blocks {
  private:
   std::vector<int> lengths(const HalfBonds &bonds, const int *object) const;
   int at(int i) const { return index.empty() ? i : index[i]; }
+  int ours(int i) const { return index.empty() ? i : place[i]; }    // the way back
   bool is_ghost(int place) const { return !index.empty() && place >= owned; }
   void set_row(const Mover &mover, Friction friction, int lane, double *row) const;
 
@@ -103,6 +110,13 @@ class Blocks {
   std::vector<int> home;       // block of each particle
   std::vector<bool> slowed;    // blocks with friction
   std::vector<int> outside;    // particles of blocks that are held back
+  struct Brought {
+    int particle;    // in our order, a ghost in LAMMPS's
+    long slot;       // of its force in `brought`
+  };
+  static constexpr long GHOST = -1;    // as a slot
+  std::vector<std::vector<Brought>> bringers;
+  Doubles brought;    // see Pass
   std::vector<int> index, place;      // of a particle in LAMMPS's arrays, and back; `index` empty where the orders are the same
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
   std::vector<double> total;           // see Pass, in our order

@@ -23,6 +23,12 @@ struct Box {
   bool empty() const { return bound[0] == FAR; }
   double edge() const { return std::max({high(0) - low(0), high(1) - low(1), high(2) - low(2)}); }
 
+  double diagonal() const
+  {
+    const double x = high(0) - low(0), y = high(1) - low(1), z = high(2) - low(2);
+    return empty() ? 0.0 : std::sqrt((x * x + y * y) + z * z);
+  }
+
   void include(const double *x)
   {
     for (int d = 0; d < 3; ++d) {

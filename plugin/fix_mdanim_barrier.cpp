@@ -212,14 +212,19 @@ struct FixMdanimBarrier::Search {
       rank.push_back(n);
     }
   };
+  // A particle where boxes meet.
+  struct Near {
+    int particle, role;
+    bool moves;
+    double reach;
+  };
   struct Found {
     int low, high;    // in `near`
-    Law law;
   };
 
   const FixMdanimBarrier &fix;
   const double range, skin;
-  std::vector<int> near, role;           // particles where boxes meet, ascending by tag
+  std::vector<Near> near;                // ascending by tag
   std::vector<int> begin, of_object;     // those of object n, by their places in `near`: of_object[begin[n]] to [begin[n + 1] - 1]
   std::vector<Found> found;
 
@@ -231,19 +236,17 @@ struct FixMdanimBarrier::Search {
     const double *const *x = fix.atom->x;
     const tagint *tag = fix.atom->tag;
     for (int i = 0; i < fix.atom->nlocal + fix.atom->nghost; ++i)
-      if (zone[fix.own[i].object].contains(x[i]) && fix.role(i) != NONE) near.push_back(i);
-    const auto by_tag = [tag](int i, int j) { return tag[i] < tag[j]; };
+      if (zone[fix.own[i].object].contains(x[i]) && fix.role(i) != NONE)
+        near.push_back({i, fix.role(i), fix.moves(i), fix.own[i].reach});
+    const auto by_tag = [tag](const Near &a, const Near &b) { return tag[a.particle] < tag[b.particle]; };
     if (!std::is_sorted(near.begin(), near.end(), by_tag)) std::sort(near.begin(), near.end(), by_tag);
 
     begin.assign(zone.size() + 1, 0);
-    for (const int i : near) {
-      role.push_back(fix.role(i));
-      ++begin[fix.own[i].object + 1];
-    }
+    for (const Near &n : near) ++begin[fix.own[n.particle].object + 1];
     for (size_t n = 1; n < begin.size(); ++n) begin[n] += begin[n - 1];
     of_object.resize(near.size());
     std::vector<int> at(begin.begin(), begin.end() - 1);
-    for (size_t n = 0; n < near.size(); ++n) of_object[at[fix.own[near[n]].object]++] = static_cast<int>(n);
+    for (size_t n = 0; n < near.size(); ++n) of_object[at[fix.own[near[n].particle].object]++] = static_cast<int>(n);
   }
 
   // Boundary particles of `seeking` against guards of `guarding`, the particles that form the barrier; each within range of the
@@ -255,7 +258,8 @@ struct FixMdanimBarrier::Search {
       side.clear();
       for (int k = begin[object]; k < begin[object + 1]; ++k) {
         const int n = of_object[k];
-        if (role[n] & wanted && inside.contains(x[near[n]])) side.add(x[near[n]], n);
+        const double *const place = x[near[n].particle];
+        if (near[n].role & wanted && inside.contains(place)) side.add(place, n);
       }
     };
     pick(guards, guarding, BARRIER | THIN, seeking_box.grown(range));
@@ -268,11 +272,12 @@ struct FixMdanimBarrier::Search {
       for (int s = 0; s < seekers.size(); ++s) look(s, guards, 0, guards.size(), thin_too);
       return;
     }
-    const Grid grid([&](int k) { return x[near[guards.rank[k]]]; }, guards.size(), range);
+    const auto place = [&](const Side &side, int k) { return x[near[side.rank[k]].particle]; };
+    const Grid grid([&](int k) { return place(guards, k); }, guards.size(), range);
     sorted.clear();
-    for (const int k : grid.order()) sorted.add(x[near[guards.rank[k]]], guards.rank[k]);
+    for (const int k : grid.order()) sorted.add(place(guards, k), guards.rank[k]);
     for (int s = 0; s < seekers.size(); ++s)
-      grid.ranges(x[near[seekers.rank[s]]], [&](int from, int to) { look(s, sorted, from, to, thin_too); });
+      grid.ranges(place(seekers, s), [&](int from, int to) { look(s, sorted, from, to, thin_too); });
   }
 
   // Counts instead of comparisons: twice as many particles take twice as long.
@@ -286,38 +291,49 @@ struct FixMdanimBarrier::Search {
     found.swap(order);
   }
 
+  Law law_of(const Found &pair) const
+  {
+    const Near &one = near[pair.low], &other = near[pair.high];
+    const Own &a = fix.own[one.particle], &b = fix.own[other.particle];
+    const double k = fix.stiffness.constant() ? fix.stiffness.number : pair_stiffness(a.stiffness, b.stiffness);
+    const bool both = fix.atom->mask[one.particle] & fix.atom->mask[other.particle] & fix.groupbit;
+    return {k, reach_of(one, other), (one.moves + other.moves) * (both ? 0.5 : 1.0)};
+  }
+
  private:
   static constexpr size_t FEW = 4000;    // pairs that are tried one by one: a grid would take longer
 
   Side seekers, guards, sorted;
   std::vector<int> close;
 
+  double reach_of(const Near &one, const Near &other) const
+  { return reach_factor(one.role, other.role, fix.thin_ratio) * std::max(one.reach, other.reach); }
+
   // One seeker and guards in a row.
   void look(int s, const Side &side, int from, int to, bool thin_too)
   {
     const double x = seekers.x[s], y = seekers.y[s], z = seekers.z[s], range2 = range * range;
+    int *const found_here = close.data();
     int many = 0;
     for (int k = from; k < to; ++k) {    // without a branch that nobody could foretell
       const double dx = x - side.x[k], dy = y - side.y[k], dz = z - side.z[k];
-      close[many] = k;
+      found_here[many] = k;
       many += (dx * dx + dy * dy) + dz * dz < range2;
     }
-    for (int m = 0; m < many; ++m) consider(seekers.rank[s], side.rank[close[m]], thin_too);
+    for (int m = 0; m < many; ++m) {
+      const int k = found_here[m];
+      const Vec3 d{x - side.x[k], y - side.y[k], z - side.z[k]};
+      consider(seekers.rank[s], side.rank[k], dot(d, d), thin_too);
+    }
   }
 
-  void consider(int a, int b, bool thin_too)
+  void consider(int a, int b, double r2, bool thin_too)
   {
-    if (!thin_too && role[a] & role[b] & THIN) return;
-    const int i = near[a], j = near[b];
-    const bool moves_i = fix.moves(i), moves_j = fix.moves(j);
-    if (!moves_i && !moves_j) return;
-    const Own &one = fix.own[i], &other = fix.own[j];
-    const double reach = reach_factor(role[a], role[b], fix.thin_ratio) * std::max(one.reach, other.reach);
-    const Vec3 d = vec3(fix.atom->x[i]) - vec3(fix.atom->x[j]);
-    if (reach == 0.0 || dot(d, d) >= (reach + skin) * (reach + skin)) return;
-    const double k = fix.stiffness.constant() ? fix.stiffness.number : pair_stiffness(one.stiffness, other.stiffness);
-    const bool both = fix.atom->mask[i] & fix.atom->mask[j] & fix.groupbit;
-    found.push_back({std::min(a, b), std::max(a, b), {k, reach, (moves_i + moves_j) * (both ? 0.5 : 1.0)}});
+    const Near &one = near[a], &other = near[b];
+    if (!thin_too && one.role & other.role & THIN) return;
+    if (!one.moves && !other.moves) return;
+    const double reach = reach_of(one, other);
+    if (reach > 0.0 && r2 < (reach + skin) * (reach + skin)) found.push_back({std::min(a, b), std::max(a, b)});
   }
 };
 
@@ -328,6 +344,7 @@ void FixMdanimBarrier::find_candidates()
   pair.clear();
   law.clear();
   particle.clear();
+  unmoved.clear();
   pairs = 0.0;
 
   std::vector<Box> boxes;
@@ -370,17 +387,21 @@ void FixMdanimBarrier::find_candidates()
   const auto numbered = [&](int n) {
     if (number[n] < 0) {
       number[n] = static_cast<int>(particle.size());
-      particle.push_back(search.near[n]);
+      particle.push_back(search.near[n].particle);
     }
     return number[n];
   };
-  for (const auto &[low, high, known] : search.found) {
-    const int first = numbered(low), second = numbered(high);
+  pair.reserve(search.found.size());
+  law.reserve(search.found.size());
+  for (const Search::Found &found : search.found) {
+    const int first = numbered(found.low), second = numbered(found.high);
+    const Law known = search.law_of(found);
     pair.push_back({first, second, known.reach * known.reach});
     law.push_back(known);
     pairs += known.share;
   }
-  place.resize(particle.size());
+  for (size_t n = 0; n < particle.size(); ++n)
+    if (!moves(particle[n])) unmoved.push_back(static_cast<int>(n));
   touching_pair.resize(pair.size());
 }
 
@@ -394,6 +415,16 @@ void FixMdanimBarrier::setup(int vflag)
 
 void FixMdanimBarrier::post_force(int)
 {
+  here.clear();
+  for (const int i : particle) here.push_back(vec3(atom->x[i]));
+  forces(here, on);
+  for (size_t n = 0; n < particle.size(); ++n) add_to(atom->f[particle[n]], on[n]);
+}
+
+// On the particles that have candidates; nothing on those that are not moved.
+void FixMdanimBarrier::forces(const std::vector<Vec3> &place, std::vector<Vec3> &total)
+{
+  total.assign(particle.size(), Vec3());
   energy = touching = 0.0;
   if (pair.empty() && loss.idle()) {
     loss.rest();
@@ -401,11 +432,9 @@ void FixMdanimBarrier::post_force(int)
   }
 
   const Lap lap(seconds);
-  const double *const *x = atom->x, *const *v = atom->v;
-  double *const *f = atom->f;
+  const double *const *v = atom->v;
   std::vector<Vec3> *slowed = damping > 0.0 ? &loss.forces(atom->nlocal) : nullptr;
 
-  for (size_t n = 0; n < particle.size(); ++n) place[n] = vec3(x[particle[n]]);
   size_t many = 0;
   for (size_t c = 0; c < pair.size(); ++c) {    // without a branch that nobody could foretell
     const Vec3 d = place[pair[c].low] - place[pair[c].high];
@@ -413,7 +442,6 @@ void FixMdanimBarrier::post_force(int)
     many += dot(d, d) < pair[c].reach2;
   }
 
-  total.assign(particle.size(), Vec3());
   for (size_t m = 0; m < many; ++m) {
     const auto &[low, high, reach2] = pair[touching_pair[m]];
     const auto &[k, reach, share] = law[touching_pair[m]];
@@ -437,8 +465,7 @@ void FixMdanimBarrier::post_force(int)
     touching += share;
     deepest = std::min(deepest, r / reach);
   }
-  for (size_t n = 0; n < particle.size(); ++n)
-    if (moves(particle[n])) add_to(f[particle[n]], total[n]);
+  for (const int n : unmoved) total[n] = Vec3();
   if (slowed) loss.step(v, update->dt, update->setupflag);
 }
 
@@ -475,5 +502,6 @@ double FixMdanimBarrier::compute_vector(int n)
 double FixMdanimBarrier::memory_usage()
 {
   return own.capacity() * sizeof(Own) + pair.capacity() * sizeof(Pair) + law.capacity() * sizeof(Law) +
-      (particle.capacity() + touching_pair.capacity()) * sizeof(int) + (place.capacity() + total.capacity()) * sizeof(Vec3);
+      (particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) +
+      (here.capacity() + on.capacity()) * sizeof(Vec3);
 }

@@ -31,8 +31,11 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
   double compute_vector(int) override;
   double memory_usage() override;
   void concerned(std::vector<int> &particles) const override;
+  bool places_suffice() const override { return damping == 0.0; }
+  void forces(const std::vector<mdanim::Vec3> &place, std::vector<mdanim::Vec3> &force) override;
   bool reads_all() override { return damping > 0.0 && !loss.idle(); }
   double looks_ahead() const override { return clear; }
+  bool minds_drift() const override { return false; }
 
  private:
   // What a particle brings into a pair. Of ghosts it is asked from their owners at every rebuild.
@@ -72,8 +75,8 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
   std::vector<Pair> pair;
   std::vector<Law> law;
   std::vector<int> particle;           // that have candidates, local or ghost
-  std::vector<mdanim::Vec3> place;     // their positions in this step
-  std::vector<mdanim::Vec3> total;     // and forces
+  std::vector<int> unmoved;            // those of them, as places in it, that this rank adds no forces to
+  std::vector<mdanim::Vec3> here, on;  // positions of them and forces on them in a step without passes
   std::vector<int> touching_pair;      // in this step
 
   double clear = 0.0;                    // no two objects meet before a particle has gone farther

@@ -77,11 +77,11 @@ void FixMdanimWall::init()
 // Whether x lies outside the region's own side, and if so the vector to it from the nearest point of the
 // surface. A region tells surface points to particles on its own side only, so for this question it is turned
 // inside out.
-bool FixMdanimWall::behind(const double *x, Vec3 &d)
+bool FixMdanimWall::behind(const Vec3 &x, Vec3 &d)
 {
-  if (region->match(x[0], x[1], x[2])) return false;
+  if (region->match(x.x, x.y, x.z)) return false;
   region->interior = !region->interior;
-  const int contacts = region->surface(x[0], x[1], x[2], ANY_DEPTH);
+  const int contacts = region->surface(x.x, x.y, x.z, ANY_DEPTH);
   region->interior = !region->interior;
   if (contacts == 0)
     return false;    // on the surface itself, or on an axis or centre, where no point is the nearest
@@ -141,35 +141,54 @@ void FixMdanimWall::setup(int vflag)
 
 void FixMdanimWall::post_force(int)
 {
-  energy = particles_behind = 0.0;
-  on_wall = Vec3();
+  begin_sums();
   if (watching && watched.empty()) return;
 
   const Lap lap(seconds);
   region->prematch();
   const double *k = stiffness.values(lmp);
+  const auto push = [&](int i) { add_to(atom->f[i], push_back(vec3(atom->x[i]), k ? k[i] : stiffness.number)); };
   if (watching) {
-    for (const int i : watched) push_back(i, k);
+    for (const int i : watched) push(i);
   } else {
     for (int i = 0; i < atom->nlocal; ++i)
-      if (atom->mask[i] & groupbit) push_back(i, k);
+      if (atom->mask[i] & groupbit) push(i);
   }
+}
+
+// On those that are watched.
+void FixMdanimWall::forces(const std::vector<Vec3> &place, std::vector<Vec3> &force)
+{
+  begin_sums();
+  force.clear();
+  if (watched.empty()) return;
+
+  const Lap lap(seconds);
+  region->prematch();
+  const double *k = stiffness.values(lmp);
+  for (size_t n = 0; n < watched.size(); ++n) force.push_back(push_back(place[n], k ? k[watched[n]] : stiffness.number));
+}
+
+void FixMdanimWall::begin_sums()
+{
+  energy = particles_behind = 0.0;
+  on_wall = Vec3();
 }
 
 void FixMdanimWall::concerned(std::vector<int> &particles) const
 { particles.insert(particles.end(), watched.begin(), watched.end()); }
 
-void FixMdanimWall::push_back(int i, const double *k)
+// The force on a particle.
+Vec3 FixMdanimWall::push_back(const Vec3 &x, double k)
 {
   Vec3 d;
-  if (!behind(atom->x[i], d)) return;
-  const double own = k ? k[i] : stiffness.number;
-  const Vec3 force = wall_force(own, d);
-  add_to(atom->f[i], force);
+  if (!behind(x, d)) return {};
+  const Vec3 force = wall_force(k, d);
   on_wall -= force;
-  energy += wall_energy(own, d);
+  energy += wall_energy(k, d);
   particles_behind += 1.0;
   deepest = std::max(deepest, std::sqrt(dot(d, d)));
+  return force;
 }
 
 double FixMdanimWall::compute_scalar()

@@ -30,14 +30,17 @@ class FixMdanimWall : public Fix, public mdanim::Guest {
   double compute_vector(int) override;
   double memory_usage() override;
   void concerned(std::vector<int> &particles) const override;
+  bool places_suffice() const override { return watching; }
+  void forces(const std::vector<mdanim::Vec3> &place, std::vector<mdanim::Vec3> &force) override;
   bool reads_all() override { return !watching; }
   double looks_ahead() const override { return clear; }
 
  private:
-  bool behind(const double *x, mdanim::Vec3 &d);
+  bool behind(const mdanim::Vec3 &x, mdanim::Vec3 &d);
   mdanim::Box box_of_all() const;
   bool is_inside(const mdanim::Box &box);
-  void push_back(int i, const double *k);
+  void begin_sums();
+  mdanim::Vec3 push_back(const mdanim::Vec3 &x, double k);
 
   std::string region_id;
   class Region *region = nullptr;

@@ -4,6 +4,8 @@
 #ifndef MDANIM_GUEST_H
 #define MDANIM_GUEST_H
 
+#include "vec3.h"
+
 #include <vector>
 
 namespace mdanim {
@@ -13,11 +15,17 @@ class Guest {
   // The local particles whose x, v and f the fix reads or writes in post_force() and end_of_step(), until lists are rebuilt; the
   // arrays of LAMMPS hold no others. Adds them to `particles`, some perhaps twice.
   virtual void concerned(std::vector<int> &particles) const = 0;
-  // Whether it will read any particle in this step. Asked once, when the step has begun.
+  // Whether, in this whole run, all that the fix does in a step is to add forces that depend on the places of these particles alone.
+  // It is then asked for them before the pass instead, which adds them: one force for each particle, which is named once.
+  virtual bool places_suffice() const { return false; }
+  virtual void forces(const std::vector<Vec3> & /*place*/, std::vector<Vec3> & /*force*/) {}
+  // Whether it will read any particle in this step. Asked once, when the step has begun, unless places suffice.
   virtual bool reads_all() { return false; }
   // How far particles may go from where they stood when lists were made before it must look again, as far as it can tell: who has
   // nothing to do until then says so here, and lists last longer than half the skin.
   virtual double looks_ahead() const { return 0.0; }
+  // Whether a motion that all particles share counts. To who asks for distances between particles alone it does not.
+  virtual bool minds_drift() const { return true; }
 
  protected:
   ~Guest() = default;

@@ -46,8 +46,8 @@ static constexpr double OF_LEAPFROG = 0.15, OF_DRAG = 0.07, OF_GRAVITY = 0.01;
 // What a fix may do in a step that we must know of.
 static constexpr int ACTS = FixConst::INITIAL_INTEGRATE | FixConst::POST_INTEGRATE | FixConst::PRE_FORCE | FixConst::PRE_REVERSE |
     FixConst::POST_FORCE | FixConst::FINAL_INTEGRATE | FixConst::END_OF_STEP;
-// Lists that particles may soon have left are made at once, not looked at again in a few steps.
-static constexpr double SOON = 0.8;
+// Lists are made at once, not looked at again in a few steps, when less than this part of the way is left.
+static constexpr double SOON = 0.2;
 
 // run_style verlet/mdanim [width common|avx2|avx512]
 VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, arg), width(best_width())
@@ -105,7 +105,8 @@ bool VerletMdanim::find_players()
   bond = dynamic_cast<BondMdanimHarmonic *>(force->bond);
   leapfrog = nullptr;
   gravity = nullptr;
-  guests.clear();
+  early.clear();
+  late.clear();
   strangers_have_lists = neighbor->nlist > 0;
   if (!bond || domain->triclinic || domain->dimension != 3) return false;
   if ((force->pair && force->pair->compute_flag) || force->angle || force->dihedral || force->improper || force->kspace)
@@ -117,11 +118,12 @@ bool VerletMdanim::find_players()
       if (leapfrog) return false;
       leapfrog = found;
     } else if (auto *found = dynamic_cast<FixMdanimGravity *>(fix)) {
-      if (gravity || !guests.empty()) return false;    // its force is added right after the springs'
+      if (gravity || !early.empty() || !late.empty()) return false;    // its force is added right after the springs'
       gravity = found;
-    } else if (auto *guest = dynamic_cast<Guest *>(fix))
-      guests.push_back({fix, guest, (mask & FixConst::END_OF_STEP) != 0});
-    else if (mask & ACTS)
+    } else if (auto *guest = dynamic_cast<Guest *>(fix)) {
+      // Whoever comes after a late one is late himself: forces are added in the order of fixes.
+      (guest->places_suffice() && late.empty() ? early : late).push_back({fix, guest, (mask & FixConst::END_OF_STEP) != 0});
+    } else if (mask & ACTS)
       return false;
     else if (mask & FixConst::POST_NEIGHBOR)
       strangers_have_lists = true;
@@ -217,17 +219,22 @@ int VerletMdanim::take_steps(int step, int most)
 {
   const bigint stop = std::min(next_stop(), update->ntimestep + most);
   if (update->ntimestep >= stop) return 0;
-  if (lists_matter && !lists_still_last()) return 0;
+  if (lists_matter) {
+    tell_limits();
+    left = way_left();
+    if (!lists_last(0.0)) return 0;
+  }
 
   timer->stamp();
   if (comm->nprocs > 1) comm->forward_comm();
-  start_blocks();
+  blocks.take_in(atom->x, atom->v);
+  prepare_passes();
   int taken = 0;
   bool stand = true;
   while (update->ntimestep < stop) {
     if (comm->nprocs > 1 && taken) meet_ghosts();
     bool see_all = false;
-    for (const Player &p : guests) see_all = p.guest->reads_all() || see_all;
+    for (const Player &p : late) see_all = p.guest->reads_all() || see_all;
     if (see_all) blocks.hold_back(wanted, true);
     one_pass(see_all);
     ++taken;
@@ -250,11 +257,11 @@ int VerletMdanim::take_steps(int step, int most)
 void VerletMdanim::leave_blocks()
 {
   blocks.give_out(atom->x, atom->v);
-  settle_dashpots();
+  give_out_account();
 }
 
 // The account of dashpots as it stands.
-void VerletMdanim::settle_dashpots()
+void VerletMdanim::give_out_account()
 {
   Loss *account = bond->account();
   if (!account) return;
@@ -262,55 +269,65 @@ void VerletMdanim::settle_dashpots()
   account->reopen();
 }
 
-// How far any particle of this rank is from where it stood when lists were made.
-double VerletMdanim::farthest() const
+// Half the skin, and farther if nobody needs lists until then: the springs' partners stay who they are.
+void VerletMdanim::tell_limits()
+{
+  const double half = 0.5 * neighbor->skin;
+  limit = limit_but_for_drift = half;
+  if (strangers_have_lists) return;
+  double far = std::numeric_limits<double>::max(), far_but_for_drift = far;
+  for (const auto *guests : {&early, &late})
+    for (const Player &p : *guests) {
+      double &of_guest = p.guest->minds_drift() ? far : far_but_for_drift;
+      of_guest = std::min(of_guest, p.guest->looks_ahead());
+    }
+  if (comm->nprocs > 1) {
+    double least[] = {far, far_but_for_drift, 1.0, 1.0, 1.0};
+    for (int d = 0; d < 3; ++d) least[2 + d] = (domain->subhi[d] - domain->sublo[d]) / domain->prd[d];
+    MPI_Allreduce(MPI_IN_PLACE, least, 5, MPI_DOUBLE, MPI_MIN, world);
+    far = least[0], far_but_for_drift = least[1];
+    std::copy(least + 2, least + 5, narrowest);
+  }
+  limit = std::max(half, far);
+  limit_but_for_drift = std::max(half, far_but_for_drift);
+}
+
+// As particles of this rank stand now. Two of them have not come nearer to each other by more than the longest way through the box
+// around all displacements; so each has gone half of it, but for drift.
+double VerletMdanim::way_left() const
 {
   const double *const *here = atom->x, *const *then = neighbor->get_xhold();
   double most = 0.0;
+  Box displaced, now;
   for (int i = 0; i < atom->nlocal; ++i) {
     const Vec3 d = vec3(here[i]) - vec3(then[i]);
+    const double of_box[] = {d.x, d.y, d.z};
     most = std::max(most, dot(d, d));
+    displaced.include(of_box);
+    now.include(here[i]);
   }
-  return std::sqrt(most);
+  const double gone = std::sqrt(most);
+  if (comm->nprocs == 1) return std::min(limit - gone, limit_but_for_drift - std::min(gone, 0.5 * displaced.diagonal()));
+  Box all[] = {displaced, now};
+  MPI_Allreduce(MPI_IN_PLACE, all[0].bound, 12, MPI_DOUBLE, MPI_MIN, world);
+  const double way = std::min(limit - gone, limit_but_for_drift - std::min(gone, 0.5 * all[0].diagonal()));
+  return std::max(0.5 * neighbor->skin - gone, std::min(way, way_to_strangers(now, all[1])));
 }
 
-// How far any particle may go before lists must be made anew: half the skin, and farther if nobody needs them until then. The
-// springs' partners stay who they are; with other ranks, nobody may pass by a whole rank unseen.
-double VerletMdanim::how_far_lists_last() const
+// How much farther this rank's particles, which are within `own`, may go before one may have passed half a rank unseen: LAMMPS hands
+// them on to the ranks beside alone, which have their shares of the box around all particles, `all`, when they are handed on.
+double VerletMdanim::way_to_strangers(const Box &own, const Box &all) const
 {
-  const double half = 0.5 * neighbor->skin;
-  if (strangers_have_lists) return half;
-  double far = std::numeric_limits<double>::max();
-  for (const Player &p : guests) far = std::min(far, p.guest->looks_ahead());
-  if (comm->nprocs > 1) {
-    const Margin margin = margin_of_ranks();
-    double least[] = {far, margin.way, margin.width, -strayed};
-    MPI_Allreduce(MPI_IN_PLACE, least, 4, MPI_DOUBLE, MPI_MIN, world);
-    // A share of space and a particle may each move towards the other.
-    far = std::min(least[0], -least[3] + 0.5 * (least[1] + 0.5 * least[2]));
+  double way = std::numeric_limits<double>::max();
+  for (int d = 0; d < 3 && !own.empty(); ++d) {
+    const double from = domain->boxlo[d], low = domain->sublo[d], high = domain->subhi[d];
+    const double from_now = follows(d, 0) ? all.low(d) : from;
+    const double length = (follows(d, 1) ? all.high(d) : domain->boxhi[d]) - from_now, stretch = length / domain->prd[d];
+    const double half = 0.5 * narrowest[d] * length;
+    if (low > from) way = std::min(way, own.low(d) - (from_now + stretch * (low - from)) + half);
+    if (high < domain->boxhi[d]) way = std::min(way, from_now + stretch * (high - from) - own.high(d) + half);
   }
-  return std::max(half, far);
-}
-
-// Where particles would be in their ranks' shares of space if the box were now put around all of them. LAMMPS hands them on to the
-// ranks beside alone: half-way through one of those is far enough.
-VerletMdanim::Margin VerletMdanim::margin_of_ranks() const
-{
-  Box now, all;
-  for (int i = 0; i < atom->nlocal; ++i) now.include(atom->x[i]);
-  MPI_Allreduce(now.bound, all.bound, 6, MPI_DOUBLE, MPI_MIN, world);
-  Margin margin;
-  for (int d = 0; d < 3; ++d) {
-    const double from = domain->boxlo[d], to = domain->boxhi[d], low = domain->sublo[d], high = domain->subhi[d];
-    const double from_now = follows(d, 0) ? all.low(d) : from, to_now = follows(d, 1) ? all.high(d) : to;
-    const double stretch = (to_now - from_now) / (to - from);
-    const bool below = low > from, above = high < to;    // ranks are there
-    if (below || above) margin.width = std::min(margin.width, stretch * (high - low));
-    if (now.empty()) continue;
-    if (below) margin.way = std::min(margin.way, now.low(d) - (from_now + stretch * (low - from)));
-    if (above) margin.way = std::min(margin.way, (from_now + stretch * (high - from)) - now.high(d));
-  }
-  return margin;
+  return 0.5 * way;    // particle and share may move towards each other
 }
 
 // Whether a side of the box goes where particles are.
@@ -320,20 +337,12 @@ bool VerletMdanim::follows(int d, int side) const
   return domain->boundary[d][side] == SHRINK;
 }
 
-// Looks how far particles really are from where lists were made, and how far they may go. Whether that is enough.
-bool VerletMdanim::lists_still_last()
-{
-  strayed = farthest();
-  last = how_far_lists_last();
-  return lists_last(0.0);
-}
-
-// Whether no particle of any rank can have moved so far, going `more` farther.
+// Whether no particle of any rank can have gone so far, going `more` farther.
 bool VerletMdanim::lists_last(double more)
 {
-  strayed += more;
-  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &strayed, 1, MPI_DOUBLE, MPI_MAX, world);
-  return strayed < last;
+  left -= more;
+  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &left, 1, MPI_DOUBLE, MPI_MIN, world);
+  return left > 0.0;
 }
 
 // Between two passes: sees how far particles really are, and a rank that is alone makes lists anew if need be. False where the blocks
@@ -341,13 +350,17 @@ bool VerletMdanim::lists_last(double more)
 bool VerletMdanim::look_again()
 {
   timer->stamp(Timer::BOND);
-  blocks.give_out(atom->x, atom->v);
-  if (lists_still_last() && (comm->nprocs > 1 || strayed < SOON * last)) return true;
-  settle_dashpots();
+  blocks.give_out(atom->x, nullptr);
+  left = way_left();
+  if (comm->nprocs > 1 ? lists_last(0.0) : left > SOON * std::min(limit, limit_but_for_drift)) return true;
+  blocks.give_out(nullptr, atom->v);
+  give_out_account();
   if (comm->nprocs > 1 || !rebuild_lists()) return false;
-  strayed = 0.0;
-  last = how_far_lists_last();
-  start_blocks();
+  tell_limits();
+  left = std::min(limit, limit_but_for_drift);
+  if (late.empty()) made_for = neighbor->lastcall;    // nobody has changed how particles move
+  if (modify->n_pre_exchange || modify->n_pre_neighbor) blocks.take_in(atom->x, atom->v);    // nor, mostly, where they are
+  prepare_passes();
   return true;
 }
 
@@ -361,8 +374,8 @@ void VerletMdanim::meet_ghosts()
   timer->stamp(Timer::COMM);
 }
 
-// Positions and velocities into the blocks, and who is to be held back.
-void VerletMdanim::start_blocks()
+// What passes need to know besides positions and velocities: how particles move, who brings forces, and who is to be held back.
+void VerletMdanim::prepare_passes()
 {
   if (made_for != neighbor->lastcall) {
     blocks.set_motion(leapfrog->friction(), [this](int i) {
@@ -372,11 +385,13 @@ void VerletMdanim::start_blocks()
     });
     made_for = neighbor->lastcall;
   }
-  blocks.take_in(atom->x, atom->v);
   if (Loss *account = bond->account()) {
     account->close(atom->v, update->dt);
     if (blocks.damped()) blocks.take_in_dashpots(account->latest(), account->latest_seen());
   }
+  std::vector<std::vector<int>> of_early(early.size());
+  for (std::size_t n = 0; n < early.size(); ++n) early[n].guest->concerned(of_early[n]);
+  blocks.expect(of_early);
   blocks.fill(pass, atom->f);
   pass.gravity[0] = pass.gravity[1] = pass.gravity[2] = 0.0;
   if (gravity) {
@@ -390,13 +405,14 @@ void VerletMdanim::start_blocks()
 void VerletMdanim::hold_back()
 {
   wanted.clear();
-  for (const Player &p : guests) p.guest->concerned(wanted);
+  for (const Player &p : late) p.guest->concerned(wanted);
   blocks.hold_back(wanted, false);
   pass.friction = blocks.friction_acts() ? leapfrog->friction() : Friction::NONE;    // without any it is the same, and faster
 }
 
 void VerletMdanim::one_pass(bool guests_see_all)
 {
+  early_guests_turn();
   double all = 0.0;
   pass.bends = leapfrog->tells_of(update->ntimestep + 1);
   {
@@ -408,24 +424,35 @@ void VerletMdanim::one_pass(bool guests_see_all)
   leapfrog->moved(pass.final_loss, pass.first_loss, pass.bend, moving);
   if (gravity) gravity->took(pulling);
   bond->took(all - moving - pulling);
-  if (!guests.empty()) {
-    guests_turn();
+  if (!late.empty()) {
+    late_guests_turn();
     if (guests_see_all) hold_back();    // they may have other concerns now
   }
   if (Loss *account = bond->account()) account->passed(pass.dashpots, update->dt);
 }
 
-// Forces of other fixes, and the motion of those that were held back for them.
-void VerletMdanim::guests_turn()
+// Forces that the pass is to add.
+void VerletMdanim::early_guests_turn()
+{
+  for (std::size_t n = 0; n < early.size(); ++n) {
+    blocks.tell_places(n, atom->x, places);
+    early[n].guest->forces(places, forces);
+    blocks.bring(n, forces);
+  }
+}
+
+// Forces of the other fixes, and the motion of those that were held back for them.
+void VerletMdanim::late_guests_turn()
 {
   const std::vector<int> &waiting = blocks.held_back();
+  moved_alone += static_cast<long long>(waiting.size());
   if (!waiting.empty()) {
     blocks.give_out_held_back(atom->x, atom->v);
     blocks.give_out_forces(atom->f);
   }
-  for (const Player &p : guests) p.fix->post_force(vflag);
+  for (const Player &p : late) p.fix->post_force(vflag);
   if (!waiting.empty()) leapfrog->finish_step(waiting);
-  for (const Player &p : guests)
+  for (const Player &p : late)
     if (p.acts_at_end) p.fix->end_of_step();
   if (waiting.empty()) return;
   leapfrog->begin_step(waiting);
@@ -476,10 +503,11 @@ bool VerletMdanim::lists_are_due()
   if (neighbor->build_once || now == output->next_dump_any || now == output->next_restart) return neighbor->decide();
   for (const Fix *fix : modify->get_fix_list())
     if (fix->force_reneighbor && fix->next_reneighbor == now) return true;
-  const bool they_do = lists_still_last();
-  if (last <= 0.5 * neighbor->skin) return neighbor->decide();
+  tell_limits();
+  if (std::max(limit, limit_but_for_drift) <= 0.5 * neighbor->skin) return neighbor->decide();
   ++neighbor->ago;
-  return !they_do;
+  left = way_left();
+  return !lists_last(0.0);
 }
 
 // Returns whether every particle is where it was in the arrays.

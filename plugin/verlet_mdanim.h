@@ -5,11 +5,10 @@
 #define LMP_VERLET_MDANIM_H
 
 #include "blocks.h"
+#include "boxes.h"
 #include "guest.h"
 #include "lineup.h"
 #include "verlet.h"
-
-#include <limits>
 
 namespace LAMMPS_NS {
 
@@ -22,6 +21,7 @@ class VerletMdanim : public Verlet {
   void run(int) override;
   double memory_usage() override;
   long long passes() const { return passed; }
+  long long held_back() const { return moved_alone; }    // particles, all passes together
 
  private:
   void spare_bond_list();
@@ -32,24 +32,20 @@ class VerletMdanim : public Verlet {
   void meet_ghosts();
   int take_steps(int step, int most);
   bigint next_stop() const;
-  double how_far_lists_last() const;
-  // Of a rank's particles from the ranks beside it, if positive, and the width of its own share of space.
-  struct Margin {
-    double way = std::numeric_limits<double>::max(), width = std::numeric_limits<double>::max();
-  };
-  Margin margin_of_ranks() const;
-  bool follows(int d, int side) const;
-  bool lists_still_last();
+  void tell_limits();
   bool lists_last(double more);
   bool lists_are_due();
   bool look_again();
-  double farthest() const;
-  void start_blocks();
+  double way_left() const;
+  double way_to_strangers(const mdanim::Box &own, const mdanim::Box &all) const;
+  bool follows(int d, int side) const;
+  void prepare_passes();
   void leave_blocks();
-  void settle_dashpots();
+  void give_out_account();
   void hold_back();
   void one_pass(bool guests_see_all);
-  void guests_turn();
+  void early_guests_turn();
+  void late_guests_turn();
 
   void begin_step();
   void finish_step();
@@ -64,7 +60,7 @@ class VerletMdanim : public Verlet {
   mdanim::Lineup line;            // with other ranks: what is cut
   std::vector<int> sent;          // own particles that other ranks have as ghosts
   bigint decided_for = -1;        // build of lists after which all ranks agreed on worth_it
-  long long passed = 0;
+  long long passed = 0, moved_alone = 0;
 
   // found before every run
   class BondMdanimHarmonic *bond = nullptr;
@@ -75,14 +71,18 @@ class VerletMdanim : public Verlet {
     mdanim::Guest *guest;
     bool acts_at_end;
   };
-  std::vector<Player> guests;
+  std::vector<Player> early, late;    // guests whose forces are asked for before a pass, and those who come after it
 
   bool lists_matter = false;
   bool strangers_have_lists = false;
-  double strayed = 0.0;        // no particle has moved farther since lists were made
-  double last = 0.0;           // how far any may go
+  // How far any particle may go from where it stood when lists were made before they must be made anew: all told, and with the drift
+  // of all particles taken off.
+  double limit = 0.0, limit_but_for_drift = 0.0;
+  double left = 0.0;           // how much farther, at least
+  double narrowest[3] = {};    // share of the box that a rank has along each axis, the least of all
   bigint made_for = -1;        // build of lists that the blocks' motion was told after
-  std::vector<int> wanted;     // particles that guests are concerned with
+  std::vector<mdanim::Vec3> places, forces;  // of the particles of an early guest
+  std::vector<int> wanted;     // particles that late guests are concerned with
 };
 
 }    // namespace LAMMPS_NS

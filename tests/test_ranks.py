@@ -11,7 +11,7 @@ import plugin_path
 import pytest
 from mpi.follow import follow
 from test_engine import MEETING, SPLASH
-from test_verlet_mdanim import EFFECTS, MESHES, SHAPES, SOLID, film
+from test_verlet_mdanim import BETWEEN, EFFECTS, LATER, MESHES, SHAPES, SOLID, film
 
 FILM = Path(__file__).parent / "mpi" / "film.py"
 FOLLOW = Path(__file__).parent / "mpi" / "follow.py"
@@ -55,7 +55,7 @@ def test_ranks_see_what_one_sees(tmp_path, name, ranks):
 @pytest.mark.mpi
 @pytest.mark.parametrize(("name", "ranks"), [(name, 2) for name in MOVING] + [
     ("held", 3), ("walls and contact", 3), ("liquid", 4), ("contact", 4), ("mesh", 4), ("air", 3),
-    ("damped", 4), ("damped beside others", 3), ("damped walls", 4), ("damped contact", 3), ("damped in liquid", 4)])
+    ("damped", 4), ("damped beside others", 3), ("damped walls", 4), ("damped contact", 3), ("damped in liquid", 4), ("damped, all at once", 3)])
 def test_passes_with_ghosts_give_the_bits_of_one_rank(tmp_path, name, ranks):
     """Film bodies that are split among ranks: the bits of run_style verlet on one, and all ranks took most steps by passes."""
     path = tmp_path / "scene.txt"
@@ -68,6 +68,19 @@ def test_passes_with_ghosts_give_the_bits_of_one_rank(tmp_path, name, ranks):
     assert np.array_equal(found["trace"], trace)
     # What dashpots take is estimated in steps in which particles change ranks, loss.h; the plain step on two ranks is off by 2 %.
     np.testing.assert_allclose(found["energies"], energies, rtol=3e-3 if "damped" in name else 1e-12, atol=1e-12)
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("ranks", [2, 3])
+def test_forces_are_added_in_the_order_of_fixes_on_all_ranks(tmp_path, ranks):
+    """Put fixes that ask for places alone before and after one that asks for velocities."""
+    path = tmp_path / "scene.txt"
+    path.write_text(BETWEEN)
+    frames, _, trace, _ = film(BETWEEN, "verlet", more=LATER)
+    on_ranks(FILM, ranks, path, tmp_path / "film.npz", *LATER)
+    found = np.load(tmp_path / "film.npz")
+    assert len(set(found["taken"])) == 1 and found["taken"][0] > 200
+    assert np.array_equal(found["frames"], frames) and np.array_equal(found["trace"], trace)
 
 
 @pytest.mark.mpi

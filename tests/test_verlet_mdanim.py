@@ -42,6 +42,15 @@ EFFECTS = {
     "walls and contact": "walls from (-8, -8, -8) cm to (14, 8, 12) cm\n"
                          f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOLID} velocity (2, 0, -2) }}\n"
                          f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}",
+    # What is common to both is faster than what they hit each other with.
+    "contact in flight": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} velocity (4, 5.1, 0) }}\n"
+                         f"object b {{ shape box (5, 6, 7) cm position (9, 0, 0.5) cm {SOLID} velocity (2, 5, 0) }}",
+    "beside each other": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} velocity (1, 0, 0) }}\n"
+                         f"object b {{ shape box (5, 6, 7) cm position (7.6, 0, 0) cm {SOLID} velocity (1, 0, 0) }}",
+    "damped, all at once": "walls from (-8, -8, -8) cm to (11, 8, 12) cm\n"
+                   f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOFT} drag 0.3 velocity (2, 0, -2) }}\n"
+                   f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}\n"
+                   "liquid w { basin from (-7, -7, -7) cm to (10, 7, 20) cm density 1000 level -5 cm drag 4 }",
     "air": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} drag 0.5 velocity (3, 0, 0) }}\n"
            f"object b {{ shape box (5, 5, 5) cm position (1, 0, 0) {SOLID} }}",
     "damped contact": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOFT} velocity (1, 0.1, 0) }}\n"
@@ -59,17 +68,34 @@ EFFECTS = {
 }
 
 
+# The order of forces: contact and walls, which places suffice, then one that asks for velocities, then walls again, where particles are
+# that have felt the one before.
+LATER = ("fix damped mobile mdanim/barrier boundary inner d_stiffness d_reach damp 0.5",
+         "region room block -0.08 0.13 -0.08 0.08 -0.0285 0.12", "fix room mobile mdanim/wall room d_stiffness")
+BETWEEN = ("walls from (-8, -8, -2.9) cm to (13, 8, 12) cm\n"
+           f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOFT} velocity (2, 0, -2) }}\n"
+           f"object b {{ shape box (5, 5, 5) cm position (6.2, 0, 0) cm {SOLID} velocity (-2, 0, -2) }}")
+"""Two blocks that hit each other and both floors at the same time."""
+
+
 def passes(instance: Instance) -> int:
     """How many steps were taken by passes over blocks."""
     instance._library.mdanim_passes.restype = ctypes.c_longlong
     return instance._library.mdanim_passes(instance._handle)
 
 
-def film(text: str, style: str, pieces=(1, 150, 149), comm=None) -> tuple[np.ndarray, list[float], np.ndarray, int]:
+def held_back(instance: Instance) -> int:
+    """How many particles were moved one by one, all passes together."""
+    instance._library.mdanim_held_back.restype = ctypes.c_longlong
+    return instance._library.mdanim_held_back(instance._handle)
+
+
+def film(text: str, style: str, pieces=(1, 150, 149), comm=None, more=()) -> tuple[np.ndarray, list[float], np.ndarray, int]:
     """x, v and f after every piece of a run, at its end the energies, the trace, and how many passes were taken."""
     ready = prepare(parse_scene(FALL + text + "\n" + END))
     with Instance(ready.plan, comm) as instance:
-        instance._lmp.command(f"run_style {style}")
+        for command in (*more, f"run_style {style}"):
+            instance._lmp.command(command)
         instance.setup()
         instance.start_trace()
         frames = []
@@ -124,6 +150,50 @@ def test_the_effects_of_these_scenes_wake_up(name, fix, entry):
             felt.append(instance.fix_scalar(fix) if entry is None or fix == "liquid" else instance.fix_value(fix, entry - 1))
         assert np.abs(felt).max() > 0.0
         assert passes(instance) > 200
+
+
+def test_forces_are_added_in_the_order_of_fixes():
+    """Contact and walls, then contact that is damped, then other walls: particles feel all of them at once."""
+    plain, _, trace, none = film(BETWEEN, "verlet", more=LATER)
+    assert none == 0
+    for width in [w for w in WIDTHS if supported(w)]:
+        found, _, seen, taken = film(BETWEEN, f"verlet/mdanim width {width}", more=LATER)
+        assert taken > 200
+        assert np.array_equal(found, plain) and np.array_equal(seen, trace), width
+
+
+@pytest.mark.parametrize(("name", "more", "some"), [
+    ("contact", (), False), ("beside each other", (), False), ("ground", (), False), ("damped walls", (), False),
+    ("damped walls", LATER[:1], True), ("damped walls", LATER[1:], False), ("damped, all at once", (), True)])
+def test_nobody_is_held_back_for_forces_of_places_alone(name, more, some):
+    """Count particles that do not move in passes, while somebody pushes: those of fixes that ask for more than places."""
+    ready = prepare(parse_scene(FALL + EFFECTS[name] + "\n" + END))
+    with Instance(ready.plan) as instance:
+        for command in more:
+            instance._lmp.command(command)
+        instance.setup()
+        effects = {"contact", "walls", "ground"} & set(instance._lmp.available_ids("fix"))
+        pushed = []
+        for _ in range(15):
+            instance.run(20)
+            pushed += [instance.fix_scalar(fix) for fix in effects]
+        assert passes(instance) > 200
+        assert (held_back(instance) > 0) == some
+        assert (np.abs(pushed).max() > 0.0) == (name != "beside each other")
+        assert name != "beside each other" or instance.fix_value("contact", 1) > 0
+
+
+@pytest.mark.parametrize(("ground", "least", "most"), [pytest.param("", 0, 2, id="alone"), pytest.param("ground z -4.1 cm\n", 20, 100, id="on the ground")])
+def test_what_all_share_makes_no_lists(ground, least, most):
+    """Two bodies side by side fly a hundred times half the skin: contact needs new lists only for what changes between them, the ground for all."""
+    text = ground + EFFECTS["beside each other"].replace("(1, 0, 0)", "(20, 0, 0)")
+    ready = prepare(parse_scene(text + "\n" + END))
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(150)
+        assert passes(instance) > 130
+        assert instance.fix_value("contact", 1) > 0
+        assert least <= instance._lmp.get_thermo("nbuild") <= most
 
 
 def test_pieces_of_a_run_change_no_bit():
@@ -199,6 +269,20 @@ def test_lists_are_rebuilt_before_anybody_has_gone_half_the_skin(tmp_path):
     assert taken > 100
     assert np.array_equal(found, plain)
     assert found[: len(fast.x), 0].max() < 9.5 and found[len(fast.x): 2 * len(fast.x), 0].mean() < 0.0
+
+
+def test_only_the_group_is_pushed(tmp_path):
+    """Let contact push one of two bodies alone, the first: the other one flies on as if nobody was there."""
+    pair = lab.join(lab.block((4, 3, 3)), lab.block((3, 4, 3), (4.8, 0.0, 0.0), (-0.2, 0.0, 0.0)))
+    commands = ["group first molecule 1", "fix push first mdanim/barrier boundary inner 1.0 1.6", "fix run all mdanim/leapfrog",
+                "timestep 0.2"]
+    found, taken = lab_state(pair, tmp_path, [*commands, "run_style verlet/mdanim", "run 60"])
+    plain, none = lab_state(pair, tmp_path, [*commands, "run_style verlet", "run 60"])
+    assert (taken, none) == (59, 0)
+    assert np.array_equal(found, plain)
+    n, first = len(pair.x), pair.molecule == 1
+    np.testing.assert_allclose(found[n:2 * n][~first], pair.v[~first], rtol=0, atol=1e-12)
+    assert found[n:2 * n][first].mean(0)[0] < -0.01
 
 
 @pytest.mark.parametrize(("command", "message"), [
