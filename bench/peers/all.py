@@ -2,8 +2,8 @@
 """Other programs on our scenes: ``python bench/peers/all.py [--write] [--quick] [--limit SECONDS] [--rounds N] [SCENE ...]``.
 
 Scenes: the keys of CASES. Every contender runs alone in a process of its own, on one thread, for a limit of processor seconds or
-until the scene is over; ours by the Python that runs this, others by .venv-peers. Who is through soon runs again, in turns. A contender
-that cannot run, or takes too long to begin, has a row that says why.
+until the scene is over; ours by the Python that runs this, others by .venv-peers. Who is through soon runs again, in turns. Who
+cannot run, or takes too long to begin, has a row that says why.
 """
 
 import argparse

@@ -26,8 +26,8 @@ MODEL = """
 LARGEST = 0.0252
 """Largest step over the spacing that Euler bears for the cube [s/m]: 1.2 ms with 21 cells; at 1.3 ms it breaks down."""
 IMPLICIT = 4.3e-3
-"""Step for the bar [s], a hundredth of what is run: half of it takes 1 % of the sag off its error, at twice the cost; twice it adds
-0.3 to 8 %."""
+"""Step for the bar [s], a hundredth of what is run: half of it takes 1 % of the sag off its error, at twice the cost; twice it
+adds 0.3 to 8 %."""
 
 scene, case = words()
 h, young = case["h"], case["young"]
