@@ -557,8 +557,8 @@ def _create(file: h5py.File, catalogue: Catalogue, dt: float, steps_per_frame: i
 
 
 def _append(dataset: h5py.Dataset, count: int, row: np.ndarray) -> None:
-    """Put a row behind the ``count`` that are there: the calls that h5py's own ``resize`` and ``dataset[count] = row`` come down to,
-    in a third of their time where rows are short."""
+    """Put a row behind the ``count`` that are there: what h5py's own ``resize`` and ``dataset[count] = row`` come down to, in a
+    third of their time where rows are short."""
     from h5py import h5s
 
     low, one = dataset.id, (1, *row.shape)
