@@ -265,8 +265,8 @@ void VerletMdanim::give_out_account()
   account->reopen();
 }
 
-// Half the skin, and farther if nobody needs lists until then. The springs' partners stay who they are; with other ranks, nobody may
-// pass by a whole rank unseen.
+// Half the skin, and farther if nobody needs lists until then. The springs' partners stay who they are; with other ranks, nobody
+// may pass by a whole rank unseen.
 void VerletMdanim::tell_limits()
 {
   const double half = 0.5 * neighbor->skin;
@@ -288,8 +288,8 @@ void VerletMdanim::tell_limits()
   limit_but_for_drift = std::max(half, far_but_for_drift);
 }
 
-// As particles of this rank stand now. Two of them have not come nearer to each other by more than the longest way through the box
-// around all displacements; so each has gone half of it, but for drift.
+// As particles of this rank stand now. Two of them have not come nearer to each other by more than the longest way through the
+// box around all displacements; so each has gone half of it, but for drift.
 double VerletMdanim::way_left() const
 {
   const double *const *here = atom->x, *const *then = neighbor->get_xhold();
