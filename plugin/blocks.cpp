@@ -401,7 +401,9 @@ void Blocks::fill(Pass &pass, double *const *forces)
 
 std::size_t Blocks::bytes() const
 {
-  return all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + damped_laws.bytes() +
+  std::size_t of_bringers = brought.bytes();
+  for (const std::vector<Brought> &those : bringers) of_bringers += those.capacity() * sizeof(Brought);
+  return of_bringers + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + damped_laws.bytes() +
       motions.bytes() + memory.bytes() +
       (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
           sizeof(int) +
