@@ -20,7 +20,7 @@ WAVE = (1.2 * 1e6 / 1000.0) ** 0.5
 SPEED = 0.05 * WAVE
 """Of each block [m/s]."""
 DRIFT = 0.1 * WAVE
-"""Of all, sideways [m/s]: lists are rebuilt as often whether blocks touch or not."""
+"""Of all, sideways [m/s]: a motion that all share makes no new lists, but must be looked at now and then."""
 APART = 5
 """How far one block is moved away, in edges."""
 STEPS, WARM = 50, 5

@@ -111,7 +111,7 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
   entries.clear();
   const std::vector<int> length = lengths(bonds, object);
   for (int end = particles; end > 0; end -= length[end])
-    all.push_back({end - length[end], static_cast<short>(length[end]), false, false, 0, 0, 0, object[end - 1] - 1});
+    all.push_back({end - length[end], static_cast<short>(length[end]), false, false, 0, -1, 0, object[end - 1] - 1});
   std::reverse(all.begin(), all.end());
 
   home.resize(particles);
@@ -202,25 +202,25 @@ void Blocks::set_row(const Mover &mover, Friction friction, int lane, double *ro
 // Blocks with a particle of anybody have a row for everybody.
 void Blocks::expect(const std::vector<std::vector<int>> &particles_of)
 {
-  const auto many = static_cast<unsigned>(particles_of.size());
-  for (Block &block : all) block.brought = 0;
-  for (const std::vector<int> &particles : particles_of)
-    for (const int i : particles)
-      if (!is_ghost(i)) all[home[ours(i)]].brought = many;
-  unsigned rows = 0;
-  for (Block &block : all) rows = block.brought += rows;
-  brought.assign(static_cast<std::size_t>(rows) * 3 * lanes);
+  const int many = static_cast<int>(particles_of.size());
+  for (Block &block : all) block.brought = -1;
   bringers.assign(many, {});
-  for (unsigned n = 0; n < many; ++n)
+  int rows = 0;
+  for (int n = 0; n < many; ++n)
     for (const int i : particles_of[n]) {
       if (is_ghost(i)) {
         bringers[n].push_back({i, GHOST});
         continue;
       }
-      const Block &block = all[home[ours(i)]];
-      const long row = block.brought - many + n;
+      Block &block = all[home[ours(i)]];
+      if (block.brought < 0) {
+        block.brought = rows;
+        rows += many;
+      }
+      const long row = block.brought + n;
       bringers[n].push_back({ours(i), row * 3 * lanes + ours(i) - block.start});
     }
+  brought.assign(static_cast<std::size_t>(rows) * 3 * lanes);
 }
 
 void Blocks::tell_places(std::size_t n, const double *const *of_ghosts, std::vector<Vec3> &to) const
@@ -384,6 +384,7 @@ void Blocks::fill(Pass &pass, double *const *forces)
   pass.damped_law = damped() ? damped_laws.data() : nullptr;
   pass.motion = motions.data();
   pass.brought = brought.data();
+  pass.bringers = static_cast<int>(bringers.size());
   for (int d = 0; d < 3; ++d) {
     pass.x[d] = x[d];
     pass.v[d] = v[d];
@@ -397,7 +398,9 @@ void Blocks::fill(Pass &pass, double *const *forces)
 
 std::size_t Blocks::bytes() const
 {
-  return all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + damped_laws.bytes() +
+  std::size_t of_bringers = brought.bytes();
+  for (const std::vector<Brought> &those : bringers) of_bringers += those.capacity() * sizeof(Brought);
+  return of_bringers + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + damped_laws.bytes() +
       motions.bytes() + memory.bytes() +
       (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
           sizeof(int) +

@@ -415,9 +415,13 @@ void FixMdanimBarrier::setup(int vflag)
 
 void FixMdanimBarrier::post_force(int)
 {
-  here.clear();
-  for (const int i : particle) here.push_back(vec3(atom->x[i]));
+  {
+    const Lap lap(seconds);
+    here.clear();
+    for (const int i : particle) here.push_back(vec3(atom->x[i]));
+  }
   forces(here, on);
+  const Lap lap(seconds);
   for (size_t n = 0; n < particle.size(); ++n) add_to(atom->f[particle[n]], on[n]);
 }
 

@@ -15,8 +15,9 @@ class Guest {
   // The local particles whose x, v and f the fix reads or writes in post_force() and end_of_step(), until lists are rebuilt; the
   // arrays of LAMMPS hold no others. Adds them to `particles`, some perhaps twice.
   virtual void concerned(std::vector<int> &particles) const = 0;
-  // Whether, in this whole run, all that the fix does in a step is to add forces that depend on the places of these particles alone.
-  // It is then asked for them before the pass instead, which adds them: one force for each particle, which is named once.
+  // Whether, in this whole run, all that the fix does in a step is to add forces that depend on the places of these particles
+  // alone, each of which is named once. It may then be asked for them instead, before the pass, which adds them: as many as
+  // concerned() names, in that order, those of ghosts without meaning.
   virtual bool places_suffice() const { return false; }
   virtual void forces(const std::vector<Vec3> & /*place*/, std::vector<Vec3> & /*force*/) {}
   // Whether it will read any particle in this step. Asked once, when the step has begun, unless places suffice.

@@ -21,7 +21,7 @@ struct Block {
   bool held_back;   // others add to its forces before it may move
   bool damped;      // some of its particles have dashpots
   unsigned end;
-  unsigned brought;   // its rows of Pass::brought are those from the last block's end on
+  int brought;        // first of its rows of Pass::brought; negative for none
   unsigned motion;    // row of Pass::motion
   int object;         // molecule - 1
 };
@@ -54,7 +54,8 @@ struct Pass {
   // have seen, v^{n-3/2} -> v^{n-1/2}. Of what is held back F^n stays in `part`, and the other two as they are.
   double *part[3], *last[3], *seen[3];
   double gravity[3];       // [velocity/time]
-  const double *brought;   // rows of forces from elsewhere, (3, lanes) each, to be added after gravity
+  const double *brought;   // rows of forces from elsewhere, (3, lanes) each, to be added after gravity:
+  int bringers;            // so many in a row for a block that has any
   Friction friction;
   double *total;    // (N, 3): sum of all forces on the particles of blocks that are held back
   double *trace;    // box of each object (boxes.h), to be grown; null for none

@@ -79,14 +79,9 @@ struct Tally {
   int object = -1;    // whose box it is
 };
 
-// How far the blocks have got in the arrays that they go through.
-struct Place {
-  unsigned entry = 0, brought = 0;
-};
-
-// Springs of a block, each once, and the dashpots beside them; adds up what its own particles feel of them, of gravity and of what
-// has been brought, and behind that what they feel of dashpots alone.
-template <bool DAMPED> MDANIM_INLINE void feel(const Pass &pass, const Block &block, Place &at, double *total)
+// Springs of a block, each once, and the dashpots beside them; adds up what its own particles feel of them and of gravity, and
+// behind that what they feel of dashpots alone.
+template <bool DAMPED> MDANIM_INLINE void feel(const Pass &pass, const Block &block, unsigned &e, double *total)
 {
   constexpr int LAW = DAMPED ? 3 : 2;
   double *const X = pass.x[0], *const Y = pass.x[1], *const Z = pass.x[2];
@@ -99,7 +94,7 @@ template <bool DAMPED> MDANIM_INLINE void feel(const Pass &pass, const Block &bl
   Vector v[3], part[3] = {};
   if (DAMPED)
     for (int d = 0; d < 3; ++d) v[d] = load(pass.v[d] + i);
-  for (unsigned &e = at.entry; e < block.end; ++e) {
+  for (; e < block.end; ++e) {
     const int j = i + entry[e].offset;
     const double *const own = law + static_cast<unsigned long>(entry[e].law) * (LAW * LANES);
     Vector dx = x - load(X + j), dy = y - load(Y + j), dz = z - load(Z + j);
@@ -133,21 +128,25 @@ template <bool DAMPED> MDANIM_INLINE void feel(const Pass &pass, const Block &bl
   const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
   const Vector mass = load(motion + MASS * LANES), others = load(motion + OTHERS * LANES);
   const Vector upper[3] = {upper_x, upper_y, upper_z};
-  Vector all[3];
 #pragma GCC unroll 3
   for (int d = 0; d < 3; ++d) {
     const Vector received = load(pass.f[d] + i);
     store(pass.f[d] + i, received * others);
-    all[d] = (received + upper[d]) + mass * pass.gravity[d];
+    store(total + d * LANES, (received + upper[d]) + mass * pass.gravity[d]);
     if (DAMPED) {
       const Vector slowed = load(pass.part[d] + i);
       store(pass.part[d] + i, slowed * others);
       store(total + (3 + d) * LANES, slowed + part[d]);
     }
   }
-  for (unsigned &row = at.brought; row < block.brought; ++row)
-    for (int d = 0; d < 3; ++d) all[d] += load(pass.brought + (3ul * row + d) * LANES);
-  for (int d = 0; d < 3; ++d) store(total + d * LANES, all[d]);
+}
+
+// Then what others have brought. Not inlined: most blocks have none, and the springs need all registers.
+__attribute__((noinline)) void add_brought(const Pass &pass, const Block &block, double *total)
+{
+  const double *row = pass.brought + static_cast<long>(block.brought) * (3 * LANES);
+  for (int n = 0; n < pass.bringers; ++n, row += 3 * LANES)
+    for (int d = 0; d < 3 * LANES; d += LANES) store(total + d, load(total + d) + load(row + d));
 }
 
 // What dashpots do to the account of a block that has gone from `first` to `last`.
@@ -249,10 +248,11 @@ template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_INLINE void go(Pas
   double total[2][(DAMPED ? 6 : 3) * LANES];
   Tally tally;
   tally.box.open();
-  Place at;
+  unsigned e = 0;
   for (int n = 0; n < pass.blocks; ++n) {
-    if (DAMPED && pass.block[n].damped) feel<true>(pass, pass.block[n], at, total[n & 1]);
-    else feel<false>(pass, pass.block[n], at, total[n & 1]);
+    if (DAMPED && pass.block[n].damped) feel<true>(pass, pass.block[n], e, total[n & 1]);
+    else feel<false>(pass, pass.block[n], e, total[n & 1]);
+    if (__builtin_expect(pass.block[n].brought >= 0, 0)) add_brought(pass, pass.block[n], total[n & 1]);
     if (n) move<FRICTION, TRACED, DAMPED>(pass, pass.block[n - 1], total[~n & 1], tally);
   }
   if (pass.blocks) move<FRICTION, TRACED, DAMPED>(pass, pass.block[pass.blocks - 1], total[~pass.blocks & 1], tally);

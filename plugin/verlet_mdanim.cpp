@@ -292,8 +292,8 @@ void VerletMdanim::tell_limits()
   limit_but_for_drift = std::max(half, far_but_for_drift);
 }
 
-// As particles of this rank stand now. Two of them have not come nearer to each other by more than the longest way through the box
-// around all displacements; so each has gone half of it, but for drift.
+// As particles of this rank stand now. Two of them have not come nearer to each other by more than the longest way through the
+// box around all displacements; so each has gone half of it, but for drift.
 double VerletMdanim::way_left() const
 {
   const double *const *here = atom->x, *const *then = neighbor->get_xhold();

@@ -75,8 +75,8 @@ class VerletMdanim : public Verlet {
 
   bool lists_matter = false;
   bool strangers_have_lists = false;
-  // How far any particle may go from where it stood when lists were made before they must be made anew: all told, and with the drift
-  // of all particles taken off.
+  // How far any particle may go from where it stood when lists were made before they must be made anew: all told, and with the
+  // drift of all particles taken off.
   double limit = 0.0, limit_but_for_drift = 0.0;
   double left = 0.0;           // how much farther, at least
   double narrowest[3] = {};    // share of the box that a rank has along each axis, the least of all

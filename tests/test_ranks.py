@@ -55,7 +55,8 @@ def test_ranks_see_what_one_sees(tmp_path, name, ranks):
 @pytest.mark.mpi
 @pytest.mark.parametrize(("name", "ranks"), [(name, 2) for name in MOVING] + [
     ("held", 3), ("walls and contact", 3), ("liquid", 4), ("contact", 4), ("mesh", 4), ("air", 3),
-    ("damped", 4), ("damped beside others", 3), ("damped walls", 4), ("damped contact", 3), ("damped in liquid", 4), ("damped, all at once", 3)])
+    ("damped", 4), ("damped beside others", 3), ("damped walls", 4), ("damped contact", 3), ("damped in liquid", 4),
+    ("damped, all at once", 3)])
 def test_passes_with_ghosts_give_the_bits_of_one_rank(tmp_path, name, ranks):
     """Film bodies that are split among ranks: the bits of run_style verlet on one, and all ranks took most steps by passes."""
     path = tmp_path / "scene.txt"

@@ -68,8 +68,8 @@ EFFECTS = {
 }
 
 
-# The order of forces: contact and walls, which places suffice, then one that asks for velocities, then walls again, where particles are
-# that have felt the one before.
+# After contact and walls, for which places suffice, one that asks for velocities, and then walls again, where particles are that have
+# felt it.
 LATER = ("fix damped mobile mdanim/barrier boundary inner d_stiffness d_reach damp 0.5",
          "region room block -0.08 0.13 -0.08 0.08 -0.0285 0.12", "fix room mobile mdanim/wall room d_stiffness")
 BETWEEN = ("walls from (-8, -8, -2.9) cm to (13, 8, 12) cm\n"
@@ -153,7 +153,7 @@ def test_the_effects_of_these_scenes_wake_up(name, fix, entry):
 
 
 def test_forces_are_added_in_the_order_of_fixes():
-    """Contact and walls, then contact that is damped, then other walls: particles feel all of them at once."""
+    """Push particles by contact and walls, then by contact that is damped, then by other walls, all at once."""
     plain, _, trace, none = film(BETWEEN, "verlet", more=LATER)
     assert none == 0
     for width in [w for w in WIDTHS if supported(w)]:
@@ -183,9 +183,10 @@ def test_nobody_is_held_back_for_forces_of_places_alone(name, more, some):
         assert name != "beside each other" or instance.fix_value("contact", 1) > 0
 
 
-@pytest.mark.parametrize(("ground", "least", "most"), [pytest.param("", 0, 2, id="alone"), pytest.param("ground z -4.1 cm\n", 20, 100, id="on the ground")])
+@pytest.mark.parametrize(("ground", "least", "most"), [
+    pytest.param("", 0, 2, id="alone"), pytest.param("ground z -4.1 cm\n", 20, 100, id="on the ground")])
 def test_what_all_share_makes_no_lists(ground, least, most):
-    """Two bodies side by side fly a hundred times half the skin: contact needs new lists only for what changes between them, the ground for all."""
+    """Let two bodies side by side fly a hundred times half the skin: contact alone needs no new lists, the ground does."""
     text = ground + EFFECTS["beside each other"].replace("(1, 0, 0)", "(20, 0, 0)")
     ready = prepare(parse_scene(text + "\n" + END))
     with Instance(ready.plan) as instance:
