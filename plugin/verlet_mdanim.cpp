@@ -183,12 +183,7 @@ bool VerletMdanim::cut_line()
 void VerletMdanim::run(int n)
 {
   if (!find_players()) {
-    const int apart = watched && n > 0 ? 1 : 0;
-    Verlet::run(n - apart);
-    if (apart) {
-      tell_forces();
-      Verlet::run(1);
-    }
+    Verlet::run(n);
     return;
   }
   made_for = decided_for = -1;
@@ -197,7 +192,6 @@ void VerletMdanim::run(int n)
       update->nsteps = i;
       break;
     }
-    if (watched && i == n - 1) tell_forces();
     begin_step();
     if (cut()) i += take_steps(i, n - 1 - i);
     finish_step();
@@ -233,8 +227,7 @@ int VerletMdanim::take_steps(int step, int most)
   bool stand = true;
   while (update->ntimestep < stop) {
     if (comm->nprocs > 1 && taken) meet_ghosts();
-    telling = watched && taken + 1 == most;
-    bool see_all = telling;
+    bool see_all = false;
     for (const Player &p : guests) see_all = p.guest->reads_all() || see_all;
     if (see_all) blocks.hold_back(wanted, true);
     one_pass(see_all);
@@ -359,7 +352,7 @@ void VerletMdanim::hold_back()
   pass.friction = blocks.friction_acts() ? leapfrog->friction() : Friction::NONE;    // without any it is the same, and faster
 }
 
-void VerletMdanim::one_pass(bool all_held_back)
+void VerletMdanim::one_pass(bool guests_see_all)
 {
   double all = 0.0;
   {
@@ -371,9 +364,9 @@ void VerletMdanim::one_pass(bool all_held_back)
   leapfrog->moved(pass.final_loss, pass.first_loss, moving);
   if (gravity) gravity->took(pulling);
   bond->took(all - moving - pulling);
-  if (!guests.empty() || all_held_back) {
+  if (!guests.empty()) {
     guests_turn();
-    if (all_held_back) hold_back();    // they may have other concerns now
+    if (guests_see_all) hold_back();    // they may have other concerns now
   }
   if (Loss *account = bond->account()) account->passed(pass.dashpots, update->dt);
 }
@@ -387,7 +380,6 @@ void VerletMdanim::guests_turn()
     blocks.give_out_forces(atom->f);
   }
   for (const Player &p : guests) p.fix->post_force(vflag);
-  if (telling) tell_forces();
   if (!waiting.empty()) leapfrog->finish_step(waiting);
   for (const Player &p : guests)
     if (p.acts_at_end) p.fix->end_of_step();
@@ -396,11 +388,6 @@ void VerletMdanim::guests_turn()
   if (blocks.damped()) blocks.count_held_back(atom->v, pass.dashpots);
   blocks.take_in_held_back(atom->x, atom->v);
   for (const int i : waiting) pass.fastest = std::max(pass.fastest, dot(vec3(atom->v[i]), vec3(atom->v[i])));
-}
-
-void VerletMdanim::tell_forces()
-{
-  if (atom->nlocal) std::copy_n(atom->f[0], 3 * static_cast<size_t>(atom->nlocal), watched);
 }
 
 // --- a step of run_style verlet, in two parts ---

@@ -20,8 +20,6 @@ class VerletMdanim : public Verlet {
   void run(int) override;
   double memory_usage() override;
   long long passes() const { return passed; }
-  // Where forces go as they are at the step before the last of a run, (n, 3) in the order of this rank's particles; null for nowhere.
-  void watch_forces(double *into) { watched = into; }
 
  private:
   void spare_bond_list();
@@ -40,9 +38,8 @@ class VerletMdanim : public Verlet {
   void start_blocks();
   void leave_blocks();
   void hold_back();
-  void one_pass(bool all_held_back);
+  void one_pass(bool guests_see_all);
   void guests_turn();
-  void tell_forces();
 
   void begin_step();
   void finish_step();
@@ -58,8 +55,6 @@ class VerletMdanim : public Verlet {
   std::vector<int> sent;          // own particles that other ranks have as ghosts
   bigint decided_for = -1;        // build of lists after which all ranks agreed on worth_it
   long long passed = 0;
-  double *watched = nullptr;
-  bool telling = false;           // in this pass
 
   // found before every run
   class BondMdanimHarmonic *bond = nullptr;

@@ -311,25 +311,6 @@ def test_a_state_is_put_again_and_again(prepared, text):
         assert instance.step == 450
 
 
-@pytest.mark.parametrize(("text", "objects"), [
-    pytest.param(SHELF, (0, 1, 2, 3, 4, 5), id="solids"), pytest.param(SHELF, (2,), id="damped"),
-    pytest.param(POND.replace("MODEL", ""), (0, 1, 2, 3), id="liquid"), pytest.param(POND.replace("MODEL", ""), (), id="liquid alone")])
-def test_a_watched_run_tells_the_forces_before_its_last_step(prepared, text, objects):
-    """The bits of a run that is stopped there, for one step and for many, and the state of a run that is not watched."""
-    part = Parts(prepared(text).plan).part(objects, "liquid" in text)
-    with Instance(part) as watched, Instance(part) as stopped:
-        watched.setup()
-        stopped.setup()
-        for steps in (1, 2, 3, 200, 1, 57):
-            if steps > 1:
-                stopped.run(steps - 1)
-            before = stopped.array("f").copy()
-            stopped.run(1)
-            assert np.array_equal(watched.run_watched(steps), before)
-            equal(watched.state(), stopped.state())
-            assert stored(watched, before) == stored(stopped, before)
-
-
 def test_a_state_of_other_particles_is_refused(prepared):
     """Say how many there are."""
     parts = Parts(prepared(SHELF).plan)

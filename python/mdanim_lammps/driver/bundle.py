@@ -145,11 +145,11 @@ class Bundle:
         self.instance.put(step, state)
         self.lost = losses(self.instance)
 
-    def run(self, steps: int, to_frame: bool) -> None:
-        """Run a window; energies can be asked for if it comes to a frame. Raises Broken."""
+    def run(self, steps: int) -> None:
+        """Run a window. Raises Broken."""
         begin, soaked = time.process_time(), self._soaked()
         self.instance.start_trace()
-        self.before = run_window(self.instance, steps, to_frame)
+        self.before = run_window(self.instance, steps)
         self.trace = self.instance.trace()
         self.instance.start_trace()
         self.here = self.instance.trace()  # of this moment alone

@@ -119,14 +119,13 @@ class Executor:
         while self.step < end:
             if self.next is not None:
                 self._follow(self.next)
-            self.next = self._window(self.order.steps, end)
+            self.next = self._window(self.order.steps)
             self._commit()
         self._weigh()
         self.frame += 1
 
-    def _window(self, steps: int, end: int) -> Order:
-        """Simulate a window, again until no object has left its reserved box; returns what to do from there on. ``end`` is the step of
-        the next frame."""
+    def _window(self, steps: int) -> Order:
+        """Simulate a window, again until no object has left its reserved box; returns what to do from there on."""
         again = False
         for bundle in self.bundles:
             bundle.ran = False
@@ -134,7 +133,7 @@ class Executor:
             for bundle in self.bundles:
                 if not bundle.ran:
                     with self._span("simulating"):
-                        bundle.run(steps, self.step + steps == end)
+                        bundle.run(steps)
             # Who has nothing to do again is frozen at the end of the window until the others have come there too.
             order = self._decide(self._report(steps), "frozen" if again else "waiting")
             if order.commit:

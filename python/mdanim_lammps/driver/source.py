@@ -138,15 +138,19 @@ class Sequential:
                      pool(instance))
 
 
-def run_window(instance: Instance, steps: int, to_frame: bool = True) -> np.ndarray | None:
-    """Run so many steps; returns what energies are to be told with at a frame, as `Instance.run_watched`, and elsewhere nothing.
+def run_window(instance: Instance, steps: int) -> np.ndarray:
+    """Run so many steps; returns the forces of the step before the last, shape (N, 3): how they change tells how stiff the motion is.
 
     Raises Broken.
     """
     try:
-        return instance.run_watched(steps) if to_frame else instance.run(steps)
+        if steps > 1:
+            instance.run(steps - 1)
+        before = instance.array("f").copy()
+        instance.run(1)
     except DivergedError as error:
         raise Broken(instance.step, error, fastest(instance.plan.system, instance.array("v"))) from error
+    return before
 
 
 def penetration(instance: Instance) -> float:

@@ -194,26 +194,6 @@ class Instance:
         self._lmp.command(f"thermo {steps}")
         self._command(f"run {steps} pre no post no")
 
-    def run_watched(self, steps: int) -> np.ndarray:
-        """Advance like `run`; returns the forces of the step before the last [N], shape (N, 3): how they change tells how stiff the
-        motion is. On one process it costs a quarter of a step, on several ranks three of them.
-        """
-        if self._comm:  # in the last step particles may change their ranks
-            if steps > 1:
-                self.run(steps - 1)
-            before = self.array("f")
-            self.run(1)
-            return before
-        before = np.empty((self.plan.system.particles, 3))
-        watch = self._library.mdanim_watch_forces
-        if watch(self._handle, _pointer(before)):
-            raise SetupError("the instance has another run style than that of its plan")
-        try:
-            self.run(steps)
-        finally:
-            watch(self._handle, None)
-        return before
-
     def _command(self, command: str) -> None:
         try:
             self._lmp.command(command)
