@@ -82,7 +82,7 @@ def ranks(folder: Path, control: str) -> None:
         frames[-1]["bundles"] = 1e-3 * len(self.bundles)
         frames.append({})
 
-    executor.Executor._simulate = one_frame
+    executor.Executor._simulate = one_frame  # what it sends after a frame counts in the next one
     if world.rank:
         executor.serve(world)
     else:
