@@ -135,6 +135,16 @@ def test_harmonic_coeff_is_half_of_k():
     assert harmonic_coeff(3.0) == 1.5
 
 
+def test_positions_are_kept_once(prepared):
+    """Let the models of several objects see their particles in the arrays of the whole, not in copies."""
+    ready = prepared(MEETING)
+    for m, model in enumerate(ready.models):
+        rows = slice(*ready.system.first[m : m + 2])
+        for name in ("position", "velocity", "held"):
+            own, whole = getattr(model, name), getattr(ready.system, name)
+            assert np.shares_memory(own, whole) and np.array_equal(own, whole[rows])
+
+
 def test_both_ends_are_ascending():
     """Store every spring at both ends with partners in ascending order."""
     bonds = np.array([[0, 1], [0, 3], [1, 2], [2, 3]], np.int32)

@@ -157,7 +157,7 @@ def test_interrupted_run_resumes_bit_for_bit(fall, tmp_path, sent):
 
 def test_killed_run_keeps_its_frames(tmp_path):
     """Kill a run without warning and resume from its checkpoint."""
-    text = FALL.replace("resolution 2.5 cm", "resolution 1 cm")
+    text = FALL.replace("resolution 2.5 cm", "resolution 7 mm")
     (tmp_path / "long.txt").write_text(text)
     out = tmp_path / "long.out"
     process = subprocess.Popen([sys.executable, "-m", "mdanim_lammps", str(tmp_path / "long.txt"), "--no-movie", "-q"])

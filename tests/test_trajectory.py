@@ -47,6 +47,21 @@ def test_frames_come_back(slab, tmp_path, single):
             np.testing.assert_array_equal(t.velocity(i), velocity.astype(real))
 
 
+@pytest.mark.parametrize("single", [False, True])
+def test_rows_are_as_h5py_puts_them(slab, tmp_path, monkeypatch, single):
+    """The file is the same to the byte when h5py's own resize and assignment put the rows."""
+    scene, models, frames = slab
+    scene = stored(scene, single=single)
+    ours = write(tmp_path / "ours.h5", scene, models, frames).read_bytes()
+
+    def h5py_puts(dataset, count, row):
+        dataset.resize(count + 1, axis=0)
+        dataset[count] = row
+
+    monkeypatch.setattr("mdanim_lammps.results.trajectory._append", h5py_puts)
+    assert write(tmp_path / "h5py.h5", scene, models, frames).read_bytes() == ours
+
+
 def test_object_is_its_own_particles(slab, tmp_path):
     """An object's slice holds its particles, its centre is their mass-weighted mean."""
     scene, models, frames = slab

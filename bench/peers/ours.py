@@ -9,7 +9,7 @@ SCENES = {
 gravity (0, 0, -9.81)
 ground z 0
 object cube {{ shape box (1, 1, 1) m  position (0, 0, {z}) m  density {density}  elasticity {young} Pa }}
-control {{ time {time} s  resolution {h} m }}
+control {{ time {time} s  resolution {h} m  timestep {step} }}
 """,
     "cantilever": """
 gravity (0, 0, -{gravity})
@@ -24,6 +24,8 @@ object box {{ shape box ({side}, {side}, {side}) m  position ({middle}, {middle}
 control {{ time {time} s  resolution {h} m }}
 """,
 }
+AUTO = 0.5
+"""Time step over the certified bound of ``timestep auto``."""
 
 
 def main() -> None:
@@ -34,7 +36,12 @@ def main() -> None:
     from mdanim_lammps.scene.parse import parse_scene
 
     scene, case = words()
-    ready = prepare(parse_scene(SCENES[scene].format(**case)))
+    text = SCENES[scene]
+    ready = prepare(parse_scene(text.format(**case, step="auto")))
+    if case.get("fraction", AUTO) != AUTO:
+        # As long as whole steps fit a frame: the next shorter step that does.
+        step = case["fraction"] * ready.certificate.bound
+        ready = prepare(parse_scene(text.format(**case, step=f"{step!r} s")))
     plan, system, dt = ready.plan, ready.system, ready.certificate.timestep
     if "lattice" in case:
         stiffness, length = plan.coefficients[plan.bond_kind - 1, :2].T

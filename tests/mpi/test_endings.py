@@ -87,14 +87,14 @@ def ended(process: subprocess.Popen, seconds: float) -> tuple[int, str]:
 
 def goes_on(place: Path, frame: int, *arguments: object) -> None:
     """Resume up to some frames later, and compare with the sequential film from the start."""
-    folder = place / "film.out"
+    folder, frame = place / "film.out", max(frame, 1)  # a film of one frame has no time
     for patience in (2.5, 6.0, 15.0):  # a busy machine may not have begun by then
         process = subprocess.Popen(command("resume", folder, "--no-movie", *arguments), env=environment(), text=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         time.sleep(patience)
         process.send_signal(signal.SIGINT)
         code, said = ended(process, 20.0)
-        assert code == 130, said
+        assert code in (130, -signal.SIGINT), said  # the latter where Python itself had not begun
         with Trajectory(folder) as film:
             frames = len(film)
         if frames > frame:

@@ -16,7 +16,7 @@ from ..model.basin import check_basin, open_hulls
 from ..model.build import build_models
 from ..model.model import Model
 from ..model.overlap import check_geometry
-from ..model.system import System, assemble
+from ..model.system import System, as_parts, assemble
 from ..scene.lock import lock_text
 from ..scene.scene import Scene
 from ..scene.words import IMMERSION
@@ -62,10 +62,11 @@ def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[i
     if problems:
         raise SceneError(problems)
     system = assemble(models, scene)
+    models = as_parts(models, system)
     certificate = certify(scene, system, verdicts, allow_unstable=allow_unstable)
     plan = make_plan(scene, system, verdicts, certificate)
     warnings += margin_warnings(certificate) + (open_hulls(scene, models) if verdicts["liquid"].on else [])
-    return Prepared(scene, tuple(models), system, verdicts, (*scene.warnings, *warnings), certificate, plan, allow_unstable)
+    return Prepared(scene, models, system, verdicts, (*scene.warnings, *warnings), certificate, plan, allow_unstable)
 
 
 def _unmeasurable(scene: Scene, verdicts: dict[str, Verdict]) -> list[Problem]:

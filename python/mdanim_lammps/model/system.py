@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -156,3 +156,10 @@ def assemble(models: Sequence[Model], scene: Scene) -> System:
         grid=scene_grid(scene),
         contact_factor=scene.control.contact_stiffness,
     )
+
+
+def as_parts(models: Sequence[Model], system: System) -> tuple[Model, ...]:
+    """The models of which a system was assembled, with what no two of them share as views of its arrays: not kept twice."""
+    own = ("position", "velocity", "held")
+    return tuple(replace(m, **{name: getattr(system, name)[a:b] for name in own})
+                 for m, a, b in zip(models, system.first, system.first[1:]))

