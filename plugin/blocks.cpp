@@ -369,6 +369,23 @@ void Blocks::take_in_ghosts(const double *const *from_x, const double *const *fr
     }
 }
 
+void Blocks::pack(const std::vector<int> &these, bool velocities, double *to) const
+{
+  for (const int i : these) {
+    for (int d = 0; d < 3; ++d) *to++ = x[d][i];
+    for (int d = 0; velocities && d < 3; ++d) *to++ = v[d][i];
+  }
+}
+
+void Blocks::unpack(const std::vector<int> &these, bool velocities, const double *from)
+{
+  for (const int i : these) {
+    for (int d = 0; d < 3; ++d) x[d][i] = *from++;
+    for (int d = 0; velocities && d < 3; ++d, ++from)
+      if (damped()) v[d][i] = *from;
+  }
+}
+
 void Blocks::give_out_forces(double *const *f) const
 {
   if (index.empty()) return;    // the pass has written them there itself

@@ -92,6 +92,11 @@ class Blocks {
   // With ghosts: positions of these own particles, which other ranks wait for, and velocities unless v is null; and of theirs.
   void give_out_places(const std::vector<int> &particles, double *const *x, double *const *v) const;
   void take_in_ghosts(const double *const *x, const double *const *v);
+  // The same from blocks to blocks, of particles in our own order: three numbers for each, or six with velocities.
+  int place_of(int i) const { return place[i]; }    // of an own particle, in that order
+  const std::vector<int> &ghost_places() const { return ghosts; }
+  void pack(const std::vector<int> &particles, bool velocities, double *to) const;
+  void unpack(const std::vector<int> &particles, bool velocities, const double *from);
 
   void fill(Pass &pass, double *const *f);    // f: where forces on those that are held back go
   void give_out_forces(double *const *f) const;    // there they are after a pass and this

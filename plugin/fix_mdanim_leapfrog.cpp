@@ -38,7 +38,7 @@ FixMdanimLeapfrog::FixMdanimLeapfrog(LAMMPS *lmp, int narg, char **arg) : Fix(lm
   extvector = -1;
   extlist = extensive;
   global_freq = 1;
-  comm_forward = 1;
+  comm_forward = 3;
 
   int drag_word = 0;
   for (int iarg = 3; iarg < narg; iarg += 2) {
@@ -251,13 +251,13 @@ Mover FixMdanimLeapfrog::mover(int i)
   return {0.0, mass, kick, update->dt, phi};
 }
 
-void FixMdanimLeapfrog::survey_ghosts(std::vector<int> &those_sent, std::vector<int> &of_all)
+void FixMdanimLeapfrog::survey_ghosts(std::vector<int> &those_sent, std::vector<Known> &of_all)
 {
   sent = &those_sent;
-  objects = &of_all;
+  known = &of_all;
   sent->clear();
-  objects->assign(atom->nlocal + atom->nghost, 1);
-  if (atom->molecule_flag) std::copy_n(atom->molecule, atom->nlocal, objects->begin());
+  known->resize(atom->nlocal + atom->nghost);
+  for (int i = 0; i < atom->nlocal; ++i) (*known)[i] = {atom->molecule_flag ? atom->molecule[i] : 1, {comm->me, i}};
   comm->forward_comm(this);
   std::sort(sent->begin(), sent->end());
   sent->erase(std::unique(sent->begin(), sent->end()), sent->end());
@@ -265,16 +265,21 @@ void FixMdanimLeapfrog::survey_ghosts(std::vector<int> &those_sent, std::vector<
 
 int FixMdanimLeapfrog::pack_forward_comm(int n, int *list, double *buf, int, int *)
 {
+  int m = 0;
   for (int k = 0; k < n; ++k) {
     if (list[k] < atom->nlocal) sent->push_back(list[k]);    // others pass ghosts on
-    buf[k] = static_cast<double>((*objects)[list[k]]);
+    const Known &one = (*known)[list[k]];
+    buf[m++] = static_cast<double>(one.object);
+    buf[m++] = static_cast<double>(one.home.rank);
+    buf[m++] = static_cast<double>(one.home.index);
   }
-  return n;
+  return m;
 }
 
 void FixMdanimLeapfrog::unpack_forward_comm(int n, int first, double *buf)
 {
-  for (int k = 0; k < n; ++k) (*objects)[first + k] = static_cast<int>(buf[k]);
+  for (int i = first; i < first + n; ++i, buf += 3)
+    (*known)[i] = {static_cast<int>(buf[0]), {static_cast<int>(buf[1]), static_cast<int>(buf[2])}};
 }
 
 void FixMdanimLeapfrog::finish_step(const std::vector<int> &particles)

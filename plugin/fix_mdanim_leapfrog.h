@@ -7,6 +7,7 @@
 #include "blocks.h"
 #include "boxes.h"
 #include "fix.h"
+#include "ghosts.h"
 #include "particle_value.h"
 
 #include <string>
@@ -39,9 +40,13 @@ class FixMdanimLeapfrog : public Fix {
   void unpack_forward_comm(int, int, double *) override;
 
   // For run_style verlet/mdanim, which moves most particles itself.
-  // All ranks together, after a rebuild: own particles that other ranks have as ghosts, and the objects of all particles, 1 where
-  // there are no molecule IDs.
-  void survey_ghosts(std::vector<int> &sent, std::vector<int> &objects);
+  // All ranks together, after a rebuild: own particles that other ranks have as ghosts, and of all particles their objects, 1 where
+  // there are no molecule IDs, and where they are at home.
+  struct Known {
+    int object;
+    mdanim::Home home;
+  };
+  void survey_ghosts(std::vector<int> &sent, std::vector<Known> &known);
   mdanim::Friction friction() const;
   mdanim::Mover mover(int i);
   double *trace_bounds() { return trace.empty() ? nullptr : trace.front().bound; }
@@ -71,7 +76,8 @@ class FixMdanimLeapfrog : public Fix {
   double largest_phi = 0.0;    // seen on this rank in this run
   double seconds = 0.0;
   const std::vector<int> *only = nullptr;    // particles to move now; null for all
-  std::vector<int> *sent = nullptr, *objects = nullptr;    // while ghosts are surveyed
+  std::vector<int> *sent = nullptr;    // while ghosts are surveyed
+  std::vector<Known> *known = nullptr;
   std::vector<mdanim::Box> trace;    // of the particles of this rank; empty when off
 };
 

@@ -10,6 +10,7 @@
 #include "boxes.h"
 #include "fix_mdanim_gravity.h"
 #include "fix_mdanim_leapfrog.h"
+#include "patience.h"
 #include "stopwatch.h"
 
 #include "angle.h"
@@ -60,7 +61,7 @@ VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, a
   if (!width) error->all(FLERR, "run_style verlet/mdanim: width {} is unknown or this processor does not have it", arg[1]);
 }
 
-double VerletMdanim::memory_usage() { return static_cast<double>(blocks.bytes() + line.bytes()); }
+double VerletMdanim::memory_usage() { return static_cast<double>(blocks.bytes() + line.bytes() + ghosts.bytes()); }
 
 // --- LAMMPS's list of bonds ---
 
@@ -158,21 +159,26 @@ bool VerletMdanim::cut_for_ranks()
 {
   if (decided_for == neighbor->lastcall) return worth_it;
   decided_for = neighbor->lastcall;
-  int here = cut_line(), all = 0;
+  std::vector<Home> home;
+  int here = cut_line(home), all = 0;
   MPI_Allreduce(&here, &all, 1, MPI_INT, MPI_MIN, world);
+  if (all) ghosts.survey(world, home, blocks);
   return worth_it = all;
 }
 
-// Whether this rank's particles and their ghosts are in blocks.
-bool VerletMdanim::cut_line()
+// Whether this rank's particles and their ghosts are in blocks. Tells where the ghosts are at home.
+bool VerletMdanim::cut_line(std::vector<Home> &home)
 {
-  std::vector<int> objects;
-  leapfrog->survey_ghosts(sent, objects);
+  std::vector<FixMdanimLeapfrog::Known> known;
+  leapfrog->survey_ghosts(sent, known);
   BondRows rows;
   if (!bond->rows_of_all(rows)) return false;
   Lineup now(atom->nlocal, atom->nlocal + atom->nghost, atom->tag, rows);
   std::vector<int> of_line;
-  for (const int i : now.places()) of_line.push_back(objects[i]);
+  for (const int i : now.places()) {
+    of_line.push_back(known[i].object);
+    if (i >= atom->nlocal) home.push_back(known[i].home);
+  }
   const bool same = cut_for >= 0 && object == of_line && now.same_springs(line);
   line = std::move(now);
   object = std::move(of_line);
@@ -341,7 +347,11 @@ bool VerletMdanim::follows(int d, int side) const
 bool VerletMdanim::lists_last(double more)
 {
   left -= more;
-  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &left, 1, MPI_DOUBLE, MPI_MIN, world);
+  if (comm->nprocs > 1) {
+    MPI_Request request;
+    MPI_Iallreduce(MPI_IN_PLACE, &left, 1, MPI_DOUBLE, MPI_MIN, world, &request);
+    wait_for(1, &request);
+  }
   return left > 0.0;
 }
 
@@ -364,13 +374,17 @@ bool VerletMdanim::look_again()
   return true;
 }
 
-// Other ranks see where this one's particles are, and this one theirs.
+// Other ranks see where this one's particles are, and this one theirs. Guests look for them in the arrays of LAMMPS.
 void VerletMdanim::meet_ghosts()
 {
   timer->stamp(Timer::BOND);
-  blocks.give_out_places(sent, atom->x, comm->ghost_velocity ? atom->v : nullptr);
-  comm->forward_comm();
-  blocks.take_in_ghosts(atom->x, atom->v);
+  if (guests_look) {
+    blocks.give_out_places(sent, atom->x, comm->ghost_velocity ? atom->v : nullptr);
+    comm->forward_comm();
+    blocks.take_in_ghosts(atom->x, atom->v);
+  } else {
+    ghosts.meet(world, blocks, comm->ghost_velocity);
+  }
   timer->stamp(Timer::COMM);
 }
 
@@ -392,6 +406,8 @@ void VerletMdanim::prepare_passes()
   std::vector<std::vector<int>> of_early(early.size());
   for (std::size_t n = 0; n < early.size(); ++n) early[n].guest->concerned(of_early[n]);
   blocks.expect(of_early);
+  guests_look = !late.empty() || std::any_of(of_early.begin(), of_early.end(), [](const auto &particles) { return !particles.empty(); });
+  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &guests_look, 1, MPI_INT, MPI_MAX, world);
   blocks.fill(pass, atom->f);
   pass.gravity[0] = pass.gravity[1] = pass.gravity[2] = 0.0;
   if (gravity) {

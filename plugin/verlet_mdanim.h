@@ -6,6 +6,7 @@
 
 #include "blocks.h"
 #include "boxes.h"
+#include "ghosts.h"
 #include "guest.h"
 #include "lineup.h"
 #include "verlet.h"
@@ -28,7 +29,7 @@ class VerletMdanim : public Verlet {
   bool find_players();
   bool cut();
   bool cut_for_ranks();
-  bool cut_line();
+  bool cut_line(std::vector<mdanim::Home> &home);
   void meet_ghosts();
   int take_steps(int step, int most);
   bigint next_stop() const;
@@ -58,6 +59,8 @@ class VerletMdanim : public Verlet {
   std::vector<int> object;      // and molecule of each particle
   bool worth_it = false;
   mdanim::Lineup line;            // with other ranks: what is cut
+  mdanim::Ghosts ghosts;          // and whom they tell of it
+  int guests_look = 0;            // whether guests of any rank are concerned with particles
   std::vector<int> sent;          // own particles that other ranks have as ghosts
   bigint decided_for = -1;        // build of lists after which all ranks agreed on worth_it
   long long passed = 0, moved_alone = 0;

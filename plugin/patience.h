@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Waiting for other ranks.
+
+#ifndef MDANIM_PATIENCE_H
+#define MDANIM_PATIENCE_H
+
+#include <chrono>
+#include <mpi.h>
+#include <thread>
+
+namespace mdanim {
+
+// As MPI_Waitall, but who has waited for long leaves the processor to others: there may be more processes than processors, and the one
+// that is waited for may be among those that have none.
+inline void wait_for(int count, MPI_Request *requests)
+{
+  using namespace std::chrono;
+  constexpr auto LONG = microseconds(50), NAP = microseconds(20);
+  int done = 0;
+  for (const auto start = steady_clock::now(); !done; MPI_Testall(count, requests, &done, MPI_STATUSES_IGNORE))
+    if (steady_clock::now() - start > LONG) std::this_thread::sleep_for(NAP);
+}
+
+}    // namespace mdanim
+
+#endif
