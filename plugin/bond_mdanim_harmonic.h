@@ -69,6 +69,7 @@ class BondMdanimHarmonic : public Bond {
   };
 
   void allocate();
+  void refuse_if_given();
   bool source_changed();
   void make_rows();
   void adopt(mdanim::SpringRows &&made_rows, bool halves);
