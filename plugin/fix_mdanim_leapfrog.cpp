@@ -324,15 +324,16 @@ double FixMdanimLeapfrog::bend() const
   return sum;
 }
 
-// Kinetic energy of this rank's particles, corrected so that the sum of all energies is what leap-frog conserves, to fourth order in dt.
-// That is T + U + dt^2 (v . U'' v / 12 - F . F / 24 m), the energy of the nearby system whose exact motion the steps are (Hairer, Lubich &
-// Wanner, Geometric Numerical Integration, IX.3); without it a vibration of frequency w seems to hold (w dt)^2/24 too little, and an
-// impact to lose what goes into vibrations. U'' v is (F^{n-1} - F^n) / dt, and v the velocity between these two steps.
+// Kinetic energy of this rank's particles, corrected so that the sum of all energies is what leap-frog conserves, to fourth order
+// in dt. That is T + U + dt^2 (v . U'' v / 12 - F . F / 24 m), the energy of the nearby system whose exact motion the steps are
+// (Hairer, Lubich & Wanner, Geometric Numerical Integration, IX.3); without it a vibration of frequency w seems to hold
+// (w dt)^2/24 too little, and an impact to lose what goes into vibrations. U'' v is (F^{n-1} - F^n) / dt, and v the velocity
+// between these two steps.
 double FixMdanimLeapfrog::kinetic()
 {
   if (!told)
-    error->all(FLERR, "fix {} mdanim/leapfrog: kinetic energy, f_{}[2], is worked out in steps with output alone; ask for it in these, as "
-               "thermo_style does", id, id);
+    error->all(FLERR, "fix {} mdanim/leapfrog: kinetic energy, f_{}[2], is worked out in steps with output alone; ask for it in these, "
+               "as thermo_style does", id, id);
   double swing = 0.0, sum = 0.0;
   each([&](int i) {
     const double mass = mass_of(atom->rmass, atom->mass, atom->type, i);

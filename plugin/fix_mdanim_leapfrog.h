@@ -40,8 +40,8 @@ class FixMdanimLeapfrog : public Fix {
   void unpack_forward_comm(int, int, double *) override;
 
   // For run_style verlet/mdanim, which moves most particles itself.
-  // All ranks together, after a rebuild: own particles that other ranks have as ghosts, and of all particles their objects, 1 where
-  // there are no molecule IDs, and where they are at home.
+  // All ranks together, after a rebuild: own particles that other ranks have as ghosts, and of all particles their objects, 1
+  // where there are no molecule IDs, and where they are at home.
   struct Known {
     int object;
     mdanim::Home home;
