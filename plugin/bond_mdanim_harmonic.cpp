@@ -105,8 +105,8 @@ bool BondMdanimHarmonic::source_changed()
   if (given) {
     if (nlocal != rows.size() || atom->nghost || !std::is_sorted(atom->tag, atom->tag + nlocal))
       error->all(FLERR,
-                 "bond_style mdanim/harmonic: springs were given for {} particles, in the order of their tags and without ghosts; at step "
-                 "{} there are {}, with {} ghosts, or in another order; if the bodies fly apart, lower the time step",
+                 "bond_style mdanim/harmonic: springs were given for {} particles, in the order of their tags and without ghosts; "
+                 "at step {} there are {}, with {} ghosts, or in another order; if the bodies fly apart, lower the time step",
                  rows.size(), update->ntimestep, nlocal, atom->nghost);
     return false;
   }
@@ -396,8 +396,8 @@ template <class Visit> void BondMdanimHarmonic::each_spring(Visit visit) const
   }
 }
 
-// Virial and energy of each particle on steps that ask for them; half of a bond's share goes to either end, which tallies it in its
-// own row where rows are whole.
+// Virial and energy of each particle on steps that ask for them; half of a bond's share goes to either end, which tallies it in
+// its own row where rows are whole.
 void BondMdanimHarmonic::tally()
 {
   const double share = upper_only ? 1.0 : 0.5;
@@ -437,7 +437,19 @@ double BondMdanimHarmonic::single(int type, double rsq, int, int, double &fforce
   return mdanim::energy(spring[type], std::sqrt(rsq));
 }
 
-void BondMdanimHarmonic::write_restart(FILE *fp) { fwrite(&spring[1], sizeof(Spring), atom->nbondtypes, fp); }
+// Files have the bonds of particles alone.
+void BondMdanimHarmonic::refuse_if_given()
+{
+  if (given)
+    error->one(FLERR, "bond_style mdanim/harmonic: springs were given to it by mdanim_give_springs, and a file would be without them; "
+               "let the particles have their bonds themselves");
+}
+
+void BondMdanimHarmonic::write_restart(FILE *fp)
+{
+  refuse_if_given();
+  fwrite(&spring[1], sizeof(Spring), atom->nbondtypes, fp);
+}
 
 void BondMdanimHarmonic::read_restart(FILE *fp)
 {
@@ -449,6 +461,7 @@ void BondMdanimHarmonic::read_restart(FILE *fp)
 
 void BondMdanimHarmonic::write_data(FILE *fp)
 {
+  refuse_if_given();
   for (int type = 1; type <= atom->nbondtypes; ++type) {
     fprintf(fp, "%d %.17g %.17g", type, spring[type].K, spring[type].r0);
     fprintf(fp, spring[type].c > 0.0 ? " %.17g\n" : "\n", spring[type].c);
@@ -458,7 +471,7 @@ void BondMdanimHarmonic::write_data(FILE *fp)
 double BondMdanimHarmonic::memory_usage()
 {
   const auto ints = source.tag.capacity() + source.count.capacity();
-  return Bond::memory_usage() + rows.bytes() + ints * sizeof(int) + received.force.capacity() * sizeof(Vec3) +
+  return Bond::memory_usage() + rows.bytes() + loss.bytes() + ints * sizeof(int) + received.force.capacity() * sizeof(Vec3) +
       law.capacity() * sizeof(Law) + (5.0 * stretch.x.capacity() + 2.0 * stretch.K.capacity()) * sizeof(double);
 }
 

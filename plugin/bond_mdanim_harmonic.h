@@ -32,8 +32,8 @@ class BondMdanimHarmonic : public Bond {
   double memory_usage() override;
   void *extract(const char *, int &) override;
 
-  // From now on these springs and no others, whatever bonds particles have: those of all particles, in the order of their tags, on a
-  // rank that is alone.
+  // From now on these springs and no others, whatever bonds particles have: those of all particles, in the order of their tags,
+  // on a rank that is alone.
   void take(mdanim::SpringRows &&upper_rows);
 
   // For run_style verlet/mdanim, which computes most forces itself: the springs, each once. False where that is not how they are
@@ -69,6 +69,7 @@ class BondMdanimHarmonic : public Bond {
   };
 
   void allocate();
+  void refuse_if_given();
   bool source_changed();
   void make_rows();
   void adopt(mdanim::SpringRows &&made_rows, bool halves);

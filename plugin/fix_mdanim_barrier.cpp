@@ -507,5 +507,5 @@ double FixMdanimBarrier::memory_usage()
 {
   return own.capacity() * sizeof(Own) + pair.capacity() * sizeof(Pair) + law.capacity() * sizeof(Law) +
       (particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) +
-      (here.capacity() + on.capacity()) * sizeof(Vec3);
+      (here.capacity() + on.capacity()) * sizeof(Vec3) + loss.bytes();
 }

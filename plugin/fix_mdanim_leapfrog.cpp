@@ -80,6 +80,7 @@ void FixMdanimLeapfrog::init()
 void FixMdanimLeapfrog::setup(int)
 {
   bent = 0.0;
+  told = true;
   if (!has_drag || exponential) return;
   double here = largest_phi_here(), phi = 0.0;
   MPI_Allreduce(&here, &phi, 1, MPI_DOUBLE, MPI_MAX, world);
@@ -161,7 +162,8 @@ template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Ha
 void FixMdanimLeapfrog::initial_integrate(int)
 {
   first_half();
-  if (tells_of(update->ntimestep)) bent = -bend();
+  told = tells_of(update->ntimestep);
+  if (told) bent = -bend();
   drift();
 }
 
@@ -227,7 +229,7 @@ std::vector<Box> FixMdanimLeapfrog::traced_boxes() const
 // v^{n-1/2} -> v^n, eq. (3.10).
 void FixMdanimLeapfrog::final_integrate()
 {
-  if (tells_of(update->ntimestep)) bent += bend();
+  if (told) bent += bend();
   final_half();
 }
 
@@ -293,7 +295,7 @@ void FixMdanimLeapfrog::begin_step(const std::vector<int> &particles)
 {
   only = &particles;
   first_half();
-  if (tells_of(update->ntimestep + 1)) bent -= bend();
+  if (told) bent -= bend();
   drift();
   only = nullptr;
   if (!trace.empty())
@@ -303,6 +305,7 @@ void FixMdanimLeapfrog::begin_step(const std::vector<int> &particles)
 
 void FixMdanimLeapfrog::moved(double final_loss, double first_loss, double bend, double more_seconds)
 {
+  told = tells_of(update->ntimestep + 1);
   bent = -bend;
   lost += force->mvv2e * final_loss;
   lost += force->mvv2e * first_loss;
@@ -321,12 +324,16 @@ double FixMdanimLeapfrog::bend() const
   return sum;
 }
 
-// Kinetic energy of this rank's particles, corrected so that the sum of all energies is what leap-frog conserves, to fourth order in dt.
-// That is T + U + dt^2 (v . U'' v / 12 - F . F / 24 m), the energy of the nearby system whose exact motion the steps are (Hairer, Lubich &
-// Wanner, Geometric Numerical Integration, IX.3); without it a vibration of frequency w seems to hold (w dt)^2/24 too little, and an
-// impact to lose what goes into vibrations. U'' v is (F^{n-1} - F^n) / dt, and v the velocity between these two steps.
+// Kinetic energy of this rank's particles, corrected so that the sum of all energies is what leap-frog conserves, to fourth order
+// in dt. That is T + U + dt^2 (v . U'' v / 12 - F . F / 24 m), the energy of the nearby system whose exact motion the steps are
+// (Hairer, Lubich & Wanner, Geometric Numerical Integration, IX.3); without it a vibration of frequency w seems to hold
+// (w dt)^2/24 too little, and an impact to lose what goes into vibrations. U'' v is (F^{n-1} - F^n) / dt, and v the velocity
+// between these two steps.
 double FixMdanimLeapfrog::kinetic()
 {
+  if (!told)
+    error->all(FLERR, "fix {} mdanim/leapfrog: kinetic energy, f_{}[2], is worked out in steps with output alone; ask for it in these, "
+               "as thermo_style does", id, id);
   double swing = 0.0, sum = 0.0;
   each([&](int i) {
     const double mass = mass_of(atom->rmass, atom->mass, atom->type, i);
@@ -344,7 +351,7 @@ double FixMdanimLeapfrog::compute_scalar()
   return total;
 }
 
-// 1: largest phi in this run; 2: kinetic energy, at steps with output; 3: wall seconds of the slowest rank
+// 1: largest phi in this run; 2: kinetic energy, in steps with output; 3: wall seconds of the slowest rank
 double FixMdanimLeapfrog::compute_vector(int n)
 {
   double here = n == 0 ? largest_phi : n == 1 ? kinetic() : seconds, all = 0.0;

@@ -40,8 +40,8 @@ class FixMdanimLeapfrog : public Fix {
   void unpack_forward_comm(int, int, double *) override;
 
   // For run_style verlet/mdanim, which moves most particles itself.
-  // All ranks together, after a rebuild: own particles that other ranks have as ghosts, and of all particles their objects, 1 where
-  // there are no molecule IDs, and where they are at home.
+  // All ranks together, after a rebuild: own particles that other ranks have as ghosts, and of all particles their objects, 1
+  // where there are no molecule IDs, and where they are at home.
   struct Known {
     int object;
     mdanim::Home home;
@@ -52,7 +52,7 @@ class FixMdanimLeapfrog : public Fix {
   double *trace_bounds() { return trace.empty() ? nullptr : trace.front().bound; }
   void finish_step(const std::vector<int> &particles);    // v^{n-1/2} -> v^n
   void begin_step(const std::vector<int> &particles);     // v^n -> v^{n+1/2}, r^n -> r^{n+1}
-  bool tells_of(bigint step) const;    // whether kinetic() may be asked for at that step
+  bool tells_of(bigint step) const;    // whether kinetic() may be asked for in that step
   // By others, in its name; `bend` is what bend() tells, of the particles that they have moved.
   void moved(double final_loss, double first_loss, double bend, double more_seconds);
 
@@ -72,7 +72,8 @@ class FixMdanimLeapfrog : public Fix {
   mdanim::ParticleValue lambda;
   double half_dt = 0.0;        // dt/2 in units that turn force/mass into velocity
   double lost = 0.0;           // energy taken by drag on this rank
-  double bent = 0.0;           // dt v^{n-1/2} . (F^n - F^{n-1}) on this rank, of a step n that kinetic() may be asked for at
+  bool told = false;           // whether kinetic() may be asked for in this step
+  double bent = 0.0;           // dt v^{n-1/2} . (F^n - F^{n-1}) on this rank, if it may
   double largest_phi = 0.0;    // seen on this rank in this run
   double seconds = 0.0;
   const std::vector<int> *only = nullptr;    // particles to move now; null for all

@@ -29,9 +29,9 @@ struct Implicit {
   }
   // Energy that friction takes in the half step from va to vb. The first term is the work of F less the gain in kinetic energy,
   //   m (va + vb)/2 . (k F - (vb - va)) +- m phi k F . (2/3 h - 1/2 w),   w = v^n, h = v^{n+-1/2}, + in the first half, - in the final.
-  // The second is what the energy of the smooth path through the positions, which leap-frog conserves (driver/run.py), loses more:
-  // dt^2/6 times lambda F . G / m^2, G = F - lambda v, in a step by Euler and Maclaurin, dt^2/24 lambda v . F / m at either end. Without
-  // it a vibration of frequency w would seem to lose (w dt)^2/6 less than it does.
+  // The second is what the energy of the smooth path through the positions, which leap-frog conserves (fix_mdanim_leapfrog.cpp),
+  // loses more: dt^2/6 times lambda F . G / m^2, G = F - lambda v, in a step by Euler and Maclaurin, dt^2/24 lambda v . F / m at
+  // either end. Without it a vibration of frequency w would seem to lose (w dt)^2/6 less than it does.
   double loss(const Vec3 &va, const Vec3 &vb, const Vec3 &f, double mass, bool first) const
   {
     const Vec3 push = kick * f, lag = first ? (2.0 / 3.0) * vb - 0.5 * va : 0.5 * vb - (2.0 / 3.0) * va;

@@ -26,7 +26,8 @@ Lineup::Lineup(int nlocal, int nall, const int *tag, const BondRows &bonds) : la
     name.push_back(i < nlocal ? tag[i] : -tag[i]);
   }
 
-  // A spring belongs to its lower end, which may be another rank's. From the highest own particle down all partners come descending.
+  // A spring belongs to its lower end, which may be another rank's. From the highest own particle down all partners come
+  // descending.
   std::vector<int> first(size() + 1, 0);
   const auto each = [&](auto visit) {
     for (int s = size() - 1; s >= 0; --s) {

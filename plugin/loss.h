@@ -16,8 +16,9 @@ namespace mdanim {
 // Such a force F^n is computed with v^{n-1/2} and acts from there to v^{n+1/2}: what it takes in the step is exactly
 //   W^n = -dt F^n . (v^{n-1/2} + v^{n+1/2}) / 2.
 // So the forces of a step are kept for each particle, and the next computation, which sees v^{n+1/2}, closes their account.
-// The energy that leap-frog conserves to fourth order (driver/run.py) is that of a smooth path through the x^n, whose velocity is
-// not v^n but v^n - dt^2/6 da/dt. What F takes on that path up to step n, the ends of the sum by Euler and Maclaurin, is
+// The energy that leap-frog conserves to fourth order (fix_mdanim_leapfrog.cpp) is that of a smooth path through the x^n, whose
+// velocity is not v^n but v^n - dt^2/6 da/dt. What F takes on that path up to step n, the ends of the sum by Euler and Maclaurin,
+// is
 //   sum_{m<n} [W^m - dt/12 (F^{m+1} - F^{m-1}) . (v^{m+1/2} - v^{m-1/2})]
 //     - dt/2 F^n . v^{n-1/2} + dt/12 (F^n - F^{n-1}) . v^{n-1/2}.
 // The forces of a setup see v^n itself, and count for half a step.
@@ -105,6 +106,11 @@ class Loss {
 
   // Energy lost up to the last step.
   double total() const { return sum + tail; }
+  std::size_t bytes() const
+  {
+    return (force.capacity() + last.capacity() + older.capacity() + seen.capacity()) * sizeof(Vec3) +
+        order.capacity() * sizeof(long long);
+  }
 
  private:
   static double sum_of(const std::vector<Vec3> &f, const double *const *v)

@@ -186,9 +186,10 @@ MDANIM_EXPORT int mdanim_insert(void *handle, int n, const int *tag, const int *
   return 1;
 }
 
-// Springs of all particles, for a process that is alone: bond_style mdanim/harmonic keeps them itself, and the particles' own bonds
-// count no more, which take 200 bytes per particle of a lattice. Arrays: pair (springs, 2), particles from 0 in the order of their
-// tags, i < j, sorted; type (springs). The particles exist, and the bond style. Returns 0, or 1 with a message in `error`.
+// Springs of all particles, for a process that is alone: bond_style mdanim/harmonic keeps them itself, and the particles' own
+// bonds count no more, which take 200 bytes per particle of a lattice. Arrays: pair (springs, 2), particles from 0 in the order
+// of their tags, i < j, sorted; type (springs). The particles exist, and the bond style. Returns 0, or 1 with a message in
+// `error`.
 MDANIM_EXPORT int mdanim_give_springs(void *handle, int springs, const int *pair, const int *type, char *error, int error_size)
 {
   try {

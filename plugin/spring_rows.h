@@ -12,8 +12,8 @@
 
 namespace mdanim {
 
-// One row for each particle. Most particles of a lattice have partners of the same kinds equally far on in the arrays: rows that are
-// equal in this are kept once, 4 bytes for each particle instead of 8 for each spring.
+// One row for each particle. Most particles of a lattice have partners of the same kinds equally far on in the arrays: rows that
+// are equal in this are kept once, 4 bytes for each particle instead of 8 for each spring.
 class SpringRows {
  public:
   struct Link {
@@ -35,7 +35,7 @@ class SpringRows {
 
   explicit SpringRows(int particles = 0) { kind.reserve(particles); }
   void add(const Row &row);                                              // of the next particle
-  void close() { known.clear(); }                                        // that was the last
+  void close() { known = {}; }                                           // that was the last
   bool is(int i, const Row &row) const { return same(kind[i], row); }    // the row of particle i
   Links operator[](int i) const { return links(kind[i]); }
   int lower(int i) const { return lowers[kind[i]]; }

@@ -61,7 +61,12 @@ VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, a
   if (!width) error->all(FLERR, "run_style verlet/mdanim: width {} is unknown or this processor does not have it", arg[1]);
 }
 
-double VerletMdanim::memory_usage() { return static_cast<double>(blocks.bytes() + line.bytes() + ghosts.bytes()); }
+double VerletMdanim::memory_usage()
+{
+  return static_cast<double>(blocks.bytes() + line.bytes() + ghosts.bytes() +
+                             (object.capacity() + sent.capacity() + wanted.capacity()) * sizeof(int) +
+                             (places.capacity() + forces.capacity()) * sizeof(Vec3));
+}
 
 // --- LAMMPS's list of bonds ---
 
@@ -132,8 +137,8 @@ bool VerletMdanim::find_players()
   const bool periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
   if (comm->nprocs > 1 && (periodic || neighbor->build_once)) return false;
   // With several ranks nobody may go beyond the neighbours of his own unseen.
-  lists_matter = modify->n_post_neighbor || modify->n_pre_neighbor || comm->nprocs > 1;
-  return leapfrog && !(lists_matter && !neighbor->dist_check && !neighbor->build_once);
+  lists_matter = !neighbor->build_once && (modify->n_post_neighbor || modify->n_pre_neighbor || comm->nprocs > 1);
+  return leapfrog && !(lists_matter && !neighbor->dist_check);    // without that check LAMMPS does not keep where particles stood
 }
 
 // Blocks for the springs as they are now.
@@ -516,7 +521,8 @@ bool VerletMdanim::lists_are_due()
 {
   const bigint now = update->ntimestep;
   if (neighbor->lastcall == now) return false;    // look_again() has made them; `ago` still says so
-  if (neighbor->build_once || now == output->next_dump_any || now == output->next_restart) return neighbor->decide();
+  if (neighbor->build_once || !neighbor->dist_check || now == output->next_dump_any || now == output->next_restart)
+    return neighbor->decide();
   for (const Fix *fix : modify->get_fix_list())
     if (fix->force_reneighbor && fix->next_reneighbor == now) return true;
   tell_limits();

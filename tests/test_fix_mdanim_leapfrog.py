@@ -84,6 +84,22 @@ def test_kinetic_energy_is_that_of_the_smooth_path(tmp_path, style, drag):
     lmp.close()
 
 
+@pytest.mark.parametrize("style", ["verlet", "verlet/mdanim"])
+def test_kinetic_energy_is_refused_where_it_is_not_known(tmp_path, style):
+    """Average over steps with output, which is right; ask in others, which stops the run instead of giving what it was once."""
+    lmp = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog", f"run_style {style}", "timestep 0.2", "thermo 5",
+                                    f"fix mean all ave/time 5 1 5 f_run[2] file {tmp_path / 'mean'}", "run 20"])
+    seen = lmp.extract_fix("run", 0, 1, 1)
+    assert float((tmp_path / "mean").read_text().split()[-1]) == pytest.approx(seen, rel=1e-5)
+    lmp.commands_list(["thermo 10", "unfix mean"])
+    lmp.command("run 20 every 4 NULL")
+    assert lmp.extract_fix("run", 0, 1, 1) != seen
+    lmp.command(f"fix mean all ave/time 5 1 5 f_run[2] file {tmp_path / 'mean'}")
+    with pytest.raises(Exception, match=r"f_run\[2\], is worked out in steps with output alone"):
+        lmp.command("run 20")
+    lmp.close()
+
+
 @pytest.mark.parametrize("drag", [1e-9, 0.3, 40.0, 1e5])
 def test_exponential_drag_equals_exp(tmp_path, drag):
     """Our exp from + - * / agrees with NumPy's, from the series for small phi to complete decay."""

@@ -249,6 +249,18 @@ def test_springs_that_were_given_want_their_particles(without_bonds):
         without_bonds.command("run 0")
 
 
+@pytest.mark.parametrize("file", ["write_restart", "write_data"])
+def test_springs_that_were_given_are_not_lost_in_files(without_bonds, tmp_path, file):
+    """Refuse to write a file that would be without them."""
+    for command in lab.springs(BODY):
+        without_bonds.command(command)
+    assert give_springs(without_bonds) == (0, "")
+    for command in [*PHYSICS, "run 0"]:
+        without_bonds.command(command)
+    with pytest.raises(Exception, match="a file would be without them"):
+        without_bonds.command(f"{file} {tmp_path / 'file'}")
+
+
 TABLE = np.arange(7 * len(BODY.x), dtype=np.int32).reshape(-1, 7)
 
 

@@ -272,6 +272,20 @@ def test_lists_are_rebuilt_before_anybody_has_gone_half_the_skin(tmp_path):
     assert found[: len(fast.x), 0].max() < 9.5 and found[len(fast.x): 2 * len(fast.x), 0].mean() < 0.0
 
 
+@pytest.mark.parametrize(("often", "wall", "least"), [
+    ("check no", False, 49), ("every 7 delay 14 check no", False, 49), ("once yes check no", False, 49), ("once yes check yes", True, 1),
+    ("once yes check no", True, 1), ("check no", True, 0)])
+def test_lists_are_made_when_lammps_is_told_to(tmp_path, often, wall, least):
+    """Switch off the check of how far particles have gone, and rebuilding: passes where no lists are looked at, and the plain bits."""
+    commands = [f"neigh_modify {often}", *MOVE]
+    if wall:
+        commands += ["region room block -10 10 -10 10 0.1 10", "fix wall all mdanim/wall room 3.0"]
+    found, taken = lab_state(BODY, tmp_path, [*commands, "run_style verlet/mdanim", "run 50"])
+    plain, none = lab_state(BODY, tmp_path, [*commands, "run_style verlet", "run 50"])
+    assert np.array_equal(found, plain)
+    assert none == 0 and taken >= least
+
+
 def test_only_the_group_is_pushed(tmp_path):
     """Let contact push one of two bodies alone, the first: the other one flies on as if nobody was there."""
     pair = lab.join(lab.block((4, 3, 3)), lab.block((3, 4, 3), (4.8, 0.0, 0.0), (-0.2, 0.0, 0.0)))

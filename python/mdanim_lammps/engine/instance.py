@@ -299,6 +299,7 @@ class Instance:
                 values = np.empty_like(mixed)
                 values[self._gather("id", 1) - 1] = mixed
                 mixed = values
+            mixed.flags.writeable = False  # all who ask get this one
             self._gathered[name] = mixed
         return self._gathered[name]
 

@@ -18,7 +18,7 @@ class Spares:
 
     def stock(self, plan: Plan) -> None:
         """Have as many as are kept, of a plan like those that will be asked for."""
-        while len(self.idle) < MOST and plan.system.particles <= SMALL:
+        for _ in range(MOST - len(self.idle) if plan.system.particles <= SMALL else 0):
             self.keep(Instance(plan))
 
     def instance(self, plan: Plan, comm=None) -> Instance:
