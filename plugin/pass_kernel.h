@@ -54,11 +54,11 @@ struct Box6 {
   {
     for (Vector &b : bound) b = Vector{} + __DBL_MAX__;
   }
-  MDANIM_INLINE void include(const Vector *x, Vector others)
+  MDANIM_INLINE void include(const Vector *x)
   {
     for (int d = 0; d < 3; ++d) {
-      const Vector low = others > 0.0 ? Vector{} + __DBL_MAX__ : x[d], high = others > 0.0 ? Vector{} + __DBL_MAX__ : -x[d];
-      bound[d] = low < bound[d] ? low : bound[d];
+      const Vector high = -x[d];
+      bound[d] = x[d] < bound[d] ? x[d] : bound[d];
       bound[3 + d] = high < bound[3 + d] ? high : bound[3 + d];
     }
   }
@@ -238,7 +238,11 @@ MDANIM_INLINE void move(const Pass &pass, const Block &block, const double *tota
       tally.box.open();
       tally.object = block.object;
     }
-    tally.box.include(place, load(motion + OTHERS * LANES));
+    if (block.lanes < LANES) {    // lanes of others go where the first one is
+      const Vector others = load(motion + OTHERS * LANES);
+      for (int d = 0; d < 3; ++d) place[d] = others > 0.0 ? Vector{} + place[d][0] : place[d];
+    }
+    tally.box.include(place);
   }
 }
 
