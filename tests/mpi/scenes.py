@@ -116,6 +116,13 @@ object falling {
   elasticity 100 kPa
   velocity (0, 0, -2) m/s
 }
+object below {
+  shape box (10, 10, 10) cm
+  position (0, 0, -20) cm
+  density 900
+  elasticity 1 MPa
+  hold faces z
+}
 object hanging {
   shape box (10, 10, 10) cm
   position (5, 0, 0) m
@@ -125,4 +132,4 @@ object hanging {
 }
 control { time 0.1 s  frames 100 fps  resolution 2.5 cm }
 """
-"""One that moves fast, and one that hardly moves."""
+"""One that moves fast, onto one that hardly moves, and another of these."""

@@ -140,17 +140,18 @@ def test_objects_that_fly_about_change_their_executors(scene):
     assert kinds.count("frozen") >= 10, "who is done is frozen while others begin a window again"
 
 
-def test_who_is_done_is_frozen(scene):
-    """Of two groups far apart only the one whose boxes were too small begins again; the other one's executor simulates once."""
-    cases = matrix((2,), settings={"safety": 0.0})
+def test_only_who_meets_others_begins_again(scene):
+    """Boxes are too small in every frame, but a window is simulated again only where a wider one meets somebody else's."""
+    cases = matrix((3,), settings={"safety": 0.0})
     timelines = all_the_same(ways(scene(films.APART), cases), cases)
     for timeline in timelines.values():
         times = np.array([[sum(e == who and kind == "simulating" and f == frame for e, kind, f, *_ in timeline.spans)
-                           for frame in timeline.frames[1:]] for who in (0, 1)])
-        retried = np.array(timeline.retries[1:])
-        assert retried.max() > 0
-        falls = int(timeline.owner()[-1, timeline.names.index("falling")])
-        assert np.array_equal(times[falls], 1 + retried) and (times[1 - falls] == 1).all()
+                           for frame in timeline.frames[1:]] for who in range(3)])
+        assert min(timeline.retries[1:]) > 0
+        one, other, third = timeline.owner()[1:, [timeline.names.index(name) for name in ("falling", "below", "hanging")]].T
+        meet = int((one == other).argmax())
+        assert (times[:, :meet] == 1).all() and times[one[meet], meet] == 2 and meet > 0
+        assert (times[third[0]] == 1).all() and (third == third[0]).all() and times.max() == 2
 
 
 @pytest.mark.parametrize(("text", "control", "more"), [

@@ -69,7 +69,7 @@ class Bundle:
         """All in its instance, also those that it has laid aside."""
         self.plan = parts.part(wanted.key.objects, wanted.key.liquid)
         self.instance = spares.instance(self.plan, comm)
-        self.rows = parts.whole.system.rows(wanted.key.objects)
+        self.places = parts.whole.system.stretches(self.objects)
         """Its particles among all."""
         self.first = parts.whole.system.first
         self.aside = np.zeros(len(self.objects), bool)

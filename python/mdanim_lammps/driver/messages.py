@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pickle
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 
@@ -171,6 +171,21 @@ class Ended:
     """What it did when: kind, frame, begin and end [s] since all began."""
     cpu: float = 0.0
     """Processor time since all began [s]."""
+
+
+def gathered(places: Sequence[slice], *arrays: np.ndarray) -> list[np.ndarray]:
+    """Copies of these rows of each array, side by side."""
+    return [np.concatenate([array[:0], *(array[place] for place in places)]) for array in arrays]
+
+
+def scatter(places: Sequence[slice], *pairs: tuple[np.ndarray, np.ndarray]) -> None:
+    """What `gathered` does, undone: into the first array of each pair, from the second."""
+    for whole, part in pairs:
+        begin = 0
+        for place in places:
+            end = begin + place.stop - place.start
+            whole[place] = part[begin:end]
+            begin = end
 
 
 class Aborted(Exception):

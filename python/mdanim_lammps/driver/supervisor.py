@@ -21,7 +21,7 @@ from ..errors import DivergedError
 from ..results.ledger import LOSS
 from ..results.timeline import Timeline
 from .energy import ledger_terms
-from .messages import NAP, SUPERVISOR, Ended, Failure, Grant, Job, Kept, Mail, Report, Share, Tag
+from .messages import NAP, SUPERVISOR, Ended, Failure, Grant, Job, Kept, Mail, Report, Share, Tag, scatter
 from .planner import Planner, planner_of
 from .planning import Settings
 from .prepare import Prepared
@@ -187,14 +187,13 @@ class Distributed:
         if isinstance(message, Share):
             sheaf = self._sheaf(message.frame)
             sheaf.shares[executor] = message
-            rows = system.rows(message.objects)
-            sheaf.x[rows], sheaf.v[rows] = message.x, message.v
+            scatter(system.stretches(message.objects), (sheaf.x, message.x), (sheaf.v, message.v))
         elif isinstance(message, Kept):
             if message.frame <= self.taken and self.last:  # sent a second time, by an end after a frame that was kept anyway
                 return
             sheaf = self._sheaf(message.frame)
             sheaf.kept.add(executor)
-            sheaf.f[system.rows(message.objects)] = message.f
+            scatter(system.stretches(message.objects), (sheaf.f, message.f))
             sheaf.liquid = sheaf.liquid if message.liquid is None else message.liquid
         elif isinstance(message, Ended):
             self.gone.add(executor)

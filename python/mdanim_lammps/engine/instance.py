@@ -266,15 +266,14 @@ class Instance:
         nobody feels them or pulls at them. For good, and on one process alone.
         """
         system = self.plan.system
-        rows = system.rows(solids)
         # In no group but "all" nothing acts on them. Their springs are as long as in the plan and hold no energy. A displacement of
         # more than the skin makes LAMMPS look anew for who is near whom, before the next forces.
-        place = system.position[rows]
-        if (np.abs(place - self.array("x")[rows]).max(1) < 2.0 * SKIN * self.plan.spacing).any():
-            place = place + 4.0 * SKIN * self.plan.spacing
-        self._local("mask", 1)[rows] = 1
-        self.array("x")[rows] = place
-        self.array("v")[rows] = self.array("f")[rows] = 0.0
+        (x, v, f), mask = map(self.array, "xvf"), self._local("mask", 1)
+        for rows in system.stretches(solids):
+            place = system.position[rows]
+            if (np.abs(place - x[rows]).max(1) < 2.0 * SKIN * self.plan.spacing).any():
+                place = place + 4.0 * SKIN * self.plan.spacing
+            x[rows], v[rows], f[rows], mask[rows] = place, 0.0, 0.0, 1
 
     def _local(self, name: str, width: int = 3) -> np.ndarray:
         """View of a per-particle array of this rank, shape (n, 3), or (n,) for a width of 1."""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -92,12 +92,12 @@ class System(SpringTypes):
         """Solids that are held as a whole and never move, bool, shape (M,)."""
         return np.logical_and.reduceat(self.held, self.first[:-1])
 
-    def rows(self, solids: Iterable[int]) -> np.ndarray:
-        """Particles of some solids, in their order, int64, shape (n,)."""
-        which = np.fromiter(solids, np.int64)
-        count = self.first[which + 1] - self.first[which]
-        ahead = np.cumsum(count) - count
-        return np.repeat(self.first[which] - ahead, count) + np.arange(count.sum())
+    def stretches(self, solids: Sequence[int]) -> list[slice]:
+        """Particles of some solids, in their order; one stretch of those that are side by side: row by row copies take five times as long."""
+        which = np.asarray(solids, np.int64)
+        apart = np.diff(which) != 1
+        begin, end = which[np.append(True, apart)[:len(which)]], which[np.append(apart, True)[:len(which)]] + 1
+        return list(map(slice, self.first[begin].tolist(), self.first[end].tolist()))
 
     def bounds(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest components in each solid of a particle vector, shape (N, 3); each of shape (M, 3), same unit.
