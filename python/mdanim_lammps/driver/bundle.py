@@ -137,20 +137,20 @@ class Bundle:
         self.ran = False
         if state is None:
             self.instance.setup()
-            return
-        if self.aside.any():
-            rows = np.repeat(self.aside, self._particles)
-            state.x[rows], state.v[rows], state.f[rows] = (self.instance.array(name)[rows] for name in "xvf")
-        self.instance.put(step, state)
-        self.lost = losses(self.instance)
+        else:
+            if self.aside.any():
+                rows = np.repeat(self.aside, self._particles)
+                state.x[rows], state.v[rows], state.f[rows] = (self.instance.array(name)[rows] for name in "xvf")
+            self.instance.put(step, state)
+            self.lost = losses(self.instance)
+        self.instance.start_trace()
 
     def run(self, steps: int) -> None:
         """Run a window. Raises Broken."""
         begin, soaked = time.process_time(), self._soaked()
-        self.instance.start_trace()
         run_window(self.instance, steps)
         self.trace = self.instance.trace()
-        self.instance.start_trace()
+        self.instance.start_trace()  # of the next window
         self.here = self.instance.trace()  # of this moment alone
         self.ran = True
         self.run_seconds, self.liquid_seconds = time.process_time() - begin, self._soaked() - soaked
