@@ -204,8 +204,12 @@ class Mail:
 
     def send(self, to: int, tag: Tag, message, comm: MPI.Comm | None = None) -> None:
         """Send without waiting for the receiver."""
-        self.sent = [request for request in self.sent if not request.test()[0]]
+        self.forget_sent()
         self.sent.append(self._with(comm).isend(message, dest=to, tag=tag))
+
+    def forget_sent(self) -> None:
+        """Messages that are on their way need no more care; MPI complains at its end of those that it was never asked about."""
+        self.sent = [request for request in self.sent if not request.test()[0]]
 
     def _with(self, comm: MPI.Comm | None) -> pkl5.Intracomm:
         return self.world if comm is None else pkl5.Intracomm(comm)

@@ -273,6 +273,7 @@ class _Desk(threading.Thread):
                 if len(reports) == executors:
                     self._decide(mail, planner, [reports.pop(e) for e in range(executors)])
             if closing and not busy:
+                mail.forget_sent()
                 return
             nap = NAP if busy else min(2.0 * nap, LONGEST_NAP)
             if not busy:
