@@ -117,18 +117,18 @@ def _rows_around(key: np.ndarray, others: np.ndarray, rows: tuple[int, int]) -> 
 def _look(low, high, gap, mine, others, rows) -> Iterator[np.ndarray]:
     """Those boxes of ``others`` in the given slots that meet mine, in blocks of shape (P, 2)."""
     low_a, high_a, low_b, high_b = (np.ascontiguousarray(side[who].T) for who in (mine, others) for side in (low, high))
-    for first, last in rows:
-        size = last - first
-        before = np.concatenate([[0], np.cumsum(size)])
-        start = 0
-        while start < len(mine):
-            stop = max(start + 1, int(np.searchsorted(before, before[start] + BLOCK, side="right")) - 1)
-            here = np.arange(start, stop)
-            a = np.repeat(here, size[here])
-            b = np.arange(len(a)) + np.repeat(first[here] - (before[here] - before[start]), size[here])
-            a, b = _meeting((low_a, high_a), (low_b, high_b), a, b, gap)
-            yield np.column_stack([mine[a], others[b]])
-            start = stop
+    first, last = map(np.concatenate, zip(*rows))
+    size = last - first
+    before = np.concatenate([[0], np.cumsum(size)])
+    start = 0
+    while start < len(first):
+        stop = max(start + 1, int(np.searchsorted(before, before[start] + BLOCK, side="right")) - 1)
+        here = np.arange(start, stop)
+        a = np.repeat(here % len(mine), size[here])
+        b = np.arange(len(a)) + np.repeat(first[here] - (before[here] - before[start]), size[here])
+        a, b = _meeting((low_a, high_a), (low_b, high_b), a, b, gap)
+        yield np.column_stack([mine[a], others[b]])
+        start = stop
 
 
 def _meeting(one, two, a, b, gap) -> tuple[np.ndarray, np.ndarray]:
