@@ -6,7 +6,7 @@ interleaved rounds; prints a table of medians, writes scaling.json and docs/imag
 blocks that meet nobody, and one object of 64 000 particles that two executors run as a team. model: what scaling.json says about
 more ranks than are here.
 
-Options: ``--executors 1,2,4``, ``--rounds 3``, ``--frames 8`` (of the hail; four times as many of the crowd), ``--json FILE``,
+Options: ``--executors 1,2,4``, ``--rounds 3``, ``--frames 14`` (of the hail; four times as many of the crowd), ``--json FILE``,
 ``--plot FILE``.
 
 Speed is told in two ways: frames per second of wall time, from the end of frame 1 to the last, with all that is written; and
@@ -351,7 +351,7 @@ def main() -> None:
     default = sorted({k for k in (1, 2, 4, 8, 12, 15) if k <= max(2, cores - 1)})
     parser.add_argument("--executors", type=lambda text: [int(k) for k in text.split(",")], default=default)
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--frames", type=int, default=8)
+    parser.add_argument("--frames", type=int, default=14)
     parser.add_argument("--json", type=Path, default=HERE / "scaling.json")
     parser.add_argument("--plot", type=Path, default=HERE.parent / "docs" / "images" / "scaling.png")
     options = parser.parse_args()
