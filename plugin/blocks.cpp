@@ -442,9 +442,13 @@ static constexpr Width WIDTHS[] = {
     {"common", 4, pass_common, always},
 };
 
-const Width *best_width()
+// The divider gives as many numbers a cycle to wide vectors as to narrow ones, and of wide ones more lanes are idle. Dashpots are more
+// to do besides.
+const Width *best_width(bool damped)
 {
-  return std::find_if(std::begin(WIDTHS), std::end(WIDTHS), [](const Width &w) { return w.runs_here(); });
+  constexpr int NARROW = 4;
+  return std::find_if(std::begin(WIDTHS), std::end(WIDTHS),
+                      [damped](const Width &w) { return w.runs_here() && (damped || w.lanes == NARROW); });
 }
 
 const Width *width_of(const char *name)

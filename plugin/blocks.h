@@ -152,8 +152,8 @@ template <class Tell> void Blocks::set_motion(Friction friction, Tell mover)
   }
 }
 
-// The processor's best, or that of a name; null when it is unknown or does not run here.
-const Width *best_width();
+// The processor's best for springs with or without dashpots, or that of a name; null when it is unknown or does not run here.
+const Width *best_width(bool damped);
 const Width *width_of(const char *name);
 
 }    // namespace mdanim

@@ -51,14 +51,14 @@ static constexpr int ACTS = FixConst::INITIAL_INTEGRATE | FixConst::POST_INTEGRA
 static constexpr double SOON = 0.2;
 
 // run_style verlet/mdanim [width common|avx2|avx512]
-VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, arg), width(best_width())
+VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, arg)
 {
   if (narg == 0) return;
   if (strcmp(arg[0], "width") != 0)
     error->all(FLERR, "run_style verlet/mdanim: unknown keyword {}; it knows width", arg[0]);
   if (narg != 2) error->all(FLERR, "run_style verlet/mdanim: width takes one word, common, avx2 or avx512");
-  width = width_of(arg[1]);
-  if (!width) error->all(FLERR, "run_style verlet/mdanim: width {} is unknown or this processor does not have it", arg[1]);
+  told = width_of(arg[1]);
+  if (!told) error->all(FLERR, "run_style verlet/mdanim: width {} is unknown or this processor does not have it", arg[1]);
 }
 
 double VerletMdanim::memory_usage()
@@ -117,6 +117,9 @@ bool VerletMdanim::find_players()
   if (!bond || domain->triclinic || domain->dimension != 3) return false;
   if ((force->pair && force->pair->compute_flag) || force->angle || force->dihedral || force->improper || force->kspace)
     return false;
+  const Width *now = told ? told : best_width(bond->account() != nullptr);
+  if (now != width) cut_for = decided_for = -1;
+  width = now;
   for (int n = 0; n < modify->nfix; ++n) {
     Fix *fix = modify->fix[n];
     const int mask = modify->fmask[n];

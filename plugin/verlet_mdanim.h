@@ -52,7 +52,7 @@ class VerletMdanim : public Verlet {
   void finish_step();
   bool rebuild_lists();
 
-  const mdanim::Width *width;
+  const mdanim::Width *told = nullptr, *width = nullptr;    // in the input script; what blocks are cut for
   mdanim::Blocks blocks;
   mdanim::Pass pass = {};
   bigint cut_for = -1;          // version of the springs
