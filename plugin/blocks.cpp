@@ -3,6 +3,7 @@
 
 #include "blocks.h"
 
+#include "hash.h"
 #include "leapfrog.h"
 
 #include <algorithm>
@@ -55,11 +56,11 @@ unsigned Catalogue::find_or_add(const double *row)
   const std::size_t size = width * sizeof(double);
   const auto is = [&](unsigned n) { return std::memcmp(rows.data() + static_cast<std::size_t>(n) * width, row, size) == 0; };
   if (count && is(latest)) return latest;
-  std::uint64_t hash = 1469598103934665603u;    // FNV-1a, by words
+  std::uint64_t hash = HASH_OF_NOTHING;
   for (int k = 0; k < width; ++k) {
     std::uint64_t word;
     std::memcpy(&word, row + k, sizeof word);
-    hash = (hash ^ word ^ word >> 29) * 1099511628211u;
+    hash = hash_with(hash, word);
   }
   const auto [begin, end] = known.equal_range(hash);
   for (auto it = begin; it != end; ++it)

@@ -3,6 +3,8 @@
 
 #include "spring_rows.h"
 
+#include "hash.h"
+
 #include <algorithm>
 #include <cstdint>
 
@@ -21,11 +23,9 @@ void SpringRows::add(const Row &row)
     kind.push_back(kind.back());
     return;
   }
-  std::uint64_t hash = 1469598103934665603u + row.lower;    // FNV-1a, by words
-  for (const Link &link : row.link) {
-    const std::uint64_t word = static_cast<std::uint64_t>(link.offset) << 32 ^ static_cast<std::uint32_t>(link.type);
-    hash = (hash ^ word ^ word >> 29) * 1099511628211u;
-  }
+  std::uint64_t hash = HASH_OF_NOTHING + row.lower;
+  for (const Link &link : row.link)
+    hash = hash_with(hash, static_cast<std::uint64_t>(link.offset) << 32 ^ static_cast<std::uint32_t>(link.type));
   const auto [begin, end] = known.equal_range(hash);
   const auto found = std::find_if(begin, end, [&](const auto &entry) { return same(entry.second, row); });
   if (found != end) {

@@ -311,6 +311,7 @@ void VerletMdanim::tell_limits()
 double VerletMdanim::way_left() const
 {
   const double *const *here = atom->x, *const *then = neighbor->get_xhold();
+  const bool alone = comm->nprocs == 1;
   double most = 0.0;
   Box displaced, now;
   for (int i = 0; i < atom->nlocal; ++i) {
@@ -318,10 +319,10 @@ double VerletMdanim::way_left() const
     const double of_box[] = {d.x, d.y, d.z};
     most = std::max(most, dot(d, d));
     displaced.include(of_box);
-    now.include(here[i]);
+    if (!alone) now.include(here[i]);
   }
   const double gone = std::sqrt(most);
-  if (comm->nprocs == 1) return std::min(limit - gone, limit_but_for_drift - std::min(gone, 0.5 * displaced.diagonal()));
+  if (alone) return std::min(limit - gone, limit_but_for_drift - std::min(gone, 0.5 * displaced.diagonal()));
   Box all[] = {displaced, now};
   MPI_Allreduce(MPI_IN_PLACE, all[0].bound, 12, MPI_DOUBLE, MPI_MIN, world);
   const double way = std::min(limit - gone, limit_but_for_drift - std::min(gone, 0.5 * all[0].diagonal()));

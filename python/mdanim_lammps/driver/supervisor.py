@@ -21,7 +21,7 @@ from ..errors import DivergedError
 from ..results.ledger import LOSS
 from ..results.timeline import Timeline
 from .energy import ledger_terms
-from .messages import NAP, SUPERVISOR, Ended, Failure, Grant, Job, Kept, Mail, Report, Share, Tag, scatter
+from .messages import LONG_NAP, NAP, SUPERVISOR, Ended, Failure, Grant, Job, Kept, Mail, Report, Share, Tag, scatter
 from .planner import Planner, planner_of
 from .planning import Settings
 from .prepare import Prepared
@@ -31,8 +31,6 @@ CREDIT = 2
 """Frames that executors may be ahead of what has been taken."""
 KEEP_SECONDS = 5.0
 """Wall time between frames for which executors send what a checkpoint needs."""
-LONGEST_NAP = 1e-3
-"""Seconds that the supervisor sleeps at most between two looks for messages; less while some come, and its executors wait for an answer."""
 PATIENCE = 5.0
 """Seconds that executors have to end after something has gone wrong."""
 
@@ -275,7 +273,7 @@ class _Desk(threading.Thread):
             if closing and not busy:
                 mail.forget_sent()
                 return
-            nap = NAP if busy else min(2.0 * nap, LONGEST_NAP)
+            nap = NAP if busy else min(2.0 * nap, LONG_NAP)
             if not busy:
                 time.sleep(nap)
 
