@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Plain C functions for ctypes: where objects have been in the steps of a run. All ranks call them together. No exception leaves them.
+// Plain C functions for ctypes: where objects have been in the steps of a run, and how fast they are. All ranks call them together. No
+// exception leaves them.
 
 #include "abi.h"
 #include "fix_mdanim_leapfrog.h"
 
+#include "atom.h"
 #include "lammps.h"
 #include "modify.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
@@ -58,4 +62,22 @@ MDANIM_EXPORT int mdanim_trace(void *handle, int objects, double *low, double *h
     snprintf(error, error_size, "%s", e.what());
   }
   return 1;
+}
+
+// Speed of the fastest particle of each object (molecule IDs 1 to `objects`) now; speed (objects). What is no number is passed over.
+// Returns 0, or 1 with a message in `error`.
+MDANIM_EXPORT int mdanim_top_speeds(void *handle, int objects, double *speed, char *error, int error_size)
+{
+  const auto lammps = static_cast<LAMMPS *>(handle);
+  const Atom &atom = *lammps->atom;
+  std::fill_n(speed, objects, 0.0);
+  for (int i = 0; i < atom.nlocal; ++i) {
+    const tagint object = atom.molecule[i];
+    if (object < 1 || object > objects) continue;
+    const double *v = atom.v[i];
+    speed[object - 1] = std::max(speed[object - 1], (v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, speed, objects, MPI_DOUBLE, MPI_MAX, lammps->world);
+  for (int m = 0; m < objects; ++m) speed[m] = std::sqrt(speed[m]);
+  return 0;
 }

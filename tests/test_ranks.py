@@ -16,6 +16,7 @@ from test_verlet_mdanim import BETWEEN, EFFECTS, LATER, MESHES, SHAPES, SOLID, f
 FILM = Path(__file__).parent / "mpi" / "film.py"
 RENUMBERED = Path(__file__).parent / "mpi" / "renumbered.py"
 FOLLOW = Path(__file__).parent / "mpi" / "follow.py"
+CUT = Path(__file__).parent / "mpi" / "cut.py"
 CYCLES = Path(__file__).parent / "mpi" / "cycles.py"
 NEARER = MEETING.replace("44) cm", "42.6) cm").replace("-4, 5) cm", "-4, 3.5) cm")
 SCENES = {"solids": NEARER.replace("drag 0.8", "drag 0.8\n  damping 0.05"), "liquid": SPLASH,
@@ -70,6 +71,19 @@ def test_passes_with_ghosts_give_the_bits_of_one_rank(tmp_path, name, ranks):
     assert np.array_equal(found["trace"], trace)
     # What dashpots take is estimated in steps in which particles change ranks, loss.h; the plain step on two ranks is off by 2 %.
     np.testing.assert_allclose(found["energies"], energies, rtol=3e-3 if "damped" in name else 1e-12, atol=1e-12)
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize(("size", "turned", "across"), [
+    ((22.5, 22.5, 22.5), "", False), ((22.5, 22.5, 22.5), "orientation axis (0, 0, 1) angle 90 deg", False), ((47.5, 10, 10), "", True)])
+def test_space_is_cut_along_rows_where_that_is_as_good(tmp_path, size, turned, across):
+    """Share a cube of 10 particles along each edge, as it is and turned, between two ranks, and a rod of 20 x 5 x 5: only that is cut across."""
+    path, row = tmp_path / "scene.txt", round(size[0] / 2.5) + 1
+    path.write_text(f"object a {{ shape box {size} cm position (0, 0, 0) m {turned} density 900 elasticity 1 MPa }}\n"
+                    "control { time 0.1 s  frames 100 fps  resolution 2.5 cm }")
+    rows, particles = np.array([line.split() for line in on_ranks(CUT, 2, path, row).splitlines()], int).T
+    assert particles[0] == particles[1]
+    assert (rows == (particles.sum() if across else particles) // row).all()
 
 
 @pytest.mark.mpi

@@ -64,6 +64,7 @@ def test_a_trace_is_the_box_of_all_steps(prepared):
                     instance.run(piece)
             assert instance.step == watched.step
             assert np.array_equal(instance.trace(), extremes(film, system))
+            np.testing.assert_allclose(instance.top_speeds(), system.top_speed(watched.array("v")), rtol=1e-15)
         ends = np.array(extremes([film[0], film[-1]], system))
         assert (ends != extremes(film, system)).any(), "ball and beam must turn back, otherwise their ends alone would do"
 

@@ -25,6 +25,10 @@ def seen(instance: Instance) -> dict[str, np.ndarray]:
         found |= {"liquid": state.liquid, "cells": instance.liquid_cells(), "smooth": smooth, "raw": raw}
     if "lambda" in plan.columns:
         found["lambda"] = instance.array("d_lambda").copy()
+    for name in "xvf":  # ranks have different particles, and all of them together all
+        assert np.array_equal(instance.here(name), found[name][instance.rows()])
+    assert instance.total(len(instance.here("x"))) == plan.system.particles
+    found["speed"] = instance.top_speeds()
     energies = [effect.energy(instance, plan.scene, plan.system) for effect in plan.effects]
     return found | {"step": np.array(instance.step), "energies": np.array(energies),
                     "depths": np.array([effect.penetration(instance, plan.system) for effect in plan.effects])}

@@ -93,6 +93,12 @@ object crumb {
 control { time 0.06 s  frames 100 fps  resolution 2.5 cm }
 """
 """One object that is nearly all of the work."""
+BOUNCE = """
+object left  { shape box (20, 20, 20) cm  position (-18, 0, 0) cm  density 900  elasticity 1 MPa  velocity (4, 0, 0.5) m/s }
+object right { shape box (20, 20, 20) cm  position (18, 3, 0) cm   density 900  elasticity 1 MPa  velocity (-4, 0, 0) m/s  damping 0.02 }
+control { time 0.12 s  frames 200 fps  resolution 4 cm }
+"""
+"""Two that meet, together are too much for one executor, and part again."""
 ALONE = HEAVY[:HEAVY.index("object crumb")] + HEAVY[HEAVY.index("control"):]
 """Fewer objects than executors."""
 RESTING = """

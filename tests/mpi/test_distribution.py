@@ -169,6 +169,17 @@ def test_a_team_runs_what_is_too_heavy_for_one(scene, text, control, more):
     assert sum(timelines[f"windows {control}{more}"].retries) > 0
 
 
+def test_a_team_ends_when_it_has_no_more_to_do(scene):
+    """Two objects meet and part: what each member of the team has of them goes to whoever runs them next, also when a window begins again."""
+    team = {"least": 50}
+    cases = matrix((2,), settings=team) | matrix((2,), ["central"], "windows ", settings=WINDOWS | team | {"safety": 0.3})
+    timelines = all_the_same(ways(scene(films.BOUNCE), cases), cases)
+    for timeline in timelines.values():
+        together = [frame for frame, _ in timeline.teams]
+        assert together and 1 < min(together) and max(together) < timeline.frames[-1] - 2
+    assert sum(timelines["windows central2"].retries) > 0
+
+
 def test_a_run_goes_on_with_other_executors(scene):
     """Stop in the middle of a collision; go on with more executors, with none, under the other control; stop again."""
     first, after = ({"executors": k, "control": control} for k, control in ((3, "central"), (2, "peers")))

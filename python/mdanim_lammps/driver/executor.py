@@ -60,7 +60,7 @@ class Executor:
         self.objects = len(self.system.names)
         self.frame = resume.frame if resume else 0
         self.step = resume.step if resume else 0
-        # Of all particles, right for those of its own objects.
+        # Of all particles, right for those of its own objects; what a team runs is shared out among its members.
         self.x = np.array(resume.x if resume else self.system.position)
         self.v = np.array(resume.v if resume else self.system.velocity)
         self.f = np.array(resume.f) if resume else np.zeros_like(self.x)
@@ -154,13 +154,14 @@ class Executor:
         end if they are to be what they were, for again they would do the same."""
         before, self.order = self.order, order
         with self._span("moving"):
-            if before is not None:
-                self._transfer(before.plan.owner, order.plan.owner)
             wanted = wanted_bundles(order.plan, self.objects, self.me)
             live = self._staying(wanted)
             for bundle in self.bundles:
                 if bundle not in live.values():
+                    bundle.unite(self.x, self.v, self.f)
                     self._close(bundle)
+            if before is not None:
+                self._transfer(before.plan.owner, order.plan.owner)
             self.bundles = [self._go_on(live[w.number], w, again) if w.number in live else self._begin(w) for w in wanted]
 
     def _staying(self, wanted: list[Wanted]) -> dict[int, Bundle]:
@@ -279,10 +280,7 @@ class Executor:
             instance, lost = bundle.instance, bundle.newly_lost()
             depth, liquid = penetration(instance), pool(instance)
             content = instance.liquid_state() if bundle.key.liquid else None  # together with the team, as all above
-            for mine, name in ((self.x, "x"), (self.v, "v"), (self.f, "f")):
-                now = instance.array(name)
-                for here, there in bundle.stretches:  # five times as fast as row by row
-                    mine[there] = now[here]
+            bundle.tell(x=self.x, v=self.v, f=self.f)
             if not self._leads(bundle):
                 continue
             self.deepest = max(self.deepest, depth)
@@ -306,8 +304,8 @@ class Executor:
 
     def _send(self, keep: bool) -> None:
         """The share of a frame."""
-        own = self.own
-        self.mail.send(SUPERVISOR, Tag.FRAME, Share(self.frame, own, *gathered(self._places(own), self.x, self.v), self.energies,
+        places = self._held()
+        self.mail.send(SUPERVISOR, Tag.FRAME, Share(self.frame, self.own, places, *gathered(places, self.x, self.v), self.energies,
                                                     self.deepest, self.pool, self.moves, self.retries, tuple(sorted(self.led))))
         self.moves, self.energies = 0, {}
         self.led.clear()
@@ -316,9 +314,13 @@ class Executor:
 
     def _keep(self) -> None:
         """What a checkpoint needs besides."""
-        own = self.own
+        places = self._held()
         has_pool = self.order.plan.owner[-1] == self.me and self.liquid is not None
-        self.mail.send(SUPERVISOR, Tag.KEPT, Kept(self.frame, own, *gathered(self._places(own), self.f), self.liquid if has_pool else None))
+        self.mail.send(SUPERVISOR, Tag.KEPT, Kept(self.frame, places, *gathered(places, self.f), self.liquid if has_pool else None))
+
+    def _held(self) -> list[slice]:
+        """Particles that it has told at the last frame, where they are among all."""
+        return [there for bundle in self.bundles for _, there in bundle.stretches]
 
     @contextmanager
     def _span(self, kind: str):

@@ -127,6 +127,9 @@ class Share:
 
     frame: int
     objects: np.ndarray
+    """Its own."""
+    places: list[slice]
+    """Particles that it tells of: those, but for what others of a team tell."""
     x: np.ndarray
     v: np.ndarray
     energies: dict[str, float]
@@ -145,7 +148,8 @@ class Kept:
     """What a checkpoint needs beside the `Share` of a frame."""
 
     frame: int
-    objects: np.ndarray
+    places: list[slice]
+    """As in `Share`."""
     f: np.ndarray
     liquid: np.ndarray | None
 

@@ -181,17 +181,16 @@ class Distributed:
             executor, message = self.desk.inbox.get(timeout=patience)
         except queue.Empty:
             return
-        system = self.ready.system
         if isinstance(message, Share):
             sheaf = self._sheaf(message.frame)
             sheaf.shares[executor] = message
-            scatter(system.stretches(message.objects), (sheaf.x, message.x), (sheaf.v, message.v))
+            scatter(message.places, (sheaf.x, message.x), (sheaf.v, message.v))
         elif isinstance(message, Kept):
             if message.frame <= self.taken and self.last:  # sent a second time, by an end after a frame that was kept anyway
                 return
             sheaf = self._sheaf(message.frame)
             sheaf.kept.add(executor)
-            scatter(system.stretches(message.objects), (sheaf.f, message.f))
+            scatter(message.places, (sheaf.f, message.f))
             sheaf.liquid = sheaf.liquid if message.liquid is None else message.liquid
         elif isinstance(message, Ended):
             self.gone.add(executor)

@@ -31,7 +31,7 @@ class Gravity(Effect):
         return load.steps * load.mobile * PULL * rate["leap-frog"]
 
     def energy(self, instance, scene, system):
-        return self.potential(scene, system.mass, instance.array("x"))
+        return instance.total(self.potential(scene, system.mass[instance.rows()], instance.here("x")))
 
     def potential(self, scene, mass, x):
         # No matrix product: the threads that it may start cost more than it. Axis by axis einsum is four times as fast.

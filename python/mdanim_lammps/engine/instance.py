@@ -19,6 +19,8 @@ LIQUID = b"liquid"
 """ID of the liquid's fix (effects/liquid.py)."""
 MANY = 20_000
 """Particles from which on what making them has left free in the heap goes back to the system: 100 to 400 bytes each, in 10 ns each."""
+ROWS_SHORTER = 0.1
+"""Part of their length by which objects count as shorter along the rows of their lattices when space is cut for ranks."""
 SMALL = 8000
 """Particles up to which an instance is worth being filled anew: with more, putting them in takes longer than all the rest."""
 TYPES = 256
@@ -70,6 +72,8 @@ class Instance:
         """Arrays of LAMMPS, and where they were."""
         self._gathered: dict[str, np.ndarray] = {}
         """Arrays of all ranks in tag order, and ``where`` each tag comes, rank by rank, until something changes them."""
+        self._tags = self._ascending = self._rows = np.zeros(0, np.int32)
+        """Those of this rank's particles, as they were when it was looked last; their places by ascending tags; and `rows`."""
         for function in (self._library.mdanim_bond_lost, self._library.mdanim_bond_seconds):
             function.restype, function.argtypes = ctypes.c_double, [ctypes.c_void_p]
         try:
@@ -112,7 +116,8 @@ class Instance:
         ])
         self._populate(ends)
         if self._comm:
-            lmp.commands_list(BALANCE)
+            self._cut_space(plan.system.position)
+            lmp.command(BALANCE[1])
         # The springs' energy is all that is asked for; while there is a compute of the pressure, their virial is worked out with it.
         lmp.commands_list([f"thermo {max(1, plan.certificate.steps_per_frame)}",
                            f"thermo_style custom step{' ebond' if len(plan.bonds) else ''}", "thermo_modify norm no", "uncompute thermo_press"])
@@ -159,6 +164,8 @@ class Instance:
         n = system.particles
         names = list(plan.columns)
         properties = np.array([plan.columns[c] for c in names], dtype=np.float64).reshape(len(names), n)
+        if self._comm:
+            position = _shorter_along_rows(position)
         tag = np.arange(1, n + 1, dtype=np.int32)
         molecule = (system.object + 1).astype(np.int32)
         arrays = [np.ascontiguousarray(a, t) for a, t in (
@@ -173,6 +180,11 @@ class Instance:
         for name, table in plan.tables.items():
             self._call(f"set i2_{name}", self._library.mdanim_set_table, name.encode(), ctypes.c_int(table.shape[1]),
                        ctypes.c_int(n), _pointer(tag), _pointer(np.ascontiguousarray(table, np.int32)))
+
+    def _cut_space(self, position: np.ndarray) -> None:
+        """Give every rank its share of the particles, and all of them their places."""
+        self._command(BALANCE[0])
+        self._write("x", position)
 
     def _call(self, what: str, function, *arguments) -> None:
         """Call one of our C functions that give a message; raise it as SetupError."""
@@ -218,6 +230,28 @@ class Instance:
         width = 1 if name.startswith("d_") else 3
         return self._gather(name, width) if self._comm else self._view(name, width)
 
+    def rows(self) -> np.ndarray | slice:
+        """Which rows of `array` are those of the particles that this rank has, ascending: the same object until that changes; all of them
+        on one process."""
+        if not self._comm:
+            return slice(None)
+        tags = self._local("id", 1)
+        if not np.array_equal(tags, self._tags):
+            self._tags, self._ascending = tags.copy(), np.argsort(tags)
+            self._rows = self._tags[self._ascending] - 1
+        return self._rows
+
+    def here(self, name: str) -> np.ndarray:
+        """The `rows` of ``x``, ``v`` or ``f``, shape (n, 3), without asking other ranks; valid until the next command."""
+        if not self._comm:
+            return self.array(name)
+        self.rows()
+        return self._local(name).take(self._ascending, axis=0)
+
+    def total(self, part: float) -> float:
+        """The sum over ranks of what each has of something."""
+        return sum(self._comm.allgather(part)) if self._comm else part
+
     def _view(self, name: str, width: int) -> np.ndarray:
         where = self._extract_atom(self._handle, name.encode())
         if where and width == 3:  # rows, of which the first tells where all are
@@ -253,7 +287,7 @@ class Instance:
             for command in physics(self.plan):
                 if command.startswith("group "):  # the new particles are in none yet
                     self._command(command)
-            self._command(BALANCE[0])
+            self._cut_space(state.x)
         else:
             self.array("x")[:] = state.x
         self._write("v", state.v)
@@ -320,6 +354,12 @@ class Instance:
         self._call("tell the trace", self._library.mdanim_trace, ctypes.c_int(len(low)), _pointer(low), _pointer(high))
         return low, high
 
+    def top_speeds(self) -> np.ndarray:
+        """Speed of the fastest particle of each object [m/s], shape (M,). Speeds that are no numbers are passed over."""
+        speed = np.empty(len(self.plan.system.names))
+        self._call("tell speeds", self._library.mdanim_top_speeds, ctypes.c_int(len(speed)), _pointer(speed))
+        return speed
+
     def liquid_heights(self) -> tuple[np.ndarray, np.ndarray]:
         """Height of every column of cells [m], shape (ny, nx): the surface that solids feel, and the topmost liquid.
 
@@ -379,13 +419,22 @@ class Instance:
 
     def damping_loss(self) -> float:
         """Energy that dashpots have taken so far [J]."""
-        here = float(self._library.mdanim_bond_lost(self._handle))
-        return sum(self._comm.allgather(here)) if self._comm else here
+        return self.total(float(self._library.mdanim_bond_lost(self._handle)))
 
 
 def _fixed(plan: Plan) -> list[str]:
     """What LAMMPS is told once, before there are particles."""
     return [command for command in prelude(plan) if not command.startswith("comm_modify")]
+
+
+def _shorter_along_rows(position: np.ndarray) -> np.ndarray:
+    """Places in which space is cut for ranks [m], shape (N, 3): all of it is shorter along the rows of lattices, where tags follow each other.
+
+    A cut across rows leaves a ghost and hence an idle lane in each of them, so that a direction which is about as good is better.
+    """
+    along = np.median(np.abs(np.diff(position, axis=0)), axis=0) if len(position) > 1 else np.zeros(3)
+    middle = 0.5 * (position.min(0) + position.max(0))
+    return middle + (1.0 - ROWS_SHORTER * along / max(np.linalg.norm(along), np.finfo(float).tiny)) * (position - middle)
 
 
 def _pointer(array: np.ndarray) -> ctypes.c_void_p:
