@@ -76,6 +76,7 @@ unsigned Catalogue::find_or_add(const double *row)
 std::vector<int> Blocks::lengths(const HalfBonds &bonds, const int *object) const
 {
   const SpringRows &rows = *bonds.rows;
+  const int particles = rows.size();
   std::vector<int> best(particles + 1);
   int farthest = 0;
   for (int i = 0; i < particles; ++i)
@@ -103,31 +104,38 @@ std::vector<int> Blocks::lengths(const HalfBonds &bonds, const int *object) cons
   return best;
 }
 
-bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
+void Blocks::start(const Width &width)
 {
-  const SpringRows &rows = *bonds.rows;
-  particles = rows.size();
   lanes = width.lanes;
-  all.clear();
-  entries.clear();
-  const std::vector<int> length = lengths(bonds, object);
-  for (int end = particles; end > 0; end -= length[end])
-    all.push_back({end - length[end], static_cast<short>(length[end]), false, false, 0, -1, 0, object[end - 1] - 1});
-  std::reverse(all.begin(), all.end());
-
-  home.resize(particles);
-  for (std::size_t n = 0; n < all.size(); ++n) std::fill_n(&home[all[n].start], all[n].lanes, static_cast<int>(n));
-  for (int i = 0; i < particles; ++i)
-    for (const SpringRows::Link &link : rows[i])
-      if (bonds.law[link.type].c > 0.0) all[home[i]].damped = all[home[i + link.offset]].damped = true;
-
   laws.start(2 * lanes);
   damped_laws.start(3 * lanes);
+  usual_laws = 0;
+  forget();
+}
+
+Cut Blocks::cut(const HalfBonds &bonds, const int *object)
+{
+  const SpringRows &rows = *bonds.rows;
+  Cut cut;
+  cut.particles = rows.size();
+  cut.springs = rows.total();
+  const std::vector<int> length = lengths(bonds, object);
+  for (int end = cut.particles; end > 0; end -= length[end])
+    cut.block.push_back({end - length[end], static_cast<short>(length[end]), false, false, 0, -1, 0, object[end - 1] - 1});
+  std::reverse(cut.block.begin(), cut.block.end());
+
+  std::vector<bool> damped(cut.particles);
+  for (int i = 0; i < cut.particles; ++i)
+    for (const SpringRows::Link &link : rows[i])
+      if (bonds.law[link.type].c > 0.0) damped[i] = damped[i + link.offset] = true;
+
   std::vector<SpringRows::Links> left(lanes);    // springs of each lane
   std::vector<double> law(3 * lanes);
-  int farthest = 0;
-  for (Block &block : all) {
-    for (int lane = 0; lane < block.lanes; ++lane) left[lane] = rows[block.start + lane];
+  for (Block &block : cut.block) {
+    for (int lane = 0; lane < block.lanes; ++lane) {
+      left[lane] = rows[block.start + lane];
+      block.damped = block.damped || damped[block.start + lane];
+    }
     for (;;) {
       int offset = 0;    // the longest that is left
       for (int lane = 0; lane < block.lanes; ++lane)
@@ -135,20 +143,44 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
       if (offset == 0) break;
       std::fill(law.begin(), law.end(), 0.0);
       for (int lane = 0; lane < block.lanes; ++lane) {
-        for (auto &[link, last] = left[lane]; link != last && link->offset == offset; ++link) {
-          const Law &own = bonds.law[link->type];
-          law[lane] = own.push;
-          law[lanes + lane] = own.pull;
-          if (block.damped) law[2 * lanes + lane] = own.c;
-        }
+        auto &[link, last] = left[lane];
+        if (link == last || link->offset != offset) continue;
+        const Law &own = bonds.law[link++->type];    // a second spring between the same two is another entry
+        law[lane] = own.push;
+        law[lanes + lane] = own.pull;
+        if (block.damped) law[2 * lanes + lane] = own.c;
       }
-      entries.push_back({offset, (block.damped ? damped_laws : laws).find_or_add(law.data())});
-      farthest = std::max(farthest, offset);
+      cut.entry.push_back({offset, (block.damped ? damped_laws : laws).find_or_add(law.data())});
+      cut.farthest = std::max(cut.farthest, offset);
     }
-    block.end = static_cast<unsigned>(entries.size());
+    block.end = static_cast<unsigned>(cut.entry.size());
   }
+  return cut;
+}
 
-  if (entries.empty() || rows.total() < WORTH_IT * entries.size() * lanes) {
+bool Blocks::put_together(const std::vector<const Cut *> &cuts)
+{
+  all.clear();
+  entries.clear();
+  home.clear();
+  particles = 0;
+  std::size_t springs = 0;
+  int farthest = 0;
+  for (const Cut *cut : cuts) {
+    const unsigned first = static_cast<unsigned>(entries.size());
+    for (Block block : cut->block) {
+      block.start += particles;
+      block.end += first;
+      home.insert(home.end(), block.lanes, static_cast<int>(all.size()));
+      all.push_back(block);
+    }
+    entries.insert(entries.end(), cut->entry.begin(), cut->entry.end());
+    particles += cut->particles;
+    springs += cut->springs;
+    farthest = std::max(farthest, cut->farthest);
+  }
+  if (!usual_laws) usual_laws = laws.size() + damped_laws.size();
+  if (entries.empty() || springs < WORTH_IT * entries.size() * lanes) {
     forget();
     return false;
   }
@@ -163,6 +195,12 @@ bool Blocks::cut(const HalfBonds &bonds, const int *object, const Width &width)
   index.clear();
   ghosts.clear();
   return true;
+}
+
+bool Blocks::laws_pile_up() const
+{
+  constexpr unsigned MANY = 4;    // times as many as usual
+  return laws.size() + damped_laws.size() > MANY * (usual_laws + 64);
 }
 
 void Blocks::lie_at(const std::vector<int> &places, int own)

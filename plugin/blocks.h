@@ -36,6 +36,7 @@ class Catalogue {
   void start(int width);
   unsigned find_or_add(const double *row);
   bool empty() const { return count == 0; }
+  unsigned size() const { return count; }
   const double *data() const { return rows.data(); }
   std::size_t bytes() const { return rows.bytes() + count * 32; }
 
@@ -52,12 +53,26 @@ struct Mover {
   double mass, kick, dt, phi;    // see Motion
 };
 
+// Blocks of some particles that no spring leads out of; starts count from the first of them, ends from the first entry.
+struct Cut {
+  std::vector<Block> block;
+  std::vector<Entry> entry;
+  int particles = 0, farthest = 0;    // the longest offset
+  std::size_t springs = 0;
+
+  std::size_t bytes() const { return block.capacity() * sizeof(Block) + entry.capacity() * sizeof(Entry); }
+};
+
 class Blocks {
  public:
-  // Cut the particles into blocks so that the fewest vectors of forces are to be computed. A block is of one object. Returns whether
-  // that is worth it: the springs of neighbours in the arrays must mostly lead equally far, as they do in lattices that are numbered
-  // row by row.
-  bool cut(const HalfBonds &bonds, const int *object, const Width &width);
+  // Forget all cuts: from now on they are for this width.
+  void start(const Width &width);
+  // Cut particles into blocks so that the fewest vectors of forces are to be computed. A block is of one object.
+  Cut cut(const HalfBonds &bonds, const int *object);
+  // Blocks of all cuts, one after the other. Returns whether that is worth it: the springs of neighbours in the arrays must mostly lead
+  // equally far, as they do in lattices that are numbered row by row.
+  bool put_together(const std::vector<const Cut *> &cuts);
+  bool laws_pile_up() const;    // so many are those of cuts that are gone that all cuts had better be made anew
   void forget() { all.clear(); }
   // Where particles are in the arrays of LAMMPS, if not in the same order: those from `own` on are ghosts, which others move.
   // After this everybody else's numbers are LAMMPS's: those of mover(), expect(), hold_back(), held_back().
@@ -127,6 +142,7 @@ class Blocks {
   std::vector<double> total;           // see Pass, in our order
   int owned = 0;                       // in LAMMPS's arrays, ghosts come after them
   Catalogue laws, damped_laws, motions;
+  unsigned usual_laws = 0;    // how many there were when cuts were put together first after start()
   Doubles memory;    // of the arrays
   double *x[3], *v[3], *f[3];
   double *part[3] = {}, *last[3] = {}, *seen[3] = {};    // where damped

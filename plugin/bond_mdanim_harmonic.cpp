@@ -161,6 +161,16 @@ void BondMdanimHarmonic::adopt(SpringRows &&now, bool halves)
   received.set_up(farthest);
 }
 
+void BondMdanimHarmonic::lost_partner(int i, int partner) const
+{
+  error->one(
+      FLERR,
+      "bond_style mdanim/harmonic: particle {} has lost its bond partner {} at step {}; if the "
+      "bodies move as they should, raise the ghost cutoff ('comm_modify cutoff'); if they fly apart, "
+      "lower the time step",
+      atom->tag[i], partner, update->ntimestep);
+}
+
 // The bonds of particle i in the order in which their forces are summed: lower partners from the lowest tag up, which may be left
 // out, then upper ones from the highest down.
 void BondMdanimHarmonic::look_up(int i, bool halves, Row &row) const
@@ -176,13 +186,7 @@ void BondMdanimHarmonic::look_up(int i, bool halves, Row &row) const
     const int type = atom->bond_type[i][b];
     if (type <= 0 || (halves && other < own)) continue;    // 0 and less: switched off by delete_bonds
     int partner = atom->map(other);
-    if (partner < 0)
-      error->one(
-          FLERR,
-          "bond_style mdanim/harmonic: particle {} has lost its bond partner {} at step {}; if the "
-          "bodies move as they should, raise the ghost cutoff ('comm_modify cutoff'); if they fly apart, "
-          "lower the time step",
-          own, other, update->ntimestep);
+    if (partner < 0) lost_partner(i, other);
     if (periodic) partner = domain->closest_image(i, partner);
     link.push_back({partner - i, type});
     ascending = ascending && other > before;
@@ -223,13 +227,6 @@ bool BondMdanimHarmonic::halves(HalfBonds &half) const
 {
   if (!upper_only || rows.size() != atom->nlocal) return false;
   half = {&rows, law.data()};
-  return true;
-}
-
-bool BondMdanimHarmonic::rows_of_all(BondRows &all) const
-{
-  if (rows.size() != atom->nlocal) return false;
-  all = {&rows, &law};
   return true;
 }
 
@@ -359,14 +356,16 @@ void BondMdanimHarmonic::compute(int eflag, int vflag)
 {
   const Lap lap(seconds);
   ev_init(eflag, vflag);
-  const bool remade = neighbor->ago == 0 && source_changed();
+  const bool other_lists = neighbor->ago == 0 || made_after != neighbor->ncalls;    // made in this step, or between two passes
+  made_after = neighbor->ncalls;
+  const bool remade = other_lists && source_changed();
   if (remade) make_rows();
   if (remade || coefficients_may_differ) look_up_coefficients();
 
   const int nlocal = atom->nlocal;
   std::vector<Vec3> *on = nullptr;
   if (damped) {
-    if (neighbor->ago == 0) loss.look(atom->tag, nlocal);
+    if (other_lists) loss.look(atom->tag, nlocal);
     on = &loss.forces(nlocal);
   }
   for (int begin = 0, end; begin < nlocal; begin = end) {

@@ -7,7 +7,6 @@
 
 #include "blocks.h"
 #include "bond.h"
-#include "lineup.h"
 #include "loss.h"
 #include "spring.h"
 #include "vec3.h"
@@ -39,8 +38,8 @@ class BondMdanimHarmonic : public Bond {
   // For run_style verlet/mdanim, which computes most forces itself: the springs, each once. False where that is not how they are
   // summed.
   bool halves(mdanim::HalfBonds &half) const;
-  // The same as rows at both ends where some are of other ranks.
-  bool rows_of_all(mdanim::BondRows &all) const;
+  const std::vector<mdanim::Law> &laws() const { return law; }    // by bond type
+  [[noreturn]] void lost_partner(int i, int partner) const;    // the error that particle i does not find this one, a tag
   mdanim::Loss *account() { return damped ? &loss : nullptr; }    // of dashpots, all ranks or none
   bigint version() const { return made; }    // another number for other springs
   void took(double more) { seconds += more; }
@@ -94,6 +93,7 @@ class BondMdanimHarmonic : public Bond {
   bool upper_only = false;    // only partners of a higher tag, see sum_halves()
   bool given = false;         // by take(), not by the particles
   bigint made = 0;    // version
+  bigint made_after = -1;    // build of lists
   Source source;
   Stretch stretch;
   Ring received;

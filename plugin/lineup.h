@@ -7,34 +7,57 @@
 
 #include "blocks.h"
 
+#include <functional>
+#include <unordered_map>
 #include <vector>
 
 namespace mdanim {
 
-// Springs of the particles of a rank, by index in LAMMPS's arrays, to lower and upper partners; and the law of each type.
-struct BondRows {
-  const SpringRows *rows;
-  const std::vector<Law> *law;
+// What a rank knows, by index in LAMMPS's arrays, its own particles first; bonds are at both ends.
+struct Bonded {
+  int own;
+  const int *tag, *object;
+  const int *bonds;                   // how many each own particle has
+  const int *const *type;             // 0 and less: switched off
+  const int *const *partner;          // tags
+  std::function<int(int tag)> find;           // index of a partner, negative where it is not known;
+  std::function<void(int i, int tag)> lost;   // that is an error
 };
 
 class Lineup {
  public:
-  Lineup() = default;
-  // `tag` of all particles that the rank knows, its own `nlocal` ones first.
-  Lineup(int nlocal, int nall, const int *tag, const BondRows &bonds);
+  // Particles that stand side by side: those of one object, and all partners of its own ones. Objects whose own particles are the
+  // same as before keep theirs, with the cut.
+  struct Piece {
+    std::vector<int> own;       // tags of this rank's, ascending
+    std::vector<int> tag;       // of all, ascending
+    std::vector<int> object;    // of all
+    SpringRows rows;            // to partners of a higher tag, of springs with an end that is this rank's
+    Cut cut;
+    bool is_cut = false;
+  };
 
+  void take(const Bonded &known);
+  void forget() { *this = Lineup(); }
+
+  std::vector<Piece> &pieces() { return all; }
+  bool changed() const { return differs; }    // by the last take(): pieces, or their order
   int size() const { return static_cast<int>(index.size()); }
   const std::vector<int> &places() const { return index; }    // in LAMMPS's arrays, of every particle of the line
-  HalfBonds halves() const;
-  // Whether the same particles have the same springs, wherever LAMMPS has them.
-  bool same_springs(const Lineup &other) const;
   std::size_t bytes() const;
 
  private:
+  struct Run {
+    int begin, end, object;    // of own particles in tag order
+  };
+  bool take_by_objects(const Bonded &known, const std::vector<Run> &runs);
+  Piece made(const Bonded &known, const Run &run) const;
+  static void tell_who_lost(const Bonded &known, int partner);
+
+  std::vector<int> ordered;    // own particles in tag order, by index in LAMMPS's arrays
+  std::vector<Piece> all;
   std::vector<int> index;
-  std::vector<int> name;    // tag, with its sign changed where the particle is another rank's
-  SpringRows rows;
-  std::vector<Law> law;
+  bool differs = true;
 };
 
 }    // namespace mdanim

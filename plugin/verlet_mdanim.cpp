@@ -74,6 +74,7 @@ double VerletMdanim::memory_usage()
 void VerletMdanim::setup(int flag)
 {
   decided_for = -1;
+  line.forget();    // particles may have other springs now
   spare_bond_list();
   Verlet::setup(flag);
 }
@@ -81,6 +82,7 @@ void VerletMdanim::setup(int flag)
 void VerletMdanim::setup_minimal(int flag)
 {
   decided_for = -1;
+  line.forget();
   spare_bond_list();
   Verlet::setup_minimal(flag);
 }
@@ -155,7 +157,9 @@ bool VerletMdanim::cut()
   if (cut_for != bond->version() || other_objects) {
     object.assign(atom->nlocal, 1);
     if (atom->molecule_flag) std::copy_n(atom->molecule, atom->nlocal, object.begin());
-    worth_it = blocks.cut(half, object.data(), *width);
+    blocks.start(*width);
+    const Cut whole = blocks.cut(half, object.data());
+    worth_it = blocks.put_together({&whole});
     cut_for = bond->version();
     made_for = -1;
   }
@@ -179,19 +183,27 @@ bool VerletMdanim::cut_line(std::vector<Home> &home)
 {
   std::vector<FixMdanimLeapfrog::Known> known;
   leapfrog->survey_ghosts(sent, known);
-  BondRows rows;
-  if (!bond->rows_of_all(rows)) return false;
-  Lineup now(atom->nlocal, atom->nlocal + atom->nghost, atom->tag, rows);
-  std::vector<int> of_line;
-  for (const int i : now.places()) {
-    of_line.push_back(known[i].object);
+  object.clear();
+  for (const auto &one : known) object.push_back(one.object);
+  line.take({atom->nlocal, atom->tag, object.data(), atom->num_bond, atom->bond_type, atom->bond_atom,
+             [this](int partner) { return atom->map(partner); }, [this](int i, int partner) { bond->lost_partner(i, partner); }});
+  for (const int i : line.places())
     if (i >= atom->nlocal) home.push_back(known[i].home);
+  if (cut_for < 0 || laws != bond->laws() || blocks.laws_pile_up()) {
+    blocks.start(*width);
+    for (Lineup::Piece &piece : line.pieces()) piece.is_cut = false;
+    laws = bond->laws();
+    cut_for = 0;
   }
-  const bool same = cut_for >= 0 && object == of_line && now.same_springs(line);
-  line = std::move(now);
-  object = std::move(of_line);
-  cut_for = 0;
-  if (!same) blocks.cut(line.halves(), object.data(), *width);
+  if (line.changed() || !blocks.ready()) {
+    std::vector<const Cut *> cuts;
+    for (Lineup::Piece &piece : line.pieces()) {
+      if (!piece.is_cut) piece.cut = blocks.cut({&piece.rows, bond->laws().data()}, piece.object.data());
+      piece.is_cut = true;
+      cuts.push_back(&piece.cut);
+    }
+    blocks.put_together(cuts);
+  }
   if (!blocks.ready()) return false;
   blocks.lie_at(line.places(), atom->nlocal);
   return true;
@@ -364,8 +376,7 @@ bool VerletMdanim::lists_last(double more)
   return left > 0.0;
 }
 
-// Between two passes: sees how far particles really are, and a rank that is alone makes lists anew if need be. False where the blocks
-// do not stand any more.
+// Between two passes: sees how far particles really are, and makes lists anew if need be. False where the blocks do not stand any more.
 bool VerletMdanim::look_again()
 {
   timer->stamp(Timer::BOND);
@@ -374,11 +385,18 @@ bool VerletMdanim::look_again()
   if (comm->nprocs > 1 ? lists_last(0.0) : left > SOON * std::min(limit, limit_but_for_drift)) return true;
   blocks.give_out(nullptr, atom->v);
   give_out_account();
-  if (comm->nprocs > 1 || !rebuild_lists()) return false;
+  if (comm->nprocs > 1) {
+    if (bond->account()) return false;    // what dashpots did last is not handed on with particles
+    rebuild_lists();
+    if (!cut()) return false;
+  } else {
+    if (!rebuild_lists()) return false;
+    if (late.empty()) made_for = neighbor->ncalls;    // nobody has changed how particles move
+  }
   tell_limits();
-  left = std::min(limit, limit_but_for_drift);
-  if (late.empty()) made_for = neighbor->ncalls;    // nobody has changed how particles move
-  if (modify->n_pre_exchange || modify->n_pre_neighbor) blocks.take_in(atom->x, atom->v);    // nor, mostly, where they are
+  left = comm->nprocs > 1 ? way_left() : std::min(limit, limit_but_for_drift);
+  // Mostly a rank that is alone has them where they were.
+  if (comm->nprocs > 1 || modify->n_pre_exchange || modify->n_pre_neighbor) blocks.take_in(atom->x, atom->v);
   prepare_passes();
   return true;
 }

@@ -58,7 +58,8 @@ class VerletMdanim : public Verlet {
   bigint cut_for = -1;          // version of the springs
   std::vector<int> object;      // and molecule of each particle
   bool worth_it = false;
-  mdanim::Lineup line;            // with other ranks: what is cut
+  mdanim::Lineup line;            // with other ranks: what is cut,
+  std::vector<mdanim::Law> laws;  // for these
   mdanim::Ghosts ghosts;          // and whom they tell of it
   int guests_look = 0;            // whether guests of any rank are concerned with particles
   std::vector<int> sent;          // own particles that other ranks have as ghosts
