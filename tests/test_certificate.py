@@ -205,8 +205,9 @@ def test_a_round_body_of_many_cells_folds_up_sooner(prepared, tmp_path, shape, h
     with pytest.raises(DivergedError, match="inside out") as stopped:
         simulate(ready, tmp_path)
     assert found.text in str(stopped.value)
-    enough, coarser = re.search(r"write elasticity (\S+) kPa or more, resolution (\S+) mm", found.hint).groups()
-    for cure in ({"young": float(enough), "h": h}, {"young": young, "h": float(coarser) / 10}):
+    enough, kilo, coarser, size = re.search(r"write elasticity (\S+) (\wPa) or more, resolution (\S+) (.m) or more", found.hint).groups()
+    young_told = float(enough) * {"kPa": 1.0, "MPa": 1e3}[kilo]
+    for cure in ({"young": young_told, "h": h}, {"young": young, "h": float(coarser) * {"cm": 1.0, "mm": 0.1}[size]}):
         cured = prepared(BALL.format(shape=shape, extra=extra, **cure))
         assert margin(cured.certificate, "amplitude").used < 1.2  # lattices fit a spacing only so well
         simulate(cured, tmp_path)

@@ -141,7 +141,7 @@ def test_a_large_scene_is_told_before_modelling(prepared, monkeypatch, capsys):
     with pytest.raises(pytest.fail.Exception):
         cli._prepare_record(ready.scene, allow_unstable=False)
     line = capsys.readouterr().err
-    assert line.startswith("size     about 2.7e-05 million particles, spacing 5 cm set by resolution: ") and "of modelling" in line
+    assert line.startswith("size     about 2.7e-5 million particles, spacing 5 cm set by resolution: ") and "of modelling" in line
 
 
 def test_a_movie_tells_the_time_left():

@@ -25,6 +25,7 @@ from .model.basin import liquid_level
 from .model.shapes import thickness
 from .model.system import System
 from .scene.scene import Accuracy, Ellipsoid, Scene, Shape, Sphere
+from .scene.wording import at_least, number, say
 
 WARN = 0.7
 """Time step over the bound above which large motion may blow up: the bound is that of small motion (docs/physics-solids.md)."""
@@ -132,8 +133,8 @@ class Certificate:
 
     def __str__(self) -> str:
         if not math.isfinite(self.bound):
-            return f"dt {self.timestep:.3g} s   nothing in the scene vibrates: every step is stable"
-        return (f"dt {self.timestep:.3g} s = {self.fraction:.2f} of the bound {self.bound:.3g} s   "
+            return f"dt {say(self.timestep, 's')}   nothing in the scene vibrates: every step is stable"
+        return (f"dt {say(self.timestep, 's')} = {self.fraction:.2f} of the bound {say(self.bound, 's')}   "
                 f"set by: {self.object}, {self.cause}")
 
 
@@ -162,8 +163,8 @@ def certify(scene: Scene, system: System, verdicts: dict[str, Verdict], *, allow
     if asked is not None and asked > bound * (1.0 + 1e-12) and not allow_unstable:
         problem = Problem(
             scene.control.spans.get("timestep"),
-            f"timestep {asked:.4g} s is above the certified bound {bound:.4g} s, set by {name} ({cause})",
-            f"write 'timestep auto' ({fraction * bound:.3g} s), or insist with --allow-unstable",
+            f"timestep {say(asked, 's', 4)} is above the certified bound {say(bound, 's', 4)}, set by {name} ({cause})",
+            f"write 'timestep auto' ({say(fraction * bound, 's')}), or insist with --allow-unstable",
         )
         raise RefusedError(str(problem))
     longest = min([fraction * bound, *(e.pace(scene, system) for e in on.values())]) if asked is None else asked
@@ -209,9 +210,9 @@ def fit_steps(scene: Scene, longest: float) -> tuple[int, int, int]:
         whole = max(1, round(control.time * control.frames))
         raise SceneError([Problem(
             control.spans.get("time"),
-            f"time {control.time:g} s is {control.time * control.frames:.6g} frames at {control.frames:g} fps: "
+            f"time {number(control.time, 6)} s is {number(control.time * control.frames, 6)} frames at {number(control.frames, 6)} fps: "
             "no time step fits both",
-            f"try 'time {whole / control.frames:.6g} s' ({whole} frames)",
+            f"try 'time {number(whole / control.frames, 6)} s' ({whole} frames)",
         )])
     q = ratio.denominator
     per_frame = q * math.ceil(least / q)
@@ -242,16 +243,12 @@ def margin_lines(certificate: Certificate) -> list[str]:
     for m in certificate.margins:
         if m.severity != "ok":
             place = f"  [{m.span}]" if m.span else ""
-            lines.append(f"  {m.severity:<8} {m.name:<14} {_number(m.value)} {'<' if m.least else '>'} {_number(m.limit)} {m.unit}".rstrip()
+            lines.append(f"  {m.severity:<8} {m.name:<14} {say(m.value, m.unit)} {'<' if m.least else '>'} {say(m.limit, m.unit)}"
                          + f"  {m.object}{place}")
         elif m.used >= kept.get(m.name, m).used:
             kept[m.name] = m
     lines.append("  kept     " + (", ".join(f"{m.name} {100 * m.used:.0f} %" for m in kept.values()) or "no limit"))
     return lines
-
-
-def _number(value: float) -> str:
-    return f"{value:.3g}"
 
 
 def wave_speed(system: System) -> np.ndarray:
@@ -300,7 +297,7 @@ class _Margins:
             severity = "refused" if used > 1.0 + 1e-12 else "warning" if used > WARN * (1.0 + 1e-9) else "ok"
             margins.append(Margin(
                 "time step", system.names[m], self.dt, float(own[m]), "s",
-                f"the time step {self.dt:.3g} s is {used:.2f} of what {system.names[m]} bears, {own[m]:.3g} s; above {WARN:g} large motion "
+                f"the time step {say(self.dt, 's')} is {used:.2f} of what {system.names[m]} bears, {say(own[m], 's')}; above {WARN:g} large motion "
                 "may blow up, above 1 any",
                 self.scene.control.spans.get("timestep") or self._of(m, "elasticity"), severity, hint="write 'timestep auto'"))
         return margins
@@ -317,7 +314,7 @@ class _Margins:
             alone = 2.0 / math.sqrt(free[i])
             margins.append(Margin(
                 name, self.system.names[m], self.dt, alone, "s",
-                f"{name} alone would bear a time step of {alone:.3g} s at {self.system.names[m]}", self._of(m, "elasticity"),
+                f"{name} alone would bear a time step of {say(alone, 's')} at {self.system.names[m]}", self._of(m, "elasticity"),
                 "refused" if self.dt > alone * (1.0 + 1e-12) else "ok", hint="write 'timestep auto'"))
         return margins
 
@@ -334,7 +331,7 @@ class _Margins:
         kinds = " and ".join(name.replace("-", " ") for name in frictions)
         return [Margin(
             "drag", system.names[m], float(phi[i]), STRONG, "",
-            f"{kinds} is {'strong' if strong else 'weak'} for this time step (phi = {phi[i]:.2g} {'>' if strong else '<='} {STRONG}, "
+            f"{kinds} is {'strong' if strong else 'weak'} for this time step (phi = {number(phi[i], 2)} {'>' if strong else '<='} {STRONG}, "
             "eq. (3.13))",
             self.on[list(frictions)[-1]].called_for(self.scene).span, "warning" if strong else "ok",
             hint="the exponential form is used instead of the paper's implicit one: same terminal speed, no overshoot")]
@@ -386,15 +383,15 @@ class _Margins:
         enough = system.young[m] * (ratio[m] / limit[m]) ** 2
         what, coarser = "a soft object folds up", ""
         if spot[m] < FOLDS:
-            what = f"one of {self.cells[m]:.2g} cells across folds up at the spot where it lands"
+            what = f"one of {number(self.cells[m], 2)} cells across folds up at the spot where it lands"
             if ratio[m] < FOLDS:
-                coarser = f", resolution {1e3 * np.cbrt(system.cell_volume[m]) * 1.1 * ratio[m] / limit[m]:.2g} mm or more"
+                coarser = f", resolution {say(at_least(np.cbrt(system.cell_volume[m]) * 1.1 * ratio[m] / limit[m]), 'm')} or more"
         return Margin(
             "amplitude", system.names[m], float(ratio[m]), float(limit[m]), "",
-            f"{system.names[m]}{f' and {others} more' if others > 0 else ''} may hit at {self.speed[m]:.2g} m/s, {ratio[m]:.2f} of the wave "
-            f"speed {self.wave[m]:.2g} m/s; above about {limit[m]:.2g} {what} and stays crumpled",
+            f"{system.names[m]}{f' and {others} more' if others > 0 else ''} may hit at {say(self.speed[m], 'm/s', 2)}, {ratio[m]:.2f} of the wave "
+            f"speed {say(self.wave[m], 'm/s', 2)}; above about {number(limit[m], 2)} {what} and stays crumpled",
             self._of(m, "elasticity"), "warning" if folds[m] else "ok",
-            hint=f"write elasticity {enough / 1e3:.2g} kPa or more{coarser}, or a lower density, height or speed")
+            hint=f"write elasticity {say(at_least(enough), 'Pa')} or more{coarser}, or a lower density, height or speed")
 
     def _closing(self) -> list[Margin]:
         """Speed at which each solid may meet another: both fall alike, so only the start tells them apart, until one has landed."""
@@ -415,7 +412,7 @@ class _Margins:
         partner = "" if limit[fastest] <= limit[weakest] else f", in {system.names[weakest]}"
         return [Margin(
             "closing speed", system.names[fastest], value, most, "m/s",
-            f"{system.names[fastest]} may meet another object at {value:.3g} m/s; up to {most:.3g} m/s{partner} nothing passes through",
+            f"{system.names[fastest]} may meet another object at {say(value, 'm/s')}; up to {say(most, 'm/s')}{partner} nothing passes through",
             self.scene.control.spans.get("contact-stiffness") if soft else self._of(fastest, "velocity", "position"),
             "warning" if value > most else "ok",
             hint="write contact-stiffness 1, or a lower speed" if soft else
@@ -434,10 +431,10 @@ class _Margins:
         strength = CRUSH * system.young[m]
         return [Margin(
             "load", system.names[m], float(stress[m]), float(strength), "Pa",
-            f"{system.names[m]} bears about {stress[m]:.3g} Pa at its foot by its weight and by what stands above it at the start, "
-            f"{ratio[m]:.2f} of its crush strength 0.2 E = {strength:.3g} Pa (an estimate: evenly spread, at rest)",
+            f"{system.names[m]} bears about {say(stress[m], 'Pa')} at its foot by its weight and by what stands above it at the start, "
+            f"{ratio[m]:.2f} of its crush strength 0.2 E = {say(strength, 'Pa')} (an estimate: evenly spread, at rest)",
             self._of(m, "elasticity"), "warning" if ratio[m] > 1.0 else "ok",
-            hint=f"write elasticity {1e-3 * system.young[m] * ratio[m] * 1.5:.2g} kPa or more, or a lower density or height")]
+            hint=f"write elasticity {say(at_least(system.young[m] * ratio[m] * 1.5), 'Pa')} or more, or a lower density or height")]
 
     def _stress(self, g: float) -> np.ndarray:
         """rho g H of each solid and of the part of others that stands above it, less buoyancy [Pa], shape (M,)."""
@@ -468,9 +465,9 @@ class _Margins:
         h = float(np.cbrt(self.system.cell_volume[m]))
         return Margin(
             "thinnest part", self.system.names[m], float(cells[m]), THINNEST, "cells",
-            f"{self.system.names[m]} is {cells[m]:.2g} cells thin; one cell is 1.9 times too stiff in bending, two are not",
+            f"{self.system.names[m]} is {number(cells[m], 2)} cells thin; one cell is 1.9 times too stiff in bending, two are not",
             self._of(m, "shape"), "warning" if few else "ok", least=True,
-            hint=f"write resolution {500.0 * h * cells[m]:.3g} mm for two cells")
+            hint=f"write resolution {say(0.5 * h * cells[m], 'm')} for two cells")
 
     # --- liquid ---------------------------------------------------------------------------------------------------
 
@@ -491,7 +488,7 @@ class _Margins:
         few = each < SWEEPS
         return [Margin(
             "sweeps", self.system.names[m], each, SWEEPS, "per cell",
-            f"liquid is swept {each:.2g} times for each cell that {self.system.names[m]} travels at {speed:.3g} m/s; below "
+            f"liquid is swept {number(each, 2)} times for each cell that {self.system.names[m]} travels at {say(speed, 'm/s')}; below "
             f"{SWEEPS} it is pushed up before it can flow away, {2 * SWEEPS} are better",
             liquid.spans.get("sweeps") or liquid.spans.get("liquid"), "warning" if few else "ok", least=True,
             hint=f"write sweeps auto, or {math.ceil(2 * SWEEPS * stride)}")]

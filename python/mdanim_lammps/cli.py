@@ -363,6 +363,7 @@ def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, **opt
     from .api import movie_file, run_frames
     from .report import cost_line, progress_line, spread_line
     from .results.timeline import Timeline
+    from .scene.wording import number
 
     with _bar("run", quiet) as bar:
         result = run_frames(ready, folder, started=STARTED, watch=lambda p: bar(p.frame, p.frames, progress_line(p)), **options)
@@ -371,7 +372,7 @@ def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, **opt
         print(cost_line(result, ready.certificate.steps * ready.certificate.timestep))
         if options["executors"] > 1 or options["control"]:
             print(spread_line(Timeline.read(folder), folder))
-        print(f"ledger   energy residual {result.ledger.residual:.2e}   {folder / 'ledger.csv'}")
+        print(f"ledger   energy residual {number(result.ledger.residual)}   {folder / 'ledger.csv'}")
         for outcome in result.outcomes:
             if outcome.met:
                 print(outcome)

@@ -9,16 +9,16 @@ from .driver.prepare import Prepared
 from .driver.run import Progress, Result
 from .effects import Verdict
 from .model import plan_spacing
-from .model.wording import length
 from .results.cost import Cost
 from .results.timeline import Timeline
 from .results.trajectory import trajectory_bytes
 from .scene.scene import Scene
+from .scene.wording import number, say, whole
 
 
-def count(number: int, noun: str) -> str:
+def count(things: int, noun: str) -> str:
     """``1 object``, ``2 197 particles``."""
-    return f"{number:,}".replace(",", " ") + f" {noun}" + ("" if number == 1 else "s")
+    return f"{whole(things)} {noun}" + ("" if things == 1 else "s")
 
 
 def scene_line(ready: Prepared) -> str:
@@ -48,8 +48,8 @@ def size_line(scene: Scene) -> str | None:
     plan = plan_spacing(scene)
     if plan.total < LARGE:
         return None
-    return (f"size     about {plan.total / 1e6:.2g} million particles, spacing {length(plan.h)} set by {plan.set_by}: "
-            f"{plan.memory * 1e-9:.2g} GB of {plan.available * 1e-9:.2g} GB free, about {_about(MODELLING * plan.total)} of modelling")
+    return (f"size     about {number(plan.total / 1e6, 2)} million particles, spacing {say(plan.h, 'm')} set by {plan.set_by}: "
+            f"{number(plan.memory * 1e-9, 2)} GB of {number(plan.available * 1e-9, 2)} GB free, about {_about(MODELLING * plan.total)} of modelling")
 
 
 def _liquid(ready: Prepared) -> str:
@@ -60,7 +60,7 @@ def _liquid(ready: Prepared) -> str:
     rounded = ""
     if liquid.volume is not None:
         off = grid.units(liquid.volume) * grid.cell_volume / liquid.volume - 1.0
-        rounded = f", its volume rounded by {100 * off:+.2g} %" if abs(off) > 1e-9 else ""
+        rounded = f", its volume rounded by {'+' * (off > 0.0)}{number(100 * off, 2)} %" if abs(off) > 1e-9 else ""
     return f", 1 liquid ({count(grid.cells, 'cell')}{rounded})"
 
 
@@ -75,7 +75,7 @@ def output_line(ready: Prepared) -> str:
     c, control = ready.certificate, ready.scene.control
     frames = 1 + len(c.lengths)
     size = trajectory_bytes(ready.models, frames, control.save, control.single, ready.plan.grid)
-    return f"output   {count(frames, 'frame')}, trajectory of {size / 1e6:.3g} MB"
+    return f"output   {count(frames, 'frame')}, trajectory of {number(size / 1e6)} MB"
 
 
 def effect_line(verdict: Verdict) -> str:
@@ -89,7 +89,7 @@ def progress_line(p: Progress) -> str:
     each = p.seconds / max(1, p.step - p.first_step)
     left = each * (p.steps - p.step)
     liquid = "" if p.gained is None else f"liquid residual {p.gained}  "
-    return (f"t={p.time:.2f} s  step {p.step}/{p.steps}  energy residual {p.residual:.1e}  {liquid}"
+    return (f"t={p.time:.2f} s  step {p.step}/{p.steps}  energy residual {number(p.residual, 2)}  {liquid}"
             f"{1e3 * each:.2f} ms/step  {left:.0f} s left")
 
 

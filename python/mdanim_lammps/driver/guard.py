@@ -13,6 +13,7 @@ from ..engine.geometry import INVERTED, NOT_FINITE, Geometry
 from ..errors import DivergedError, Problem
 from ..model.system import System
 from ..scene.scene import Accuracy, Scene
+from ..scene.wording import number, say
 from .prepare import Prepared
 
 CLASSES = {Accuracy.PREVIEW: 1e-2, Accuracy.BALANCED: 1e-3, Accuracy.REFERENCE: 1e-4}
@@ -103,13 +104,13 @@ class Guard:
         if gone.any():
             n = int(np.where(gone, beyond, -np.inf).argmax())
             m, side = n // len(self.sides), self.sides[n % len(self.sides)]
-            raise self.stopped(step, f"it has left {side.name}: all of it is beyond {'xyz'[side.axis]} = {side.at:g} m, by "
-                               f"{beyond.flat[n]:.3g} m", m, "time step", "amplitude", "load")
+            raise self.stopped(step, f"it has left {side.name}: all of it is beyond {'xyz'[side.axis]} = {say(side.at, 'm', 6)}, by "
+                               f"{say(float(beyond.flat[n]), 'm')}", m, "time step", "amplitude", "load")
 
     def energy(self, step: int, residual: float, v: np.ndarray) -> None:
         """Raise DivergedError when the energies do not add up any more. ``residual`` as in results/ledger.py."""
         if not abs(residual) <= self.limit:
-            raise self.stopped(step, f"the energies do not add up, residual {residual:.3g}; its particles are the fastest",
+            raise self.stopped(step, f"the energies do not add up, residual {number(residual)}; its particles are the fastest",
                                fastest(self.ready.system, v),
                                "time step", "amplitude", "load", "closing speed")
 
@@ -134,7 +135,7 @@ class Guard:
             f"{self._when(step)}: {self.ready.system.names[m]}: {what}.\n  cause: {cause}\n  change: {cure}\n  {self._kept()}")
 
     def _when(self, step: int) -> str:
-        return f"step {step}, t = {step * self.ready.certificate.timestep:.4g} s"
+        return f"step {step}, t = {number(step * self.ready.certificate.timestep, 4)} s"
 
     def _kept(self) -> str:
         return f"the last good frame and checkpoint are kept in {self.folder}"
@@ -146,7 +147,7 @@ class Guard:
             return None
         return Problem(
             scene.control.spans.get("accuracy"),
-            f"the energy residual {residual:.2e} is above {goal:g}, which 'accuracy {_accuracy(scene).value}' stands for",
+            f"the energy residual {number(residual)} is above {number(goal)}, which 'accuracy {_accuracy(scene).value}' stands for",
             "where it matters, write a smaller timestep or a higher accuracy", severity="warning")
 
 

@@ -24,6 +24,7 @@ from ..results.expect import Measured, Outcome, evaluate, record, recorded
 from ..results.files import write_json, write_whole
 from ..results.ledger import LOSS, Ledger
 from ..results.trajectory import Trajectory, TrajectoryWriter
+from ..scene.wording import number
 from .energy import ledger_terms, rounding_energy
 from .guard import Guard
 from .prepare import Prepared
@@ -169,7 +170,7 @@ class _Run:
                 self._close_ledger()
             if last < len(lengths):
                 insist = " --allow-unstable" if c.fraction > 1.0 else ""
-                raise Interrupted(f"interrupted at t = {row['time']:.4g} s; go on with: mdanim-lammps resume {self.folder}{insist}")
+                raise Interrupted(f"interrupted at t = {number(row['time'], 4)} s; go on with: mdanim-lammps resume {self.folder}{insist}")
             account = self.source.account()
             closing = time.perf_counter()
         self.seconds["output"] += time.perf_counter() - closing
@@ -229,7 +230,7 @@ class _Run:
         if pool:
             extras["liquid_cells"] = pool.cells
             if pool.cells != pool.start:
-                raise DivergedError(f"step {now.step}, t = {when:.4g} s: {pool.cells} cells of liquid, {pool.start} at the start: this must "
+                raise DivergedError(f"step {now.step}, t = {number(when, 4)} s: {pool.cells} cells of liquid, {pool.start} at the start: this must "
                                     f"never be, please report it. The last good frame is kept in {self.folder}")
         # Losses before a resume are carried over.
         row = self.ledger.weigh(when, {t: e + self.carried.get(t, 0.0) for t, e in now.energies.items()} | extras)

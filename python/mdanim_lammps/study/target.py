@@ -13,6 +13,7 @@ from ..driver.prepare import prepare
 from ..errors import DivergedError, OutputError, Problem
 from ..results.files import read_json, write_json
 from ..scene.scene import Accuracy, Scene
+from ..scene.wording import number, say
 from .analysis import Analysis, analyse
 from .bench import BUDGET, Bench
 from .error import ROUND_OFF, distance, extent
@@ -58,8 +59,8 @@ class Choice:
         return max(self.reached, self.closed or 0.0) <= self.error
 
     def __str__(self) -> str:
-        got = f"estimated {100 * self.reached:.2g} %" + ("" if (self.closed or 0.0) < ROUND_OFF else f", closed form {100 * self.closed:.2g} %")
-        step = f", time step {self.timestep:.3g} s" if self.timestep else ""
+        got = f"estimated {number(100 * self.reached, 2)} %" + ("" if (self.closed or 0.0) < ROUND_OFF else f", closed form {number(100 * self.closed, 2)} %")
+        step = f", time step {say(self.timestep, 's')}" if self.timestep else ""
         return f"{self.cells:g} cells across{step} ({got})"
 
 
@@ -275,7 +276,7 @@ class _Search:
             return True
         expected = self.bench.predict(setting)
         if expected is not None and expected > self.bench.left:
-            self.bench.watch(f"{setting} would take about {expected:.2g} s, more than the {max(0.0, self.bench.left):.0f} s left")
+            self.bench.watch(f"{setting} would take about {say(expected, 's', 2)}, more than the {max(0.0, self.bench.left):.0f} s left")
             return False
         try:
             return bool(self.bench.measure(setting, limit=max(self.bench.left, 1.0)).tracks)
