@@ -114,7 +114,7 @@ def test_cost_line_has_the_largest_first():
     """Order the parts by their share and leave out what is nothing."""
     cost = Cost(10.0, 1, 1, {"springs": Part(6.0), "walls": Part(0.01)}, {"output": 3.9})
     line = cost_line(SimpleNamespace(cost=cost), 5.0)
-    assert line == "cost     springs 60%  output 39%   total 10.0 s, 0.5 of real time"
+    assert line == "cost     springs 60%  output 39%   total 10.0 s, 2 s of computing per second of film"
 
 
 # --- what it will cost --------------------------------------------------------------------------------------

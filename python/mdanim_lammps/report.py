@@ -99,11 +99,11 @@ def movie_line(done: int, total: int, seconds: float) -> str:
 
 
 def cost_line(result: Result, simulated: float) -> str:
-    """One line: where the wall time went."""
+    """One line: where the wall time went; ``simulated`` is how long the film is [s]."""
     total = result.cost.total
     parts = sorted(result.cost.parts.items(), key=lambda item: -item[1])
     shares = "  ".join(f"{name} {100 * s / total:.0f}%" for name, s in parts if s >= 0.005 * total)
-    return f"cost     {shares}   total {total:.1f} s, {simulated / total:.2g} of real time"
+    return f"cost     {shares}   total {total:.1f} s, {number(total / simulated, 2)} s of computing per second of film"
 
 
 def who_line(executors: int, control: str | None) -> str:
