@@ -43,7 +43,7 @@ def test_run_leaves_a_movie(scene):
     path = scene()
     done = run(path)
     assert done.returncode == 0, done.stderr
-    words = [line.split()[0] for line in done.stdout.splitlines()]
+    words = [line.split()[0] for line in done.stdout.splitlines() if not line.startswith(" ")]
     assert words == ["scene", "certify", "output", "cost", "ledger", "movie"]
     assert (path.parent / "cube.out" / "movie.mp4").stat().st_size > 1000
     assert done.stdout.strip().endswith("movie.mp4")
@@ -63,10 +63,26 @@ def test_check_text_and_json(scene):
     assert [p.name for p in path.parent.iterdir()] == ["cube.txt"]
 
 
+def test_effects_are_told_in_short_lines(scene, scenes):
+    """Break what is on and what is off into lines that a terminal shows whole, between effects; every effect stands in one of them."""
+    from mdanim_lammps.effects import EFFECTS
+
+    assert run("check", scene()).stdout.splitlines()[:4] == [
+        "scene    cube.txt  1 object (27 particles)",
+        "         effects: springs, gravity, ground",
+        "         off: damping (no object has damping), contact (one object), walls (no walls in the scene),",
+        "              basin, liquid, buoyancy, liquid-drag (no liquid in the scene), air-drag (no object has drag)"]
+    for name in ("crowd", "float"):
+        lines = run("check", scenes / f"{name}.txt").stdout.split("certify")[0].splitlines()
+        assert max(map(len, lines)) <= 110
+        words = " ".join(lines[1:]).replace(",", " ").split()
+        assert all(e.name in words for e in EFFECTS)
+
+
 def test_a_liquid_is_announced(scenes):
     """Say how many cells the liquid has, and by how much its volume was rounded where it was."""
     text = run("check", scenes / "float.txt").stdout
-    assert "1 object (405 particles), 1 liquid (38 400 cells); effects: springs, gravity, basin, liquid, buoyancy" in text
+    assert "1 object (405 particles), 1 liquid (38 400 cells)\n" in text
     rounded = run("check", scenes / "float.txt", "--set", "a=0.3").stdout
     assert "its volume rounded by" in rounded
     data = json.loads(run("check", scenes / "float.txt", "--format", "json").stdout)

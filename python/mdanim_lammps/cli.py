@@ -75,7 +75,7 @@ def check(scene: Path, /, *, set_: Set = (), accuracy: Accuracy = None, strict: 
     from .certificate import margin_lines
     from .driver.calibration import calibration
     from .driver.forecast import forecast
-    from .report import certificate_line, check_json, effect_line, forecast_line, output_line, scene_line
+    from .report import certificate_line, check_json, effect_line, forecast_line, output_line, scene_lines
 
     record = _with_accuracy(_load(scene, set_, strict=strict), accuracy)
     ready = _prepare_record(_settle(record, make=False, quiet=format == "json"), allow_unstable=allow_unstable)
@@ -86,7 +86,7 @@ def check(scene: Path, /, *, set_: Set = (), accuracy: Accuracy = None, strict: 
         print(json.dumps(check_json(ready, cost), indent=1, ensure_ascii=False))
         return
     _warn(ready)
-    print(scene_line(ready))
+    print("\n".join(scene_lines(ready)))
     print(certificate_line(ready))
     print("limits")
     for line in margin_lines(ready.certificate):
@@ -343,12 +343,12 @@ def _warn(ready) -> None:
 
 
 def _announce(ready, quiet: bool, verbose: bool, executors: int = 1, control: str | None = None) -> None:
-    from .report import certificate_line, effect_line, output_line, scene_line, who_line
+    from .report import certificate_line, effect_line, output_line, scene_lines, who_line
 
     _warn(ready)
     if quiet:
         return
-    print(scene_line(ready))
+    print("\n".join(scene_lines(ready)))
     if verbose:
         for verdict in ready.verdicts.values():
             print(effect_line(verdict))

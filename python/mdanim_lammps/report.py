@@ -21,8 +21,13 @@ def count(things: int, noun: str) -> str:
     return f"{whole(things)} {noun}" + ("" if things == 1 else "s")
 
 
-def scene_line(ready: Prepared) -> str:
-    """One line: what is in the scene, what is on, what is off and why."""
+WIDTH = 110
+"""Columns that lists are broken at."""
+MARGIN = " " * len("scene    ")
+
+
+def scene_lines(ready: Prepared) -> list[str]:
+    """What is in the scene; below it what is on, and what is off and why."""
     on = [v.name for v in ready.verdicts.values() if v.on]
     reasons: dict[str, list[str]] = {}
     for v in ready.verdicts.values():
@@ -31,8 +36,19 @@ def scene_line(ready: Prepared) -> str:
     off = [f"{', '.join(names)} ({reason})" for reason, names in reasons.items()]
     file = ready.scene.path.name if ready.scene.path else ready.scene.name
     title = f"'{ready.scene.title}'  " if ready.scene.title else ""
-    return (f"scene    {file}  {title}{count(len(ready.system.names), 'object')} ({count(ready.system.particles, 'particle')})"
-            f"{_liquid(ready)}; effects: {', '.join(on) or 'none'}" + (f"   off: {', '.join(off)}" if off else ""))
+    return [f"scene    {file}  {title}{count(len(ready.system.names), 'object')} ({count(ready.system.particles, 'particle')})"
+            f"{_liquid(ready)}", *_listed("effects: ", on or ["none"]), *_listed("off: ", off)]
+
+
+def _listed(head: str, items: list[str]) -> list[str]:
+    """Lines of a list below the first words of a line, none broken within an item; none at all for an empty list."""
+    lines: list[str] = []
+    for item in items:
+        if lines and len(lines[-1]) + len(f" {item},") <= WIDTH:
+            lines[-1] += f" {item},"
+        else:
+            lines.append(MARGIN + (" " * len(head) if lines else head) + f"{item},")
+    return [*lines[:-1], lines[-1].removesuffix(",")] if lines else []
 
 
 LARGE = 1_000_000
