@@ -184,12 +184,14 @@ control {{ time 0.8 s  frames 100 fps  resolution {h} cm }}
 
 
 @pytest.mark.parametrize(("shape", "h", "young", "extra", "limit"), [
-    pytest.param("sphere 0.12", 3, 360, "", 0.9 / 8, id="8 cells: its lowest twelve fold"),
-    pytest.param("sphere 0.12", 4, 400, "", 0.9 / 6, id="6 cells: more of them bear the blow"),
+    pytest.param("sphere 0.12", 3, 360, "", 0.5 * (12 / 280)**0.45, id="8 cells: its lowest twelve fold"),
+    pytest.param("sphere 0.12", 4, 400, "", 0.2, id="6 cells: 21 of 117 bear the blow"),
+    pytest.param("sphere 0.12", 4, 215, "", 0.2, id="6 cells, nearly too fast for any lattice"),
+    pytest.param("sphere 0.087", 3, 360, "", 0.5 * (4 / 88)**0.45, id="5.6 cells: 4 of 88 bear it"),
     pytest.param("sphere 0.12", 8, 360, "", 0.2, id="3 cells"),
-    pytest.param("sphere 0.12", 3, 700, "", 0.9 / 8, id="stiffer, so slower for its waves"),
-    pytest.param("sphere 0.12", 3, 360, "damping 0.2", 0.9 / 8, id="damped: no help"),
-    pytest.param("ellipsoid (0.12, 0.12, 0.24)", 4, 360, "", 0.9 / 12, id="pointed"),
+    pytest.param("sphere 0.12", 3, 700, "", 0.5 * (12 / 280)**0.45, id="stiffer, so slower for its waves"),
+    pytest.param("sphere 0.12", 3, 360, "damping 0.2", 0.5 * (12 / 280)**0.45, id="damped: no help"),
+    pytest.param("ellipsoid (0.12, 0.12, 0.24)", 4, 360, "", 0.5 * (4 / 224)**0.45, id="pointed"),
     pytest.param("box (0.24, 0.24, 0.24)", 3, 360, "", 0.2, id="flat"),
 ])
 def test_a_round_body_of_many_cells_folds_up_sooner(prepared, tmp_path, shape, h, young, extra, limit):
@@ -205,11 +207,11 @@ def test_a_round_body_of_many_cells_folds_up_sooner(prepared, tmp_path, shape, h
     with pytest.raises(DivergedError, match="inside out") as stopped:
         simulate(ready, tmp_path)
     assert found.text in str(stopped.value)
-    enough, kilo, coarser, size = re.search(r"write elasticity (\S+) (\wPa) or more, resolution (\S+) (.m) or more", found.hint).groups()
+    enough, kilo, coarser, size = re.search(r"write elasticity (\S+) (\wPa) or more, or resolution (\S+) (.m), or", found.hint).groups()
     young_told = float(enough) * {"kPa": 1.0, "MPa": 1e3}[kilo]
     for cure in ({"young": young_told, "h": h}, {"young": young, "h": float(coarser) * {"cm": 1.0, "mm": 0.1}[size]}):
         cured = prepared(BALL.format(shape=shape, extra=extra, **cure))
-        assert margin(cured.certificate, "amplitude").used < 1.2  # lattices fit a spacing only so well
+        assert margin(cured.certificate, "amplitude").severity == "ok"
         simulate(cured, tmp_path)
 
 

@@ -22,6 +22,7 @@ from .effects import EFFECTS, Effect, Verdict
 from .effects.liquid import EVERY, STRIDE
 from .errors import Problem, RefusedError, SceneError, Span
 from .model.basin import liquid_level
+from .model.cells import TooThin, end_share, fill_cells
 from .model.shapes import thickness
 from .model.system import System
 from .scene.scene import Accuracy, Ellipsoid, Scene, Shape, Sphere
@@ -33,9 +34,9 @@ STRONG = 0.5
 """phi = lambda dt / 2m, eq. (3.13), above which the implicit form is no good: beyond 1 it turns velocities round every step."""
 FOLDS = 0.2
 """Speed of an impact over the wave speed above which a lattice folds up and stays crumpled (docs/physics-solids.md)."""
-FOLDS_ROUND = 0.9
-"""The same times the cells across, of a ball that lands on ground or walls: the finer its lattice, the smaller the part of its cells
-that it lands on (docs/physics-solids.md)."""
+FOLDS_ON_END, FOLDS_POWER = 0.5, 0.45
+"""The same of a ball or ellipsoid that lands on ground or walls, over a power of the part of its cells that its smallest end has: these
+few bear the blow of all (docs/physics-solids.md)."""
 CRUSH = 0.2
 """Load over Young's modulus above which a lattice is crushed (docs/physics-solids.md)."""
 THINNEST = 2
@@ -375,7 +376,7 @@ class _Margins:
         meets = len(system.names) > 1 or any(x is not None for x in (scene.ground, scene.walls, scene.liquid))
         ratio = np.where(meets, self.speed / self.wave, 0.0)
         hard = not self.on.keys().isdisjoint(("ground", "walls")) and "liquid" not in self.on
-        spot = np.array([FOLDS_ROUND * _roundness(s.shape) if hard else np.inf for s in scene.solids]) / self.cells
+        spot = self._spots() if hard else np.full(len(ratio), np.inf)
         limit = np.minimum(FOLDS, spot)
         m = int((ratio / limit).argmax())
         folds = ratio > limit
@@ -384,14 +385,31 @@ class _Margins:
         what, coarser = "a soft object folds up", ""
         if spot[m] < FOLDS:
             what = f"one of {number(self.cells[m], 2)} cells across folds up at the spot where it lands"
-            if ratio[m] < FOLDS:
-                coarser = f", resolution {say(at_least(np.cbrt(system.cell_volume[m]) * 1.1 * ratio[m] / limit[m]), 'm')} or more"
+            if ratio[m] < FOLDS and (h := _coarser(scene.solids[m].shape, float(np.cbrt(system.cell_volume[m])), float(ratio[m]))):
+                coarser = f", or resolution {say(h, 'm')}"
         return Margin(
             "amplitude", system.names[m], float(ratio[m]), float(limit[m]), "",
             f"{system.names[m]}{f' and {others} more' if others > 0 else ''} may hit at {say(self.speed[m], 'm/s', 2)}, {ratio[m]:.2f} of the wave "
             f"speed {say(self.wave[m], 'm/s', 2)}; above about {number(limit[m], 2)} {what} and stays crumpled",
             self._of(m, "elasticity"), "warning" if folds[m] else "ok",
             hint=f"write elasticity {say(at_least(enough), 'Pa')} or more{coarser}, or a lower density, height or speed")
+
+    def _spots(self) -> np.ndarray:
+        """Speed of a landing on the smallest end, over the wave speed, that folds it up; infinite for what is not round, shape (M,)."""
+        system, known = self.system, {}
+        spots = np.full(len(system.names), np.inf)
+        balls = [m for m, s in enumerate(self.scene.solids) if self.moving[m] and isinstance(s.shape, (Sphere, Ellipsoid))]
+        first = np.searchsorted(system.hexahedron[:, 0], system.first)
+        for m in balls:
+            key = self.scene.solids[m].shape, float(system.cell_volume[m])
+            if key not in known:
+                middle = system.position[system.hexahedron[first[m]:first[m + 1]]].mean(axis=1) @ np.array(self.scene.solids[m].rotation)
+                place = np.rint((middle - middle.min(axis=0)) / np.cbrt(system.cell_volume[m])).astype(int)  # voxels are cubes
+                filled = np.zeros(place.max(axis=0) + 1, bool)
+                filled[tuple(place.T)] = True
+                known[key] = folds_on_end(filled)
+            spots[m] = known[key]
+        return spots
 
     def _closing(self) -> list[Margin]:
         """Speed at which each solid may meet another: both fall alike, so only the start tells them apart, until one has landed."""
@@ -494,14 +512,22 @@ class _Margins:
             hint=f"write sweeps auto, or {math.ceil(2 * SWEEPS * stride)}")]
 
 
-def _roundness(shape: Shape) -> float:
-    """Radius of curvature of the sharpest end of a ball or ellipsoid over its least half axis [-]; infinite for other shapes."""
-    match shape:
-        case Sphere():
-            return 1.0
-        case Ellipsoid():
-            return min(shape.radii) / max(shape.radii)
-    return math.inf
+def folds_on_end(filled: np.ndarray) -> float:
+    """Speed of a landing over the wave speed above which the smallest end of a body of these cells stays folded up [-]."""
+    return FOLDS_ON_END * end_share(filled)**FOLDS_POWER
+
+
+def _coarser(shape: Shape, h: float, ratio: float) -> float | None:
+    """The next coarser spacing [m] at which a landing at this part of the wave speed folds no end; None below three cells across."""
+    for trial in (at_least(h * 1.05**k) for k in range(1, 40)):
+        try:
+            if thickness(shape) / trial < 3.0:
+                break
+            if ratio <= folds_on_end(fill_cells(shape, trial).filled):
+                return trial
+        except TooThin:
+            continue
+    return None
 
 
 def _least_of_others(values: np.ndarray) -> np.ndarray:
