@@ -2,9 +2,12 @@
 """The command line: exit codes, messages, and what goes where."""
 
 import json
+import os
 import subprocess
 import sys
+from pathlib import Path
 
+import plugin_path
 import pytest
 
 GOOD = """
@@ -95,6 +98,19 @@ def test_build_writes_two_files_for_lammps(scene):
     assert run("build", path).returncode == 0
     names = {p.name for p in (path.parent / "cube.out").iterdir()}
     assert {"data.cube", "in.cube"} <= names and "trajectory.h5" not in names
+
+
+def test_the_command_that_build_tells_runs(scene, tmp_path):
+    """Tell a command that runs as it stands, whether or not the shell finds our ``lmp`` by its name."""
+    path = scene()
+    bare = {"PATH": "/usr/bin:/bin"}
+    for env in (bare, {"PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin"}):
+        built = subprocess.run([sys.executable, "-m", "mdanim_lammps", "build", path, "--force"], capture_output=True, text=True,
+                               env=os.environ | env, timeout=100)
+        command = built.stdout.splitlines()[-1].removeprefix("built ")
+        assert (" lmp " in command) == (env is not bare), command
+        done = subprocess.run(command, shell=True, capture_output=True, text=True, env=plugin_path.environment() | env, timeout=100)
+        assert done.returncode == 0 and "Total wall time" in done.stdout, done.stdout + done.stderr
 
 
 def test_compare_and_render_use_an_output_folder(scene):

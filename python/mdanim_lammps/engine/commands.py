@@ -95,8 +95,9 @@ def input_script(plan: Plan) -> str:
         modify = ["dump_modify trajectory every v_frame first yes"]
     title = (plan.scene.title or plan.name).encode("ascii", "replace").decode()  # LAMMPS reads ASCII
     return "\n".join([
-        f"# {title}: written by mdanim-lammps; run it here with 'lmp -in in.{plan.name}'",
-        f"# or 'mpiexec -n 4 lmp -in in.{plan.name}'. Needs the styles of the mdanim-lammps package (pip install).",
+        f"# {title}",
+        f"# Written by mdanim-lammps; run it here with 'lmp -in in.{plan.name}' or 'mpiexec -n 4 lmp -in in.{plan.name}',",
+        "# with the lmp and the mpiexec of the environment that mdanim-lammps is installed in (.venv/bin): they know its styles.",
         f"# Effects: {', '.join(e.name for e in plan.effects) or 'none'}.",
         "",
         *prelude(plan),
