@@ -53,17 +53,21 @@ def run(scene: Path, /, *, executors: Executors = 1, out: Out = None, control: C
         Make movie.mp4 at the end.
     """
     from .api import open_run
+    from .driver.prospect import prospect
+    from .report import prospect_lines
 
     _check_executors(executors)
     record = _settle(_with_accuracy(_load(scene, set_), accuracy), make=True, quiet=quiet, out=out)
     ready = _prepare_record(record, allow_unstable=allow_unstable)
     _announce(ready, quiet, verbose, executors, control)
+    if executors > 1 and not quiet:
+        print("\n".join(prospect_lines(prospect(ready, executors))), flush=True)
     folder = open_run(ready, out, force=force)
     _simulate_and_render(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control)
 
 
 @app.command
-def check(scene: Path, /, *, set_: Set = (), accuracy: Accuracy = None, strict: Strict = False,
+def check(scene: Path, /, *, executors: Executors = 1, set_: Set = (), accuracy: Accuracy = None, strict: Strict = False,
           allow_unstable: AllowUnstable = False, format: Literal["text", "json"] = "text") -> None:
     """Say what a scene calls for and certify its time step; nothing is run.
 
@@ -77,15 +81,18 @@ def check(scene: Path, /, *, set_: Set = (), accuracy: Accuracy = None, strict: 
     from .certificate import margin_lines
     from .driver.calibration import calibration
     from .driver.forecast import forecast
-    from .report import certificate_line, check_json, effect_line, forecast_line, output_line, scene_lines
+    from .driver.prospect import prospect
+    from .report import certificate_line, check_json, effect_line, forecast_line, output_line, prospect_lines, scene_lines, who_line
 
+    _check_executors(executors)
     record = _with_accuracy(_load(scene, set_, strict=strict), accuracy)
     ready = _prepare_record(_settle(record, make=False, quiet=format == "json"), allow_unstable=allow_unstable)
     setup = time.perf_counter() - STARTED
     rates = calibration(lambda line: print(line, file=sys.stderr, flush=True)).rates
     cost = forecast(ready, rates, setup=setup)
+    spread = prospect(ready, executors) if executors > 1 else None
     if format == "json":
-        print(json.dumps(check_json(ready, cost), indent=1, ensure_ascii=False))
+        print(json.dumps(check_json(ready, cost, spread), indent=1, ensure_ascii=False))
         return
     _warn(ready)
     print("\n".join(scene_lines(ready)))
@@ -95,6 +102,9 @@ def check(scene: Path, /, *, set_: Set = (), accuracy: Accuracy = None, strict: 
         print(line)
     print(output_line(ready))
     print(forecast_line(cost))
+    if spread is not None:
+        print(who_line(executors, None))
+        print("\n".join(prospect_lines(spread)))
     print("effects")
     for verdict in ready.verdicts.values():
         print(effect_line(verdict))

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
 from .driver.prepare import Prepared
+from .driver.prospect import Prospect
 from .driver.run import Progress, Result
 from .effects import Verdict
 from .model import plan_spacing
@@ -130,6 +132,19 @@ def who_line(executors: int, control: str | None) -> str:
     return f"spread   over {count(executors, 'executor')} and a supervisor; {who}"
 
 
+def prospect_lines(p: Prospect) -> list[str]:
+    """Below `who_line`: the most that executors can bring at first, and why it is not more."""
+    when = "in the first second" if p.seconds == 1.0 else f"in the first {number(p.seconds, 2)} s"
+    faster = "no faster than one" if p.faster < 1.05 else f"at most {number(p.faster, 2)} times as fast as one"
+    if p.faster > 0.9 * p.executors:
+        return [f"{MARGIN}{when} of the film {faster}"]
+    work = "all" if p.share > 0.995 else f"{100.0 * p.share:.0f} %"
+    what = f"one object is {work} of the work" if p.largest == 1 else (
+        f"{p.largest} of {p.objects} objects, {work} of the work, are near each other and run together")
+    team = f", on {number(p.team, 2)} executors at once" if p.team > 1.0 else ""
+    return [f"{MARGIN}{when} of the film {faster}:", f"{MARGIN}{what}{team}"]
+
+
 def spread_line(timeline: Timeline, folder: Path) -> str:
     """One line: what a run on several executors did, and how to see it."""
     again = sum(timeline.retries)
@@ -154,8 +169,8 @@ def _about(seconds: float) -> str:
     return f"{float(f'{seconds / size:.{digits}g}'):g} {unit}"
 
 
-def check_json(ready: Prepared, forecast: Cost | None = None) -> dict:
-    """What ``check --format json`` prints; ``forecast`` is the expected cost (driver/forecast.py)."""
+def check_json(ready: Prepared, forecast: Cost | None = None, prospect: Prospect | None = None) -> dict:
+    """What ``check --format json`` prints; with the expected cost (driver/forecast.py), and what executors will bring (driver/prospect.py)."""
     return {
         "scene": str(ready.scene.path) if ready.scene.path else ready.scene.name,
         "objects": [{"name": m.name, "particles": len(m.position), "springs": len(m.spring), "cell": list(m.cell)}
@@ -166,6 +181,7 @@ def check_json(ready: Prepared, forecast: Cost | None = None) -> dict:
                     for v in ready.verdicts.values()},
         "certificate": ready.certificate.to_json(),
         "cost": None if forecast is None else forecast.to_json(),
+        "spread": None if prospect is None else asdict(prospect),
         "warnings": [{"message": w.message, "hint": w.hint, "place": str(w.span) if w.span else None}
                      for w in ready.warnings],
     }

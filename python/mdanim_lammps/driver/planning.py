@@ -11,10 +11,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..engine.part import Parts
 from . import islands
 from .assign import assign, firsts, total
 from .teams import GAIN, LEAST, Team
 
+MARGIN = 0.05
+"""Of a spacing, on top of the reach of every object."""
+BALANCED = 1.25
+"""Largest load over the mean up to which a window is not made shorter."""
+ASIDE = 1000.0
+"""The pool's box beyond the basin's sides and floor, over its size: the liquid looks at heights alone."""
 BUNDLE = 64000
 """Particles up to which islands of one executor share a LAMMPS instance. `bench/driver.py`, 1000 objects of 120 particles on 2
 executors: of a frame the driver takes 13 ms with 32000, 9 with this and with 128000, and LAMMPS the same; but what begins again with
@@ -96,6 +103,15 @@ def plan(low: np.ndarray, high: np.ndarray, d: np.ndarray, cost: np.ndarray, own
                    teams=previous.teams if previous else ())
     bundle = bundles(label, given.owner, particles, given.teams, order=order, previous=previous, room=room)
     return FramePlan(given.owner, label, bundle, islands.guests(met, label, still), given.teams, given.load)
+
+
+def pool_box(parts: Parts) -> tuple[np.ndarray, np.ndarray]:
+    """The box within which an object and the liquid can matter to each other [m]."""
+    grid = parts.whole.grid
+    margin = ASIDE * np.max(np.subtract(grid.high, grid.low))
+    low, high = np.array(grid.low) - margin, np.array(grid.high) + margin
+    high[2] = parts.liquid_top
+    return low, high
 
 
 def z_order(low: np.ndarray, high: np.ndarray) -> np.ndarray:
