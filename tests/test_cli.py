@@ -67,7 +67,8 @@ def test_check_text_and_json(scene):
 
 
 def test_effects_are_told_in_short_lines(scene, scenes):
-    """Break what is on and what is off into lines that a terminal shows whole, between effects; every effect stands in one of them."""
+    """Break what is on and what is off into lines that a terminal shows whole, between effects;
+    every effect stands in one of them."""
     from mdanim_lammps.effects import EFFECTS
 
     assert run("check", scene()).stdout.splitlines()[:4] == [
@@ -109,7 +110,8 @@ def test_the_command_that_build_tells_runs(scene, tmp_path):
                                env=os.environ | env, timeout=100)
         command = built.stdout.splitlines()[-1].removeprefix("built ")
         assert (" lmp " in command) == (env is not bare), command
-        done = subprocess.run(command, shell=True, capture_output=True, text=True, env=plugin_path.environment() | env, timeout=100)
+        done = subprocess.run(command, shell=True, capture_output=True, text=True, env=plugin_path.environment() | env,
+                              timeout=100)
         assert done.returncode == 0 and "Total wall time" in done.stdout, done.stdout + done.stderr
 
 
@@ -133,7 +135,8 @@ def test_compare_and_render_use_an_output_folder(scene):
     pytest.param(["check", "liquid.txt"], 3, ["cube is 4 cm below the floor of the basin", "move it up by 4 cm",
                                               "2 cells wide along x"], id="basin"),
     pytest.param(["check", "alone.txt"], 3, ["no object", "hold all"], id="liquid alone"),
-    pytest.param(["check", "dry.txt"], 3, ["liquid.level needs the liquid, which is off", "switch the liquid on"], id="liquid off"),
+    pytest.param(["check", "dry.txt"], 3, ["liquid.level needs the liquid, which is off", "switch the liquid on"],
+                 id="liquid off"),
     pytest.param(["fast.txt"], 4, ["certified bound", "cube", "timestep auto"], id="step above the bound"),
     pytest.param(["cube.txt", "-n", "0"], 2, ["-n 0", "at least one"], id="no executor"),
     pytest.param(["study", "cube.txt", "--budget", "soon"], 2, ["--budget soon", "expected a time above 0"], id="study"),
@@ -150,7 +153,8 @@ def test_exit_codes(scene, arguments, code, words):
     directory = scene().parent
     scene(GOOD.replace("density 1000 kg/m^3", "mass   1.5 kgg"), "bad.txt")
     water = "liquid water {\n basin from (-1, -1, 0) m to (1, 1, 1) m\n density 1000 kg/m^3\n level 0.5 m\n}\n"
-    scene(GOOD + water.replace("(-1, -1, 0) m to (1, 1, 1)", "(-4, -20, 5) cm to (4, 20, 80)").replace(") m\n d", ") cm\n d"), "liquid.txt")
+    scene(GOOD + water.replace("(-1, -1, 0) m to (1, 1, 1)", "(-4, -20, 5) cm to (4, 20, 80)").replace(") m\n d", ") cm\n d"),
+          "liquid.txt")
     scene("gravity (0, 0, -9.81)\ncontrol { time 1 s }\n" + water, "alone.txt")
     scene(GOOD + water + "effects { liquid off }\nexpect liquid.level = 0.5 m +- 1 cm\n", "dry.txt")
     scene(GOOD.replace("time 0.1 s", "time 0.1 s\n  timestep 1 s"), "fast.txt")
@@ -195,6 +199,7 @@ def test_check_is_quick(scenes):
     code = ("import sys; from mdanim_lammps.cli import main\n"
             f"try: main(['check', {str(scenes / 'beam.txt')!r}])\n"
             "except SystemExit: pass\n"
-            "print(sorted({m.split('.')[0] for m in sys.modules} & {'pyvista', 'vtk', 'MDAnalysis', 'vtkmodules', 'h5py', 'lammps'}))")
+            "dear = {'pyvista', 'vtk', 'MDAnalysis', 'vtkmodules', 'h5py', 'lammps'}\n"
+            "print(sorted({m.split('.')[0] for m in sys.modules} & dear))")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.splitlines()[-1] == "[]", done.stdout

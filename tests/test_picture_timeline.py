@@ -100,7 +100,8 @@ def test_a_picture_of_any_size(tmp_path, executors, objects, frames):
 
 
 @pytest.mark.parametrize(("title", "executors", "line"), [
-    pytest.param("Which of them float?", 2, "Which of them float? – 2 executors, owners decided by the supervisor", id="a question"),
+    pytest.param("Which of them float?", 2, "Which of them float? – 2 executors, owners decided by the supervisor",
+                 id="a question"),
     pytest.param("", 1, "Run – 1 executor, owners decided by the supervisor", id="no title"),
 ])
 def test_the_headline_reads_well_after_any_title(title, executors, line):

@@ -31,7 +31,8 @@ def test_quantities_are_written_as_people_do(value, si, digits, text):
     assert say(value, si, digits) == text
 
 
-@pytest.mark.parametrize(("value", "text"), [(0.001, "0.001"), (0.00099, "9.9e-4"), (99_949.0, "99900"), (99_960.0, "1e5"), (0.16249, "0.162")])
+@pytest.mark.parametrize(("value", "text"),
+                         [(0.001, "0.001"), (0.00099, "9.9e-4"), (99_949.0, "99900"), (99_960.0, "1e5"), (0.16249, "0.162")])
 def test_powers_of_ten_stand_only_at_the_ends(value, text):
     """Write no power of ten between 0.001 and 99999."""
     assert number(value) == text

@@ -30,5 +30,6 @@ def test_scene_is_within_all_limits(name):
 
 def test_demo_scene_checks_from_the_command_line():
     """Check the scene of `make demo` as a user would."""
-    done = subprocess.run([sys.executable, "-m", "mdanim_lammps", "check", str(SCENES / "beam.txt")], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-m", "mdanim_lammps", "check", str(SCENES / "beam.txt")], capture_output=True,
+                          text=True)
     assert done.returncode == 0 and "set by: beam" in done.stdout

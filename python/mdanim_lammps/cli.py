@@ -28,21 +28,25 @@ app = App(
     version_flags=["--version"],
 )
 
-Set = Annotated[tuple[str, ...], Parameter(name="--set", help="Override a 'let': --set NAME=VALUE.", negative=(), consume_multiple=False)]
-Accuracy = Annotated[Literal["preview", "balanced", "reference"] | None, Parameter(help="Cells across the thinnest part: 2, 4, 8; time step 0.7, 0.5, 0.25 of the bound.")]
+Set = Annotated[tuple[str, ...],
+                Parameter(name="--set", help="Override a 'let': --set NAME=VALUE.", negative=(), consume_multiple=False)]
+Accuracy = Annotated[Literal["preview", "balanced", "reference"] | None,
+                     Parameter(help="Cells across the thinnest part: 2, 4, 8; time step 0.7, 0.5, 0.25 of the bound.")]
 Strict = Annotated[bool, Parameter(negative=(), help="Bare numbers need a unit.")]
 AllowUnstable = Annotated[bool, Parameter(negative=(), help="Insist on a time step above the certified bound.")]
 Quiet = Annotated[bool, Parameter(name=["-q", "--quiet"], negative=(), help="Print errors only.")]
 Verbose = Annotated[bool, Parameter(name=["-v", "--verbose"], negative=(), help="Print every effect with its reason.")]
 Out = Annotated[Path | None, Parameter(name=["-o", "--out"], help="Output folder; default SCENE.out beside the scene.")]
 Executors = Annotated[int, Parameter(name=["-n", "--executors"], help="Processes that simulate; one more supervises them.")]
-Control = Annotated[Literal["central", "peers"] | None, Parameter(help="Who assigns objects to executors: the supervisor, or each the same.")]
+Control = Annotated[Literal["central", "peers"] | None,
+                    Parameter(help="Who assigns objects to executors: the supervisor, or each the same.")]
 Force = Annotated[bool, Parameter(negative=(), help="Overwrite an output folder of an earlier run.")]
 
 
 @app.default
-def run(scene: Path, /, *, executors: Executors = 1, out: Out = None, control: Control = None, accuracy: Accuracy = None, set_: Set = (), force: Force = False,
-        movie: bool = True, allow_unstable: AllowUnstable = False, quiet: Quiet = False, verbose: Verbose = False) -> None:
+def run(scene: Path, /, *, executors: Executors = 1, out: Out = None, control: Control = None, accuracy: Accuracy = None,
+        set_: Set = (), force: Force = False, movie: bool = True, allow_unstable: AllowUnstable = False, quiet: Quiet = False,
+        verbose: Verbose = False) -> None:
     """Check, build and run a scene; leave a movie, a trajectory and a summary.
 
     Parameters
@@ -82,7 +86,8 @@ def check(scene: Path, /, *, executors: Executors = 1, set_: Set = (), accuracy:
     from .driver.calibration import calibration
     from .driver.forecast import forecast
     from .driver.prospect import prospect
-    from .report import certificate_line, check_json, effect_line, forecast_line, output_line, prospect_lines, scene_lines, who_line
+    from .report import (
+        certificate_line, check_json, effect_line, forecast_line, output_line, prospect_lines, scene_lines, who_line)
 
     _check_executors(executors)
     record = _with_accuracy(_load(scene, set_, strict=strict), accuracy)
@@ -131,7 +136,8 @@ def build(scene: Path, /, *, out: Out = None, set_: Set = (), accuracy: Accuracy
 
 
 @app.command
-def resume(folder: Path, /, *, executors: Executors = 1, control: Control = None, movie: bool = True, allow_unstable: AllowUnstable = False, quiet: Quiet = False) -> None:
+def resume(folder: Path, /, *, executors: Executors = 1, control: Control = None, movie: bool = True,
+           allow_unstable: AllowUnstable = False, quiet: Quiet = False) -> None:
     """Go on from the last checkpoint of an output folder, as if it had never stopped.
 
     Parameters
@@ -348,7 +354,8 @@ def _stored_scene(folder: Path):
     from .results.files import MARK, read_json
 
     if not (folder / MARK).is_file():
-        what = "has no run in it" if folder.is_dir() else "is a file, not the output folder of a run" if folder.exists() else "does not exist"
+        what = ("has no run in it" if folder.is_dir() else
+                "is a file, not the output folder of a run" if folder.exists() else "does not exist")
         raise OutputError(f"{folder} {what}; name the folder that a run has written, NAME.out beside NAME.txt or what -o said")
     manifest = read_json(folder / "manifest.json")
     scene = _load(folder / "scene.lock.txt", ())
@@ -442,7 +449,8 @@ class _bar:
         self.progress = Progress(TextColumn(f"{self.name:<8}", table_column=columns[0]),
                                  BarColumn(bar_width=10 if narrow else 24, table_column=columns[1]),
                                  TaskProgressColumn(table_column=columns[2]),
-                                 TextColumn("{task.description}", table_column=Column(no_wrap=True, overflow="ellipsis")), console=console)
+                                 TextColumn("{task.description}", table_column=Column(no_wrap=True, overflow="ellipsis")),
+                                 console=console)
         self.progress.start()
         self.task = self.progress.add_task("", total=None)
         return lambda done, total, text: self.progress.update(self.task, completed=done, total=total, description=text)

@@ -60,14 +60,16 @@ MODELLING = 4e-6
 
 
 def size_line(scene: Scene) -> str | None:
-    """One line: how large the models of a scene will be, before they are made; None where that is soon done. Raises SceneError."""
+    """One line: how large the models of a scene will be, before they are made; None where that is soon done.
+    Raises SceneError."""
     if not scene.solids:
         return None
     plan = plan_spacing(scene)
     if plan.total < LARGE:
         return None
     return (f"size     about {number(plan.total / 1e6, 2)} million particles, spacing {say(plan.h, 'm')} set by {plan.set_by}: "
-            f"{number(plan.memory * 1e-9, 2)} GB of {number(plan.available * 1e-9, 2)} GB free, about {_about(MODELLING * plan.total)} of modelling")
+            f"{number(plan.memory * 1e-9, 2)} GB of {number(plan.available * 1e-9, 2)} GB free, "
+            f"about {_about(MODELLING * plan.total)} of modelling")
 
 
 def _liquid(ready: Prepared) -> str:
@@ -149,7 +151,8 @@ def spread_line(timeline: Timeline, folder: Path) -> str:
     """One line: what a run on several executors did, and how to see it."""
     again = sum(timeline.retries)
     return (f"spread   {count(timeline.executors, 'executor')}, {timeline.control}: "
-            f"{count(sum(timeline.moves), 'object')} moved, {count(again, 'window')} begun again, busy {100 * timeline.busy().mean():.0f} %   "
+            f"{count(sum(timeline.moves), 'object')} moved, {count(again, 'window')} begun again, "
+            f"busy {100 * timeline.busy().mean():.0f} %   "
             f"picture: mdanim-lammps timeline {folder}")
 
 
@@ -170,7 +173,8 @@ def _about(seconds: float) -> str:
 
 
 def check_json(ready: Prepared, forecast: Cost | None = None, prospect: Prospect | None = None) -> dict:
-    """What ``check --format json`` prints; with the expected cost (driver/forecast.py), and what executors will bring (driver/prospect.py)."""
+    """What ``check --format json`` prints; with the expected cost (driver/forecast.py),
+    and what executors will bring (driver/prospect.py)."""
     return {
         "scene": str(ready.scene.path) if ready.scene.path else ready.scene.name,
         "objects": [{"name": m.name, "particles": len(m.position), "springs": len(m.spring), "cell": list(m.cell)}

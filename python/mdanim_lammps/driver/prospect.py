@@ -2,8 +2,8 @@
 """What several executors will bring, told before the run: who will be near whom, and so which work can be shared out.
 
 The objects fly by themselves (gravity, ground, walls, the surface of a liquid; they pass through each other), and at some moments
-the plan that executors would follow is made, by the same pure functions. No MPI and no LAMMPS: the process that starts executors has
-neither.
+the plan that executors would follow is made, by the same pure functions. No MPI and no LAMMPS: the process that starts executors
+has neither.
 """
 
 from __future__ import annotations
@@ -23,7 +23,8 @@ AHEAD = 1.0
 MOMENTS = 12
 """Moments within them."""
 STEP = 0.025
-"""Microseconds of a particle-step with all that is in it, of crowds (docs/architecture.md): it decides how short windows may be."""
+"""Microseconds of a particle-step with all that is in it, of crowds (docs/architecture.md):
+it decides how short windows may be."""
 FLIGHT = 0.005
 """Step of the flights [s]."""
 
@@ -48,7 +49,8 @@ class Prospect:
 
 
 def prospect(ready: Prepared, executors: int, settings: Settings = Settings()) -> Prospect:
-    """Look ahead with that many executors. Nothing is measured: a particle is as dear as any other, a liquid costs nothing beside them."""
+    """Look ahead with that many executors. Nothing is measured: a particle is as dear as any other,
+    a liquid costs nothing beside them."""
     moments = _Moments(ready, executors, settings)
     seconds = min(AHEAD, ready.scene.control.time)
     times = np.arange(MOMENTS) * seconds / MOMENTS
@@ -60,8 +62,8 @@ def prospect(ready: Prepared, executors: int, settings: Settings = Settings()) -
     busiest = sum(int(best.load.max()) for best in found)
     work = len(found) * int(moments.cost[~moments.still].sum())
     largest, share, team = np.mean([_heaviest(best, moments) for best in found], axis=0).tolist()
-    return Prospect(executors, seconds, work / busiest if busiest else 1.0, int((~moments.still[:moments.objects]).sum()), round(largest),
-                    share, team)
+    return Prospect(executors, seconds, work / busiest if busiest else 1.0, int((~moments.still[:moments.objects]).sum()),
+                    round(largest), share, team)
 
 
 def _heaviest(found: FramePlan, moments: "_Moments") -> tuple[int, float, int]:
@@ -93,7 +95,8 @@ class _Moments:
         self.feels = None if contact else np.arange(count) == self.objects
 
     def at(self, low: np.ndarray, high: np.ndarray, speed: np.ndarray) -> FramePlan:
-        """The plan for objects in these boxes (M, 3) [m] at these speeds (M,) [m/s], for the window that leaves loads in balance."""
+        """The plan for objects in these boxes (M, 3) [m] at these speeds (M,) [m/s],
+        for the window that leaves loads in balance."""
         if self.pool is not None:
             low, high, speed = np.vstack([low, self.pool[0]]), np.vstack([high, self.pool[1]]), np.append(speed, 0.0)
         length, best = max(self.whole.certificate.lengths), None
@@ -110,12 +113,13 @@ class _Moments:
 
     def _plan(self, low, high, speed, steps: int) -> FramePlan:
         gravity = float(np.linalg.norm(self.whole.scene.gravity))
-        d = islands.reach(speed, steps * self.whole.certificate.timestep, gravity, MARGIN * self.whole.spacing, self.settings.safety)
+        d = islands.reach(speed, steps * self.whole.certificate.timestep, gravity, MARGIN * self.whole.spacing,
+                          self.settings.safety)
         d[self.still] = 0.0
         if self.pool is not None:
             d[-1] = 0.0
-        return plan(low, high, d, self.cost, np.full(len(low), -1, np.int64), self.executors, particles=self.particles, still=self.still,
-                    gap=self.gap, feels=self.feels, least=self.settings.least)
+        return plan(low, high, d, self.cost, np.full(len(low), -1, np.int64), self.executors, particles=self.particles,
+                    still=self.still, gap=self.gap, feels=self.feels, least=self.settings.least)
 
 
 class _Flight:

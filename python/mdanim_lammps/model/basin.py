@@ -128,7 +128,8 @@ def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
     if not grid.cells_within(low, high):
         thinnest = min(b - a for a, b in zip(low, high))
         return [Problem(
-            liquid.spans.get("fill"), f"no cell of the basin has its centre in the part to fill, which is {say(thinnest, 'm')} thin "
+            liquid.spans.get("fill"),
+            f"no cell of the basin has its centre in the part to fill, which is {say(thinnest, 'm')} thin "
             f"where cells are {say(max(grid.cell), 'm')}",
             f"fill more of the basin, or write resolution {say(0.9 * thinnest, 'm')} in control",
         )]

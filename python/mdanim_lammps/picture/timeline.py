@@ -55,7 +55,8 @@ def shares(timeline: Timeline, columns: int) -> np.ndarray:
 
 
 def bars(share: np.ndarray, height: int) -> np.ndarray:
-    """Every executor's bar, so many pixels and a white line: colours filled up by shares, shape (K * (height + 2), columns, 3)."""
+    """Every executor's bar, so many pixels and a white line: colours filled up by shares, shape (K
+    * (height + 2), columns, 3)."""
     level = np.cumsum(share, axis=1)  # (K, kinds, columns)
     middle = (np.arange(height)[::-1] + 0.5) / height
     kind = (level[:, :, None, :] < middle[:, None]).sum(axis=1)  # as many as are below: the next one is here

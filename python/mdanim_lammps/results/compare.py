@@ -37,8 +37,8 @@ class Difference:
     def __str__(self) -> str:
         if self.equal:
             return f"equal    {self.frames} frames, every bit"
-        return (f"differ   first at frame {self.frame} (t = {number(self.time, 4)} s): {self.object} by {say(self.distance, 'm')}; "
-                f"largest in {self.frames} frames {say(self.largest, 'm')}")
+        return (f"differ   first at frame {self.frame} (t = {number(self.time, 4)} s): {self.object} by "
+                f"{say(self.distance, 'm')}; largest in {self.frames} frames {say(self.largest, 'm')}")
 
 
 def compare(a: Path, b: Path) -> Difference:

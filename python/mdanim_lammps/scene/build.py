@@ -30,7 +30,8 @@ MOST_SWEEPS = 4096
 """Most sweeps of the automaton per update that fix mdanim/liquid takes."""
 
 SOFTEST, STIFFEST = 0.1, 100.0
-"""Least and largest ``contact-stiffness``: softer, objects are passed through before they are crushed; stiffer, only time is lost."""
+"""Least and largest ``contact-stiffness``: softer, objects are passed through before they are crushed; stiffer,
+only time is lost."""
 
 
 class Builder:
@@ -129,7 +130,8 @@ class Builder:
             return
         self.problem(
             self.out.first("ground").span(0),
-            f"the ground at z = {say(ground, 'm', 6)} is above the floor of the basin, {say(liquid.low[2], 'm', 6)}: nothing sinks below it, liquid does",
+            f"the ground at z = {say(ground, 'm', 6)} is above the floor of the basin, {say(liquid.low[2], 'm', 6)}: "
+            "nothing sinks below it, liquid does",
             f"the basin has a floor of its own: leave the ground out, or write ground z {say(liquid.low[2], 'm', 6)}",
             severity="warning",
         )

@@ -151,7 +151,8 @@ def sharp(expects: Sequence[Expect], names: Sequence[str], track: np.ndarray, ti
             continue
         if kind in ("position", "velocity"):
             own = track[:, names.index(e.subject)]
-            scale = way[e.subject] if kind == "position" else float(np.linalg.norm(np.gradient(own, times, axis=0), axis=-1).max())
+            speed = np.linalg.norm(np.gradient(own, times, axis=0), axis=-1)
+            scale = way[e.subject] if kind == "position" else float(speed.max())
         else:
             scale = abs(e.value)
         if scale > 0.0 and e.tolerance <= 1.1 * sharpness * scale:  # the scale is that of a run, itself not exact
@@ -182,8 +183,8 @@ def advice(a: Analysis) -> str:
     if a.chaotic:
         fold = f"grow e-fold every {number(a.growth.folding, 2)} s and " if math.isfinite(a.growth.folding) else ""
         return (f"This scene forgets how it began: differences between runs {fold}exceed 1 % of the motion from "
-                f"t = {number(a.growth.parted)} s on whatever the setting, so no setting follows it to the end; choose by looks, by the "
-                f"energy drift and by time.")
+                f"t = {number(a.growth.parted)} s on whatever the setting, so no setting follows it to the end; choose by looks, "
+                f"by the energy drift and by time.")
     same = [r for r in a.rated.values() if not own.error.below(r.error)]  # no worse, as far as can be told
     cheapest = min(same, key=lambda r: r.seconds.middle)
     better = [r for r in a.rated.values() if r.error.below(own.error) and r.error.middle <= 0.6 * own.error.middle]

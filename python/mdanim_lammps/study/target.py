@@ -26,12 +26,13 @@ START = (2, 3, 4)
 TIME_SHARE = 0.25
 """Share of the target that the time step may use up; what is left is for the resolution, which costs far more."""
 CLOSE = 0.9
-"""A coarser setting is only tried when it would be this much coarser: what is left untried costs two thirds at least, and half with the
-longest step of all."""
+"""A coarser setting is only tried when it would be this much coarser: what is left untried costs two thirds at least, and half
+with the longest step of all."""
 MARGIN = 0.97
 """Aim a little below the target: the estimate of an error is as good as the limit it is measured against."""
 HOPE = 1.05
-"""A coarser setting is tried when it promises to come this near to the target: between two runs the promise is as good as that."""
+"""A coarser setting is tried when it promises to come this near to the target:
+between two runs the promise is as good as that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +60,8 @@ class Choice:
         return max(self.reached, self.closed or 0.0) <= self.error
 
     def __str__(self) -> str:
-        got = f"estimated {number(100 * self.reached, 2)} %" + ("" if (self.closed or 0.0) < ROUND_OFF else f", closed form {number(100 * self.closed, 2)} %")
+        got = f"estimated {number(100 * self.reached, 2)} %" + ("" if (self.closed or 0.0) < ROUND_OFF
+                                                                else f", closed form {number(100 * self.closed, 2)} %")
         step = f", time step {say(self.timestep, 's')}" if self.timestep else ""
         return f"{self.cells:g} cells across{step} ({got})"
 
@@ -276,7 +278,8 @@ class _Search:
             return True
         expected = self.bench.predict(setting)
         if expected is not None and expected > self.bench.left:
-            self.bench.watch(f"{setting} would take about {say(expected, 's', 2)}, more than the {max(0.0, self.bench.left):.0f} s left")
+            self.bench.watch(f"{setting} would take about {say(expected, 's', 2)}, "
+                             f"more than the {max(0.0, self.bench.left):.0f} s left")
             return False
         try:
             return bool(self.bench.measure(setting, limit=max(self.bench.left, 1.0)).tracks)
