@@ -2,8 +2,8 @@
 """What accuracy costs: prints the tables and findings of docs/accuracy.md, as they stand there.
 
 ``python bench/accuracy.py [--budget SECONDS] [--plots FOLDER] [PART ...]`` with parts out of beam, float, cantilever,
-crowd (a study of each scene under the budget), classes (energy drift and seconds of preview, balanced, reference) and target (``accuracy
-error 2 %`` on the cantilever against Timoshenko).
+crowd (a study of each scene under the budget), classes (energy drift and seconds of preview, balanced, reference) and target
+(``accuracy error 2 %`` on the cantilever against Timoshenko).
 """
 
 import argparse
@@ -70,7 +70,8 @@ def study(name: str, budget: float, plots: Path | None) -> None:
     print(f"\n### {name}.txt, {found.scene.control.time:g} s\n")
     if plots:
         print(f"![{name}: error over seconds]({plots.name}/study-{name}.png)\n")
-    print("| | cells | step / bound | sweeps | contact | particles | seconds | error | off expect | energy drift | sunk in | ladder |")
+    print("| | cells | step / bound | sweeps | contact | particles | seconds | error | off expect | energy drift | sunk in "
+          "| ladder |")
     print("|---|---|---|---|---|---|---|---|---|---|---|---|")
     for r in a.rated.values():
         s, p = r.point.setting, r.point
@@ -119,7 +120,8 @@ def classes() -> None:
 
 
 STEPS = (0.9, 0.7)
-"""Time steps over the bound of the full ladder, the longest there are: shorter ones only cost more, their error is that of the cells."""
+"""Time steps over the bound of the full ladder, the longest there are: shorter ones only cost more,
+their error is that of the cells."""
 
 
 def full_ladder(scene, store, choice) -> None:

@@ -2,8 +2,8 @@
 """Measures all that docs/performance.md tells, in one go: ``python bench/all.py [--quick] [--rounds N] [--write] [PART ...]``.
 
 Parts: step, alone, pressed, automaton, around, memory, limits. ``--quick`` takes about a minute; ``--write`` puts tables, figures
-(docs/performance.json) and the plot into docs/ in place of those that stand there; without it they are printed only. Every part runs in
-a process of its own, its contenders take turns in every round; a part that fails is told as such, and the exit code is 1.
+(docs/performance.json) and the plot into docs/ in place of those that stand there; without it they are printed only. Every part
+runs in a process of its own, its contenders take turns in every round; a part that fails is told as such, and the exit code is 1.
 """
 
 import argparse
@@ -87,7 +87,8 @@ def told(name: str, found: dict) -> str:
 
 def machine() -> str:
     """Processor and load, in a line."""
-    cpu = next((line.split(":")[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")),
+    cpu = next((line.split(":")[1].strip()
+                for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")),
                platform.processor())
     busy = os.getloadavg()[0] / os.cpu_count()
     return f"{cpu}, {os.cpu_count()} cores; load at the start {busy:.1f} per core" + \
@@ -104,7 +105,8 @@ def draw(found: dict) -> bool:
     from matplotlib import pyplot
 
     scenes = list(dict.fromkeys(r["scene"] for r in rows))
-    figure, axes = pyplot.subplots(1, len(scenes), figsize=(4.0 * len(scenes), 3.2), sharex=True, squeeze=False, layout="constrained")
+    figure, axes = pyplot.subplots(1, len(scenes), figsize=(4.0 * len(scenes), 3.2), sharex=True, squeeze=False,
+                                   layout="constrained")
     for axis, scene in zip(axes[0], scenes):
         own = [r for r in rows if r["scene"] == scene][::-1]
         axis.barh([r["contender"] for r in own], [r["median"] for r in own], color="0.75", label="median")

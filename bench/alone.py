@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What each effect costs where it acts, alone beside the springs: ``python bench/alone.py [rounds]``.
 
-One cube of 19^3 particles per variant, all at the same time step; contact stands in bench/pressed.py, effects that have nothing to do
-in bench/sleeping.py, all of a scene one by one in bench/effects.py.
+One cube of 19^3 particles per variant, all at the same time step; contact stands in bench/pressed.py, effects that have nothing
+to do in bench/sleeping.py, all of a scene one by one in bench/effects.py.
 """
 
 import sys
@@ -49,7 +49,8 @@ def measure(rounds: int = 15, quick: bool = False) -> list[dict]:
         for r in runners.values():
             r.instance.close()
     first: Sample = found["springs"]
-    return [{"effect": name, "median": 1e9 * s.median, "least": 1e9 * s.least, "over": s.over(first)} for name, s in found.items()]
+    return [{"effect": name, "median": 1e9 * s.median, "least": 1e9 * s.least, "over": s.over(first)}
+            for name, s in found.items()]
 
 
 def table(rows: list[dict]) -> str:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What stands around the steps of a run: ``python bench/around.py [rounds]``.
 
-Scenes of scenes/, each in processes of their own: seconds until the first step (the program's start, the scene, modelling, LAMMPS), the
-share of the run that output and the guard take, and pictures per second of the movie at 1280x720.
+Scenes of scenes/, each in processes of their own: seconds until the first step (the program's start, the scene, modelling,
+LAMMPS), the share of the run that output and the guard take, and pictures per second of the movie at 1280x720.
 """
 
 import json
@@ -59,17 +59,19 @@ def measure(rounds: int = 3, quick: bool = False) -> list[dict]:
             found = interleaved({"start": lambda: start_up(name, out), "pictures": lambda: pictures(name, out)}, rounds)
         start, fps = found["start"], found["pictures"]
         rows.append({"scene": name, "particles": cost["particles"], "wall": cost["wall"], "start": start.median,
-                     "start_least": start.least, "setup": cost["other"]["setup"], "output": cost["other"]["output"] / cost["wall"],
+                     "start_least": start.least, "setup": cost["other"]["setup"],
+                     "output": cost["other"]["output"] / cost["wall"],
                      "guard": cost["other"]["guard"] / cost["wall"], "fps": fps.median, "fps_most": max(fps.values)})
     return rows
 
 
 def table(rows: list[dict]) -> str:
     """In Markdown."""
-    return markdown(["scene", "particles", "run [s]", "`check`, median (minimum) [s]", "loading and modelling in the run [s]", "output",
-                     "guard", "pictures per second, median (most)", "goal"],
+    return markdown(["scene", "particles", "run [s]", "`check`, median (minimum) [s]", "loading and modelling in the run [s]",
+                     "output", "guard", "pictures per second, median (most)", "goal"],
                     [(r["scene"], r["particles"], r["wall"], f"{r['start']:.2f} ({r['start_least']:.2f})", r["setup"],
-                      f"{100 * r['output']:.1f} %", f"{100 * r['guard']:.1f} %", f"{r['fps']:.1f} ({r['fps_most']:.1f})", f"≥ {GOAL:g}")
+                      f"{100 * r['output']:.1f} %", f"{100 * r['guard']:.1f} %", f"{r['fps']:.1f} ({r['fps_most']:.1f})",
+                      f"≥ {GOAL:g}")
                      for r in rows])
 
 

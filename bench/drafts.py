@@ -4,13 +4,13 @@
 drafts   share of a cube of 6^3 cells below the surface, after five ways to get there, against its density over the liquid's;
          beside it how far the nearest axis of the cube leans from the vertical (45 = on an edge, 54.7 = on a corner)
 cells    the same for one tilted drop and cubes of 3 to 10 cells a side
-models   the same for a cube of 6^3 cells set upright onto the surface, by `liquid { model … }`; ten times stiffer, because pressure
-         squeezes: softer ones shrink and lie deeper
+models   the same for a cube of 6^3 cells set upright onto the surface, by `liquid { model … }`; ten times stiffer,
+         because pressure squeezes: softer ones shrink and lie deeper
 speed    terminal speed under the liquid's drag over (rho_s - rho_l) g / (gamma rho_l)
 drift    what a floating cube moves sideways in 20 s, and the sweeps of the automaton in that time
 
-Without words all of them. Units as in scenes/lab/cube.txt: spacing 1, liquid of density 1000; elasticity 1000 Pa is a wave speed of
-about 1.
+Without words all of them. Units as in scenes/lab/cube.txt: spacing 1, liquid of density 1000; elasticity 1000 Pa is a wave speed
+of about 1.
 """
 
 import sys

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What effects cost: ``python bench/effects.py added|shares|forecast [rounds]`` prints a table in Markdown (docs/cost.md).
 
-``added``: one scene with its effects added one by one. ``shares``: parts of clocks that several effects share, as they are to be set in
-effects/*.py. ``forecast``: expected and measured cost of every scene of scenes/ (runs them all). Variants take turns, so that all of them
-see the same machine; figures are medians of processor time, or of the styles' own clocks; for ``shares`` minima, because those clocks
-run on while others have the processor. What effects cost that are on and have nothing to do: bench/sleeping.py.
+``added``: one scene with its effects added one by one. ``shares``: parts of clocks that several effects share, as they are to be
+set in effects/*.py. ``forecast``: expected and measured cost of every scene of scenes/ (runs them all). Variants take turns, so
+that all of them see the same machine; figures are medians of processor time, or of the styles' own clocks; for ``shares`` minima,
+because those clocks run on while others have the processor. What effects cost that are on and have nothing to do:
+bench/sleeping.py.
 """
 
 import statistics
@@ -126,7 +127,8 @@ def added(rounds: int) -> None:
 
     ready = prepare(parse_scene(POND.format(timestep="", off="")))
     timestep = f"timestep {ready.certificate.timestep!r} s"
-    texts = {name: POND.format(timestep=timestep, off=" ".join(f"{o} off" for o in ORDER[k + 1:])) for k, name in enumerate(ORDER)}
+    texts = {name: POND.format(timestep=timestep, off=" ".join(f"{o} off" for o in ORDER[k + 1:]))
+             for k, name in enumerate(ORDER)}
     found = measure(texts, rounds)
     print(f"{ready.system.particles} particles, {len(ready.system.spring)} springs, {ready.plan.grid.cells} cells of liquid; "
           f"{1 / ready.certificate.timestep:.0f} steps per second of the scene\n")
@@ -134,7 +136,8 @@ def added(rounds: int) -> None:
     last = 0.0
     for name in ORDER:
         step = 1e6 * found[name]["step"]
-        print(f"| {'' if name == ORDER[0] else '+ '}{name} | {step:.1f} | {step - last:+.1f} us, {100 * (step - last) / step:+.1f} % | "
+        print(f"| {'' if name == ORDER[0] else '+ '}{name} | {step:.1f} | {step - last:+.1f} us, "
+              f"{100 * (step - last) / step:+.1f} % | "
               f"{1e-6 * (step - last) / ready.certificate.timestep:+.2f} s |")
         last = step
 
@@ -167,7 +170,8 @@ def forecasts(_: int) -> None:
     from mdanim_lammps.scene.parse import load_scene
 
     rates = calibration(print).rates
-    print("| scene | expected | measured | expected / measured | largest parts, expected and measured [s] |\n|---|---|---|---|---|")
+    print("| scene | expected | measured | expected / measured | largest parts, expected and measured [s] |\n"
+          "|---|---|---|---|---|")
     for path in sorted(SCENES.glob("*.txt")):
         if path.stem == "rubber":
             continue  # a fragment that another scene includes
@@ -182,7 +186,8 @@ def forecasts(_: int) -> None:
         measured = time.process_time() - start
         scale = (measured - setup) / wall  # clocks of effects tell wall time
         largest = sorted(told.parts, key=told.parts.get, reverse=True)[:4]
-        parts = ", ".join(f"{k} {told.parts[k]:.2f} {(cost.parts[k] * scale + (setup if k == 'setup' else 0.0)):.2f}" for k in largest)
+        parts = ", ".join(f"{k} {told.parts[k]:.2f} {(cost.parts[k] * scale + (setup if k == 'setup' else 0.0)):.2f}"
+                          for k in largest)
         print(f"| {path.stem} | {told.wall:.2f} s | {measured:.2f} s | {told.wall / measured:.2f} | {parts} |", flush=True)
 
 

@@ -22,10 +22,12 @@ def measure(rounds: int = 7, quick: bool = False) -> list[dict]:
     """One row."""
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "limits"
-        subprocess.run([os.environ.get("CXX", "c++"), "-std=c++17", "-O3", "-march=native", "-fno-math-errno", SOURCE, "-o", program],
+        subprocess.run([os.environ.get("CXX", "c++"), "-std=c++17", "-O3", "-march=native", "-fno-math-errno", SOURCE, "-o",
+                        program],
                        check=True, timeout=120)
         found = json.loads(subprocess.run([program], check=True, capture_output=True, text=True, timeout=120).stdout)
-    return [found | {"memory": BYTES / found["triad_memory"], "cache": BYTES / found["triad_cache"], "roots": ROOTS * found["divider"]}]
+    return [found | {"memory": BYTES / found["triad_memory"], "cache": BYTES / found["triad_cache"],
+                     "roots": ROOTS * found["divider"]}]
 
 
 def table(rows: list[dict]) -> str:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Bytes of memory per particle: ``python bench/memory.py``.
 
-A free cube in a process of its own: what it holds of memory (resident) after modelling, in the run, and the peak of all, less what it
-held before the scene was read.
+A free cube in a process of its own: what it holds of memory (resident) after modelling, in the run, and the peak of all, less
+what it held before the scene was read.
 """
 
 import json
@@ -48,14 +48,16 @@ def child(n: int) -> dict:
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
     particles = plan.system.particles
     return {"particles": particles, "springs": len(plan.bonds), "model": (modelled - before) / particles,
-            "lammps": (running - modelled) / particles, "run": (running - before) / particles, "peak": (peak - before) / particles}
+            "lammps": (running - modelled) / particles, "run": (running - before) / particles,
+            "peak": (peak - before) / particles}
 
 
 def measure(rounds: int = 1, quick: bool = False) -> list[dict]:
     """One row for each size; memory does not vary, so there is one round."""
     rows = []
     for n in (29,) if quick else (29, 59, 99):
-        done = subprocess.run([sys.executable, __file__, "child", str(n)], check=True, capture_output=True, text=True, timeout=300)
+        done = subprocess.run([sys.executable, __file__, "child", str(n)], check=True, capture_output=True, text=True,
+                              timeout=300)
         rows.append(json.loads(done.stdout))
     return rows
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What it costs to move an object to another process: ``mpiexec -n 2 python bench/migration.py [rounds]``.
 
-Rank 0 has it in a live instance, and rank 1 makes one that goes on from the same state: pack, send, part, instance, setup. The time
-from end to end is that of rank 0, until it hears that all is ready. Then instances are made and closed one after the other.
+Rank 0 has it in a live instance, and rank 1 makes one that goes on from the same state: pack, send, part, instance, setup. The
+time from end to end is that of rank 0, until it hears that all is ready. Then instances are made and closed one after the other.
 """
 
 import os
@@ -35,7 +35,8 @@ control {{
 SIZES = {9: 5.0, 26: 25.0}
 """Cells along an edge, and the time that a migration is to take at most [ms]: 1000 and 20 000 particles, roughly."""
 STAGES = ("pack", "wire", "part", "instance", "put", "end to end", "processor")
-"""The last is what the receiver takes of a processor, which other programs on the machine change less than the clock on the wall."""
+"""The last is what the receiver takes of a processor, which other programs on the machine change less
+than the clock on the wall."""
 CYCLES = 1000
 
 
@@ -127,7 +128,8 @@ def main(rounds: int = 15) -> None:
             own = mover.move()
             found[n].append(comm.gather(own))
     if comm.rank == 0:
-        print(f"{'particles':>9} " + "".join(f"{stage:>18}" for stage in STAGES) + f"{'goal':>8} {'first':>8}   [ms, median (least)]")
+        print(f"{'particles':>9} " + "".join(f"{stage:>18}" for stage in STAGES)
+              + f"{'goal':>8} {'first':>8}   [ms, median (least)]")
         for n, turns in found.items():
             first, *later = [sender | receiver for sender, receiver in turns]
             values = {stage: 1e3 * np.array([turn[stage] for turn in later]) for stage in STAGES}

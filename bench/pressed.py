@@ -80,8 +80,10 @@ def table(rows: list[dict]) -> str:
     """In Markdown."""
     return markdown(["two blocks of", "particles", "pairs listed", "in touch", "apart [ns per particle-step]", "pressed",
                      "ratio by medians", "by minima", "goal"],
-                    [(f"{r['cells']}³ cells", r["particles"], r["pairs"], r["touching"], *(f"{r[k]['median']:.1f} ({r[k]['least']:.1f})"
-                      for k in ("apart", "pressed")), r["ratio"]["medians"], r["ratio"]["minima"], "≤ 1.3" if r["cells"] == 12 else "")
+                    [(f"{r['cells']}³ cells", r["particles"], r["pairs"], r["touching"],
+                      *(f"{r[k]['median']:.1f} ({r[k]['least']:.1f})"
+                      for k in ("apart", "pressed")), r["ratio"]["medians"], r["ratio"]["minima"],
+                      "≤ 1.3" if r["cells"] == 12 else "")
                      for r in rows])
 
 

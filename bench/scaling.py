@@ -160,13 +160,15 @@ def table(runs: dict, known: dict, cases) -> str:
         k = known[name]
         lines += [f"{name}: {k['objects']} objects, {k['particles']} particles, {k['steps']} steps per frame, "
                   f"{of[cases[0]][0]['frames']} frames", "",
-                  "| executors | frames/s, wall | times | frames/s of the busiest processor | times | moved | again | supervisor [s] |",
+                  "| executors | frames/s, wall | times | frames/s of the busiest processor | times | moved | again | "
+                  "supervisor [s] |",
                   "|---|---|---|---|---|---|---|---|"]
         base = of[cases[0]]
         for case in cases:
             rest = ""
             if case[0]:
-                rest = " | ".join(f"{middle(of[case], what):.{n}f}" for what, n in (("moves", 0), ("again", 0), ("supervisor_cpu", 2)))
+                rest = " | ".join(f"{middle(of[case], what):.{n}f}"
+                                  for what, n in (("moves", 0), ("again", 0), ("supervisor_cpu", 2)))
             lines.append(f"| {label(case)} | {middle(of[case], 'by_wall'):.2f} | {ratio(of[case], base, 'by_wall'):.2f} | "
                          f"{middle(of[case], 'by_cpu'):.2f} | {ratio(of[case], base, 'by_cpu'):.2f} | {rest or ' | | '} |")
         lines.append("")
@@ -218,7 +220,8 @@ def run(options) -> None:
 def plot(options) -> None:
     """The picture of scaling.json."""
     data = json.loads(options.json.read_text())
-    runs = {name: {(int(case.split()[0]), case.partition(" ")[2]): r for case, r in of.items()} for name, of in data["runs"].items()}
+    runs = {name: {(int(case.split()[0]), case.partition(" ")[2]): r for case, r in of.items()}
+            for name, of in data["runs"].items()}
     draw(runs, options.plot, data["note"])
     print(f"{options.json}   {options.plot}")
 
@@ -279,7 +282,8 @@ def fit(data: dict) -> dict:
         "per_frame": (per_frame, "s of the supervisor per frame, besides"),
         "moved": (moving, "s of executors for an object that moves, with instances built anew (crowd, wall time)"),
         "order": (seconds / 10_000, "s to pack and unpack an order, per object (central: once for each executor)"),
-        "memory": (len(pickle.dumps(scene.plan)) / scene.system.particles + 72, "bytes of every executor per particle of the scene"),
+        "memory": (len(pickle.dumps(scene.plan)) / scene.system.particles + 72,
+                   "bytes of every executor per particle of the scene"),
         "latency": (LATENCY, "s for a message between hosts (assumed)"),
         "wire": (1.0 / BANDWIDTH, "s per byte between hosts (assumed)"),
     }
@@ -339,7 +343,8 @@ def row(objects: int, size: int, executors: int, cost: dict) -> str:
     terms = {"work": work * imbalance, f"exchange ({control})": exchange[control], "moves": moves}
     bound = "supervisor" if supervisor > mine else max(terms, key=terms.get)
     return (f"| {particles:,} | {executors:,} | ".replace(",", " ")
-            + f"{work:.3g} | {imbalance:.2f} | {exchange[control]:.2g} | {moves:.2g} | {supervisor:.2g} | {frame:.3g} | {cost['work'] * particles / frame:.3g} | {bound} | "
+            + f"{work:.3g} | {imbalance:.2f} | {exchange[control]:.2g} | {moves:.2g} | {supervisor:.2g} "
+            + f"| {frame:.3g} | {cost['work'] * particles / frame:.3g} | {bound} | "
             f"{cost['work'] * particles / mine:.3g} |")
 
 

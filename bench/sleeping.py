@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What an effect costs that is on and has nothing to do: ``python bench/sleeping.py [seconds]`` prints a table in Markdown (docs/cost.md).
+"""What an effect costs that is on and has nothing to do: ``python bench/sleeping.py [seconds]`` prints a
+table in Markdown (docs/cost.md).
 
-One live scene at a time, its particles at one place in memory: the effect's fixes are taken away and made again between short blocks
-of steps, every block from the same state, in turns of with, without, without, with. A pair of neighbouring blocks gives one ratio of
-processor time of this thread; printed is the median of all pairs with the 95 % interval of a bootstrap over them. It goes on
-until that interval is within 0.25 % either way, ``seconds`` (60) at most for each row. The first row takes away nothing; `*`: above 0
-by more than the interval.
+One live scene at a time, its particles at one place in memory: the effect's fixes are taken away and made again between short
+blocks of steps, every block from the same state, in turns of with, without, without, with. A pair of neighbouring blocks gives
+one ratio of processor time of this thread; printed is the median of all pairs with the 95 % interval of a bootstrap over them. It
+goes on until that interval is within 0.25 % either way, ``seconds`` (60) at most for each row. The first row takes away nothing;
+`*`: above 0 by more than the interval.
 """
 
 import sys
@@ -36,8 +37,10 @@ control {{
 }}
 effects {{ {off} }}
 """
-STONE = "object stone {{ shape box (18, 18, 18) cm position (0.68, 0, 50) m density 1000 elasticity 1 MPa velocity (-0.01, 0, -{v}) {drag} }}"
-HEAP = ("repeat i in 0 .. 9 {{ repeat j in 0 .. 9 {{ object b[10*i + j] {{ shape box (3, 3, 3) cm position (1 + 0.3*i, 0.3*j, 50) m "
+STONE = ("object stone {{ shape box (18, 18, 18) cm position (0.68, 0, 50) m density 1000 elasticity 1 MPa "
+         "velocity (-0.01, 0, -{v}) {drag} }}")
+HEAP = ("repeat i in 0 .. 9 {{ repeat j in 0 .. 9 {{ object b[10*i + j] {{ shape box (3, 3, 3) cm "
+        "position (1 + 0.3*i, 0.3*j, 50) m "
         "density 1000 elasticity 1 MPa velocity (-0.01, 0, -{v}) }} }} }}")
 SEA = "liquid water {{ basin from (-20, -20, 0) cm to (20, 20, 40) cm density 1000 level 20 cm drag {drag} model {model} }}"
 WET = "liquid off basin off"
@@ -116,7 +119,8 @@ def main(seconds: float = 60.0) -> None:
     for name, case in CASES.items():
         middle, low, high, bare, pairs = measure(case, seconds)
         sure = " *" if low > 1.0 else ""
-        print(f"| {name} | {1e9 * bare:.1f} | {100 * (middle - 1):+.2f} %{sure} | {100 * (low - 1):+.2f} to {100 * (high - 1):+.2f} % | {pairs} |",
+        print(f"| {name} | {1e9 * bare:.1f} | {100 * (middle - 1):+.2f} %{sure} "
+              f"| {100 * (low - 1):+.2f} to {100 * (high - 1):+.2f} % | {pairs} |",
               flush=True)
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What benches share: interleaved rounds, medians and minima, JSON, tables in Markdown.
 
-A bench that ``bench/all.py`` prints is a module with ``measure(rounds, quick) -> rows`` and ``table(rows) -> str``; rows are dicts of
-numbers and words that JSON holds.
+A bench that ``bench/all.py`` prints is a module with ``measure(rounds, quick) -> rows`` and ``table(rows) -> str``; rows are
+dicts of numbers and words that JSON holds.
 """
 
 import statistics
@@ -40,7 +40,8 @@ def seconds(work: Callable[[], object], clock: Callable[[], float] = time.perf_c
 
 
 def interleaved(variants: dict[str, Callable[[], float]], rounds: int) -> dict[str, Sample]:
-    """Call all variants in turns, every other round backwards, so that all of them see the same machine; each gives its own figure."""
+    """Call all variants in turns, every other round backwards, so that all of them see the same machine;
+    each gives its own figure."""
     found: dict[str, list[float]] = {name: [] for name in variants}
     for n in range(rounds):
         for name in list(variants)[:: 1 if n % 2 == 0 else -1]:
@@ -51,8 +52,9 @@ def interleaved(variants: dict[str, Callable[[], float]], rounds: int) -> dict[s
 def markdown(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """A table; numbers with three digits that count."""
     def cell(value: object) -> str:
-        return f"{value:.3g}" if isinstance(value, float) and abs(value) < 1000.0 else f"{value:,.0f}" if isinstance(value, float) \
-            else f"{value:,}" if isinstance(value, int) else str(value)
+        if isinstance(value, float):
+            return f"{value:.3g}" if abs(value) < 1000.0 else f"{value:,.0f}"
+        return f"{value:,}" if isinstance(value, int) else str(value)
     lines = [head, ["---"] * len(head), *([cell(v) for v in row] for row in rows)]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 

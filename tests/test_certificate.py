@@ -105,9 +105,10 @@ def test_stiffer_contact_shortens_the_step_more(prepared, factor):
 
 
 def test_soft_contact_is_passed_through_sooner(prepared):
-    """Lower the speed that contact stops where it is softer, name the line to change; stiffer contact stops no more than usual."""
-    soft, usual, stiff = (margin(prepared(pile(extra="velocity (0, 0, 4)", high=10, z=15.5, control=f"contact-stiffness {f}")).certificate,
-                                 "closing speed") for f in (0.125, 1, 8))
+    """Lower the speed that contact stops where it is softer, name the line to change;
+    stiffer contact stops no more than usual."""
+    texts = (pile(extra="velocity (0, 0, 4)", high=10, z=15.5, control=f"contact-stiffness {f}") for f in (0.125, 1, 8))
+    soft, usual, stiff = (margin(prepared(text).certificate, "closing speed") for text in texts)
     assert soft.limit == pytest.approx(0.25 * usual.limit) and stiff.limit == usual.limit
     assert (soft.severity, usual.severity) == ("warning", "ok")
     assert "contact-stiffness" in soft.span.text and "contact-stiffness 1" in soft.hint
@@ -184,12 +185,14 @@ control {{ time 0.8 s  frames 100 fps  resolution {h} cm }}
 
 
 @pytest.mark.parametrize(("shape", "h", "young", "extra", "limit"), [
-    pytest.param("sphere 0.12", 3, 360, "", 0.9 / 8, id="8 cells: its lowest twelve fold"),
-    pytest.param("sphere 0.12", 4, 400, "", 0.9 / 6, id="6 cells: more of them bear the blow"),
+    pytest.param("sphere 0.12", 3, 360, "", 0.5 * (12 / 280)**0.45, id="8 cells: its lowest twelve fold"),
+    pytest.param("sphere 0.12", 4, 400, "", 0.2, id="6 cells: 21 of 117 bear the blow"),
+    pytest.param("sphere 0.12", 4, 215, "", 0.2, id="6 cells, nearly too fast for any lattice"),
+    pytest.param("sphere 0.087", 3, 360, "", 0.5 * (4 / 88)**0.45, id="5.6 cells: 4 of 88 bear it"),
     pytest.param("sphere 0.12", 8, 360, "", 0.2, id="3 cells"),
-    pytest.param("sphere 0.12", 3, 700, "", 0.9 / 8, id="stiffer, so slower for its waves"),
-    pytest.param("sphere 0.12", 3, 360, "damping 0.2", 0.9 / 8, id="damped: no help"),
-    pytest.param("ellipsoid (0.12, 0.12, 0.24)", 4, 360, "", 0.9 / 12, id="pointed"),
+    pytest.param("sphere 0.12", 3, 700, "", 0.5 * (12 / 280)**0.45, id="stiffer, so slower for its waves"),
+    pytest.param("sphere 0.12", 3, 360, "damping 0.2", 0.5 * (12 / 280)**0.45, id="damped: no help"),
+    pytest.param("ellipsoid (0.12, 0.12, 0.24)", 4, 360, "", 0.5 * (4 / 224)**0.45, id="pointed"),
     pytest.param("box (0.24, 0.24, 0.24)", 3, 360, "", 0.2, id="flat"),
 ])
 def test_a_round_body_of_many_cells_folds_up_sooner(prepared, tmp_path, shape, h, young, extra, limit):
@@ -205,10 +208,12 @@ def test_a_round_body_of_many_cells_folds_up_sooner(prepared, tmp_path, shape, h
     with pytest.raises(DivergedError, match="inside out") as stopped:
         simulate(ready, tmp_path)
     assert found.text in str(stopped.value)
-    enough, coarser = re.search(r"write elasticity (\S+) kPa or more, resolution (\S+) mm", found.hint).groups()
-    for cure in ({"young": float(enough), "h": h}, {"young": young, "h": float(coarser) / 10}):
+    told = re.search(r"write elasticity (\S+) (\wPa) or more, or resolution (\S+) (.m), or", found.hint)
+    enough, kilo, coarser, size = told.groups()
+    young_told = float(enough) * {"kPa": 1.0, "MPa": 1e3}[kilo]
+    for cure in ({"young": young_told, "h": h}, {"young": young, "h": float(coarser) * {"cm": 1.0, "mm": 0.1}[size]}):
         cured = prepared(BALL.format(shape=shape, extra=extra, **cure))
-        assert margin(cured.certificate, "amplitude").used < 1.2  # lattices fit a spacing only so well
+        assert margin(cured.certificate, "amplitude").severity == "ok"
         simulate(cured, tmp_path)
 
 
@@ -338,7 +343,8 @@ def test_a_step_near_the_bound_is_told(prepared, fraction, severity, tmp_path):
     from mdanim_lammps.scene.parse import load_scene
 
     bound = prepared(box()).certificate.bound
-    (tmp_path / "near.txt").write_text(box(control=f"timestep {fraction * bound!r} s\n frames {1 / (fraction * bound)!r} fps\n time {100 * fraction * bound!r} s")
+    (tmp_path / "near.txt").write_text(box(
+        control=f"timestep {fraction * bound!r} s\n frames {1 / (fraction * bound)!r} fps\n time {100 * fraction * bound!r} s")
                                        .replace("  time 1 s\n", ""))
     ready = prepare(load_scene(tmp_path / "near.txt"), allow_unstable=True)
     found = margin(ready.certificate, "time step")
@@ -346,7 +352,8 @@ def test_a_step_near_the_bound_is_told(prepared, fraction, severity, tmp_path):
     assert [w.message.startswith("the time step") for w in ready.warnings] == [True] * (severity != "ok")
 
 
-@pytest.mark.parametrize(("accuracy", "fraction"), [("preview", 0.7), ("balanced", 0.5), ("reference", 0.25), ('"error 2 %"', 0.5)])
+@pytest.mark.parametrize(("accuracy", "fraction"),
+                         [("preview", 0.7), ("balanced", 0.5), ("reference", 0.25), ('"error 2 %"', 0.5)])
 def test_accuracy_chooses_the_fraction(prepared, accuracy, fraction):
     """Take the accuracy's part of the bound; a target error counts as balanced."""
     c = prepared(box(control=f"accuracy {accuracy}\n frames 1000 fps")).certificate
@@ -416,7 +423,8 @@ def test_objects_that_fly_towards_each_other_close_at_the_sum(prepared):
 
 def test_objects_that_fly_together_do_not_close(prepared):
     """Take the difference of velocities, not their size."""
-    together = prepared(pile(extra="velocity (0, 0, 50)", top="velocity (0, 0, 50)").replace("gravity (0, 0, -10)", "")).certificate
+    text = pile(extra="velocity (0, 0, 50)", top="velocity (0, 0, 50)").replace("gravity (0, 0, -10)", "")
+    together = prepared(text).certificate
     assert margin(together, "closing speed").value == 0.0
 
 
@@ -470,7 +478,8 @@ def test_margin_lines_tell_what_is_passed_and_sum_up_the_rest(prepared):
 
 def test_a_crowd_does_not_fill_the_certificate(prepared):
     """Tell the hundred smallest bounds."""
-    text = box().replace("object a {", "repeat i in 0 .. 119 {\n object a[i] {").replace("position (0, 0, 0) m", "position (i, 0, 0) m")
+    text = box().replace("object a {", "repeat i in 0 .. 119 {\n object a[i] {").replace("position (0, 0, 0) m",
+                                                                                         "position (i, 0, 0) m")
     text = text.replace("elasticity 100 kPa\n  \n}", "elasticity (100 + i) * 1 kPa\n}\n}")
     bounds = [m for m in prepared(text).certificate.margins if m.name == "time step"]
     assert len(bounds) == 100 and bounds[0].object == "a[119]"

@@ -2,9 +2,12 @@
 """The command line: exit codes, messages, and what goes where."""
 
 import json
+import os
 import subprocess
 import sys
+from pathlib import Path
 
+import plugin_path
 import pytest
 
 GOOD = """
@@ -43,7 +46,7 @@ def test_run_leaves_a_movie(scene):
     path = scene()
     done = run(path)
     assert done.returncode == 0, done.stderr
-    words = [line.split()[0] for line in done.stdout.splitlines()]
+    words = [line.split()[0] for line in done.stdout.splitlines() if not line.startswith(" ")]
     assert words == ["scene", "certify", "output", "cost", "ledger", "movie"]
     assert (path.parent / "cube.out" / "movie.mp4").stat().st_size > 1000
     assert done.stdout.strip().endswith("movie.mp4")
@@ -63,10 +66,27 @@ def test_check_text_and_json(scene):
     assert [p.name for p in path.parent.iterdir()] == ["cube.txt"]
 
 
+def test_effects_are_told_in_short_lines(scene, scenes):
+    """Break what is on and what is off into lines that a terminal shows whole, between effects;
+    every effect stands in one of them."""
+    from mdanim_lammps.effects import EFFECTS
+
+    assert run("check", scene()).stdout.splitlines()[:4] == [
+        "scene    cube.txt  1 object (27 particles)",
+        "         effects: springs, gravity, ground",
+        "         off: damping (no object has damping), contact (one object), walls (no walls in the scene),",
+        "              basin, liquid, buoyancy, liquid-drag (no liquid in the scene), air-drag (no object has drag)"]
+    for name in ("crowd", "float"):
+        lines = run("check", scenes / f"{name}.txt").stdout.split("certify")[0].splitlines()
+        assert max(map(len, lines)) <= 110
+        words = " ".join(lines[1:]).replace(",", " ").split()
+        assert all(e.name in words for e in EFFECTS)
+
+
 def test_a_liquid_is_announced(scenes):
     """Say how many cells the liquid has, and by how much its volume was rounded where it was."""
     text = run("check", scenes / "float.txt").stdout
-    assert "1 object (405 particles), 1 liquid (38 400 cells); effects: springs, gravity, basin, liquid, buoyancy" in text
+    assert "1 object (405 particles), 1 liquid (38 400 cells)\n" in text
     rounded = run("check", scenes / "float.txt", "--set", "a=0.3").stdout
     assert "its volume rounded by" in rounded
     data = json.loads(run("check", scenes / "float.txt", "--format", "json").stdout)
@@ -79,6 +99,20 @@ def test_build_writes_two_files_for_lammps(scene):
     assert run("build", path).returncode == 0
     names = {p.name for p in (path.parent / "cube.out").iterdir()}
     assert {"data.cube", "in.cube"} <= names and "trajectory.h5" not in names
+
+
+def test_the_command_that_build_tells_runs(scene, tmp_path):
+    """Tell a command that runs as it stands, whether or not the shell finds our ``lmp`` by its name."""
+    path = scene()
+    bare = {"PATH": "/usr/bin:/bin"}
+    for env in (bare, {"PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin"}):
+        built = subprocess.run([sys.executable, "-m", "mdanim_lammps", "build", path, "--force"], capture_output=True, text=True,
+                               env=os.environ | env, timeout=100)
+        command = built.stdout.splitlines()[-1].removeprefix("built ")
+        assert (" lmp " in command) == (env is not bare), command
+        done = subprocess.run(command, shell=True, capture_output=True, text=True, env=plugin_path.environment() | env,
+                              timeout=100)
+        assert done.returncode == 0 and "Total wall time" in done.stdout, done.stdout + done.stderr
 
 
 def test_compare_and_render_use_an_output_folder(scene):
@@ -101,7 +135,8 @@ def test_compare_and_render_use_an_output_folder(scene):
     pytest.param(["check", "liquid.txt"], 3, ["cube is 4 cm below the floor of the basin", "move it up by 4 cm",
                                               "2 cells wide along x"], id="basin"),
     pytest.param(["check", "alone.txt"], 3, ["no object", "hold all"], id="liquid alone"),
-    pytest.param(["check", "dry.txt"], 3, ["liquid.level needs the liquid, which is off", "switch the liquid on"], id="liquid off"),
+    pytest.param(["check", "dry.txt"], 3, ["liquid.level needs the liquid, which is off", "switch the liquid on"],
+                 id="liquid off"),
     pytest.param(["fast.txt"], 4, ["certified bound", "cube", "timestep auto"], id="step above the bound"),
     pytest.param(["cube.txt", "-n", "0"], 2, ["-n 0", "at least one"], id="no executor"),
     pytest.param(["study", "cube.txt", "--budget", "soon"], 2, ["--budget soon", "expected a time above 0"], id="study"),
@@ -118,7 +153,8 @@ def test_exit_codes(scene, arguments, code, words):
     directory = scene().parent
     scene(GOOD.replace("density 1000 kg/m^3", "mass   1.5 kgg"), "bad.txt")
     water = "liquid water {\n basin from (-1, -1, 0) m to (1, 1, 1) m\n density 1000 kg/m^3\n level 0.5 m\n}\n"
-    scene(GOOD + water.replace("(-1, -1, 0) m to (1, 1, 1)", "(-4, -20, 5) cm to (4, 20, 80)").replace(") m\n d", ") cm\n d"), "liquid.txt")
+    scene(GOOD + water.replace("(-1, -1, 0) m to (1, 1, 1)", "(-4, -20, 5) cm to (4, 20, 80)").replace(") m\n d", ") cm\n d"),
+          "liquid.txt")
     scene("gravity (0, 0, -9.81)\ncontrol { time 1 s }\n" + water, "alone.txt")
     scene(GOOD + water + "effects { liquid off }\nexpect liquid.level = 0.5 m +- 1 cm\n", "dry.txt")
     scene(GOOD.replace("time 0.1 s", "time 0.1 s\n  timestep 1 s"), "fast.txt")
@@ -141,7 +177,7 @@ def test_a_large_scene_is_told_before_modelling(prepared, monkeypatch, capsys):
     with pytest.raises(pytest.fail.Exception):
         cli._prepare_record(ready.scene, allow_unstable=False)
     line = capsys.readouterr().err
-    assert line.startswith("size     about 2.7e-05 million particles, spacing 5 cm set by resolution: ") and "of modelling" in line
+    assert line.startswith("size     about 2.7e-5 million particles, spacing 5 cm set by resolution: ") and "of modelling" in line
 
 
 def test_a_movie_tells_the_time_left():
@@ -163,6 +199,7 @@ def test_check_is_quick(scenes):
     code = ("import sys; from mdanim_lammps.cli import main\n"
             f"try: main(['check', {str(scenes / 'beam.txt')!r}])\n"
             "except SystemExit: pass\n"
-            "print(sorted({m.split('.')[0] for m in sys.modules} & {'pyvista', 'vtk', 'MDAnalysis', 'vtkmodules', 'h5py', 'lammps'}))")
+            "dear = {'pyvista', 'vtk', 'MDAnalysis', 'vtkmodules', 'h5py', 'lammps'}\n"
+            "print(sorted({m.split('.')[0] for m in sys.modules} & dear))")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.splitlines()[-1] == "[]", done.stdout

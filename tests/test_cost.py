@@ -51,7 +51,8 @@ RATE = dict.fromkeys(RATES, 1.0)
 
 @pytest.fixture(scope="module")
 def pond(tmp_path_factory):
-    """A scene with every effect, and the result of its run: so long that a few milliseconds that others take are no share of it."""
+    """A scene with every effect, and the result of its run:
+    so long that a few milliseconds that others take are no share of it."""
     from mdanim_lammps.driver.prepare import prepare
     from mdanim_lammps.scene.parse import load_scene
 
@@ -115,7 +116,7 @@ def test_cost_line_has_the_largest_first():
     """Order the parts by their share and leave out what is nothing."""
     cost = Cost(10.0, 1, 1, {"springs": Part(6.0), "walls": Part(0.01)}, {"output": 3.9})
     line = cost_line(SimpleNamespace(cost=cost), 5.0)
-    assert line == "cost     springs 60%  output 39%   total 10.0 s, 0.5 of real time"
+    assert line == "cost     springs 60%  output 39%   total 10.0 s, 2 s of computing per second of film"
 
 
 # --- what it will cost --------------------------------------------------------------------------------------
@@ -149,7 +150,8 @@ def test_a_forecast_counts_the_work(pond):
 
 def test_speeds_come_from_falls(prepared):
     """Take the fall to the ground for the speed that rebuilds lists, and the mean of the free flight where there is none."""
-    text = "gravity (0, 0, -9.81)\n{}\nobject a {{ shape box (0.1, 0.1, 0.1) position (0, 0, 1.05) mass 1 elasticity 1e6 }}\ncontrol {{ time 1 }}\n"
+    text = ("gravity (0, 0, -9.81)\n{}\nobject a {{ shape box (0.1, 0.1, 0.1) position (0, 0, 1.05) mass 1 elasticity 1e6 }}\n"
+            "control {{ time 1 }}\n")
     assert fastest(prepared(text.format("ground z 0"))) == pytest.approx(2.5 * (2 * 9.81) ** 0.5)
     assert fastest(prepared(text.format(""))) == pytest.approx(0.5 * 9.81, rel=1e-3)
 

@@ -59,7 +59,8 @@ def test_each_effect_is_called_for_by_its_line(effect):
 @pytest.mark.parametrize("effect", ["contact", "ground", "walls"])
 def test_what_pushes_back_tells_an_unusual_stiffness(effect):
     """Show contact-stiffness beside what it changes, and only where it is not 1."""
-    usual, told = (verdicts(re.sub(r"control \{", f"control {{ contact-stiffness {f}\n", FULL))[0][effect].reason for f in ("1", "2.5"))
+    usual, told = (verdicts(re.sub(r"control \{", f"control {{ contact-stiffness {f}\n", FULL))[0][effect].reason
+                   for f in ("1", "2.5"))
     assert told == usual + ", 2.5 times as stiff as usual"
 
 
@@ -299,8 +300,8 @@ def test_a_scene_of_nothing_is_nothing(prepared):
     assert live_fixes(ready) == set()
     assert not ready.plan.columns and not ready.plan.tables
     lines = [line for line in written(ready).splitlines() if line.startswith(("fix ", "group ", "region ", "fix_modify "))]
-    assert lines == ["fix model all property/atom rmass ghost yes", "group mobile type 1:4", "fix leapfrog mobile mdanim/leapfrog",
-                     "fix balance all balance 1000 1.1 rcb"]
+    assert lines == ["fix model all property/atom rmass ghost yes", "group mobile type 1:4",
+                     "fix leapfrog mobile mdanim/leapfrog", "fix balance all balance 1000 1.1 rcb"]
 
 
 def test_contact_that_cannot_be_leaves_nothing(prepared):

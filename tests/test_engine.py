@@ -179,7 +179,8 @@ def test_lammps_reads_back_our_data_file(prepared, tmp_path, text):
 
 @pytest.mark.parametrize("factor", [1.0, 3.0])
 def test_a_scene_agrees_with_its_naive_twin(prepared, factor):
-    """Follow slab, cube and plate through contact, ground and drag up to the moment of impact beside a NumPy twin of every law."""
+    """Follow slab, cube and plate through contact, ground and drag up to the moment of impact
+    beside a NumPy twin of every law."""
     ready = prepared(MEETING.replace("control {", f"control {{ contact-stiffness {factor}"))
     system, c = ready.system, ready.certificate
     bulk = (system.young * np.cbrt(system.cell_volume))[system.object]
@@ -348,7 +349,8 @@ def test_last_short_frame_is_dumped(prepared, tmp_path):
 
 def test_an_effect_that_is_off_leaves_no_trace(prepared):
     """Write no command, column or fix for what a scene does not call for."""
-    ready = prepared("object a { shape box (2, 2, 2) cm\n position (0, 0, 0)\n mass 1 g\n elasticity 1 kPa\n }\ncontrol { time 1 s }")
+    ready = prepared("object a { shape box (2, 2, 2) cm\n position (0, 0, 0)\n mass 1 g\n elasticity 1 kPa\n }\n"
+                     "control { time 1 s }")
     script = input_script(ready.plan)
     for word in ("gravity", "barrier", "mdanim/wall", "mdanim/liquid", "lambda", " d_", " i2_", "region", "boundary type"):
         assert word not in script, word

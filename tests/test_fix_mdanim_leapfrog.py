@@ -56,7 +56,8 @@ def test_every_particle_has_its_own_drag(tmp_path):
 @pytest.mark.parametrize("drag", [0.0, 0.3], ids=["no drag", "drag"])
 @pytest.mark.parametrize("style", ["verlet", "verlet/mdanim"])
 def test_kinetic_energy_is_that_of_the_smooth_path(tmp_path, style, drag):
-    """Work out T - dt v.(F' - F)/12 - dt^2 F.F/24m from the forces of the last two steps; at the start there is no step before."""
+    """Work out T - dt v.(F' - F)/12 - dt^2 F.F/24m from the forces of the last two steps;
+    at the start there is no step before."""
     dt, m = 0.2, BODY.mass[:, None]
     lmp = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog" + (f" lambda {drag}" if drag else ""), f"run_style {style}",
                                     "fix_modify run energy no", f"timestep {dt}", "run 0"])

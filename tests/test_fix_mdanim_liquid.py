@@ -277,7 +277,8 @@ def test_level_liquid_sleeps_and_wakes(tmp_path):
 
 
 def test_updates_come_after_a_stride(tmp_path):
-    """Of a block that sinks through the pool: a longer stride has fewer, each of one sweep here, and one that is never done none."""
+    """Of a block that sinks through the pool: a longer stride has fewer, each of one sweep here,
+    and one that is never done none."""
     seen = []
     for stride in (0.1, 1.0, 1e6):
         lmp = block_in_pool(tmp_path, (3, 3, 3), (-1.5, -1.5, 4.0), ["run 80"], density=1.0, velocity=(0.0, 0.0, -0.2),
@@ -292,7 +293,8 @@ def test_updates_come_after_a_period(tmp_path):
     seen = []
     for period in (0.06, 0.6, 1e6):  # times sqrt(cell/g) = 10
         lmp = lab.load(one(60.0), tmp_path, [
-            *BASIN, "region half block -10 0 -10 10 0 16", f"{POOL.replace('level 10', 'volume 1000 fill half')} sweeps 1 period {period}",
+            *BASIN, "region half block -10 0 -10 10 0 16",
+            f"{POOL.replace('level 10', 'volume 1000 fill half')} sweeps 1 period {period}",
             "fix move all mdanim/leapfrog", "timestep 0.3", "run 80"])
         seen.append(value(lmp, "sweeps"))
         lmp.close()
@@ -355,7 +357,8 @@ def test_a_state_comes_back_whole(tmp_path, calm):
     wall = lab.block((2, 4, 14), (-5.0, -2.0, 0.0))
     lmp = lab.load(
         wall, tmp_path,
-        ["fix table all property/atom i2_cell 7 ghost yes", *lattice(wall, (2, 4, 14)), *BASIN, POOL + " cells i2_cell still all", "run 8"],
+        ["fix table all property/atom i2_cell 7 ghost yes", *lattice(wall, (2, 4, 14)), *BASIN, POOL + " cells i2_cell still all",
+         "run 8"],
     )  # fmt: skip
     stored = state(lmp)
     head = stored[:HEAD.itemsize].view(HEAD)
@@ -364,7 +367,8 @@ def test_a_state_comes_back_whole(tmp_path, calm):
         head[name] = number
     error = ctypes.create_string_buffer(200)
     pointer = stored.ctypes.data_as(ctypes.c_void_p)
-    assert library().mdanim_liquid_set_state(handle(lmp), b"water", pointer, ctypes.c_longlong(len(stored)), error, 200) == 0, error.value
+    size = ctypes.c_longlong(len(stored))
+    assert library().mdanim_liquid_set_state(handle(lmp), b"water", pointer, size, error, 200) == 0, error.value
     assert np.array_equal(state(lmp), stored)
     assert np.count_nonzero(cells(lmp) == 255) == 2 * 4 * 14
     lmp.close()

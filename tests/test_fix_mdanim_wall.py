@@ -121,7 +121,8 @@ def test_energy_of_a_bounce(tmp_path):
     "sphere 1.5 1.5 -1 1 side out",  # narrower than the body: the corners of its box pass beside it
 ])
 def test_only_watched_particles_cost_but_none_is_missed(tmp_path, region):
-    """Looking at the watch list only, and at the box around all before, gives the bits of looking at all particles in every step."""
+    """Looking at the watch list only, and at the box around all before,
+    gives the bits of looking at all particles in every step."""
     body = lab.block((3, 3, 3), (0.0, 0.0, 3.0), (0.1, 0.0, -0.8))
     found = []
     # With delay 1 lists may be late, so the wall does not rely on them.

@@ -59,14 +59,16 @@ BLOCK = "object block { shape box (30, 30, 30) cm position (0, 0, 5) cm density 
 
 @pytest.mark.parametrize(("text", "insist", "told"), [
     pytest.param(hit(young=100, control="timestep 5 ms"), True,
-                 ["ball: the energies do not add up, residual", "of what ball bears", "timestep auto"], id="time step above the bound"),
+                 ["ball: the energies do not add up, residual", "of what ball bears", "timestep auto"],
+                 id="time step above the bound"),
     pytest.param(hit(young=100, time=2, control="timestep 10 ms").replace("100 fps", "1 fps"), True,
                  ["ball: (LAMMPS stopped|its positions)", "of what ball bears", "timestep auto"], id="far above, few frames"),
     pytest.param(hit(young=1, speed=-20), False,
                  ["ball: it has left the ground: all of it is beyond z = 0 m", "of the wave speed", "write elasticity"],
                  id="thrown through the ground"),
     pytest.param(hit(shape="sphere 6 cm", young=3, speed=-3.8, time=2), False,
-                 [r"ball: \d+ of its \d+ cells have been inside out since step", "of the wave speed", "write elasticity"], id="crumpled"),
+                 [r"ball: \d+ of its \d+ cells have been inside out since step", "of the wave speed", "write elasticity"],
+                 id="crumpled"),
     pytest.param(hit(young=2, speed=-6, world="", more=BLOCK), False,
                  ["ball: it is inside block", "at 6 m/s", "lower speed"], id="into another object"),
 ])
@@ -105,7 +107,8 @@ def test_a_class_of_energy_that_is_missed_is_told(tmp_path):
     result, _ = run(hard, tmp_path / "hard")
     assert 1e-4 < result.ledger.residual < LEAST
     assert [w.severity for w in result.warnings] == ["warning"]
-    assert "'accuracy reference' stands for" in result.warnings[0].message and result.warnings[0].span.text.strip() == "accuracy reference"
+    assert "'accuracy reference' stands for" in result.warnings[0].message
+    assert result.warnings[0].span.text.strip() == "accuracy reference"
     result, _ = run(hit(young=100, world=""), tmp_path / "kind")
     assert result.ledger.residual < 1e-3 and not result.warnings
 
@@ -129,9 +132,11 @@ def test_what_lammps_says_is_passed_on(prepared, tmp_path):
     """Blame an object and the time step only where particles have flown apart; other ends speak for themselves."""
     ready = prepared(hit(young=1, speed=-20))
     guard = Guard(ready, tmp_path)
-    flown = guard.broke(7, DivergedError("LAMMPS stopped: ERROR: Bond atoms 1 2\nmissing"), fastest(ready.system, ready.system.velocity))
+    flown = guard.broke(7, DivergedError("LAMMPS stopped: ERROR: Bond atoms 1 2\nmissing"),
+                        fastest(ready.system, ready.system.velocity))
     assert "ball: LAMMPS stopped: ERROR: Bond atoms 1 2 missing" in str(flown) and "  change: write elasticity" in str(flown)
-    assert "ball: LAMMPS" in str(guard.broke(7, DivergedError("LAMMPS stopped: Lost atoms"), fastest(ready.system, ready.system.velocity[:5])))
+    assert "ball: LAMMPS" in str(guard.broke(7, DivergedError("LAMMPS stopped: Lost atoms"),
+                                             fastest(ready.system, ready.system.velocity[:5])))
     other = str(guard.broke(7, DivergedError("LAMMPS stopped: ERROR: no open cell is left"), 0))
     assert other.startswith("step 7, t = ") and "no open cell" in other and "cause" not in other and str(tmp_path) in other
 

@@ -50,7 +50,8 @@ def test_what_ranks_say_is_passed_on_but_for_obituaries(capsys):
 
 @pytest.mark.parametrize(("words", "checkpoint", "told"), [
     pytest.param(OBITUARY, True, r"lost \(EXIT CODE: 9\).*go on with: mdanim-lammps resume", id="killed"),
-    pytest.param("RuntimeError: no\nMemoryError: too large\n", True, r"lost \(MemoryError: too large\)", id="the last error is the cause"),
+    pytest.param("RuntimeError: no\nMemoryError: too large\n", True, r"lost \(MemoryError: too large\)",
+                 id="the last error is the cause"),
     pytest.param("", False, r"lost \(exit code 7\).*nothing was kept yet", id="without a word"),
 ])
 def test_lost_ranks_are_told_in_one_message(tmp_path, words, checkpoint, told):
@@ -65,7 +66,8 @@ def test_lost_ranks_are_told_in_one_message(tmp_path, words, checkpoint, told):
 def test_no_executor_is_too_few(tmp_path, count):
     """A usage error, from the command line and from Python."""
     (tmp_path / "fall.txt").write_text(FALL)
-    done = subprocess.run([sys.executable, "-m", "mdanim_lammps", str(tmp_path / "fall.txt"), "-n", str(count)], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-m", "mdanim_lammps", str(tmp_path / "fall.txt"), "-n", str(count)],
+                          capture_output=True, text=True)
     assert done.returncode == ExitCode.USAGE and f"-n {count}: at least one executor" in done.stderr
     assert not (tmp_path / "fall.out").exists()
     with pytest.raises(UsageError, match="at least one"):

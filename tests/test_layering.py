@@ -9,7 +9,8 @@ import pytest
 import mdanim_lammps
 
 ROOT = Path(mdanim_lammps.__file__).parent
-ROOMS = ["errors", "scene", "model", "effects", "certificate", "engine", "results", "driver", "study", "picture", "report", "api", "cli", "__main__"]
+ROOMS = ["errors", "scene", "model", "effects", "certificate", "engine", "results", "driver", "study", "picture", "report", "api",
+         "cli", "__main__"]
 
 
 def room(path: Path) -> str:

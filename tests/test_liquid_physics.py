@@ -64,7 +64,8 @@ def test_a_cube_floats_as_deep_as_archimedes_says(case, density):
             assert instance.fix_value("liquid", UNITS) == instance.fix_value("liquid", START)
         found = immersed(ready.system, instance.array("x"), instance.fix_value("liquid", LEVEL))
         assert np.abs(instance.array("v")).max() < 1e-2
-    # physics: 2 % of the side is what sampling a body of 6 cells by its nodes can do; the worst here is 1.1 %, most are below 0.4 %.
+    # physics: 2 % of the side is what sampling a body of 6 cells by its nodes can do; the worst here is 1.1 %,
+    # most are below 0.4 %.
     assert found == pytest.approx(density / 1000, abs=0.02)
 
 

@@ -106,7 +106,7 @@ def test_a_basin_too_large_for_memory_is_told(monkeypatch):
     """Refuse with the estimate and a resolution that will do."""
     monkeypatch.setattr(basin, "available_memory", lambda: 1e4)
     (problem,) = problems(h=0.1)
-    assert problem.line == 11 and "1,000 cells of 10 cm" in problem.message and "are free" in problem.message
+    assert problem.line == 11 and "1 000 cells of 10 cm" in problem.message and "are free" in problem.message
     coarser = float(problem.hint.split()[2]) / 100
     assert basin.plan_grid(WATER, coarser).cells * basin.BYTES_PER_CELL <= 1e4
 
@@ -114,7 +114,7 @@ def test_a_basin_too_large_for_memory_is_told(monkeypatch):
 def test_a_drop_is_no_liquid():
     """Refuse less than half a cell."""
     (problem,) = problems(block(), volume=4e-4)
-    assert problem.line == 12 and "less than half a cell of 0.001 m^3" in problem.message
+    assert problem.line == 12 and "less than half a cell of 1 l" in problem.message
     assert not problems(block(), volume=6e-4)
 
 
@@ -124,7 +124,7 @@ def test_liquid_has_room_only_beside_what_stands_in_it(volume, fits):
     found = problems(block(position=(0.5, 0.5, 0.3), hold=(HoldAll(),)), volume=volume)
     assert fits == (not found)
     if not fits:
-        assert found[0].line == 12 and "has room for 0.936 m^3" in found[0].message
+        assert found[0].line == 12 and "has room for 936 l" in found[0].message
 
 
 @pytest.mark.parametrize(("volume", "fits"), [(0.46, True), (0.48, False)])
@@ -134,7 +134,7 @@ def test_liquid_has_room_only_in_what_is_filled(volume, fits):
                      fill=((0.0, 0.0, 0.0), (0.5, 1.0, 1.0)))
     assert fits == (not found)
     if not fits:
-        assert "the part that is filled has room for 0.468 m^3" in found[0].message
+        assert "the part that is filled has room for 468 l" in found[0].message
 
 
 @pytest.mark.parametrize(("density", "rest", "fits"), [
@@ -149,15 +149,15 @@ def test_a_body_needs_room_to_sink_in(density, rest, fits):
     found = problems(block(density=density), volume=0.95, **rest)
     assert fits == (not found)
     if not fits:
-        assert found[0].line == 2 and "block displaces up to 0.064 m^3" in found[0].message
-        assert "room for 0.05 m^3 more" in found[0].message
+        assert found[0].line == 2 and "block displaces up to 64 l" in found[0].message
+        assert "room for 50 l more" in found[0].message
 
 
 def test_bodies_that_fit_alone_may_not_fit_together():
     """Add up what they displace."""
     two = [block(name=name, position=(x, 0.5, 1.5), density=2000.0) for name, x in (("a", 0.25), ("b", 0.75))]
     (problem,) = problems(*two, volume=0.9)
-    assert problem.line == 12 and "together displace up to 0.128 m^3" in problem.message
+    assert problem.line == 12 and "together displace up to 128 l" in problem.message
     assert not problems(two[0], volume=0.9)
 
 
@@ -173,7 +173,7 @@ def test_a_level_fits_wherever_it_is():
     standing = block(position=(0.5, 0.5, 0.2), hold=(HoldAll(),))
     assert not problems(standing, volume=None, level=1.0)
     (problem,) = problems(standing, block(density=3000.0), volume=None, level=0.95)
-    assert "room for 0.05 m^3 more" in problem.message
+    assert "room for 50 l more" in problem.message
 
 
 def test_a_mesh_displaces_its_own_volume():

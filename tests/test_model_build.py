@@ -201,7 +201,8 @@ def test_equal_objects_share_what_cannot_change():
     seen = []
     models = build_models(scene(*cubes, resolution=0.1), progress=lambda *count: seen.append(count))
     assert [m.name for m in models] == [c.name for c in cubes]
-    assert all(m.spring is models[0].spring and m.spring_type is models[0].spring_type and m.mass is models[0].mass for m in models)
+    assert all(m.spring is models[0].spring and m.spring_type is models[0].spring_type and m.mass is models[0].mass
+               for m in models)
     assert not models[0].spring.flags.writeable and not models[0].mass.flags.writeable
     assert models[0].position.flags.writeable and not np.shares_memory(models[0].position, models[1].position)
     apart = models[-1].position - models[0].position

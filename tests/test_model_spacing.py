@@ -70,7 +70,7 @@ def test_what_does_not_fit_in_memory_is_refused(monkeypatch):
         plan_spacing(scene(solid(BEAM), resolution=0.025))
     (problem,) = caught.value.problems
     assert problem.line == 9
-    assert "about 3,185 particles at a spacing of 2.5 cm need 0.0 GB" in problem.message
+    assert "about 3 185 particles at a spacing of 2.5 cm need 0.0 GB" in problem.message
     coarser = float(problem.hint.split()[-2]) / 100
     assert 0.025 < coarser < 0.06
     plan_spacing(scene(solid(BEAM), resolution=coarser))

@@ -8,7 +8,7 @@ from test_cli import GOOD, run
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.picture.palette import rgb
 from mdanim_lammps.picture.timeline import (
-    COLUMNS, DOING, NOBODY, ROWS, SINGLE, bars, draw, edges, executor_colors, ownership, shares)
+    COLUMNS, DOING, NOBODY, ROWS, SINGLE, bars, draw, edges, executor_colors, headline, ownership, shares)
 from mdanim_lammps.results.timeline import KINDS, Timeline
 
 
@@ -97,6 +97,16 @@ def test_a_picture_of_any_size(tmp_path, executors, objects, frames):
     """Draw small and large logs without a warning."""
     draw(log(executors, objects, frames), tmp_path / "t.png", "Title")
     assert (tmp_path / "t.png").read_bytes()[:4] == b"\x89PNG"
+
+
+@pytest.mark.parametrize(("title", "executors", "line"), [
+    pytest.param("Which of them float?", 2, "Which of them float? – 2 executors, owners decided by the supervisor",
+                 id="a question"),
+    pytest.param("", 1, "Run – 1 executor, owners decided by the supervisor", id="no title"),
+])
+def test_the_headline_reads_well_after_any_title(title, executors, line):
+    """Put nothing behind a title that would follow its question mark as a second mark."""
+    assert headline(log(executors), title) == line
 
 
 def test_a_log_without_spans_is_drawn(tmp_path):

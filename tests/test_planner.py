@@ -15,7 +15,9 @@ from mdanim_lammps.errors import DivergedError
 
 ROW = """
 repeat i in 1 .. 8 {
-  object cube[i] { shape box (10, 10, 10) cm  position (i*0.5, 0, 0) m  density 500  elasticity 100 kPa  velocity (20 - 4*i, 0, 0) m/s }
+  object cube[i] {
+    shape box (10, 10, 10) cm  position (i*0.5, 0, 0) m  density 500  elasticity 100 kPa  velocity (20 - 4*i, 0, 0) m/s
+  }
 }
 control { time 0.1 s  frames 50 fps  resolution 5 cm }
 """
@@ -34,7 +36,8 @@ def report(parts, owner, cost=1000, shift=0.0, speed=1.0, fingerprint="", **more
     low, high = (f.reduceat(system.position, system.first[:-1]) + shift for f in (np.minimum, np.maximum))
     cost, speed = (np.broadcast_to(value, len(low)) for value in (cost, speed))
     mine = [np.flatnonzero(np.asarray(owner) == e) for e in (0, 1)]
-    return [Report(m, low[m], high[m], speed[m].astype(float), cost[m].astype(np.int64), fingerprint=fingerprint, **more) for m in mine]
+    return [Report(m, low[m], high[m], speed[m].astype(float), cost[m].astype(np.int64), fingerprint=fingerprint, **more)
+            for m in mine]
 
 
 EQUAL = [0, 0, 0, 0, 1, 1, 1, 1]
@@ -73,7 +76,8 @@ def test_different_plans_are_found_out(parts):
 def test_costs_are_smoothed(parts):
     """The first measurement counts alone, the later ones by a quarter each; the guess before is not mixed in."""
     planner, order = begun(parts)
-    assert (planner.cost == np.maximum(1, (module.GUESS * parts.whole.certificate.steps_per_frame * planner.particles).astype(int))).all()
+    guess = module.GUESS * parts.whole.certificate.steps_per_frame * planner.particles
+    assert (planner.cost == np.maximum(1, guess.astype(int))).all()
     planner.decide(report(parts, order.plan.owner, cost=1000))
     assert (planner.cost == 1000).all()
     order = planner.decide(report(parts, order.plan.owner, cost=2000))
@@ -124,8 +128,8 @@ def test_who_escapes_for_ever_is_named(parts):
     pytest.param({"worth": 0}, 4, [40, 40, 2, 2, 3], id="eighths would not help, but of seven steps they do"),
 ])
 def test_windows_that_end_at_frames(parts, settings, joined, steps):
-    """Cubes so fast that all are one island in windows of ``joined`` steps, and apart in shorter ones: the longest window that leaves
-    two executors in balance is chosen."""
+    """Cubes so fast that all are one island in windows of ``joined`` steps, and apart in shorter ones: the longest window that
+    leaves two executors in balance is chosen."""
     reserved = 0.4 - 0.1 * parts.whole.spacing - float(parts.reach.max())  # between two cubes, for both
     speed = 1.02 * reserved / (2 * 1.3 * joined * parts.whole.certificate.timestep)
     planner, found = Planner(parts, 2, LENGTHS, Settings(**settings)), []
@@ -150,7 +154,8 @@ def test_the_pool_is_one_more_object(prepared):
     said = Report(moving, low[moving], high[moving], np.ones(len(moving)), np.full(len(moving), 100), 700)
     empty = Report(moving[:0], low[:0], high[:0], np.zeros(0), moving[:0])
     order = planner.decide([said, empty])
-    assert np.array_equal(order.high[-1], planner.high[-1]) and planner.cost[-1] != 700, "nothing was measured before the first window"
+    assert np.array_equal(order.high[-1], planner.high[-1])
+    assert planner.cost[-1] != 700, "nothing was measured before the first window"
     planner.decide([said, empty])
     assert planner.cost[-1] == 700
     names = list(system.names)

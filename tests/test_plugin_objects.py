@@ -232,7 +232,8 @@ def test_springs_that_are_given_act_as_bonds_do(without_bonds, tmp_path):
 def test_wrong_springs_come_back_as_text(without_bonds, wrong, message):
     """Name the first that cannot be."""
     pair = wrong.get("pair", BODY.bond)
-    for command in [f"bond_style {wrong.get('style', 'mdanim/harmonic')}", "bond_coeff *" + " 1.0" * (2 if "style" not in wrong else 0)]:
+    for command in [f"bond_style {wrong.get('style', 'mdanim/harmonic')}",
+                    "bond_coeff *" + " 1.0" * (2 if "style" not in wrong else 0)]:
         without_bonds.command(command)
     status, text = give_springs(without_bonds, pair, np.full(len(pair), wrong.get("kind", 1)))
     assert status == 1 and message in text

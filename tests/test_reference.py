@@ -14,7 +14,8 @@ from make import film  # noqa: E402
 
 @pytest.mark.parametrize("name", sorted(p.stem for p in HERE.glob("*.txt")))
 def test_motion_is_that_of_the_stored_run(name):
-    """Follow the stored frames to 1e-10 m and m/s: another libm may turn the first position by one bit, nothing may amplify it."""
+    """Follow the stored frames to 1e-10 m and m/s: another libm may turn the first position by one bit,
+    nothing may amplify it."""
     stored = np.load(HERE / f"{name}.npz")["film"]
     np.testing.assert_allclose(film(HERE / f"{name}.txt"), stored, rtol=0, atol=1e-10)
 

@@ -373,7 +373,7 @@ def test_override_without_unit_is_a_warning():
     """Tell how a bare number is read where the scene has a unit."""
     scene = parse_scene(text("let a = 200 kPa\n", elasticity="a"), overrides={"a": 150})
     assert scene.solids[0].elasticity == records.Young(150.0)
-    assert "is read as 150 Pa; the scene has 200000 Pa" in scene.warnings[0].message
+    assert "is read as 150 Pa; the scene has 200 kPa" in scene.warnings[0].message
 
 
 @pytest.mark.parametrize(("overrides", "words"), [
@@ -500,7 +500,8 @@ MISTAKES = [
     ("setting twice", text(mass="2 kg\n  mass 3 kg"), 5, 3, "mass is given twice in object ball",
      "scene:4:3"),
     ("name twice", text() + text().replace(CONTROL, ""), 8, 8, "the name ball is given twice", "scene:1:8"),
-    ("name of a liquid before", pool().replace(CONTROL, "") + text().replace("ball", "w"), 6, 8, "the name w is given twice", "scene:2:8"),
+    ("name of a liquid before", pool().replace(CONTROL, "") + text().replace("ball", "w"), 6, 8, "the name w is given twice",
+     "scene:2:8"),
     ("reserved name", text().replace("ball", "energy"), 1, 8, "an object cannot be called energy", ""),
     ("two controls", text() + CONTROL, 8, 1, "a second control block", "scene:7:1"),
     ("no control", text().replace(CONTROL, ""), 1, 1, "the scene has no control block",
@@ -544,12 +545,12 @@ MISTAKES = [
      "an index is a whole number, found 0.5", ""),
     ("open index", text().replace("ball", "ball[1"), 1, 15, "a ] is missing", ""),
     ("two million objects", text("repeat i in 1 .. 2*10^6 { object b[i] { } }\n"), 1, 1,
-     "about 2e+06 objects; the most is 1000000", ""),
+     "about 2 000 000 objects; the most is 1 000 000", ""),
     ("endless empty repeat", text("repeat i in 1 .. 10^12 { }\n"), 1, 1,
-     "the repeats of this scene run about 1e+12 rounds", ""),
+     "the repeats of this scene run about 1e12 rounds", ""),
     ("nested million",
      text("repeat i in 1 .. 1001 { repeat j in 1 .. 1000 { object b[i*1000 + j] { } } }\n"), 1, 1,
-     "about 1e+06 objects", ""),
+     "about 1 000 000 objects", ""),
     ("liquid without gravity", pool(gravity=""), 1, 8, "a liquid needs gravity along -z", "-9.81"),
     ("liquid on a slope", pool(gravity="gravity (1, 0, -9) m/s^2\n"), 1, 9,
      "a liquid needs gravity along -z, found (1, 0, -9) m/s^2", ""),
@@ -563,9 +564,9 @@ MISTAKES = [
     ("fill upside down", pool("volume 1 l fill from (0, 1, 0) m to (0.5, 0, 1) m"), 3, 39,
      "the part that is filled has no extent along y", "lower corner"),
     ("too much for fill", pool("volume 6 l fill from (0, 0, 0) m to (0.1, 0.5, 0.1) m"), 3, 10,
-     "0.006 m^3 of liquid do not fit into the fill region of 0.005 m^3", "larger fill region"),
+     "6 l of liquid do not fit into the fill region of 5 l", "larger fill region"),
     ("level outside fill", pool("level 0.1 m fill from (0, 0, 0.2) m to (1, 1, 1) m"), 3, 9,
-     "the level 0.1 m is outside the fill region, which goes from 0.2 m to 1 m", ""),
+     "the level 10 cm is outside the fill region, which goes from 20 cm to 1 m", ""),
     ("basin upside down", pool("volume 1 l basin from (0, 0, 1) m to (1, 1, 0) m"), 3, 40,
      "the basin has no extent along z", "lower corner"),
     ("outside the walls", text("walls from (2, 2, 2) m to (3, 3, 3) m\n"), 4, 12,
@@ -602,7 +603,8 @@ MISTAKES = [
      "4 halves"),
     ("contact too stiff", text("let f = 1e3\n").replace("time 3 s", "time 3 s contact-stiffness f"), 8, 38,
      "goes from 0.1 to 100, found 1000", "4 halves"),
-    ("contact with a unit", text().replace("time 3 s", "time 3 s contact-stiffness 4 N/m"), 7, 38, "contact-stiffness must be", ""),
+    ("contact with a unit", text().replace("time 3 s", "time 3 s contact-stiffness 4 N/m"), 7, 38, "contact-stiffness must be",
+     ""),
     ("contact with the wrong dash", text().replace("time 3 s", "time 3 s\n contact_stiffness 4"), 8, 2, "contact_stiffness",
      "did you mean 'contact-stiffness'?"),
     ("giant picture", text() + "render { size (99999, 1) }", 8, 15, "is too large", "16384"),

@@ -22,7 +22,14 @@ def test_scene_meets_its_expectations(name, tmp_path):
     assert not result.missed, "\n".join(map(str, result.missed))
 
 
+@pytest.mark.parametrize("name", sorted({p.stem for p in SCENES.glob("*.txt")} - FRAGMENTS))
+def test_scene_is_within_all_limits(name):
+    """Show nobody a scene that begins with a warning."""
+    assert not Scene.load(SCENES / f"{name}.txt").prepared.warnings
+
+
 def test_demo_scene_checks_from_the_command_line():
     """Check the scene of `make demo` as a user would."""
-    done = subprocess.run([sys.executable, "-m", "mdanim_lammps", "check", str(SCENES / "beam.txt")], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-m", "mdanim_lammps", "check", str(SCENES / "beam.txt")], capture_output=True,
+                          text=True)
     assert done.returncode == 0 and "set by: beam" in done.stdout

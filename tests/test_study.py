@@ -232,7 +232,8 @@ def test_resolution_is_what_costs_accuracy(bar_study):
     """See errors fall with the cells, about as h/t, and far above those of the time step."""
     found = bar_study.analysis.ladders["resolution"]
     assert list(found.errors) == sorted(found.errors, reverse=True)
-    assert 0.9 < found.order < 1.5  # bending itself is right from 2 cells on; what is left is the clamp, whose corners converge slowly
+    # Bending itself is right from 2 cells on; what is left is the clamp, whose corners converge slowly.
+    assert 0.9 < found.order < 1.5
     assert "most of the error from the resolution" in bar_study.advice
 
 
@@ -500,7 +501,8 @@ TARGET = BAR.replace("frames 100 fps", 'frames 100 fps\n  accuracy "error 8 %"')
 
 @pytest.fixture
 def stiff_in_bending(monkeypatch):
-    """A lattice whose surface cells move nothing inward, so that a bar needs more than two cells and there is something to look for."""
+    """A lattice whose surface cells move nothing inward, so that a bar needs more than two cells and
+    there is something to look for."""
     monkeypatch.setattr(lattice, "INWARD", dict.fromkeys(lattice.INWARD, 0.0))
 
 

@@ -53,8 +53,10 @@ def pair(top="", a="", b=""):
     pytest.param(pair(DOWN), False, id="fall side by side"),
     pytest.param(pair(DOWN + "ground z 0"), False, id="bounce side by side: the ground pushes up only"),
     pytest.param(pair(DOWN + "ground z 0", a="velocity (5, 0, 0)"), True, id="bounces over to the other"),
-    pytest.param(pair(DOWN + "walls from (-0.15, -9, 0) to (9, 9, 9)", a="velocity (-5, 0, 0)"), True, id="comes back from a wall"),
-    pytest.param(pair(DOWN + "walls from (-9, -9, 0) to (2.15, 9, 9)", b="velocity (5, 0, 0)"), True, id="comes back from the other wall"),
+    pytest.param(pair(DOWN + "walls from (-0.15, -9, 0) to (9, 9, 9)", a="velocity (-5, 0, 0)"), True,
+                 id="comes back from a wall"),
+    pytest.param(pair(DOWN + "walls from (-9, -9, 0) to (2.15, 9, 9)", b="velocity (5, 0, 0)"), True,
+                 id="comes back from the other wall"),
     pytest.param(pair(DOWN + "walls from (-0.15, -9, 0) to (9, 9, 9)\neffects { walls off }", a="velocity (-5, 0, 0)"), False,
                  id="the wall is switched off"),
     pytest.param(pair(DOWN + POOL.format(z=-2, top=0, level=-1)), True, id="a liquid pushes wherever it likes"),
@@ -154,11 +156,13 @@ def random_scene(draw: random.Random) -> str:
     if gravity == "(0, 0, -9.81)" and draw.random() < 0.4:
         text += f"liquid w {{ basin from (-1.5, -1.5, -0.5) to (1.5, 1.5, 2) density 1000 level {draw.uniform(0.2, 1.2):.3f} }}\n"
     for k, x in enumerate((-0.9, 0.9)):
-        shape = draw.choice(["sphere 0.15", "box (0.3, 0.2, 0.4)", "torus 0.15 0.06", "cylinder 0.1 0.3", "box (0.6, 0.15, 0.15)"])
+        shape = draw.choice(["sphere 0.15", "box (0.3, 0.2, 0.4)", "torus 0.15 0.06", "cylinder 0.1 0.3",
+                             "box (0.6, 0.15, 0.15)"])
         held = shape.startswith("box") and draw.random() < 0.3
         velocity = [0.0 if held else draw.choice([0, 1]) * draw.uniform(-2, 2) for _ in range(3)]
         spin = [0.0 if held else draw.choice([0, 0, 1]) * draw.uniform(-8, 8) for _ in range(3)]
-        text += (f"object o{k} {{\n shape {shape}\n density {draw.choice([200, 800, 3000])}\n elasticity {draw.choice([2e4, 1e5, 1e6])}\n"
+        text += (f"object o{k} {{\n shape {shape}\n density {draw.choice([200, 800, 3000])}\n"
+                 f" elasticity {draw.choice([2e4, 1e5, 1e6])}\n"
                  f" position ({x}, {draw.uniform(-0.6, 0.6)}, {draw.uniform(0.5, 1.6)})\n"
                  f" orientation euler ({draw.uniform(-90, 90)}, {draw.uniform(-90, 90)}, 0) deg\n"
                  f" velocity ({', '.join(map(str, velocity))})\n spin ({', '.join(map(str, spin))})\n"

@@ -31,7 +31,8 @@ def test_owners_of_every_frame():
 
 
 def test_a_resume_goes_on_with_the_log(tmp_path):
-    """Three executors after two, from frame 6 on: what was done beyond is left out, times go on, only changes of owners are told."""
+    """Three executors after two, from frame 6 on: what was done beyond is left out, times go on,
+    only changes of owners are told."""
     before, now = log(), Timeline(3, "peers", ("a", "stone", "b", "c"))
     before.spans.append((0, "simulating", 7, 0.5, 9.0))
     before.cpu, before.supervisor_cpu = [2.0, 1.0], 0.5

@@ -26,7 +26,8 @@ SHAPES = {
     "sphere": f"object a {{ shape sphere 5 cm position (0, 0, 0) {SOLID} spin (3, 2, 40) rad/s }}",
     "plate": f"object a {{ shape box (12, 12, 1) cm position (0, 0, 0) {SOLID} spin (9, 2, 4) rad/s }}",
     "needle": f"object a {{ shape box (1, 1, 9) cm position (0, 0, 0) {SOLID} spin (9, 2, 4) rad/s }}",
-    "several": "\n".join(f"object a{i} {{ shape box ({2 + i}, 3, {5 - i}) cm position ({9 * i}, 0, 0) cm {SOLID} spin (9, {i}, 4) rad/s }}"
+    "several": "\n".join(f"object a{i} {{ shape box ({2 + i}, 3, {5 - i}) cm position ({9 * i}, 0, 0) cm {SOLID} "
+                         f"spin (9, {i}, 4) rad/s }}"
                          for i in range(4)),
     "damped": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOFT} spin (30, 20, 40) rad/s }}",
     "damped beside others": f"object a {{ shape box (5, 4, 6) cm position (0, 0, 0) {SOFT} spin (3, 40, 4) rad/s }}\n"
@@ -38,7 +39,8 @@ SHAPES = {
 EFFECTS = {
     "contact": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} velocity (1, 0.1, 0) }}\n"
                f"object b {{ shape box (5, 6, 7) cm position (9, 0, 0.5) cm {SOLID} velocity (-1, 0, 0) }}",
-    "ground": f"ground z -5 cm\nobject a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} velocity (1, 0, -2) spin (0, 8, 0) rad/s }}",
+    "ground": f"ground z -5 cm\nobject a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} velocity (1, 0, -2) "
+              "spin (0, 8, 0) rad/s }",
     "walls and contact": "walls from (-8, -8, -8) cm to (14, 8, 12) cm\n"
                          f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOLID} velocity (2, 0, -2) }}\n"
                          f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}",
@@ -60,7 +62,8 @@ EFFECTS = {
                     f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOFT} velocity (2, 0, -2) }}\n"
                     f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}",
     "damped in liquid": "object a { shape box (6, 6, 6) cm position (0, 0, 14) cm density 500 elasticity 0.2 MPa damping 0.1 }\n"
-                        "object b { shape box (4, 4, 4) cm position (0, 0, 24) cm density 500 elasticity 0.2 MPa velocity (0, 0, -3) }\n"
+                        "object b { shape box (4, 4, 4) cm position (0, 0, 24) cm density 500 elasticity 0.2 MPa "
+                        "velocity (0, 0, -3) }\n"
                         "liquid w { basin from (-10, -10, 0) cm to (10, 10, 40) cm density 1000 level 12 cm drag 4 }",
     "liquid": f"object a {{ shape box (6, 6, 6) cm position (0, 0, 14) cm density 500 elasticity 0.2 MPa drag 0.1 }}\n"
               f"object b {{ shape box (4, 4, 4) cm position (0, 0, 24) cm density 500 elasticity 0.2 MPa velocity (0, 0, -3) }}\n"
@@ -68,8 +71,8 @@ EFFECTS = {
 }
 
 
-# After contact and walls, for which places suffice, one that asks for velocities, and then walls again, where particles are that have
-# felt it.
+# After contact and walls, for which places suffice, one that asks for velocities, and then walls again, where particles are that
+# have felt it.
 LATER = ("fix damped mobile mdanim/barrier boundary inner d_stiffness d_reach damp 0.5",
          "region room block -0.08 0.13 -0.08 0.08 -0.0285 0.12", "fix room mobile mdanim/wall room d_stiffness")
 BETWEEN = ("walls from (-8, -8, -2.9) cm to (13, 8, 12) cm\n"
@@ -244,14 +247,15 @@ def test_what_is_not_known_gets_the_plain_step(tmp_path, stranger):
 def test_somebody_who_looks_sees_every_step_he_asks_for(tmp_path):
     """Dump every seventh step and rebuild by a fix of LAMMPS in between: all of every particle is the same to the last digit.
 
-    The box is not: LAMMPS shrinks it when it makes lists, and passes need new ones at other steps. Neither is farther off than half
-    the skin.
+    The box is not: LAMMPS shrinks it when it makes lists, and passes need new ones at other steps. Neither is farther off than
+    half the skin.
     """
     texts = []
     for style in ("verlet", "verlet/mdanim"):
         path = tmp_path / style.replace("/", "-")
         lab_state(BODY, tmp_path, [*MOVE, f"run_style {style}", f"dump d all custom 7 {path} id x y z vx vy vz fx",
-                                   "dump_modify d sort id format float %.17g", "fix b all balance 10 1.0 shift x 5 1.1", "run 50"])
+                                   "dump_modify d sort id format float %.17g", "fix b all balance 10 1.0 shift x 5 1.1",
+                                   "run 50"])
         texts.append(path.read_text())
     frames = [[part.partition("ITEM: ATOMS")[::2] for part in text.split("ITEM: TIMESTEP")[1:]] for text in texts]
     assert len(frames[0]) == len(frames[1]) == 8
@@ -264,7 +268,8 @@ def test_somebody_who_looks_sees_every_step_he_asks_for(tmp_path):
 def test_lists_are_rebuilt_before_anybody_has_gone_half_the_skin(tmp_path):
     """Let a fast body pass through a region watched by a wall: it is pushed back as with run_style verlet, bit for bit."""
     fast = lab.block((3, 3, 3), (0.0, 0.0, 0.0), (0.7, 0.0, 0.0))
-    commands = ["region room block -5 9 -5 9 -5 9", "fix wall all mdanim/wall room 3.0", "fix run all mdanim/leapfrog", "timestep 0.1"]
+    commands = ["region room block -5 9 -5 9 -5 9", "fix wall all mdanim/wall room 3.0", "fix run all mdanim/leapfrog",
+                "timestep 0.1"]
     found, taken = lab_state(fast, tmp_path, [*commands, "run_style verlet/mdanim", "run 200"])
     plain, _ = lab_state(fast, tmp_path, [*commands, "run_style verlet", "run 200"])
     assert taken > 100
@@ -273,10 +278,12 @@ def test_lists_are_rebuilt_before_anybody_has_gone_half_the_skin(tmp_path):
 
 
 @pytest.mark.parametrize(("often", "wall", "least"), [
-    ("check no", False, 49), ("every 7 delay 14 check no", False, 49), ("once yes check no", False, 49), ("once yes check yes", True, 1),
+    ("check no", False, 49), ("every 7 delay 14 check no", False, 49), ("once yes check no", False, 49),
+    ("once yes check yes", True, 1),
     ("once yes check no", True, 1), ("check no", True, 0)])
 def test_lists_are_made_when_lammps_is_told_to(tmp_path, often, wall, least):
-    """Switch off the check of how far particles have gone, and rebuilding: passes where no lists are looked at, and the plain bits."""
+    """Switch off the check of how far particles have gone, and rebuilding: passes where no lists are looked at,
+    and the plain bits."""
     commands = [f"neigh_modify {often}", *MOVE]
     if wall:
         commands += ["region room block -10 10 -10 10 0.1 10", "fix wall all mdanim/wall room 3.0"]
@@ -336,11 +343,13 @@ def test_springs_with_and_without_dashpots_in_one_block(tmp_path):
         assert np.array_equal(found, plain)
 
 
-@pytest.mark.parametrize("change", ["bond_coeff * 0.3 1.1", "bond_coeff 1 0.2 1.0 0.1", "group second molecule 2\ndelete_bonds second multi remove",
+@pytest.mark.parametrize("change", ["bond_coeff * 0.3 1.1", "bond_coeff 1 0.2 1.0 0.1",
+                                    "group second molecule 2\ndelete_bonds second multi remove",
                                     "set group all mass 2.0", "timestep 0.1"])
 def test_what_changes_between_two_runs_is_noticed(tmp_path, change):
     """Change springs, masses or the time step after a run: passes go on with what is there now."""
-    found, plain = (lab_state(BODY, tmp_path, [*MOVE, f"run_style {style}", "run 40", *change.split("\n"), "run 40", "run 20 pre no"])
+    found, plain = (lab_state(BODY, tmp_path,
+                              [*MOVE, f"run_style {style}", "run 40", *change.split("\n"), "run 40", "run 20 pre no"])
                     for style in ("verlet/mdanim", "verlet"))
     assert found[1] == 97 and plain[1] == 0
     assert np.array_equal(found[0], plain[0])

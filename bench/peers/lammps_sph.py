@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Smoothed particle hydrodynamics in stock LAMMPS (package SPH): water as sph/taitwater, the box as fix rigid, walls of particles.
+"""Smoothed particle hydrodynamics in stock LAMMPS (package SPH): water as sph/taitwater, the box as fix rigid,
+walls of particles.
 
 Sound at ten times the fastest flow, smoothing over three spacings, a Courant number of 0.25, a third of that step: usual choices,
 not tuned, and its liquid is not checked beyond running.

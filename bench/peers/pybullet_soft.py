@@ -42,7 +42,8 @@ with tempfile.TemporaryDirectory() as folder:
     pybullet.createMultiBody(0, floor)
     nu, young = 0.25, case["young"]
     body = pybullet.loadSoftBody(
-        str(path), basePosition=[0, 0, case["z"] - 0.5], mass=case["density"], useNeoHookean=1, NeoHookeanMu=young / (2 * (1 + nu)),
+        str(path), basePosition=[0, 0, case["z"] - 0.5], mass=case["density"], useNeoHookean=1,
+        NeoHookeanMu=young / (2 * (1 + nu)),
         NeoHookeanLambda=young * nu / ((1 + nu) * (1 - 2 * nu)), NeoHookeanDamping=0.01, useFaceContact=1, collisionMargin=0.006)
 if body < 0:
     raise SystemExit("loadSoftBody did not take the mesh")

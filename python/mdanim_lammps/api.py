@@ -49,7 +49,8 @@ class Scene:
     def prepared(self) -> Prepared:
         """Models, effects, certificate and LAMMPS plan. Raises SceneError, RefusedError.
 
-        ``accuracy error p %`` has the setting that is stored beside the scene; as long as there is none it counts as ``balanced``.
+        ``accuracy error p %`` has the setting that is stored beside the scene;
+        as long as there is none it counts as ``balanced``.
         """
         return prepare(settle(self.record, make=False).scene)
 

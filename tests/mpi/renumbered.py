@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Steps that are given another number between runs without a setup: ``mpiexec -n N python renumbered.py FOLDER``.
 
-The next lists are then made in a step of the same number as the last ones. Prints how many passes were taken; raises where the places
-are not those of run_style verlet.
+The next lists are then made in a step of the same number as the last ones. Prints how many passes were taken; raises where the
+places are not those of run_style verlet.
 """
 
 import ctypes
@@ -15,7 +15,8 @@ import plugin_path
 from mpi4py import MPI
 
 WORLD = MPI.COMM_WORLD
-BODY = lab.join(lab.shaken(lab.block((9, 3, 2), velocity=(0.9, 0.3, 0.0)), 0.05), lab.block((2, 3, 3), (4.0, 6.0, 0.3), (-0.8, 0.0, 0.0)))
+BODY = lab.join(lab.shaken(lab.block((9, 3, 2), velocity=(0.9, 0.3, 0.0)), 0.05),
+                lab.block((2, 3, 3), (4.0, 6.0, 0.3), (-0.8, 0.0, 0.0)))
 
 
 def start(style: str, data: Path):

@@ -46,7 +46,10 @@ def ranks_in(folder: Path) -> dict[int, int]:
     found = {}
     for process in Path("/proc").iterdir():
         try:
-            if process.name.isdigit() and str(folder) in (process / "cmdline").read_text() and "driver.ranks" in (process / "cmdline").read_text():
+            if not process.name.isdigit():
+                continue
+            command = (process / "cmdline").read_text()
+            if str(folder) in command and "driver.ranks" in command:
                 rank = re.search(r"PMI_RANK=(\d+)", (process / "environ").read_text())
                 found[int(process.name)] = int(rank[1]) if rank else -1
         except OSError:  # it has ended meanwhile
@@ -122,7 +125,8 @@ def test_a_killed_rank_ends_the_run_within_seconds(place, control, victim):
 
 @pytest.mark.parametrize("control", ["central", "peers"])
 def test_ctrl_c_keeps_a_checkpoint(place, control):
-    """End with 130 after the frames that were under way, and go on in the sequential program, or with executors: the log has both."""
+    """End with 130 after the frames that were under way, and go on in the sequential program, or with executors:
+    the log has both."""
     process = begun(place, LONG, "-n", 2, "--control", control)
     process.send_signal(signal.SIGINT)
     code, said = ended(process, 10.0)
@@ -205,11 +209,13 @@ def test_a_full_disk_ends_all_ranks(place, monkeypatch, control):
         simulate_on(2, control, ready, folder)
 
 
-@pytest.mark.parametrize(("settings", "text"), [pytest.param({}, LONG, id="alone"), pytest.param({"least": 50}, films.HEAVY, id="in a team")])
+@pytest.mark.parametrize(("settings", "text"),
+                         [pytest.param({}, LONG, id="alone"), pytest.param({"least": 50}, films.HEAVY, id="in a team")])
 def test_an_executor_that_raises_is_told(place, monkeypatch, capfd, settings, text):
     """Whatever it is, it comes up here, and others that wait for it in LAMMPS are ended."""
     ready, folder = readied(place, text)
-    faulty(place, monkeypatch, rank=2, module="driver.bundle", kind="Bundle", method="run", time=3, what="raise ValueError('out of the blue')")
+    faulty(place, monkeypatch, rank=2, module="driver.bundle", kind="Bundle", method="run", time=3,
+           what="raise ValueError('out of the blue')")
     begin = time.monotonic()
     with pytest.raises(ExecutorLost, match="executor 1: ValueError: out of the blue"):
         simulate_on(2, "peers", ready, folder, settings=Settings(**settings))
@@ -220,7 +226,8 @@ def test_an_executor_that_raises_is_told(place, monkeypatch, capfd, settings, te
 def test_a_planner_that_raises_is_told(place, monkeypatch):
     """Under central control it runs beside the supervisor's own work."""
     ready, folder = readied(place, LONG)
-    faulty(place, monkeypatch, rank=0, module="driver.planner", kind="Planner", method="decide", time=3, what="raise ValueError('no plan')")
+    faulty(place, monkeypatch, rank=0, module="driver.planner", kind="Planner", method="decide", time=3,
+           what="raise ValueError('no plan')")
     begin = time.monotonic()
     with pytest.raises(ExecutorLost, match="no plan"):
         simulate_on(2, "central", ready, folder)

@@ -67,7 +67,8 @@ def floats(name, why="", time=3000.0, below=0.6, **scene) -> Case:
             "cells turned over": 0,
             "below the floor / h": below,
         },
-        f"{why}Archimedes within 2 % of the side, what nodes can tell of a body of 5 cells; not a unit of liquid lost at any look",
+        f"{why}Archimedes within 2 % of the side, what nodes can tell of a body of 5 cells; "
+        "not a unit of liquid lost at any look",
     )
 
 
@@ -97,7 +98,8 @@ FLOATS = [
 
 def tub(amount: str, solid: str) -> str:
     """A basin of 10^3 cells."""
-    return f"gravity (0, 0, -0.01)\nliquid water {{ basin from (0, 0, 0) m to (10, 10, 10) m density 1000 {amount} }}\n{solid}{CONTROL}"
+    return (f"gravity (0, 0, -0.01)\nliquid water {{ basin from (0, 0, 0) m to (10, 10, 10) m density 1000 {amount} }}\n"
+            f"{solid}{CONTROL}")
 
 
 def standing(size=4, z=5.0) -> str:

@@ -37,7 +37,8 @@ class Trial:
         self.system, self.timestep = self.ready.system, self.ready.certificate.timestep
         self.instance = Instance(self.ready.plan)
         effects = self.ready.plan.effects
-        self.ledger = Ledger(("kinetic", *dict.fromkeys(e.ledger for e in effects if e.ledger)), floor=rounding_energy(self.system))
+        self.ledger = Ledger(("kinetic", *dict.fromkeys(e.ledger for e in effects if e.ledger)),
+                             floor=rounding_energy(self.system))
         self.lost_cells = 0
         try:
             self.instance.setup()

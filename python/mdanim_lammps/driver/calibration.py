@@ -47,8 +47,8 @@ RATES = {
 }
 """What is measured, and in which unit."""
 ROUNDS, ROUND = 25, 1e-3
-"""Least of this many rounds of about this length [s]: what else the machine does only ever adds to the time, and hardly hits every
-one of many short ones."""
+"""Least of this many rounds of about this length [s]: what else the machine does only ever adds to the time, and hardly hits
+every one of many short ones."""
 AGAIN = 3
 """Least of this many, of what cannot be done in short rounds."""
 
@@ -80,7 +80,8 @@ def calibration(tell: Callable[[str], None] = lambda line: None) -> Calibration:
         path.parent.mkdir(parents=True, exist_ok=True)
         write_json(path, {"processor": processor(), "rates": rates})
     except (OSError, OutputError) as error:
-        tell(f"the calibration cannot be kept, it holds for this time only: {error}; set XDG_CACHE_HOME to a folder that can be written")
+        tell(f"the calibration cannot be kept, it holds for this time only: {error}; "
+             "set XDG_CACHE_HOME to a folder that can be written")
         return Calibration(rates, stored=False)
     return Calibration(rates)
 
@@ -168,8 +169,8 @@ control {
 SMALL, LARGE = 2, 13
 """Cells along the edge of the two cubes."""
 FAR, NEAR = 90, 9.5
-"""Height of the pebble over the larger cube's middle [cm]: where nobody needs lists, and where its box meets the cube's but nobody is in
-reach."""
+"""Height of the pebble over the larger cube's middle [cm]: where nobody needs lists, and where its box meets the cube's but
+nobody is in reach."""
 EVERY = 5
 """Steps between rebuilds of lists where they are measured."""
 FEW, MANY = 2, 22
@@ -257,7 +258,8 @@ def _pairs(Instance) -> float:
 
 
 def _pool(Instance) -> tuple[float, float, float]:
-    """A block that sinks in: seconds of a particle in a step, of a cell in a sweep, and of a lattice cell when cells are updated."""
+    """A block that sinks in: seconds of a particle in a step, of a cell in a sweep,
+    and of a lattice cell when cells are updated."""
     ready = _prepare(POOL)
     found = []
     for _ in range(AGAIN):
@@ -265,7 +267,8 @@ def _pool(Instance) -> tuple[float, float, float]:
             instance.setup()
             before = [instance.fix_value("liquid", k) for k in (SWEPT, AUTOMATON, OCCUPANCY)]
             instance.run(STEPS)
-            swept, automaton, occupancy = (instance.fix_value("liquid", k) - b for k, b in zip((SWEPT, AUTOMATON, OCCUPANCY), before))
+            swept, automaton, occupancy = (instance.fix_value("liquid", k) - b
+                                           for k, b in zip((SWEPT, AUTOMATON, OCCUPANCY), before))
             coupling = _least(instance, {"coupling": lambda: instance.fix_value("liquid", COUPLING)}, rounds=10)["coupling"]
         swept = max(1.0, swept)
         found.append((coupling / ready.system.particles, automaton / swept / ready.plan.grid.cells,

@@ -46,7 +46,8 @@ def simulate_on(executors: int, control: str, ready: Prepared, folder: Path, *, 
                 resume: Checkpoint | None = None, started: float | None = None, settings: Settings | None = None) -> Result:
     """`run.simulate` on ``executors`` ranks and a supervising one; the same frames, to the last bit.
 
-    ``control`` is ``central`` or ``peers``. Raises what `run.simulate` does, SetupError without mpiexec, ExecutorLost when a rank dies.
+    ``control`` is ``central`` or ``peers``. Raises what `run.simulate` does, SetupError without mpiexec,
+    ExecutorLost when a rank dies.
     """
     folder = folder.resolve()
     with tempfile.TemporaryDirectory(prefix=".ranks-", dir=folder) as exchange:
@@ -89,7 +90,8 @@ def launcher() -> list[str]:
 
 
 def _hear(stream, said: list[str]) -> None:
-    """Pass on what ranks say, but for MPI's own obituaries, which are told better by `_lost` or by the error that a run has left."""
+    """Pass on what ranks say, but for MPI's own obituaries,
+    which are told better by `_lost` or by the error that a run has left."""
     mourning = False
     for line in stream:
         said.append(line)
@@ -107,10 +109,12 @@ def _lost(code: int, said: list[str], folder: Path) -> ExecutorLost:
     """The one message for ranks that ended without a result."""
     words = [line.strip() for line in said if line.strip() and not set(line.strip()) <= {"="}]
     tracebacks = [line for line in words if "Error" in line]
-    why = next((line.lstrip("= ").rstrip() for line in words if "EXIT CODE" in line or "killed" in line.lower()), f"exit code {code}")
+    why = next((line.lstrip("= ").rstrip() for line in words if "EXIT CODE" in line or "killed" in line.lower()),
+               f"exit code {code}")
     if tracebacks:
         why = tracebacks[-1]
-    go_on = f"go on with: mdanim-lammps resume {folder}" if (folder / "checkpoint").exists() else "nothing was kept yet; run it again"
+    kept = (folder / "checkpoint").exists()
+    go_on = f"go on with: mdanim-lammps resume {folder}" if kept else "nothing was kept yet; run it again"
     return ExecutorLost(f"an executor was lost ({why}); all others were stopped. {go_on}")
 
 

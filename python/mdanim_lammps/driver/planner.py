@@ -11,21 +11,15 @@ from ..engine.part import Parts
 from ..errors import DivergedError
 from . import islands
 from .messages import Job, Order, Report
-from .planning import FramePlan, Settings, plan
+from .planning import BALANCED, MARGIN, FramePlan, Settings, plan, pool_box
 from .source import Broken
 
-MARGIN = 0.05
-"""Of a spacing, on top of the reach of every object."""
 FORGET = 0.25
 """Weight of the latest measurement in the cost of an object."""
 GUESS = 0.05
 """Microseconds of a particle-step, before anything is measured."""
 DOUBLINGS = 60
 """Beyond them a box has no meaning any more: something is flying away."""
-BALANCED = 1.25
-"""Largest load over the mean up to which a window is not made shorter."""
-ASIDE = 1000.0
-"""The pool's box beyond the basin's sides and floor, over its size: the liquid looks at heights alone."""
 
 
 class Planner:
@@ -49,7 +43,7 @@ class Planner:
         self.gap = float(parts.reach.max()) if self.contact else 0.0
         self.low, self.high, self.speed = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros(count)
         if self.pool:
-            self.low[-1], self.high[-1] = _basin(parts)
+            self.low[-1], self.high[-1] = pool_box(parts)
         steps = whole.certificate.steps_per_frame
         self.cost = np.maximum(1, (GUESS * steps * self.particles).astype(np.int64))
         self.measured = np.zeros(count, bool)
@@ -148,12 +142,3 @@ class Planner:
 def planner_of(job: Job, parts: Parts, executors: int) -> Planner:
     """The planner with which a job begins, or goes on."""
     return Planner(parts, executors, job.lengths, job.settings, job.resume.frame if job.resume else 0)
-
-
-def _basin(parts: Parts) -> tuple[np.ndarray, np.ndarray]:
-    """The box within which an object and the liquid can matter to each other [m]."""
-    grid = parts.whole.grid
-    margin = ASIDE * np.max(np.subtract(grid.high, grid.low))
-    low, high = np.array(grid.low) - margin, np.array(grid.high) + margin
-    high[2] = parts.liquid_top
-    return low, high

@@ -11,19 +11,27 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..engine.part import Parts
 from . import islands
 from .assign import assign, firsts, total
 from .teams import GAIN, LEAST, Team
 
+MARGIN = 0.05
+"""Of a spacing, on top of the reach of every object."""
+BALANCED = 1.25
+"""Largest load over the mean up to which a window is not made shorter."""
+ASIDE = 1000.0
+"""The pool's box beyond the basin's sides and floor, over its size: the liquid looks at heights alone."""
 BUNDLE = 64000
 """Particles up to which islands of one executor share a LAMMPS instance. `bench/driver.py`, 1000 objects of 120 particles on 2
-executors: of a frame the driver takes 13 ms with 32000, 9 with this and with 128000, and LAMMPS the same; but what begins again with
-other company takes all of its bundle with it."""
+executors: of a frame the driver takes 13 ms with 32000, 9 with this and with 128000, and LAMMPS the same; but what begins again
+with other company takes all of its bundle with it."""
 SPARE = 2
 """Bundles of an executor, over those that would do, from which the thin ones are put together."""
 THIN = 4
 """Bundles below `BUNDLE` over this are thin. `python bench/planning.py crowd`, 1000 objects and bundles of 4000: with 4, 9 % of
-the particles are in new bundles in every frame; with 2, 16 %; 7 % where none are ever put together, with 1.6 times the bundles."""
+the particles are in new bundles in every frame; with 2, 16 %; 7 % where none are ever put together,
+with 1.6 times the bundles."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,9 +43,11 @@ class Settings:
     finest: int = 8
     """Most windows to a frame, a power of two."""
     worth: int = 10_000
-    """Microseconds of work that each executor must have in a window: below, the exchange between windows costs more than it brings."""
+    """Microseconds of work that each executor must have in a window: below,
+    the exchange between windows costs more than it brings."""
     least: int = 8_000
-    """Particles for each member of a team: where processors are shared with other work, teams of less are slower than one executor."""
+    """Particles for each member of a team: where processors are shared with other work,
+    teams of less are slower than one executor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +106,15 @@ def plan(low: np.ndarray, high: np.ndarray, d: np.ndarray, cost: np.ndarray, own
                    teams=previous.teams if previous else ())
     bundle = bundles(label, given.owner, particles, given.teams, order=order, previous=previous, room=room)
     return FramePlan(given.owner, label, bundle, islands.guests(met, label, still), given.teams, given.load)
+
+
+def pool_box(parts: Parts) -> tuple[np.ndarray, np.ndarray]:
+    """The box within which an object and the liquid can matter to each other [m]."""
+    grid = parts.whole.grid
+    margin = ASIDE * np.max(np.subtract(grid.high, grid.low))
+    low, high = np.array(grid.low) - margin, np.array(grid.high) + margin
+    high[2] = parts.liquid_top
+    return low, high
 
 
 def z_order(low: np.ndarray, high: np.ndarray) -> np.ndarray:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What every MPI rank of a distributed run executes: ``mpiexec -n K+1 python -m mdanim_lammps.driver.ranks FOLDER``.
 
-Rank 0 is the supervisor: it takes the job that driver/launch.py has left in the folder and leaves the result there; progress goes to
-its standard output, a line of JSON for every frame. All others are executors.
+Rank 0 is the supervisor: it takes the job that driver/launch.py has left in the folder and leaves the result there; progress goes
+to its standard output, a line of JSON for every frame. All others are executors.
 """
 
 from __future__ import annotations

@@ -24,6 +24,7 @@ from ..results.expect import Measured, Outcome, evaluate, record, recorded
 from ..results.files import write_json, write_whole
 from ..results.ledger import LOSS, Ledger
 from ..results.trajectory import Trajectory, TrajectoryWriter
+from ..scene.wording import number
 from .energy import ledger_terms, rounding_energy
 from .guard import Guard
 from .prepare import Prepared
@@ -90,9 +91,10 @@ def simulate(ready: Prepared, folder: Path, *, watch: Callable[[Progress], None]
              started: float | None = None, source: Source | None = None) -> Result:
     """Run all frames (or go on from a checkpoint), leaving trajectory.h5, ledger.csv, checkpoint and summary.json in ``folder``.
 
-    ``started`` is what ``time.perf_counter()`` gave when the work for this run began, so that loading and modelling are in its cost;
-    None is now. ``source`` gives the frames; None is one LAMMPS instance in this process. Raises DivergedError with the last good
-    frame kept, Interrupted after Ctrl-C or when a file ``stop`` appears in the folder, OutputError when the disk is full.
+    ``started`` is what ``time.perf_counter()`` gave when the work for this run began, so that loading and modelling are in its
+    cost; None is now. ``source`` gives the frames; None is one LAMMPS instance in this process. Raises DivergedError with the
+    last good frame kept, Interrupted after Ctrl-C or when a file ``stop`` appears in the folder,
+    OutputError when the disk is full.
     """
     run = _Run(ready, folder, resume, time.perf_counter() if started is None else started, source or Sequential(ready.plan))
     return run.go(watch or (lambda progress: None))
@@ -169,7 +171,8 @@ class _Run:
                 self._close_ledger()
             if last < len(lengths):
                 insist = " --allow-unstable" if c.fraction > 1.0 else ""
-                raise Interrupted(f"interrupted at t = {row['time']:.4g} s; go on with: mdanim-lammps resume {self.folder}{insist}")
+                raise Interrupted(f"interrupted at t = {number(row['time'], 4)} s; "
+                                  f"go on with: mdanim-lammps resume {self.folder}{insist}")
             account = self.source.account()
             closing = time.perf_counter()
         self.seconds["output"] += time.perf_counter() - closing
@@ -206,10 +209,12 @@ class _Run:
             "steps": c.steps, "frames": len(self.ledger.rows),
             "effects": [e.name for e in self.effects],
             "energy_residual": self.ledger.residual, "penetration": self.penetration, "inverted_cells": self.guard.most_inverted,
-            **({"liquid_cells": int(self.ledger.rows[-1]["liquid_cells"]), "liquid_residual": self._gained()} if self.grid else {}),
+            **({"liquid_cells": int(self.ledger.rows[-1]["liquid_cells"]), "liquid_residual": self._gained()}
+               if self.grid else {}),
             "seconds": sum(self.seconds.values()),
             "expect": [{"what": f"{o.expect.subject}.{o.expect.quantity}", "time": o.expect.time, "value": o.expect.value,
-                        "tolerance": o.expect.tolerance, "found": o.found if np.isfinite(o.found) else None, "met": o.met} for o in outcomes],
+                        "tolerance": o.expect.tolerance, "found": o.found if np.isfinite(o.found) else None, "met": o.met}
+                        for o in outcomes],
         }
 
     # --- recording --------------------------------------------------------------------------------------------------
@@ -229,7 +234,8 @@ class _Run:
         if pool:
             extras["liquid_cells"] = pool.cells
             if pool.cells != pool.start:
-                raise DivergedError(f"step {now.step}, t = {when:.4g} s: {pool.cells} cells of liquid, {pool.start} at the start: this must "
+                raise DivergedError(f"step {now.step}, t = {number(when, 4)} s: {pool.cells} cells of liquid, "
+                                    f"{pool.start} at the start: this must "
                                     f"never be, please report it. The last good frame is kept in {self.folder}")
         # Losses before a resume are carried over.
         row = self.ledger.weigh(when, {t: e + self.carried.get(t, 0.0) for t, e in now.energies.items()} | extras)
@@ -283,7 +289,8 @@ class _Run:
         return Cost(
             wall=time.perf_counter() - self.started + other.get("before the resume", 0.0), steps=self.certificate.steps,
             particles=self.ready.system.particles, effects=parts,
-            other={LEAPFROG: account.leapfrog, "rest of the step": max(0.0, self.seconds["simulation"] - known), **account.other, **other})
+            other={LEAPFROG: account.leapfrog, "rest of the step": max(0.0, self.seconds["simulation"] - known), **account.other,
+                   **other})
 
 
 class _Clock:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..scene.wording import say
 from .effect import Effect, Verdict, stiffness_told
 
 
@@ -47,7 +48,8 @@ class Ground(Boundary):
     def called_for(self, scene):
         if scene.ground is None:
             return Verdict(self.name, False, "no ground in the scene")
-        return Verdict(self.name, True, f"ground at z = {scene.ground:g} m{stiffness_told(scene)}", scene.spans.get("ground"))
+        return Verdict(self.name, True, f"ground at z = {say(scene.ground, 'm', 6)}{stiffness_told(scene)}",
+                       scene.spans.get("ground"))
 
     def region(self, scene):
         return f"plane 0 0 {scene.ground!r} 0 0 1"

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..model.sweep import closest
-from ..model.wording import length
+from ..scene.wording import say
 from .effect import Effect, Verdict, stiffness_told
 from .springs import all_held
 
@@ -58,8 +58,9 @@ class Contact(Effect):
         first, second, apart = closest(scene)
         if apart > 0.0:
             return Verdict(self.name, False, f"no two objects can come within reach: nearest are {first.name} and {second.name}, "
-                           f"with {length(apart)} to spare", second.spans.get("object"))
-        return Verdict(self.name, True, f"{first.name} and {second.name} may meet{stiffness_told(scene)}", second.spans.get("object"))
+                           f"with {say(apart, 'm')} to spare", second.spans.get("object"))
+        return Verdict(self.name, True, f"{first.name} and {second.name} may meet{stiffness_told(scene)}",
+                       second.spans.get("object"))
 
     def columns(self, scene, system):
         return {"stiffness": system.contact_stiffness, "reach": REACH * system.spacing[system.object]}

@@ -12,6 +12,7 @@ import numpy as np
 from ..errors import Problem, Span
 from ..model.system import System
 from ..scene.scene import Scene, Switch
+from ..scene.wording import number
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +124,7 @@ class Effect:
 def stiffness_told(scene: Scene) -> str:
     """What the reason of an effect that pushes back adds about ``contact-stiffness``; nothing where it is the usual one."""
     factor = scene.control.contact_stiffness
-    return "" if factor == 1.0 else f", {factor:g} times as stiff as usual"
+    return "" if factor == 1.0 else f", {number(factor)} times as stiff as usual"
 
 
 def decide(effects: tuple[Effect, ...], scene: Scene) -> tuple[dict[str, Verdict], list[Problem]]:

@@ -30,11 +30,13 @@ DRAGGING = 0.07
 """Part of the coupling's time that drag takes (bench/effects.py shares)."""
 
 PRESSING = 2.2
-"""Time of the coupling by pressure on faces over that by immersed volumes: 1.8 for a cube (bench/effects.py shares), 2.4 for a hull."""
+"""Time of the coupling by pressure on faces over that by immersed volumes: 1.8 for a cube (bench/effects.py shares),
+2.4 for a hull."""
 SWEEPS_PER_UPDATE = 8.0 * STRIDE
 """8 sweeps for each cell that bodies travel."""
 STIR = 2.8
-"""Sweeps a second times the cell [m/s]: 8 for every cell that bodies travel, at a mean of 0.35 m/s, as in the scenes of scenes/."""
+"""Sweeps a second times the cell [m/s]: 8 for every cell that bodies travel, at a mean of 0.35 m/s,
+as in the scenes of scenes/."""
 
 
 def top_of_reach(grid) -> float:
@@ -101,7 +103,8 @@ class Liquid(Effect):
             *(["fill fill"] if fill else []),
             f"gravity {-scene.gravity[2]!r}",
             "model paper" if liquid.model is LiquidModel.PAPER else "cells i2_cell",
-            f"still held sweeps {liquid.sweeps or 'auto'} every {EVERY} stride {STRIDE} period {PERIOD} seed {scene.control.seed}",
+            f"still held sweeps {liquid.sweeps or 'auto'} every {EVERY} stride {STRIDE} period {PERIOD} "
+            f"seed {scene.control.seed}",
         ]
         return ["group held type 5:8", f"region liquid {_block(liquid.low, liquid.high)}", *fill, " ".join(words)]
 
@@ -182,7 +185,8 @@ class LiquidDrag(Effect):
         return 0.0 if air_drag.felt(scene, system) is not None else instance.fix_scalar("leapfrog")
 
     def clocks(self, instance):
-        # Where particles are immersed is looked up for buoyancy in any case; drag adds this to it, and makes the leap-frog slower.
+        # Where particles are immersed is looked up for buoyancy in any case; drag adds this to it,
+        # and makes the leap-frog slower.
         coupling = {"coupling": DRAGGING * instance.fix_value(Liquid.fix, COUPLING)}
         if any(e.name == air_drag.AirDrag.name for e in instance.plan.effects):
             return coupling

@@ -12,7 +12,8 @@ SKIN = 0.75
 BALANCE = ("balance 1.0 rcb", "fix balance all balance 1000 1.1 rcb")
 """Cut space so that every rank has the same share of particles, now and in the course of a run; changes no bit of the result."""
 GHOST = 3.0
-"""Least communication cutoff over the spacing: a bonded partner is found while its spring is less than 1.7 times as long as at rest."""
+"""Least communication cutoff over the spacing: a bonded partner is found while its spring is less than 1.7
+times as long as at rest."""
 
 
 def harmonic_coeff(k: float) -> float:
@@ -95,8 +96,9 @@ def input_script(plan: Plan) -> str:
         modify = ["dump_modify trajectory every v_frame first yes"]
     title = (plan.scene.title or plan.name).encode("ascii", "replace").decode()  # LAMMPS reads ASCII
     return "\n".join([
-        f"# {title}: written by mdanim-lammps; run it here with 'lmp -in in.{plan.name}'",
-        f"# or 'mpiexec -n 4 lmp -in in.{plan.name}'. Needs the styles of the mdanim-lammps package (pip install).",
+        f"# {title}",
+        f"# Written by mdanim-lammps; run it here with 'lmp -in in.{plan.name}' or 'mpiexec -n 4 lmp -in in.{plan.name}',",
+        "# with the lmp and the mpiexec of the environment that mdanim-lammps is installed in (.venv/bin): they know its styles.",
         f"# Effects: {', '.join(e.name for e in plan.effects) or 'none'}.",
         "",
         *prelude(plan),

@@ -33,8 +33,8 @@ class Geometry:
     def glance(self, x: np.ndarray, v: np.ndarray) -> tuple[int, np.ndarray]:
         """NOT_FINITE where some number is not, INVERTED where some cell is, 0 where all is well; and how far each solid reaches.
 
-        That is along x, y, z, -x, -y and -z, the corners of eq. (3.14) [m], shape (M, 6); valid until the next glance, and only where
-        numbers are finite. A run asks it at every frame, so it is one call, with nothing made anew.
+        That is along x, y, z, -x, -y and -z, the corners of eq. (3.14) [m], shape (M, 6); valid until the next glance, and only
+        where numbers are finite. A run asks it at every frame, so it is one call, with nothing made anew.
         """
         library, model, _, reach, address = self._own
         return library.mdanim_glance(model, _address(x), _address(v), address), reach
@@ -54,8 +54,8 @@ class Geometry:
     def sunk(self, x: np.ndarray) -> tuple[int, int] | None:
         """Two solids of which the first is inside the second, deeper than contact ever lets it; None where there are none.
 
-        Boundary particles of the first are below the outermost layer of cells of the second, or the centre of the first is in the body
-        of both. Solids that are held entirely may be in each other. Raises MemoryError.
+        Boundary particles of the first are below the outermost layer of cells of the second, or the centre of the first is in the
+        body of both. Solids that are held entirely may be in each other. Raises MemoryError.
         """
         library, model, *_ = self._own
         pair = np.zeros(2, np.int32)

@@ -11,10 +11,10 @@ import numpy as np
 
 from ..errors import Problem
 from ..scene.scene import Liquid, LiquidModel, Mesh, Scene, Solid, Switch, Vector
+from ..scene.wording import say, whole
 from . import shapes
 from .model import Model
 from .spacing import available_memory, choose_spacing
-from .wording import length
 
 BYTES_PER_CELL = 20.0
 """What fix mdanim/liquid keeps per cell, measured 18 to 21: content, masks, counts of samples, marks."""
@@ -112,33 +112,34 @@ def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
     if grid.shape[axis] < NARROWEST:
         side, n = liquid.high[axis] - liquid.low[axis], grid.shape[axis]
         return [Problem(
-            place, f"the basin is {n} cell{'' if n == 1 else 's'} wide along {'xyz'[axis]}, {length(side)}; "
+            place, f"the basin is {n} cell{'' if n == 1 else 's'} wide along {'xyz'[axis]}, {say(side, 'm')}; "
             f"the least is {NARROWEST}",
-            f"write resolution {length(0.9 * side / NARROWEST)} in control, or make the basin larger",
+            f"write resolution {say(0.9 * side / NARROWEST, 'm')} in control, or make the basin larger",
         )]
     needed, free = grid.cells * BYTES_PER_CELL, available_memory()
     if needed > free:
         coarser = 1.1 * max(grid.cell) * (needed / free) ** (1 / 3)
         return [Problem(
-            place, f"the basin has {grid.cells:,} cells of {length(max(grid.cell))}, which need "
+            place, f"the basin has {whole(grid.cells)} cells of {say(max(grid.cell), 'm')}, which need "
             f"{needed * 1e-9:.1f} GB, {free * 1e-9:.1f} GB are free",
-            f"try resolution {length(coarser)}, or a smaller basin",
+            f"try resolution {say(coarser, 'm')}, or a smaller basin",
         )]
     low, high = liquid.fill or (liquid.low, liquid.high)
     if not grid.cells_within(low, high):
         thinnest = min(b - a for a, b in zip(low, high))
         return [Problem(
-            liquid.spans.get("fill"), f"no cell of the basin has its centre in the part to fill, which is {length(thinnest)} thin "
-            f"where cells are {length(max(grid.cell))}",
-            f"fill more of the basin, or write resolution {length(0.9 * thinnest)} in control",
+            liquid.spans.get("fill"),
+            f"no cell of the basin has its centre in the part to fill, which is {say(thinnest, 'm')} thin "
+            f"where cells are {say(max(grid.cell), 'm')}",
+            f"fill more of the basin, or write resolution {say(0.9 * thinnest, 'm')} in control",
         )]
     top = high if liquid.level is None else (high[0], high[1], min(high[2], liquid.level))
     volume = liquid.volume or math.prod(b - a for a, b in zip(low, top))
     if grid.units(volume) < 1:
         return [Problem(
             liquid.spans.get("volume" if liquid.volume is not None else "level"),
-            f"{volume:.3g} m^3 of liquid are less than half a cell of {grid.cell_volume:.3g} m^3",
-            f"more liquid, or resolution {length(0.8 * volume ** (1 / 3))}",
+            f"{say(volume, 'm^3')} of liquid are less than half a cell of {say(grid.cell_volume, 'm^3')}",
+            f"more liquid, or resolution {say(0.8 * volume ** (1 / 3), 'm')}",
         )]
     return []
 
@@ -153,9 +154,9 @@ def _too_snug(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem
             continue
         problems.append(Problem(
             solid.spans.get("shape") or solid.spans.get("object"),
-            f"{solid.name} fills the basin from wall to wall but for {length(max(gap))}, less than one and a half cells of "
-            f"{length(max(grid.cell))}: no liquid beside it tells how deep it floats",
-            f"a smaller object, a wider basin, or resolution {length(max(gap) / 2)}" if max(gap) > 0.1 * min(grid.cell)
+            f"{solid.name} fills the basin from wall to wall but for {say(max(gap), 'm')}, less than one and a half cells of "
+            f"{say(max(grid.cell), 'm')}: no liquid beside it tells how deep it floats",
+            f"a smaller object, a wider basin, or resolution {say(max(gap) / 2, 'm')}" if max(gap) > 0.1 * min(grid.cell)
             else "a smaller object, or a wider basin",
         ))
     return problems
@@ -168,16 +169,16 @@ def _too_full(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem
     low, high = liquid.fill or (liquid.low, liquid.high)
     room = grid.cells_within(low, high) * cell - volume @ _within(models, low, high)
     if liquid.volume is not None:
-        poured, amount = liquid.volume, f"{liquid.volume:.4g} m^3"
+        poured, amount = liquid.volume, say(liquid.volume, "m^3", 4)
     else:
         top = (high[0], high[1], min(high[2], liquid.level))
         poured = math.prod(b - a for a, b in zip(low, top)) - volume @ _within(models, low, top)
-        amount = f"a level of {liquid.level:.4g} m"
+        amount = f"a level of {say(liquid.level, 'm', 4)}"
     place = liquid.spans.get("volume" if liquid.volume is not None else "level")
     if grid.units(max(0.0, room)) < max(1, grid.units(poured)):
         where = "the basin" if liquid.fill is None else "the part that is filled"
         return [Problem(
-            place, f"{amount} of liquid: {where} has room for {max(0.0, room):.4g} m^3 beside what stands in it "
+            place, f"{amount} of liquid: {where} has room for {say(max(0.0, room), 'm^3', 4)} beside what stands in it "
             "at the start",
             "less liquid, a larger basin, or objects that start above it",
         )]
@@ -188,14 +189,14 @@ def _too_full(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem
     sinks = np.where(standing, 0.0, volume * [_sunk(s, v, scene) for s, v in zip(scene.solids, volume)])
     too_big = [Problem(
         solid.spans.get("shape") or solid.spans.get("object"),
-        f"{solid.name} displaces up to {sunk:.4g} m^3 of liquid, and the basin has room for "
-        f"{max(0.0, free):.4g} m^3 more",
+        f"{solid.name} displaces up to {say(sunk, 'm^3', 4)} of liquid, and the basin has room for "
+        f"{say(max(0.0, free), 'm^3', 4)} more",
         "a smaller object, less liquid, or a higher basin",
     ) for solid, sunk in zip(scene.solids, sinks) if sunk > max(0.0, free)]
     if not too_big and sinks.sum() > free:
         return [Problem(
-            place, f"the objects together displace up to {sinks.sum():.4g} m^3 of liquid, and the basin has room "
-            f"for {free:.4g} m^3 more", "fewer objects, less liquid, or a higher basin",
+            place, f"the objects together displace up to {say(sinks.sum(), 'm^3', 4)} of liquid, and the basin has room "
+            f"for {say(free, 'm^3', 4)} more", "fewer objects, less liquid, or a higher basin",
         )]
     return too_big
 

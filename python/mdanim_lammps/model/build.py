@@ -11,6 +11,7 @@ import numpy as np
 
 from ..errors import Problem, SceneError
 from ..scene.scene import HoldAll, HoldFaces, HoldWithin, Scene, Shape, Solid, SpringConstant, Young
+from ..scene.wording import number, say
 from . import shapes
 from .cells import TooThin, fill_cells
 from .embed import make_surface
@@ -19,7 +20,6 @@ from .mesh import MeshError
 from .model import Model, Surface
 from .spacing import plan_spacing
 from .springs import dashpots, equivalent_modulus, rest_lengths, stiffness, types
-from .wording import length
 
 
 def build_models(scene: Scene, progress: Callable[[int, int], None] | None = None) -> tuple[Model, ...]:
@@ -187,11 +187,11 @@ def _(hold: HoldWithin, solid: Solid, lattice: Lattice) -> np.ndarray:
 
 def _missed(hold: HoldWithin, solid: Solid, lattice: Lattice) -> tuple[str, str]:
     position = _rotated(solid, lattice.position) + solid.position
-    low, high = (", ".join(f"{x:.4g}" for x in side) for side in (position.min(axis=0), position.max(axis=0)))
+    low, high = (", ".join(number(x, 4) for x in side) for side in (position.min(axis=0), position.max(axis=0)))
     return (
         "hold within this box catches no particle",
         f"the object reaches from ({low}) to ({high}) m, "
-        f"its particles are {length(lattice.cells.edge.max())} apart",
+        f"its particles are {say(lattice.cells.edge.max(), 'm')} apart",
     )
 
 
@@ -205,10 +205,10 @@ def _too_thin(solid: Solid, h: float, error: TooThin) -> Problem:
             continue
         return Problem(
             solid.spans.get("shape"),
-            f"{solid.name}: thinner than the spacing allows, {error} at {length(h)}",
-            f"write resolution {length(trial)} in control, or make its thin parts thicker",
+            f"{solid.name}: thinner than the spacing allows, {error} at {say(h, 'm')}",
+            f"write resolution {say(trial, 'm')} in control, or make its thin parts thicker",
         )
     return Problem(
-        solid.spans.get("shape"), f"{solid.name}: {error}, neither at {length(h)} nor at {length(trial)}",
+        solid.spans.get("shape"), f"{solid.name}: {error}, neither at {say(h, 'm')} nor at {say(trial, 'm')}",
         "make separate bodies, and parts that touch in a point, separate objects",
     )

@@ -25,6 +25,12 @@ def fill_cells(shape: Shape, spacing: float) -> Cells:
     return _voxels(shape, spacing)
 
 
+def end_share(filled: np.ndarray) -> float:
+    """Part of the filled cells, bool, shape (nz, ny, nx), that is in the smallest of the six layers where the body ends [-]."""
+    ends = [np.count_nonzero(filled.take(at, axis)) for axis in range(3) for at in (0, -1)]
+    return min(ends) / np.count_nonzero(filled)
+
+
 # --- cuboids ------------------------------------------------------------------------------------------------
 
 def box_counts(size, spacing: float) -> tuple[int, int, int]:

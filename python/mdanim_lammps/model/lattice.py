@@ -155,7 +155,8 @@ def _springs(filled: np.ndarray, braced: np.ndarray, number: np.ndarray, present
     # What cells give to springs along their upper and their lower face; 0 where there is no cell.
     inward = _inward(filled)
     parts = {
-        axes: [((1.0 - more * m) * all_cells, (1.0 + more * m) * all_cells) for m in inward] for axes, more in ((1, EDGES), (2, 1.0))
+        axes: [((1.0 - more * m) * all_cells, (1.0 + more * m) * all_cells) for m in inward]
+        for axes, more in ((1, EDGES), (2, 1.0))
     }
     _, rows, columns = number.shape
     flat = number.ravel()

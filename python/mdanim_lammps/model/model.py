@@ -39,7 +39,8 @@ class Surface:
 
 
 class SpringTypes:
-    """What springs of few types are like: of records with a type for each spring, ``spring_type``, and a row of ``constants`` for each."""
+    """What springs of few types are like: of records with a type for each spring, ``spring_type``,
+    and a row of ``constants`` for each."""
 
     __slots__ = ()
 

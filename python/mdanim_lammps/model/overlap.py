@@ -9,9 +9,9 @@ import numpy as np
 
 from ..errors import Problem
 from ..scene.scene import Scene, Solid
+from ..scene.wording import say
 from . import shapes
 from .model import Model
-from .wording import length
 
 HAIR = 1e-6
 """Part of a spacing that two touching objects may seem to overlap by round-off."""
@@ -101,7 +101,7 @@ def _outside(scene: Scene, bodies: _Bodies) -> list[Problem]:
             solid, too_wide[i, axis] = scene.solids[i], True
             problems.append(Problem(
                 solid.spans.get("shape") or _span(solid),
-                f"{solid.name} is {length(size[i, axis])} wide along {'xyz'[axis]}, {what} only {length(room[axis])}",
+                f"{solid.name} is {say(size[i, axis], 'm')} wide along {'xyz'[axis]}, {what} only {say(room[axis], 'm')}",
                 "make it smaller (is a unit missing?), or the room larger",
             ))
     for limit in _limits(scene):
@@ -110,8 +110,8 @@ def _outside(scene: Scene, bodies: _Bodies) -> list[Problem]:
         for i in np.flatnonzero((out > bodies.hair) & ~bodies.fixed & ~too_wide[:, limit.axis]):
             solid = scene.solids[i]
             problems.append(Problem(
-                _span(solid), f"{solid.name} is {length(out[i])} {limit.what}",
-                f"move it {_MOVES[limit.axis, limit.sign]} by {length(_enough(out[i]))}",
+                _span(solid), f"{solid.name} is {say(out[i], 'm')} {limit.what}",
+                f"move it {_MOVES[limit.axis, limit.sign]} by {say(_enough(out[i]), 'm')}",
             ))
     return problems
 
@@ -159,8 +159,8 @@ def _pair(scene: Scene, bodies: _Bodies, i: int, j: int) -> Problem | None:
         return None
     direction, step = _way_out(scene, bodies, i, j)
     return Problem(
-        _span(second), f"{second.name} starts inside {first.name}, about {length(deepest)} deep",
-        f"move it {direction} by {length(_enough(step))}",
+        _span(second), f"{second.name} starts inside {first.name}, about {say(deepest, 'm')} deep",
+        f"move it {direction} by {say(_enough(step), 'm')}",
     )
 
 

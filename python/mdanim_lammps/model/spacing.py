@@ -12,9 +12,9 @@ import numpy as np
 
 from ..errors import Problem, SceneError
 from ..scene.scene import Accuracy, Box, HoldAll, Scene, Shape, Solid
+from ..scene.wording import say, whole
 from . import shapes
 from .mesh import MeshError
-from .wording import length
 
 BYTES_PER_PARTICLE = 1500.0
 """Arrays of the model and of LAMMPS together; a particle inside a body has 18 springs."""
@@ -55,8 +55,8 @@ def plan_spacing(scene: Scene) -> Spacing:
             problems.append(Problem(
                 _span(solid),
                 f"{solid.name}: thinner than the spacing allows, "
-                f"{length(t)} at its thinnest, spacing {length(h)}",
-                f"write resolution {length(t / 2)} in control, or make it thicker",
+                f"{say(t, 'm')} at its thinnest, spacing {say(h, 'm')}",
+                f"write resolution {say(t / 2, 'm')} in control, or make it thicker",
             ))
     if problems:
         raise SceneError(problems)
@@ -142,17 +142,17 @@ def available_memory() -> float:
 def _too_large(scene: Scene, plan: Spacing) -> Problem:
     gigabytes = 1e-9
     found = (
-        f"about {plan.total:,} particles at a spacing of {length(plan.h)} "
+        f"about {whole(plan.total)} particles at a spacing of {say(plan.h, 'm')} "
         f"need {plan.memory * gigabytes:.1f} GB, {plan.available * gigabytes:.1f} GB are free"
     )
     # Particles go with 1/h^3; a tenth on top, because surfaces go with 1/h^2 only.
     coarser = plan.h * 1.1 * (plan.memory / plan.available) ** (1 / 3)
     if plan.set_by == "resolution":
-        return Problem(scene.control.spans.get("resolution"), found, f"try resolution {length(coarser)}")
+        return Problem(scene.control.spans.get("resolution"), found, f"try resolution {say(coarser, 'm')}")
     solid = next(s for s in scene.solids if s.name == plan.set_by)
     return Problem(
         _span(solid), f"{solid.name} sets the spacing: {found}",
-        f"make it thicker, use fewer objects or a lower accuracy, or try resolution {length(coarser)}",
+        f"make it thicker, use fewer objects or a lower accuracy, or try resolution {say(coarser, 'm')}",
     )
 
 

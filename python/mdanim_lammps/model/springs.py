@@ -68,7 +68,8 @@ def equivalent_modulus(cell: np.ndarray, elasticity: Young | SpringConstant) -> 
 
 
 def types(constants: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Type of each spring (from 1, the smallest unsigned integers that do, shape (S,)) and the constants of each type, shape (T, 3).
+    """Type of each spring (from 1, the smallest unsigned integers that do, shape (S,)) and the
+    constants of each type, shape (T, 3).
 
     Springs with the constants (S, 3) are of one type when all bits of them agree; types are numbered by first appearance, so that
     they do not depend on a sort of floating-point numbers.

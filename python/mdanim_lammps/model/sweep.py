@@ -25,8 +25,8 @@ is sqrt(1.2) of it along a line; half as much again for bodies that are not even
 SLACK = 1.1
 """Size of a body over its size as it is drawn."""
 REACH = 2.5
-"""What a surface reaches beyond the shape, over the spacing: half the reach of a barrier (0.8 of a cell), corners of cells that stand
-out (0.87 of a cell), cells up to 1.2 spacings long, and a fifth on top."""
+"""What a surface reaches beyond the shape, over the spacing: half the reach of a barrier (0.8 of a cell), corners of cells that
+stand out (0.87 of a cell), cells up to 1.2 spacings long, and a fifth on top."""
 SAG = 2.0
 """Margin on the deflection of a clamped bar."""
 BLOCK = 1 << 20
@@ -46,7 +46,8 @@ class Sweeps:
 
 
 def can_meet(scene: Scene) -> tuple[Solid, Solid] | None:
-    """Two solids that may come within reach of each other, or None where no two can. Raises SceneError for a mesh that is no body."""
+    """Two solids that may come within reach of each other, or None where no two can.
+    Raises SceneError for a mesh that is no body."""
     first, second, apart = closest(scene)
     return None if apart > 0.0 else (first, second)
 
@@ -54,8 +55,8 @@ def can_meet(scene: Scene) -> tuple[Solid, Solid] | None:
 def closest(scene: Scene) -> tuple[Solid, Solid, float]:
     """Two solids of which one can move, and what stays between their boxes at least, along one axis [m].
 
-    The first two found whose boxes overlap, with 0.0; where there are none, those whose boxes come nearest. Raises SceneError for a
-    mesh that is no body, ValueError where no solid can meet another: one solid, or all held.
+    The first two found whose boxes overlap, with 0.0; where there are none, those whose boxes come nearest. Raises SceneError for
+    a mesh that is no body, ValueError where no solid can meet another: one solid, or all held.
     """
     swept = sweeps(scene)
     if len(swept.fixed) < 2 or swept.fixed.all():
@@ -77,9 +78,9 @@ def closest(scene: Scene) -> tuple[Solid, Solid, float]:
 def sweeps(scene: Scene) -> Sweeps:
     """Where every solid can get to.
 
-    Along an axis on which nothing but gravity and drag of air acts, the centre of mass moves on its parabola. Along one on which a
-    wall, the ground or a liquid may act, it gets no further than at the largest speed that energy allows. Raises SceneError for a
-    mesh that is no body.
+    Along an axis on which nothing but gravity and drag of air acts, the centre of mass moves on its parabola. Along one on which
+    a wall, the ground or a liquid may act, it gets no further than at the largest speed that energy allows. Raises SceneError for
+    a mesh that is no body.
     """
     bodies = _Bodies(scene)
     limit_low, limit_high = _limits(scene)

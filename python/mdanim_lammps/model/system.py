@@ -93,7 +93,8 @@ class System(SpringTypes):
         return np.logical_and.reduceat(self.held, self.first[:-1])
 
     def stretches(self, solids: Sequence[int]) -> list[slice]:
-        """Particles of some solids, in their order; one stretch of those that are side by side: row by row copies take five times as long."""
+        """Particles of some solids, in their order; one stretch of those that are side by side:
+        row by row copies take five times as long."""
         which = np.asarray(solids, np.int64)
         apart = np.diff(which) != 1
         begin, end = which[np.append(True, apart)[:len(which)]], which[np.append(apart, True)[:len(which)]] + 1

@@ -55,7 +55,8 @@ def shares(timeline: Timeline, columns: int) -> np.ndarray:
 
 
 def bars(share: np.ndarray, height: int) -> np.ndarray:
-    """Every executor's bar, so many pixels and a white line: colours filled up by shares, shape (K * (height + 2), columns, 3)."""
+    """Every executor's bar, so many pixels and a white line: colours filled up by shares, shape (K
+    * (height + 2), columns, 3)."""
     level = np.cumsum(share, axis=1)  # (K, kinds, columns)
     middle = (np.arange(height)[::-1] + 0.5) / height
     kind = (level[:, :, None, :] < middle[:, None]).sum(axis=1)  # as many as are below: the next one is here
@@ -85,6 +86,12 @@ def edges(count: int) -> np.ndarray:
     return np.append(np.arange(0, count, size), count)
 
 
+def headline(timeline: Timeline, title: str = "") -> str:
+    """The line above the picture. A dash, as titles end with marks of their own: ``Which of them float? – 2 executors, ...``."""
+    who = "the supervisor" if timeline.control == "central" else "every executor alike"
+    return f"{title or 'Run'} – {timeline.executors} executor{'s' * (timeline.executors > 1)}, owners decided by {who}"
+
+
 def draw(timeline: Timeline, path: Path, title: str = "") -> None:
     """Write the picture as PNG. Raises OutputError when it cannot be written, or a run ended before it began."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -106,9 +113,7 @@ def draw(timeline: Timeline, path: Path, title: str = "") -> None:
     _draw_owners(panel(0.5, owning), timeline, colors)
     _draw_moves(panel(0.6 + owning, moving), timeline)
     _draw_doing(panel(1.25 + owning + moving, doing), timeline, colors, 1.0 + 0.42 / doing)
-    who = "the supervisor" if timeline.control == "central" else "every executor alike"
-    figure.text(left / width, 1.0 - 0.15 / height, fontsize=12, va="top",
-                s=f"{title or 'Run'}: {count} executor{'s' * (count > 1)}, owners decided by {who}")
+    figure.text(left / width, 1.0 - 0.15 / height, fontsize=12, va="top", s=headline(timeline, title))
     write_whole(path, lambda part: figure.savefig(part, dpi=130, format="png", metadata={"Software": None}))
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import OutputError
+from ..scene.wording import number, say
 from .trajectory import Trajectory
 
 
@@ -36,8 +37,8 @@ class Difference:
     def __str__(self) -> str:
         if self.equal:
             return f"equal    {self.frames} frames, every bit"
-        return (f"differ   first at frame {self.frame} (t = {self.time:.4g} s): {self.object} by {self.distance:.3g} m; "
-                f"largest in {self.frames} frames {self.largest:.3g} m")
+        return (f"differ   first at frame {self.frame} (t = {number(self.time, 4)} s): {self.object} by "
+                f"{say(self.distance, 'm')}; largest in {self.frames} frames {say(self.largest, 'm')}")
 
 
 def compare(a: Path, b: Path) -> Difference:

@@ -12,6 +12,7 @@ from ..model.basin import Grid
 from ..model.model import Model
 from ..model.system import System
 from ..scene.scene import Expect
+from ..scene.wording import number
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,11 +30,11 @@ class Outcome:
 
     def __str__(self) -> str:
         e = self.expect
-        when = "" if e.time is None else f" at {e.time:g} s"
+        when = "" if e.time is None else f" at {number(e.time, 6)} s"
         verdict = "met" if self.met else "MISSED"
         place = f"{e.span}: " if e.span else ""
-        return (f"{place}expect {e.subject}.{e.quantity}{when} = {e.value:g} +- {e.tolerance:g}: "
-                f"found {self.found:.6g}, {verdict}")
+        return (f"{place}expect {e.subject}.{e.quantity}{when} = {number(e.value, 6)} +- {number(e.tolerance, 6)}: "
+                f"found {number(self.found, 6)}, {verdict}")
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,8 @@ def disk_errors(what: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        cure = "make room and resume" if error.errno == 28 else "check the folder and its permissions, or write elsewhere with -o DIR"
+        full = error.errno == 28
+        cure = "make room and resume" if full else "check the folder and its permissions, or write elsewhere with -o DIR"
         raise OutputError(f"{what}: cannot be written: {error.strerror or error}; {cure}") from error
 
 

@@ -14,8 +14,8 @@ from .files import read_json, write_json
 TIMELINE = "timeline.json"
 """Name of the file in the output folder."""
 KINDS = ("simulating", "moving", "waiting", "frozen", "held")
-"""What an executor can be at: running LAMMPS; handing objects on and building instances; waiting for the others at the frame; frozen at
-the end of a window that others do again; held by the supervisor, which has not yet taken the frames before."""
+"""What an executor can be at: running LAMMPS; handing objects on and building instances; waiting for the others at the frame;
+frozen at the end of a window that others do again; held by the supervisor, which has not yet taken the frames before."""
 
 
 @dataclass
@@ -63,8 +63,8 @@ class Timeline:
     def after(self, before: "Timeline", frame: int) -> "Timeline":
         """This log of a run that was resumed at a frame, with what the log before tells up to there.
 
-        Times go on from the last of those that are kept. With other numbers of executors they are those of the larger one, and processor
-        times are sums of both, with what came after that frame and is done again; the control is that of now.
+        Times go on from the last of those that are kept. With other numbers of executors they are those of the larger one, and
+        processor times are sums of both, with what came after that frame and is done again; the control is that of now.
         """
         kept = int(np.searchsorted(before.frames, frame, side="right"))
         spans = [span for span in before.spans if span[2] <= frame]
@@ -74,8 +74,8 @@ class Timeline:
         executors = max(self.executors, before.executors)
         cpu = [sum(log.cpu[e] for log in (before, self) if e < log.executors) for e in range(executors)]
         return Timeline(
-            executors, self.control, self.names, frames, [*before.moves[:kept], *self.moves], [*before.retries[:kept], *self.retries],
-            teams=[*(team for team in before.teams if team[0] <= frame), *self.teams],
+            executors, self.control, self.names, frames, [*before.moves[:kept], *self.moves],
+            [*before.retries[:kept], *self.retries], teams=[*(team for team in before.teams if team[0] <= frame), *self.teams],
             owners=[(frames[row], int(m), int(table[row, m])) for row, m in changed],
             spans=[*spans, *((*what, begin + begun, end + begun) for *what, begin, end in self.spans)],
             cpu=cpu, supervisor_cpu=before.supervisor_cpu + self.supervisor_cpu)

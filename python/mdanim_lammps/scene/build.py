@@ -15,6 +15,7 @@ from .expand import Filled, Setting
 from .rotation import IDENTITY, departure, rotation_about, rotation_euler
 from .scene import Vector
 from .source import Problems, Source
+from .wording import number, say
 from .words import BLOCKS, GLOBALS, IMMERSION, KEYWORDS, QUANTITIES, did_you_mean, example
 
 LARGEST_PICTURE = 16384
@@ -29,7 +30,8 @@ MOST_SWEEPS = 4096
 """Most sweeps of the automaton per update that fix mdanim/liquid takes."""
 
 SOFTEST, STIFFEST = 0.1, 100.0
-"""Least and largest ``contact-stiffness``: softer, objects are passed through before they are crushed; stiffer, only time is lost."""
+"""Least and largest ``contact-stiffness``: softer, objects are passed through before they are crushed; stiffer,
+only time is lost."""
 
 
 class Builder:
@@ -128,8 +130,9 @@ class Builder:
             return
         self.problem(
             self.out.first("ground").span(0),
-            f"the ground at z = {ground:.6g} m is above the floor of the basin, {liquid.low[2]:.6g} m: nothing sinks below it, liquid does",
-            f"the basin has a floor of its own: leave the ground out, or write ground z {liquid.low[2]:.6g} m",
+            f"the ground at z = {say(ground, 'm', 6)} is above the floor of the basin, {say(liquid.low[2], 'm', 6)}: "
+            "nothing sinks below it, liquid does",
+            f"the basin has a floor of its own: leave the ground out, or write ground z {say(liquid.low[2], 'm', 6)}",
             severity="warning",
         )
 
@@ -214,7 +217,7 @@ class Builder:
             if not x < y:
                 self.problem(
                     s.span(high),
-                    f"{what} has no extent along {axis}: it goes from {x:.6g} m to {y:.6g} m",
+                    f"{what} has no extent along {axis}: it goes from {say(x, 'm', 6)} to {say(y, 'm', 6)}",
                     "the lower corner stands first",
                 )
         return a, b
@@ -247,7 +250,7 @@ class Builder:
             self.problem(
                 s.span(1),
                 "the tube of a torus is thinner than the ring: r < R, "
-                f"found r = {v[1]:.6g} m, R = {v[0]:.6g} m",
+                f"found r = {say(v[1], 'm', 6)}, R = {say(v[0], 'm', 6)}",
                 "write torus R r, the radius of the centre line first",
             )
             return None
@@ -323,14 +326,14 @@ class Builder:
         if volume is not None and volume > room > 0.0:
             self.problem(
                 block.first("volume").span(0),
-                f"{volume:.6g} m^3 of liquid do not fit into {where} of {room:.6g} m^3",
+                f"{say(volume, 'm^3', 6)} of liquid do not fit into {where} of {say(room, 'm^3', 6)}",
                 "less liquid, or a larger basin" if fill is None else "less liquid, or a larger fill region",
             )
         if level is not None and not bottom[2] < level <= top[2]:
             self.problem(
                 block.first("level").span(0),
-                f"the level {level:.6g} m is outside {where}, which goes from "
-                f"{bottom[2]:.6g} m to {top[2]:.6g} m",
+                f"the level {say(level, 'm', 6)} is outside {where}, which goes from "
+                f"{say(bottom[2], 'm', 6)} to {say(top[2], 'm', 6)}",
                 "the level is a height, not a depth",
             )
         sweeps = block.value("sweeps")
@@ -392,13 +395,13 @@ class Builder:
         if not SOFTEST <= contact <= STIFFEST:
             self.problem(
                 block.first("contact-stiffness").span(0),
-                f"contact-stiffness goes from {SOFTEST:g} to {STIFFEST:g}, found {contact:.6g}",
+                f"contact-stiffness goes from {SOFTEST:g} to {STIFFEST:g}, found {number(contact, 6)}",
                 "1 is as stiff as the material itself; 4 halves how deep objects sink in, for a shorter time step",
             )
         if value("frames", 30.0) * value("time") < 1.0:
             self.problem(
                 block.first("time").span(0),
-                f"in {value('time'):.6g} s there is not one frame of 1/{value('frames', 30.0):.6g} s",
+                f"in {number(value('time'), 6)} s there is not one frame of 1/{number(value('frames', 30.0), 6)} s",
                 "a longer time, or more frames per second",
             )
         return records.Control(
@@ -463,7 +466,7 @@ class Builder:
         elif math.dist(eye, look) == 0.0:
             self.problem(s.span(2), "the camera stands where it looks", "move one of the two points")
         if time is not None and time < 0.0:
-            self.problem(s.span(0), f"the camera's time must be >= 0, found {time:.6g} s")
+            self.problem(s.span(0), f"the camera's time must be >= 0, found {number(time, 6)} s")
         if up is not None and math.hypot(*up) == 0.0:
             self.problem(s.span(3), "up needs a direction, found (0, 0, 0)", "e.g. up (0, 0, 1)")
         return records.Camera(eye, look, time, (0.0, 0.0, 1.0) if up is None else up)
@@ -481,7 +484,7 @@ class Builder:
             elif camera.time <= last:
                 self.problem(
                     s.span(0),
-                    f"the times of the cameras must rise, found {camera.time:.6g} s after {last:.6g} s",
+                    f"the times of the cameras must rise, found {number(camera.time, 6)} s after {number(last, 6)} s",
                 )
             else:
                 last = camera.time
@@ -521,10 +524,10 @@ class Builder:
         ):
             self.problem(s.span(0), f"{subject}.{quantity} needs a liquid, and the scene has none")
         if time is not None and (time < 0.0 or control is not None and time > control.time * (1.0 + 1e-9)):
-            end = f", which ends at {control.time:.6g} s" if control else ""
+            end = f", which ends at {number(control.time, 6)} s" if control else ""
             self.problem(
                 s.span(1),
-                f"{time:.6g} s lies outside the run{end}",
+                f"{number(time, 6)} s lies outside the run{end}",
                 "an earlier time, or a longer control time",
             )
         dim = units.unit(QUANTITIES[kind, quantity][0]).dim

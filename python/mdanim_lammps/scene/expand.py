@@ -13,6 +13,7 @@ from .expressions import SPOILED, Env
 from .source import Fault, Problems, Source
 from .statements import Shared, parse_override
 from .tree import Broken, Entry, Group, Let, Name, Repeat, Value
+from .wording import estimate, number, whole
 from .words import Rule, did_you_mean, example
 
 MOST_OBJECTS = 10**6
@@ -136,14 +137,14 @@ class Expander:
         if objects > MOST_OBJECTS:
             self.problems.add(
                 span,
-                f"this scene has about {objects:.3g} objects; the most is {MOST_OBJECTS}",
+                f"this scene has about {estimate(objects)} objects; the most is {whole(MOST_OBJECTS)}",
                 "repeat less often",
                 key="objects",
             )
         else:
             self.problems.add(
                 span,
-                f"the repeats of this scene run about {rounds:.3g} rounds; the most is {MOST_ROUNDS}",
+                f"the repeats of this scene run about {estimate(rounds)} rounds; the most is {whole(MOST_ROUNDS)}",
                 "repeat less often",
                 key="objects",
             )
@@ -422,8 +423,8 @@ class Expander:
         elif self.strict and dim != units.NONE:
             raise Fault(
                 first,
-                f"{what} has no unit: {x:.6g}",
-                f"write {x:.6g} {units.symbol(dim)} (strict mode)",
+                f"{what} has no unit: {number(x, 6)}",
+                f"write {number(x, 6)} {units.symbol(dim)} (strict mode)",
                 last,
             )
         if x - x != 0.0:

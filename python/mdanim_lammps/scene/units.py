@@ -10,6 +10,8 @@ from difflib import get_close_matches
 from fractions import Fraction
 from functools import cache
 
+from .wording import number, say
+
 Dim = tuple
 """Exponents of (metre, kilogram, second, radian). With the angle, ``mass 20 deg`` is an error."""
 
@@ -200,9 +202,9 @@ def show(x: object) -> str:
     if isinstance(x, tuple):
         dims = {dimension(c) for c in x}
         if len(dims) == 1:
-            return f"({', '.join(f'{magnitude(c):.6g}' for c in x)}) {symbol(dims.pop())}".rstrip()
+            return f"({', '.join(number(magnitude(c), 6) for c in x)}) {symbol(dims.pop())}".rstrip()
         return f"({', '.join(map(show, x))})"
-    return f"{magnitude(x):.6g} {symbol(dimension(x))}".rstrip()
+    return say(magnitude(x), symbol(dimension(x)), 6)
 
 
 def _same(x: Scalar, y: Scalar, doing: str) -> Dim:

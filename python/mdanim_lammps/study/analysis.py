@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..scene.scene import Expect
+from ..scene.wording import number, say
 from .error import Convergence, Growth, converge, distance, extent, growth, order_until
 from .setting import Ladder, Setting
 from .store import Point
@@ -150,7 +151,8 @@ def sharp(expects: Sequence[Expect], names: Sequence[str], track: np.ndarray, ti
             continue
         if kind in ("position", "velocity"):
             own = track[:, names.index(e.subject)]
-            scale = way[e.subject] if kind == "position" else float(np.linalg.norm(np.gradient(own, times, axis=0), axis=-1).max())
+            speed = np.linalg.norm(np.gradient(own, times, axis=0), axis=-1)
+            scale = way[e.subject] if kind == "position" else float(speed.max())
         else:
             scale = abs(e.value)
         if scale > 0.0 and e.tolerance <= 1.1 * sharpness * scale:  # the scale is that of a run, itself not exact
@@ -179,10 +181,10 @@ def advice(a: Analysis) -> str:
     if a.scale == 0.0:
         return "Nothing moves in this scene: every setting gives the same, take the cheapest."
     if a.chaotic:
-        fold = f"grow e-fold every {a.growth.folding:.2g} s and " if math.isfinite(a.growth.folding) else ""
+        fold = f"grow e-fold every {number(a.growth.folding, 2)} s and " if math.isfinite(a.growth.folding) else ""
         return (f"This scene forgets how it began: differences between runs {fold}exceed 1 % of the motion from "
-                f"t = {a.growth.parted:.3g} s on whatever the setting, so no setting follows it to the end; choose by looks, by the "
-                f"energy drift and by time.")
+                f"t = {number(a.growth.parted)} s on whatever the setting, so no setting follows it to the end; choose by looks, "
+                f"by the energy drift and by time.")
     same = [r for r in a.rated.values() if not own.error.below(r.error)]  # no worse, as far as can be told
     cheapest = min(same, key=lambda r: r.seconds.middle)
     better = [r for r in a.rated.values() if r.error.below(own.error) and r.error.middle <= 0.6 * own.error.middle]
@@ -197,7 +199,7 @@ def advice(a: Analysis) -> str:
     if better and own.error.middle >= 1e-6:
         next_ = min(better, key=lambda r: r.seconds.middle)
         says += (f"; {next_.point.setting} brings {_percent(next_.error.middle)} for "
-                 f"{next_.seconds.middle / own.seconds.middle:.2g} times the time")
+                 f"{number(next_.seconds.middle / own.seconds.middle, 2)} times the time")
     return says + "."
 
 
@@ -207,7 +209,7 @@ def lost(a: Analysis, name: str, begin: str) -> str:
         return ""
     time, order = a.until[name]
     why = ": which particles meet in a blow changes with every number of cells" if name == "resolution" and a.touching else ""
-    return f"{begin} order {order:.2g} up to t = {time:.2g} s and none from then on{why}"
+    return f"{begin} order {number(order, 2)} up to t = {number(time, 2)} s and none from then on{why}"
 
 
 def _cause(a: Analysis) -> str:
@@ -220,8 +222,8 @@ def _cause(a: Analysis) -> str:
 
 
 def _percent(x: float, digits: int = 2) -> str:
-    return f"{100 * x:.{digits}g} %"
+    return f"{number(100 * x, digits)} %"
 
 
 def _seconds(x: float) -> str:
-    return f"{x:.2g} s" if x < 100 else f"{x:.0f} s"
+    return say(x, "s", 2 if x < 100.0 else 3)

@@ -11,6 +11,7 @@ from ..driver.prepare import Prepared
 from ..driver.run import Interrupted
 from ..errors import DivergedError, RefusedError, SceneError
 from ..scene.scene import Scene
+from ..scene.wording import say
 from .measure import Sample, TooLong, measure
 from .setting import Setting
 from .store import Point, Store
@@ -67,7 +68,7 @@ class Bench:
             share = self.left if setting == self.own else self.left - room
             expected = self.predict(setting)
             if expected is not None and expected > share:
-                left[setting] = f"would take about {expected:.2g} s, more than is left of the budget"
+                left[setting] = f"would take about {say(expected, 's', 2)}, more than is left of the budget"
                 continue
             try:
                 self.measure(setting, limit=max(share, 1.0))
@@ -97,7 +98,7 @@ class Bench:
         point = self.store.points.get(setting.key)
         repeat = len(point.seconds) if point else 0
         expected = self.predict(setting)
-        guess = f"about {expected:.2g} s" if expected is not None else "the first"
+        guess = f"about {say(expected, 's', 2)}" if expected is not None else "the first"
         self.watch(f"{setting}{f', run {repeat + 1}' if repeat else ''}: {guess}; {max(0.0, self.left):.0f} s of the budget left")
         try:
             # Only the automaton draws numbers: without a liquid another seed changes nothing.

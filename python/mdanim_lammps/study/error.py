@@ -70,8 +70,8 @@ def converge(steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float)
     The order is the slope of log error over log step, least squares over the convergent part, against Richardson's limit
     of the two finest runs for that same order: both are found together by iteration. A fit against the finest run would
     flatter the runs next to it. The finest run itself is left out of the fit; with three runs this is the usual formula
-    for three grids; of more runs half must converge. The convergent part reaches from the finest run as far as errors grow with the step and stay below
-    CONVERGENT.
+    for three grids; of more runs half must converge. The convergent part reaches from the finest run as far as errors grow with
+    the step and stay below CONVERGENT.
 
     Args:
         steps: time step, spacing or the like of each run, falling.
@@ -111,7 +111,8 @@ def converge(steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float)
     return Convergence(limit, tuple(map(float, errors)), found, used=len(tracks) - 1 - first)
 
 
-def order_until(times: np.ndarray, steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float) -> tuple[float, float] | None:
+def order_until(times: np.ndarray, steps: Sequence[float], tracks: Sequence[np.ndarray],
+                scale: float) -> tuple[float, float] | None:
     """Up to when a ladder without an order has one [s], and that order; None where it has none from the start.
 
     What happens then depends on more than the step: which particles meet in a blow changes with every spacing. Times are tried

@@ -17,6 +17,7 @@ from ..driver.run import Progress, simulate
 from ..results.files import read_json
 from ..results.trajectory import Trajectory
 from ..scene.scene import Scene
+from ..scene.wording import say
 from .setting import Setting, frames_only, with_setting
 
 TRIED = 0.5
@@ -52,7 +53,7 @@ class TooLong(Exception):
     """A run that would not end within its limit was stopped; ``seconds`` is what it would have taken."""
 
     def __init__(self, seconds: float):
-        super().__init__(f"would take about {seconds:.3g} s")
+        super().__init__(f"would take about {say(seconds, 's', 2)}")
         self.seconds = seconds
 
 

@@ -8,7 +8,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..model.wording import length
+from ..scene.wording import number, say
 from ..results.files import write_whole
 from .analysis import Rated, lost
 from .error import ROUND_OFF, distance
@@ -35,7 +35,8 @@ def write_report(study: Study, store: Store, budget: float) -> None:
         } for name, c in a.ladders.items()},
         "points": {key: {
             "seconds": r.seconds.middle, "seconds_spread": r.seconds.spread, "error": r.error.middle,
-            "error_spread": r.error.spread, "expect_error": r.closed, "energy_drift": max(r.point.drift), "penetration": max(r.point.penetration), "pareto": r.front,
+            "error_spread": r.error.spread, "expect_error": r.closed, "energy_drift": max(r.point.drift),
+            "penetration": max(r.point.penetration), "pareto": r.front,
         } for key, r in a.rated.items()},
     })
     write_whole(store.folder / "study.csv", lambda part: _write_csv(study, part))
@@ -49,13 +50,14 @@ def _finite(x: float) -> float | None:
 def _write_csv(study: Study, path: Path) -> None:
     with open(path, "w", newline="", encoding="utf-8") as file:
         out = csv.writer(file)
-        out.writerow(["setting", "ladders", "cells", "fraction", "sweeps", "contact", "timestep", "particles", "steps", "runs", "seconds",
-                      "seconds_spread", "error", "error_spread", "expect_error", "energy_drift", "penetration",
+        out.writerow(["setting", "ladders", "cells", "fraction", "sweeps", "contact", "timestep", "particles", "steps", "runs",
+                      "seconds", "seconds_spread", "error", "error_spread", "expect_error", "energy_drift", "penetration",
                       "pareto"])
         for key, r in study.analysis.rated.items():
             s, p = r.point.setting, r.point
             out.writerow([key, " + ".join(_where(study, r)), s.cells, s.fraction, "auto" if s.sweeps is None else s.sweeps,
-                          s.contact, p.timestep, p.particles, p.steps, len(p.seconds), r.seconds.middle, r.seconds.spread, r.error.middle,
+                          s.contact, p.timestep, p.particles, p.steps, len(p.seconds), r.seconds.middle, r.seconds.spread,
+                          r.error.middle,
                           r.error.spread, "" if r.closed is None else r.closed, max(p.drift), max(p.penetration), int(r.front)])
 
 
@@ -74,7 +76,8 @@ def table(study: Study) -> Table:
     swept = any(r.point.setting.sweeps is not None for r in a.rated.values())
     touched = any(r.point.setting.contact != 1.0 for r in a.rated.values())
     out = Table(box=SIMPLE_HEAD, pad_edge=False)
-    for name in ("", "cells", "step/bound", *(["sweeps"] if swept else []), *(["contact"] if touched else []), "particles", "seconds", "error",
+    for name in ("", "cells", "step/bound", *(["sweeps"] if swept else []), *(["contact"] if touched else []), "particles",
+                 "seconds", "error",
                  *(["off expect"] if closed else []), "energy drift", *(["sunk in"] if touched else []), "ladder"):
         out.add_column(name, justify="left" if name in ("", "ladder") else "right")
     for r in a.rated.values():
@@ -84,20 +87,20 @@ def table(study: Study) -> Table:
             *(["auto" if s.sweeps is None else str(s.sweeps)] if swept else []),
             *([f"{s.contact:g}"] if touched else []), f"{r.point.particles}",
             _spread(r.seconds.middle, r.seconds.spread, len(r.point.seconds)),
-            f"{100 * r.error.middle:.3g} %",
-            *([_off(r.closed)] if closed else []), f"{max(r.point.drift):.1e}",
-            *([length(max(r.point.penetration))] if touched else []),
+            f"{number(100 * r.error.middle)} %",
+            *([_off(r.closed)] if closed else []), number(max(r.point.drift), 2),
+            *([say(max(r.point.penetration), "m")] if touched else []),
             " + ".join(_where(study, r)) + (", own" if s == a.own else ""))
     return out
 
 
 def _off(x: float | None) -> str:
-    return "" if x is None else f"{100 * x:.3g} %" if x > ROUND_OFF else "0"
+    return "" if x is None else f"{number(100 * x)} %" if x > ROUND_OFF else "0"
 
 
 def _spread(middle: float, spread: float, runs: int) -> str:
-    told = f" ± {spread / 2:.1g}" if runs > 1 and spread > 1e-12 * middle else ""
-    return f"{middle:.3g}{told}"
+    told = f" ± {number(spread / 2, 1)}" if runs > 1 and spread > 1e-12 * middle else ""
+    return f"{number(middle)}{told}"
 
 
 def order_lines(study: Study) -> list[str]:
@@ -105,15 +108,17 @@ def order_lines(study: Study) -> list[str]:
     lines = []
     for name, c in study.analysis.ladders.items():
         own = distance(study.analysis.rated[study.analysis.own.key].point.tracks[0], c.limit) / (study.analysis.scale or 1.0)
-        what = f"order {c.order:.2f} from {c.used} runs and their limit" if c.order is not None else f"no order: {c.why}{lost(study.analysis, name, '; it has')}"
-        off = f"; the scene's own setting is {100 * own:.2g} % off its limit" if own else ""
+        what = (f"order {c.order:.2f} from {c.used} runs and their limit" if c.order is not None else
+                f"no order: {c.why}{lost(study.analysis, name, '; it has')}")
+        off = f"; the scene's own setting is {number(100 * own, 2)} % off its limit" if own else ""
         if c.doubt:
-            off += f"; the limit is the finest run, taken to be as far off as it is from the run before it, {100 * c.doubt:.2g} %"
+            off += ("; the limit is the finest run, taken to be as far off as it is from the run before it, "
+                    f"{number(100 * c.doubt, 2)} %")
         lines.append(f"{name}: {what}{off}")
     g = study.analysis.growth
     if study.analysis.chaotic and math.isfinite(g.folding):
-        lines.append(f"runs part: differences grow e-fold every {g.folding:.2g} s, "
-                     f"beyond 1 % of the motion from t = {g.parted:.3g} s on")
+        lines.append(f"runs part: differences grow e-fold every {number(g.folding, 2)} s, "
+                     f"beyond 1 % of the motion from t = {number(g.parted)} s on")
     return lines + [f"{name}: left out, {why}" for name, why in study.left_out.items()]
 
 

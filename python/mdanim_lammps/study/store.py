@@ -99,7 +99,8 @@ class Store:
             self.times = np.load(times)
 
     def named(self, setting: Setting, timestep: float) -> Setting:
-        """The measured setting that comes to the same but for its name: time step [s]. As one more name for it would be one more run."""
+        """The measured setting that comes to the same but for its name: time step [s].
+        As one more name for it would be one more run."""
         for point in self.points.values():
             same = replace(point.setting, fraction=setting.fraction) == setting
             if same and abs(point.timestep - timestep) <= 1e-9 * timestep:

@@ -13,6 +13,7 @@ from ..driver.prepare import prepare
 from ..errors import DivergedError, OutputError, Problem
 from ..results.files import read_json, write_json
 from ..scene.scene import Accuracy, Scene
+from ..scene.wording import number, say
 from .analysis import Analysis, analyse
 from .bench import BUDGET, Bench
 from .error import ROUND_OFF, distance, extent
@@ -25,12 +26,13 @@ START = (2, 3, 4)
 TIME_SHARE = 0.25
 """Share of the target that the time step may use up; what is left is for the resolution, which costs far more."""
 CLOSE = 0.9
-"""A coarser setting is only tried when it would be this much coarser: what is left untried costs two thirds at least, and half with the
-longest step of all."""
+"""A coarser setting is only tried when it would be this much coarser: what is left untried costs two thirds at least, and half
+with the longest step of all."""
 MARGIN = 0.97
 """Aim a little below the target: the estimate of an error is as good as the limit it is measured against."""
 HOPE = 1.05
-"""A coarser setting is tried when it promises to come this near to the target: between two runs the promise is as good as that."""
+"""A coarser setting is tried when it promises to come this near to the target:
+between two runs the promise is as good as that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +60,9 @@ class Choice:
         return max(self.reached, self.closed or 0.0) <= self.error
 
     def __str__(self) -> str:
-        got = f"estimated {100 * self.reached:.2g} %" + ("" if (self.closed or 0.0) < ROUND_OFF else f", closed form {100 * self.closed:.2g} %")
-        step = f", time step {self.timestep:.3g} s" if self.timestep else ""
+        got = f"estimated {number(100 * self.reached, 2)} %" + ("" if (self.closed or 0.0) < ROUND_OFF
+                                                                else f", closed form {number(100 * self.closed, 2)} %")
+        step = f", time step {say(self.timestep, 's')}" if self.timestep else ""
         return f"{self.cells:g} cells across{step} ({got})"
 
 
@@ -275,7 +278,8 @@ class _Search:
             return True
         expected = self.bench.predict(setting)
         if expected is not None and expected > self.bench.left:
-            self.bench.watch(f"{setting} would take about {expected:.2g} s, more than the {max(0.0, self.bench.left):.0f} s left")
+            self.bench.watch(f"{setting} would take about {say(expected, 's', 2)}, "
+                             f"more than the {max(0.0, self.bench.left):.0f} s left")
             return False
         try:
             return bool(self.bench.measure(setting, limit=max(self.bench.left, 1.0)).tracks)

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What several executors will bring, told before the run: who will be near whom, and so which work can be shared out.
+
+The objects fly by themselves (gravity, ground, walls, the surface of a liquid; they pass through each other), and at some moments
+the plan that executors would follow is made, by the same pure functions. No MPI and no LAMMPS: the process that starts executors
+has neither.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..engine.part import Parts
+from ..model.basin import liquid_level
+from . import islands
+from .planning import BALANCED, MARGIN, FramePlan, Settings, plan, pool_box
+from .prepare import Prepared
+
+AHEAD = 1.0
+"""Seconds of the film that are looked at: beyond, what has met decides."""
+MOMENTS = 12
+"""Moments within them."""
+STEP = 0.025
+"""Microseconds of a particle-step with all that is in it, of crowds (docs/architecture.md):
+it decides how short windows may be."""
+FLIGHT = 0.005
+"""Step of the flights [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Prospect:
+    """What to expect of some executors in the first second of a film, the mean of some moments."""
+
+    executors: int
+    seconds: float
+    """How far was looked ahead [s]."""
+    faster: float
+    """All work over what the busiest executor has of it: the most by which they can be faster than one."""
+    objects: int
+    """That can move."""
+    largest: int
+    """Of these, in the heaviest island."""
+    share: float
+    """Of the work, in that island [-]."""
+    team: float
+    """Executors that run it together."""
+
+
+def prospect(ready: Prepared, executors: int, settings: Settings = Settings()) -> Prospect:
+    """Look ahead with that many executors. Nothing is measured: a particle is as dear as any other,
+    a liquid costs nothing beside them."""
+    moments = _Moments(ready, executors, settings)
+    seconds = min(AHEAD, ready.scene.control.time)
+    times = np.arange(MOMENTS) * seconds / MOMENTS
+    flight = _Flight(ready)
+    found = []
+    for t in times:
+        flight.to(float(t))
+        found.append(moments.at(*flight.boxes()))
+    busiest = sum(int(best.load.max()) for best in found)
+    work = len(found) * int(moments.cost[~moments.still].sum())
+    largest, share, team = np.mean([_heaviest(best, moments) for best in found], axis=0).tolist()
+    return Prospect(executors, seconds, work / busiest if busiest else 1.0, int((~moments.still[:moments.objects]).sum()),
+                    round(largest), share, team)
+
+
+def _heaviest(found: FramePlan, moments: "_Moments") -> tuple[int, float, int]:
+    """Objects in the heaviest island, its part of the work, and who runs it together."""
+    moving = found.label >= 0
+    if not moving.any():
+        return 0, 0.0, 1
+    work = np.bincount(found.label[moving], moments.cost[moving])
+    i = int(work.argmax())
+    team = next((len(t.members) for t in found.teams if t.island == i), 1)
+    return int((found.label[:moments.objects] == i).sum()), float(work[i] / work.sum()), team
+
+
+class _Moments:
+    """The plans of moments, as `planner.Planner` makes its first."""
+
+    def __init__(self, ready: Prepared, executors: int, settings: Settings):
+        parts = Parts(ready.plan)
+        whole, system = parts.whole, parts.whole.system
+        self.executors, self.settings, self.whole = executors, settings, whole
+        self.objects = len(system.names)
+        self.pool = pool_box(parts) if whole.grid is not None else None
+        count = self.objects + (self.pool is not None)
+        self.particles = np.append(np.diff(system.first), [0] * (count - self.objects)).astype(np.int64)
+        self.still = np.append(system.still, np.zeros(count - self.objects, bool))
+        self.cost = np.maximum(1, (STEP * whole.certificate.steps_per_frame * self.particles).astype(np.int64))
+        contact = any(e.name == "contact" for e in whole.effects)
+        self.gap = float(parts.reach.max()) if contact else 0.0
+        self.feels = None if contact else np.arange(count) == self.objects
+
+    def at(self, low: np.ndarray, high: np.ndarray, speed: np.ndarray) -> FramePlan:
+        """The plan for objects in these boxes (M, 3) [m] at these speeds (M,) [m/s],
+        for the window that leaves loads in balance."""
+        if self.pool is not None:
+            low, high, speed = np.vstack([low, self.pool[0]]), np.vstack([high, self.pool[1]]), np.append(speed, 0.0)
+        length, best = max(self.whole.certificate.lengths), None
+        for halvings in range(self.settings.finest.bit_length()):
+            steps = -(-length >> halvings)
+            found = self._plan(low, high, speed, steps)
+            load, mean = int(found.load.max()), int(found.load.sum()) // self.executors
+            if best is None or load < int(best.load.max()):
+                best = found
+            shorter = mean * (steps // 2) // length
+            if self.executors == 1 or steps == 1 or load <= BALANCED * mean and not found.teams or shorter < self.settings.worth:
+                break
+        return best
+
+    def _plan(self, low, high, speed, steps: int) -> FramePlan:
+        gravity = float(np.linalg.norm(self.whole.scene.gravity))
+        d = islands.reach(speed, steps * self.whole.certificate.timestep, gravity, MARGIN * self.whole.spacing,
+                          self.settings.safety)
+        d[self.still] = 0.0
+        if self.pool is not None:
+            d[-1] = 0.0
+        return plan(low, high, d, self.cost, np.full(len(low), -1, np.int64), self.executors, particles=self.particles,
+                    still=self.still, gap=self.gap, feels=self.feels, least=self.settings.least)
+
+
+class _Flight:
+    """Boxes of objects that fly by themselves and bounce back from ground and walls; what comes to a liquid stays where it is."""
+
+    def __init__(self, ready: Prepared):
+        scene, system = ready.scene, ready.system
+        on = {e.name for e in ready.plan.effects}
+        held = np.logical_or.reduceat(system.held, system.first[:-1])
+        self.low, self.high = system.bounds(system.position)
+        self.velocity = np.where(held[:, None], 0.0, [s.velocity for s in scene.solids])
+        apart = np.linalg.norm(system.velocity - self.velocity[system.object], axis=1)
+        self.around = np.maximum.reduceat(apart, system.first[:-1])
+        """Speed of the fastest particle relative to its object, by its spin [m/s], shape (M,)."""
+        self.gravity = np.where(held[:, None], 0.0, np.array(scene.gravity) * ("gravity" in on))
+        self.floor, self.ceiling = np.full(3, -np.inf), np.full(3, np.inf)
+        if "walls" in on:
+            self.floor, self.ceiling = np.array(scene.walls.low, float), np.array(scene.walls.high, float)
+        if "ground" in on:
+            self.floor[2] = max(self.floor[2], scene.ground)
+        self.surface = liquid_level(scene.liquid) if "liquid" in on else -np.inf
+        self.time = 0.0
+
+    def to(self, time: float) -> None:
+        """Fly on to this time [s]."""
+        while self.time < time - 1e-9:
+            dt = min(FLIGHT, time - self.time)
+            self.velocity = np.where((self.low[:, 2] < self.surface)[:, None], 0.0, self.velocity + dt * self.gravity)
+            for side, sign in ((self.low < self.floor, 1.0), (self.high > self.ceiling, -1.0)):
+                self.velocity = np.where(side, sign * np.abs(self.velocity), self.velocity)
+            self.low, self.high = self.low + dt * self.velocity, self.high + dt * self.velocity
+            self.time += dt
+
+    def boxes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Corners (M, 3) [m], and the speed of the fastest particle of each (M,) [m/s]."""
+        return self.low, self.high, np.linalg.norm(self.velocity, axis=1) + self.around
