@@ -54,8 +54,8 @@ class Blocks {
   template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
   // Who brings forces before every pass, in the order in which they are added: the particles of each, ghosts perhaps among them.
   void expect(const std::vector<std::vector<int>> &particles);
-  // Of those of number n, in the same order: positions, those of ghosts from x; and where forces on them go, which
-  // are to be cleared before every pass.
+  // Of those of number n, in the same order: positions, those of ghosts from x; and where forces on them are added up, all of
+  // which is to be cleared before every pass.
   void tell_places(std::size_t n, const double *const *x, Places &place) const;
   void clear_brought();
   Sums brought_by(std::size_t n) { return {brought.data(), bringers[n].slot.data(), lanes}; }

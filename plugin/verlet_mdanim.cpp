@@ -307,8 +307,8 @@ void VerletMdanim::tell_limits()
   limit_but_for_drift = std::max(half, far_but_for_drift);
 }
 
-// As particles of this rank stand now, i at where(i). Two of them have not come nearer to each other by more than the longest way through the
-// box around all displacements; so each has gone half of it, but for drift.
+// As particles of this rank stand now, particle i at where(i). Two of them have not come nearer to each other by more than the longest
+// way through the box around all displacements; so each has gone half of it, but for drift.
 template <class Where> double VerletMdanim::way_left(Where where) const
 {
   const double *const *then = neighbor->get_xhold();
