@@ -376,7 +376,7 @@ void FixMdanimBarrier::find_candidates()
   search.sort_found([](const Search::Found &f) { return f.high; });
   search.sort_found([](const Search::Found &f) { return f.low; });
 
-  // Partners of a particle are of the other kind, and in a list of that kind alone they are side by side, however a face lies.
+  // Partners of a particle are mostly of the other kind, and more of them are side by side in a list of that kind alone.
   constexpr int NONE_YET = -1;
   std::vector<int> number(search.near.size());    // in `particle`
   for (const Search::Found &found : search.found) number[found.low] = number[found.high] = NONE_YET;
