@@ -21,28 +21,6 @@ static constexpr int STAGGER = 72;
 
 // --- storage ---
 
-void Doubles::assign(std::size_t n)
-{
-  constexpr std::size_t LINE = 8;
-  room.assign(n + 2 * LINE, 0.0);
-  const auto address = reinterpret_cast<std::uintptr_t>(room.data()) / sizeof(double);
-  begin = room.data() + (LINE - address % LINE) % LINE;
-  used = n;
-}
-
-void Doubles::push(const double *row, std::size_t n)
-{
-  if (!begin || used + n + 16 > room.size()) {
-    std::vector<double> old(begin, begin + used);
-    const std::size_t before = used;
-    assign(2 * (used + n));
-    std::copy(old.begin(), old.end(), begin);
-    used = before;
-  }
-  std::copy(row, row + n, begin + used);
-  used += n;
-}
-
 void Catalogue::start(int numbers)
 {
   width = numbers;
@@ -244,43 +222,41 @@ void Blocks::expect(const std::vector<std::vector<int>> &particles_of)
   const int many = static_cast<int>(particles_of.size());
   for (Block &block : all) block.brought = -1;
   bringers.assign(many, {});
-  int rows = 0;
+  int rows = 1;    // the first is for forces on ghosts
   for (int n = 0; n < many; ++n)
     for (const int i : particles_of[n]) {
+      Bringer &bringer = bringers[n];
+      const int to = static_cast<int>(bringer.slot.size());
       if (is_ghost(i)) {
-        bringers[n].push_back({i, GHOST});
+        bringer.ghosts.push_back({i, to});
+        bringer.particle.push_back(0);
+        bringer.slot.push_back(0);
         continue;
       }
+      bringer.particle.push_back(ours(i));
       Block &block = all[home[ours(i)]];
       if (block.brought < 0) {
         block.brought = rows;
         rows += many;
       }
       const long row = block.brought + n;
-      bringers[n].push_back({ours(i), row * 3 * lanes + ours(i) - block.start});
+      bringer.slot.push_back(row * 3 * lanes + ours(i) - block.start);
     }
   brought.assign(static_cast<std::size_t>(rows) * 3 * lanes);
 }
 
-void Blocks::tell_places(std::size_t n, const double *const *of_ghosts, std::vector<Vec3> &to) const
+void Blocks::tell_places(std::size_t n, const double *const *of_ghosts, Places &to) const
 {
-  to.resize(bringers[n].size());
-  Vec3 *next = to.data();
-  for (const auto &[i, slot] : bringers[n]) *next++ = slot == GHOST ? vec3(of_ghosts[i]) : Vec3{x[0][i], x[1][i], x[2][i]};
+  const std::vector<int> &particle = bringers[n].particle;
+  to.make_room(particle.size());
+  for (int d = 0; d < 3; ++d) {
+    double *next = to.along[d].data();
+    for (const int i : particle) *next++ = x[d][i];
+  }
+  for (const auto &[i, place] : bringers[n].ghosts) to.put(place, of_ghosts[i]);
 }
 
-void Blocks::bring(std::size_t n, const std::vector<Vec3> &force)
-{
-  double *const to = brought.data();
-  const Vec3 *next = force.data();
-  for (const auto &[i, slot] : bringers[n]) {
-    const Vec3 f = *next++;
-    if (slot == GHOST) continue;
-    to[slot] = f.x;
-    to[slot + lanes] = f.y;
-    to[slot + 2 * lanes] = f.z;
-  }
-}
+void Blocks::clear_brought() { std::fill_n(brought.data(), brought.size(), 0.0); }
 
 void Blocks::hold_back(const std::vector<int> &wanted, bool everything)
 {
@@ -455,7 +431,8 @@ void Blocks::fill(Pass &pass, double *const *forces)
 std::size_t Blocks::bytes() const
 {
   std::size_t of_bringers = brought.bytes();
-  for (const std::vector<Brought> &those : bringers) of_bringers += those.capacity() * sizeof(Brought);
+  for (const Bringer &b : bringers)
+    of_bringers += b.particle.capacity() * sizeof(int) + b.ghosts.capacity() * sizeof(Ghost) + b.slot.capacity() * sizeof(long);
   return of_bringers + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + damped_laws.bytes() +
       motions.bytes() + memory.bytes() +
       (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
@@ -475,10 +452,10 @@ static bool has_avx512()
 
 static constexpr Width WIDTHS[] = {
 #if defined(__x86_64__)
-    {"avx512", 8, pass_avx512, has_avx512},
-    {"avx2", 4, pass_avx2, has_avx2},
+    {"avx512", 8, pass_avx512, has_avx512, &touch_avx2},
+    {"avx2", 4, pass_avx2, has_avx2, &touch_avx2},
 #endif
-    {"common", 4, pass_common, always},
+    {"common", 4, pass_common, always, &touch_common},
 };
 
 // The divider gives as many numbers a cycle to wide vectors as to narrow ones, and of wide ones more lanes are idle. Dashpots are more

@@ -4,7 +4,9 @@
 #ifndef MDANIM_BLOCKS_H
 #define MDANIM_BLOCKS_H
 
+#include "guest.h"
 #include "pass.h"
+#include "places.h"
 #include "spring_rows.h"
 #include "vec3.h"
 
@@ -13,22 +15,6 @@
 #include <vector>
 
 namespace mdanim {
-
-// Doubles that start on a cache line and may be read and written a vector beyond their end.
-class Doubles {
- public:
-  void assign(std::size_t n);    // zeros
-  void push(const double *row, std::size_t n);
-  void clear() { used = 0; }
-  double *data() { return begin; }
-  const double *data() const { return begin; }
-  std::size_t bytes() const { return room.capacity() * sizeof(double); }
-
- private:
-  std::vector<double> room;
-  double *begin = nullptr;
-  std::size_t used = 0;
-};
 
 // Distinct rows of numbers, each kept once.
 class Catalogue {
@@ -83,9 +69,11 @@ class Blocks {
   template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
   // Who brings forces before every pass, in the order in which they are added: the particles of each, ghosts perhaps among them.
   void expect(const std::vector<std::vector<int>> &particles);
-  // Of those of number n, in the same order: positions, those of ghosts from x; and the forces on them.
-  void tell_places(std::size_t n, const double *const *x, std::vector<Vec3> &place) const;
-  void bring(std::size_t n, const std::vector<Vec3> &force);
+  // Of those of number n, in the same order: positions, those of ghosts from x; and where forces on them are added up, all of
+  // which is to be cleared before every pass.
+  void tell_places(std::size_t n, const double *const *x, Places &place) const;
+  void clear_brought();
+  Sums brought_by(std::size_t n) { return {brought.data(), bringers[n].slot.data(), lanes}; }
 
   // Every block with one of these particles is held back, no other; ghosts among them are left out.
   void hold_back(const std::vector<int> &particles, bool everything);
@@ -108,6 +96,7 @@ class Blocks {
   void give_out_places(const std::vector<int> &particles, double *const *x, double *const *v) const;
   void take_in_ghosts(const double *const *x, const double *const *v);
   // The same from blocks to blocks, of particles in our own order: three numbers for each, or six with velocities.
+  Vec3 where(int i) const { return {x[0][ours(i)], x[1][ours(i)], x[2][ours(i)]}; }    // an own particle in LAMMPS's order
   int place_of(int i) const { return place[i]; }    // of an own particle, in that order
   const std::vector<int> &ghost_places() const { return ghosts; }
   void pack(const std::vector<int> &particles, bool velocities, double *to) const;
@@ -130,12 +119,15 @@ class Blocks {
   std::vector<int> home;       // block of each particle
   std::vector<bool> slowed;    // blocks with friction
   std::vector<int> outside;    // particles of blocks that are held back
-  struct Brought {
-    int particle;    // in our order, a ghost in LAMMPS's
-    long slot;       // of its force in `brought`
+  struct Ghost {
+    int particle, to;    // `particle` in LAMMPS's order
   };
-  static constexpr long GHOST = -1;    // as a slot
-  std::vector<std::vector<Brought>> bringers;
+  struct Bringer {
+    std::vector<int> particle;    // in our order, any one for a ghost
+    std::vector<Ghost> ghosts;
+    std::vector<long> slot;    // of each particle's force in `brought`; of ghosts all the same one, in a row of no block
+  };
+  std::vector<Bringer> bringers;
   Doubles brought;    // see Pass
   std::vector<int> index, place;      // of a particle in LAMMPS's arrays, and back; `index` empty where the orders are the same
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's

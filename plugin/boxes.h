@@ -125,8 +125,8 @@ class Grid {
  private:
   int place(const double *x, int d) const
   {
-    const double p = std::floor((x[d] - origin[d]) / cell);
-    return static_cast<int>(std::min(std::max(p, 0.0), count[d] - 1.0));
+    const double p = (x[d] - origin[d]) / cell;
+    return static_cast<int>(std::min(std::max(p, 0.0), count[d] - 1.0));    // of what is not negative the cast takes the floor
   }
   size_t index(int a, int b, int c) const { return (static_cast<size_t>(a) * count[1] + b) * count[2] + c; }
 

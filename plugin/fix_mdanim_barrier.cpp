@@ -6,6 +6,7 @@
 #include "fix_mdanim_barrier.h"
 
 #include "barrier.h"
+#include "blocks.h"
 #include "stopwatch.h"
 
 #include "atom.h"
@@ -43,6 +44,7 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
   extlist = extensive;
   global_freq = 1;
   comm_forward = 4;
+  touch = best_width(false)->touch;
 
   if (narg < 7) utils::missing_cmd_args(FLERR, "fix mdanim/barrier", error);
   boundary_bit = group_bit(3, arg[3]);
@@ -193,22 +195,18 @@ bool FixMdanimBarrier::moves(int i) const { return i < atom->nlocal && atom->mas
 struct FixMdanimBarrier::Search {
   // Particles of one object, copied one after the other.
   struct Side {
-    std::vector<double> x, y, z;
+    Places place;
     std::vector<int> rank;    // in `near`
 
     int size() const { return static_cast<int>(rank.size()); }
-    void clear()
+    void clear(int room)
     {
-      x.clear();
-      y.clear();
-      z.clear();
+      place.make_room(room);
       rank.clear();
     }
     void add(const double *at, int n)
     {
-      x.push_back(at[0]);
-      y.push_back(at[1]);
-      z.push_back(at[2]);
+      place.put(rank.size(), at);
       rank.push_back(n);
     }
   };
@@ -255,7 +253,7 @@ struct FixMdanimBarrier::Search {
   {
     const double *const *x = fix.atom->x;
     const auto pick = [&](Side &side, tagint object, int wanted, const Box &inside) {
-      side.clear();
+      side.clear(begin[object + 1] - begin[object]);
       for (int k = begin[object]; k < begin[object + 1]; ++k) {
         const int n = of_object[k];
         const double *const place = x[near[n].particle];
@@ -267,14 +265,14 @@ struct FixMdanimBarrier::Search {
     pick(seekers, seeking, BOUNDARY, guarding_box.grown(range));
     if (seekers.size() == 0) return;
 
-    close.resize(guards.size());
+    close.resize(guards.size() + STRIP);
     if (static_cast<size_t>(guards.size()) * seekers.size() <= FEW) {
       for (int s = 0; s < seekers.size(); ++s) look(s, guards, 0, guards.size(), thin_too);
       return;
     }
     const auto place = [&](const Side &side, int k) { return x[near[side.rank[k]].particle]; };
     const Grid grid([&](int k) { return place(guards, k); }, guards.size(), range);
-    sorted.clear();
+    sorted.clear(guards.size());
     for (const int k : grid.order()) sorted.add(place(guards, k), guards.rank[k]);
     for (int s = 0; s < seekers.size(); ++s)
       grid.ranges(place(seekers, s), [&](int from, int to) { look(s, sorted, from, to, thin_too); });
@@ -312,18 +310,12 @@ struct FixMdanimBarrier::Search {
   // One seeker and guards in a row.
   void look(int s, const Side &side, int from, int to, bool thin_too)
   {
-    const double x = seekers.x[s], y = seekers.y[s], z = seekers.z[s], range2 = range * range;
-    int *const found_here = close.data();
-    int many = 0;
-    for (int k = from; k < to; ++k) {    // without a branch that nobody could foretell
-      const double dx = x - side.x[k], dy = y - side.y[k], dz = z - side.z[k];
-      found_here[many] = k;
-      many += (dx * dx + dy * dy) + dz * dz < range2;
-    }
+    const Vec3 at = seekers.place[s];
+    const double of_seeker[] = {at.x, at.y, at.z};
+    const int many = fix.touch->within(side.place.all().data(), from, to, of_seeker, range * range, close.data());
     for (int m = 0; m < many; ++m) {
-      const int k = found_here[m];
-      const Vec3 d{x - side.x[k], y - side.y[k], z - side.z[k]};
-      consider(seekers.rank[s], side.rank[k], dot(d, d), thin_too);
+      const Vec3 d = at - side.place[close[m]];
+      consider(seekers.rank[s], side.rank[close[m]], dot(d, d), thin_too);
     }
   }
 
@@ -341,7 +333,8 @@ struct FixMdanimBarrier::Search {
 // enough.
 void FixMdanimBarrier::find_candidates()
 {
-  pair.clear();
+  strip.clear();
+  reach2.clear();
   law.clear();
   particle.clear();
   unmoved.clear();
@@ -383,26 +376,40 @@ void FixMdanimBarrier::find_candidates()
   search.sort_found([](const Search::Found &f) { return f.high; });
   search.sort_found([](const Search::Found &f) { return f.low; });
 
-  std::vector<int> number(search.near.size(), -1);    // in `particle`
-  const auto numbered = [&](int n) {
-    if (number[n] < 0) {
-      number[n] = static_cast<int>(particle.size());
-      particle.push_back(search.near[n].particle);
-    }
-    return number[n];
-  };
-  pair.reserve(search.found.size());
-  law.reserve(search.found.size());
+  // Partners of a particle are mostly of the other kind, and more of them are side by side in a list of that kind alone.
+  constexpr int NONE_YET = -1;
+  std::vector<int> number(search.near.size());    // in `particle`
+  for (const Search::Found &found : search.found) number[found.low] = number[found.high] = NONE_YET;
+  for (const int kind : {static_cast<int>(BOUNDARY), 0})
+    for (size_t n = 0; n < number.size(); ++n)
+      if (number[n] == NONE_YET && (search.near[n].role & BOUNDARY) == kind) {
+        number[n] = static_cast<int>(particle.size());
+        particle.push_back(search.near[n].particle);
+      }
   for (const Search::Found &found : search.found) {
-    const int first = numbered(found.low), second = numbered(found.high);
     const Law known = search.law_of(found);
-    pair.push_back({first, second, known.reach * known.reach});
-    law.push_back(known);
+    add_candidate(number[found.low], number[found.high], known);
     pairs += known.share;
   }
   for (size_t n = 0; n < particle.size(); ++n)
     if (!moves(particle[n])) unmoved.push_back(static_cast<int>(n));
-  touching_pair.resize(pair.size());
+  slot.resize(particle.size());
+  for (size_t n = 0; n < slot.size(); ++n) slot[n] = 3 * static_cast<long>(n);
+}
+
+// They come in ascending order, of low and then of high tags, and pairs are to be numbered in that order.
+void FixMdanimBarrier::add_candidate(int low, int high, const Law &known)
+{
+  if (strip.empty() || strip.back().one != low || high <= last_high || strip.back().first + STRIP <= high) {
+    constexpr double none[STRIP] = {};
+    strip.push_back({low, high});
+    reach2.push(none, STRIP);
+    law.resize(law.size() + STRIP, {0.0, 0.0, 0.0});
+  }
+  const size_t pair = STRIP * (strip.size() - 1) + high - strip.back().first;
+  reach2.data()[pair] = known.reach * known.reach;
+  law[pair] = known;
+  last_high = high;
 }
 
 // --- forces ---
@@ -417,20 +424,32 @@ void FixMdanimBarrier::post_force(int)
 {
   {
     const Lap lap(seconds);
-    here.clear();
-    for (const int i : particle) here.push_back(vec3(atom->x[i]));
+    here.make_room(particle.size());
+    for (size_t n = 0; n < particle.size(); ++n) here.put(n, atom->x[particle[n]]);
   }
-  forces(here, on);
+  on.assign(3 * particle.size(), 0.0);
+  push<true>(here, Sums(on.data(), slot.data(), 1));
   const Lap lap(seconds);
-  for (size_t n = 0; n < particle.size(); ++n) add_to(atom->f[particle[n]], on[n]);
+  for (size_t n = 0; n < particle.size(); ++n) add_to(atom->f[particle[n]], vec3(&on[slot[n]]));
 }
 
-// On the particles that have candidates; nothing on those that are not moved.
-void FixMdanimBarrier::forces(const std::vector<Vec3> &place, std::vector<Vec3> &total)
+// Puts the pairs in touch into touching_pair; returns how many.
+int FixMdanimBarrier::find_touching(const Places &place)
 {
-  total.assign(particle.size(), Vec3());
-  energy = touching = 0.0;
-  if (pair.empty() && loss.idle()) {
+  lanes.resize(strip.size() + 1);
+  touching_pair.resize(law.size() + STRIP);
+  const auto all = place.all();
+  return touch->in_reach({all.data(), strip.data(), static_cast<int>(strip.size()), reach2.data(), lanes.data()}, touching_pair.data());
+}
+
+// Between outputs, where nobody reads the energy.
+void FixMdanimBarrier::forces(const Places &place, const Sums &total) { push<false>(place, total); }
+
+// On the particles that have candidates; nothing on those that are not moved. TELLS: of energy and pairs in touch, too.
+template <bool TELLS> void FixMdanimBarrier::push(const Places &place, const Sums &total)
+{
+  if (TELLS) energy = touching = 0.0;
+  if (strip.empty() && loss.idle()) {
     loss.rest();
     return;
   }
@@ -439,37 +458,34 @@ void FixMdanimBarrier::forces(const std::vector<Vec3> &place, std::vector<Vec3> 
   const double *const *v = atom->v;
   std::vector<Vec3> *slowed = damping > 0.0 ? &loss.forces(atom->nlocal) : nullptr;
 
-  size_t many = 0;
-  for (size_t c = 0; c < pair.size(); ++c) {    // without a branch that nobody could foretell
-    const Vec3 d = place[pair[c].low] - place[pair[c].high];
-    touching_pair[many] = static_cast<int>(c);
-    many += dot(d, d) < pair[c].reach2;
-  }
-
-  for (size_t m = 0; m < many; ++m) {
-    const auto &[low, high, reach2] = pair[touching_pair[m]];
+  const int many = find_touching(place);
+  for (int m = 0; m < many; ++m) {
     const auto &[k, reach, share] = law[touching_pair[m]];
+    const auto [low, first] = strip[touching_pair[m] / STRIP];
+    const int high = first + touching_pair[m] % STRIP;
     const Vec3 d = place[low] - place[high];
     const double r = std::sqrt(dot(d, d)), q = 1.0 - r / reach;
     const Vec3 normal = direction(d, r, true);
-    double push = barrier_force(power, k, reach, q);
-    energy += share * barrier_energy(power, k, reach, q);
+    double size = barrier_force(power, k, reach, q);
+    if (TELLS) {
+      energy += share * barrier_energy(power, k, reach, q);
+      touching += share;
+    }
     if (damping > 0.0) {
       const int i = particle[low], j = particle[high];
       const double approach = dot(vec3(v[i]) - vec3(v[j]), normal);
       const double rate = damping * reduced_mass(own[i].mass, own[j].mass) / force->ftm2v;
-      push -= rate * q * approach;
+      size -= rate * q * approach;
       const Vec3 slowing = (rate * q * approach) * normal;
       if (moves(i)) (*slowed)[i] -= slowing;
       if (moves(j)) (*slowed)[j] += slowing;
     }
-    const Vec3 on_low = push * normal;
-    total[low] += on_low;
-    total[high] -= on_low;
-    touching += share;
+    const Vec3 on_low = size * normal;
+    total.add(low, on_low);
+    total.add(high, -1.0 * on_low);
     deepest = std::min(deepest, r / reach);
   }
-  for (const int n : unmoved) total[n] = Vec3();
+  for (const int n : unmoved) total.clear(n);
   if (slowed) loss.step(v, update->dt, update->setupflag);
 }
 
@@ -505,7 +521,7 @@ double FixMdanimBarrier::compute_vector(int n)
 
 double FixMdanimBarrier::memory_usage()
 {
-  return own.capacity() * sizeof(Own) + pair.capacity() * sizeof(Pair) + law.capacity() * sizeof(Law) +
-      (particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) +
-      (here.capacity() + on.capacity()) * sizeof(Vec3) + loss.bytes();
+  return own.capacity() * sizeof(Own) + strip.capacity() * sizeof(Strip) + reach2.bytes() + law.capacity() * sizeof(Law) +
+      lanes.capacity() * sizeof(Lanes) + (particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) +
+      here.bytes() + on.capacity() * sizeof(double) + slot.capacity() * sizeof(long) + loss.bytes();
 }

@@ -32,7 +32,8 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
   double memory_usage() override;
   void concerned(std::vector<int> &particles) const override;
   bool places_suffice() const override { return damping == 0.0; }
-  void forces(const std::vector<mdanim::Vec3> &place, std::vector<mdanim::Vec3> &force) override;
+  void forces(const mdanim::Places &place, const mdanim::Sums &force) override;
+  void use(const mdanim::Touch &of_processor) override { touch = &of_processor; }
   bool reads_all() override { return damping > 0.0 && !loss.idle(); }
   double looks_ahead() const override { return clear; }
   bool minds_drift() const override { return false; }
@@ -43,12 +44,7 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
     double stiffness, reach, mass;
     tagint object;    // molecule ID
   };
-  // Two particles that may come into reach of each other; the lower tag first, as places in `particle`.
-  struct Pair {
-    int low, high;
-    double reach2;    // square of the reach
-  };
-  // What else is known of a pair.
+  // What is known of a pair.
   struct Law {
     double stiffness, reach;
     double share;    // of the pair that this rank counts: 1/2 for each end that it moves, 1 if the other end is never moved
@@ -59,6 +55,9 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
   void collect_own();
   double survey(std::vector<mdanim::Box> &boxes);
   void find_candidates();
+  void add_candidate(int low, int high, const Law &known);
+  template <bool TELLS> void push(const mdanim::Places &place, const mdanim::Sums &total);
+  int find_touching(const mdanim::Places &place);
   struct Search;
   bool moves(int i) const;
   double sum(double here);
@@ -70,14 +69,21 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
 
   std::vector<Own> own;      // local and ghost particles
 
-  // Candidates, ascending by the lower tag and then by the higher one, so that who goes through them adds up the forces on every
-  // particle in ascending order of its partners' tags.
-  std::vector<Pair> pair;
-  std::vector<Law> law;
-  std::vector<int> particle;           // that have candidates, local or ghost
-  std::vector<int> unmoved;            // those of them, as places in it, that this rank adds no forces to
-  std::vector<mdanim::Vec3> here, on;  // positions of them and forces on them in a step without passes
-  std::vector<int> touching_pair;      // in this step
+  // Candidates, numbered ascending by the lower tag and then by the higher one, so that who goes through them adds up the forces on
+  // every particle in ascending order of its partners' tags. There are numbers in between that are no pairs (touch.h).
+  std::vector<mdanim::Strip> strip;
+  mdanim::Doubles reach2;               // squares of the reach of pairs, 0 for what is none
+  std::vector<Law> law;                 // and what else is known of them
+  int last_high = 0;                    // the higher one of the last pair
+  std::vector<int> particle;            // that have candidates, local or ghost: first boundary, then barrier, each ascending by tag
+  std::vector<int> unmoved;             // those of them, as places in it, that this rank adds no forces to
+  const mdanim::Touch *touch;           // who looks for those in touch
+  std::vector<mdanim::Lanes> lanes;     // where there are some in this step
+  std::vector<int> touching_pair;       // in this step
+  // In a step without passes: positions of these particles, forces on them, and where in `on` those of each begin.
+  mdanim::Places here;
+  std::vector<double> on;
+  std::vector<long> slot;
 
   double clear = 0.0;                    // no two objects meet before a particle has gone farther
   bigint meeting_objects = 0;            // pairs of objects whose boxes meet

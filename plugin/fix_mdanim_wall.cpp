@@ -157,16 +157,15 @@ void FixMdanimWall::post_force(int)
 }
 
 // On those that are watched.
-void FixMdanimWall::forces(const std::vector<Vec3> &place, std::vector<Vec3> &force)
+void FixMdanimWall::forces(const Places &place, const Sums &force)
 {
   begin_sums();
-  force.clear();
   if (watched.empty()) return;
 
   const Lap lap(seconds);
   region->prematch();
   const double *k = stiffness.values(lmp);
-  for (size_t n = 0; n < watched.size(); ++n) force.push_back(push_back(place[n], k ? k[watched[n]] : stiffness.number));
+  for (size_t n = 0; n < watched.size(); ++n) force.add(n, push_back(place[n], k ? k[watched[n]] : stiffness.number));
 }
 
 void FixMdanimWall::begin_sums()

@@ -31,7 +31,7 @@ class FixMdanimWall : public Fix, public mdanim::Guest {
   double memory_usage() override;
   void concerned(std::vector<int> &particles) const override;
   bool places_suffice() const override { return watching; }
-  void forces(const std::vector<mdanim::Vec3> &place, std::vector<mdanim::Vec3> &force) override;
+  void forces(const mdanim::Places &place, const mdanim::Sums &force) override;
   bool reads_all() override { return !watching; }
   double looks_ahead() const override { return clear; }
 

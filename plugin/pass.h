@@ -5,6 +5,8 @@
 #ifndef MDANIM_PASS_H
 #define MDANIM_PASS_H
 
+#include "touch.h"
+
 namespace mdanim {
 
 // Springs from the particles of a block to those `offset` places further on.
@@ -73,6 +75,7 @@ struct Width {
   int lanes;
   void (*pass)(Pass &);
   bool (*runs_here)();
+  const Touch *touch;
 };
 
 void pass_common(Pass &);

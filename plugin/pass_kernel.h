@@ -8,28 +8,10 @@
 
 #include "pass.h"
 #include "spring.h"
+#include "vectors.h"
 
 namespace mdanim {
 namespace {
-
-#define MDANIM_INLINE inline __attribute__((always_inline))
-
-typedef double Vector __attribute__((vector_size(8 * LANES)));
-
-struct __attribute__((packed, may_alias)) Unaligned {
-  Vector value;
-};
-
-MDANIM_INLINE Vector load(const double *from) { return reinterpret_cast<const Unaligned *>(from)->value; }
-
-MDANIM_INLINE void store(double *to, Vector value) { reinterpret_cast<Unaligned *>(to)->value = value; }
-
-MDANIM_INLINE Vector root(Vector a)
-{
-  Vector r;
-  for (int lane = 0; lane < LANES; ++lane) r[lane] = __builtin_sqrt(a[lane]);
-  return r;
-}
 
 MDANIM_INLINE Vector largest(Vector a, Vector b) { return a > b ? a : b; }
 
@@ -291,8 +273,6 @@ MDANIM_INLINE void whole_pass(Pass &pass)
   case Friction::EXPONENTIAL: with_or_without_trace<Friction::EXPONENTIAL>(pass); break;
   }
 }
-
-#undef MDANIM_INLINE
 
 }    // namespace
 }    // namespace mdanim

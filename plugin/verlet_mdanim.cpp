@@ -65,7 +65,7 @@ double VerletMdanim::memory_usage()
 {
   return static_cast<double>(blocks.bytes() + line.bytes() + ghosts.bytes() +
                              (object.capacity() + sent.capacity() + wanted.capacity()) * sizeof(int) +
-                             (places.capacity() + forces.capacity()) * sizeof(Vec3));
+                             places.bytes());
 }
 
 // --- LAMMPS's list of bonds ---
@@ -132,6 +132,7 @@ bool VerletMdanim::find_players()
       if (gravity || !early.empty() || !late.empty()) return false;    // its force is added right after the springs'
       gravity = found;
     } else if (auto *guest = dynamic_cast<Guest *>(fix)) {
+      guest->use(*width->touch);
       // Whoever comes after a late one is late himself: forces are added in the order of fixes.
       (guest->places_suffice() && late.empty() ? early : late).push_back({fix, guest, (mask & FixConst::END_OF_STEP) != 0});
     } else if (mask & ACTS)
@@ -247,7 +248,7 @@ int VerletMdanim::take_steps(int step, int most)
   if (update->ntimestep >= stop) return 0;
   if (lists_matter) {
     tell_limits();
-    left = way_left();
+    left = way_left([this](int i) { return vec3(atom->x[i]); });
     if (!lists_last(0.0)) return 0;
   }
 
@@ -318,20 +319,20 @@ void VerletMdanim::tell_limits()
   limit_but_for_drift = std::max(half, far_but_for_drift);
 }
 
-// As particles of this rank stand now. Two of them have not come nearer to each other by more than the longest way through the
-// box around all displacements; so each has gone half of it, but for drift.
-double VerletMdanim::way_left() const
+// As particles of this rank stand now, particle i at where(i). Two of them have not come nearer to each other by more than the longest
+// way through the box around all displacements; so each has gone half of it, but for drift.
+template <class Where> double VerletMdanim::way_left(Where where) const
 {
-  const double *const *here = atom->x, *const *then = neighbor->get_xhold();
+  const double *const *then = neighbor->get_xhold();
   const bool alone = comm->nprocs == 1;
   double most = 0.0;
   Box displaced, now;
   for (int i = 0; i < atom->nlocal; ++i) {
-    const Vec3 d = vec3(here[i]) - vec3(then[i]);
-    const double of_box[] = {d.x, d.y, d.z};
+    const Vec3 here = where(i), d = here - vec3(then[i]);
+    const double of_box[] = {d.x, d.y, d.z}, at[] = {here.x, here.y, here.z};
     most = std::max(most, dot(d, d));
     displaced.include(of_box);
-    if (!alone) now.include(here[i]);
+    if (!alone) now.include(at);
   }
   const double gone = std::sqrt(most);
   if (alone) return std::min(limit - gone, limit_but_for_drift - std::min(gone, 0.5 * displaced.diagonal()));
@@ -380,11 +381,9 @@ bool VerletMdanim::lists_last(double more)
 bool VerletMdanim::look_again()
 {
   timer->stamp(Timer::BOND);
-  blocks.give_out(atom->x, nullptr);
-  left = way_left();
+  left = way_left([this](int i) { return blocks.where(i); });
   if (comm->nprocs > 1 ? lists_last(0.0) : left > SOON * std::min(limit, limit_but_for_drift)) return true;
-  blocks.give_out(nullptr, atom->v);
-  give_out_account();
+  leave_blocks();
   if (comm->nprocs > 1) {
     if (bond->account()) return false;    // what dashpots did last is not handed on with particles
     rebuild_lists();
@@ -394,7 +393,7 @@ bool VerletMdanim::look_again()
     if (late.empty()) made_for = neighbor->ncalls;    // nobody has changed how particles move
   }
   tell_limits();
-  left = comm->nprocs > 1 ? way_left() : std::min(limit, limit_but_for_drift);
+  left = comm->nprocs > 1 ? way_left([this](int i) { return vec3(atom->x[i]); }) : std::min(limit, limit_but_for_drift);
   // Mostly a rank that is alone has them where they were.
   if (comm->nprocs > 1 || modify->n_pre_exchange || modify->n_pre_neighbor) blocks.take_in(atom->x, atom->v);
   prepare_passes();
@@ -477,10 +476,10 @@ void VerletMdanim::one_pass(bool guests_see_all)
 // Forces that the pass is to add.
 void VerletMdanim::early_guests_turn()
 {
+  blocks.clear_brought();
   for (std::size_t n = 0; n < early.size(); ++n) {
     blocks.tell_places(n, atom->x, places);
-    early[n].guest->forces(places, forces);
-    blocks.bring(n, forces);
+    early[n].guest->forces(places, blocks.brought_by(n));
   }
 }
 
@@ -550,7 +549,7 @@ bool VerletMdanim::lists_are_due()
   tell_limits();
   if (std::max(limit, limit_but_for_drift) <= 0.5 * neighbor->skin) return neighbor->decide();
   ++neighbor->ago;
-  left = way_left();
+  left = way_left([this](int i) { return vec3(atom->x[i]); });
   return !lists_last(0.0);
 }
 

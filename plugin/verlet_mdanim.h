@@ -37,7 +37,7 @@ class VerletMdanim : public Verlet {
   bool lists_last(double more);
   bool lists_are_due();
   bool look_again();
-  double way_left() const;
+  template <class Where> double way_left(Where where) const;
   double way_to_strangers(const mdanim::Box &own, const mdanim::Box &all) const;
   bool follows(int d, int side) const;
   void prepare_passes();
@@ -85,7 +85,7 @@ class VerletMdanim : public Verlet {
   double left = 0.0;           // how much farther, at least
   double narrowest[3] = {};    // share of the box that a rank has along each axis, the least of all
   bigint made_for = -1;        // build of lists that the blocks' motion was told after
-  std::vector<mdanim::Vec3> places, forces;  // of the particles of an early guest
+  mdanim::Places places;       // of the particles of an early guest
   std::vector<int> wanted;     // particles that late guests are concerned with
 };
 

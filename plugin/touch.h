@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Who is near whom: what the vector code (touch_kernel.h) is given. Plain data alone, for the reason told in pass.h.
+
+#ifndef MDANIM_TOUCH_H
+#define MDANIM_TOUCH_H
+
+namespace mdanim {
+
+// A particle and STRIP others that stand side by side, some of which make pairs with it: pair STRIP * n + k is `one` and the k-th other
+// of strip n.
+constexpr int STRIP = 4;
+struct Strip {
+  int one, first;
+};
+
+// Lanes of a strip, one bit for each.
+struct Lanes {
+  int strip, bits;
+};
+
+struct Candidates {
+  const double *const *place;    // of particles, all x, all y, all z
+  const Strip *strip;
+  int strips;
+  const double *reach2;    // square of the reach of every pair, 0 where there is none
+  Lanes *lanes;            // room for a strip more than there are
+};
+
+// For one kind of processor; the same answers from each.
+struct Touch {
+  // Numbers of the pairs in reach, ascending; returns how many. There must be room for all pairs and STRIP more.
+  int (*in_reach)(const Candidates &, int *pair);
+  // Those of places `from` to `to` - 1 that are less than sqrt(range2) away from `at`, ascending; the same.
+  int (*within)(const double *const *place, int from, int to, const double *at, double range2, int *found);
+};
+
+extern const Touch touch_common, touch_avx2;
+
+}    // namespace mdanim
+
+#endif
