@@ -7,8 +7,8 @@ import numpy as np
 
 from .plan import HELD, Plan
 
-SKIN = 0.75
-"""Neighbour skin over the spacing: lists are rebuilt when a particle has moved half of it."""
+SKIN = 1.5
+"""Neighbour skin over the spacing: lists are rebuilt when a particle has moved half of it (bench/skin.py)."""
 BALANCE = ("balance 1.0 rcb", "fix balance all balance 1000 1.1 rcb")
 """Cut space so that every rank has the same share of particles, now and in the course of a run; changes no bit of the result."""
 GHOST = 3.0
