@@ -13,7 +13,7 @@ from mpi4py import MPI
 from ..engine.instance import State
 from ..engine.part import Parts
 from ..engine.spares import Spares
-from .energy import losses, stored
+from .energy import losses
 from .planning import FramePlan
 from .source import run_window
 
@@ -83,8 +83,6 @@ class Bundle:
         self.number, self.key, self.members = wanted.number, wanted.key, wanted.members
         self.moves = self._among(wanted.members)
         """Which of its objects are its members; the others are guests, or laid aside."""
-        self.other_rows = np.flatnonzero(np.repeat(~self.moves, self._particles))
-        """Particles in its instance that are none of its members'."""
         self.stretches = self._stretches()
         """Where its members' particles are in its instance, and among all."""
 
@@ -185,7 +183,3 @@ class Bundle:
         """Losses [J], by term of the ledger, since it was asked last."""
         before, self.lost = self.lost, losses(self.instance)
         return {term: e - before.get(term, 0.0) for term, e in self.lost.items()}
-
-    def energies(self) -> dict[str, float]:
-        """Terms of the ledger [J], of what it moves, without losses."""
-        return stored(self.instance, self.other_rows)
