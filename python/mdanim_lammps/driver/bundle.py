@@ -52,8 +52,9 @@ def wanted_bundles(plan: FramePlan, objects: int, executor: int) -> list[Wanted]
     who = np.flatnonzero(mine)
     who = who[np.argsort(plan.bundle[who], kind="stable")]
     found = []
-    for group in np.split(who, np.flatnonzero(np.diff(plan.bundle[who])) + 1) if len(who) else []:
-        number = int(plan.bundle[group[0]])
+    numbers, begin = np.unique(plan.bundle[who], return_index=True)
+    for number, a, b in zip(numbers.tolist(), begin.tolist(), [*begin[1:].tolist(), len(who)]):
+        group = who[a:b]
         guests = plan.guests[np.isin(plan.guests[:, 0], plan.label[group]), 1].tolist() if len(plan.guests) else ()
         members = group[group < objects]
         key = Key(tuple(sorted({*members.tolist(), *guests})), bool(group[-1] == objects), team_of.get(number, (executor,)))
@@ -72,6 +73,8 @@ class Bundle:
         self.places = parts.whole.system.stretches(self.objects)
         """Its particles among all."""
         self.first = parts.whole.system.first
+        self.particles = np.diff(self.plan.system.first) if len(self.objects) else np.zeros(0, np.int64)
+        """Of each object."""
         self.aside = np.zeros(len(self.objects), bool)
         """Objects that are others' now."""
         self.lost: dict[str, float] = {}
@@ -87,11 +90,9 @@ class Bundle:
         """Where its members' particles are in its instance, and among all."""
 
     def _stretches(self) -> list[tuple[slice, slice]]:
-        """Members that are side by side in both are one stretch."""
-        which = np.flatnonzero(self.moves)
-        begins = np.ones(len(which), bool)
-        begins[1:] = (np.diff(which) > 1) | (np.diff(self.objects[which]) > 1)
-        begin, end = which[begins], which[np.roll(begins, -1)] + 1
+        """Members that are side by side among all are so in its instance, and are one stretch."""
+        which, apart = np.flatnonzero(self.moves), np.diff(self.members) != 1
+        begin, end = which[np.append(True, apart)[:len(which)]], which[np.append(apart, True)[:len(which)]] + 1
         here, there = self.plan.system.first, self.first[self.objects[begin]]
         return [(slice(a, b), slice(c, c + b - a)) for a, b, c in zip(here[begin].tolist(), here[end].tolist(), there.tolist())]
 
@@ -100,11 +101,6 @@ class Bundle:
         among = np.zeros(len(self.first), bool)
         among[np.asarray(objects, np.intp)] = True
         return among[self.objects]
-
-    @property
-    def _particles(self) -> np.ndarray:
-        """Of each object."""
-        return np.diff(self.plan.system.first) if len(self.objects) else np.zeros(0, np.int64)
 
     # --- whom it moves --------------------------------------------------------------------------------------------
 
@@ -117,7 +113,7 @@ class Bundle:
             return False
         if np.count_nonzero(self._among(wanted.key.objects) & ~self.aside) < len(wanted.key.objects):
             return False
-        return self._particles[self._among(wanted.members)].sum() >= WORTH * self._particles.sum()
+        return self.particles[self._among(wanted.members)].sum() >= WORTH * self.particles.sum()
 
     def become(self, wanted: Wanted) -> None:
         """Lay aside those objects that it does not move any more; a guest that is not needed any more does no harm."""
@@ -137,7 +133,7 @@ class Bundle:
             self.instance.setup()
         else:
             if self.aside.any():
-                rows = np.repeat(self.aside, self._particles)
+                rows = np.repeat(self.aside, self.particles)
                 state.x[rows], state.v[rows], state.f[rows] = (self.instance.array(name)[rows] for name in "xvf")
             self.instance.put(step, state)
             self.lost = losses(self.instance)
@@ -175,7 +171,7 @@ class Bundle:
 
         It is told for one executor alone, so that a team counts as what it does.
         """
-        particles = self._particles[self.moves]
+        particles = self.particles[self.moves]
         total = scale * len(self.key.team) * max(0.0, self.run_seconds - self.liquid_seconds)
         return (total * particles / max(1, particles.sum())).astype(np.int64)
 
