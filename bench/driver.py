@@ -33,7 +33,7 @@ FIRST = 10
 """Frames that are not counted."""
 PARTS = {
     "executor": ("Executor", {"_transfer": "hand on", "_report": "report", "_commit": "copy states", "_weigh": "sum energies", "_go_on": "lay aside", "_send": "send frame"}),
-    "bundle": ("Bundle", {"__init__": "build instances", "start": "put states", "run": "LAMMPS", "extent": "boxes", "energies": "energies"}),
+    "bundle": ("Bundle", {"__init__": "build instances", "start": "put states", "run": "LAMMPS", "extent": "boxes"}),
     "planner": ("Planner", {"decide": "plan"}),
     "messages": ("Mail", {"exchange": "exchange"}),
     "control": ("Central", {"decide": "wait for orders"}),

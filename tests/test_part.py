@@ -383,7 +383,7 @@ def test_solids_that_are_laid_aside(prepared):
         instance.lay_aside(gone)
         after = evolve(instance, 400)
         rows, others = particles(plan.system, rest), particles(plan.system, gone)
-        whole = stored(instance, others)
+        whole = stored(instance)
         assert np.ptp(after.v[others]) == 0.0
     with Instance(parts.part(rest, False)) as alone:
         alone.put(200, cut(start, rows, False))

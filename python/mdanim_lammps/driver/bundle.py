@@ -13,7 +13,7 @@ from mpi4py import MPI
 from ..engine.instance import State
 from ..engine.part import Parts
 from ..engine.spares import Spares
-from .energy import losses, stored
+from .energy import losses
 from .messages import gathered, scatter
 from .planning import FramePlan
 from .source import run_window
@@ -53,8 +53,9 @@ def wanted_bundles(plan: FramePlan, objects: int, executor: int) -> list[Wanted]
     who = np.flatnonzero(mine)
     who = who[np.argsort(plan.bundle[who], kind="stable")]
     found = []
-    for group in np.split(who, np.flatnonzero(np.diff(plan.bundle[who])) + 1) if len(who) else []:
-        number = int(plan.bundle[group[0]])
+    numbers, begin = np.unique(plan.bundle[who], return_index=True)
+    for number, a, b in zip(numbers.tolist(), begin.tolist(), [*begin[1:].tolist(), len(who)]):
+        group = who[a:b]
         guests = plan.guests[np.isin(plan.guests[:, 0], plan.label[group]), 1].tolist() if len(plan.guests) else ()
         members = group[group < objects]
         key = Key(tuple(sorted({*members.tolist(), *guests})), bool(group[-1] == objects), team_of.get(number, (executor,)))
@@ -74,6 +75,8 @@ class Bundle:
         self.places = parts.whole.system.stretches(self.objects)
         """Its particles among all."""
         self.first = parts.whole.system.first
+        self.particles = np.diff(self.plan.system.first) if len(self.objects) else np.zeros(0, np.int64)
+        """Of each object."""
         self.scattered = False
         """Whether the members of its team have, since its last window, each the particles of `stretches` alone."""
         self.aside = np.zeros(len(self.objects), bool)
@@ -87,10 +90,8 @@ class Bundle:
         self.number, self.key, self.members = wanted.number, wanted.key, wanted.members
         self.moves = self._among(wanted.members)
         """Which of its objects are its members; the others are guests, or laid aside."""
-        self.other_rows = np.flatnonzero(np.repeat(~self.moves, self._particles))
-        """Particles in its instance that are none of its members'."""
         which = np.flatnonzero(self.moves)
-        self.stretches = _stretches(self.plan.system.first[which], self.first[self.objects[which]], self._particles[which])
+        self.stretches = _stretches(self.plan.system.first[which], self.first[self.objects[which]], self.particles[which])
         """Where its members' particles are in its instance, and among all; of a team, once it has told, those that this executor has."""
         self._rows: np.ndarray | None = None
         """Of a team: the particles in its instance that these stretches are for."""
@@ -129,11 +130,6 @@ class Bundle:
         among[np.asarray(objects, np.intp)] = True
         return among[self.objects]
 
-    @property
-    def _particles(self) -> np.ndarray:
-        """Of each object."""
-        return np.diff(self.plan.system.first) if len(self.objects) else np.zeros(0, np.int64)
-
     # --- whom it moves --------------------------------------------------------------------------------------------
 
     def can_be(self, wanted: Wanted) -> bool:
@@ -145,7 +141,7 @@ class Bundle:
             return False
         if np.count_nonzero(self._among(wanted.key.objects) & ~self.aside) < len(wanted.key.objects):
             return False
-        return self._particles[self._among(wanted.members)].sum() >= WORTH * self._particles.sum()
+        return self.particles[self._among(wanted.members)].sum() >= WORTH * self.particles.sum()
 
     def become(self, wanted: Wanted) -> None:
         """Lay aside those objects that it does not move any more; a guest that is not needed any more does no harm."""
@@ -165,7 +161,7 @@ class Bundle:
             self.instance.setup()
         else:
             if self.aside.any():
-                rows = np.repeat(self.aside, self._particles)
+                rows = np.repeat(self.aside, self.particles)
                 state.x[rows], state.v[rows], state.f[rows] = (self.instance.array(name)[rows] for name in "xvf")
             self.instance.put(step, state)
             self.lost = losses(self.instance)
@@ -203,7 +199,7 @@ class Bundle:
 
         It is told for one executor alone, so that a team counts as what it does.
         """
-        particles = self._particles[self.moves]
+        particles = self.particles[self.moves]
         total = scale * len(self.key.team) * max(0.0, self.run_seconds - self.liquid_seconds)
         return (total * particles / max(1, particles.sum())).astype(np.int64)
 
@@ -211,10 +207,6 @@ class Bundle:
         """Losses [J], by term of the ledger, since it was asked last."""
         before, self.lost = self.lost, losses(self.instance)
         return {term: e - before.get(term, 0.0) for term, e in self.lost.items()}
-
-    def energies(self) -> dict[str, float]:
-        """Terms of the ledger [J], of what it moves, without losses."""
-        return stored(self.instance, self.other_rows)
 
 
 def _stretches(here: np.ndarray, there: np.ndarray, size: np.ndarray) -> list[tuple[slice, slice]]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..effects import Effect
 from ..engine.instance import Instance
+from ..engine.plan import Plan
 from ..model.system import System
 from ..results.ledger import LOSS
 
@@ -28,25 +29,27 @@ def ledger_terms(effects: Iterable[Effect]) -> tuple[str, ...]:
 
 def energies(instance: Instance) -> dict[str, float]:
     """Every term of the ledger [J], at the end of a `run` or after `setup`."""
-    return stored(instance) | losses(instance)
+    return stored(instance) | potentials(instance.plan, instance.array("x")) | losses(instance)
 
 
-def stored(instance: Instance, others: np.ndarray | None = None) -> dict[str, float]:
-    """The terms of what a state holds, without losses [J]; when as in `energies`.
+def stored(instance: Instance) -> dict[str, float]:
+    """The terms of what a state holds, 0 for `potentials`, without losses [J]; when as in `energies`.
 
-    ``others`` are particles of the instance that are not to be counted; they do not move and hold no elastic energy.
+    Objects that stand still, guests or laid aside, have no part in them.
     """
     plan = instance.plan
     effects = [e for e in plan.effects if e.ledger and not e.ledger.endswith(LOSS)]
     found = dict.fromkeys(ledger_terms(effects), 0.0)
     found["kinetic"] = instance.kinetic_energy()
     for effect in effects:
-        found[effect.ledger] += effect.energy(instance, plan.scene, plan.system)
-    if others is not None and len(others):
-        x, mass = instance.array("x")[others], plan.system.mass[others]
-        for effect in effects:
-            found[effect.ledger] -= effect.potential(plan.scene, mass, x)
+        if not effect.placed:
+            found[effect.ledger] += effect.energy(instance, plan.scene, plan.system)
     return found
+
+
+def potentials(plan: Plan, x: np.ndarray) -> dict[str, float]:
+    """The terms that follow from where all particles of a plan are [J]; x [m], shape (N, 3)."""
+    return {e.ledger: e.potential(plan.scene, plan.system.mass, x) for e in plan.effects if e.placed}
 
 
 def losses(instance: Instance) -> dict[str, float]:

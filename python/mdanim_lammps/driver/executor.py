@@ -19,6 +19,7 @@ from ..engine.spares import Spares
 from ..errors import MdanimError
 from .bundle import Bundle, Wanted, wanted_bundles
 from .control import Control, make_control
+from .energy import stored
 from .messages import SUPERVISOR, Aborted, Ended, Failure, Job, Kept, Mail, Moved, Order, Report, Share, Tag, gathered, scatter
 from .source import Account, Broken, add_clocks, penetration, pool
 
@@ -294,7 +295,7 @@ class Executor:
     def _weigh(self) -> None:
         """Energies of a frame."""
         for bundle in self.bundles:
-            energies = bundle.energies()  # together with the team
+            energies = stored(bundle.instance)  # together with the team
             if self._leads(bundle):
                 self._count(energies)
 

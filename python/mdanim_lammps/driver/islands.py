@@ -66,37 +66,38 @@ def _all_pairs(low: np.ndarray, high: np.ndarray, gap: float) -> np.ndarray:
 def _grid_pairs(low: np.ndarray, high: np.ndarray, gap: float) -> np.ndarray:
     """Boxes of similar size are sorted into a grid by their lower corners, cells as wide as the widest and the gap: who meets a
     box lies in the 27 cells around it. Larger ones come in rounds of their own, against themselves and all smaller ones; a round
-    takes half of those that are left at least.
+    takes half of those that are left at least. Sorts need not be stable: what is found is sorted.
     """
     count = len(low)
-    edge = (high - low).max(axis=1)
-    order = np.argsort(edge, kind="stable")
+    low, high = np.ascontiguousarray(low.T), np.ascontiguousarray(high.T)
+    edge = (high - low).max(axis=0)
+    order = np.argsort(edge)
     edge = edge[order]
-    found = [np.empty((0, 2), np.int64)]
+    found = [np.empty((2, 0), np.int64)]
     first = 0
     while first < count:
         last = int(np.searchsorted(edge, LARGE * edge[(first + count) // 2] + gap, side="right"))
-        key, rows = _cells(low[order[:last]], (edge[last - 1] + gap) * ROUNDING)
-        sort = first + np.argsort(key[first:], kind="stable")
+        key, rows = _cells(low[:, order[:last]], (edge[last - 1] + gap) * ROUNDING)
+        sort = first + np.argsort(key[first:])
         mine, mine_key = order[sort], key[sort]
         found += _look(low, high, gap, mine, mine, _rows_ahead(mine_key, rows))
         if first:
-            sort = np.argsort(key[:first], kind="stable")
+            sort = np.argsort(key[:first])
             found += _look(low, high, gap, mine, order[sort], _rows_around(mine_key, key[sort], rows))
         first = last
-    pair = np.concatenate(found)
-    code = np.minimum(pair[:, 0], pair[:, 1]) * count + np.maximum(pair[:, 0], pair[:, 1])
+    a, b = np.concatenate(found, axis=1)
+    code = np.minimum(a, b) * count + np.maximum(a, b)
     code.sort()
     return np.column_stack(np.divmod(code, count))
 
 
 def _cells(corner: np.ndarray, cell: float) -> tuple[np.ndarray, tuple[int, int]]:
-    """Number of the cell of every corner, shape (N,), and how far apart those of neighbours along x and y are; along z, one."""
-    origin = corner.min(axis=0)
-    cell = max(cell, float((corner.max(axis=0) - origin).max()) / CELLS) or 1.0
-    place = np.floor((corner - origin) / cell).astype(np.int64) + 1  # a margin of one cell: no row runs on into the next
-    _, y, z = (int(n) + 2 for n in place.max(axis=0))
-    return (place[:, 0] * y + place[:, 1]) * z + place[:, 2], (y * z, z)
+    """Number of the cell of every corner (3, N), shape (N,), and how far apart those of neighbours along x and y are; along z, one."""
+    corner = corner - corner.min(axis=1)[:, None]
+    cell = max(cell, float(corner.max()) / CELLS) or 1.0
+    place = (corner / cell).astype(np.int64) + 1  # a margin of one cell: no row runs on into the next
+    _, y, z = (place.max(axis=1) + 2).tolist()
+    return (place[0] * y + place[1]) * z + place[2], (y * z, z)
 
 
 def _rows_ahead(key: np.ndarray, rows: tuple[int, int]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
@@ -115,19 +116,20 @@ def _rows_around(key: np.ndarray, others: np.ndarray, rows: tuple[int, int]) -> 
 
 
 def _look(low, high, gap, mine, others, rows) -> Iterator[np.ndarray]:
-    """Those boxes of ``others`` in the given slots that meet mine, in blocks of shape (P, 2)."""
-    low_a, high_a, low_b, high_b = (np.ascontiguousarray(side[who].T) for who in (mine, others) for side in (low, high))
+    """Those boxes of ``others`` in the given slots that meet mine, in blocks of shape (2, P)."""
+    low_a, high_a, low_b, high_b = (side[:, who] for who in (mine, others) for side in (low, high))
     first, last = map(np.concatenate, zip(*rows))
     size = last - first
-    before = np.concatenate([[0], np.cumsum(size)])
+    upto = np.cumsum(size)
+    before = upto - size
     start = 0
     while start < len(first):
-        stop = max(start + 1, int(np.searchsorted(before, before[start] + BLOCK, side="right")) - 1)
-        here = np.arange(start, stop)
-        a = np.repeat(here % len(mine), size[here])
-        b = np.arange(len(a)) + np.repeat(first[here] - (before[here] - before[start]), size[here])
+        stop = max(start + 1, int(np.searchsorted(upto, before[start] + BLOCK, side="right")))
+        here = slice(start, stop)
+        a = np.repeat(np.arange(start, stop) % len(mine), size[here])
+        b = np.arange(len(a)) + np.repeat(first[here] - before[here] + before[start], size[here])
         a, b = _meeting((low_a, high_a), (low_b, high_b), a, b, gap)
-        yield np.column_stack([mine[a], others[b]])
+        yield np.stack([mine[a], others[b]])
         start = stop
 
 

@@ -119,18 +119,14 @@ def pool_box(parts: Parts) -> tuple[np.ndarray, np.ndarray]:
 
 def z_order(low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """A number for every box, int64, shape (M,), along Morton's curve through their middles: near numbers are near in space."""
-    middle = 0.5 * (low + high)
-    corner = middle.min(axis=0)
-    across = float((middle.max(axis=0) - corner).max()) or 1.0
-    place = np.minimum((middle - corner) / across * 2.0**20, 2.0**20 - 1.0).astype(np.int64)
-    code = np.zeros(len(low), np.int64)
-    for axis in range(3):
-        x = place[:, axis]
-        for shift, mask in ((32, 0x1F00000000FFFF), (16, 0x1F0000FF0000FF), (8, 0x100F00F00F00F00F), (4, 0x10C30C30C30C30C3),
-                            (2, 0x1249249249249249)):
-            x = (x | x << shift) & mask
-        code |= x << axis
-    return code
+    middle = np.ascontiguousarray((0.5 * (low + high)).T)
+    middle -= middle.min(axis=1)[:, None]
+    across = float(middle.max()) or 1.0
+    x = np.minimum(middle / across * 2.0**20, 2.0**20 - 1.0).astype(np.int64)
+    for shift, mask in ((32, 0x1F00000000FFFF), (16, 0x1F0000FF0000FF), (8, 0x100F00F00F00F00F), (4, 0x10C30C30C30C30C3),
+                        (2, 0x1249249249249249)):
+        x = (x | x << shift) & mask
+    return x[0] | x[1] << 1 | x[2] << 2
 
 
 def bundles(label: np.ndarray, owner: np.ndarray, particles: np.ndarray, teams: Sequence[Team] = (), *,
@@ -177,6 +173,8 @@ def _kept(isle, moving, first, runs, previous) -> np.ndarray:
 
 def _leave_teams(kept, first, teams, team, previous) -> None:
     """An island of a team keeps its bundle only if it is alone there and the team is the same; what was a team's leaves it."""
+    if not teams and not previous.teams:
+        return
     before = {int(previous.bundle[np.flatnonzero(previous.label == t.island)[0]]): t.members for t in previous.teams}
     now = {t.island: t.members for t in teams}
     company = np.bincount(kept[kept >= 0])

@@ -20,7 +20,7 @@ from ..engine.part import Parts
 from ..errors import DivergedError
 from ..results.ledger import LOSS
 from ..results.timeline import Timeline
-from .energy import ledger_terms
+from .energy import ledger_terms, potentials
 from .messages import LONG_NAP, NAP, SUPERVISOR, Ended, Failure, Grant, Job, Kept, Mail, Report, Share, Tag, scatter
 from .planner import Planner, planner_of
 from .planning import Settings
@@ -43,7 +43,6 @@ class Distributed:
         self.executors = world.size - 1
         self.lengths = ready.certificate.lengths
         self.losses = {term: 0.0 for term in ledger_terms(ready.plan.effects) if term.endswith(LOSS)}
-        self.resting = self._resting_energies()
         self.sheaves: dict[int, _Sheaf] = {}
         self.ended: dict[int, Ended] = {}
         self.gone: set[int] = set()
@@ -152,7 +151,7 @@ class Distributed:
             self.used.append(self.last)
         self.last, self.taken = self.sheaves.pop(frame), frame
         shares = [sheaf.shares[e] for e in range(self.executors)]
-        energies = dict(self.resting)
+        energies = dict.fromkeys(ledger_terms(self.ready.plan.effects), 0.0)
         for share in shares:
             for term, e in share.energies.items():
                 if term in self.losses:
@@ -163,17 +162,9 @@ class Distributed:
                           [team for s in shares for team in s.teams])
         if keep:
             self.last_state = State(sheaf.x, sheaf.v, sheaf.f, sheaf.liquid)
-        return Frame(self.step, sheaf.x, sheaf.v, energies | self.losses, max(s.penetration for s in shares),
+        energies |= potentials(self.ready.plan, sheaf.x) | self.losses
+        return Frame(self.step, sheaf.x, sheaf.v, energies, max(s.penetration for s in shares),
                      next((s.pool for s in shares if s.pool), None), keep)
-
-    def _resting_energies(self) -> dict[str, float]:
-        """What objects that never move add to the ledger [J]: executors tell of what moves."""
-        system, energies = self.ready.system, dict.fromkeys(ledger_terms(self.ready.plan.effects), 0.0)
-        still = system.still[system.object]
-        for effect in self.ready.plan.effects:
-            if effect.ledger:
-                energies[effect.ledger] += effect.potential(self.ready.scene, system.mass[still], system.position[still])
-        return energies
 
     def _take(self, patience: float | None = None) -> None:
         """Wait for one message and file it. Raises what an executor or the desk raised."""

@@ -60,6 +60,8 @@ class Effect:
     """ID of its LAMMPS fix of ours, which times itself; empty when it has none."""
     ledger = ""
     """Its energy column in ledger.csv; empty when it has none."""
+    placed = False
+    """Whether its energy is a `potential` of single particles; no other effect has the same column then."""
     needs: tuple[str, ...] = ()
     """Effects without which this one cannot be; they stand before it in EFFECTS."""
     lost = ""
@@ -99,11 +101,11 @@ class Effect:
 
     def energy(self, instance, scene: Scene, system: System) -> float:
         """What stands in its ledger column now [J]; ``instance`` is the running engine.instance.Instance."""
-        return 0.0
+        return self.potential(scene, system.mass, instance.array("x")) if self.placed else 0.0
 
     def potential(self, scene: Scene, mass: np.ndarray, x: np.ndarray) -> float:
-        """The part of its energy that particles have by their places alone [J]; mass [kg], shape (N,), x [m], shape (N, 3)."""
-        return 0.0
+        """Its energy, where that follows from the places of particles alone [J]; mass [kg], shape (N,), x [m], shape (N, 3)."""
+        raise NotImplementedError
 
     def clocks(self, instance) -> dict[str, float]:
         """Wall seconds so far of each of its pieces; ``instance`` as in `energy`.

@@ -15,6 +15,7 @@ PULL = 0.07
 class Gravity(Effect):
     name = fix = "gravity"
     ledger = "gravity"
+    placed = True
     lost = "nothing falls"
 
     def called_for(self, scene):
@@ -29,9 +30,6 @@ class Gravity(Effect):
 
     def forecast(self, load, rate):
         return load.steps * load.mobile * PULL * rate["leap-frog"]
-
-    def energy(self, instance, scene, system):
-        return instance.total(self.potential(scene, system.mass[instance.rows()], instance.here("x")))
 
     def potential(self, scene, mass, x):
         # No matrix product: the threads that it may start cost more than it. Axis by axis einsum is four times as fast.

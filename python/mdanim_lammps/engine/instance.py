@@ -102,7 +102,8 @@ class Instance:
         plan, lmp = self.plan, self._lmp
         low, high = box(plan).tolist()
         # property/atom must exist before the particles, and a box before both.
-        *before, columns = prelude(plan)
+        self._prelude = prelude(plan)
+        *before, columns = self._prelude
         self._types = max(TYPES, len(plan.coefficients)) if self.refillable else len(plan.coefficients)
         # On one process the bond style takes the springs as they are; of several, each needs those of its own particles at both ends.
         ends = plan.ends() if self._comm and len(plan.bonds) else None
@@ -145,14 +146,17 @@ class Instance:
         """Become an instance of another plan, as if it had been made for it, in a fifth of the time. Returns False, with nothing done,
         where that needs other columns, more types of springs, or a liquid, or this one is not refillable. Raises SetupError.
         """
-        if not self.refillable or plan.grid or len(plan.coefficients) > self._types or _fixed(plan) != _fixed(self.plan):
+        if not self.refillable or plan.grid or len(plan.coefficients) > self._types:
+            return False
+        commands = prelude(plan)
+        if _fixed(commands) != _fixed(self._prelude):
             return False
         undo = [UNDONE[word].format(name) for word, name, *_ in map(str.split, physics(self.plan)) if word in UNDONE]
-        self.plan = plan
+        self.plan, self._prelude = plan, commands
         self._views.clear()
         try:
             self._lmp.commands_list(["delete_atoms group all compress no", *reversed(undo),  # fixes go before their regions
-                                     *(c for c in prelude(plan) if c.startswith(REPEATED)), "reset_timestep 0"])
+                                     *(c for c in commands if c.startswith(REPEATED)), "reset_timestep 0"])
             self._populate(None)
         except Exception as error:
             raise SetupError(f"LAMMPS does not take these particles: {error}") from error
@@ -319,7 +323,10 @@ class Instance:
     def _write(self, name: str, values: np.ndarray) -> None:
         """Set ``x``, ``v`` or ``f`` from an array in tag order."""
         self._gathered.clear()
-        self._local(name)[:] = values[self._local("id", 1) - 1] if self._comm else values
+        if self._comm:
+            self._local(name)[:] = values[self._local("id", 1) - 1]
+        else:
+            self.array(name)[:] = values
 
     def _gather(self, name: str, width: int) -> np.ndarray:
         """A per-particle array of all ranks, in tag order."""
@@ -422,9 +429,9 @@ class Instance:
         return self.total(float(self._library.mdanim_bond_lost(self._handle)))
 
 
-def _fixed(plan: Plan) -> list[str]:
-    """What LAMMPS is told once, before there are particles."""
-    return [command for command in prelude(plan) if not command.startswith("comm_modify")]
+def _fixed(commands: list[str]) -> list[str]:
+    """Of those before the particles, what LAMMPS is told once."""
+    return [command for command in commands if not command.startswith("comm_modify")]
 
 
 def _shorter_along_rows(position: np.ndarray) -> np.ndarray:

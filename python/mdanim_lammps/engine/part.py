@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 
 import numpy as np
 
@@ -35,10 +36,10 @@ class Parts:
         system = whole.system
         owner = system.object
         counted = np.arange(len(system.names) + 1)
-        self._particle = system.first
-        self._spring = np.searchsorted(owner[system.spring[:, 0]], counted)
-        self._bond = np.searchsorted(owner[whole.bonds[:, 0]], counted)
-        self._cell = np.searchsorted(owner[system.hexahedron[:, 0]], counted)
+        # First rows of each object; lists, for they are asked for one by one.
+        self._particle: list[int] = system.first.tolist()
+        self._spring, self._bond, self._cell = (np.searchsorted(owner[array[:, 0]], counted).tolist()
+                                                for array in (system.spring, whole.bonds, system.hexahedron))
         self._ends: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
 
     @cached_property
@@ -125,7 +126,7 @@ class Parts:
         if m not in self._ends:
             mine = slice(self._bond[m], self._bond[m + 1])
             start = self._particle[m]
-            ends = both_ends(self.whole.bonds[mine] - np.int32(start), self.whole.bond_kind[mine], int(self._particle[m + 1] - start))
+            ends = both_ends(self.whole.bonds[mine] - np.int32(start), self.whole.bond_kind[mine], self._particle[m + 1] - start)
             self._ends[m] = np.diff(ends.first), ends.partner, ends.kind
         return self._ends[m]
 
@@ -165,11 +166,14 @@ class _Cut(System):
 class _Taker:
     """Takes what belongs to some objects out of arrays in which object m has the rows [first[m], first[m+1])."""
 
-    def __init__(self, runs: list[tuple[int, int]], first: np.ndarray):
-        self.slices = [slice(int(first[a]), int(first[b])) for a, b in runs]
-        at = np.cumsum([0, *(s.stop - s.start for s in self.slices)])
-        self.shifts = [s.start - int(start) for s, start in zip(self.slices, at)]
+    def __init__(self, runs: list[tuple[int, int]], first: list[int]):
+        self.slices = [slice(first[a], first[b]) for a, b in runs]
+
+    @cached_property
+    def shifts(self) -> list[int]:
         """By how much the rows of each run come earlier in the part than in the whole."""
+        sizes = [s.stop - s.start for s in self.slices]
+        return [s.start - before for s, before in zip(self.slices, accumulate(sizes, initial=0))]
 
     def __call__(self, array: np.ndarray) -> np.ndarray:
         """Rows of an array; a view where they lie side by side."""
