@@ -29,26 +29,28 @@ MDANIM_INLINE Vector loss(const Vector *va, const Vector *vb, const Vector *push
 }
 
 // Largest and smallest coordinates of one object, as they come.
-struct Box6 {
-  Vector bound[6];
+struct Bounds {
+  Vector low[3], high[3];
 
   MDANIM_INLINE void open()
   {
-    for (Vector &b : bound) b = Vector{} + __DBL_MAX__;
+    for (Vector &b : low) b = Vector{} + __DBL_MAX__;
+    for (Vector &b : high) b = Vector{} - __DBL_MAX__;
   }
   MDANIM_INLINE void include(const Vector *x)
   {
     for (int d = 0; d < 3; ++d) {
-      const Vector high = -x[d];
-      bound[d] = x[d] < bound[d] ? x[d] : bound[d];
-      bound[3 + d] = high < bound[3 + d] ? high : bound[3 + d];
+      low[d] = x[d] < low[d] ? x[d] : low[d];
+      high[d] = x[d] > high[d] ? x[d] : high[d];
     }
   }
-  MDANIM_INLINE void close(double *box) const
+  MDANIM_INLINE void close(double *box) const    // of boxes.h
   {
-    for (int k = 0; k < 6; ++k)
-      for (int lane = 0; lane < LANES; ++lane)
-        if (bound[k][lane] < box[k]) box[k] = bound[k][lane];
+    for (int d = 0; d < 3; ++d)
+      for (int lane = 0; lane < LANES; ++lane) {
+        if (low[d][lane] < box[d]) box[d] = low[d][lane];
+        if (-high[d][lane] < box[3 + d]) box[3 + d] = -high[d][lane];
+      }
   }
 };
 
@@ -57,7 +59,7 @@ struct Tally {
   Vector fastest{};
   double final_loss = 0.0, first_loss = 0.0, bend = 0.0;
   DashpotSums dashpots = {0.0, 0.0, 0.0};
-  Box6 box;
+  Bounds box;
   int object = -1;    // whose box it is
 };
 
