@@ -56,7 +56,7 @@ CASES = {
     "the same with liquid drag": dict(v=3, more=SEA.format(drag=4, model="surface"), off=WET),
     "the same with model pressure": dict(v=3, more=SEA.format(drag=4, model="pressure"), off=WET),
 }
-STEPS, WARM = 50, 5
+STEPS, WARM = 100, 5
 """Of a block: two rebuilds of lists at 3 m/s; and those before its clock starts."""
 CLOSE = 0.0025
 """Half the interval that is close enough."""
