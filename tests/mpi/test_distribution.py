@@ -49,11 +49,13 @@ def same(alone: Path, together: Path) -> None:
     one, two = (Ledger.read(f / "ledger.csv") for f in (alone, together))
     assert (one.terms, one.extras) == (two.terms, two.extras)
     scale = max(np.abs(one.array(t)).max() for t in one.terms)
+    # What dashpots take is known to second order only where a bundle begins anew: 4.4e-6 of all energy where 16 balls do.
+    timeline = Timeline.read(together)
+    begun = np.count_nonzero(timeline.moves) + sum(timeline.retries)
     for column in one.columns:
-        # What dashpots take is summed in another order where a bundle begins anew, and known to second order only there.
         rough = column in ("damping_loss", "residual")
-        np.testing.assert_allclose(two.array(column), one.array(column), rtol=2e-3 if rough else 1e-9,
-                                   atol=(1e-4 if column == "residual" else 1e-5 * scale if rough else 1e-12 * scale), err_msg=column)
+        np.testing.assert_allclose(two.array(column), one.array(column), rtol=2e-3 if rough else 1e-9, err_msg=column,
+                                   atol=(max(1e-4, 5e-6 * begun) if column == "residual" else 1e-5 * scale if rough else 1e-12 * scale))
     first, second = (json.loads((f / "summary.json").read_text()) for f in (alone, together))
     for summary in (first, second):
         del summary["seconds"], summary["energy_residual"]
