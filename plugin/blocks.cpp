@@ -99,13 +99,15 @@ Cut Blocks::cut(const HalfBonds &bonds, const int *object)
   cut.springs = rows.total();
   const std::vector<int> length = lengths(bonds, object);
   for (int end = cut.particles; end > 0; end -= length[end])
-    cut.block.push_back({end - length[end], static_cast<short>(length[end]), false, false, 0, -1, 0, object[end - 1] - 1});
+    cut.block.push_back({end - length[end], static_cast<short>(length[end]), false, false, false, 0, -1, 0, object[end - 1] - 1});
   std::reverse(cut.block.begin(), cut.block.end());
 
-  std::vector<bool> damped(cut.particles);
+  std::vector<bool> damped(cut.particles), bound(cut.particles);
   for (int i = 0; i < cut.particles; ++i)
-    for (const SpringRows::Link &link : rows[i])
+    for (const SpringRows::Link &link : rows[i]) {
+      bound[i] = bound[i + link.offset] = true;
       if (bonds.law[link.type].c > 0.0) damped[i] = damped[i + link.offset] = true;
+    }
 
   std::vector<SpringRows::Links> left(lanes);    // springs of each lane
   std::vector<double> law(3 * lanes);
@@ -113,6 +115,7 @@ Cut Blocks::cut(const HalfBonds &bonds, const int *object)
     for (int lane = 0; lane < block.lanes; ++lane) {
       left[lane] = rows[block.start + lane];
       block.damped = block.damped || damped[block.start + lane];
+      block.bound = block.bound || bound[block.start + lane];
     }
     for (;;) {
       int offset = 0;    // the longest that is left
@@ -214,6 +217,16 @@ void Blocks::set_row(const Mover &mover, Friction friction, int lane, double *ro
     at(STAY) = exact.e;
     at(PUSH) = exact.g * exact.kick;
   }
+}
+
+// Blocks in which nothing moves or is pulled come behind all others, where passes do not get to.
+void Blocks::set_apart(const std::vector<bool> &moves)
+{
+  const auto order = [](const Block &a, const Block &b) { return a.start < b.start; };
+  if (!std::is_sorted(all.begin(), all.end(), order)) std::sort(all.begin(), all.end(), order);
+  const auto awake = [&](const Block &block) { return block.bound || moves[block.start]; };
+  active = static_cast<int>(std::stable_partition(all.begin(), all.end(), awake) - all.begin());
+  for (std::size_t n = 0; n < all.size(); ++n) std::fill_n(&home[all[n].start], all[n].lanes, static_cast<int>(n));
 }
 
 // Blocks with a particle of anybody have a row for everybody.
@@ -410,7 +423,7 @@ void Blocks::give_out_forces(double *const *f) const
 void Blocks::fill(Pass &pass, double *const *forces)
 {
   pass.block = all.data();
-  pass.blocks = static_cast<int>(all.size());
+  pass.blocks = active;
   pass.entry = entries.data();
   pass.law = laws.data();
   pass.damped_law = damped() ? damped_laws.data() : nullptr;

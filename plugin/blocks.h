@@ -112,9 +112,11 @@ class Blocks {
   int ours(int i) const { return index.empty() ? i : place[i]; }    // the way back
   bool is_ghost(int place) const { return !index.empty() && place >= owned; }
   void set_row(const Mover &mover, Friction friction, int lane, double *row) const;
+  void set_apart(const std::vector<bool> &moves);    // by the first particle of a block: whether any of it moves
 
   int particles = 0, lanes = 0;
   std::vector<Block> all;
+  int active = 0;    // so many of them, the first ones, have something to do in a pass
   std::vector<Entry> entries;
   std::vector<int> home;       // block of each particle
   std::vector<bool> slowed;    // blocks with friction
@@ -143,21 +145,23 @@ class Blocks {
 template <class Tell> void Blocks::set_motion(Friction friction, Tell mover)
 {
   std::vector<double> row(MOTIONS * lanes);
+  std::vector<bool> slow(particles), moves(particles);    // by the first particle of a block
   motions.start(MOTIONS * lanes);
-  slowed.clear();
   for (Block &block : all) {
-    bool slows = false;
     for (int lane = 0; lane < lanes; ++lane) {
       const int i = lane < block.lanes ? at(block.start + lane) : -1;
       const Mover of_lane = i < 0 || is_ghost(i) ? Mover{0.0, 0.0, 0.0, 0.0, 0.0} : mover(i);
-      slows = slows || of_lane.phi != 0.0;
+      if (of_lane.phi != 0.0) slow[block.start] = true;
+      if (of_lane.dt != 0.0) moves[block.start] = true;
       set_row(of_lane, friction, lane, row.data());
       row[OTHERS * lanes + lane] = lane < block.lanes ? 0.0 : 1.0;
       row[COUNTS * lanes + lane] = i < 0 || is_ghost(i) ? 0.0 : 1.0;
     }
     block.motion = motions.find_or_add(row.data());
-    slowed.push_back(slows);
   }
+  set_apart(moves);
+  slowed.clear();
+  for (const Block &block : all) slowed.push_back(slow[block.start]);
 }
 
 // The processor's best for springs with or without dashpots, or that of a name; null when it is unknown or does not run here.

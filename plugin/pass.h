@@ -22,6 +22,7 @@ struct Block {
   short lanes;      // of its own; what else is loaded with them belongs to others and is left as it is
   bool held_back;   // others add to its forces before it may move
   bool damped;      // some of its particles have dashpots
+  bool bound;       // some have springs
   unsigned end;
   int brought;        // first of its rows of Pass::brought; negative for none
   unsigned motion;    // row of Pass::motion
