@@ -163,6 +163,11 @@ void BondMdanimHarmonic::adopt(SpringRows &&now, bool halves)
 
 void BondMdanimHarmonic::lost_partner(int i, int partner) const
 {
+  if (i < 0)
+    error->one(FLERR,
+               "bond_style mdanim/harmonic: bonds to particle {} were changed without a setup; leave out 'pre no' of this run, "
+               "which is at step {}",
+               partner, update->ntimestep);
   error->one(
       FLERR,
       "bond_style mdanim/harmonic: particle {} has lost its bond partner {} at step {}; if the "
@@ -198,6 +203,11 @@ void BondMdanimHarmonic::look_up(int i, bool halves, Row &row) const
   const auto upper = std::find_if(link.begin(), link.end(), [&](const auto &l) { return tag_of(l) > own; });
   row.lower = static_cast<int>(upper - link.begin());
   std::reverse(upper, link.end());
+  for (auto several = link.begin(); several != upper;) {    // between the same two: in the same order at both ends
+    const auto end = std::find_if(several, upper, [&](const auto &l) { return l.offset != several->offset; });
+    std::reverse(several, end);
+    several = end;
+  }
 }
 
 // Laws of all types; another version where one differs from before.
@@ -360,7 +370,7 @@ void BondMdanimHarmonic::compute(int eflag, int vflag)
   made_after = neighbor->ncalls;
   const bool remade = other_lists && source_changed();
   if (remade) make_rows();
-  if (remade || coefficients_may_differ) look_up_coefficients();
+  if (coefficients_may_differ) look_up_coefficients();
 
   const int nlocal = atom->nlocal;
   std::vector<Vec3> *on = nullptr;

@@ -39,7 +39,7 @@ class BondMdanimHarmonic : public Bond {
   // summed.
   bool halves(mdanim::HalfBonds &half) const;
   const std::vector<mdanim::Law> &laws() const { return law; }    // by bond type
-  [[noreturn]] void lost_partner(int i, int partner) const;    // the error that particle i does not find this one, a tag
+  [[noreturn]] void lost_partner(int i, int partner) const;    // the error that particle i, or nobody, has this one, a tag
   mdanim::Loss *account() { return damped ? &loss : nullptr; }    // of dashpots, all ranks or none
   bigint version() const { return made; }    // another number for other springs
   void took(double more) { seconds += more; }

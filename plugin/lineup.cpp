@@ -44,6 +44,7 @@ void Lineup::tell_who_lost(const Bonded &known, int partner)
   for (int i = 0; i < known.own; ++i)
     if (std::find(known.partner[i], known.partner[i] + known.bonds[i], partner) != known.partner[i] + known.bonds[i])
       known.lost(i, partner);
+  known.lost(-1, partner);
 }
 
 // Whether there is a piece for each object; none of an object's particles is among another's.

@@ -21,7 +21,7 @@ struct Bonded {
   const int *const *type;             // 0 and less: switched off
   const int *const *partner;          // tags
   std::function<int(int tag)> find;           // index of a partner, negative where it is not known;
-  std::function<void(int i, int tag)> lost;   // that is an error
+  std::function<void(int i, int tag)> lost;   // that is an error; i negative where nobody has a bond to it any more
 };
 
 class Lineup {

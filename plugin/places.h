@@ -15,6 +15,9 @@ namespace mdanim {
 // Doubles that start on a cache line and may be read and written a vector beyond their end.
 class Doubles {
  public:
+  Doubles() = default;
+  Doubles(Doubles &&) = default;    // a copy would point into the other's memory
+  Doubles &operator=(Doubles &&) = default;
   void assign(std::size_t n);    // zeros
   void push(const double *row, std::size_t n);
   void clear() { used = 0; }

@@ -39,11 +39,6 @@ void SpringRows::add(const Row &row)
   first.push_back(static_cast<int>(distinct.size()));
 }
 
-bool SpringRows::operator==(const SpringRows &other) const
-{
-  return kind == other.kind && first == other.first && lowers == other.lowers && distinct == other.distinct;
-}
-
 std::size_t SpringRows::bytes() const
 {
   return (kind.capacity() + first.capacity() + lowers.capacity()) * sizeof(int) + distinct.capacity() * sizeof(Link);

@@ -43,7 +43,6 @@ class SpringRows {
   int size() const { return static_cast<int>(kind.size()); }
   std::size_t total() const { return all; }    // length of all rows
 
-  bool operator==(const SpringRows &other) const;
   std::size_t bytes() const;
 
  private:

@@ -70,6 +70,10 @@ MDANIM_EXPORT int mdanim_top_speeds(void *handle, int objects, double *speed, ch
 {
   const auto lammps = static_cast<LAMMPS *>(handle);
   const Atom &atom = *lammps->atom;
+  if (!atom.molecule_flag) {
+    snprintf(error, error_size, "objects are told apart by molecule IDs, and there are none; use 'atom_style bond'");
+    return 1;
+  }
   std::fill_n(speed, objects, 0.0);
   for (int i = 0; i < atom.nlocal; ++i) {
     const tagint object = atom.molecule[i];

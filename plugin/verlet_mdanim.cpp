@@ -75,6 +75,7 @@ void VerletMdanim::setup(int flag)
 {
   decided_for = -1;
   line.forget();    // particles may have other springs now
+  whole_way_for = local_then = -1;
   spare_bond_list();
   Verlet::setup(flag);
 }
@@ -83,6 +84,7 @@ void VerletMdanim::setup_minimal(int flag)
 {
   decided_for = -1;
   line.forget();
+  whole_way_for = local_then = -1;
   spare_bond_list();
   Verlet::setup_minimal(flag);
 }
@@ -214,10 +216,15 @@ bool VerletMdanim::cut_line(std::vector<Home> &home)
 
 void VerletMdanim::run(int n)
 {
-  if (!find_players()) {
-    Verlet::run(n);
-    return;
-  }
+  refuse_if_moved();
+  if (find_players()) run_passes(n);
+  else Verlet::run(n);
+  local_then = atom->nlocal;
+  ghosts_then = atom->nghost;
+}
+
+void VerletMdanim::run_passes(int n)
+{
   made_for = -1;
   for (int i = 0; i < n; ++i) {
     if (timer->check_timeout(i)) {
@@ -228,6 +235,16 @@ void VerletMdanim::run(int n)
     if (cut()) i += take_steps(i, n - 1 - i);
     finish_step();
   }
+}
+
+// LAMMPS itself asks for a setup here, but does not see where it is left out.
+void VerletMdanim::refuse_if_moved()
+{
+  int moved = local_then >= 0 && (atom->nlocal != local_then || atom->nghost != ghosts_then), anywhere = 0;
+  MPI_Allreduce(&moved, &anywhere, 1, MPI_INT, MPI_MAX, world);
+  if (anywhere)
+    error->all(FLERR, "run_style verlet/mdanim: particles were added, deleted or given to other ranks since the last run; "
+                      "leave out 'pre no' of this one");
 }
 
 // The step at which somebody wants to see everything.
@@ -250,6 +267,7 @@ int VerletMdanim::take_steps(int step, int most)
     tell_limits();
     left = way_left([this](int i) { return vec3(atom->x[i]); });
     if (!lists_last(0.0)) return 0;
+    if (whole_way_for != neighbor->ncalls) way_begins();
   }
 
   timer->stamp();
@@ -258,8 +276,10 @@ int VerletMdanim::take_steps(int step, int most)
   prepare_passes();
   int taken = 0;
   bool stand = true;
+  ghosts_are_met = true;
   while (update->ntimestep < stop) {
-    if (comm->nprocs > 1 && taken) meet_ghosts();
+    if (comm->nprocs > 1 && !ghosts_are_met) meet_ghosts();
+    ghosts_are_met = false;
     bool see_all = false;
     for (const Player &p : late) see_all = p.guest->reads_all() || see_all;
     if (see_all) blocks.hold_back(wanted, true);
@@ -377,15 +397,25 @@ bool VerletMdanim::lists_last(double more)
   return left > 0.0;
 }
 
+// Lists are new: from here on `left` gets less.
+void VerletMdanim::way_begins()
+{
+  whole_way = left;
+  whole_way_for = neighbor->ncalls;
+}
+
 // Between two passes: sees how far particles really are, and makes lists anew if need be. False where the blocks do not stand any more.
 bool VerletMdanim::look_again()
 {
   timer->stamp(Timer::BOND);
   left = way_left([this](int i) { return blocks.where(i); });
-  if (comm->nprocs > 1 ? lists_last(0.0) : left > SOON * std::min(limit, limit_but_for_drift)) return true;
+  // What dashpots did last is not handed on with particles: several ranks do that in a plain step, when lists are due.
+  const bool between_passes = comm->nprocs == 1 || !bond->account();
+  lists_last(0.0);
+  if (left > (between_passes ? SOON * whole_way : 0.0)) return true;
   leave_blocks();
+  if (!between_passes) return false;
   if (comm->nprocs > 1) {
-    if (bond->account()) return false;    // what dashpots did last is not handed on with particles
     rebuild_lists();
     if (!cut()) return false;
   } else {
@@ -394,6 +424,9 @@ bool VerletMdanim::look_again()
   }
   tell_limits();
   left = comm->nprocs > 1 ? way_left([this](int i) { return vec3(atom->x[i]); }) : std::min(limit, limit_but_for_drift);
+  lists_last(0.0);
+  way_begins();
+  ghosts_are_met = true;
   // Mostly a rank that is alone has them where they were.
   if (comm->nprocs > 1 || modify->n_pre_exchange || modify->n_pre_neighbor) blocks.take_in(atom->x, atom->v);
   prepare_passes();

@@ -37,6 +37,9 @@ class VerletMdanim : public Verlet {
   bool lists_last(double more);
   bool lists_are_due();
   bool look_again();
+  void way_begins();
+  void refuse_if_moved();
+  void run_passes(int n);
   template <class Where> double way_left(Where where) const;
   double way_to_strangers(const mdanim::Box &own, const mdanim::Box &all) const;
   bool follows(int d, int side) const;
@@ -83,6 +86,10 @@ class VerletMdanim : public Verlet {
   // drift of all particles taken off.
   double limit = 0.0, limit_but_for_drift = 0.0;
   double left = 0.0;           // how much farther, at least
+  double whole_way = 0.0;      // that, when lists were new
+  bigint whole_way_for = -1;   // the build of these
+  bool ghosts_are_met = false;    // where they are now
+  int local_then = -1, ghosts_then = 0;    // particles at the end of the last run, negative after a setup
   double narrowest[3] = {};    // share of the box that a rank has along each axis, the least of all
   bigint made_for = -1;        // build of lists that the blocks' motion was told after
   mdanim::Places places;       // of the particles of an early guest

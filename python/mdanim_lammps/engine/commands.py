@@ -12,8 +12,7 @@ SKIN = 1.5
 BALANCE = ("balance 1.0 rcb", "fix balance all balance 1000 1.1 rcb")
 """Cut space so that every rank has the same share of particles, now and in the course of a run; changes no bit of the result."""
 GHOST = 3.0
-"""Least communication cutoff over the spacing: a bonded partner is found while its spring is less than 1.7
-times as long as at rest."""
+"""Least communication cutoff over the spacing; where there are springs it is longer, see `prelude`."""
 
 
 def harmonic_coeff(k: float) -> float:
