@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import plugin_path
 import pytest
+from mpi.changed import CASES, STEPS
+from mpi.changed import film as film_changed
 from mpi.follow import follow
 from test_engine import MEETING, SPLASH
 from test_verlet_mdanim import BETWEEN, EFFECTS, LATER, MESHES, SHAPES, SOLID, film
@@ -17,6 +19,7 @@ FILM = Path(__file__).parent / "mpi" / "film.py"
 RENUMBERED = Path(__file__).parent / "mpi" / "renumbered.py"
 FOLLOW = Path(__file__).parent / "mpi" / "follow.py"
 CUT = Path(__file__).parent / "mpi" / "cut.py"
+CHANGED = Path(__file__).parent / "mpi" / "changed.py"
 CYCLES = Path(__file__).parent / "mpi" / "cycles.py"
 NEARER = MEETING.replace("44) cm", "42.6) cm").replace("-4, 5) cm", "-4, 3.5) cm")
 SCENES = {"solids": NEARER.replace("drag 0.8", "drag 0.8\n  damping 0.05"), "liquid": SPLASH,
@@ -103,6 +106,24 @@ def test_forces_are_added_in_the_order_of_fixes_on_all_ranks(tmp_path, ranks):
 def test_lists_of_two_steps_of_one_number_are_not_taken_for_each_other(tmp_path):
     """Give steps other numbers so that lists are made in the step whose number the last ones have: particles change ranks there."""
     assert int(on_ranks(RENUMBERED, 3, tmp_path)) > 20
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize(("name", "ranks"), [(name, 2) for name in CASES] + [("delete_bonds", 3), ("second springs", 3)])
+def test_what_changes_between_runs_is_seen(tmp_path, name, ranks):
+    """Take out, add and alter springs, objects and masses between runs: the bits of run_style verlet on one rank after each run.
+
+    Passes keep blocks of objects whose particles are the same, lineup.h; most steps of each run are taken by them.
+    """
+    case = CASES[name]
+    alone, _ = film_changed(case, "verlet", tmp_path)
+    assert (alone[-1] != film_changed(case.unchanged(), "verlet", tmp_path)[0][-1]).any()
+    on_ranks(CHANGED, ranks, name, tmp_path, tmp_path / "found.npz")
+    found = np.load(tmp_path / "found.npz")
+    for states, passes in (film_changed(case, "verlet/mdanim", tmp_path), (found["ours"], found["passes"])):
+        assert (np.asarray(passes) > 0.9 * STEPS).all()
+        assert [np.array_equal(*pair) for pair in zip(states, alone, strict=True)] == [True] * len(alone)
+    assert np.array_equal(found["plain"], alone)
 
 
 @pytest.mark.mpi
