@@ -149,8 +149,8 @@ def _rates_here() -> dict[str, float]:
 # --- measuring ----------------------------------------------------------------------------------------------
 
 CUBE = """
-gravity (0, 0, -9.81)
-ground z -1e6 m
+gravity (0, 0, -{g})
+ground z {ground} cm
 object cube {{
   shape box ({n}, {n}, {n}) cm
   position (0, 0, 0)
@@ -196,10 +196,15 @@ SMALL, LARGE = 2, 13
 FAR, NEAR = 90, 9.5
 """Height of the pebble over the larger cube's middle [cm]: where nobody needs lists, and where its box meets the cube's but
 nobody is in reach."""
+BELOW, UNDER = -1e8, -7.5
+"""Height of the ground [cm]: where it has no concern, and a spacing under the larger cube, where lists are made anew however
+particles move: where only objects are near each other, moving on together needs no new ones."""
 EVERY = 5
 """Steps between rebuilds of lists where they are measured."""
 FEW, MANY = 2, 22
 """Frames whose difference tells what one takes."""
+TOUCH = 20
+"""Steps of a round of two cubes in touch; the pairs of the start are all looked at for AGAIN such rounds, until lists are made anew."""
 STEPS = 240
 """While the block sinks in."""
 
@@ -213,17 +218,17 @@ def measure() -> dict[str, float]:
 
     open_lammps()[0].close()
     rates = {"load": time.process_time() - start}
-    _prepare(CUBE.format(n=SMALL, m=2, v=0, z=FAR, damping=0))  # whatever is loaded by the first of all
-    small, large = (_cube(Instance, n, v=0.0) for n in (SMALL, LARGE))
+    _prepare(_cubes(SMALL))  # whatever is loaded by the first of all
+    small, large = (_cube(Instance, n) for n in (SMALL, LARGE))
     n = large["particles"] - small["particles"]
     rates["model"], rates["insert"] = (max(1e-9, large[k] / large["particles"]) for k in ("model", "insert"))
     rates["spring"] = max(1e-11, large["spring"])
-    rates["dashpot"] = max(1e-11, _cube(Instance, LARGE, v=0.0, damping=0.1)["spring"] - rates["spring"])
+    rates["dashpot"] = max(1e-11, _cube(Instance, LARGE, damping=0.1)["spring"] - rates["spring"])
     rates["leap-frog"] = max(1e-11, large["leapfrog"] / large["particles"])
     rates["particle"] = max(1e-10, (large["rest"] - small["rest"]) / n)
     rates["step"] = max(1e-7, small["rest"] - small["particles"] * rates["particle"])
     v = 0.5 * SKIN * 0.01 / ((EVERY - 0.5) * large["timestep"])
-    moving = _cube(Instance, LARGE, v, NEAR)
+    moving = _cube(Instance, LARGE, v=v, z=NEAR, ground=UNDER, g=1e-6)  # does not fall on it meanwhile
     rates["rebuild"] = max(1e-9, EVERY * (moving["rest"] - large["rest"]) / large["particles"])
     rates["contact"], rates["wall"] = (max(1e-10, EVERY * moving[k] / large["particles"]) for k in ("contact", "ground"))
     rates["pair"] = _pairs(Instance)
@@ -260,10 +265,15 @@ def _least(instance, clocks: dict[str, Callable[[], float]], rounds: int = ROUND
     return {k: (best[3 * steps][k] - best[steps][k]) / (2 * steps) for k in clocks}
 
 
-def _cube(Instance, n: int, v: float, z: float = FAR, damping: float = 0.0) -> dict[str, float]:
-    """A cube and a pebble over it far above ground, both at one speed; ``spring`` is the time of one in full lanes."""
+def _cubes(n: int, **other: float) -> str:
+    """A cube and a pebble over it, far above ground and at rest if nothing ``other`` is said."""
+    return CUBE.format(n=n, **{"m": 2, "v": 0.0, "z": FAR, "damping": 0.0, "ground": BELOW, "g": 9.81, **other})
+
+
+def _cube(Instance, n: int, **other: float) -> dict[str, float]:
+    """Both of them for some time, at one speed; ``spring`` is the time of one in full lanes."""
     start = time.process_time()
-    ready = _prepare(CUBE.format(n=n, m=2, v=v, z=z, damping=damping))
+    ready = _prepare(_cubes(n, **other))
     modelled = time.process_time()
     with Instance(ready.plan) as instance:
         instance.setup()
@@ -278,12 +288,15 @@ def _cube(Instance, n: int, v: float, z: float = FAR, damping: float = 0.0) -> d
 
 
 def _pairs(Instance) -> float:
-    """A cube that lies on another: seconds of a pair of particles in a step."""
-    with Instance(_prepare(CUBE.format(n=12, m=12, v=0, z=12.0001, damping=0)).plan) as instance:
+    """A cube that lies on another: seconds of a pair of particles in a step, while they have not yet bounced off each other."""
+    with Instance(_prepare(_cubes(12, m=12, z=12.0001)).plan) as instance:
         instance.setup()
-        pairs = instance.fix_value("contact", 1)  # before they bounce off each other
-        found = _least(instance, {"contact": lambda: instance.fix_seconds("contact")}, rounds=5)
-        return max(1e-10, found["contact"] / pairs)
+        pairs, found = instance.fix_value("contact", 1), []
+        for _ in range(AGAIN):
+            before = instance.fix_seconds("contact")
+            instance.run(TOUCH)
+            found.append((instance.fix_seconds("contact") - before) / (TOUCH * pairs))
+        return max(1e-10, min(found))
 
 
 def _pool(Instance) -> dict[str, float]:
@@ -318,7 +331,7 @@ def _frames() -> tuple[float, float]:
 
     found = []
     for n in (SMALL, LARGE):
-        ready = _prepare(CUBE.format(n=n, m=2, v=0, z=FAR, damping=0))
+        ready = _prepare(_cubes(n))
         control = ready.scene.control
         size = trajectory_bytes(ready.models, 100, control.save, control.single, None) / 100
         few, many = (min(_run(ready, frames) for _ in range(AGAIN)) for frames in (FEW, MANY))
