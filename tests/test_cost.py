@@ -14,7 +14,8 @@ from mdanim_lammps.driver.calibration import RATES, calibration, stored_at
 from mdanim_lammps.driver.forecast import fastest, forecast, rebuilds
 from mdanim_lammps.driver.run import simulate
 from mdanim_lammps.driver.source import Account, add_clocks
-from mdanim_lammps.effects import EFFECTS
+from mdanim_lammps.effects import EFFECTS, springs
+from mdanim_lammps.effects.springs import fullness
 from mdanim_lammps.report import check_json, cost_line, forecast_line
 from mdanim_lammps.results.cost import Cost, Part
 
@@ -136,8 +137,12 @@ def test_a_forecast_counts_the_work(pond):
     """Take steps times springs, steps times particles, and frames; twice the time is twice the work."""
     ready, _ = pond
     told, steps = forecast(ready, RATE, setup=7.0), ready.certificate.steps
-    assert told.effects["springs"].seconds == steps * len(ready.system.spring)
+    full = fullness(ready.system.spring, calibrating.lanes(damped=True))  # one of the two objects is
+    assert told.effects["springs"].seconds == steps * len(ready.system.spring) / full
+    assert told.effects["damping"].seconds == steps * 0.5 * len(ready.system.spring) / full
     assert told.other["leap-frog"] == steps * 250
+    assert forecast(ready, RATE | {"lone leap-frog": 2.0}).other["leap-frog"] == 2 * steps * 250  # all of it may get wet
+    assert forecast(ready, RATE | {"leap-frog": 2.0}).other["leap-frog"] == steps * 250
     assert told.other["setup"] == 7.0 + 1.0 + 250
     assert forecast(ready, RATE | {"spring": 3.0}).effects["springs"].seconds == 3 * told.effects["springs"].seconds
     assert forecast(ready, RATE | {"frame": 11.0}).other["output"] - told.other["output"] == pytest.approx(10 * 7)
@@ -146,6 +151,34 @@ def test_a_forecast_counts_the_work(pond):
     assert rebuilds(twice) == pytest.approx(2 * rebuilds(ready))
     assert forecast(twice, RATE).effects["buoyancy"].seconds == 2 * told.effects["buoyancy"].seconds
     assert forecast(twice, RATE).effects["liquid"].seconds == pytest.approx(2 * told.effects["liquid"].seconds)
+
+
+def test_lanes_have_work_where_springs_are_alike():
+    """Count vectors of springs: two for each block, and one for each length of springs in it."""
+    chain = np.stack([np.arange(7), np.arange(1, 8)], axis=1)
+    assert fullness(chain, 4) == 7 / (4 * (2 * 2 + 2))
+    uneven = np.array([[0, 1], [1, 3], [2, 5], [3, 7]])  # each of another length
+    assert fullness(uneven, 4) == 4 / (4 * (2 + 4))
+    assert fullness(np.zeros((0, 2), np.int32), 4) == 1.0
+
+
+def test_balls_leave_lanes_idle(prepared):
+    """Expect more of each spring of a ball than of a cube, and more again where vectors are wide."""
+    text = "object a {{ shape {} position (0, 0, 0) mass 1 elasticity 1e6 }}\ncontrol {{ time 1 s resolution 4 cm }}\n"
+    cube, ball = (prepared(text.format(shape)).system.spring for shape in ("box (0.6, 0.6, 0.6)", "sphere 20 cm"))
+    assert fullness(ball, 8) < fullness(ball, 4) < 0.9 * fullness(cube, 4)
+
+
+def test_some_of_many_springs_tell_of_all(monkeypatch):
+    """Find in stretches of a long body what all of it would tell, within a hundredth, though it changes along the way."""
+    first = np.repeat(np.arange(200_000), 3)
+    length = np.tile([1, 20, 400], 200_000) + (first > 120_000) * (first % 3)
+    many = np.stack([first, first + length], axis=1).astype(np.int32)
+    assert len(many) > springs.SAMPLE
+    found = fullness(many, 4)
+    monkeypatch.setattr(springs, "SAMPLE", len(many))
+    assert found == pytest.approx(fullness(many, 4), rel=0.01)
+    assert fullness(many[:300_000], 4) > 1.2 * fullness(many[-200_000:], 4)
 
 
 def test_speeds_come_from_falls(prepared):
@@ -197,6 +230,9 @@ def test_a_machine_is_calibrated_once(machine):
 @pytest.mark.parametrize("spoil", [
     pytest.param(lambda d: "{ not json", id="broken"),
     pytest.param(lambda d: json.dumps(d | {"processor": "another"}), id="of another processor"),
+    pytest.param(lambda d: json.dumps(d | {"skin": 0.75}), id="with another skin of lists"),
+    pytest.param(lambda d: json.dumps(d | {"method": calibrating.METHOD - 1}), id="measured in another way"),
+    pytest.param(lambda d: json.dumps({k: d[k] for k in ("processor", "rates")}), id="of a time when none of this was kept"),
     pytest.param(lambda d: json.dumps(d | {"rates": {"spring": 1e-9}}), id="a rate is missing"),
     pytest.param(lambda d: json.dumps(d | {"rates": d["rates"] | {"spring": 0.0}}), id="a rate is nothing"),
     pytest.param(lambda d: json.dumps(d | {"rates": d["rates"] | {"spring": float("nan")}}), id="a rate is no number"),

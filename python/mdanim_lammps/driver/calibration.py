@@ -21,7 +21,9 @@ from functools import lru_cache
 from pathlib import Path
 
 from .. import __version__
+from ..effects.air_drag import SLOWING
 from ..effects.liquid import AUTOMATON, COUPLING, OCCUPANCY, SWEEPS_PER_UPDATE, SWEPT
+from ..effects.springs import fullness
 from ..engine.commands import SKIN
 from ..errors import OutputError, SetupError
 from ..results.files import write_json
@@ -32,8 +34,11 @@ RATES = {
     "insert": "handing to LAMMPS, per particle [s]",
     "step": "a step, whatever is in it [s]",
     "particle": "a step of a particle, beside springs and leap-frog [s]",
-    "spring": "a step of a spring [s]",
+    "spring": "a step of a spring, where all lanes of the vector unit have work [s]",
+    "dashpot": "what its dashpot adds, where all lanes have work [s]",
     "leap-frog": "a step of a particle that can move [s]",
+    "lone leap-frog": "the same of one that is moved by itself, after the forces of a liquid, without drag [s]",
+    "lone particle": "what handing over such a particle adds to the rest of a step [s]",
     "rebuild": "rebuilding lists, per particle [s]",
     "contact": "looking for objects that meet, per particle and rebuild [s]",
     "pair": "a step of a pair of particles within reach [s]",
@@ -46,6 +51,10 @@ RATES = {
     "immersed": "measuring for a frame how much of a lattice cell is immersed [s]",
 }
 """What is measured, and in which unit."""
+METHOD = 2
+"""To be counted up whenever a rate gets another meaning, or the plugin another speed: stored ones are then measured again."""
+WIDE = frozenset({"avx512f", "avx512vl", "avx512dq"})
+"""What a processor must have for the widest vectors of the plugin (has_avx512 in plugin/blocks.cpp)."""
 ROUNDS, ROUND = 25, 1e-3
 """Least of this many rounds of about this length [s]: what else the machine does only ever adds to the time, and hardly hits
 every one of many short ones."""
@@ -66,7 +75,7 @@ class Calibration:
 def calibration(tell: Callable[[str], None] = lambda line: None) -> Calibration:
     """The rates of this machine: stored ones, or measured now. ``tell`` is given a line when that is done.
 
-    A file that is broken, of another processor or of another version is measured again. Raises SetupError when LAMMPS or the
+    A file that is broken, of another processor, version, METHOD or skin of lists is measured again. Raises SetupError when LAMMPS or the
     plugin cannot be used.
     """
     path = stored_at()
@@ -78,7 +87,7 @@ def calibration(tell: Callable[[str], None] = lambda line: None) -> Calibration:
     rates = _rates_here()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        write_json(path, {"processor": processor(), "rates": rates})
+        write_json(path, holds_for() | {"rates": rates})
     except (OSError, OutputError) as error:
         tell(f"the calibration cannot be kept, it holds for this time only: {error}; "
              "set XDG_CACHE_HOME to a folder that can be written")
@@ -92,22 +101,37 @@ def stored_at() -> Path:
     return Path(cache) / "mdanim-lammps" / f"calibration-{__version__}.json"
 
 
-@lru_cache(maxsize=1)
+def holds_for() -> dict[str, str | int | float]:
+    """What rates depend on besides the version: they hold where all of it is the same."""
+    return {"processor": processor(), "method": METHOD, "skin": SKIN}
+
+
 def processor() -> str:
     """Name of this machine's processor."""
+    return _cpuinfo("model name") or platform.processor() or platform.machine()
+
+
+def lanes(damped: bool) -> int:
+    """Numbers in a vector of the plugin, as best_width in plugin/blocks.cpp chooses: wide ones where anything is damped."""
+    return 8 if damped and WIDE <= set(_cpuinfo("flags").split()) else 4
+
+
+@lru_cache
+def _cpuinfo(key: str) -> str:
+    """What Linux says of the first processor; empty where it does not."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
-        return next(line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+        return next(line.partition(":")[2].strip() for line in lines if line.startswith(key))
     except (OSError, StopIteration):
-        return platform.processor() or platform.machine()
+        return ""
 
 
 def _read(path: Path) -> dict[str, float] | None:
-    """The stored rates; None where there are none that are whole, positive, and of this processor."""
+    """The stored rates; None where there are none that are whole, positive, and hold here."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
         rates = {name: float(data["rates"][name]) for name in RATES}
-        good = data["processor"] == processor() and all(0.0 < r < math.inf for r in rates.values())
+        good = all(data[k] == v for k, v in holds_for().items()) and all(0.0 < r < math.inf for r in rates.values())
         return rates if good else None
     except (OSError, ValueError, KeyError, TypeError):
         return None
@@ -125,13 +149,14 @@ def _rates_here() -> dict[str, float]:
 # --- measuring ----------------------------------------------------------------------------------------------
 
 CUBE = """
-gravity (0, 0, -9.81)
-ground z -1e6 m
+gravity (0, 0, -{g})
+ground z {ground} cm
 object cube {{
   shape box ({n}, {n}, {n}) cm
   position (0, 0, 0)
   density 1000
   elasticity 1 MPa
+  damping {damping}
   velocity ({v}, 0, 0) m/s
 }}
 object pebble {{
@@ -171,10 +196,15 @@ SMALL, LARGE = 2, 13
 FAR, NEAR = 90, 9.5
 """Height of the pebble over the larger cube's middle [cm]: where nobody needs lists, and where its box meets the cube's but
 nobody is in reach."""
+BELOW, UNDER = -1e8, -7.5
+"""Height of the ground [cm]: where it has no concern, and a spacing under the larger cube, where lists are made anew however
+particles move: where only objects are near each other, moving on together needs no new ones."""
 EVERY = 5
 """Steps between rebuilds of lists where they are measured."""
 FEW, MANY = 2, 22
 """Frames whose difference tells what one takes."""
+TOUCH = 20
+"""Steps of a round of two cubes in touch; the pairs of the start are all looked at for AGAIN such rounds, until lists are made anew."""
 STEPS = 240
 """While the block sinks in."""
 
@@ -188,20 +218,22 @@ def measure() -> dict[str, float]:
 
     open_lammps()[0].close()
     rates = {"load": time.process_time() - start}
-    _prepare(CUBE.format(n=SMALL, m=2, v=0, z=FAR))  # whatever is loaded by the first of all
-    small, large = (_cube(Instance, n, v=0.0) for n in (SMALL, LARGE))
+    _prepare(_cubes(SMALL))  # whatever is loaded by the first of all
+    small, large = (_cube(Instance, n) for n in (SMALL, LARGE))
     n = large["particles"] - small["particles"]
     rates["model"], rates["insert"] = (max(1e-9, large[k] / large["particles"]) for k in ("model", "insert"))
-    rates["spring"] = max(1e-11, large["springs"] / large["spring count"])
+    rates["spring"] = max(1e-11, large["spring"])
+    rates["dashpot"] = max(1e-11, _cube(Instance, LARGE, damping=0.1)["spring"] - rates["spring"])
     rates["leap-frog"] = max(1e-11, large["leapfrog"] / large["particles"])
     rates["particle"] = max(1e-10, (large["rest"] - small["rest"]) / n)
     rates["step"] = max(1e-7, small["rest"] - small["particles"] * rates["particle"])
     v = 0.5 * SKIN * 0.01 / ((EVERY - 0.5) * large["timestep"])
-    moving = _cube(Instance, LARGE, v, NEAR)
+    moving = _cube(Instance, LARGE, v=v, z=NEAR, ground=UNDER, g=1e-6)  # does not fall on it meanwhile
     rates["rebuild"] = max(1e-9, EVERY * (moving["rest"] - large["rest"]) / large["particles"])
     rates["contact"], rates["wall"] = (max(1e-10, EVERY * moving[k] / large["particles"]) for k in ("contact", "ground"))
     rates["pair"] = _pairs(Instance)
-    rates["coupling"], rates["cell"], rates["solid"] = _pool(Instance)
+    rates |= _pool(Instance)
+    rates["lone particle"] = max(1e-11, rates["lone particle"] - rates["particle"])
     rates["frame"], rates["byte"] = _frames()
     rates["immersed"] = _immersed()
     return {name: rates[name] for name in RATES}
@@ -233,10 +265,15 @@ def _least(instance, clocks: dict[str, Callable[[], float]], rounds: int = ROUND
     return {k: (best[3 * steps][k] - best[steps][k]) / (2 * steps) for k in clocks}
 
 
-def _cube(Instance, n: int, v: float, z: float = FAR) -> dict[str, float]:
-    """A cube and a pebble over it far above ground, both at one speed."""
+def _cubes(n: int, **other: float) -> str:
+    """A cube and a pebble over it, far above ground and at rest if nothing ``other`` is said."""
+    return CUBE.format(n=n, **{"m": 2, "v": 0.0, "z": FAR, "damping": 0.0, "ground": BELOW, "g": 9.81, **other})
+
+
+def _cube(Instance, n: int, **other: float) -> dict[str, float]:
+    """Both of them for some time, at one speed; ``spring`` is the time of one in full lanes."""
     start = time.process_time()
-    ready = _prepare(CUBE.format(n=n, m=2, v=v, z=z))
+    ready = _prepare(_cubes(n, **other))
     modelled = time.process_time()
     with Instance(ready.plan) as instance:
         instance.setup()
@@ -244,24 +281,29 @@ def _cube(Instance, n: int, v: float, z: float = FAR) -> dict[str, float]:
         fixes = {fix: (lambda fix=fix: instance.fix_seconds(fix)) for fix in ("leapfrog", "gravity", "contact", "ground")}
         found = _least(instance, {"springs": instance.bond_seconds, **fixes})
     rest = found["whole"] - sum(found[k] for k in ("springs", *fixes))
-    return {**found, "rest": rest, "particles": ready.system.particles, "spring count": len(ready.plan.bonds),
+    springs = ready.system.spring
+    spring = found["springs"] * fullness(springs, lanes(ready.plan.damped)) / len(springs)
+    return {**found, "rest": rest, "particles": ready.system.particles, "spring": spring,
             "model": modelled - start, "insert": inserted - modelled, "timestep": ready.certificate.timestep}
 
 
 def _pairs(Instance) -> float:
-    """A cube that lies on another: seconds of a pair of particles in a step."""
-    with Instance(_prepare(CUBE.format(n=12, m=12, v=0, z=12.0001)).plan) as instance:
+    """A cube that lies on another: seconds of a pair of particles in a step, while they have not yet bounced off each other."""
+    with Instance(_prepare(_cubes(12, m=12, z=12.0001)).plan) as instance:
         instance.setup()
-        pairs = instance.fix_value("contact", 1)  # before they bounce off each other
-        found = _least(instance, {"contact": lambda: instance.fix_seconds("contact")}, rounds=5)
-        return max(1e-10, found["contact"] / pairs)
+        pairs, found = instance.fix_value("contact", 1), []
+        for _ in range(AGAIN):
+            before = instance.fix_seconds("contact")
+            instance.run(TOUCH)
+            found.append((instance.fix_seconds("contact") - before) / (TOUCH * pairs))
+        return max(1e-10, min(found))
 
 
-def _pool(Instance) -> tuple[float, float, float]:
-    """A block that sinks in: seconds of a particle in a step, of a cell in a sweep,
-    and of a lattice cell when cells are updated."""
+def _pool(Instance) -> dict[str, float]:
+    """A block that sinks in: its rates, those of a particle and of a lattice cell when cells are updated; ``lone particle`` is all
+    of the rest of a step."""
     ready = _prepare(POOL)
-    found = []
+    particles, found = ready.system.particles, []
     for _ in range(AGAIN):
         with Instance(ready.plan) as instance:
             instance.setup()
@@ -269,11 +311,18 @@ def _pool(Instance) -> tuple[float, float, float]:
             instance.run(STEPS)
             swept, automaton, occupancy = (instance.fix_value("liquid", k) - b
                                            for k, b in zip((SWEPT, AUTOMATON, OCCUPANCY), before))
-            coupling = _least(instance, {"coupling": lambda: instance.fix_value("liquid", COUPLING)}, rounds=10)["coupling"]
+            fixes = {fix: (lambda fix=fix: instance.fix_seconds(fix)) for fix in ("leapfrog", "gravity", "basin")}
+            wet = {k: (lambda k=k: instance.fix_value("liquid", k)) for k in (AUTOMATON, OCCUPANCY, COUPLING)}
+            step = _least(instance, {"springs": instance.bond_seconds, **fixes, **wet}, rounds=10)
         swept = max(1.0, swept)
-        found.append((coupling / ready.system.particles, automaton / swept / ready.plan.grid.cells,
-                      occupancy / (swept / SWEEPS_PER_UPDATE) / len(ready.system.hexahedron)))
-    return tuple(max(1e-11, min(values)) for values in zip(*found))
+        found.append({
+            "lone leap-frog": step["leapfrog"] * (1.0 - SLOWING) / particles,
+            "lone particle": (2.0 * step["whole"] - sum(step.values())) / particles,
+            "coupling": step[COUPLING] / particles,
+            "cell": automaton / swept / ready.plan.grid.cells,
+            "solid": occupancy / (swept / SWEEPS_PER_UPDATE) / len(ready.system.hexahedron),
+        })
+    return {name: max(1e-11, min(each[name] for each in found)) for name in found[0]}
 
 
 def _frames() -> tuple[float, float]:
@@ -282,7 +331,7 @@ def _frames() -> tuple[float, float]:
 
     found = []
     for n in (SMALL, LARGE):
-        ready = _prepare(CUBE.format(n=n, m=2, v=0, z=FAR))
+        ready = _prepare(_cubes(n))
         control = ready.scene.control
         size = trajectory_bytes(ready.models, 100, control.save, control.single, None) / 100
         few, many = (min(_run(ready, frames) for _ in range(AGAIN)) for frames in (FEW, MANY))

@@ -6,12 +6,14 @@ from __future__ import annotations
 import numpy as np
 
 from ..effects import Load
-from ..effects.air_drag import LEAPFROG
+from ..effects.air_drag import LEAPFROG, leapfrog_rate
+from ..effects.springs import fullness
 from ..engine.commands import SKIN
 from ..model.basin import liquid_level
 from ..results.cost import Cost, Part
 from ..results.expect import recorded
 from ..results.trajectory import trajectory_bytes
+from .calibration import lanes
 from .prepare import Prepared
 
 RINGING = 2.5
@@ -29,7 +31,9 @@ def forecast(ready: Prepared, rates: dict[str, float], *, setup: float | None = 
     """
     scene, system, c = ready.scene, ready.system, ready.certificate
     n, control = system.particles, scene.control
-    load = Load(scene, system, frozenset(e.name for e in ready.plan.effects), c.steps, rebuilds(ready))
+    load = Load(scene, system, frozenset(e.name for e in ready.plan.effects), c.steps, rebuilds(ready),
+                fullness(system.spring, lanes(ready.plan.damped)))
+    alone = load.mobile if "buoyancy" in load.on else 0
     effects = {}
     for effect in ready.plan.effects:
         span = ready.verdicts[effect.name].span
@@ -40,8 +44,9 @@ def forecast(ready: Prepared, rates: dict[str, float], *, setup: float | None = 
                     for name, quantity in recorded(scene.expects) if quantity == "immersed")
     modelled = rates["model"] * n if setup is None else setup
     other = {
-        LEAPFROG: c.steps * load.mobile * rates["leap-frog"],
-        "rest of the step": c.steps * (rates["step"] + n * rates["particle"]) + load.rebuilds * n * rates["rebuild"],
+        LEAPFROG: c.steps * load.mobile * leapfrog_rate(load, rates),
+        "rest of the step": c.steps * (rates["step"] + n * rates["particle"] + alone * rates["lone particle"])
+        + load.rebuilds * n * rates["rebuild"],
         "setup": modelled + rates["load"] + n * rates["insert"],
         "output": frames * (rates["frame"] + looked_at * rates["immersed"]) + size * rates["byte"],
     }

@@ -31,9 +31,15 @@ def slowed_share(instance) -> float:
     return more / (1.0 + more)
 
 
+def leapfrog_rate(load, rate) -> float:
+    """Seconds of the leap-frog for a particle in a step, without drag: in a liquid, whose forces come after all others, a particle
+    is moved by itself rather than in a block of many."""
+    return rate["lone leap-frog" if "buoyancy" in load.on else "leap-frog"]
+
+
 def drag_forecast(load, rate, particles: int) -> float:
     """Seconds that drag, of air or liquid, of so many particles adds to the leap-frog."""
-    return load.steps * particles * rate["leap-frog"] * SLOWING / (1.0 - SLOWING)
+    return load.steps * particles * leapfrog_rate(load, rate) * SLOWING / (1.0 - SLOWING)
 
 
 class AirDrag(Effect):

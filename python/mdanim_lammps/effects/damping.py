@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from .effect import Effect, Verdict
 from .springs import all_held, spring_norm, time_of_dashpots
 
@@ -27,7 +29,7 @@ class Damping(Effect):
         return {"springs": instance.bond_seconds() * more / (1.0 + more)}
 
     def forecast(self, load, rate):
-        return load.steps * len(load.system.spring) * rate["spring"] * time_of_dashpots(load.system)
+        return load.steps * np.count_nonzero(load.system.damping) * rate["dashpot"] / load.fullness
 
     def drag_rate(self, scene, system):
         return 2.0 * spring_norm(system, system.damping) / system.mass

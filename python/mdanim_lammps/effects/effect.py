@@ -36,6 +36,8 @@ class Load:
     steps: int
     rebuilds: float
     """How often neighbour lists will be rebuilt."""
+    fullness: float = 1.0
+    """How well springs fill the lanes of the vector unit (springs.py)."""
 
     @property
     def mobile(self) -> int:
