@@ -471,8 +471,8 @@ static constexpr Width WIDTHS[] = {
     {"common", 4, pass_common, always, &touch_common},
 };
 
-// The divider gives as many numbers a cycle to wide vectors as to narrow ones, and of wide ones more lanes are idle. Dashpots are more
-// to do besides.
+// The divider gives as many numbers a cycle to wide vectors as to narrow ones, and of wide ones more lanes are idle. Dashpots are
+// more to do besides.
 const Width *best_width(bool damped)
 {
   constexpr int NARROW = 4;

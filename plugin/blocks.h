@@ -55,8 +55,8 @@ class Blocks {
   void start(const Width &width);
   // Cut particles into blocks so that the fewest vectors of forces are to be computed. A block is of one object.
   Cut cut(const HalfBonds &bonds, const int *object);
-  // Blocks of all cuts, one after the other. Returns whether that is worth it: the springs of neighbours in the arrays must mostly lead
-  // equally far, as they do in lattices that are numbered row by row.
+  // Blocks of all cuts, one after the other. Returns whether that is worth it: the springs of neighbours in the arrays must
+  // mostly lead equally far, as they do in lattices that are numbered row by row.
   bool put_together(const std::vector<const Cut *> &cuts);
   bool laws_pile_up() const;    // so many are those of cuts that are gone that all cuts had better be made anew
   void forget() { all.clear(); }

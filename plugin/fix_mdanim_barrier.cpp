@@ -329,7 +329,8 @@ struct FixMdanimBarrier::Search {
   }
 };
 
-// Until the next rebuild no two particles come nearer to each other by more than the skin, so pairs within reach + skin are enough.
+// Until the next rebuild no two particles come nearer to each other by more than the skin, so pairs within reach + skin are
+// enough.
 void FixMdanimBarrier::find_candidates()
 {
   strip.clear();

@@ -69,8 +69,8 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
 
   std::vector<Own> own;      // local and ghost particles
 
-  // Candidates, numbered ascending by the lower tag and then by the higher one, so that who goes through them adds up the forces on
-  // every particle in ascending order of its partners' tags. There are numbers in between that are no pairs (touch.h).
+  // Candidates, numbered ascending by the lower tag and then by the higher one, so that who goes through them adds up the forces
+  // on every particle in ascending order of its partners' tags. There are numbers in between that are no pairs (touch.h).
   std::vector<mdanim::Strip> strip;
   mdanim::Doubles reach2;               // squares of the reach of pairs, 0 for what is none
   std::vector<Law> law;                 // and what else is known of them

@@ -19,7 +19,8 @@ class FixMdanimGravity : public Fix {
   double compute_scalar() override;
   double compute_vector(int) override;
 
-  // For run_style verlet/mdanim, which does its work in passing: mass that it pulls at, acceleration, and the time that went to it.
+  // For run_style verlet/mdanim, which does its work in passing: mass that it pulls at, acceleration, and the time that went to
+  // it.
   double pulled(int i) const;
   const mdanim::Vec3 &acceleration() const { return g; }
   void took(double more) { seconds += more; }

@@ -182,8 +182,8 @@ void FixMdanimLeapfrog::drift()
   each([&](int i) { add_to(x[i], dt * vec3(v[i])); });
 }
 
-// The same, and the box of each object grows to where its particles are now. Those of an object mostly stand side by side: their box
-// stays in registers until the object changes.
+// The same, and the box of each object grows to where its particles are now. Those of an object mostly stand side by side: their
+// box stays in registers until the object changes.
 void FixMdanimLeapfrog::drift_and_trace()
 {
   double *const *x = atom->x, *const *v = atom->v;

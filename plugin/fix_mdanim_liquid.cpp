@@ -620,7 +620,8 @@ void FixMdanimLiquid::watch(double margin)
   watched_top = low.z + top * cell.z;
   const double below =
       watching ? watched_top + NEAR * cell.z + margin : std::numeric_limits<double>::infinity();
-  // The box holds all particles as they stood at the last rebuild: where nobody was near, and all of it is above, nobody has come.
+  // The box holds all particles as they stood at the last rebuild: where nobody was near, and all of it is above, nobody has
+  // come.
   lowest = domain->boxlo[2];
   if (nobody && watching && lowest > below + 0.5 * neighbor->skin) return;
   lowest = std::numeric_limits<double>::infinity();

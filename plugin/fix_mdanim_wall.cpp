@@ -100,8 +100,8 @@ Box FixMdanimWall::box_of_all() const
   return box;
 }
 
-// A box is in a convex region when its corners are. Most of a scene's time nothing is near a wall, and this is far less work than to
-// ask for each particle.
+// A box is in a convex region when its corners are. Most of a scene's time nothing is near a wall, and this is far less work than
+// to ask for each particle.
 bool FixMdanimWall::is_inside(const Box &box)
 {
   for (int corner = 0; corner < 8; ++corner)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Before every pass each rank tells others where its particles are that have springs to theirs: one message to each, from blocks to
-// blocks.
+// Before every pass each rank tells others where its particles are that have springs to theirs: one message to each, from blocks
+// to blocks.
 
 #ifndef MDANIM_GHOSTS_H
 #define MDANIM_GHOSTS_H
@@ -19,7 +19,8 @@ struct Home {
 
 class Ghosts {
  public:
-  // All ranks together, whenever their blocks have been laid out: where this rank's ghosts are at home, in the order of blocks.ghost_places().
+  // All ranks together, whenever their blocks have been laid out: where this rank's ghosts are at home, in the order of
+  // blocks.ghost_places().
   void survey(MPI_Comm world, const std::vector<Home> &home, const Blocks &blocks);
   // All ranks together: ghosts take the places, and with `velocities` the velocities, that they have at home.
   void meet(MPI_Comm world, Blocks &blocks, bool velocities);

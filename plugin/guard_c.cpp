@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What the driver looks at in every frame, as plain C functions over arrays in the order of tags: whether numbers are finite, where
-// objects are, whether cells are turned inside out, whether objects are inside each other. No exception leaves them.
+// What the driver looks at in every frame, as plain C functions over arrays in the order of tags: whether numbers are finite,
+// where objects are, whether cells are turned inside out, whether objects are inside each other. No exception leaves them.
 
 #include "abi.h"
 #include "boxes.h"
@@ -66,7 +66,8 @@ bool inside_out(const int *corner, const double *x)
   return !(dot(cross(e.u, e.v), e.w) > 0.0);
 }
 
-// Whether a point lies in a cell, taken as the parallelepiped of its mean edges: so a squeezed body is no deeper than a relaxed one.
+// Whether a point lies in a cell, taken as the parallelepiped of its mean edges: so a squeezed body is no deeper than a relaxed
+// one.
 bool in_cell(const Objects &o, long long c, const Vec3 &point)
 {
   const Vec3 d = point - o.middle(c);
@@ -146,8 +147,8 @@ MDANIM_EXPORT long long mdanim_not_finite(long long n, const double *x, const do
   return -1;
 }
 
-// Whether each cell is turned inside out: the volume spanned by the mean of its edges along each axis is not positive. corner (n, 8) in
-// VTK order, inverted (n). Returns how many are.
+// Whether each cell is turned inside out: the volume spanned by the mean of its edges along each axis is not positive. corner (n,
+// 8) in VTK order, inverted (n). Returns how many are.
 MDANIM_EXPORT long long mdanim_inverted(long long n, const int *corner, const double *x, unsigned char *inverted)
 {
   long long count = 0;
@@ -158,8 +159,8 @@ MDANIM_EXPORT long long mdanim_inverted(long long n, const int *corner, const do
   return count;
 }
 
-// One look at objects whose x and v are (N, 3). Returns 1 when some number is not finite, 2 when some cell is inside out, else 0; and, but
-// for 1, how far each object reaches along x, y, z, -x, -y, -z: reach (M, 6), the corners of eq. (3.14).
+// One look at objects whose x and v are (N, 3). Returns 1 when some number is not finite, 2 when some cell is inside out, else 0;
+// and, but for 1, how far each object reaches along x, y, z, -x, -y, -z: reach (M, 6), the corners of eq. (3.14).
 MDANIM_EXPORT int mdanim_glance(const Model *model, const double *x, const double *v, double *reach)
 {
   const Objects o{*model, x};
@@ -177,10 +178,10 @@ MDANIM_EXPORT int mdanim_glance(const Model *model, const double *x, const doubl
   return 0;
 }
 
-// Two objects that are inside each other, more than contact ever lets them: boundary particles of one below the outermost layer of
-// cells of the other, or the centre of one in the body of the other. Writes the one that is inside, and the other, into `pair` and
-// returns how many of its points are; 0 where there are none, -1 without memory.
-// Objects that never move are not looked at with each other.
+// Two objects that are inside each other, more than contact ever lets them: boundary particles of one below the outermost layer
+// of cells of the other, or the centre of one in the body of the other. Writes the one that is inside, and the other, into `pair`
+// and returns how many of its points are; 0 where there are none, -1 without memory. Objects that never move are not looked at
+// with each other.
 MDANIM_EXPORT long long mdanim_sunk(const Model *model, const double *x, int *pair)
 {
   try {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// How a fix that adds forces works together with run_style verlet/mdanim, which keeps positions and velocities in arrays of its own.
+// How a fix that adds forces works together with run_style verlet/mdanim, which keeps positions and velocities in arrays of its
+// own.
 
 #ifndef MDANIM_GUEST_H
 #define MDANIM_GUEST_H

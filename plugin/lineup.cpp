@@ -79,7 +79,8 @@ bool Lineup::take_by_objects(const Bonded &known, const std::vector<Run> &runs)
   return true;
 }
 
-// A spring belongs to its lower end, which may be another rank's. From the highest own particle down all partners come descending.
+// A spring belongs to its lower end, which may be another rank's. From the highest own particle down all partners come
+// descending.
 Lineup::Piece Lineup::made(const Bonded &known, const Run &run) const
 {
   int lowest = known.tag[ordered[run.begin]], highest = known.tag[ordered[run.end - 1]];

@@ -15,8 +15,8 @@ struct Entry {
   unsigned law;    // row of Pass::law, or Pass::damped_law if the block is damped
 };
 
-// Particles that stand side by side, one to each lane of the vector unit. Its springs are the entries from the last block's end on,
-// offsets descending.
+// Particles that stand side by side, one to each lane of the vector unit. Its springs are the entries from the last block's end
+// on, offsets descending.
 struct Block {
   int start;
   short lanes;      // of its own; what else is loaded with them belongs to others and is left as it is
@@ -35,7 +35,8 @@ enum class Friction { NONE, IMPLICIT, EXPONENTIAL };
 enum Motion { MASS, KICK, DT, OTHERS, COUNTS, STAY, SHARE, PUSH, WEIGHT, PHI, MOTIONS };
 // MASS what gravity pulls at; KICK dt/2m; DT the time step, 0 for what does not move; OTHERS 1 where a lane is not the block's
 // own; COUNTS 1 for a particle of this rank.
-// With friction also, see leapfrog.h: STAY 1 - phi or e; SHARE 1 / (1 + phi); PUSH g dt/2m; WEIGHT m/2, 0 where there is none; PHI.
+// With friction also, see leapfrog.h: STAY 1 - phi or e; SHARE 1 / (1 + phi); PUSH g dt/2m; WEIGHT m/2, 0 where there is none;
+// PHI.
 
 // F is the force of dashpots, dv^n = v^{n+1/2} - v^{n-1/2}; loss.h tells what these sums over particles are for.
 struct DashpotSums {

@@ -2,9 +2,10 @@
 // The pass over all blocks (pass.h), for vectors of LANES doubles; compiled once for each kind of processor (pass_*.cpp).
 //
 // Springs are evaluated once. Blocks come in ascending order and in each of them offsets in descending order, so that whoever
-// receives does so from its lower partners in ascending order, and a block's own sum takes its upper ones in descending order: the
-// order of bond_mdanim_harmonic.cpp, hence its bits. Lanes without a spring have push = pull = 0 and add nothing: F = 0, and a sum
-// that starts at +0 is never -0. Positions of a block can move on at once, for all that is still to come reads its own and upper ones.
+// receives does so from its lower partners in ascending order, and a block's own sum takes its upper ones in descending order:
+// the order of bond_mdanim_harmonic.cpp, hence its bits. Lanes without a spring have push = pull = 0 and add nothing: F = 0, and
+// a sum that starts at +0 is never -0. Positions of a block can move on at once, for all that is still to come reads its own and
+// upper ones.
 
 #include "pass.h"
 #include "spring.h"
@@ -17,7 +18,8 @@ MDANIM_INLINE Vector largest(Vector a, Vector b) { return a > b ? a : b; }
 
 MDANIM_INLINE Vector dot(const Vector *a, const Vector *b) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
 
-// What friction takes in a half step from va to vb: `loss` in leapfrog.h; `lag` is h, w and their shares there, and phi 0 without it.
+// What friction takes in a half step from va to vb: `loss` in leapfrog.h; `lag` is h, w and their shares there, and phi 0 without
+// it.
 MDANIM_INLINE Vector loss(const Vector *va, const Vector *vb, const Vector *push, const Vector *lag, Vector phi, Vector weight)
 {
   Vector sum[3], rest[3];

@@ -6,8 +6,8 @@
 
 namespace mdanim {
 
-// A particle and STRIP others that stand side by side, some of which make pairs with it: pair STRIP * n + k is `one` and the k-th other
-// of strip n.
+// A particle and STRIP others that stand side by side, some of which make pairs with it: pair STRIP * n + k is `one` and the k-th
+// other of strip n.
 constexpr int STRIP = 4;
 struct Strip {
   int one, first;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Plain C functions for ctypes: where objects have been in the steps of a run, and how fast they are. All ranks call them together. No
-// exception leaves them.
+// Plain C functions for ctypes: where objects have been in the steps of a run, and how fast they are. All ranks call them
+// together. No exception leaves them.
 
 #include "abi.h"
 #include "fix_mdanim_leapfrog.h"
@@ -28,8 +28,8 @@ static FixMdanimLeapfrog *leapfrog(void *handle)
   return dynamic_cast<FixMdanimLeapfrog *>(found.front());
 }
 
-// Forget what was traced, take note of where objects 1 to `objects` (molecule IDs) are, and of where every step takes them from now
-// on. Returns 0, or 1 with a message in `error`.
+// Forget what was traced, take note of where objects 1 to `objects` (molecule IDs) are, and of where every step takes them from
+// now on. Returns 0, or 1 with a message in `error`.
 MDANIM_EXPORT int mdanim_trace_start(void *handle, int objects, char *error, int error_size)
 {
   try {
@@ -42,8 +42,8 @@ MDANIM_EXPORT int mdanim_trace_start(void *handle, int objects, char *error, int
   return 1;
 }
 
-// Lowest and highest coordinates of the particles of each object since mdanim_trace_start; low, high (objects, 3). What is no number
-// is passed over. Returns 0, or 1 with a message in `error`.
+// Lowest and highest coordinates of the particles of each object since mdanim_trace_start; low, high (objects, 3). What is no
+// number is passed over. Returns 0, or 1 with a message in `error`.
 MDANIM_EXPORT int mdanim_trace(void *handle, int objects, double *low, double *high, char *error, int error_size)
 {
   try {
@@ -64,8 +64,8 @@ MDANIM_EXPORT int mdanim_trace(void *handle, int objects, double *low, double *h
   return 1;
 }
 
-// Speed of the fastest particle of each object (molecule IDs 1 to `objects`) now; speed (objects). What is no number is passed over.
-// Returns 0, or 1 with a message in `error`.
+// Speed of the fastest particle of each object (molecule IDs 1 to `objects`) now; speed (objects). What is no number is passed
+// over. Returns 0, or 1 with a message in `error`.
 MDANIM_EXPORT int mdanim_top_speeds(void *handle, int objects, double *speed, char *error, int error_size)
 {
   const auto lammps = static_cast<LAMMPS *>(handle);

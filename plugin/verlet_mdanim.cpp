@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // run_style verlet/mdanim. A step of LAMMPS begins with a half kick and a drift and finishes with forces and the other half kick.
-// Between two outputs our pass finishes a step and begins the next at once, in arrays of its own; whoever is not known to live with that (other
-// fixes) gets run_style verlet as it is. The bits are the same. With other ranks, ghosts are lanes that do not move:
-// they get their places and, for dashpots, velocities before every pass, and what springs do to them is thrown away. Ranks decide together.
+// Between two outputs our pass finishes a step and begins the next at once, in arrays of its own; whoever is not known to live
+// with that (other fixes) gets run_style verlet as it is. The bits are the same. With other ranks, ghosts are lanes that do not
+// move: they get their places and, for dashpots, velocities before every pass, and what springs do to them is thrown away. Ranks
+// decide together.
 
 #include "verlet_mdanim.h"
 
@@ -89,9 +90,9 @@ void VerletMdanim::setup_minimal(int flag)
   Verlet::setup_minimal(flag);
 }
 
-// Do without neighbor->bondlist, which takes 100 bytes per particle of a lattice and longer to make than many steps, where nobody can
-// want it: our bond style reads springs from the particles that have them. Of fixes and computes only those count that are known to
-// leave the list alone. It comes back with the next init().
+// Do without neighbor->bondlist, which takes 100 bytes per particle of a lattice and longer to make than many steps, where nobody
+// can want it: our bond style reads springs from the particles that have them. Of fixes and computes only those count that are
+// known to leave the list alone. It comes back with the next init().
 void VerletMdanim::spare_bond_list()
 {
   if (!dynamic_cast<BondMdanimHarmonic *>(force->bond) || force->pair || force->angle || force->dihedral || force->improper) return;
@@ -339,8 +340,8 @@ void VerletMdanim::tell_limits()
   limit_but_for_drift = std::max(half, far_but_for_drift);
 }
 
-// As particles of this rank stand now, particle i at where(i). Two of them have not come nearer to each other by more than the longest
-// way through the box around all displacements; so each has gone half of it, but for drift.
+// As particles of this rank stand now, particle i at where(i). Two of them have not come nearer to each other by more than the
+// longest way through the box around all displacements; so each has gone half of it, but for drift.
 template <class Where> double VerletMdanim::way_left(Where where) const
 {
   const double *const *then = neighbor->get_xhold();
@@ -362,8 +363,9 @@ template <class Where> double VerletMdanim::way_left(Where where) const
   return std::max(0.5 * neighbor->skin - gone, std::min(way, way_to_strangers(now, all[1])));
 }
 
-// How much farther this rank's particles, which are within `own`, may go before one may have passed half a rank unseen: LAMMPS hands
-// them on to the ranks beside alone, which have their shares of the box around all particles, `all`, when they are handed on.
+// How much farther this rank's particles, which are within `own`, may go before one may have passed half a rank unseen: LAMMPS
+// hands them on to the ranks beside alone, which have their shares of the box around all particles, `all`, when they are handed
+// on.
 double VerletMdanim::way_to_strangers(const Box &own, const Box &all) const
 {
   double way = std::numeric_limits<double>::max();
@@ -404,7 +406,8 @@ void VerletMdanim::way_begins()
   whole_way_for = neighbor->ncalls;
 }
 
-// Between two passes: sees how far particles really are, and makes lists anew if need be. False where the blocks do not stand any more.
+// Between two passes: sees how far particles really are, and makes lists anew if need be. False where the blocks do not stand any
+// more.
 bool VerletMdanim::look_again()
 {
   timer->stamp(Timer::BOND);

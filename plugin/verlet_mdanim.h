@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// run_style verlet/mdanim: run_style verlet, after which it is called because fixes of LAMMPS look for that word, that takes the steps of springs, gravity and leap-frog in one pass over the particles.
+// run_style verlet/mdanim: run_style verlet, after which it is called because fixes of LAMMPS look for that word, that takes the
+// steps of springs, gravity and leap-frog in one pass over the particles.
 
 #ifndef LMP_VERLET_MDANIM_H
 #define LMP_VERLET_MDANIM_H
