@@ -75,8 +75,8 @@ class Calibration:
 def calibration(tell: Callable[[str], None] = lambda line: None) -> Calibration:
     """The rates of this machine: stored ones, or measured now. ``tell`` is given a line when that is done.
 
-    A file that is broken, of another processor, version, METHOD or skin of lists is measured again. Raises SetupError when LAMMPS or the
-    plugin cannot be used.
+    A file that is broken, of another processor, version, METHOD or skin of lists is measured again. Raises SetupError when LAMMPS
+    or the plugin cannot be used.
     """
     path = stored_at()
     rates = _read(path)
@@ -204,9 +204,9 @@ EVERY = 5
 FEW, MANY = 2, 22
 """Frames whose difference tells what one takes."""
 TOUCH = 20
-"""Steps of a round of two cubes in touch; the pairs of the start are all looked at for AGAIN such rounds, until lists are made anew."""
-STEPS = 240
-"""While the block sinks in."""
+"""Steps of a round of two cubes in touch: for AGAIN such rounds the lists stay as they are, with all pairs of the start."""
+STEPS = 480
+"""While the block sinks in, so many that there is more than one burst of sweeps."""
 
 
 def measure() -> dict[str, float]:
