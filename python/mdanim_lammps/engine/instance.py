@@ -101,7 +101,7 @@ class Instance:
 
     def _fill(self) -> None:
         plan, lmp = self.plan, self._lmp
-        low, high = box(plan).tolist()
+        low, high = (self._box_to_cut(plan.system.position) if self._comm else box(plan)).tolist()
         # property/atom must exist before the particles, and a box before both.
         self._prelude = prelude(plan)
         *before, columns = self._prelude
@@ -185,6 +185,12 @@ class Instance:
         for name, table in plan.tables.items():
             self._call(f"set i2_{name}", self._library.mdanim_set_table, name.encode(), ctypes.c_int(table.shape[1]),
                        ctypes.c_int(n), _pointer(tag), _pointer(np.ascontiguousarray(table, np.int32)))
+
+    def _box_to_cut(self, position: np.ndarray) -> np.ndarray:
+        """Bounds of what is cut for ranks [m], shape (2, 3): LAMMPS cuts its box around all particles. Were it another when they are
+        inserted, each would begin on another rank, perhaps one that is not beside its own, and LAMMPS would lose it."""
+        places, margin = _shorter_along_rows(position), 1e-3 * self.plan.spacing
+        return np.array([places.min(0) - margin, places.max(0) + margin])
 
     def _cut_space(self, position: np.ndarray) -> None:
         """Give every rank its share of the particles, and all of them their places."""
@@ -288,6 +294,8 @@ class Instance:
         if self._comm:
             # A particle may be far from the rank that holds it now, farther than LAMMPS's own exchange reaches.
             self._command("delete_atoms group all compress no")
+            sides = zip("xyz", *self._box_to_cut(state.x).tolist())
+            self._command("change_box all " + " ".join(f"{d} final {low!r} {high!r}" for d, low, high in sides) + " units box")
             self._insert(self.plan.ends() if len(self.plan.bonds) else None, state.x)
             for command in physics(self.plan):
                 if command.startswith("group "):  # the new particles are in none yet
