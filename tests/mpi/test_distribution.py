@@ -159,7 +159,7 @@ def test_only_who_meets_others_begins_again(scene):
 @pytest.mark.parametrize(("text", "control", "more"), [
     pytest.param(films.HEAVY, "central", 3, id="solid"), pytest.param(films.POOL, "peers", 2, id="liquid"),
     pytest.param(films.POOL, "central", 3, id="liquid of three", marks=pytest.mark.soak),
-    pytest.param(films.FLYING, "central", 3, id="islands", marks=pytest.mark.soak),
+    pytest.param(films.FLYING, "central", 3, id="islands"),
 ])
 def test_a_team_runs_what_is_too_heavy_for_one(scene, text, control, more):
     """Several executors run one island together, also where its box is too small at first."""
