@@ -143,7 +143,6 @@ bool Blocks::put_together(const std::vector<const Cut *> &cuts)
 {
   all.clear();
   entries.clear();
-  home.clear();
   particles = 0;
   std::size_t springs = 0;
   int farthest = 0;
@@ -152,7 +151,6 @@ bool Blocks::put_together(const std::vector<const Cut *> &cuts)
     for (Block block : cut->block) {
       block.start += particles;
       block.end += first;
-      home.insert(home.end(), block.lanes, static_cast<int>(all.size()));
       all.push_back(block);
     }
     entries.insert(entries.end(), cut->entry.begin(), cut->entry.end());
@@ -226,6 +224,7 @@ void Blocks::set_apart(const std::vector<bool> &moves)
   if (!std::is_sorted(all.begin(), all.end(), order)) std::sort(all.begin(), all.end(), order);
   const auto awake = [&](const Block &block) { return block.bound || moves[block.start]; };
   active = static_cast<int>(std::stable_partition(all.begin(), all.end(), awake) - all.begin());
+  home.resize(particles);
   for (std::size_t n = 0; n < all.size(); ++n) std::fill_n(&home[all[n].start], all[n].lanes, static_cast<int>(n));
 }
 

@@ -266,7 +266,7 @@ int VerletMdanim::take_steps(int step, int most)
   if (update->ntimestep >= stop) return 0;
   if (lists_matter) {
     tell_limits();
-    left = way_left([this](int i) { return vec3(atom->x[i]); });
+    left = way_left();
     if (!lists_last(0.0)) return 0;
     if (whole_way_for != neighbor->ncalls) way_begins();
   }
@@ -363,6 +363,11 @@ template <class Where> double VerletMdanim::way_left(Where where) const
   return std::max(0.5 * neighbor->skin - gone, std::min(way, way_to_strangers(now, all[1])));
 }
 
+double VerletMdanim::way_left() const
+{
+  return way_left([this](int i) { return vec3(atom->x[i]); });
+}
+
 // How much farther this rank's particles, which are within `own`, may go before one may have passed half a rank unseen: LAMMPS
 // hands them on to the ranks beside alone, which have their shares of the box around all particles, `all`, when they are handed
 // on.
@@ -426,7 +431,7 @@ bool VerletMdanim::look_again()
     if (late.empty()) made_for = neighbor->ncalls;    // nobody has changed how particles move
   }
   tell_limits();
-  left = comm->nprocs > 1 ? way_left([this](int i) { return vec3(atom->x[i]); }) : std::min(limit, limit_but_for_drift);
+  left = comm->nprocs > 1 ? way_left() : std::min(limit, limit_but_for_drift);
   lists_last(0.0);
   way_begins();
   ghosts_are_met = true;
@@ -585,7 +590,7 @@ bool VerletMdanim::lists_are_due()
   tell_limits();
   if (std::max(limit, limit_but_for_drift) <= 0.5 * neighbor->skin) return neighbor->decide();
   ++neighbor->ago;
-  left = way_left([this](int i) { return vec3(atom->x[i]); });
+  left = way_left();
   return !lists_last(0.0);
 }
 

@@ -42,6 +42,7 @@ class VerletMdanim : public Verlet {
   void refuse_if_moved();
   void run_passes(int n);
   template <class Where> double way_left(Where where) const;
+  double way_left() const;    // as they stand in LAMMPS
   double way_to_strangers(const mdanim::Box &own, const mdanim::Box &all) const;
   bool follows(int d, int side) const;
   void prepare_passes();

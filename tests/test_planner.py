@@ -76,7 +76,7 @@ def test_different_plans_are_found_out(parts):
 def test_costs_are_smoothed(parts):
     """The first measurement counts alone, the later ones by a quarter each; the guess before is not mixed in."""
     planner, order = begun(parts)
-    guess = module.GUESS * parts.whole.certificate.steps_per_frame * planner.particles
+    guess = module.GUESS * parts.whole.certificate.steps_per_frame * planner.terms.particles
     assert (planner.cost == np.maximum(1, guess.astype(int))).all()
     planner.decide(report(parts, order.plan.owner, cost=1000))
     assert (planner.cost == 1000).all()
@@ -145,12 +145,12 @@ def test_the_pool_is_one_more_object(prepared):
     parts = Parts(prepared(POND.replace("MODEL", "")).plan)
     planner = Planner(parts, 2, LENGTHS, Settings())
     grid, count = parts.whole.grid, planner.objects
-    assert len(planner.cost) == count + 1 and not planner.still[-1] and planner.still.sum() == 1
+    assert len(planner.cost) == count + 1 and not planner.terms.still[-1] and planner.terms.still.sum() == 1
     assert (planner.low[-1] < np.array(grid.low)).all() and planner.high[-1, 2] == parts.liquid_top
     assert (planner.high[-1, :2] > np.array(grid.high)[:2]).all()
     system = parts.whole.system
     low, high = (f.reduceat(system.position, system.first[:-1]) for f in (np.minimum, np.maximum))
-    moving = np.flatnonzero(~planner.still[:-1])
+    moving = np.flatnonzero(~planner.terms.still[:-1])
     said = Report(moving, low[moving], high[moving], np.ones(len(moving)), np.full(len(moving), 100), 700)
     empty = Report(moving[:0], low[:0], high[:0], np.zeros(0), moving[:0])
     order = planner.decide([said, empty])

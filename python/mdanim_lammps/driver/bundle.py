@@ -13,6 +13,7 @@ from mpi4py import MPI
 from ..engine.instance import State
 from ..engine.part import Parts
 from ..engine.spares import Spares
+from ..model.system import side_by_side
 from .energy import losses
 from .messages import gathered, scatter
 from .planning import FramePlan
@@ -91,7 +92,7 @@ class Bundle:
         self.moves = self._among(wanted.members)
         """Which of its objects are its members; the others are guests, or laid aside."""
         which = np.flatnonzero(self.moves)
-        self.stretches = _stretches(self.plan.system.first[which], self.first[self.objects[which]], self.particles[which])
+        self.stretches = side_by_side(self.particles[which], self.plan.system.first[which], self.first[self.objects[which]])
         """Where its members' particles are in its instance, and among all; of a team, once it has told, those that this executor has."""
         self._rows: np.ndarray | None = None
         """Of a team: the particles in its instance that these stretches are for."""
@@ -122,7 +123,7 @@ class Bundle:
         object_of = self.plan.system.object[rows]
         here = np.flatnonzero(self.moves[object_of])
         shift = self.first[self.objects] - self.plan.system.first[:-1]
-        return _stretches(here, (rows + shift[object_of])[here], np.ones(len(here), np.int64))
+        return side_by_side(np.ones(len(here), np.int64), here, (rows + shift[object_of])[here])
 
     def _among(self, objects: Sequence[int]) -> np.ndarray:
         """Which of its objects are among these, bool, shape (n,)."""
@@ -207,13 +208,3 @@ class Bundle:
         """Losses [J], by term of the ledger, since it was asked last."""
         before, self.lost = self.lost, losses(self.instance)
         return {term: e - before.get(term, 0.0) for term, e in self.lost.items()}
-
-
-def _stretches(here: np.ndarray, there: np.ndarray, size: np.ndarray) -> list[tuple[slice, slice]]:
-    """Pieces that begin at these places of two arrays, as stretches; those that are side by side in both are one."""
-    if not len(here):
-        return []
-    apart = np.flatnonzero((np.diff(here) != size[:-1]) | (np.diff(there) != size[:-1])) + 1
-    begin, end = np.append(0, apart), np.append(apart, len(here)) - 1
-    bounds = (a.tolist() for a in (here[begin], here[end] + size[end], there[begin], there[end] + size[end]))
-    return [(slice(a, b), slice(c, d)) for a, b, c, d in zip(*bounds)]

@@ -11,7 +11,7 @@ from ..engine.part import Parts
 from ..errors import DivergedError
 from . import islands
 from .messages import Job, Order, Report
-from .planning import BALANCED, MARGIN, FramePlan, Settings, plan, pool_box
+from .planning import FramePlan, Settings, Terms
 from .source import Broken
 
 FORGET = 0.25
@@ -33,24 +33,18 @@ class Planner:
         """Steps on the way from it to the next."""
         self.steps = 0
         """Of the window that executors are at."""
-        whole, system = parts.whole, parts.whole.system
-        self.objects = len(system.names)
-        self.pool = whole.grid is not None
-        count = self.objects + self.pool
-        self.particles = np.append(np.diff(system.first), [0] * self.pool).astype(np.int64)
-        self.still = np.append(system.still, np.zeros(int(self.pool), bool))
-        self.contact = any(e.name == "contact" for e in whole.effects)
-        self.gap = float(parts.reach.max()) if self.contact else 0.0
+        self.terms = Terms(parts, executors, settings)
+        self.objects = self.terms.objects
+        count = self.terms.count
         self.low, self.high, self.speed = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros(count)
-        if self.pool:
-            self.low[-1], self.high[-1] = pool_box(parts)
-        steps = whole.certificate.steps_per_frame
-        self.cost = np.maximum(1, (GUESS * steps * self.particles).astype(np.int64))
+        if self.terms.pool is not None:
+            self.low[-1], self.high[-1] = self.terms.pool
+        self.cost = self.terms.guess(GUESS)
         self.measured = np.zeros(count, bool)
         self.doublings = np.zeros(count, np.int64)
         self.plan: FramePlan | None = None
         # Of what is still no report will come.
-        self.low[:self.objects], self.high[:self.objects] = system.bounds(system.position)
+        self.low[:self.objects], self.high[:self.objects] = parts.whole.system.bounds(parts.whole.system.position)
 
     def decide(self, reports: Sequence[Report]) -> Order:
         """What to do after a window (or before the first), from the reports of all executors in their order.
@@ -68,7 +62,7 @@ class Planner:
             self.doublings[escaped] += 1
             if self.doublings.max() > DOUBLINGS:
                 raise self._flown(int(self.doublings.argmax()))
-            return self._order(self.steps, commit=False)
+            return self._order(self.steps, *self._make(self.steps), commit=False)
         for report in reports:
             self._take(report)
         self.doublings[:] = 0
@@ -86,25 +80,10 @@ class Planner:
             self.frame, self.done = self.frame + 1, 0
 
     def _choose(self) -> Order:
-        """The longest window that leaves the loads in balance: in a shorter one boxes are widened by less, and fewer islands merge.
-
-        Windows end at a frame at the latest. Where none is in balance, the one with the smallest largest load.
-        """
+        """The next window."""
         length = self.lengths[min(self.frame, len(self.lengths) - 1)]
         left = max(1, length - self.done)  # after the last frame too: its plan is asked for, but not followed
-        before, best = self.plan, None
-        for halvings in range(self.settings.finest.bit_length()):
-            steps = min(left, -(-length >> halvings))
-            self.plan = before
-            order = self._order(steps, commit=True)
-            load, mean = int(order.plan.load.max(initial=0)), int(order.plan.load.sum()) // self.executors
-            if best is None or load < best[0]:
-                best = load, order
-            shorter = mean * (steps // 2) // length
-            if self.executors == 1 or steps == 1 or load <= BALANCED * mean and not order.plan.teams or shorter < self.settings.worth:
-                break
-        self.plan, self.steps = best[1].plan, best[1].steps
-        return best[1]
+        return self._order(*self.terms.longest_window(length, left, self._make), commit=True)
 
     def _take(self, report: Report) -> None:
         who = report.objects
@@ -121,22 +100,15 @@ class Planner:
 
     def reach(self, steps: int) -> np.ndarray:
         """What boxes are widened by in a window of so many steps, eq. (6.17) [m], shape (M,), the pool's last."""
-        whole = self.parts.whole
-        d = islands.reach(self.speed, steps * whole.certificate.timestep, float(np.linalg.norm(whole.scene.gravity)),
-                          MARGIN * whole.spacing, self.settings.safety)
-        d = d * 2.0**self.doublings
-        d[self.still] = 0.0
-        if self.pool:
-            d[-1] = 0.0
-        return d
+        return self.terms.reach(self.speed, steps, self.doublings)
 
-    def _order(self, steps: int, commit: bool) -> Order:
-        owner = self.plan.owner if self.plan else np.full(len(self.cost), -1, np.int64)
+    def _make(self, steps: int) -> tuple[FramePlan, np.ndarray]:
         d = self.reach(steps)
-        self.plan = plan(self.low, self.high, d, self.cost, owner, self.executors, particles=self.particles, still=self.still,
-                         gap=self.gap, feels=None if self.contact else np.arange(len(self.cost)) == self.objects, previous=self.plan,
-                         least=self.settings.least)
-        return Order(self.plan, *islands.boxes(self.low, self.high, d), steps, commit)
+        return self.terms.plan(self.low, self.high, d, self.cost, self.plan), d
+
+    def _order(self, steps: int, plan: FramePlan, d: np.ndarray, commit: bool) -> Order:
+        self.plan, self.steps = plan, steps
+        return Order(plan, *islands.boxes(self.low, self.high, d), steps, commit)
 
 
 def planner_of(job: Job, parts: Parts, executors: int) -> Planner:

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -115,6 +115,63 @@ def pool_box(parts: Parts) -> tuple[np.ndarray, np.ndarray]:
     low, high = np.array(grid.low) - margin, np.array(grid.high) + margin
     high[2] = parts.liquid_top
     return low, high
+
+
+class Terms:
+    """What all plans of a scene have in common: its M objects, the pool as one more, and how far they matter to each other."""
+
+    def __init__(self, parts: Parts, executors: int, settings: Settings):
+        whole, system = parts.whole, parts.whole.system
+        self.whole, self.executors, self.settings = whole, executors, settings
+        self.objects = len(system.names)
+        """The pool not counted."""
+        self.pool = pool_box(parts) if whole.grid is not None else None
+        self.count = self.objects + (self.pool is not None)
+        self.particles = np.append(np.diff(system.first), [0] * (self.count - self.objects)).astype(np.int64)
+        self.still = np.append(system.still, np.zeros(self.count - self.objects, bool))
+        contact = any(e.name == "contact" for e in whole.effects)
+        self.gap = float(parts.reach.max()) if contact else 0.0
+        self.feels = None if contact else np.arange(self.count) == self.objects
+
+    def guess(self, step: float) -> np.ndarray:
+        """Costs before anything is measured [µs], int64, shape (M,), where a particle-step takes ``step`` [µs]."""
+        return np.maximum(1, (step * self.whole.certificate.steps_per_frame * self.particles).astype(np.int64))
+
+    def reach(self, speed: np.ndarray, steps: int, doublings: np.ndarray | int = 0) -> np.ndarray:
+        """What boxes are widened by in a window of so many steps, eq. (6.17) [m], shape (M,), the pool's last."""
+        d = islands.reach(speed, steps * self.whole.certificate.timestep, float(np.linalg.norm(self.whole.scene.gravity)),
+                          MARGIN * self.whole.spacing, self.settings.safety)
+        d = d * 2.0**doublings
+        d[self.still] = 0.0
+        if self.pool is not None:
+            d[-1] = 0.0
+        return d
+
+    def plan(self, low: np.ndarray, high: np.ndarray, d: np.ndarray, cost: np.ndarray,
+             previous: FramePlan | None = None) -> FramePlan:
+        """`plan` for these objects, by the owners of the plan before."""
+        owner = previous.owner if previous else np.full(self.count, -1, np.int64)
+        return plan(low, high, d, cost, owner, self.executors, particles=self.particles, still=self.still, gap=self.gap,
+                    feels=self.feels, previous=previous, least=self.settings.least)
+
+    def longest_window(self, length: int, left: int, make: Callable[[int], tuple[FramePlan, np.ndarray]]
+                       ) -> tuple[int, FramePlan, np.ndarray]:
+        """The longest window that leaves the loads in balance: in a shorter one boxes are widened by less, and fewer islands merge.
+
+        Windows end at a frame at the latest, ``left`` of its ``length`` steps. Where none is in balance, the one with the smallest
+        largest load. ``make`` gives the plan for so many steps, and what boxes are widened by; returned with the steps.
+        """
+        best, least = None, 0
+        for halvings in range(self.settings.finest.bit_length()):
+            steps = min(left, -(-length >> halvings))
+            found, d = make(steps)
+            load, mean = int(found.load.max(initial=0)), int(found.load.sum()) // self.executors
+            if best is None or load < least:
+                best, least = (steps, found, d), load
+            shorter = mean * (steps // 2) // length
+            if self.executors == 1 or steps == 1 or load <= BALANCED * mean and not found.teams or shorter < self.settings.worth:
+                break
+        return best
 
 
 def z_order(low: np.ndarray, high: np.ndarray) -> np.ndarray:

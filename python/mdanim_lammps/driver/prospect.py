@@ -14,8 +14,7 @@ import numpy as np
 
 from ..engine.part import Parts
 from ..model.basin import liquid_level
-from . import islands
-from .planning import BALANCED, MARGIN, FramePlan, Settings, plan, pool_box
+from .planning import FramePlan, Settings, Terms
 from .prepare import Prepared
 
 AHEAD = 1.0
@@ -81,45 +80,23 @@ class _Moments:
     """The plans of moments, as `planner.Planner` makes its first."""
 
     def __init__(self, ready: Prepared, executors: int, settings: Settings):
-        parts = Parts(ready.plan)
-        whole, system = parts.whole, parts.whole.system
-        self.executors, self.settings, self.whole = executors, settings, whole
-        self.objects = len(system.names)
-        self.pool = pool_box(parts) if whole.grid is not None else None
-        count = self.objects + (self.pool is not None)
-        self.particles = np.append(np.diff(system.first), [0] * (count - self.objects)).astype(np.int64)
-        self.still = np.append(system.still, np.zeros(count - self.objects, bool))
-        self.cost = np.maximum(1, (STEP * whole.certificate.steps_per_frame * self.particles).astype(np.int64))
-        contact = any(e.name == "contact" for e in whole.effects)
-        self.gap = float(parts.reach.max()) if contact else 0.0
-        self.feels = None if contact else np.arange(count) == self.objects
+        self.terms = Terms(Parts(ready.plan), executors, settings)
+        self.objects, self.still = self.terms.objects, self.terms.still
+        self.cost = self.terms.guess(STEP)
+        self.length = max(ready.plan.certificate.lengths)
 
     def at(self, low: np.ndarray, high: np.ndarray, speed: np.ndarray) -> FramePlan:
         """The plan for objects in these boxes (M, 3) [m] at these speeds (M,) [m/s],
         for the window that leaves loads in balance."""
-        if self.pool is not None:
-            low, high, speed = np.vstack([low, self.pool[0]]), np.vstack([high, self.pool[1]]), np.append(speed, 0.0)
-        length, best = max(self.whole.certificate.lengths), None
-        for halvings in range(self.settings.finest.bit_length()):
-            steps = -(-length >> halvings)
-            found = self._plan(low, high, speed, steps)
-            load, mean = int(found.load.max()), int(found.load.sum()) // self.executors
-            if best is None or load < int(best.load.max()):
-                best = found
-            shorter = mean * (steps // 2) // length
-            if self.executors == 1 or steps == 1 or load <= BALANCED * mean and not found.teams or shorter < self.settings.worth:
-                break
-        return best
+        terms = self.terms
+        if terms.pool is not None:
+            low, high, speed = np.vstack([low, terms.pool[0]]), np.vstack([high, terms.pool[1]]), np.append(speed, 0.0)
 
-    def _plan(self, low, high, speed, steps: int) -> FramePlan:
-        gravity = float(np.linalg.norm(self.whole.scene.gravity))
-        d = islands.reach(speed, steps * self.whole.certificate.timestep, gravity, MARGIN * self.whole.spacing,
-                          self.settings.safety)
-        d[self.still] = 0.0
-        if self.pool is not None:
-            d[-1] = 0.0
-        return plan(low, high, d, self.cost, np.full(len(low), -1, np.int64), self.executors, particles=self.particles,
-                    still=self.still, gap=self.gap, feels=self.feels, least=self.settings.least)
+        def make(steps: int) -> tuple[FramePlan, np.ndarray]:
+            d = terms.reach(speed, steps)
+            return terms.plan(low, high, d, self.cost), d
+
+        return terms.longest_window(self.length, self.length, make)[1]
 
 
 class _Flight:

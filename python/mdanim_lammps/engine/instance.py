@@ -101,7 +101,8 @@ class Instance:
 
     def _fill(self) -> None:
         plan, lmp = self.plan, self._lmp
-        low, high = (self._box_to_cut(plan.system.position) if self._comm else box(plan)).tolist()
+        places = _shorter_along_rows(plan.system.position) if self._comm else plan.system.position
+        low, high = (self._box_to_cut(places) if self._comm else box(plan)).tolist()
         # property/atom must exist before the particles, and a box before both.
         self._prelude = prelude(plan)
         *before, columns = self._prelude
@@ -116,7 +117,7 @@ class Instance:
             f"region box block {bounds}",
             f"create_box 8 box bond/types {self._types}{room}" if len(plan.bonds) else "create_box 8 box",
         ])
-        self._populate(ends)
+        self._populate(ends, places)
         if self._comm:
             self._cut_space(plan.system.position)
             lmp.command(BALANCE[1])
@@ -124,10 +125,10 @@ class Instance:
         lmp.commands_list([f"thermo {max(1, plan.certificate.steps_per_frame)}",
                            f"thermo_style custom step{' ebond' if len(plan.bonds) else ''}", "thermo_modify norm no", "uncompute thermo_press"])
 
-    def _populate(self, ends: Ends | None) -> None:
-        """Particles and what acts on them, into a box that is empty."""
+    def _populate(self, ends: Ends | None, places: np.ndarray) -> None:
+        """Particles at these places, and what acts on them, into a box that is empty."""
         plan = self.plan
-        self._insert(ends, plan.system.position)
+        self._insert(ends, places)
         if len(plan.bonds) and not ends:
             springs = [np.ascontiguousarray(a, np.int32) for a in (plan.bonds, plan.bond_kind)]
             self._call(f"take {len(plan.bonds)} springs", self._library.mdanim_give_springs, ctypes.c_int(len(plan.bonds)),
@@ -158,7 +159,7 @@ class Instance:
         try:
             self._lmp.commands_list(["delete_atoms group all compress no", *reversed(undo),  # fixes go before their regions
                                      *(c for c in commands if c.startswith(REPEATED)), "reset_timestep 0"])
-            self._populate(None)
+            self._populate(None, plan.system.position)
         except Exception as error:
             raise SetupError(f"LAMMPS does not take these particles: {error}") from error
         return True
@@ -169,8 +170,6 @@ class Instance:
         n = system.particles
         names = list(plan.columns)
         properties = np.array([plan.columns[c] for c in names], dtype=np.float64).reshape(len(names), n)
-        if self._comm:
-            position = _shorter_along_rows(position)
         tag = np.arange(1, n + 1, dtype=np.int32)
         molecule = (system.object + 1).astype(np.int32)
         arrays = [np.ascontiguousarray(a, t) for a, t in (
@@ -186,10 +185,10 @@ class Instance:
             self._call(f"set i2_{name}", self._library.mdanim_set_table, name.encode(), ctypes.c_int(table.shape[1]),
                        ctypes.c_int(n), _pointer(tag), _pointer(np.ascontiguousarray(table, np.int32)))
 
-    def _box_to_cut(self, position: np.ndarray) -> np.ndarray:
+    def _box_to_cut(self, places: np.ndarray) -> np.ndarray:
         """Bounds of what is cut for ranks [m], shape (2, 3): LAMMPS cuts its box around all particles. Were it another when they are
         inserted, each would begin on another rank, perhaps one that is not beside its own, and LAMMPS would lose it."""
-        places, margin = _shorter_along_rows(position), 1e-3 * self.plan.spacing
+        margin = 1e-3 * self.plan.spacing
         return np.array([places.min(0) - margin, places.max(0) + margin])
 
     def _cut_space(self, position: np.ndarray) -> None:
@@ -294,9 +293,10 @@ class Instance:
         if self._comm:
             # A particle may be far from the rank that holds it now, farther than LAMMPS's own exchange reaches.
             self._command("delete_atoms group all compress no")
-            sides = zip("xyz", *self._box_to_cut(state.x).tolist())
+            places = _shorter_along_rows(state.x)
+            sides = zip("xyz", *self._box_to_cut(places).tolist())
             self._command("change_box all " + " ".join(f"{d} final {low!r} {high!r}" for d, low, high in sides) + " units box")
-            self._insert(self.plan.ends() if len(self.plan.bonds) else None, state.x)
+            self._insert(self.plan.ends() if len(self.plan.bonds) else None, places)
             for command in physics(self.plan):
                 if command.startswith("group "):  # the new particles are in none yet
                     self._command(command)

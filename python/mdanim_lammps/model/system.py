@@ -96,9 +96,7 @@ class System(SpringTypes):
         """Particles of some solids, in their order; one stretch of those that are side by side:
         row by row copies take five times as long."""
         which = np.asarray(solids, np.int64)
-        apart = np.diff(which) != 1
-        begin, end = which[np.append(True, apart)[:len(which)]], which[np.append(apart, True)[:len(which)]] + 1
-        return list(map(slice, self.first[begin].tolist(), self.first[end].tolist()))
+        return [places for places, in side_by_side(self.first[which + 1] - self.first[which], self.first[which])]
 
     def bounds(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest components in each solid of a particle vector, shape (N, 3); each of shape (M, 3), same unit.
@@ -164,3 +162,13 @@ def as_parts(models: Sequence[Model], system: System) -> tuple[Model, ...]:
     own = ("position", "velocity", "held")
     return tuple(replace(m, **{name: getattr(system, name)[a:b] for name in own})
                  for m, a, b in zip(models, system.first, system.first[1:]))
+
+
+def side_by_side(size: np.ndarray, *begins: np.ndarray) -> list[tuple[slice, ...]]:
+    """Pieces of so many rows that begin at these places of one array or several, ascending, as stretches:
+    pieces that follow each other in all of them are one."""
+    if not len(size):
+        return []
+    apart = np.flatnonzero(np.any([np.diff(b) != size[:-1] for b in begins], axis=0)) + 1
+    first, last = np.append(0, apart), np.append(apart, len(size)) - 1
+    return list(zip(*(map(slice, b[first].tolist(), (b[last] + size[last]).tolist()) for b in begins)))
