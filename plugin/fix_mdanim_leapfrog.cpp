@@ -16,6 +16,7 @@
 #include "utils.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -198,8 +199,16 @@ void FixMdanimLeapfrog::drift_and_trace()
       add_to(x[i], dt * vec3(v[i]));
       box.include(x[i]);
     }
-    trace[object - 1].unite(box);
+    trace[object - 1].box.unite(box);
   }
+  not_seen = 0;
+}
+
+bool FixMdanimLeapfrog::looks()
+{
+  if (++not_seen < look_after) return false;
+  not_seen = 0;
+  return true;
 }
 
 std::string FixMdanimLeapfrog::start_trace(int objects)
@@ -213,17 +222,21 @@ std::string FixMdanimLeapfrog::start_trace(int objects)
   if (bounds[0] > objects || -bounds[1] < 1)
     return fmt::format("molecule IDs go from {} to {}, they must be within 1 and the {} objects to trace", -bounds[1],
                        bounds[0], objects);
-  trace.assign(objects, Box());
-  for (int i = 0; i < atom->nlocal; ++i) trace[atom->molecule[i] - 1].include(atom->x[i]);
+  trace.assign(objects, Way());
+  for (int i = 0; i < atom->nlocal; ++i) trace[atom->molecule[i] - 1].box.include(atom->x[i]);
+  look_after = 1;
+  not_seen = 0;
   return "";
 }
 
 std::vector<Box> FixMdanimLeapfrog::traced_boxes() const
 {
-  std::vector<Box> all(trace.size());
-  static_assert(sizeof(Box) == 6 * sizeof(double), "a box goes over the wire as its six bounds");
-  MPI_Allreduce(trace.data(), all.data(), 6 * traced(), MPI_DOUBLE, MPI_MIN, world);
-  return all;
+  static_assert(sizeof(Way) == TRACE * sizeof(double), "rows of passes, and what goes over the wire");
+  std::vector<Way> all(trace.size());
+  MPI_Allreduce(trace.data(), all.data(), TRACE * traced(), MPI_DOUBLE, MPI_MIN, world);
+  std::vector<Box> boxes;
+  for (const Way &way : all) boxes.push_back(way.box.grown((look_after - 1) * update->dt * std::sqrt(-way.fastest)));
+  return boxes;
 }
 
 // v^{n-1/2} -> v^n, eq. (3.10).
@@ -300,7 +313,7 @@ void FixMdanimLeapfrog::begin_step(const std::vector<int> &particles)
   only = nullptr;
   if (!trace.empty())
     for (const int i : particles)
-      if (atom->mask[i] & groupbit) trace[atom->molecule[i] - 1].include(atom->x[i]);
+      if (atom->mask[i] & groupbit) trace[atom->molecule[i] - 1].box.include(atom->x[i]);
 }
 
 void FixMdanimLeapfrog::moved(double final_loss, double first_loss, double bend, double more_seconds)

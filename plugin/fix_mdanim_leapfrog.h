@@ -33,6 +33,9 @@ class FixMdanimLeapfrog : public Fix {
   // For trace_c.cpp, all ranks together: where each object, molecule 1 to M, has been since start_trace, its place then included.
   // Empty, or why there can be no trace.
   std::string start_trace(int objects);
+  // From now on passes look at particles every so often; boxes are wider by the way that the fastest particle may have gone
+  // meanwhile.
+  void look_every(int passes) { look_after = passes; }
   int traced() const { return static_cast<int>(trace.size()); }    // objects; 0 when off
   std::vector<mdanim::Box> traced_boxes() const;
 
@@ -49,7 +52,8 @@ class FixMdanimLeapfrog : public Fix {
   void survey_ghosts(std::vector<int> &sent, std::vector<Known> &known);
   mdanim::Friction friction() const;
   mdanim::Mover mover(int i);
-  double *trace_bounds() { return trace.empty() ? nullptr : trace.front().bound; }
+  double *trace_rows() { return trace.empty() ? nullptr : trace.front().box.bound; }
+  bool looks();    // asked once in every pass
   void finish_step(const std::vector<int> &particles);    // v^{n-1/2} -> v^n
   void begin_step(const std::vector<int> &particles);     // v^n -> v^{n+1/2}, r^n -> r^{n+1}
   bool tells_of(bigint step) const;    // whether kinetic() may be asked for in that step
@@ -79,7 +83,13 @@ class FixMdanimLeapfrog : public Fix {
   const std::vector<int> *only = nullptr;    // particles to move now; null for all
   std::vector<int> *sent = nullptr;    // while ghosts are surveyed
   std::vector<Known> *known = nullptr;
-  std::vector<mdanim::Box> trace;    // of the particles of this rank; empty when off
+  struct Way {
+    mdanim::Box box;
+    double fastest = 0.0;    // largest v^2, with its sign changed, of passes that may not have looked
+  };
+  std::vector<Way> trace;    // of the particles of this rank; empty when off
+  int look_after = 1;        // passes from one look to the next
+  int not_seen = 0;          // passes since the last look
 };
 
 }    // namespace LAMMPS_NS

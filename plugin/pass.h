@@ -38,6 +38,9 @@ enum Motion { MASS, KICK, DT, OTHERS, COUNTS, STAY, SHARE, PUSH, WEIGHT, PHI, MO
 // With friction also, see leapfrog.h: STAY 1 - phi or e; SHARE 1 / (1 + phi); PUSH g dt/2m; WEIGHT m/2, 0 where there is none;
 // PHI.
 
+// A row of Pass::trace: a box, see boxes.h, and the largest v^2 with its sign changed.
+enum Trace { FASTEST = 6, TRACE };
+
 // F is the force of dashpots, dv^n = v^{n+1/2} - v^{n-1/2}; loss.h tells what these sums over particles are for.
 struct DashpotSums {
   double work;     // F^n . (v^{n-1/2} + v^{n+1/2})
@@ -62,7 +65,8 @@ struct Pass {
   int bringers;            // so many in a row for a block that has any
   Friction friction;
   double *total;    // (N, 3): sum of all forces on the particles of blocks that are held back
-  double *trace;    // box of each object (boxes.h), to be grown; null for none
+  double *trace;    // rows of TRACE, one of each object: to be grown; null for none
+  bool looks;       // where particles are after this pass; else the trace takes note of their speeds alone
   bool bends;       // `bend` is asked for
 
   double fastest;          // largest v^2 of what has moved

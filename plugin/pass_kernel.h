@@ -62,7 +62,22 @@ struct Tally {
   double final_loss = 0.0, first_loss = 0.0, bend = 0.0;
   DashpotSums dashpots = {0.0, 0.0, 0.0};
   Bounds box;
-  int object = -1;    // whose box it is
+  Vector fastest_of_object{};
+  int object = -1;    // whose box and speed these are
+
+  MDANIM_INLINE void turn_to(int next, const Pass &pass)
+  {
+    if (object >= 0) {
+      double *const row = pass.trace + TRACE * object;
+      if (pass.looks) box.close(row);
+      for (int lane = 0; lane < LANES; ++lane)
+        if (-fastest_of_object[lane] < row[FASTEST]) row[FASTEST] = -fastest_of_object[lane];
+      fastest = largest(fastest_of_object, fastest);
+    }
+    box.open();
+    fastest_of_object = Vector{};
+    object = next;
+  }
 };
 
 // Springs of a block, each once, and the dashpots beside them; adds up what its own particles feel of them and of gravity, and
@@ -195,7 +210,6 @@ MDANIM_INLINE void move(const Pass &pass, const Block &block, const double *tota
     store(pass.x[d] + i, place[d]);
     square += last[d] * last[d];
   }
-  tally.fastest = largest(square, tally.fastest);
   if (pass.bends) {
     double bend[LANES];
     store(bend, dt * dot(last, f));
@@ -219,16 +233,16 @@ MDANIM_INLINE void move(const Pass &pass, const Block &block, const double *tota
     }
   }
   if (TRACED) {
-    if (block.object != tally.object) {
-      if (tally.object >= 0) tally.box.close(pass.trace + 6 * tally.object);
-      tally.box.open();
-      tally.object = block.object;
-    }
-    if (block.lanes < LANES) {    // lanes of others go where the first one is
+    if (block.object != tally.object) tally.turn_to(block.object, pass);
+    if (block.lanes < LANES) {    // lanes of others go where the first one is, and rest
       const Vector others = load(motion + OTHERS * LANES);
       for (int d = 0; d < 3; ++d) place[d] = others > 0.0 ? Vector{} + place[d][0] : place[d];
+      square = others > 0.0 ? Vector{} : square;
     }
-    tally.box.include(place);
+    if (pass.looks) tally.box.include(place);
+    tally.fastest_of_object = largest(square, tally.fastest_of_object);
+  } else {
+    tally.fastest = largest(square, tally.fastest);
   }
 }
 
@@ -247,7 +261,7 @@ template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_INLINE void go(Pas
   }
   if (pass.blocks) move<FRICTION, TRACED, DAMPED>(pass, pass.block[pass.blocks - 1], total[~pass.blocks & 1], tally);
 
-  if (TRACED && tally.object >= 0) tally.box.close(pass.trace + 6 * tally.object);
+  if (TRACED) tally.turn_to(-1, pass);
   pass.fastest = 0.0;
   for (int lane = 0; lane < LANES; ++lane)
     if (tally.fastest[lane] > pass.fastest) pass.fastest = tally.fastest[lane];

@@ -481,7 +481,7 @@ void VerletMdanim::prepare_passes()
     const Vec3 &g = gravity->acceleration();
     pass.gravity[0] = g.x, pass.gravity[1] = g.y, pass.gravity[2] = g.z;
   }
-  pass.trace = leapfrog->trace_bounds();
+  pass.trace = leapfrog->trace_rows();
   hold_back();
 }
 
@@ -498,6 +498,7 @@ void VerletMdanim::one_pass(bool guests_see_all)
   early_guests_turn();
   double all = 0.0;
   pass.bends = leapfrog->tells_of(update->ntimestep + 1);
+  pass.looks = leapfrog->looks();
   {
     const Lap lap(all);
     width->pass(pass);

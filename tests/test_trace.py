@@ -69,6 +69,39 @@ def test_a_trace_is_the_box_of_all_steps(prepared):
         assert (ends != extremes(film, system)).any(), "ball and beam must turn back, otherwise their ends alone would do"
 
 
+@pytest.mark.parametrize("every", [2, 3, 7])
+def test_a_trace_that_looks_less_often_leaves_nothing_out(prepared, every):
+    """Hold all steps, and be wider by the way of an object's fastest particle between two looks at most; start anew with every step."""
+    plan = prepared(SCENE).plan
+    with Instance(plan) as instance, Instance(plan) as seldom:
+        for one in (instance, seldom):
+            one.setup()
+        for steps in (200, 1, 150, 63):
+            fastest = np.zeros(3)
+            for one in (instance, seldom):
+                one.start_trace()
+            seldom.look_every(every)
+            for _ in range(steps):  # speeds of whole steps; those between them are larger by gravity in half of one at most
+                instance.run(1)
+                fastest = np.maximum(fastest, instance.top_speeds())
+            seldom.run(steps)
+            boxes, wider = instance.trace(), seldom.trace()
+            more = (every - 1) * 1.2 * plan.certificate.timestep * fastest[:, None]
+            assert (wider[0] <= boxes[0]).all() and (wider[1] >= boxes[1]).all()
+            assert (wider[0] >= boxes[0] - more).all() and (wider[1] <= boxes[1] + more).all()
+            assert steps == 1 or (wider[0] < boxes[0])[1:].all(), "what moves must make a difference"
+            assert np.array_equal(seldom.array("x"), instance.array("x"))
+            seldom.start_trace()
+            seldom.run(0)
+            assert np.array_equal(seldom.trace(), extremes([instance.array("x")], plan.system))
+
+
+def test_a_trace_looks_at_least_at_times(prepared):
+    """Refuse a number of steps that is none."""
+    with Instance(prepared(SCENE).plan) as instance, pytest.raises(SetupError, match="after every 1 or more steps, 0 are asked for"):
+        instance.look_every(0)
+
+
 def test_a_trace_changes_no_bit(prepared):
     """Move particles to the same places with and without."""
     plan = prepared(SCENE).plan

@@ -12,6 +12,8 @@ from mdanim_lammps.scene.parse import load_scene
 
 FIRST, THEN = 15, 20
 """Steps before the state that is put again, and after it."""
+SELDOM = 3
+"""Steps from one look of the trace to the next, when steps are gone again."""
 SIDE = np.array([9.0, 0.0, 3.0])
 """A place far from all objects, twice [m]."""
 
@@ -53,8 +55,12 @@ def follow(path: Path, comm=None) -> dict[str, np.ndarray]:
         film |= {"low": low, "high": high}
         look("end")
         instance.put(FIRST, kept)
+        instance.start_trace()
+        instance.look_every(SELDOM)
         instance.run(THEN)
         look("again")
+        wider_low, wider_high = instance.trace()
+        assert (wider_low <= low).all() and (wider_high >= high).all(), "a trace that looks less often leaves nothing out"
         clocks = [seconds for effect in plan.effects for seconds in effect.clocks(instance).values()]
         assert np.isfinite(clocks).all() and instance.bond_seconds() > 0.0
     with Instance(plan, comm) as instance:

@@ -22,6 +22,12 @@ from .source import run_window
 WORTH = 0.5
 """Least share of an instance's particles that it is kept for; the others are those of objects that it has laid aside."""
 
+LOOKS = 32
+"""In a window, as many at least, or after every step: what boxes are widened by meanwhile is a thirtieth of the way that is
+reserved."""
+SELDOM = 4
+"""Steps from one look at where particles are to the next, at most."""
+
 
 @dataclass(frozen=True)
 class Key:
@@ -171,6 +177,7 @@ class Bundle:
     def run(self, steps: int) -> None:
         """Run a window. Raises Broken."""
         begin, soaked = time.process_time(), self._soaked()
+        self.instance.look_every(min(max(1, steps // LOOKS), SELDOM))
         run_window(self.instance, steps)
         self.trace = self.instance.trace()
         self.instance.start_trace()  # of the next window
