@@ -8,6 +8,7 @@ that all of them find the same. Wcislo 1999, eq. (3.14), (3.15), (6.17).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 import numpy as np
 
@@ -59,8 +60,13 @@ def pairs(low: np.ndarray, high: np.ndarray, gap: float) -> np.ndarray:
 
 
 def _all_pairs(low: np.ndarray, high: np.ndarray, gap: float) -> np.ndarray:
-    a, b = np.triu_indices(len(low), 1)
-    return np.column_stack(_meeting((low.T, high.T), (low.T, high.T), a, b, gap))
+    return np.column_stack(_meeting((low.T, high.T), (low.T, high.T), *_every_pair(len(low)), gap))
+
+
+@lru_cache(maxsize=2)
+def _every_pair(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """All a < b, twice as long in the making as in the looking at."""
+    return np.triu_indices(count, 1)
 
 
 def _grid_pairs(low: np.ndarray, high: np.ndarray, gap: float) -> np.ndarray:
@@ -165,6 +171,8 @@ def components(count: int, pairs: np.ndarray, still: np.ndarray) -> np.ndarray:
 
 def guests(pairs: np.ndarray, label: np.ndarray, still: np.ndarray) -> np.ndarray:
     """Copies of still objects that islands need: (island, object) once each, sorted, int64, shape (G, 2)."""
+    if not len(pairs) or not still.any():
+        return np.zeros((0, 2), np.int64)
     a, b = pairs.T
     code = np.concatenate([label[x[still[y] & ~still[x]]] * len(label) + y[still[y] & ~still[x]] for x, y in ((a, b), (b, a))])
     return np.column_stack(np.divmod(np.unique(code), len(label)))

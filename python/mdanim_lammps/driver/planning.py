@@ -246,6 +246,8 @@ def _thin_out(kept, size, runs, room) -> None:
     if not len(stay):
         return
     number, of = np.unique(kept[stay], return_inverse=True)
+    if len(number) <= SPARE + 2:
+        return
     held, place = total(of, size[stay]), np.empty(len(number), np.int64)
     place[of] = runs[stay]
     enough = -(-total(runs, np.minimum(size, room)) // room)

@@ -43,6 +43,8 @@ def form(weight, particles, home, fixed, executors, previous, gain, least) -> tu
     """
     most = np.minimum(particles // least, executors)
     heavy = np.flatnonzero((most >= 2) & (weight * executors > weight.sum()))
+    if not len(heavy):
+        return ()
     heavy = [int(i) for i in heavy[np.lexsort((heavy, -weight[heavy], ~fixed[heavy]))]]
     before = {team.members[0]: team.members for team in previous}
     cost = {i: int(weight[i]) for i in heavy}
