@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What the driver of a distributed run takes of every frame beside LAMMPS: ``python bench/driver.py [executors] [control]``.
 
-1000 objects of 100 particles fly about, and some meet. Milliseconds of processor time of a frame, of the executor that took most; medians
-over the frames but the first ten, and the least. Under ``supervisor`` is what goes on beside the executors.
+1000 objects of 100 particles fly about, and some meet. Milliseconds of processor time of a frame, of the executor that took most;
+medians over the frames but the first ten, and the least. Under ``supervisor`` is what goes on beside the executors.
 """
 
 import functools
@@ -32,7 +32,8 @@ control { time 0.25 s  frames 100 fps  resolution 3 cm }
 FIRST = 10
 """Frames that are not counted."""
 PARTS = {
-    "executor": ("Executor", {"_transfer": "hand on", "_report": "report", "_commit": "copy states", "_weigh": "sum energies", "_go_on": "lay aside", "_send": "send frame"}),
+    "executor": ("Executor", {"_transfer": "hand on", "_report": "report", "_commit": "copy states", "_weigh": "sum energies",
+                              "_go_on": "lay aside", "_send": "send frame"}),
     "bundle": ("Bundle", {"__init__": "build instances", "start": "put states", "run": "LAMMPS", "extent": "boxes"}),
     "planner": ("Planner", {"decide": "plan"}),
     "messages": ("Mail", {"exchange": "exchange"}),
@@ -97,11 +98,13 @@ def main(executors: int = 2, control: str = "central") -> None:
     with tempfile.TemporaryDirectory() as where:
         folder = Path(where)
         (folder / "crowd.txt").write_text(SCENE)
-        program = [Path(sys.executable).parent / "mpiexec", "-n", str(executors + 1), sys.executable, "-m", "mpi4py", __file__, "--rank", where, control]
+        program = [Path(sys.executable).parent / "mpiexec", "-n", str(executors + 1), sys.executable, "-m", "mpi4py", __file__,
+                   "--rank", where, control]
         subprocess.run(program, check=True, env=os.environ | {"OMP_NUM_THREADS": "1"})
         timeline = json.loads((folder / "timeline.json").read_text())
         took = [[f for f in json.loads((folder / f"{rank}.json").read_text()) if f][FIRST:-2] for rank in range(executors + 1)]
-    print(f"{executors} executors, {control}: {len(timeline['names'])} objects, {sum(timeline['moves'][FIRST:]) / len(timeline['moves'][FIRST:]):.1f} "
+    print(f"{executors} executors, {control}: {len(timeline['names'])} objects, "
+          f"{sum(timeline['moves'][FIRST:]) / len(timeline['moves'][FIRST:]):.1f} "
           f"moves and {sum(timeline['retries'][FIRST:]) / len(timeline['retries'][FIRST:]):.2f} new beginnings in a frame")
     print(f"{'':>26} {'median':>8} {'least':>8}  [ms]")
     for who, rows in (("executor", took[1:]), ("supervisor", took[:1])):

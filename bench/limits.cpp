@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What this machine can do at most, on one core: bandwidth of a triad in memory and in cache, throughput of square root and division.
-// Prints JSON. Built by bench/limits.py with -O3 -march=native.
+// What this machine can do at most, on one core: bandwidth of a triad in memory and in cache, throughput of square root
+// and division. Prints JSON. Built by bench/limits.py with -O3 -march=native.
 
 #include <algorithm>
 #include <chrono>
@@ -53,6 +53,6 @@ static double divider()
 
 int main()
 {
-  std::printf("{\"triad_memory\": %.4g, \"triad_cache\": %.4g, \"divider\": %.4g}\n", triad(size_t(8) << 20, 1), triad(24 << 10, 300),
-              divider());
+  std::printf("{\"triad_memory\": %.4g, \"triad_cache\": %.4g, \"divider\": %.4g}\n", triad(size_t(8) << 20, 1),
+              triad(24 << 10, 300), divider());
 }

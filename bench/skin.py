@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """How far beyond their reach lists are to look: ``python bench/skin.py [scene.txt …]`` prints a table in Markdown.
 
-The same scene runs in one instance for each skin, frame by frame in turns. A narrow skin makes lists often, a wide one makes them long.
-Bits are the same.
+The same scene runs in one instance for each skin, frame by frame in turns. A narrow skin makes lists often, a wide one makes
+them long. Bits are the same.
 """
 
 import sys

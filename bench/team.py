@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """One LAMMPS instance on several ranks beside one: ``python bench/team.py SCENE.txt [ranks] [frames] [rounds]``.
 
-What a team of executors can gain, without driver and supervisor: milliseconds of a frame, of the rank that takes most, medians over
-frames, then over rounds in turns.
+What a team of executors can gain, without driver and supervisor: milliseconds of a frame, of the rank that takes most, medians
+over frames, then over rounds in turns.
 """
 
 import json
@@ -59,8 +59,8 @@ def main(scene: Path, ranks: int = 2, frames: int = 40, rounds: int = 3) -> None
         return statistics.median(run[what] for run in found[n])
 
     print(markdown(["scene", "particles", "ranks", "ms of a frame, processor", "times as fast", "wall", "times as fast"],
-                   [[scene.stem, found[n][0]["particles"], n, middle(n, "cpu"), middle(1, "cpu") / middle(n, "cpu"), middle(n, "wall"),
-                     middle(1, "wall") / middle(n, "wall")] for n in found]))
+                   [[scene.stem, found[n][0]["particles"], n, middle(n, "cpu"), middle(1, "cpu") / middle(n, "cpu"),
+                     middle(n, "wall"), middle(1, "wall") / middle(n, "wall")] for n in found]))
 
 
 if __name__ == "__main__":

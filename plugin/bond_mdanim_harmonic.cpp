@@ -105,8 +105,9 @@ bool BondMdanimHarmonic::source_changed()
   if (given) {
     if (nlocal != rows.size() || atom->nghost || !std::is_sorted(atom->tag, atom->tag + nlocal))
       error->all(FLERR,
-                 "bond_style mdanim/harmonic: springs were given for {} particles, in the order of their tags and without ghosts; "
-                 "at step {} there are {}, with {} ghosts, or in another order; if the bodies fly apart, lower the time step",
+                 "bond_style mdanim/harmonic: springs were given for {} particles, in the order of their tags and without "
+                 "ghosts; at step {} there are {}, with {} ghosts, or in another order; if the bodies fly apart, lower the "
+                 "time step",
                  rows.size(), update->ntimestep, nlocal, atom->nghost);
     return false;
   }
@@ -450,8 +451,8 @@ double BondMdanimHarmonic::single(int type, double rsq, int, int, double &fforce
 void BondMdanimHarmonic::refuse_if_given()
 {
   if (given)
-    error->one(FLERR, "bond_style mdanim/harmonic: springs were given to it by mdanim_give_springs, and a file would be without them; "
-               "let the particles have their bonds themselves");
+    error->one(FLERR, "bond_style mdanim/harmonic: springs were given to it by mdanim_give_springs, and a file would be "
+               "without them; let the particles have their bonds themselves");
 }
 
 void BondMdanimHarmonic::write_restart(FILE *fp)

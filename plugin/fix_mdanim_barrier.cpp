@@ -223,7 +223,8 @@ struct FixMdanimBarrier::Search {
   const FixMdanimBarrier &fix;
   const double range, skin;
   std::vector<Near> near;                // ascending by tag
-  std::vector<int> begin, of_object;     // those of object n, by their places in `near`: of_object[begin[n]] to [begin[n + 1] - 1]
+  std::vector<int> begin, of_object;     // those of object n, by their places in `near`:
+                                         // of_object[begin[n]] to [begin[n + 1] - 1]
   std::vector<Found> found;
 
   Search(const FixMdanimBarrier &fix, double range) : fix(fix), range(range), skin(fix.neighbor->skin) {}
@@ -439,7 +440,8 @@ int FixMdanimBarrier::find_touching(const Places &place)
   lanes.resize(strip.size() + 1);
   touching_pair.resize(law.size() + STRIP);
   const auto all = place.all();
-  return touch->in_reach({all.data(), strip.data(), static_cast<int>(strip.size()), reach2.data(), lanes.data()}, touching_pair.data());
+  return touch->in_reach({all.data(), strip.data(), static_cast<int>(strip.size()), reach2.data(), lanes.data()},
+                         touching_pair.data());
 }
 
 // Between outputs, where nobody reads the energy.

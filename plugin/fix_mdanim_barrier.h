@@ -75,7 +75,8 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
   mdanim::Doubles reach2;               // squares of the reach of pairs, 0 for what is none
   std::vector<Law> law;                 // and what else is known of them
   int last_high = 0;                    // the higher one of the last pair
-  std::vector<int> particle;            // that have candidates, local or ghost: first boundary, then barrier, each ascending by tag
+  std::vector<int> particle;            // that have candidates, local or ghost: first boundary, then barrier,
+                                        // each ascending by tag
   std::vector<int> unmoved;             // those of them, as places in it, that this rank adds no forces to
   const mdanim::Touch *touch;           // who looks for those in touch
   std::vector<mdanim::Lanes> lanes;     // where there are some in this step

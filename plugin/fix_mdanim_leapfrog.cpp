@@ -345,8 +345,8 @@ double FixMdanimLeapfrog::bend() const
 double FixMdanimLeapfrog::kinetic()
 {
   if (!told)
-    error->all(FLERR, "fix {} mdanim/leapfrog: kinetic energy, f_{}[2], is worked out in steps with output alone; ask for it in these, "
-               "as thermo_style does", id, id);
+    error->all(FLERR, "fix {} mdanim/leapfrog: kinetic energy, f_{}[2], is worked out in steps with output alone; ask for it in "
+               "these, as thermo_style does", id, id);
   double swing = 0.0, sum = 0.0;
   each([&](int i) {
     const double mass = mass_of(atom->rmass, atom->mass, atom->type, i);

@@ -28,7 +28,8 @@ struct Implicit {
     return {share * (v.x + kick * f.x), share * (v.y + kick * f.y), share * (v.z + kick * f.z)};
   }
   // Energy that friction takes in the half step from va to vb. The first term is the work of F less the gain in kinetic energy,
-  //   m (va + vb)/2 . (k F - (vb - va)) +- m phi k F . (2/3 h - 1/2 w),   w = v^n, h = v^{n+-1/2}, + in the first half, - in the final.
+  //   m (va + vb)/2 . (k F - (vb - va)) +- m phi k F . (2/3 h - 1/2 w),
+  //   w = v^n, h = v^{n+-1/2}, + in the first half, - in the final.
   // The second is what the energy of the smooth path through the positions, which leap-frog conserves (fix_mdanim_leapfrog.cpp),
   // loses more: dt^2/6 times lambda F . G / m^2, G = F - lambda v, in a step by Euler and Maclaurin, dt^2/24 lambda v . F / m at
   // either end. Without it a vibration of frequency w would seem to lose (w dt)^2/6 less than it does.

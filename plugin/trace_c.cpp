@@ -47,7 +47,8 @@ MDANIM_EXPORT int mdanim_trace_start(void *handle, int objects, char *error, int
 MDANIM_EXPORT int mdanim_trace_every(void *handle, int steps, char *error, int error_size)
 {
   try {
-    if (steps < 1) throw std::runtime_error("a trace looks after every 1 or more steps, " + std::to_string(steps) + " are asked for");
+    if (steps < 1)
+      throw std::runtime_error("a trace looks after every 1 or more steps, " + std::to_string(steps) + " are asked for");
     leapfrog(handle)->look_every(steps);
     return 0;
   } catch (const std::exception &e) {

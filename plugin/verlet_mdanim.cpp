@@ -95,7 +95,8 @@ void VerletMdanim::setup_minimal(int flag)
 // known to leave the list alone. It comes back with the next init().
 void VerletMdanim::spare_bond_list()
 {
-  if (!dynamic_cast<BondMdanimHarmonic *>(force->bond) || force->pair || force->angle || force->dihedral || force->improper) return;
+  if (!dynamic_cast<BondMdanimHarmonic *>(force->bond) || force->pair || force->angle || force->dihedral || force->improper)
+    return;
   const auto leaves_it = [](const char *style) {
     static constexpr const char *OTHERS[] = {"property/atom", "balance", "temp", "pressure", "pe", "ke"};
     return strncmp(style, "mdanim/", 7) == 0 ||
@@ -473,7 +474,8 @@ void VerletMdanim::prepare_passes()
   std::vector<std::vector<int>> of_early(early.size());
   for (std::size_t n = 0; n < early.size(); ++n) early[n].guest->concerned(of_early[n]);
   blocks.expect(of_early);
-  guests_look = !late.empty() || std::any_of(of_early.begin(), of_early.end(), [](const auto &particles) { return !particles.empty(); });
+  guests_look = !late.empty() || std::any_of(of_early.begin(), of_early.end(),
+                                             [](const auto &particles) { return !particles.empty(); });
   if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &guests_look, 1, MPI_INT, MPI_MAX, world);
   blocks.fill(pass, atom->f);
   pass.gravity[0] = pass.gravity[1] = pass.gravity[2] = 0.0;

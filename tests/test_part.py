@@ -183,7 +183,8 @@ def test_islands_of_a_crowd(scenes):
 
 
 def test_damped_dragged_thin_and_held_objects(prepared):
-    """Take out single objects and a pair that is not side by side in the scene, with walls, strong drag, dashpots and thin plates."""
+    """Take out single objects and a pair that is not side by side in the scene, with walls, strong drag, dashpots
+    and thin plates."""
     plan = prepared(SHELF).plan
     assert plan.exponential, "the feather must be dragged so strongly that drag is taken exponentially"
     found = follow(plan)
@@ -326,7 +327,8 @@ def test_a_state_of_other_particles_is_refused(prepared):
     pytest.param([(3,), (2,), (0,), (1,)], id="alone"),
 ])
 def test_an_instance_filled_anew_is_as_a_new_one(prepared, chain):
-    """Damped, dragged and thin objects, more and fewer, one after the other in one instance: bits and energies, losses from 0, of new ones."""
+    """Damped, dragged and thin objects, more and fewer, one after the other in one instance: bits and energies,
+    losses from 0, of new ones."""
     plan = prepared(SHELF).plan
     parts = Parts(plan)
     with Instance(plan) as whole:
@@ -357,8 +359,9 @@ def test_an_instance_is_not_filled_with_what_it_has_no_place_for(prepared):
     """Other columns, more types of springs than there is room for, and the liquid take a new one; the old one is as it was."""
     parts = Parts(prepared(SHELF).plan)
     pond = Parts(prepared(POND.replace("MODEL", "")).plan)
-    rich = prepared("\n".join(f"object o{k} {{ shape box (5, 5, 5) cm  position ({10 * k}, 0, 0) cm  mass 1 kg  elasticity {k} kPa }}"
-                             for k in range(1, 90)) + "control { time 0.1 s  resolution 2.5 cm }").plan
+    rich = prepared("\n".join(f"object o{k} {{ shape box (5, 5, 5) cm  position ({10 * k}, 0, 0) cm  mass 1 kg  "
+                              f"elasticity {k} kPa }}"
+                              for k in range(1, 90)) + "control { time 0.1 s  resolution 2.5 cm }").plan
     assert len(rich.coefficients) > 256
     with Instance(parts.part((0,), False)) as instance, Instance(pond.part((0,), True)) as wet:
         instance.setup()

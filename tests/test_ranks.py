@@ -36,15 +36,18 @@ def on_ranks(program: Path, ranks: int, *arguments: object) -> str:
     """What a Python program prints on so many ranks; ``-m mpi4py`` ends all of them when one raises."""
     done = subprocess.run(
         [plugin_path.BIN / "mpiexec", "-n", str(ranks), sys.executable, "-m", "mpi4py", program, *map(str, arguments)],
-        capture_output=True, text=True, timeout=900, env={**plugin_path.environment(), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))})
+        capture_output=True, text=True, timeout=900,
+        env={**plugin_path.environment(), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))})
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize(("name", "ranks"), [("solids", 2), ("solids", 3), ("solids", 4), ("liquid", 2), ("liquid", 4), ("pressure", 3)])
+@pytest.mark.parametrize(("name", "ranks"), [
+    ("solids", 2), ("solids", 3), ("solids", 4), ("liquid", 2), ("liquid", 4), ("pressure", 3)])
 def test_ranks_see_what_one_sees(tmp_path, name, ranks):
-    """Follow contact, dashpots, drag, held particles and liquid, take back steps, move all particles: the same bits on all ranks."""
+    """Follow contact, dashpots, drag, held particles and liquid, take back steps, move all particles: the same bits on
+    all ranks."""
     path = tmp_path / "small.txt"
     path.write_text(SCENES[name])
     alone = follow(path)
@@ -52,7 +55,8 @@ def test_ranks_see_what_one_sees(tmp_path, name, ranks):
     film = np.load(tmp_path / "film.npz")
     same(film, alone)
     for what in ("x", "v", "f"):
-        assert np.array_equal(film[f"again {what}"], film[f"end {what}"]) and np.array_equal(film[f"new {what}"], film[f"end {what}"])
+        assert (np.array_equal(film[f"again {what}"], film[f"end {what}"]) and
+                np.array_equal(film[f"new {what}"], film[f"end {what}"]))
     assert (film["end x"] != film["start x"]).any()
     assert np.abs(film["end energies"]).min() > 0.0 if name == "solids" else (film["end cells"] != film["start cells"]).any()
 
@@ -78,9 +82,11 @@ def test_passes_with_ghosts_give_the_bits_of_one_rank(tmp_path, name, ranks):
 
 @pytest.mark.mpi
 @pytest.mark.parametrize(("size", "turned", "across"), [
-    ((22.5, 22.5, 22.5), "", False), ((22.5, 22.5, 22.5), "orientation axis (0, 0, 1) angle 90 deg", False), ((47.5, 10, 10), "", True)])
+    ((22.5, 22.5, 22.5), "", False), ((22.5, 22.5, 22.5), "orientation axis (0, 0, 1) angle 90 deg", False),
+    ((47.5, 10, 10), "", True)])
 def test_space_is_cut_along_rows_where_that_is_as_good(tmp_path, size, turned, across):
-    """Share a cube of 10 particles along each edge, as it is and turned, between two ranks, and a rod of 20 x 5 x 5: only that is cut across."""
+    """Share a cube of 10 particles along each edge, as it is and turned, between two ranks, and a rod of 20 x 5 x 5:
+    only that is cut across."""
     path, row = tmp_path / "scene.txt", round(size[0] / 2.5) + 1
     path.write_text(f"object a {{ shape box {size} cm position (0, 0, 0) m {turned} density 900 elasticity 1 MPa }}\n"
                     "control { time 0.1 s  frames 100 fps  resolution 2.5 cm }")
@@ -104,7 +110,8 @@ def test_forces_are_added_in_the_order_of_fixes_on_all_ranks(tmp_path, ranks):
 
 @pytest.mark.mpi
 def test_lists_of_two_steps_of_one_number_are_not_taken_for_each_other(tmp_path):
-    """Give steps other numbers so that lists are made in the step whose number the last ones have: particles change ranks there."""
+    """Give steps other numbers so that lists are made in the step whose number the last ones have: particles change
+    ranks there."""
     assert int(on_ranks(RENUMBERED, 3, tmp_path)) > 20
 
 
@@ -164,7 +171,8 @@ def left_behind(folder: Path, count: int, how: str) -> tuple[float, int]:
     pytest.param(6000, 4e2, id="thousands", marks=[pytest.mark.soak, pytest.mark.timeout(0)]),
 ])
 def test_instances_leave_nothing_behind(tmp_path, count, most, how):
-    """Make and close, or fill anew, one after the other: no file stays open, and no memory is lost beyond what an allocator keeps."""
+    """Make and close, or fill anew, one after the other: no file stays open, and no memory is lost beyond what an
+    allocator keeps."""
     memory, files = left_behind(tmp_path, count, how)
     assert files == 0
     assert memory < most, f"{memory:.0f} bytes an instance"

@@ -71,7 +71,8 @@ def test_a_trace_is_the_box_of_all_steps(prepared):
 
 @pytest.mark.parametrize("every", [2, 3, 7])
 def test_a_trace_that_looks_less_often_leaves_nothing_out(prepared, every):
-    """Hold all steps, and be wider by the way of an object's fastest particle between two looks at most; start anew with every step."""
+    """Hold all steps, and be wider by the way of an object's fastest particle between two looks at most; start anew
+    with every step."""
     plan = prepared(SCENE).plan
     with Instance(plan) as instance, Instance(plan) as seldom:
         for one in (instance, seldom):
@@ -98,7 +99,8 @@ def test_a_trace_that_looks_less_often_leaves_nothing_out(prepared, every):
 
 def test_a_trace_looks_at_least_at_times(prepared):
     """Refuse a number of steps that is none."""
-    with Instance(prepared(SCENE).plan) as instance, pytest.raises(SetupError, match="after every 1 or more steps, 0 are asked for"):
+    with Instance(prepared(SCENE).plan) as instance, pytest.raises(
+            SetupError, match="after every 1 or more steps, 0 are asked for"):
         instance.look_every(0)
 
 

@@ -95,7 +95,8 @@ control { time 0.06 s  frames 100 fps  resolution 2.5 cm }
 """One object that is nearly all of the work."""
 BOUNCE = """
 object left  { shape box (20, 20, 20) cm  position (-18, 0, 0) cm  density 900  elasticity 1 MPa  velocity (4, 0, 0.5) m/s }
-object right { shape box (20, 20, 20) cm  position (18, 3, 0) cm   density 900  elasticity 1 MPa  velocity (-4, 0, 0) m/s  damping 0.02 }
+object right { shape box (20, 20, 20) cm  position (18, 3, 0) cm   density 900  elasticity 1 MPa  velocity (-4, 0, 0) m/s \
+ damping 0.02 }
 control { time 0.12 s  frames 200 fps  resolution 4 cm }
 """
 """Two that meet, together are too much for one executor, and part again."""
@@ -107,7 +108,8 @@ object stone { shape box (10, 10, 10) cm  position (0, 0, 10) cm  density 2500  
 control { time 0.05 s  frames 100 fps  resolution 2.5 cm }
 """
 """Nothing moves at all."""
-HASTY = FLYING.split("control")[0].replace("1 .. 4", "1 .. 2") + "control { time 1.05 ms  frames 20000 fps  timestep 0.05 ms  resolution 5 cm }"
+HASTY = (FLYING.split("control")[0].replace("1 .. 4", "1 .. 2") +
+         "control { time 1.05 ms  frames 20000 fps  timestep 0.05 ms  resolution 5 cm }")
 """Frames of one step."""
 UNEVEN = FLYING.split("control")[0].replace("1 .. 4", "1 .. 3") + "control { time 0.107 s  frames 100 fps  resolution 5 cm }"
 """A last frame that is shorter than the others."""

@@ -32,8 +32,10 @@ def ways(scene: Path, cases: dict[str, dict], ranks: int = 5, timeout: float = 6
     work = [{"folder": str(folder / case.get("in", name)), **case} for name, case in cases.items()]
     (folder / "cases.json").write_text(json.dumps({"scene": str(scene), "cases": work}))
     done = subprocess.run(
-        [plugin_path.BIN / "mpiexec", "-n", str(ranks), sys.executable, "-m", "mpi4py", MATRIX, folder / "cases.json", str(timeout)],
-        capture_output=True, text=True, timeout=timeout + 10.0, env={**plugin_path.environment(), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))})
+        [plugin_path.BIN / "mpiexec", "-n", str(ranks), sys.executable, "-m", "mpi4py", MATRIX, folder / "cases.json",
+         str(timeout)],
+        capture_output=True, text=True, timeout=timeout + 10.0,
+        env={**plugin_path.environment(), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))})
     assert done.returncode == 0, done.stdout + done.stderr
     return {name: folder / case.get("in", name) for name, case in cases.items()}
 
@@ -55,7 +57,8 @@ def same(alone: Path, together: Path) -> None:
     for column in one.columns:
         rough = column in ("damping_loss", "residual")
         np.testing.assert_allclose(two.array(column), one.array(column), rtol=2e-3 if rough else 1e-9, err_msg=column,
-                                   atol=(max(1e-4, 5e-6 * begun) if column == "residual" else 1e-5 * scale if rough else 1e-12 * scale))
+                                   atol=(max(1e-4, 5e-6 * begun) if column == "residual" else
+                                         1e-5 * scale if rough else 1e-12 * scale))
     first, second = (json.loads((f / "summary.json").read_text()) for f in (alone, together))
     for summary in (first, second):
         del summary["seconds"], summary["energy_residual"]
@@ -172,7 +175,8 @@ def test_a_team_runs_what_is_too_heavy_for_one(scene, text, control, more):
 
 
 def test_a_team_ends_when_it_has_no_more_to_do(scene):
-    """Two objects meet and part: what each member of the team has of them goes to whoever runs them next, also when a window begins again."""
+    """Two objects meet and part: what each member of the team has of them goes to whoever runs them next, also when a window
+    begins again."""
     team = {"least": 50}
     cases = matrix((2,), settings=team) | matrix((2,), ["central"], "windows ", settings=WINDOWS | team | {"safety": 0.3})
     timelines = all_the_same(ways(scene(films.BOUNCE), cases), cases)
@@ -206,7 +210,8 @@ def test_a_run_goes_on_with_other_executors(scene):
 def test_a_liquid_goes_on_with_other_executors(scene):
     """Stop while bodies splash; the state of the liquid goes to whoever has it next."""
     cases = {
-        "a": {"executors": 2, "control": "central", "stop": 5}, "a more": {"executors": 3, "control": "peers", "resume": True, "in": "a"},
+        "a": {"executors": 2, "control": "central", "stop": 5},
+        "a more": {"executors": 3, "control": "peers", "resume": True, "in": "a"},
         "b": SEQUENTIAL | {"stop": 5}, "b spread": {"executors": 2, "control": "peers", "resume": True, "in": "b"},
         "team": {"executors": 2, "control": "peers", "stop": 5, "settings": {"least": 50}},
         "team alone": SEQUENTIAL | {"resume": True, "in": "team"},
@@ -228,7 +233,8 @@ def test_lammps_alone_runs_the_same_film(scene):
     ready = prepare(load_scene(path))
     write_inputs(ready, path.parent)
     script = path.parent / f"in.{ready.plan.name}"
-    script.write_text(script.read_text() + "\nwrite_dump all custom end.dump id x y z vx vy vz modify sort id format float %.17g\n")
+    script.write_text(script.read_text() +
+                      "\nwrite_dump all custom end.dump id x y z vx vy vz modify sort id format float %.17g\n")
     done = plugin_path.lmp(script)
     assert done.returncode == 0, done.stdout + done.stderr
     rows = np.loadtxt(path.parent / "end.dump", skiprows=9)
@@ -241,8 +247,8 @@ def test_lammps_alone_runs_the_same_film(scene):
 @pytest.mark.parametrize("name", [*FILMS, "flying"])
 def test_all_films_on_any_number_of_executors(scene, name):
     """The long form: everything under everything."""
-    cases = (matrix() | matrix((2, 4), name="windows ", settings=WINDOWS) | matrix((3,), name="again ", settings={"safety": 0.2}) |
-             matrix((2, 3), name="teams ", settings={"least": 50}))
+    cases = (matrix() | matrix((2, 4), name="windows ", settings=WINDOWS) |
+             matrix((3,), name="again ", settings={"safety": 0.2}) | matrix((2, 3), name="teams ", settings={"least": 50}))
     text = films.FLYING if name == "flying" else FILMS[name][0]
     all_the_same(ways(scene(text), cases, timeout=250.0), cases)
 

@@ -99,7 +99,8 @@ class Bundle:
         """Which of its objects are its members; the others are guests, or laid aside."""
         which = np.flatnonzero(self.moves)
         self.stretches = side_by_side(self.particles[which], self.plan.system.first[which], self.first[self.objects[which]])
-        """Where its members' particles are in its instance, and among all; of a team, once it has told, those that this executor has."""
+        """Where its members' particles are in its instance, and among all; of a team, once it has told, those that this
+        executor has."""
         self._rows: np.ndarray | None = None
         """Of a team: the particles in its instance that these stretches are for."""
 
@@ -190,13 +191,14 @@ class Bundle:
         return self.instance.fix_seconds("liquid") if self.key.liquid else 0.0
 
     def escaped(self, low: np.ndarray, high: np.ndarray) -> list[int]:
-        """Objects that have been outside of their reserved boxes, those of all objects [m], shape (M, 3), at any step of the window."""
+        """Objects that have been outside of their reserved boxes, those of all objects [m], shape (M, 3), at any step
+        of the window."""
         out = ((self.trace[0] < low[self.objects]) | (self.trace[1] > high[self.objects])).any(axis=1)
         return self.objects[out & self.moves].tolist()
 
     def extent(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Boxes of its members after a window, eq. (3.14) [m], and the speeds of their fastest particles [m/s]: shapes (m, 3), (m, 3),
-        (m,)."""
+        """Boxes of its members after a window, eq. (3.14) [m], and the speeds of their fastest particles [m/s]: shapes (m, 3),
+        (m, 3), (m,)."""
         if not len(self.objects):
             return np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0)
         low, high = (side[self.moves] for side in self.here)

@@ -300,8 +300,8 @@ def _pairs(Instance) -> float:
 
 
 def _pool(Instance) -> dict[str, float]:
-    """A block that sinks in: its rates, those of a particle and of a lattice cell when cells are updated; ``lone particle`` is all
-    of the rest of a step."""
+    """A block that sinks in: its rates, those of a particle and of a lattice cell when cells are updated; ``lone particle`` is
+    all of the rest of a step."""
     ready = _prepare(POOL)
     particles, found = ready.system.particles, []
     for _ in range(AGAIN):

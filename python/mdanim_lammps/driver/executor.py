@@ -90,8 +90,8 @@ class Executor:
     # --- the order of things --------------------------------------------------------------------------------------
 
     def work(self) -> None:
-        """All frames. Raises Broken, MdanimError, Aborted; then its instances are left as they are, for a team's others may never come
-        to close theirs."""
+        """All frames. Raises Broken, MdanimError, Aborted; then its instances are left as they are, for a team's others may never
+        come to close theirs."""
         self._follow(self._decide(self._first_report()))
         few = np.flatnonzero(~self.system.still)[:2]
         if len(few) == 2 and any(e.name == "contact" for e in self.job.plan.effects):  # pairs will meet
@@ -151,8 +151,8 @@ class Executor:
     # --- objects --------------------------------------------------------------------------------------------------
 
     def _follow(self, order: Order, again: bool = False) -> None:
-        """Hand on what goes elsewhere, and have the instances that are wanted; ``again``: bundles that have run the window stay at its
-        end if they are to be what they were, for again they would do the same."""
+        """Hand on what goes elsewhere, and have the instances that are wanted; ``again``: bundles that have run the window stay
+        at its end if they are to be what they were, for again they would do the same."""
         before, self.order = self.order, order
         with self._span("moving"):
             wanted = wanted_bundles(order.plan, self.objects, self.me)
@@ -176,8 +176,8 @@ class Executor:
         return found
 
     def _go_on(self, bundle: Bundle, wanted: Wanted, again: bool) -> Bundle:
-        """A bundle that stays, without whom it has to lay aside; ``again`` as in `_follow`: one that changes goes back to the window's
-        beginning."""
+        """A bundle that stays, without whom it has to lay aside; ``again`` as in `_follow`: one that changes goes back to the
+        window's beginning."""
         back = again and bundle.key != wanted.key
         bundle.become(wanted)
         if back:
@@ -306,8 +306,9 @@ class Executor:
     def _send(self, keep: bool) -> None:
         """The share of a frame."""
         places = self._held()
-        self.mail.send(SUPERVISOR, Tag.FRAME, Share(self.frame, self.own, places, *gathered(places, self.x, self.v), self.energies,
-                                                    self.deepest, self.pool, self.moves, self.retries, tuple(sorted(self.led))))
+        self.mail.send(SUPERVISOR, Tag.FRAME, Share(self.frame, self.own, places, *gathered(places, self.x, self.v),
+                                                    self.energies, self.deepest, self.pool, self.moves, self.retries,
+                                                    tuple(sorted(self.led))))
         self.moves, self.energies = 0, {}
         self.led.clear()
         if keep:
@@ -317,7 +318,8 @@ class Executor:
         """What a checkpoint needs besides."""
         places = self._held()
         has_pool = self.order.plan.owner[-1] == self.me and self.liquid is not None
-        self.mail.send(SUPERVISOR, Tag.KEPT, Kept(self.frame, places, *gathered(places, self.f), self.liquid if has_pool else None))
+        self.mail.send(SUPERVISOR, Tag.KEPT, Kept(self.frame, places, *gathered(places, self.f),
+                                                  self.liquid if has_pool else None))
 
     def _held(self) -> list[slice]:
         """Particles that it has told at the last frame, where they are among all."""

@@ -98,7 +98,8 @@ def _grid_pairs(low: np.ndarray, high: np.ndarray, gap: float) -> np.ndarray:
 
 
 def _cells(corner: np.ndarray, cell: float) -> tuple[np.ndarray, tuple[int, int]]:
-    """Number of the cell of every corner (3, N), shape (N,), and how far apart those of neighbours along x and y are; along z, one."""
+    """Number of the cell of every corner (3, N), shape (N,), and how far apart those of neighbours along x and y are;
+    along z, one."""
     corner = corner - corner.min(axis=1)[:, None]
     cell = max(cell, float(corner.max()) / CELLS) or 1.0
     place = (corner / cell).astype(np.int64) + 1  # a margin of one cell: no row runs on into the next

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""From what executors report to what they do next. The supervisor has one of these (central control), or every executor (peers)."""
+"""From what executors report to what they do next. The supervisor has one of these (central control), or
+every executor (peers).
+"""
 
 from __future__ import annotations
 

@@ -156,10 +156,11 @@ class Terms:
 
     def longest_window(self, length: int, left: int, make: Callable[[int], tuple[FramePlan, np.ndarray]]
                        ) -> tuple[int, FramePlan, np.ndarray]:
-        """The longest window that leaves the loads in balance: in a shorter one boxes are widened by less, and fewer islands merge.
+        """The longest window that leaves the loads in balance: in a shorter one boxes are widened by less, and fewer
+        islands merge.
 
-        Windows end at a frame at the latest, ``left`` of its ``length`` steps. Where none is in balance, the one with the smallest
-        largest load. ``make`` gives the plan for so many steps, and what boxes are widened by; returned with the steps.
+        Windows end at a frame at the latest, ``left`` of its ``length`` steps. Where none is in balance, the one with the
+        smallest largest load. ``make`` gives the plan for so many steps, and what boxes are widened by; returned with the steps.
         """
         best, least = None, 0
         for halvings in range(self.settings.finest.bit_length()):

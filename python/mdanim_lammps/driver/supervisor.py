@@ -65,7 +65,8 @@ class Distributed:
     def begin(self, resume):
         system = self.ready.system
         self.step = resume.step if resume else 0
-        self.start = (resume.x, resume.v, resume.f) if resume else (system.position, system.velocity, np.zeros_like(system.position))
+        self.start = ((resume.x, resume.v, resume.f) if resume else
+                      (system.position, system.velocity, np.zeros_like(system.position)))
         self.granted = self.taken = self.resumed_at = resume.frame if resume else 0
         self.last: _Sheaf | None = None
         """That of the frame which was given out last."""

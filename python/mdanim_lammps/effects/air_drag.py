@@ -32,8 +32,8 @@ def slowed_share(instance) -> float:
 
 
 def leapfrog_rate(load, rate) -> float:
-    """Seconds of the leap-frog for a particle in a step, without drag: in a liquid, whose forces come after all others, a particle
-    is moved by itself rather than in a block of many."""
+    """Seconds of the leap-frog for a particle in a step, without drag: in a liquid, whose forces come after all others, a
+    particle is moved by itself rather than in a block of many."""
     return rate["lone leap-frog" if "buoyancy" in load.on else "leap-frog"]
 
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What an effect is: when a scene calls for it, what it writes into LAMMPS's input, what it adds to the ledger and to the bound."""
+"""What an effect is: when a scene calls for it, what it writes into LAMMPS's input, what
+it adds to the ledger and to the bound.
+"""
 
 from __future__ import annotations
 
@@ -117,7 +119,8 @@ class Effect:
         return {self.fix: instance.fix_seconds(self.fix)} if self.fix else {}
 
     def forecast(self, load: Load, rate: Mapping[str, float]) -> float:
-        """Seconds that it will take; ``rate`` holds what this machine needs for one of each kind of work (driver/calibration.py)."""
+        """Seconds that it will take; ``rate`` holds what this machine needs for one of each kind of work
+        (driver/calibration.py)."""
         return 0.0
 
     def penetration(self, instance, system: System) -> float:

@@ -18,10 +18,11 @@ from .plugin import open_lammps
 LIQUID = b"liquid"
 """ID of the liquid's fix (effects/liquid.py)."""
 MANY = 20_000
-"""Particles from which on what making them has left free in the heap goes back to the system: 100 to 400 bytes each, in 10 ns each."""
+"""Particles from which on what making them has left free in the heap goes back to the system: 100 to 400 bytes each, in
+10 ns each."""
 ROWS_SHORTER = 0.1
-"""Part of their length by which objects count as shorter along the rows of their lattices when space is cut for ranks; a `fix balance`
-that finds more than 10 % of imbalance in the course of a run cuts anew without it."""
+"""Part of their length by which objects count as shorter along the rows of their lattices when space is cut for ranks; a
+`fix balance` that finds more than 10 % of imbalance in the course of a run cuts anew without it."""
 SMALL = 8000
 """Particles up to which an instance is worth being filled anew: with more, putting them in takes longer than all the rest."""
 TYPES = 256
@@ -50,10 +51,11 @@ class State:
 class Instance:
     """LAMMPS holding all particles of a plan, in tag order where it runs on one process. Use as a context manager.
 
-    On a communicator of several ranks all of them call all methods together, with the same arguments, and all get the same answers;
-    each holds the particles of its part of space. Every number of a State is the same on any number of ranks, to the last bit; energies
-    are sums over particles and agree but for rounding, those that dashpots take to about 1e-3 (plugin/loss.h). When LAMMPS stops on one
-    rank only, the error comes up there alone, and the other ranks wait for ever: who catches it is to abort them.
+    On a communicator of several ranks all of them call all methods together, with the same arguments, and all get the same
+    answers; each holds the particles of its part of space. Every number of a State is the same on any number of ranks, to the
+    last bit; energies are sums over particles and agree but for rounding, those that dashpots take to about 1e-3 (plugin/loss.h).
+    When LAMMPS stops on one rank only, the error comes up there alone, and the other ranks wait for ever: who catches it is to
+    abort them.
     """
 
     def __init__(self, plan: Plan, comm=None):
@@ -107,7 +109,8 @@ class Instance:
         self._prelude = prelude(plan)
         *before, columns = self._prelude
         self._types = max(TYPES, len(plan.coefficients)) if self.refillable else len(plan.coefficients)
-        # On one process the bond style takes the springs as they are; of several, each needs those of its own particles at both ends.
+        # On one process the bond style takes the springs as they are; of several, each needs those of its own particles
+        # at both ends.
         ends = plan.ends() if self._comm and len(plan.bonds) else None
         room = f" extra/bond/per/atom {np.diff(ends.first).max()}" if ends else ""
         bounds = " ".join(f"{a!r} {b!r}" for a, b in zip(low, high))
@@ -121,9 +124,11 @@ class Instance:
         if self._comm:
             self._cut_space(plan.system.position)
             lmp.command(BALANCE[1])
-        # The springs' energy is all that is asked for; while there is a compute of the pressure, their virial is worked out with it.
+        # The springs' energy is all that is asked for; while there is a compute of the pressure, their virial is worked
+        # out with it.
         lmp.commands_list([f"thermo {max(1, plan.certificate.steps_per_frame)}",
-                           f"thermo_style custom step{' ebond' if len(plan.bonds) else ''}", "thermo_modify norm no", "uncompute thermo_press"])
+                           f"thermo_style custom step{' ebond' if len(plan.bonds) else ''}",
+                           "thermo_modify norm no", "uncompute thermo_press"])
 
     def _populate(self, ends: Ends | None, places: np.ndarray) -> None:
         """Particles at these places, and what acts on them, into a box that is empty."""
@@ -136,7 +141,8 @@ class Instance:
         if len(plan.bonds):
             *rows, last = bond_coeffs(plan)
             kind, rest = last.split(" ", 1)
-            self._lmp.commands_list([f"bond_coeff {row}" for row in (*rows, f"{kind}*{self._types} {rest}")])  # LAMMPS wants all types set
+            self._lmp.commands_list([f"bond_coeff {row}"
+                                     for row in (*rows, f"{kind}*{self._types} {rest}")])  # LAMMPS wants all types set
         self._lmp.commands_list(physics(plan))
 
     @property
@@ -145,8 +151,9 @@ class Instance:
         return self._comm is None and self.plan.grid is None and self.plan.system.particles <= SMALL
 
     def refill(self, plan: Plan) -> bool:
-        """Become an instance of another plan, as if it had been made for it, in a fifth of the time. Returns False, with nothing done,
-        where that needs other columns, more types of springs, or a liquid, or this one is not refillable. Raises SetupError.
+        """Become an instance of another plan, as if it had been made for it, in a fifth of the time. Returns False, with nothing
+        done, where that needs other columns, more types of springs, or a liquid, or this one is not refillable. Raises
+        SetupError.
         """
         if not self.refillable or plan.grid or len(plan.coefficients) > self._types:
             return False
@@ -186,8 +193,8 @@ class Instance:
                        ctypes.c_int(n), _pointer(tag), _pointer(np.ascontiguousarray(table, np.int32)))
 
     def _box_to_cut(self, places: np.ndarray) -> np.ndarray:
-        """Bounds of what is cut for ranks [m], shape (2, 3): LAMMPS cuts its box around all particles. Were it another when they are
-        inserted, each would begin on another rank, perhaps one that is not beside its own, and LAMMPS would lose it."""
+        """Bounds of what is cut for ranks [m], shape (2, 3): LAMMPS cuts its box around all particles. Were it another when they
+        are inserted, each would begin on another rank, perhaps one that is not beside its own, and LAMMPS would lose it."""
         margin = 1e-3 * self.plan.spacing
         return np.array([places.min(0) - margin, places.max(0) + margin])
 
@@ -241,8 +248,8 @@ class Instance:
         return self._gather(name, width) if self._comm else self._view(name, width)
 
     def rows(self) -> np.ndarray | slice:
-        """Which rows of `array` are those of the particles that this rank has, ascending: the same object until that changes; all of them
-        on one process."""
+        """Which rows of `array` are those of the particles that this rank has, ascending: the same object until that changes; all
+        of them on one process."""
         if not self._comm:
             return slice(None)
         tags = self._local("id", 1)
@@ -278,8 +285,8 @@ class Instance:
     def put(self, step: int, state: State) -> None:
         """Take up a state bit for bit, at any time and as often as wanted; then `run` goes on from it.
 
-        Energies that were lost before stay in their accounts: who takes back steps is to compare them from here on. Raises SetupError
-        when the liquid's state is of another grid or version, ValueError when the number of particles is another.
+        Energies that were lost before stay in their accounts: who takes back steps is to compare them from here on. Raises
+        SetupError when the liquid's state is of another grid or version, ValueError when the number of particles is another.
         """
         n = self.plan.system.particles
         for name, array in (("x", state.x), ("v", state.v), ("f", state.f)):
@@ -309,12 +316,12 @@ class Instance:
         self._write("f", state.f)
 
     def lay_aside(self, solids: Sequence[int]) -> None:
-        """Take these solids of the plan out of what goes on, without a new setup: from now on they stand as in the plan, at rest, and
-        nobody feels them or pulls at them. For good, and on one process alone.
+        """Take these solids of the plan out of what goes on, without a new setup: from now on they stand as in the plan, at rest,
+        and nobody feels them or pulls at them. For good, and on one process alone.
         """
         system = self.plan.system
-        # In no group but "all" nothing acts on them. Their springs are as long as in the plan and hold no energy. A displacement of
-        # more than the skin makes LAMMPS look anew for who is near whom, before the next forces.
+        # In no group but "all" nothing acts on them. Their springs are as long as in the plan and hold no energy. A displacement
+        # of more than the skin makes LAMMPS look anew for who is near whom, before the next forces.
         (x, v, f), mask = map(self.array, "xvf"), self._local("mask", 1)
         for rows in system.stretches(solids):
             place = system.position[rows]
@@ -362,14 +369,17 @@ class Instance:
         self._call("trace objects", self._library.mdanim_trace_start, ctypes.c_int(len(self.plan.system.names)))
 
     def look_every(self, steps: int) -> None:
-        """Let the trace look at particles after every so many steps only, until it is started again; a look takes a 25th of a step.
+        """Let the trace look at particles after every so many steps only, until it is started again; a look takes a
+        25th of a step.
 
-        Boxes are then wider, by no more than the way of each object's fastest particle in one step less: nothing is ever outside of them.
+        Boxes are then wider, by no more than the way of each object's fastest particle in one step less: nothing is
+        ever outside of them.
         """
         self._call("trace objects", self._library.mdanim_trace_every, ctypes.c_int(steps))
 
     def trace(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest coordinates of the particles of each object at any step since `start_trace` [m], each of shape (M, 3).
+        """Lowest and highest coordinates of the particles of each object at any step since `start_trace` [m], each
+        of shape (M, 3).
 
         Coordinates that are no numbers are passed over. Raises SetupError when nothing is traced.
         """
@@ -451,7 +461,8 @@ def _fixed(commands: list[str]) -> list[str]:
 
 
 def _shorter_along_rows(position: np.ndarray) -> np.ndarray:
-    """Places in which space is cut for ranks [m], shape (N, 3): all of it is shorter along the rows of lattices, where tags follow each other.
+    """Places in which space is cut for ranks [m], shape (N, 3): all of it is shorter along the rows of lattices, where tags
+    follow each other.
 
     A cut across rows leaves a ghost and hence an idle lane in each of them, so that a direction which is about as good is better.
     """

@@ -44,20 +44,23 @@ class Parts:
 
     @cached_property
     def reach(self) -> np.ndarray:
-        """Gap from which on two objects do not feel each other [m]: the larger of their entries; shape (M,), 0 without contact."""
+        """Gap from which on two objects do not feel each other [m]: the larger of their entries; shape (M,),
+        0 without contact."""
         reach, first = self.whole.columns.get("reach"), self._particle
         return np.zeros(len(first) - 1) if reach is None else np.maximum.reduceat(reach, first[:-1])
 
     @cached_property
     def liquid_top(self) -> float:
-        """Height from which on an object does not matter to the liquid, nor the liquid to it [m]; minus infinity without liquid."""
+        """Height from which on an object does not matter to the liquid, nor the liquid to it [m]; minus infinity
+        without liquid."""
         return top_of_reach(self.whole.grid) if self.whole.grid else -np.inf
 
     def part(self, objects: Sequence[int], liquid: bool) -> Plan:
         """The plan of these objects, from 0 and ascending, and of the liquid with what it does to them, or without.
 
-        Tags, molecules and bond types are numbered anew, from 1 and in the same order. Contact is left out where no two objects could
-        touch. Raises ValueError for objects that are not ascending or not there, for a liquid that is not there, and for nothing at all.
+        Tags, molecules and bond types are numbered anew, from 1 and in the same order. Contact is left out where no two objects
+        could touch. Raises ValueError for objects that are not ascending or not there, for a liquid that is not there, and for
+        nothing at all.
         """
         objects = tuple(int(m) for m in objects)
         self._check(objects, liquid)

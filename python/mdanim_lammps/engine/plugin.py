@@ -30,7 +30,8 @@ def folder() -> str:
 
 
 def open_lammps(log: Path | None = None, comm=None):
-    """A LAMMPS instance that has our styles, on an mpi4py communicator or on this process alone; (lammps, C library of the plugin).
+    """A LAMMPS instance that has our styles, on an mpi4py communicator or on this process alone; (lammps, C library of
+    the plugin).
 
     Raises SetupError when LAMMPS, MPI or the plugin is missing or of another version.
     """

@@ -87,7 +87,8 @@ def edges(count: int) -> np.ndarray:
 
 
 def headline(timeline: Timeline, title: str = "") -> str:
-    """The line above the picture. A dash, as titles end with marks of their own: ``Which of them float? – 2 executors, ...``."""
+    """The line above the picture. A dash, as titles end with marks of their own:
+    ``Which of them float? – 2 executors, ...``."""
     who = "the supervisor" if timeline.control == "central" else "every executor alike"
     return f"{title or 'Run'} – {timeline.executors} executor{'s' * (timeline.executors > 1)}, owners decided by {who}"
 
