@@ -57,7 +57,7 @@ def cantilever(target: float):
 
 def study(name: str, budget: float, plots: Path | None) -> None:
     """Print the study of a scene."""
-    from mdanim_lammps.model.wording import length
+    from mdanim_lammps.scene.wording import length
     from mdanim_lammps.study.error import ROUND_OFF
     from mdanim_lammps.study.report import order_lines
     from mdanim_lammps.study.study import run_study

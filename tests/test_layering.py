@@ -2,6 +2,8 @@
 """One-way flow: a module imports only from rooms above its own."""
 
 import ast
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -9,6 +11,7 @@ import pytest
 import mdanim_lammps
 
 ROOT = Path(mdanim_lammps.__file__).parent
+SCRIPTS = sorted(p for folder in ("bench", "docs") for p in (Path(__file__).parents[1] / folder).rglob("*.py"))
 ROOMS = ["errors", "scene", "model", "effects", "certificate", "engine", "results", "driver", "study", "picture", "report", "api",
          "cli", "__main__"]
 
@@ -51,3 +54,18 @@ def test_imports_point_up_the_list(path):
 def test_the_check_sees_imports():
     """Find the rooms that a file with every kind of import uses."""
     assert {"errors", "scene", "model"} <= imported_rooms(ROOT / "driver" / "prepare.py")
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda p: f"{p.parent.name}/{p.name}")
+def test_scripts_import_what_there_is(path):
+    """Whatever prints the figures of the docs finds in the package what it looks for, also where it looks late."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "mdanim_lammps":
+            module = import_module(node.module)
+            for name in node.names:
+                assert hasattr(module, name.name) or find_spec(f"{node.module}.{name.name}"), f"line {node.lineno}: {name.name}"
+
+
+def test_there_are_scripts():
+    """Benchmarks and the makers of pictures."""
+    assert {p.name for p in SCRIPTS} >= {"accuracy.py", "scaling.py", "make.py"}
