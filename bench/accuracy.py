@@ -57,7 +57,7 @@ def cantilever(target: float):
 
 def study(name: str, budget: float, plots: Path | None) -> None:
     """Print the study of a scene."""
-    from mdanim_lammps.scene.wording import length
+    from mdanim_lammps.scene.wording import say
     from mdanim_lammps.study.error import ROUND_OFF
     from mdanim_lammps.study.report import order_lines
     from mdanim_lammps.study.study import run_study
@@ -81,7 +81,7 @@ def study(name: str, budget: float, plots: Path | None) -> None:
         print(f"| {'*' if r.front else ''} | {s.cells:g} | {s.fraction:.2f} | {'auto' if s.sweeps is None else s.sweeps} | "
               f"{s.contact:g} | {p.particles} | "
               f"{seconds} | {100 * r.error.middle:.2g} % | {closed} | {max(p.drift):.0e} | "
-              f"{length(max(p.penetration))} | {', '.join(where)} |")
+              f"{say(max(p.penetration), 'm')} | {', '.join(where)} |")
     print()
     for line in order_lines(found):
         print(wrapped(f"- {line}", "  "))
