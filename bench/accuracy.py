@@ -55,6 +55,10 @@ def cantilever(target: float):
     return replace(scene, expects=expects, control=control, path=None)
 
 
+LADDER_OF = {"sweeps": "sweeps", "contact": "contact", "sunk in": "contact"}
+"""Columns that say something only where a ladder was measured."""
+
+
 def study(name: str, budget: float, plots: Path | None) -> None:
     """Print the study of a scene."""
     from mdanim_lammps.scene.wording import say
@@ -70,18 +74,21 @@ def study(name: str, budget: float, plots: Path | None) -> None:
     print(f"\n### {name}.txt, {found.scene.control.time:g} s\n")
     if plots:
         print(f"![{name}: error over seconds]({plots.name}/study-{name}.png)\n")
-    print("| | cells | step / bound | sweeps | contact | particles | seconds | error | off expect | energy drift | sunk in "
-          "| ladder |")
-    print("|---|---|---|---|---|---|---|---|---|---|---|---|")
+    rows = []
     for r in a.rated.values():
         s, p = r.point.setting, r.point
         where = [n for n, settings in a.measured.items() if s in settings] + (["own"] if s == a.own else [])
         closed = "" if r.closed is None else f"{100 * r.closed:.2g} %" if r.closed > ROUND_OFF else "0"
-        seconds = f"{r.seconds.middle:.3g}" + (f" ± {r.seconds.spread / 2:.1g}" if len(p.seconds) > 1 else "")
-        print(f"| {'*' if r.front else ''} | {s.cells:g} | {s.fraction:.2f} | {'auto' if s.sweeps is None else s.sweeps} | "
-              f"{s.contact:g} | {p.particles} | "
-              f"{seconds} | {100 * r.error.middle:.2g} % | {closed} | {max(p.drift):.0e} | "
-              f"{say(max(p.penetration), 'm')} | {', '.join(where)} |")
+        rows.append({
+            "": "*" if r.front else "", "cells": f"{s.cells:g}", "step / bound": f"{s.fraction:.2f}",
+            "sweeps": "auto" if s.sweeps is None else f"{s.sweeps}", "contact": f"{s.contact:g}", "particles": f"{p.particles}",
+            "seconds": f"{r.seconds.middle:.3g}" + (f" ± {r.seconds.spread / 2:.1g}" if len(p.seconds) > 1 else ""),
+            "error": f"{100 * r.error.middle:.2g} %", "off expect": closed, "energy drift": f"{max(p.drift):.0e}",
+            "sunk in": say(max(p.penetration), "m"), "ladder": ", ".join(where)})
+    columns = [c for c in rows[0] if LADDER_OF.get(c, "time step") in a.measured]
+    print(f"| {' | '.join(columns)} |\n" + "|---" * len(columns) + "|")
+    for row in rows:
+        print(f"| {' | '.join(row[c] for c in columns)} |")
     print()
     for line in order_lines(found):
         print(wrapped(f"- {line}", "  "))
