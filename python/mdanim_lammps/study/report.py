@@ -148,6 +148,9 @@ def draw(study: Study, path: Path) -> None:
     front = [place[key] for key, r in a.rated.items() if r.front]
     axes.plot(*zip(*front), "o", markersize=12, markerfacecolor="none", markeredgecolor="black", label="Pareto front")
     axes.plot(*place[a.own.key], "k+", markersize=14, label="the scene's own setting")
+    for axis in (axes.xaxis, axes.yaxis):  # 30 and 0.5, not powers of ten
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(lambda value, _: f"{value:g}" if f"{value:e}"[0] in "2346" else "")
     axes.grid(True, which="both", alpha=0.25)
     axes.legend(fontsize=8)
     figure.savefig(path, dpi=130, format="png", metadata={"Software": None})
