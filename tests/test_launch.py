@@ -58,7 +58,7 @@ def test_lost_ranks_are_told_in_one_message(tmp_path, words, checkpoint, told):
     """Why, and how to go on."""
     if checkpoint:
         (tmp_path / "checkpoint").touch()
-    error = launch._lost(7, words.splitlines(keepends=True), tmp_path)
+    error = launch.lost(7, words.splitlines(keepends=True), tmp_path)
     assert __import__("re").search(told, str(error)) and error.exit_code == ExitCode.ENVIRONMENT
 
 

@@ -70,7 +70,7 @@ def simulate_on(executors: int, control: str, ready: Prepared, folder: Path, *, 
         hearing.join()
         result = Path(exchange) / RESULT
         if not result.exists():
-            raise _lost(ranks.returncode, said, folder)
+            raise lost(ranks.returncode, said, folder)
         found = pickle.loads(result.read_bytes())
     if isinstance(found, Result):
         return found
@@ -91,7 +91,7 @@ def launcher() -> list[str]:
 
 def _hear(stream, said: list[str]) -> None:
     """Pass on what ranks say, but for MPI's own obituaries,
-    which are told better by `_lost` or by the error that a run has left."""
+    which are told better by `lost` or by the error that a run has left."""
     mourning = False
     for line in stream:
         said.append(line)
@@ -105,7 +105,7 @@ def _environment() -> dict[str, str]:
     return os.environ | {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
 
 
-def _lost(code: int, said: list[str], folder: Path) -> ExecutorLost:
+def lost(code: int, said: list[str], folder: Path) -> ExecutorLost:
     """The one message for ranks that ended without a result."""
     words = [line.strip() for line in said if line.strip() and not set(line.strip()) <= {"="}]
     tracebacks = [line for line in words if "Error" in line]

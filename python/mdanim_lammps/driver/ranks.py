@@ -16,7 +16,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from ..errors import MdanimError, OutputError
-from .launch import JOB, RESULT, Task
+from .launch import JOB, RESULT, Task, lost
 
 FAREWELL = 60.0
 """Seconds that an executor waits for its end."""
@@ -56,6 +56,8 @@ def _supervise(world, exchange: Path) -> None:
     except BaseException as error:  # executors would wait for ever
         if not isinstance(error, MPI.Exception):  # else somebody has died, and mpiexec has the better word
             traceback.print_exc()
+            # What stands on stderr may be lost: an abort ends those who pass it on too.
+            _leave(exchange, _told(lost(1, [f"{type(error).__name__}: {error}"], task.folder)))
         sys.stderr.flush()
         world.Abort(1)
         raise
@@ -64,11 +66,16 @@ def _supervise(world, exchange: Path) -> None:
             source.timeline.write(task.folder)
     except OutputError as error:
         result = _told(error) if isinstance(result, Result) else result
+    _leave(exchange, result)
+    if not source.clean:
+        world.Abort(1)  # executors may wait for ever for what never comes
+
+
+def _leave(exchange: Path, result) -> None:
+    """Let the process that has started all ranks find a result, whole."""
     part = exchange / (RESULT + ".part")
     part.write_bytes(pickle.dumps(result))
     part.rename(exchange / RESULT)
-    if not source.clean:
-        world.Abort(1)  # executors may wait for ever for what never comes
 
 
 def _told(error: MdanimError) -> tuple[str, str, str]:
