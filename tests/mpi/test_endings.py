@@ -223,9 +223,12 @@ def test_an_executor_that_raises_is_told(place, monkeypatch, capfd, settings, te
     assert "out of the blue" in capfd.readouterr().err
 
 
-def test_a_planner_that_raises_is_told(place, monkeypatch):
-    """Under central control it runs beside the supervisor's own work."""
+@pytest.mark.parametrize("heard", [True, False])
+def test_a_planner_that_raises_is_told(place, monkeypatch, heard):
+    """Under central control it runs beside the supervisor's own work; also where an abort is faster than what is said on stderr."""
     ready, folder = readied(place, LONG)
+    if not heard:
+        monkeypatch.setenv("MDANIM_MPIEXEC", f"sh -c '{plugin_path.BIN / 'mpiexec'} \"$@\" 2>/dev/null' sh")
     faulty(place, monkeypatch, rank=0, module="driver.planner", kind="Planner", method="decide", time=3,
            what="raise ValueError('no plan')")
     begin = time.monotonic()
