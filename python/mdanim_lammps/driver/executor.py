@@ -94,7 +94,7 @@ class Executor:
         come to close theirs."""
         self._follow(self._decide(self._first_report()))
         few = np.flatnonzero(~self.system.still)[:2]
-        if len(few) == 2 and any(e.name == "contact" for e in self.job.plan.effects):  # pairs will meet
+        if len(few) == 2 and self.parts.reach.any():  # pairs will meet
             self.spares.stock(self.parts.part(few, False))
         if not self.started:
             self._commit()

@@ -28,8 +28,7 @@ class Planner:
     """Boxes, costs and owners of all objects, and of the pool as one more; the same on everybody who plans."""
 
     def __init__(self, parts: Parts, executors: int, lengths: Sequence[int], settings: Settings, frame: int = 0):
-        self.parts, self.executors, self.lengths, self.settings = parts, executors, lengths, settings
-        self.frame = frame
+        self.lengths, self.frame = lengths, frame
         """The last one that is done."""
         self.done = 0
         """Steps on the way from it to the next."""

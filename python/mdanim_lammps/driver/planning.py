@@ -129,9 +129,8 @@ class Terms:
         self.count = self.objects + (self.pool is not None)
         self.particles = np.append(np.diff(system.first), [0] * (self.count - self.objects)).astype(np.int64)
         self.still = np.append(system.still, np.zeros(self.count - self.objects, bool))
-        contact = any(e.name == "contact" for e in whole.effects)
-        self.gap = float(parts.reach.max()) if contact else 0.0
-        self.feels = None if contact else np.arange(self.count) == self.objects
+        self.gap = float(parts.reach.max(initial=0.0))
+        self.feels = None if self.gap else np.arange(self.count) == self.objects
 
     def guess(self, step: float) -> np.ndarray:
         """Costs before anything is measured [µs], int64, shape (M,), where a particle-step takes ``step`` [µs]."""
