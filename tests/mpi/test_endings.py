@@ -225,7 +225,7 @@ def test_an_executor_that_raises_is_told(place, monkeypatch, capfd, settings, te
 
 @pytest.mark.parametrize("heard", [True, False])
 def test_a_planner_that_raises_is_told(place, monkeypatch, heard):
-    """Under central control it runs beside the supervisor's own work; also where an abort is faster than what is said on stderr."""
+    """Under central control it runs beside the supervisor's own work; also where nothing that is said on stderr arrives."""
     ready, folder = readied(place, LONG)
     if not heard:
         monkeypatch.setenv("MDANIM_MPIEXEC", f"sh -c '{plugin_path.BIN / 'mpiexec'} \"$@\" 2>/dev/null' sh")
