@@ -11,7 +11,7 @@ import numpy as np
 from mdanim_lammps.engine.plugin import open_lammps
 
 FULLEST = 250
-"""Most units that a cell may hold (plugin/cells.h)."""
+"""Most units that a cell may hold (plugin/liquid/cells.h)."""
 
 CELLS = np.ctypeslib.ndpointer(np.uint8, flags="C_CONTIGUOUS")
 INT, LONG, SEED = ctypes.c_int, ctypes.c_long, ctypes.c_uint64

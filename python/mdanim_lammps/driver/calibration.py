@@ -54,7 +54,7 @@ RATES = {
 METHOD = 2
 """To be counted up whenever a rate gets another meaning, or the plugin another speed: stored ones are then measured again."""
 WIDE = frozenset({"avx512f", "avx512vl", "avx512dq"})
-"""What a processor must have for the widest vectors of the plugin (has_avx512 in plugin/blocks.cpp)."""
+"""What a processor must have for the widest vectors of the plugin (has_avx512 in plugin/engine/blocks.cpp)."""
 ROUNDS, ROUND = 25, 1e-3
 """Least of this many rounds of about this length [s]: what else the machine does only ever adds to the time, and hardly hits
 every one of many short ones."""
@@ -112,7 +112,7 @@ def processor() -> str:
 
 
 def lanes(damped: bool) -> int:
-    """Numbers in a vector of the plugin, as best_width in plugin/blocks.cpp chooses: wide ones where anything is damped."""
+    """Numbers in a vector of the plugin, as best_width in plugin/engine/blocks.cpp chooses: wide ones where anything is damped."""
     return 8 if damped and WIDE <= set(_cpuinfo("flags").split()) else 4
 
 

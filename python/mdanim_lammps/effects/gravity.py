@@ -9,7 +9,7 @@ from .effect import Effect, Verdict
 
 
 PULL = 0.07
-"""Time of gravity over that of the leap-frog without drag, in a pass over blocks (plugin/verlet_mdanim.cpp)."""
+"""Time of gravity over that of the leap-frog without drag, in a pass over blocks (plugin/styles/verlet_mdanim.cpp)."""
 
 
 class Gravity(Effect):

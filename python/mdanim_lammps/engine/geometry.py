@@ -18,7 +18,7 @@ NOT_FINITE, INVERTED = 1, 2
 
 
 class _Model(ctypes.Structure):
-    """A system as the plugin takes it: Model in plugin/guard_c.cpp."""
+    """A system as the plugin takes it: Model in plugin/c_api/guard_c.cpp."""
 
     _fields_ = [("count", ctypes.c_longlong), *((name, ctypes.c_void_p) for name in (
         "first_particle", "boundary", "first_cell", "corner", "deep", "spacing", "mass", "still"))]

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Plain C functions on run_style verlet/mdanim, for ctypes.
+
+#include "c_api/abi.h"
+#include "styles/verlet_mdanim.h"
+
+#include "lammps.h"
+#include "update.h"
+
+using namespace LAMMPS_NS;
+
+static const VerletMdanim *run_of(void *handle)
+{ return dynamic_cast<VerletMdanim *>(static_cast<LAMMPS *>(handle)->update->integrate); }
+
+// How many steps this rank has taken by a pass over its blocks; 0 with another run style.
+MDANIM_EXPORT long long mdanim_passes(void *handle)
+{
+  const VerletMdanim *run = run_of(handle);
+  return run ? run->passes() : 0;
+}
+
+// How many particles were held back in passes of this rank and moved one by one, all passes together.
+MDANIM_EXPORT long long mdanim_held_back(void *handle)
+{
+  const VerletMdanim *run = run_of(handle);
+  return run ? run->held_back() : 0;
+}

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Particles in blocks for the vector units, and their state in arrays of their own (pass.h).
+
+#ifndef MDANIM_BLOCKS_H
+#define MDANIM_BLOCKS_H
+
+#include "engine/guest.h"
+#include "engine/pass.h"
+#include "engine/places.h"
+#include "engine/spring_rows.h"
+#include "laws/vec3.h"
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+namespace mdanim {
+
+// Distinct rows of numbers, each kept once.
+class Catalogue {
+ public:
+  void start(int width);
+  unsigned find_or_add(const double *row);
+  bool empty() const { return count == 0; }
+  unsigned size() const { return count; }
+  const double *data() const { return rows.data(); }
+  std::size_t bytes() const { return rows.bytes() + count * 32; }
+
+ private:
+  Doubles rows;
+  int width = 0;
+  unsigned count = 0, latest = 0;
+  std::unordered_multimap<std::uint64_t, unsigned> known;
+};
+
+// What a particle's motion depends on.
+struct Mover {
+  double pulled;    // mass that gravity pulls at
+  double mass, kick, dt, phi;    // see Motion
+};
+
+// Blocks of some particles that no spring leads out of; starts count from the first of them, ends from the first entry.
+struct Cut {
+  std::vector<Block> block;
+  std::vector<Entry> entry;
+  int particles = 0, farthest = 0;    // the longest offset
+  std::size_t springs = 0;
+
+  std::size_t bytes() const { return block.capacity() * sizeof(Block) + entry.capacity() * sizeof(Entry); }
+};
+
+class Blocks {
+ public:
+  // Forget all cuts: from now on they are for this width.
+  void start(const Width &width);
+  // Cut particles into blocks so that the fewest vectors of forces are to be computed. A block is of one object.
+  Cut cut(const HalfBonds &bonds, const int *object);
+  // Blocks of all cuts, one after the other. Returns whether that is worth it: the springs of neighbours in the arrays must
+  // mostly lead equally far, as they do in lattices that are numbered row by row.
+  bool put_together(const std::vector<const Cut *> &cuts);
+  bool laws_pile_up() const;    // so many are those of cuts that are gone that all cuts had better be made anew
+  void forget() { all.clear(); }
+  // Where particles are in the arrays of LAMMPS, if not in the same order: those from `own` on are ghosts, which others move.
+  // After this everybody else's numbers are LAMMPS's: those of mover(), expect(), hold_back(), held_back().
+  void lie_at(const std::vector<int> &places, int own);
+  bool ready() const { return !all.empty(); }
+  bool damped() const { return !damped_laws.empty(); }    // some block is
+
+  template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
+  // Who brings forces before every pass, in the order in which they are added: the particles of each, ghosts perhaps among them.
+  void expect(const std::vector<std::vector<int>> &particles);
+  // Of those of number n, in the same order: positions, those of ghosts from x; and where forces on them are added up, all of
+  // which is to be cleared before every pass.
+  void tell_places(std::size_t n, const double *const *x, Places &place) const;
+  void clear_brought();
+  Sums brought_by(std::size_t n) { return {brought.data(), bringers[n].slot.data(), lanes}; }
+
+  // Every block with one of these particles is held back, no other; ghosts among them are left out.
+  void hold_back(const std::vector<int> &particles, bool everything);
+  bool friction_acts() const;    // on a block that is not held back
+  const std::vector<int> &held_back() const { return index.empty() ? outside : waiting; }    // all particles of such blocks
+
+  void take_in(const double *const *x, const double *const *v);
+  void give_out(double *const *x, double *const *v) const;    // null for what nobody wants
+  // The same for the particles that are held back.
+  void take_in_held_back(const double *const *x, const double *const *v);
+  void give_out_held_back(double *const *x, double *const *v) const;
+
+  // Where damped: forces of dashpots in the last step, and the velocities that they saw, of all own particles.
+  void take_in_dashpots(const std::vector<Vec3> &force, const std::vector<Vec3> &seen);
+  void give_out_dashpots(std::vector<Vec3> &force, std::vector<Vec3> &seen) const;
+  // Sums of those that are held back; they have moved, and v is where they are to be taken in from.
+  void count_held_back(const double *const *v, DashpotSums &sums);
+
+  // With ghosts: positions of these own particles, which other ranks wait for, and velocities unless v is null; and of theirs.
+  void give_out_places(const std::vector<int> &particles, double *const *x, double *const *v) const;
+  void take_in_ghosts(const double *const *x, const double *const *v);
+  // The same from blocks to blocks, of particles in our own order: three numbers for each, or six with velocities.
+  Vec3 where(int i) const { return {x[0][ours(i)], x[1][ours(i)], x[2][ours(i)]}; }    // an own particle in LAMMPS's order
+  int place_of(int i) const { return place[i]; }    // of an own particle, in that order
+  const std::vector<int> &ghost_places() const { return ghosts; }
+  void pack(const std::vector<int> &particles, bool velocities, double *to) const;
+  void unpack(const std::vector<int> &particles, bool velocities, const double *from);
+
+  void fill(Pass &pass, double *const *f);    // f: where forces on those that are held back go
+  void give_out_forces(double *const *f) const;    // there they are after a pass and this
+  std::size_t bytes() const;
+
+ private:
+  std::vector<int> lengths(const HalfBonds &bonds, const int *object) const;
+  int at(int i) const { return index.empty() ? i : index[i]; }
+  int ours(int i) const { return index.empty() ? i : place[i]; }    // the way back
+  bool is_ghost(int place) const { return !index.empty() && place >= owned; }
+  void set_row(const Mover &mover, Friction friction, int lane, double *row) const;
+  void set_apart(const std::vector<bool> &moves);    // by the first particle of a block: whether any of it moves
+
+  int particles = 0, lanes = 0;
+  std::vector<Block> all;
+  int active = 0;    // so many of them, the first ones, have something to do in a pass
+  std::vector<Entry> entries;
+  std::vector<int> home;       // block of each particle
+  std::vector<bool> slowed;    // blocks with friction
+  std::vector<int> outside;    // particles of blocks that are held back
+  struct Ghost {
+    int particle, to;    // `particle` in LAMMPS's order
+  };
+  struct Bringer {
+    std::vector<int> particle;    // in our order, any one for a ghost
+    std::vector<Ghost> ghosts;
+    std::vector<long> slot;    // of each particle's force in `brought`; of ghosts all the same one, in a row of no block
+  };
+  std::vector<Bringer> bringers;
+  Doubles brought;    // see Pass
+  std::vector<int> index, place;      // of a particle in LAMMPS's arrays, and back; `index` empty where the orders are the same
+  std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
+  std::vector<double> total;           // see Pass, in our order
+  int owned = 0;                       // in LAMMPS's arrays, ghosts come after them
+  Catalogue laws, damped_laws, motions;
+  unsigned usual_laws = 0;    // how many there were when cuts were put together first after start()
+  Doubles memory;    // of the arrays
+  double *x[3], *v[3], *f[3];
+  double *part[3] = {}, *last[3] = {}, *seen[3] = {};    // where damped
+};
+
+template <class Tell> void Blocks::set_motion(Friction friction, Tell mover)
+{
+  std::vector<double> row(MOTIONS * lanes);
+  std::vector<bool> slow(particles), moves(particles);    // by the first particle of a block
+  motions.start(MOTIONS * lanes);
+  for (Block &block : all) {
+    for (int lane = 0; lane < lanes; ++lane) {
+      const int i = lane < block.lanes ? at(block.start + lane) : -1;
+      const Mover of_lane = i < 0 || is_ghost(i) ? Mover{0.0, 0.0, 0.0, 0.0, 0.0} : mover(i);
+      if (of_lane.phi != 0.0) slow[block.start] = true;
+      if (of_lane.dt != 0.0) moves[block.start] = true;
+      set_row(of_lane, friction, lane, row.data());
+      row[OTHERS * lanes + lane] = lane < block.lanes ? 0.0 : 1.0;
+      row[COUNTS * lanes + lane] = i < 0 || is_ghost(i) ? 0.0 : 1.0;
+    }
+    block.motion = motions.find_or_add(row.data());
+  }
+  set_apart(moves);
+  slowed.clear();
+  for (const Block &block : all) slowed.push_back(slow[block.start]);
+}
+
+// The processor's best for springs with or without dashpots, or that of a name; null when it is unknown or does not run here.
+const Width *best_width(bool damped);
+const Width *width_of(const char *name);
+
+}    // namespace mdanim
+
+#endif

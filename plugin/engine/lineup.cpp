@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Particles and springs brought into tag order.
+
+#include "engine/lineup.h"
+
+#include <algorithm>
+
+namespace mdanim {
+
+void Lineup::take(const Bonded &known)
+{
+  const int *const tag = known.tag;
+  const auto [lowest, highest] = std::minmax_element(tag, tag + known.own);
+  std::vector<int> of_tag(known.own ? *highest - *lowest + 1 : 0, -1);    // no longer than LAMMPS's own map
+  for (int i = 0; i < known.own; ++i) of_tag[tag[i] - *lowest] = i;
+  ordered.clear();
+  for (const int i : of_tag)
+    if (i >= 0) ordered.push_back(i);
+
+  std::vector<Run> runs;
+  for (int n = 0; n < known.own; ++n) {
+    const int object = known.object[ordered[n]];
+    if (runs.empty() || runs.back().object != object) runs.push_back({n, n, object});
+    runs.back().end = n + 1;
+  }
+  if (!take_by_objects(known, runs)) {    // objects are mixed, or have springs between them
+    all.clear();
+    all.push_back(made(known, {0, known.own, 0}));
+    differs = true;
+  }
+
+  index.clear();
+  auto own = ordered.begin();
+  for (const Piece &piece : all)
+    for (const int one : piece.tag) {
+      const bool mine = own != ordered.end() && tag[*own] == one;
+      index.push_back(mine ? *own++ : known.find(one));
+      if (index.back() < 0) tell_who_lost(known, one);
+    }
+}
+
+void Lineup::tell_who_lost(const Bonded &known, int partner)
+{
+  for (int i = 0; i < known.own; ++i)
+    if (std::find(known.partner[i], known.partner[i] + known.bonds[i], partner) != known.partner[i] + known.bonds[i])
+      known.lost(i, partner);
+  known.lost(-1, partner);
+}
+
+// Whether there is a piece for each object; none of an object's particles is among another's.
+bool Lineup::take_by_objects(const Bonded &known, const std::vector<Run> &runs)
+{
+  std::unordered_map<int, Piece *> before;    // by object
+  for (Piece &piece : all)
+    if (!piece.own.empty()) before.emplace(piece.object.front(), &piece);
+  differs = all.size() != runs.size();
+  std::vector<Piece> now;
+  int last = 0;    // tag
+  for (const Run &run : runs) {
+    const auto found = before.find(run.object);
+    const auto same = [&](const std::vector<int> &tags) {
+      return std::equal(tags.begin(), tags.end(), &ordered[run.begin], &ordered[run.begin] + (run.end - run.begin),
+                        [&](int one, int i) { return one == known.tag[i]; });
+    };
+    if (found != before.end() && same(found->second->own)) {
+      differs = differs || now.size() >= all.size() || found->second != &all[now.size()];
+      now.push_back(std::move(*found->second));
+      before.erase(found);
+    } else {
+      differs = true;
+      now.push_back(made(known, run));
+    }
+    const Piece &piece = now.back();
+    const bool alone = std::all_of(piece.object.begin(), piece.object.end(), [&](int object) { return object == run.object; });
+    if (!alone || piece.tag.front() <= last) return false;
+    last = piece.tag.back();
+  }
+  all = std::move(now);
+  return true;
+}
+
+// A spring belongs to its lower end, which may be another rank's. From the highest own particle down all partners come
+// descending.
+Lineup::Piece Lineup::made(const Bonded &known, const Run &run) const
+{
+  int lowest = known.tag[ordered[run.begin]], highest = known.tag[ordered[run.end - 1]];
+  const auto each_bond = [&](auto visit) {    // visit(n, i, tag of the partner, type)
+    for (int n = run.end - 1; n >= run.begin; --n) {
+      const int i = ordered[n];
+      for (int b = known.bonds[i] - 1; b >= 0; --b)
+        if (known.type[i][b] > 0) visit(n, i, known.partner[i][b], known.type[i][b]);
+    }
+  };
+  each_bond([&](int, int, int partner, int) { lowest = std::min(lowest, partner), highest = std::max(highest, partner); });
+  constexpr int NOBODY = -1;
+  std::vector<int> of_tag(highest - lowest + 1, NOBODY);    // by tag: an index in LAMMPS's arrays, then a place in the piece
+  for (int n = run.begin; n < run.end; ++n) of_tag[known.tag[ordered[n]] - lowest] = ordered[n];
+  each_bond([&](int, int i, int partner, int) {
+    int &found = of_tag[partner - lowest];
+    if (found == NOBODY) found = known.find(partner);
+    if (found < 0) known.lost(i, partner);
+  });
+
+  Piece piece;
+  std::vector<bool> own;
+  for (std::size_t t = 0; t < of_tag.size(); ++t) {
+    const int i = of_tag[t];
+    if (i == NOBODY) continue;
+    of_tag[t] = static_cast<int>(piece.tag.size());
+    piece.tag.push_back(lowest + static_cast<int>(t));
+    piece.object.push_back(known.object[i]);
+    own.push_back(i < known.own);
+    if (own.back()) piece.own.push_back(piece.tag.back());
+  }
+
+  std::vector<SpringRows::Row> row(piece.tag.size());
+  each_bond([&](int n, int, int partner, int type) {
+    const int here = of_tag[known.tag[ordered[n]] - lowest], there = of_tag[partner - lowest];
+    if (there > here) row[here].link.push_back({there - here, type});
+    else if (!own[there]) row[there].link.push_back({here - there, type});
+  });
+  const auto farther = [](const SpringRows::Link &a, const SpringRows::Link &b) { return a.offset > b.offset; };
+  piece.rows = SpringRows(static_cast<int>(row.size()));
+  for (SpringRows::Row &r : row) {
+    if (!std::is_sorted(r.link.begin(), r.link.end(), farther)) std::stable_sort(r.link.begin(), r.link.end(), farther);
+    piece.rows.add(r);
+  }
+  piece.rows.close();
+  return piece;
+}
+
+std::size_t Lineup::bytes() const
+{
+  std::size_t sum = (index.capacity() + ordered.capacity()) * sizeof(int);
+  for (const Piece &piece : all)
+    sum += (piece.own.capacity() + piece.tag.capacity() + piece.object.capacity()) * sizeof(int) + piece.rows.bytes() +
+        piece.cut.bytes();
+  return sum;
+}
+
+}    // namespace mdanim

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Doubles for the vector units, and places of particles made of them.
+
+#ifndef MDANIM_PLACES_H
+#define MDANIM_PLACES_H
+
+#include "laws/vec3.h"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace mdanim {
+
+// Doubles that start on a cache line and may be read and written a vector beyond their end.
+class Doubles {
+ public:
+  Doubles() = default;
+  Doubles(Doubles &&) = default;    // a copy would point into the other's memory
+  Doubles &operator=(Doubles &&) = default;
+  void assign(std::size_t n);    // zeros
+  void push(const double *row, std::size_t n);
+  void clear() { used = 0; }
+  std::size_t size() const { return used; }
+  double *data() { return begin; }
+  const double *data() const { return begin; }
+  std::size_t bytes() const { return room.capacity() * sizeof(double); }
+
+ private:
+  std::vector<double> room;
+  double *begin = nullptr;
+  std::size_t used = 0;
+};
+
+// All x, all y, all z.
+struct Places {
+  Doubles along[3];
+
+  void make_room(std::size_t n)    // what is in it is lost
+  {
+    for (Doubles &a : along)
+      if (a.size() < n) a.assign(n);
+  }
+  Vec3 operator[](std::size_t n) const { return {along[0].data()[n], along[1].data()[n], along[2].data()[n]}; }
+  void put(std::size_t n, const double *x)
+  {
+    for (int d = 0; d < 3; ++d) along[d].data()[n] = x[d];
+  }
+  std::array<const double *, 3> all() const { return {along[0].data(), along[1].data(), along[2].data()}; }
+  std::size_t bytes() const { return along[0].bytes() + along[1].bytes() + along[2].bytes(); }
+};
+
+}    // namespace mdanim
+
+#endif

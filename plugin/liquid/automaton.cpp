@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Wcislo 1999, sec. 4: the rules on single blocks and cells, and which layers and blocks they are applied to.
+
+#include "liquid/automaton.h"
+
+#include "liquid/automaton_kernels.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+namespace mdanim {
+
+namespace {
+
+constexpr int LAYERS_PER_WORD = 16;    // of 32 bits, two for each layer
+
+// From which corner of its 2x2 block each corner takes its content; in ring order (0,0) (1,0) (1,1) (0,1).
+using Sources = std::array<std::uint8_t, 4>;
+
+// The horizontal rule for a block: `open` has a bit for each open corner, `draw` is 0 … 3. Permutes open
+// cells only, and which permutation depends on no content: so every arrangement stays as likely as any other.
+Sources horizontal_rule(int open, int draw)
+{
+  int ring[4], n = 0;
+  for (int corner = 0; corner < 4; ++corner)
+    if (open >> corner & 1) ring[n++] = corner;
+  Sources from = {0, 1, 2, 3};
+  const auto swap = [&](int a, int b) { std::swap(from[a], from[b]); };
+  if (n == 2) {
+    if (draw >= 2 && (ring[1] - ring[0]) % 2) swap(ring[0], ring[1]);
+  } else if (n > 2) {
+    if (draw == 1 && n == 4) {
+      swap(0, 2);
+      swap(1, 3);
+    } else if (draw == 1) {
+      const int solid = 6 - ring[0] - ring[1] - ring[2];
+      swap((solid + 1) % 4, (solid + 3) % 4);
+    } else if (draw >= 2) {
+      const int step = draw == 2 ? 1 : n - 1;
+      for (int k = 0; k < n; ++k) from[ring[(k + step) % n]] = ring[k];
+    }
+  }
+  return from;
+}
+
+// The vertical rule, eq. (4.16), for a cell and the one above it: how many units come down (-1, 0 or 1).
+int vertical_rule(int lower, int upper, Vertical vertical)
+{
+  if (upper > 0 && lower == 0) return 1;
+  if (lower > 1 && upper < (vertical == Vertical::LOWER ? lower : Cells::FULLEST)) return -1;
+  return 0;
+}
+
+std::array<std::array<Sources, 4>, 16> all_sources()
+{
+  std::array<std::array<Sources, 4>, 16> all;
+  for (int open = 0; open < 16; ++open)
+    for (int draw = 0; draw < 4; ++draw) all[open][draw] = horizontal_rule(open, draw);
+  return all;
+}
+
+constexpr int SIDES[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+
+const auto SOURCES = all_sources();
+
+// Move the contents of the block whose first corner is *a.
+void permute_block(std::uint8_t *a, int row, const Sources &from)
+{
+  const std::uint8_t was[4] = {a[0], a[1], a[row + 1], a[row]};
+  a[0] = was[from[0]];
+  a[1] = was[from[1]];
+  a[row + 1] = was[from[2]];
+  a[row] = was[from[3]];
+}
+
+int open_corners(const std::uint8_t *a, int row)
+{ return (a[0] & 1) | (a[1] & 2) | (a[row + 1] & 4) | (a[row] & 8); }
+
+// Whether a block has solid corners and can change all the same, by its open ones.
+std::array<bool, 16> all_broken()
+{
+  std::array<bool, 16> all;
+  for (int open = 0; open < 16; ++open) all[open] = open != 15 && SOURCES[open][2] != Sources{0, 1, 2, 3};
+  return all;
+}
+
+const auto BROKEN = all_broken();
+
+}    // namespace
+
+// A cell that turned solid or open, or one that received liquid, and how much.
+struct Automaton::Spill {
+  int x, y, z;
+  std::uint8_t units;
+};
+
+Automaton::Automaton(int nx, int ny, int nz, std::uint64_t seed, Vertical vertical)
+    : cells(nx, ny, nz), seed(seed), vertical(vertical), kernels(nullptr), even(make_blocks(0)),
+      odd(make_blocks(-1)), layers(nz)
+{
+  for (int number = 0; number < INSTRUCTION_SETS; ++number) use_instruction_set(number);
+  touched();
+}
+
+const char *Automaton::use_instruction_set(int number)
+{
+  if (number < 0 || number >= INSTRUCTION_SETS || !KERNELS[number].runs_here()) return nullptr;
+  kernels = &KERNELS[number];
+  return kernels->name;
+}
+
+// ---- which blocks and layers ----
+
+Automaton::Blocks Automaton::make_blocks(int first) const
+{
+  Blocks blocks;
+  blocks.first = first;
+  blocks.nx = first == 0 ? (cells.nx + 1) / 2 : cells.nx / 2 + 1;
+  blocks.ny = first == 0 ? (cells.ny + 1) / 2 : cells.ny / 2 + 1;
+  const std::size_t in_layer = static_cast<std::size_t>(blocks.nx) * blocks.ny;
+  blocks.broken.resize(cells.nz);
+  blocks.slot.assign(in_layer * cells.nz, -1);
+  blocks.draws.resize(2 * in_layer);
+  return blocks;
+}
+
+// Put a block into the list of broken ones, or take it out.
+void Automaton::sort_block(Blocks &blocks, int bx, int by, int z)
+{
+  const std::size_t in_layer = static_cast<std::size_t>(blocks.nx) * blocks.ny;
+  const std::size_t place = cells.at(blocks.first + 2 * bx, blocks.first + 2 * by, z);
+  const int open = open_corners(&cells.open[place], cells.row);
+  std::vector<Broken> &broken = blocks.broken[z];
+  int *slot = &blocks.slot[z * in_layer];
+  int &mine = slot[blocks.block(bx, by)];
+  if (BROKEN[open]) {
+    if (mine < 0) {
+      mine = static_cast<int>(broken.size());
+      broken.push_back({static_cast<std::uint32_t>(place - z * cells.layer),
+                        static_cast<std::uint32_t>(blocks.block(bx, by)), 0});
+    }
+    broken[mine].open = static_cast<std::uint8_t>(open);
+  } else if (mine >= 0) {
+    broken[mine] = broken.back();
+    slot[broken[mine].block] = mine;
+    broken.pop_back();
+    mine = -1;
+  }
+}
+
+void Automaton::touched()
+{
+  for (Blocks *blocks : {&even, &odd})
+    for (int z = 0; z < cells.nz; ++z)
+      for (int by = 0; by < blocks->ny; ++by)
+        for (int bx = 0; bx < blocks->nx; ++bx) sort_block(*blocks, bx, by, z);
+  poured();
+}
+
+void Automaton::poured() { std::fill(layers.begin(), layers.end(), Layer{ANYTHING, false, false}); }
+
+void Automaton::look(int z)
+{
+  const std::size_t first = (z + 1) * cells.layer;
+  layers[z] = {kernels->look(&cells.content[first], &cells.open[first], cells.layer), true, false};
+}
+
+// A layer of one number throughout is the same after any permutation.
+bool Automaton::mixes(int z) const { return layers[z].holds & MORE || layers[z].holds == (ZERO | ONE); }
+
+// Whether a unit may pass between this layer and the next, by eq. (4.16).
+bool Automaton::exchanges(int z) const
+{
+  const int lower = layers[z].holds, upper = layers[z + 1].holds;
+  return lower & MORE || (lower & ZERO && upper & (ONE | MORE));
+}
+
+bool Automaton::at_rest()
+{
+  for (int z = 0; z < cells.nz; ++z) {
+    if (!layers[z].known) look(z);
+    if (mixes(z) || (z > 0 && exchanges(z - 1))) return false;
+  }
+  return true;
+}
+
+// ---- a sweep ----
+
+std::uint32_t Automaton::Blocks::word(int block, int z) const
+{ return static_cast<std::uint32_t>(z / LAYERS_PER_WORD) * nx * ny + block; }
+
+void Automaton::horizontal(Blocks &blocks, int z)
+{
+  if (z >= cells.nz || !mixes(z)) return;
+  const int in_layer = blocks.nx * blocks.ny;
+  if (blocks.group != z / LAYERS_PER_WORD) {
+    blocks.group = z / LAYERS_PER_WORD;
+    kernels->draw_words(blocks.key, blocks.word(0, z), in_layer, blocks.draws.data(),
+                        blocks.draws.data() + in_layer);
+  }
+  const int bits = 2 * (z % LAYERS_PER_WORD), shift = bits % 16;
+  const std::uint16_t *draws = blocks.draws.data() + (bits < 16 ? 0 : in_layer);
+  const std::size_t first = cells.at(blocks.first, blocks.first, z);
+  kernels->permute(&cells.content[first], &cells.open[first], cells.row, blocks.nx, blocks.ny, draws, shift);
+  std::uint8_t *layer = &cells.content[z * cells.layer];
+  for (const Broken &b : blocks.broken[z])
+    permute_block(layer + b.place, cells.row, SOURCES[b.open][draws[b.block] >> shift & 3]);
+}
+
+void Automaton::vertical_pair(int z)
+{
+  if (z < 0 || z + 1 >= cells.nz || !exchanges(z)) return;
+  const std::size_t lower = (z + 1) * cells.layer, upper = lower + cells.layer;
+  if (kernels->exchange(&cells.content[lower], &cells.content[upper], &cells.open[lower], &cells.open[upper],
+                        cells.layer, vertical))
+    layers[z] = layers[z + 1] = {ANYTHING, false, true};
+}
+
+void Automaton::sweep(std::uint64_t when)
+{
+  // What keeps changing is not worth a look.
+  for (int z = 0; z < cells.nz; ++z) {
+    if (!layers[z].known && !layers[z].moved) look(z);
+    layers[z].moved = false;
+  }
+  even.key = draw_key(seed, when, Phase::EVEN_BLOCKS);
+  odd.key = draw_key(seed, when, Phase::ODD_BLOCKS);
+  even.group = odd.group = -1;
+  // All four steps in one pass, so that a layer is still in the cache: each needs only what is done by then.
+  for (int z = 0; z <= cells.nz; z += 2) {
+    horizontal(even, z);
+    horizontal(even, z + 1);
+    vertical_pair(z);
+    horizontal(odd, z);
+    horizontal(odd, z + 1);
+    vertical_pair(z - 1);
+  }
+}
+
+void Automaton::plain_sweep(std::uint64_t when)
+{
+  const auto permute = [&](const Blocks &blocks, Phase phase) {
+    const std::uint64_t key = draw_key(seed, when, phase);
+    for (int z = 0; z < cells.nz; ++z)
+      for (int by = 0; by < blocks.ny; ++by)
+        for (int bx = 0; bx < blocks.nx; ++bx) {
+          const std::size_t place = cells.at(blocks.first + 2 * bx, blocks.first + 2 * by, z);
+          const std::uint32_t word = draw32(key, blocks.word(blocks.block(bx, by), z));
+          const int draw = word >> 2 * (z % LAYERS_PER_WORD) & 3;
+          permute_block(&cells.content[place], cells.row,
+                        horizontal_rule(open_corners(&cells.open[place], cells.row), draw));
+        }
+  };
+  const auto exchange = [&](int first) {
+    for (int z = first; z + 1 < cells.nz; z += 2)
+      for (int y = 0; y < cells.ny; ++y)
+        for (int x = 0; x < cells.nx; ++x) {
+          const std::size_t lower = cells.at(x, y, z), upper = cells.at(x, y, z + 1);
+          if (!cells.open[lower] || !cells.open[upper]) continue;
+          const int down = vertical_rule(cells.content[lower], cells.content[upper], vertical);
+          cells.content[lower] += down;
+          cells.content[upper] -= down;
+        }
+  };
+  permute(even, Phase::EVEN_BLOCKS);
+  exchange(0);
+  permute(odd, Phase::ODD_BLOCKS);
+  exchange(1);
+  poured();
+}
+
+// ---- displacement and filling ----
+
+// Find a cell for the liquid of a newly solid one. Notes it in `arrived`; false when there is none.
+bool Automaton::expel(const Spill &spill, std::uint64_t key, std::vector<Spill> &arrived)
+{
+  const int x = spill.x, y = spill.y, z = spill.z;
+  const std::uint64_t lot = draw(key, cells.number(x, y, z));
+  const auto has_room = [&](std::size_t place) {
+    return cells.open[place] && cells.content[place] + spill.units <= Cells::FULLEST;
+  };
+  const auto pour = [&](const Spill &s) {
+    arrived.push_back(s);
+    cells.content[cells.at(s.x, s.y, s.z)] += s.units;
+    return true;
+  };
+
+  // The rim is solid, so a neighbour may lie outside.
+  Spill beside[6];
+  int sides = 0;
+  for (const auto &[dx, dy, dz] : SIDES) {
+    beside[sides] = {x + dx, y + dy, z + dz, spill.units};
+    sides += has_room(cells.at(x + dx, y + dy, z + dz));
+  }
+  if (sides) return pour(beside[lot % sides]);
+
+  const int farthest = std::max({cells.nx, cells.ny, cells.nz}) - 1;
+  std::vector<Spill> found;
+  for (int d = 1; d <= farthest; ++d) {
+    for (int w = std::max(z - d, 0); w <= std::min(z + d, cells.nz - 1); ++w)
+      for (int v = std::max(y - d, 0); v <= std::min(y + d, cells.ny - 1); ++v) {
+        const std::size_t row = cells.at(0, v, w);
+        const auto offer = [&](int u) {
+          if (has_room(row + u)) found.push_back({u, v, w, spill.units});
+        };
+        if (std::abs(w - z) == d || std::abs(v - y) == d) {
+          const int low = std::max(x - d, 0), high = std::min(x + d, cells.nx - 1);
+          // Most of the shells around the inner cells of a solid are solid throughout.
+          if (std::memchr(&cells.open[row + low], Cells::OPEN, high - low + 1))
+            for (int u = low; u <= high; ++u) offer(u);
+        } else {
+          if (x - d >= 0) offer(x - d);
+          if (x + d < cells.nx) offer(x + d);
+        }
+      }
+    if (!found.empty()) return pour(found[lot % found.size()]);
+  }
+  return false;
+}
+
+long Automaton::displace(const std::uint8_t *solid, std::uint64_t when)
+{
+  std::vector<Spill> turned, arrived;
+  std::vector<std::size_t> stilled;
+  for (int z = 0; z < cells.nz; ++z)
+    for (int y = 0; y < cells.ny; ++y, solid += cells.nx) {
+      const std::size_t first = cells.at(0, y, z);
+      if (!kernels->differ(solid, &cells.open[first], &cells.still[first], cells.nx)) continue;
+      for (int x = 0; x < cells.nx; ++x) {
+        const std::size_t place = first + x;
+        if ((solid[x] == 2) != (cells.still[place] != 0)) {
+          cells.still[place] ^= 1;
+          stilled.push_back(place);
+        }
+        if ((solid[x] == 0) == (cells.open[place] != 0)) continue;
+        turned.push_back({x, y, z, cells.content[place]});
+        cells.open[place] ^= Cells::OPEN;
+        cells.content[place] = 0;
+      }
+    }
+
+  const std::uint64_t key = draw_key(seed, when, Phase::DISPLACEMENT);
+  for (const Spill &spill : turned) {
+    if (spill.units == 0 || expel(spill, key, arrived)) continue;
+    for (const Spill &s : arrived) cells.content[cells.at(s.x, s.y, s.z)] -= s.units;
+    for (const Spill &s : turned) {
+      cells.open[cells.at(s.x, s.y, s.z)] ^= Cells::OPEN;
+      cells.content[cells.at(s.x, s.y, s.z)] = s.units;
+    }
+    for (std::size_t place : stilled) cells.still[place] ^= 1;
+    const auto number = [](int n) { return std::to_string(n); };
+    throw std::runtime_error("a solid fills cell (" + number(spill.x) + ", " + number(spill.y) + ", " +
+                             number(spill.z) + ") of the basin and there is no room for the " +
+                             number(spill.units) + " units of liquid in it; enlarge the basin or lower the " +
+                             "liquid's level");
+  }
+
+  for (const Spill &s : turned) {
+    for (Blocks *blocks : {&even, &odd})
+      sort_block(*blocks, (s.x - blocks->first) / 2, (s.y - blocks->first) / 2, s.z);
+    layers[s.z] = {ANYTHING, false, false};
+  }
+  for (const Spill &s : arrived) layers[s.z] = {ANYTHING, false, false};
+  return static_cast<long>(turned.size());
+}
+
+long Automaton::fill(long units, const std::uint8_t *within, std::uint64_t when)
+{
+  const std::uint64_t key = draw_key(seed, when, Phase::FILL);
+  using Ticket = std::pair<std::uint64_t, std::size_t>;    // draw, place
+  std::vector<Ticket> tickets;
+  for (int z = 0; z < cells.nz && units > 0; ++z) {
+    tickets.clear();
+    for (int y = 0; y < cells.ny; ++y)
+      for (int x = 0; x < cells.nx; ++x) {
+        const std::size_t place = cells.at(x, y, z);
+        const std::uint64_t number = cells.number(x, y, z);
+        if (cells.open[place] && cells.content[place] == 0 && (!within || within[number]))
+          tickets.push_back({draw(key, number), place});
+      }
+    if (static_cast<long>(tickets.size()) > units) {
+      std::nth_element(tickets.begin(), tickets.begin() + units, tickets.end());
+      tickets.resize(units);
+    }
+    for (const Ticket &ticket : tickets) cells.content[ticket.second] = 1;
+    units -= static_cast<long>(tickets.size());
+  }
+  poured();
+  return units;
+}
+
+long Automaton::total() const
+{
+  long units = 0;
+  // By layers, whose sums fit into the narrower numbers that make fuller vectors.
+  for (std::size_t layer = 0; layer < cells.content.size(); layer += cells.layer)
+    units += std::accumulate(&cells.content[layer], &cells.content[layer] + cells.layer, std::uint32_t{0});
+  return units;
+}
+
+long Automaton::count_solid() const
+{
+  const long open = std::count(cells.open.begin(), cells.open.end(), Cells::OPEN);
+  return static_cast<long>(cells.nx) * cells.ny * cells.nz - open;
+}
+
+}    // namespace mdanim

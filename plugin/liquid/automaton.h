@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The liquid's automaton on a plain integer grid: vertical rule (4.16), random 2x2 permutations, displacement
+// by solids. No rule gains or loses a unit. Wcislo 1999, sec. 4; docs/physics-liquid.md for how damaged lines
+// are read.
+
+#ifndef MDANIM_AUTOMATON_H
+#define MDANIM_AUTOMATON_H
+
+#include "liquid/cells.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace mdanim {
+
+struct Kernels;
+
+// Which excess moves up in (4.16), line 2, besides L > 1: only into a cell that holds less, or into any
+// (below Cells::FULLEST).
+enum class Vertical { LOWER, ANY };
+
+class Automaton {
+ public:
+  Automaton(int nx, int ny, int nz, std::uint64_t seed, Vertical vertical = Vertical::LOWER);
+
+  Cells cells;
+
+  // One sweep: horizontal (even), vertical (a), horizontal (odd), vertical (b). `when` keys its random
+  // numbers. Layers that no rule can change are passed over.
+  void sweep(std::uint64_t when);
+  // The same cells, written as the rules read: slow, to check the other against.
+  void plain_sweep(std::uint64_t when);
+  // Whether a sweep is known to change nothing. False may also be said of a grid that happens to rest.
+  bool at_rest();
+
+  // Make exactly these cells solid: 0 open, 1 solid, 2 solid and still; nx*ny*nz values, x fastest. The
+  // liquid of a newly solid cell goes, whole, to a random open face neighbour with room for it, else to a
+  // random such cell of the nearest (Chebyshev) shell that has one. Returns how many cells changed between
+  // open and solid. Throws std::runtime_error when there is no room, and leaves everything as it was.
+  long displace(const std::uint8_t *solid, std::uint64_t when);
+
+  // Pour one unit each into empty open cells for which `within` is not 0 (nullptr: all; nx*ny*nz values),
+  // from the lowest layer up; in the last layer cells are drawn by lot. Returns how many found no room.
+  long fill(long units, const std::uint8_t *within, std::uint64_t when);
+
+  long total() const;          // units in all cells
+  long count_solid() const;    // solid cells, without the rim
+
+  // To be called after writing to `cells` from outside: to content only (cheap), or to anything.
+  void poured();
+  void touched();
+
+  // Kernels for instruction set 0, 1, … (default: the best of this processor), all with the same results.
+  // Returns their name, or nullptr and changes nothing where this processor lacks them.
+  const char *use_instruction_set(int number);
+
+ private:
+  // What is known of a layer: a horizontal step cannot change it, so it lasts until liquid comes or goes.
+  struct Layer {
+    std::uint8_t holds;    // of its open cells; more than is true does no harm but costs time
+    bool known, moved;
+  };
+
+  // A block with one or two solid cells; open cells as bits in ring order.
+  struct Broken {
+    std::uint32_t place, block;
+    std::uint8_t open;
+  };
+
+  // The 2x2 blocks of a horizontal step. They start at `first` along x and y.
+  struct Blocks {
+    int first, nx, ny;
+    std::vector<std::vector<Broken>> broken;    // of each layer, in any order
+    std::vector<int> slot;                      // of each block in that list, or -1
+    std::uint64_t key = 0;
+    int group = -1;                       // whose draws are at hand
+    std::vector<std::uint16_t> draws;     // 8 layers of the group, then the other 8
+
+    int block(int bx, int by) const { return by * nx + bx; }
+    std::uint32_t word(int block, int z) const;
+  };
+
+  Blocks make_blocks(int first) const;
+  void sort_block(Blocks &blocks, int bx, int by, int z);
+  void look(int z);
+  bool mixes(int z) const;
+  bool exchanges(int z) const;
+  void horizontal(Blocks &blocks, int z);
+  void vertical_pair(int z);
+
+  struct Spill;
+  bool expel(const Spill &spill, std::uint64_t key, std::vector<Spill> &arrived);
+
+  std::uint64_t seed;
+  Vertical vertical;
+  const Kernels *kernels;
+  Blocks even, odd;
+  std::vector<Layer> layers;
+};
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Sampling lattice cells.
+
+#include "liquid/occupancy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mdanim {
+
+void CellBox::take_in(int x, int y, int z)
+{
+  const int at[3] = {x, y, z};
+  for (int d = 0; d < 3; ++d) {
+    low[d] = std::min(low[d], at[d]);
+    high[d] = std::max(high[d], at[d] + 1);
+  }
+}
+
+void CellBox::take_in(const CellBox &other)
+{
+  for (int d = 0; d < 3; ++d) {
+    low[d] = std::min(low[d], other.low[d]);
+    high[d] = std::max(high[d], other.high[d]);
+  }
+}
+
+std::size_t CellBox::size() const
+{
+  if (empty()) return 0;
+  return static_cast<std::size_t>(high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]);
+}
+
+Occupancy::Occupancy(int nx, int ny, int nz)
+    : nx(nx), ny(ny), nz(nz), count(static_cast<std::size_t>(nx) * ny * nz, 0)
+{
+}
+
+void Occupancy::add(const Vec3 &place, int weight)
+{
+  // Written so that a place that is no number is outside.
+  if (!(place.x >= 0.0 && place.x < nx && place.y >= 0.0 && place.y < ny && place.z >= 0.0 && place.z < nz))
+    return;
+  const int x = static_cast<int>(place.x), y = static_cast<int>(place.y), z = static_cast<int>(place.z);
+  count[(static_cast<std::size_t>(z) * ny + y) * nx + x] += weight;
+  touched.take_in(x, y, z);
+}
+
+void Occupancy::add_particle(const Vec3 &place) { add(place, FULL); }
+
+void Occupancy::add_cell(const Vec3 corner[8])
+{
+  // Mean edges; their triple product is the volume of the cell, whatever way it is turned or squeezed.
+  const Vec3 a = 0.25 *
+      ((corner[1] - corner[0]) + (corner[2] - corner[3]) + (corner[5] - corner[4]) + (corner[6] - corner[7]));
+  const Vec3 b = 0.25 *
+      ((corner[3] - corner[0]) + (corner[2] - corner[1]) + (corner[7] - corner[4]) + (corner[6] - corner[5]));
+  const Vec3 c = 0.25 *
+      ((corner[4] - corner[0]) + (corner[5] - corner[1]) + (corner[6] - corner[2]) + (corner[7] - corner[3]));
+  const int weight = static_cast<int>(std::min(1.0e3, std::fabs(dot(cross(a, b), c))) * 64.0 + 0.5);
+  if (weight == 0) return;
+
+  static constexpr double AT[3] = {1.0 / 6.0, 0.5, 5.0 / 6.0};
+  for (const double w : AT) {
+    const Vec3 p0 = corner[0] + w * (corner[4] - corner[0]), p1 = corner[1] + w * (corner[5] - corner[1]);
+    const Vec3 p2 = corner[2] + w * (corner[6] - corner[2]), p3 = corner[3] + w * (corner[7] - corner[3]);
+    for (const double v : AT) {
+      const Vec3 left = p0 + v * (p3 - p0), right = p1 + v * (p2 - p1), along = right - left;
+      for (const double u : AT) add(left + u * along, weight);
+    }
+  }
+}
+
+void Occupancy::clear()
+{
+  for (int z = touched.low[2]; z < touched.high[2]; ++z)
+    for (int y = touched.low[1]; y < touched.high[1]; ++y) {
+      const auto first = count.begin() + (static_cast<std::ptrdiff_t>(z) * ny + y) * nx;
+      std::fill(first + touched.low[0], first + touched.high[0], 0);
+    }
+  touched = CellBox();
+}
+
+}    // namespace mdanim

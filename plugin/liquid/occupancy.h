@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Which cells of the automaton a lattice body fills: sample points in its lattice cells, counted in whole
+// numbers, so that the sum over bodies and ranks does not depend on their order. docs/physics-liquid.md.
+
+#ifndef MDANIM_OCCUPANCY_H
+#define MDANIM_OCCUPANCY_H
+
+#include "laws/vec3.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace mdanim {
+
+// A box of cells, [low, high) along each axis; empty until something is put in.
+struct CellBox {
+  int low[3] = {1 << 30, 1 << 30, 1 << 30}, high[3] = {0, 0, 0};
+  bool empty() const { return low[0] >= high[0]; }
+  void take_in(int x, int y, int z);
+  void take_in(const CellBox &other);
+  std::size_t size() const;
+  // Calls f(x, y, z) for all its cells, x fastest.
+  template <class F> void each(F &&f) const
+  {
+    for (int z = low[2]; z < high[2]; ++z)
+      for (int y = low[1]; y < high[1]; ++y)
+        for (int x = low[0]; x < high[0]; ++x) f(x, y, z);
+  }
+};
+
+class Occupancy {
+ public:
+  static constexpr int FULL = 27 * 64;    // count of a cell that is filled: 27 samples at rest of weight 64
+
+  Occupancy(int nx, int ny, int nz);
+
+  // Corner points of a lattice cell in VTK order, in units of the automaton's cells from the corner of its
+  // grid. The lattice cell's present volume is shared out over 3x3x3 points.
+  void add_cell(const Vec3 corner[8]);
+  // The paper's literal rule: the cell that holds a particle is full.
+  void add_particle(const Vec3 &place);
+
+  // Forget all counts.
+  void clear();
+
+  int nx, ny, nz;
+  std::vector<int> count;    // x fastest
+  CellBox touched;           // all counts outside are 0
+
+ private:
+  void add(const Vec3 &place, int weight);
+};
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,498 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// bond_style mdanim/harmonic. Every particle sums its own bonds in an order that its partners' tags tell, lower tags from the
+// lowest up, higher ones from the highest down, and adds the two sums to its force once: so the bits of a force depend on neither
+// the order of particles nor the ranks that hold them.
+
+#include "styles/bond_mdanim_harmonic.h"
+
+#include "engine/stopwatch.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "memory.h"
+#include "modify.h"
+#include "neighbor.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+using namespace LAMMPS_NS;
+using namespace mdanim;
+
+// Rows are worked off in stretches that stay in the first-level cache.
+static constexpr int STRETCH = 512;
+
+static bigint versions = 0;    // of the springs of all instances
+
+BondMdanimHarmonic::BondMdanimHarmonic(LAMMPS *lmp) : Bond(lmp) {}
+
+BondMdanimHarmonic::~BondMdanimHarmonic()
+{
+  if (allocated) memory->destroy(setflag);
+}
+
+void BondMdanimHarmonic::allocate()
+{
+  allocated = 1;
+  const int n = atom->nbondtypes;
+  memory->create(setflag, n + 1, "bond:setflag");
+  std::fill(setflag, setflag + n + 1, 0);
+  spring.assign(n + 1, Spring());
+}
+
+// bond_coeff TYPE K r0 [c]
+void BondMdanimHarmonic::coeff(int narg, char **arg)
+{
+  if (narg < 3) utils::missing_cmd_args(FLERR, "bond_coeff mdanim/harmonic", error);
+  if (narg > 4)
+    error->all(FLERR, 4, "bond_style mdanim/harmonic: coefficients are K r0 [c], got {} words", narg - 1);
+  if (!allocated) allocate();
+
+  int low, high;
+  utils::bounds(FLERR, arg[0], 1, atom->nbondtypes, low, high, error);
+  Spring s;
+  s.K = utils::numeric(FLERR, arg[1], false, lmp);
+  s.r0 = utils::numeric(FLERR, arg[2], false, lmp);
+  if (narg == 4) s.c = utils::numeric(FLERR, arg[3], false, lmp);
+  if (!(s.K >= 0.0)) error->all(FLERR, 1, "bond_style mdanim/harmonic: K must be >= 0, got {}", arg[1]);
+  if (!(s.r0 >= 0.0)) error->all(FLERR, 2, "bond_style mdanim/harmonic: r0 must be >= 0, got {}", arg[2]);
+  if (!(s.c >= 0.0)) error->all(FLERR, 3, "bond_style mdanim/harmonic: c must be >= 0, got {}", arg[3]);
+  for (int type = low; type <= high; ++type) {
+    spring[type] = s;
+    setflag[type] = 1;
+  }
+}
+
+void BondMdanimHarmonic::init_style()
+{
+  if (force->newton_bond)
+    error->all(FLERR,
+               "bond_style mdanim/harmonic: every bond must be stored at both ends; put 'newton off' (or "
+               "'newton on off') before the box is made");
+  if (atom->map_style == Atom::MAP_NONE)
+    error->all(
+        FLERR,
+        "bond_style mdanim/harmonic: needs an atom map; put 'atom_modify map array' before the box is made");
+  damped = std::any_of(spring.begin(), spring.end(), [](const Spring &s) { return s.c > 0.0; });
+  const bool ghosts = comm->nprocs > 1 || domain->xperiodic || domain->yperiodic || domain->zperiodic;
+  if (damped && ghosts && !comm->ghost_velocity)
+    error->all(
+        FLERR,
+        "bond_style mdanim/harmonic: a dashpot (c > 0) needs the velocities of particles of other ranks; "
+        "use 'comm_modify vel yes'");
+  const auto &fixes = modify->get_fix_list();
+  bonds_are_swapped = std::any_of(fixes.begin(), fixes.end(),
+                                  [](const Fix *fix) { return utils::strmatch(fix->style, "^bond/"); });
+  coefficients_may_differ = true;
+}
+
+// --- rows ---
+
+// Whether tags or bonds differ from those that the rows were made from; takes note of them. In the middle of
+// a run only fixes change bonds, and but for those of the bond/ family every change shows in the number of a
+// particle's bonds.
+bool BondMdanimHarmonic::source_changed()
+{
+  const int nlocal = atom->nlocal;
+  if (given) {
+    if (nlocal != rows.size() || atom->nghost || !std::is_sorted(atom->tag, atom->tag + nlocal))
+      error->all(FLERR,
+                 "bond_style mdanim/harmonic: springs were given for {} particles, in the order of their tags and without "
+                 "ghosts; at step {} there are {}, with {} ghosts, or in another order; if the bodies fly apart, lower the "
+                 "time step",
+                 rows.size(), update->ntimestep, nlocal, atom->nghost);
+    return false;
+  }
+  const bool partners_may_differ = update->setupflag || bonds_are_swapped;
+  bool same = atom->nghost == 0 && static_cast<int>(source.tag.size()) == nlocal &&
+      std::equal(source.tag.begin(), source.tag.end(), atom->tag) &&
+      std::equal(source.count.begin(), source.count.end(), atom->num_bond);
+  Row row;
+  for (int i = 0; same && partners_may_differ && i < nlocal; ++i) same = !has_changed(i, row);
+  if (same) return false;
+
+  source = Source();
+  if (atom->nghost) return true;    // indices of ghosts change with every rebuild
+  source.tag.assign(atom->tag, atom->tag + nlocal);
+  source.count.assign(atom->num_bond, atom->num_bond + nlocal);
+  return true;
+}
+
+bool BondMdanimHarmonic::has_changed(int i, Row &row) const
+{
+  look_up(i, upper_only, row);
+  return !rows.is(i, row);
+}
+
+void BondMdanimHarmonic::make_rows()
+{
+  const bool halves = halves_suffice();
+  SpringRows now(atom->nlocal);
+  Row row;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    look_up(i, halves, row);
+    now.add(row);
+  }
+  adopt(std::move(now), halves);
+}
+
+void BondMdanimHarmonic::take(SpringRows &&upper_rows)
+{
+  given = true;
+  adopt(std::move(upper_rows), true);
+}
+
+void BondMdanimHarmonic::adopt(SpringRows &&now, bool halves)
+{
+  now.close();
+  rows = std::move(now);
+  upper_only = halves;
+  made = ++versions;
+  int farthest = 0;
+  for (int i = 0; halves && i < rows.size(); ++i)
+    if (rows[i].size()) farthest = std::max(farthest, rows[i].first->offset);
+  received.set_up(farthest);
+}
+
+void BondMdanimHarmonic::lost_partner(int i, int partner) const
+{
+  if (i < 0)
+    error->one(FLERR,
+               "bond_style mdanim/harmonic: bonds to particle {} were changed without a setup; leave out 'pre no' of this run, "
+               "which is at step {}",
+               partner, update->ntimestep);
+  error->one(
+      FLERR,
+      "bond_style mdanim/harmonic: particle {} has lost its bond partner {} at step {}; if the "
+      "bodies move as they should, raise the ghost cutoff ('comm_modify cutoff'); if they fly apart, "
+      "lower the time step",
+      atom->tag[i], partner, update->ntimestep);
+}
+
+// The bonds of particle i in the order in which their forces are summed: lower partners from the lowest tag up, which may be left
+// out, then upper ones from the highest down.
+void BondMdanimHarmonic::look_up(int i, bool halves, Row &row) const
+{
+  const bool periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
+  const tagint *const tag = atom->tag, own = tag[i];
+  std::vector<SpringRows::Link> &link = row.link;
+  link.clear();
+  tagint before = 0;
+  bool ascending = true;
+  for (int b = 0; b < atom->num_bond[i]; ++b) {
+    const tagint other = atom->bond_atom[i][b];
+    const int type = atom->bond_type[i][b];
+    if (type <= 0 || (halves && other < own)) continue;    // 0 and less: switched off by delete_bonds
+    int partner = atom->map(other);
+    if (partner < 0) lost_partner(i, other);
+    if (periodic) partner = domain->closest_image(i, partner);
+    link.push_back({partner - i, type});
+    ascending = ascending && other > before;
+    before = other;
+  }
+  const auto tag_of = [tag, i](const SpringRows::Link &l) { return tag[i + l.offset]; };
+  if (!ascending)
+    std::stable_sort(link.begin(), link.end(), [&](const auto &a, const auto &b) { return tag_of(a) < tag_of(b); });
+  const auto upper = std::find_if(link.begin(), link.end(), [&](const auto &l) { return tag_of(l) > own; });
+  row.lower = static_cast<int>(upper - link.begin());
+  std::reverse(upper, link.end());
+  for (auto several = link.begin(); several != upper;) {    // between the same two: in the same order at both ends
+    const auto end = std::find_if(several, upper, [&](const auto &l) { return l.offset != several->offset; });
+    std::reverse(several, end);
+    several = end;
+  }
+}
+
+// Laws of all types; another version where one differs from before.
+void BondMdanimHarmonic::look_up_coefficients()
+{
+  coefficients_may_differ = false;
+  std::vector<Law> now;
+  for (const Spring &s : spring) now.emplace_back(s);
+  if (!(now == law)) made = ++versions;
+  law = std::move(now);
+}
+
+// With particles in tag order and all partners here, the lower partners of a row come before it.
+bool BondMdanimHarmonic::halves_suffice() const
+{
+  const int nlocal = atom->nlocal;
+  if (!std::is_sorted(atom->tag, atom->tag + nlocal)) return false;
+  Row row;
+  for (int i = 0; atom->nghost && i < nlocal; ++i) {
+    look_up(i, false, row);
+    if (std::any_of(row.link.begin(), row.link.end(), [=](const auto &l) { return i + l.offset >= nlocal; })) return false;
+  }
+  return true;
+}
+
+bool BondMdanimHarmonic::halves(HalfBonds &half) const
+{
+  if (!upper_only || rows.size() != atom->nlocal) return false;
+  half = {&rows, law.data()};
+  return true;
+}
+
+// --- forces ---
+
+// r_ij -> F_i of n springs. The clones differ in width only: + - * / sqrt round alike on all of them.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+static void spring_forces(int n, const double *__restrict push, const double *__restrict pull,
+                          double *__restrict x, double *__restrict y, double *__restrict z)
+{
+  for (int b = 0; b < n; ++b) {
+    const double factor = force_factor(push[b], pull[b], (x[b] * x[b] + y[b] * y[b]) + z[b] * z[b]);
+    x[b] *= factor;
+    y[b] *= factor;
+    z[b] *= factor;
+  }
+}
+
+// r_ij -> energies of n springs, in the place of K.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+static void spring_energies(int n, const double *__restrict x, const double *__restrict y, const double *__restrict z,
+                            const double *__restrict r0, double *__restrict K)
+{
+  for (int b = 0; b < n; ++b)
+    K[b] = mdanim::energy({K[b], r0[b], 0.0}, std::sqrt((x[b] * x[b] + y[b] * y[b]) + z[b] * z[b]));
+}
+
+// The springs of rows [begin, end), `n` in all, into `stretch`.
+void BondMdanimHarmonic::take_apart(int begin, int end, int n)
+{
+  const double *x = atom->x[0];
+  const size_t room = n;
+  if (n == 0) return;
+  if (stretch.x.size() < room)
+    for (auto *array : {&stretch.x, &stretch.y, &stretch.z, &stretch.push, &stretch.pull}) array->resize(room);
+  for (int i = begin, at = 0; i < end; ++i) {
+    const Vec3 here = vec3(x + 3 * i);
+    for (const SpringRows::Link &link : rows[i]) {
+      const Vec3 d = here - vec3(x + 3 * (i + link.offset));
+      stretch.x[at] = d.x;
+      stretch.y[at] = d.y;
+      stretch.z[at] = d.z;
+      const Law &own = law[link.type];
+      stretch.push[at] = own.push;
+      stretch.pull[at] = own.pull;
+      ++at;
+    }
+  }
+}
+
+// Adds up the energies of the springs in `stretch`; half of a bond's share goes to either end.
+void BondMdanimHarmonic::energies(int begin, int end, int n)
+{
+  stretch.K.resize(stretch.x.size());
+  stretch.r0.resize(stretch.x.size());
+  for (int i = begin, at = 0; i < end; ++i)
+    for (const SpringRows::Link &link : rows[i]) {
+      stretch.K[at] = spring[link.type].K;
+      stretch.r0[at++] = spring[link.type].r0;
+    }
+  spring_energies(n, stretch.x.data(), stretch.y.data(), stretch.z.data(), stretch.r0.data(), stretch.K.data());
+  const double share = upper_only ? 1.0 : 0.5;
+  for (int at = 0; at < n; ++at) energy += share * stretch.K[at];
+}
+
+// Add the dashpots of rows [begin, end) to `stretch`, and what each particle feels of them to `on`.
+void BondMdanimHarmonic::dashpots(int begin, int end, std::vector<Vec3> &on)
+{
+  for (int i = begin, at = 0; i < end; ++i)
+    for (const SpringRows::Link &link : rows[i]) {
+      const int own = at++, j = i + link.offset;
+      const double c = law[link.type].c;
+      if (c == 0.0) continue;
+      const Vec3 d = vec3(atom->x[i]) - vec3(atom->x[j]), v = vec3(atom->v[i]) - vec3(atom->v[j]);
+      const Vec3 push = drag(c, d, v) * d;
+      stretch.x[own] += push.x;
+      stretch.y[own] += push.y;
+      stretch.z[own] += push.z;
+      on[i] += push;
+      if (upper_only) on[j] -= push;
+    }
+}
+
+void BondMdanimHarmonic::sum_rows(int begin, int end)
+{
+  double *const *f = atom->f;
+  for (int i = begin, at = 0; i < end; ++i) {
+    Vec3 lower, upper;
+    const int middle = at + rows.lower(i), end = at + rows[i].size();
+    for (; at < middle; ++at) lower += {stretch.x[at], stretch.y[at], stretch.z[at]};
+    for (; at < end; ++at) upper += {stretch.x[at], stretch.y[at], stretch.z[at]};
+    add_to(f[i], lower + upper);
+  }
+}
+
+void BondMdanimHarmonic::Ring::set_up(int farthest)
+{
+  int places = 1;
+  while (places <= farthest) places *= 2;
+  force.assign(places, Vec3());
+  mask = places - 1;
+}
+
+// Half the work, the same bits: F_j = -F_i exactly and a - F = a + (-F), and rows come in ascending order, so that a particle has
+// received from its lower partners in theirs by the time its own row comes.
+void BondMdanimHarmonic::sum_halves(int begin, int end)
+{
+  double *const *f = atom->f;
+  for (int i = begin, at = 0; i < end; ++i) {
+    Vec3 upper;
+    for (const SpringRows::Link &link : rows[i]) {
+      const Vec3 force{stretch.x[at], stretch.y[at], stretch.z[at]};
+      upper += force;
+      received.of(i + link.offset) -= force;
+      ++at;
+    }
+    add_to(f[i], received.of(i) + upper);
+    received.of(i) = Vec3();
+  }
+}
+
+void BondMdanimHarmonic::compute(int eflag, int vflag)
+{
+  const Lap lap(seconds);
+  ev_init(eflag, vflag);
+  const bool other_lists = neighbor->ago == 0 || made_after != neighbor->ncalls;    // made in this step, or between two passes
+  made_after = neighbor->ncalls;
+  const bool remade = other_lists && source_changed();
+  if (remade) make_rows();
+  if (coefficients_may_differ) look_up_coefficients();
+
+  const int nlocal = atom->nlocal;
+  std::vector<Vec3> *on = nullptr;
+  if (damped) {
+    if (other_lists) loss.look(atom->tag, nlocal);
+    on = &loss.forces(nlocal);
+  }
+  for (int begin = 0, end; begin < nlocal; begin = end) {
+    int springs = 0;
+    for (end = begin; end < nlocal; ++end) {
+      const int more = rows[end].size();
+      if (end > begin && springs + more > STRETCH) break;
+      springs += more;
+    }
+    take_apart(begin, end, springs);
+    if (eflag_global) energies(begin, end, springs);
+    spring_forces(springs, stretch.push.data(), stretch.pull.data(), stretch.x.data(), stretch.y.data(), stretch.z.data());
+    if (on) dashpots(begin, end, *on);
+    if (upper_only) sum_halves(begin, end);
+    else sum_rows(begin, end);
+  }
+  if (on) loss.step(atom->v, update->dt, update->setupflag);
+  if (eflag_atom || vflag_either) tally();
+}
+
+template <class Visit> void BondMdanimHarmonic::each_spring(Visit visit) const
+{
+  const double *x = atom->x[0];
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const Vec3 here = vec3(x + 3 * i);
+    for (const SpringRows::Link &link : rows[i]) visit(i, i + link.offset, link.type, here - vec3(x + 3 * (i + link.offset)));
+  }
+}
+
+// Virial and energy of each particle on steps that ask for them; half of a bond's share goes to either end, which tallies it in
+// its own row where rows are whole.
+void BondMdanimHarmonic::tally()
+{
+  const double share = upper_only ? 1.0 : 0.5;
+  double sums[6] = {};
+  each_spring([&](int i, int j, int type, const Vec3 &d) {
+    const double r2 = dot(d, d);
+    if (eflag_atom) {
+      const double e = mdanim::energy(spring[type], std::sqrt(r2));
+      eatom[i] += 0.5 * e;
+      if (upper_only) eatom[j] += 0.5 * e;
+    }
+    if (!vflag_either) return;
+    const Law &own = law[type];
+    double factor = force_factor(own.push, own.pull, r2);
+    if (own.c > 0.0) factor += drag(own.c, d, vec3(atom->v[i]) - vec3(atom->v[j]));
+    const double w[6] = {d.x * d.x * factor, d.y * d.y * factor, d.z * d.z * factor,
+                         d.x * d.y * factor, d.x * d.z * factor, d.y * d.z * factor};
+    for (int k = 0; k < 6; ++k) sums[k] += share * w[k];
+    if (!vflag_atom) return;
+    for (int k = 0; k < 6; ++k) {
+      vatom[i][k] += 0.5 * w[k];
+      if (upper_only) vatom[j][k] += 0.5 * w[k];
+    }
+  });
+  if (vflag_global) std::copy(sums, sums + 6, virial);
+}
+
+// --- what LAMMPS asks besides ---
+
+double BondMdanimHarmonic::equilibrium_distance(int type) { return spring[type].r0; }
+
+// Energy and -dU/dr / r of one bond, without its dashpot.
+double BondMdanimHarmonic::single(int type, double rsq, int, int, double &fforce)
+{
+  const Law own(spring[type]);
+  fforce = force_factor(own.push, own.pull, rsq);
+  return mdanim::energy(spring[type], std::sqrt(rsq));
+}
+
+// Files have the bonds of particles alone.
+void BondMdanimHarmonic::refuse_if_given()
+{
+  if (given)
+    error->one(FLERR, "bond_style mdanim/harmonic: springs were given to it by mdanim_give_springs, and a file would be "
+               "without them; let the particles have their bonds themselves");
+}
+
+void BondMdanimHarmonic::write_restart(FILE *fp)
+{
+  refuse_if_given();
+  fwrite(&spring[1], sizeof(Spring), atom->nbondtypes, fp);
+}
+
+void BondMdanimHarmonic::read_restart(FILE *fp)
+{
+  allocate();
+  if (comm->me == 0) utils::sfread(FLERR, &spring[1], sizeof(Spring), atom->nbondtypes, fp, nullptr, error);
+  MPI_Bcast(&spring[1], atom->nbondtypes * static_cast<int>(sizeof(Spring)), MPI_BYTE, 0, world);
+  std::fill(setflag + 1, setflag + atom->nbondtypes + 1, 1);
+}
+
+void BondMdanimHarmonic::write_data(FILE *fp)
+{
+  refuse_if_given();
+  for (int type = 1; type <= atom->nbondtypes; ++type) {
+    fprintf(fp, "%d %.17g %.17g", type, spring[type].K, spring[type].r0);
+    fprintf(fp, spring[type].c > 0.0 ? " %.17g\n" : "\n", spring[type].c);
+  }
+}
+
+double BondMdanimHarmonic::memory_usage()
+{
+  const auto ints = source.tag.capacity() + source.count.capacity();
+  return Bond::memory_usage() + rows.bytes() + loss.bytes() + ints * sizeof(int) + received.force.capacity() * sizeof(Vec3) +
+      law.capacity() * sizeof(Law) + (5.0 * stretch.x.capacity() + 2.0 * stretch.K.capacity()) * sizeof(double);
+}
+
+// For objects.cpp: "seconds" and "lost" of this rank.
+void *BondMdanimHarmonic::extract(const char *what, int &dim)
+{
+  dim = 0;
+  if (strcmp(what, "seconds") == 0) return &seconds;
+  if (strcmp(what, "lost") == 0) {
+    lost = loss.total();
+    return &lost;
+  }
+  return nullptr;
+}

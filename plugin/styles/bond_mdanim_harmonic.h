@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// bond_style mdanim/harmonic: springs whose forces do not depend on the order of particles or on the number
+// of ranks.
+
+#ifndef LMP_BOND_MDANIM_HARMONIC_H
+#define LMP_BOND_MDANIM_HARMONIC_H
+
+#include "engine/blocks.h"
+#include "bond.h"
+#include "engine/loss.h"
+#include "laws/spring.h"
+#include "laws/vec3.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class BondMdanimHarmonic : public Bond {
+ public:
+  explicit BondMdanimHarmonic(class LAMMPS *);
+  ~BondMdanimHarmonic() override;
+
+  void init_style() override;
+  void compute(int eflag, int vflag) override;
+  void coeff(int, char **) override;
+  double equilibrium_distance(int) override;
+  void write_restart(FILE *) override;
+  void read_restart(FILE *) override;
+  void write_data(FILE *) override;
+  double single(int, double, int, int, double &) override;
+  double memory_usage() override;
+  void *extract(const char *, int &) override;
+
+  // From now on these springs and no others, whatever bonds particles have: those of all particles, in the order of their tags,
+  // on a rank that is alone.
+  void take(mdanim::SpringRows &&upper_rows);
+
+  // For run_style verlet/mdanim, which computes most forces itself: the springs, each once. False where that is not how they are
+  // summed.
+  bool halves(mdanim::HalfBonds &half) const;
+  const std::vector<mdanim::Law> &laws() const { return law; }    // by bond type
+  [[noreturn]] void lost_partner(int i, int partner) const;    // the error that particle i, or nobody, has this one, a tag
+  mdanim::Loss *account() { return damped ? &loss : nullptr; }    // of dashpots, all ranks or none
+  bigint version() const { return made; }    // another number for other springs
+  void took(double more) { seconds += more; }
+
+ private:
+  // What the rows were made from, besides the bonds themselves, which they hold; while all is unchanged they are kept.
+  struct Source {
+    std::vector<tagint> tag;
+    std::vector<int> count;    // of bonds
+  };
+  using Row = mdanim::SpringRows::Row;
+  // The bonds of a few rows, one array per quantity, for the vector units.
+  struct Stretch {
+    std::vector<double> x, y, z;       // r_ij, then F_i
+    std::vector<double> push, pull;    // see Law
+    std::vector<double> K, r0;         // of energies, see Spring
+  };
+  // Forces that particles have received from lower partners so far, for sum_halves(): those from the row in hand to its
+  // farthest partner, in a ring of 2^n places.
+  struct Ring {
+    std::vector<mdanim::Vec3> force;
+    int mask = 0;    // 2^n - 1
+
+    void set_up(int farthest);
+    mdanim::Vec3 &of(int i) { return force[i & mask]; }
+  };
+
+  void allocate();
+  void refuse_if_given();
+  bool source_changed();
+  void make_rows();
+  void adopt(mdanim::SpringRows &&made_rows, bool halves);
+  void look_up(int i, bool halves, Row &row) const;
+  bool has_changed(int i, Row &scratch) const;
+  void look_up_coefficients();
+  bool halves_suffice() const;
+  void take_apart(int begin, int end, int n);
+  void energies(int begin, int end, int n);
+  void sum_rows(int begin, int end);
+  void sum_halves(int begin, int end);
+  void dashpots(int begin, int end, std::vector<mdanim::Vec3> &on);
+  template <class Visit> void each_spring(Visit visit) const;    // visit(i, j, type, r_ij)
+  void tally();
+
+  std::vector<mdanim::Spring> spring;    // by bond type
+  std::vector<mdanim::Law> law;          // the same
+  bool damped = false;                   // some spring has a dashpot
+  bool coefficients_may_differ = false;    // since their laws were made
+  bool bonds_are_swapped = false;        // some fix changes partners during a run
+  mdanim::SpringRows rows;    // of local particles, to local ones and ghosts
+  bool upper_only = false;    // only partners of a higher tag, see sum_halves()
+  bool given = false;         // by take(), not by the particles
+  bigint made = 0;    // version
+  bigint made_after = -1;    // build of lists
+  Source source;
+  Stretch stretch;
+  Ring received;
+
+  mdanim::Loss loss;    // to dashpots, on this rank
+  double lost = 0.0;    // when it was asked for last
+  double seconds = 0.0;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

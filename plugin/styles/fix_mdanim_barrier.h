@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/barrier: objects push each other off. Wcislo 1999, sec. 3.3, eq. (3.14), (3.15).
+
+#ifndef LMP_FIX_MDANIM_BARRIER_H
+#define LMP_FIX_MDANIM_BARRIER_H
+
+#include "engine/boxes.h"
+#include "fix.h"
+#include "engine/guest.h"
+#include "engine/loss.h"
+#include "styles/particle_value.h"
+#include "laws/vec3.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixMdanimBarrier : public Fix, public mdanim::Guest {
+ public:
+  FixMdanimBarrier(class LAMMPS *, int, char **);
+
+  int setmask() override;
+  void init() override;
+  void setup_post_neighbor() override;
+  void setup(int) override;
+  void post_neighbor() override;
+  void post_force(int) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+  void concerned(std::vector<int> &particles) const override;
+  bool places_suffice() const override { return damping == 0.0; }
+  void forces(const mdanim::Places &place, const mdanim::Sums &force) override;
+  void use(const mdanim::Touch &of_processor) override { touch = &of_processor; }
+  bool reads_all() override { return damping > 0.0 && !loss.idle(); }
+  double looks_ahead() const override { return clear; }
+  bool minds_drift() const override { return false; }
+
+ private:
+  // What a particle brings into a pair. Of ghosts it is asked from their owners at every rebuild.
+  struct Own {
+    double stiffness, reach, mass;
+    tagint object;    // molecule ID
+  };
+  // What is known of a pair.
+  struct Law {
+    double stiffness, reach;
+    double share;    // of the pair that this rank counts: 1/2 for each end that it moves, 1 if the other end is never moved
+  };
+
+  int group_bit(int iarg, const char *word);
+  int role(int i) const;
+  void collect_own();
+  double survey(std::vector<mdanim::Box> &boxes);
+  void find_candidates();
+  void add_candidate(int low, int high, const Law &known);
+  template <bool TELLS> void push(const mdanim::Places &place, const mdanim::Sums &total);
+  int find_touching(const mdanim::Places &place);
+  struct Search;
+  bool moves(int i) const;
+  double sum(double here);
+
+  int boundary_bit = 0, barrier_bit = 0, thin_bit = 0;
+  double thin_ratio = 0.0, damping = 0.0;
+  int power = 3;
+  mdanim::ParticleValue stiffness, reach;
+
+  std::vector<Own> own;      // local and ghost particles
+
+  // Candidates, numbered ascending by the lower tag and then by the higher one, so that who goes through them adds up the forces
+  // on every particle in ascending order of its partners' tags. There are numbers in between that are no pairs (touch.h).
+  std::vector<mdanim::Strip> strip;
+  mdanim::Doubles reach2;               // squares of the reach of pairs, 0 for what is none
+  std::vector<Law> law;                 // and what else is known of them
+  int last_high = 0;                    // the higher one of the last pair
+  std::vector<int> particle;            // that have candidates, local or ghost: first boundary, then barrier,
+                                        // each ascending by tag
+  std::vector<int> unmoved;             // those of them, as places in it, that this rank adds no forces to
+  const mdanim::Touch *touch;           // who looks for those in touch
+  std::vector<mdanim::Lanes> lanes;     // where there are some in this step
+  std::vector<int> touching_pair;       // in this step
+  // In a step without passes: positions of these particles, forces on them, and where in `on` those of each begin.
+  mdanim::Places here;
+  std::vector<double> on;
+  std::vector<long> slot;
+
+  double clear = 0.0;                    // no two objects meet before a particle has gone farther
+  bigint meeting_objects = 0;            // pairs of objects whose boxes meet
+  double pairs = 0.0, touching = 0.0;    // on this rank; a pair counts half at either end
+  double energy = 0.0;
+  mdanim::Loss loss;       // to damp
+  double deepest = 1.0;    // smallest r/reach in this run
+  double seconds = 0.0;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/leapfrog: advances particles by the leap-frog with friction. Wcislo 1999, eq. (3.12).
+
+#ifndef LMP_FIX_MDANIM_LEAPFROG_H
+#define LMP_FIX_MDANIM_LEAPFROG_H
+
+#include "engine/blocks.h"
+#include "engine/boxes.h"
+#include "fix.h"
+#include "styles/ghosts.h"
+#include "styles/particle_value.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixMdanimLeapfrog : public Fix {
+ public:
+  FixMdanimLeapfrog(class LAMMPS *, int, char **);
+
+  int setmask() override;
+  void init() override;
+  void setup(int) override;
+  void reset_dt() override;
+  void initial_integrate(int) override;
+  void final_integrate() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  // For trace_c.cpp, all ranks together: where each object, molecule 1 to M, has been since start_trace, its place then included.
+  // Empty, or why there can be no trace.
+  std::string start_trace(int objects);
+  // From now on passes look at particles every so often; boxes are wider by the way that the fastest particle may have gone
+  // meanwhile.
+  void look_every(int passes) { look_after = passes; }
+  int traced() const { return static_cast<int>(trace.size()); }    // objects; 0 when off
+  std::vector<mdanim::Box> traced_boxes() const;
+
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+
+  // For run_style verlet/mdanim, which moves most particles itself.
+  // All ranks together, after a rebuild: own particles that other ranks have as ghosts, and of all particles their objects, 1
+  // where there are no molecule IDs, and where they are at home.
+  struct Known {
+    int object;
+    mdanim::Home home;
+  };
+  void survey_ghosts(std::vector<int> &sent, std::vector<Known> &known);
+  mdanim::Friction friction() const;
+  mdanim::Mover mover(int i);
+  double *trace_rows() { return trace.empty() ? nullptr : trace.front().box.bound; }
+  bool looks();    // asked once in every pass
+  void finish_step(const std::vector<int> &particles);    // v^{n-1/2} -> v^n
+  void begin_step(const std::vector<int> &particles);     // v^n -> v^{n+1/2}, r^n -> r^{n+1}
+  bool tells_of(bigint step) const;    // whether kinetic() may be asked for in that step
+  // By others, in its name; `bend` is what bend() tells, of the particles that they have moved.
+  void moved(double final_loss, double first_loss, double bend, double more_seconds);
+
+ private:
+  template <class Visit> void each(Visit visit) const;
+  void first_half();
+  void final_half();
+  template <class Half> void half_step(Half half, bool first);
+  template <class Drag, class Half> void half_step_with_drag(Half half, bool first);
+  void drift();
+  void drift_and_trace();
+  double largest_phi_here() const;
+  double bend() const;
+  double kinetic();
+
+  bool has_drag = false, exponential = false;
+  mdanim::ParticleValue lambda;
+  double half_dt = 0.0;        // dt/2 in units that turn force/mass into velocity
+  double lost = 0.0;           // energy taken by drag on this rank
+  bool told = false;           // whether kinetic() may be asked for in this step
+  double bent = 0.0;           // dt v^{n-1/2} . (F^n - F^{n-1}) on this rank, if it may
+  double largest_phi = 0.0;    // seen on this rank in this run
+  double seconds = 0.0;
+  const std::vector<int> *only = nullptr;    // particles to move now; null for all
+  std::vector<int> *sent = nullptr;    // while ghosts are surveyed
+  std::vector<Known> *known = nullptr;
+  struct Way {
+    mdanim::Box box;
+    double fastest = 0.0;    // largest v^2, with its sign changed, of passes that may not have looked
+  };
+  std::vector<Way> trace;    // of the particles of this rank; empty when off
+  int look_after = 1;        // passes from one look to the next
+  int not_seen = 0;          // passes since the last look
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/wall: pushes back what leaves a region, however deep and fast. A stock wall stops the run
+// instead.
+
+#ifndef LMP_FIX_MDANIM_WALL_H
+#define LMP_FIX_MDANIM_WALL_H
+
+#include "engine/boxes.h"
+#include "fix.h"
+#include "engine/guest.h"
+#include "styles/particle_value.h"
+#include "laws/vec3.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixMdanimWall : public Fix, public mdanim::Guest {
+ public:
+  FixMdanimWall(class LAMMPS *, int, char **);
+
+  int setmask() override;
+  void init() override;
+  void setup_post_neighbor() override;
+  void setup(int) override;
+  void post_neighbor() override;
+  void post_force(int) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+  void concerned(std::vector<int> &particles) const override;
+  bool places_suffice() const override { return watching; }
+  void forces(const mdanim::Places &place, const mdanim::Sums &force) override;
+  bool reads_all() override { return !watching; }
+  double looks_ahead() const override { return clear; }
+
+ private:
+  bool behind(const mdanim::Vec3 &x, mdanim::Vec3 &d);
+  mdanim::Box box_of_all() const;
+  bool is_inside(const mdanim::Box &box);
+  void begin_sums();
+  mdanim::Vec3 push_back(const mdanim::Vec3 &x, double k);
+
+  std::string region_id;
+  class Region *region = nullptr;
+  bool convex = false;    // its inside, that is
+  mdanim::ParticleValue stiffness;
+
+  bool watching = false;    // only particles in `watched` can be behind before the next rebuild
+  std::vector<int> watched;
+  double clear = 0.0;    // nobody is at the wall before somebody has gone farther
+
+  double energy = 0.0;    // all on this rank
+  mdanim::Vec3 on_wall;
+  double particles_behind = 0.0;
+  double deepest = 0.0;    // in this run
+  double seconds = 0.0;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
