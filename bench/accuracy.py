@@ -37,8 +37,11 @@ def load(name: str, time: float | None = None, **overrides):
     scene = load_scene(ROOT / "scenes" / f"{name}.txt", overrides=overrides)
     if time is None or time >= scene.control.time:
         return scene
-    return replace(scene, control=replace(scene.control, time=time),
-                   expects=tuple(e for e in scene.expects if e.time is None or e.time <= time))
+    return replace(
+        scene,
+        control=replace(scene.control, time=time),
+        expects=tuple(e for e in scene.expects if e.time is None or e.time <= time),
+    )
 
 
 def cantilever(target: float):
@@ -79,12 +82,22 @@ def study(name: str, budget: float, plots: Path | None) -> None:
         s, p = r.point.setting, r.point
         where = [n for n, settings in a.measured.items() if s in settings] + (["own"] if s == a.own else [])
         closed = "" if r.closed is None else f"{100 * r.closed:.2g} %" if r.closed > ROUND_OFF else "0"
-        rows.append({
-            "": "*" if r.front else "", "cells": f"{s.cells:g}", "step / bound": f"{s.fraction:.2f}",
-            "sweeps": "auto" if s.sweeps is None else f"{s.sweeps}", "contact": f"{s.contact:g}", "particles": f"{p.particles}",
-            "seconds": f"{r.seconds.middle:.3g}" + (f" ± {r.seconds.spread / 2:.1g}" if len(p.seconds) > 1 else ""),
-            "error": f"{100 * r.error.middle:.2g} %", "off expect": closed, "energy drift": f"{max(p.drift):.0e}",
-            "sunk in": say(max(p.penetration), "m"), "ladder": ", ".join(where)})
+        rows.append(
+            {
+                "": "*" if r.front else "",
+                "cells": f"{s.cells:g}",
+                "step / bound": f"{s.fraction:.2f}",
+                "sweeps": "auto" if s.sweeps is None else f"{s.sweeps}",
+                "contact": f"{s.contact:g}",
+                "particles": f"{p.particles}",
+                "seconds": f"{r.seconds.middle:.3g}" + (f" ± {r.seconds.spread / 2:.1g}" if len(p.seconds) > 1 else ""),
+                "error": f"{100 * r.error.middle:.2g} %",
+                "off expect": closed,
+                "energy drift": f"{max(p.drift):.0e}",
+                "sunk in": say(max(p.penetration), "m"),
+                "ladder": ", ".join(where),
+            }
+        )
     columns = [c for c in rows[0] if LADDER_OF.get(c, "time step") in a.measured]
     print(f"| {' | '.join(columns)} |\n" + "|---" * len(columns) + "|")
     for row in rows:
@@ -166,8 +179,10 @@ def target(percent: float = 2.0, budget: float = 600.0):
     for p, off in sorted(rows, key=lambda row: row[0].work):
         chosen = (p.setting.cells, p.setting.fraction) == (choice.cells, choice.fraction)
         mark = ["chosen"] if chosen else ["looked at"] if p.setting.key in found else []
-        print(f"| {p.setting.cells:g} | {p.setting.fraction:.2f} | {p.work:.2e} | {min(p.seconds):.3g} | {100 * off:.3g} % | "
-              f"{', '.join(mark + (['best'] if p is best else []))} |")
+        print(
+            f"| {p.setting.cells:g} | {p.setting.fraction:.2f} | {p.work:.2e} | {min(p.seconds):.3g} | {100 * off:.3g} % | "
+            f"{', '.join(mark + (['best'] if p is best else []))} |"
+        )
     print(f"\n> accuracy error {percent:g} %: {choice}", flush=True)
     return choice, rows
 

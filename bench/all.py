@@ -36,17 +36,45 @@ class Step:
             found = step.measure(text, rounds)
             samples = {name: Sample(tuple(values)) for name, values in found["ns"].items()}
             base = samples[step.STOCK]
-            rows += [{"scene": title, "particles": found["particles"], "springs": found["springs"], "contender": name,
-                      "median": s.median, "least": s.least, "faster": {k: 1.0 / r for k, r in s.over(base).items()}}
-                     for name, s in samples.items()]
+            rows += [
+                {
+                    "scene": title,
+                    "particles": found["particles"],
+                    "springs": found["springs"],
+                    "contender": name,
+                    "median": s.median,
+                    "least": s.least,
+                    "faster": {k: 1.0 / r for k, r in s.over(base).items()},
+                }
+                for name, s in samples.items()
+            ]
         return rows
 
     @staticmethod
     def table(rows: list[dict]) -> str:
-        return markdown(["scene", "particles", "contender", "ns per particle-step, median", "minimum",
-                         "times as fast as stock, medians", "minima"],
-                        [(r["scene"], r["particles"], r["contender"], r["median"], r["least"], r["faster"]["medians"],
-                          r["faster"]["minima"]) for r in rows])
+        return markdown(
+            [
+                "scene",
+                "particles",
+                "contender",
+                "ns per particle-step, median",
+                "minimum",
+                "times as fast as stock, medians",
+                "minima",
+            ],
+            [
+                (
+                    r["scene"],
+                    r["particles"],
+                    r["contender"],
+                    r["median"],
+                    r["least"],
+                    r["faster"]["medians"],
+                    r["faster"]["minima"],
+                )
+                for r in rows
+            ],
+        )
 
 
 PARTS = {
@@ -87,12 +115,14 @@ def told(name: str, found: dict) -> str:
 
 def machine() -> str:
     """Processor and load, in a line."""
-    cpu = next((line.split(":")[1].strip()
-                for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")),
-               platform.processor())
+    cpu = next(
+        (line.split(":")[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")),
+        platform.processor(),
+    )
     busy = os.getloadavg()[0] / os.cpu_count()
-    return f"{cpu}, {os.cpu_count()} cores; load at the start {busy:.1f} per core" + \
-        (": **a busy machine, so read ratios and minima**" if busy > 0.3 else "")
+    return f"{cpu}, {os.cpu_count()} cores; load at the start {busy:.1f} per core" + (
+        ": **a busy machine, so read ratios and minima**" if busy > 0.3 else ""
+    )
 
 
 def draw(found: dict) -> bool:
@@ -101,12 +131,14 @@ def draw(found: dict) -> bool:
     if not rows:
         return False
     import matplotlib
+
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
     scenes = list(dict.fromkeys(r["scene"] for r in rows))
-    figure, axes = pyplot.subplots(1, len(scenes), figsize=(4.0 * len(scenes), 3.2), sharex=True, squeeze=False,
-                                   layout="constrained")
+    figure, axes = pyplot.subplots(
+        1, len(scenes), figsize=(4.0 * len(scenes), 3.2), sharex=True, squeeze=False, layout="constrained"
+    )
     for axis, scene in zip(axes[0], scenes):
         own = [r for r in rows if r["scene"] == scene][::-1]
         axis.barh([r["contender"] for r in own], [r["median"] for r in own], color="0.75", label="median")

@@ -25,8 +25,10 @@ control {{
   timestep 0.05 ms
 }}
 """
-SEA = ("gravity (0, 0, -9.81)\nliquid water {{ basin from (-20, -20, 0) cm to (20, 20, 40) cm density 1000 level 20 cm "
-       "drag {drag} model {model} }}")
+SEA = (
+    "gravity (0, 0, -9.81)\nliquid water {{ basin from (-20, -20, 0) cm to (20, 20, 40) cm density 1000 level 20 cm "
+    "drag {drag} model {model} }}"
+)
 VARIANTS = {
     "springs": {},
     "+ gravity": dict(more="gravity (0, 0, -9.81)"),
@@ -49,14 +51,17 @@ def measure(rounds: int = 15, quick: bool = False) -> list[dict]:
         for r in runners.values():
             r.instance.close()
     first: Sample = found["springs"]
-    return [{"effect": name, "median": 1e9 * s.median, "least": 1e9 * s.least, "over": s.over(first)}
-            for name, s in found.items()]
+    return [
+        {"effect": name, "median": 1e9 * s.median, "least": 1e9 * s.least, "over": s.over(first)} for name, s in found.items()
+    ]
 
 
 def table(rows: list[dict]) -> str:
     """In Markdown."""
-    return markdown(["effect", "ns per particle-step, median", "minimum", "over springs alone, medians", "minima"],
-                    [(r["effect"], r["median"], r["least"], r["over"]["medians"], r["over"]["minima"]) for r in rows])
+    return markdown(
+        ["effect", "ns per particle-step, median", "minimum", "over springs alone, medians", "minima"],
+        [(r["effect"], r["median"], r["least"], r["over"]["medians"], r["over"]["minima"]) for r in rows],
+    )
 
 
 if __name__ == "__main__":

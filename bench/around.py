@@ -28,8 +28,12 @@ def program(*words: object) -> None:
 def start_up(name: str, folder: Path) -> float:
     """Seconds of ``check``: all but LAMMPS and its steps."""
     start = time.perf_counter()
-    subprocess.run([sys.executable, "-m", "mdanim_lammps", "check", str(SCENES / f"{name}.txt")], check=True,
-                   stdout=subprocess.DEVNULL, timeout=600)
+    subprocess.run(
+        [sys.executable, "-m", "mdanim_lammps", "check", str(SCENES / f"{name}.txt")],
+        check=True,
+        stdout=subprocess.DEVNULL,
+        timeout=600,
+    )
     return time.perf_counter() - start
 
 
@@ -58,21 +62,52 @@ def measure(rounds: int = 3, quick: bool = False) -> list[dict]:
             cost = json.loads((out / "cost.json").read_text())
             found = interleaved({"start": lambda: start_up(name, out), "pictures": lambda: pictures(name, out)}, rounds)
         start, fps = found["start"], found["pictures"]
-        rows.append({"scene": name, "particles": cost["particles"], "wall": cost["wall"], "start": start.median,
-                     "start_least": start.least, "setup": cost["other"]["setup"],
-                     "output": cost["other"]["output"] / cost["wall"],
-                     "guard": cost["other"]["guard"] / cost["wall"], "fps": fps.median, "fps_most": max(fps.values)})
+        rows.append(
+            {
+                "scene": name,
+                "particles": cost["particles"],
+                "wall": cost["wall"],
+                "start": start.median,
+                "start_least": start.least,
+                "setup": cost["other"]["setup"],
+                "output": cost["other"]["output"] / cost["wall"],
+                "guard": cost["other"]["guard"] / cost["wall"],
+                "fps": fps.median,
+                "fps_most": max(fps.values),
+            }
+        )
     return rows
 
 
 def table(rows: list[dict]) -> str:
     """In Markdown."""
-    return markdown(["scene", "particles", "run [s]", "`check`, median (minimum) [s]", "loading and modelling in the run [s]",
-                     "output", "guard", "pictures per second, median (most)", "goal"],
-                    [(r["scene"], r["particles"], r["wall"], f"{r['start']:.2f} ({r['start_least']:.2f})", r["setup"],
-                      f"{100 * r['output']:.1f} %", f"{100 * r['guard']:.1f} %", f"{r['fps']:.1f} ({r['fps_most']:.1f})",
-                      f"≥ {GOAL:g}")
-                     for r in rows])
+    return markdown(
+        [
+            "scene",
+            "particles",
+            "run [s]",
+            "`check`, median (minimum) [s]",
+            "loading and modelling in the run [s]",
+            "output",
+            "guard",
+            "pictures per second, median (most)",
+            "goal",
+        ],
+        [
+            (
+                r["scene"],
+                r["particles"],
+                r["wall"],
+                f"{r['start']:.2f} ({r['start_least']:.2f})",
+                r["setup"],
+                f"{100 * r['output']:.1f} %",
+                f"{100 * r['guard']:.1f} %",
+                f"{r['fps']:.1f} ({r['fps_most']:.1f})",
+                f"≥ {GOAL:g}",
+            )
+            for r in rows
+        ],
+    )
 
 
 if __name__ == "__main__":

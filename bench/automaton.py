@@ -20,10 +20,9 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
-import automaton_lab as lab  # noqa: E402
-
-import timing  # noqa: E402
-from timing import Sample, markdown  # noqa: E402
+import automaton_lab as lab
+import timing
+from timing import Sample, markdown
 
 SWEEPS = 4
 GOAL = 0.5
@@ -77,8 +76,18 @@ def measure(rounds: int = 15, quick: bool = False, cells: int = 128) -> list[dic
         for name, value in row.items():
             spent.setdefault(name, []).append(value)
     found = {name: Sample(tuple(values)) for name, values in spent.items()}
-    return [{"work": name, "cells": cells, "changed": changed, "best": best, "median": s.median, "least": s.least,
-             "copies": s.median / found["copy"].median} for name, s in found.items()]
+    return [
+        {
+            "work": name,
+            "cells": cells,
+            "changed": changed,
+            "best": best,
+            "median": s.median,
+            "least": s.least,
+            "copies": s.median / found["copy"].median,
+        }
+        for name, s in found.items()
+    ]
 
 
 def table(rows: list[dict]) -> str:
@@ -86,8 +95,18 @@ def table(rows: list[dict]) -> str:
     n = rows[0]["cells"] ** 3
     return f"{rows[0]['cells']}³ cells, best instruction set {rows[0]['best']}, N = {rows[0]['changed']}\n\n" + markdown(
         ["work", "ns per cell, median", "minimum", "ms", "copies of the grid", "goal"],
-        [(r["work"], 1e9 * r["median"] / n, 1e9 * r["least"] / n, 1e3 * r["median"], r["copies"],
-          f"≤ {GOAL} ns" if r["work"] == "sweep, lively" else "") for r in rows])
+        [
+            (
+                r["work"],
+                1e9 * r["median"] / n,
+                1e9 * r["least"] / n,
+                1e3 * r["median"],
+                r["copies"],
+                f"≤ {GOAL} ns" if r["work"] == "sweep, lively" else "",
+            )
+            for r in rows
+        ],
+    )
 
 
 def main(cells: int = 128, rounds: int = 15) -> None:

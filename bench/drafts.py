@@ -129,8 +129,10 @@ def drift() -> None:
         before, swept = pool.mean("x"), pool.instance.fix_value("liquid", SWEEPS)
         pool.run(20)
         aside = np.abs(pool.mean("x") - before)[:2].max()
-        print(f"cube of density 0.9, afloat for 20 s: {aside:.2e} cells sideways, "
-              f"{pool.instance.fix_value('liquid', SWEEPS) - swept:.0f} sweeps")
+        print(
+            f"cube of density 0.9, afloat for 20 s: {aside:.2e} cells sideways, "
+            f"{pool.instance.fix_value('liquid', SWEEPS) - swept:.0f} sweeps"
+        )
 
 
 WORDS = {"drafts": drafts, "cells": cells, "models": models, "speed": speed, "drift": drift}

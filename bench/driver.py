@@ -32,8 +32,17 @@ control { time 0.25 s  frames 100 fps  resolution 3 cm }
 FIRST = 10
 """Frames that are not counted."""
 PARTS = {
-    "executor": ("Executor", {"_transfer": "hand on", "_report": "report", "_commit": "copy states", "_weigh": "sum energies",
-                              "_go_on": "lay aside", "_send": "send frame"}),
+    "executor": (
+        "Executor",
+        {
+            "_transfer": "hand on",
+            "_report": "report",
+            "_commit": "copy states",
+            "_weigh": "sum energies",
+            "_go_on": "lay aside",
+            "_send": "send frame",
+        },
+    ),
     "bundle": ("Bundle", {"__init__": "build instances", "start": "put states", "run": "LAMMPS", "extent": "boxes"}),
     "planner": ("Planner", {"decide": "plan"}),
     "messages": ("Mail", {"exchange": "exchange"}),
@@ -47,14 +56,13 @@ def ranks(folder: Path, control: str) -> None:
     """What every rank does: run, and write what its methods took, frame by frame."""
     import importlib
 
-    from mpi4py import MPI
-
     from mdanim_lammps.driver import executor
     from mdanim_lammps.driver.planning import Settings
     from mdanim_lammps.driver.prepare import prepare
     from mdanim_lammps.driver.run import simulate
     from mdanim_lammps.driver.supervisor import Distributed
     from mdanim_lammps.scene.parse import load_scene
+    from mpi4py import MPI
 
     world = MPI.COMM_WORLD
     frames: list[dict[str, float]] = [{}]
@@ -67,6 +75,7 @@ def ranks(folder: Path, control: str) -> None:
                 return method(*arguments, **options)
             finally:
                 frames[-1][name] = frames[-1].get(name, 0.0) + time.thread_time() - begin
+
         return call
 
     for module, (kind, methods) in PARTS.items():
@@ -98,18 +107,30 @@ def main(executors: int = 2, control: str = "central") -> None:
     with tempfile.TemporaryDirectory() as where:
         folder = Path(where)
         (folder / "crowd.txt").write_text(SCENE)
-        program = [Path(sys.executable).parent / "mpiexec", "-n", str(executors + 1), sys.executable, "-m", "mpi4py", __file__,
-                   "--rank", where, control]
+        program = [
+            Path(sys.executable).parent / "mpiexec",
+            "-n",
+            str(executors + 1),
+            sys.executable,
+            "-m",
+            "mpi4py",
+            __file__,
+            "--rank",
+            where,
+            control,
+        ]
         subprocess.run(program, check=True, env=os.environ | {"OMP_NUM_THREADS": "1"})
         timeline = json.loads((folder / "timeline.json").read_text())
         took = [[f for f in json.loads((folder / f"{rank}.json").read_text()) if f][FIRST:-2] for rank in range(executors + 1)]
-    print(f"{executors} executors, {control}: {len(timeline['names'])} objects, "
-          f"{sum(timeline['moves'][FIRST:]) / len(timeline['moves'][FIRST:]):.1f} "
-          f"moves and {sum(timeline['retries'][FIRST:]) / len(timeline['retries'][FIRST:]):.2f} new beginnings in a frame")
+    print(
+        f"{executors} executors, {control}: {len(timeline['names'])} objects, "
+        f"{sum(timeline['moves'][FIRST:]) / len(timeline['moves'][FIRST:]):.1f} "
+        f"moves and {sum(timeline['retries'][FIRST:]) / len(timeline['retries'][FIRST:]):.2f} new beginnings in a frame"
+    )
     print(f"{'':>26} {'median':>8} {'least':>8}  [ms]")
     for who, rows in (("executor", took[1:]), ("supervisor", took[:1])):
         for name in dict.fromkeys(name for frames in rows for f in frames for name in f):
-            per_frame = np.array([[1e3 * f.get(name, 0.0) for f in frames[:min(map(len, rows))]] for frames in rows]).max(axis=0)
+            per_frame = np.array([[1e3 * f.get(name, 0.0) for f in frames[: min(map(len, rows))]] for frames in rows]).max(axis=0)
             print(f"{who:>10} {name:>15} {np.median(per_frame):8.2f} {per_frame.min():8.2f}")
         if who == "executor":
             own = np.array([[1e3 * (f["all"] - f["LAMMPS"] + f["send frame"]) for f in frames if "all" in f] for frames in rows])

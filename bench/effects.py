@@ -116,8 +116,10 @@ def measure(texts: dict[str, str], rounds: int, of=statistics.median) -> dict[st
             found[name].append(runner.round())
     for runner in runners.values():
         runner.instance.close()
-    return {name: {k: of(r[k] for r in rows) for k in rows[0]} | {"particles": runners[name].particles}
-            for name, rows in found.items()}
+    return {
+        name: {k: of(r[k] for r in rows) for k in rows[0]} | {"particles": runners[name].particles}
+        for name, rows in found.items()
+    }
 
 
 def added(rounds: int) -> None:
@@ -127,34 +129,50 @@ def added(rounds: int) -> None:
 
     ready = prepare(parse_scene(POND.format(timestep="", off="")))
     timestep = f"timestep {ready.certificate.timestep!r} s"
-    texts = {name: POND.format(timestep=timestep, off=" ".join(f"{o} off" for o in ORDER[k + 1:]))
-             for k, name in enumerate(ORDER)}
+    texts = {
+        name: POND.format(timestep=timestep, off=" ".join(f"{o} off" for o in ORDER[k + 1 :])) for k, name in enumerate(ORDER)
+    }
     found = measure(texts, rounds)
-    print(f"{ready.system.particles} particles, {len(ready.system.spring)} springs, {ready.plan.grid.cells} cells of liquid; "
-          f"{1 / ready.certificate.timestep:.0f} steps per second of the scene\n")
+    print(
+        f"{ready.system.particles} particles, {len(ready.system.spring)} springs, {ready.plan.grid.cells} cells of liquid; "
+        f"{1 / ready.certificate.timestep:.0f} steps per second of the scene\n"
+    )
     print("| effect | us per step | adds | adds per second of the scene |\n|---|---|---|---|")
     last = 0.0
     for name in ORDER:
         step = 1e6 * found[name]["step"]
-        print(f"| {'' if name == ORDER[0] else '+ '}{name} | {step:.1f} | {step - last:+.1f} us, "
-              f"{100 * (step - last) / step:+.1f} % | "
-              f"{1e-6 * (step - last) / ready.certificate.timestep:+.2f} s |")
+        print(
+            f"| {'' if name == ORDER[0] else '+ '}{name} | {step:.1f} | {step - last:+.1f} us, "
+            f"{100 * (step - last) / step:+.1f} % | "
+            f"{1e-6 * (step - last) / ready.certificate.timestep:+.2f} s |"
+        )
         last = step
 
 
 def shares(rounds: int) -> None:
     """Parts of shared clocks, to be set in effects/*.py."""
     plain = FLIGHT.format(more="", v=3, off="").replace("-9.81", "-1e-6")  # as many rebuilds with gravity as without
-    found = measure({
-        "plain": plain, "no gravity": plain.replace("gravity (0, 0, -1e-6)", ""),
-        "damped": plain.replace("elasticity 1 MPa", "elasticity 1 MPa\n  damping 0.1"),
-        "drag": plain.replace("elasticity 1 MPa", "elasticity 1 MPa\n  drag 1")}, rounds, min)
+    found = measure(
+        {
+            "plain": plain,
+            "no gravity": plain.replace("gravity (0, 0, -1e-6)", ""),
+            "damped": plain.replace("elasticity 1 MPa", "elasticity 1 MPa\n  damping 0.1"),
+            "drag": plain.replace("elasticity 1 MPa", "elasticity 1 MPa\n  drag 1"),
+        },
+        rounds,
+        min,
+    )
     bare = {k: found[k]["leapfrog"] for k in found}
     print(f"DASHPOTS  {1 - found['plain']['bonds'] / found['damped']['bonds']:.2f}   of the springs' clock")
     print(f"SLOWING   {1 - bare['plain'] / bare['drag']:.2f}   of the leap-frog's clock")
     print(f"PULL      {found['plain']['gravity'] / bare['plain']:.2f}   of the leap-frog's clock without drag")
-    wet = {f"{m} {d}": FLIGHT.format(more=SEA.format(drag=d, model=m), v=0, off="").replace("50) m", "0.3) m")
-           .replace("density 1000\n  elas", "density 500\n  elas") for m in ("surface", "pressure") for d in (0, 4)}
+    wet = {
+        f"{m} {d}": FLIGHT.format(more=SEA.format(drag=d, model=m), v=0, off="")
+        .replace("50) m", "0.3) m")
+        .replace("density 1000\n  elas", "density 500\n  elas")
+        for m in ("surface", "pressure")
+        for d in (0, 4)
+    }
     found = measure(wet, rounds, min)
     coupling = {k: f["coupling"] for k, f in found.items()}
     print(f"DRAGGING  {1 - coupling['surface 0'] / coupling['surface 4']:.2f}   of the coupling's clock")
@@ -170,8 +188,9 @@ def forecasts(_: int) -> None:
     from mdanim_lammps.scene.parse import load_scene
 
     rates = calibration(print).rates
-    print("| scene | expected | measured | expected / measured | largest parts, expected and measured [s] |\n"
-          "|---|---|---|---|---|")
+    print(
+        "| scene | expected | measured | expected / measured | largest parts, expected and measured [s] |\n|---|---|---|---|---|"
+    )
     for path in sorted(SCENES.glob("*.txt")):
         if path.stem == "rubber":
             continue  # a fragment that another scene includes
@@ -186,8 +205,9 @@ def forecasts(_: int) -> None:
         measured = time.process_time() - start
         scale = (measured - setup) / wall  # clocks of effects tell wall time
         largest = sorted(told.parts, key=told.parts.get, reverse=True)[:4]
-        parts = ", ".join(f"{k} {told.parts[k]:.2f} {(cost.parts[k] * scale + (setup if k == 'setup' else 0.0)):.2f}"
-                          for k in largest)
+        parts = ", ".join(
+            f"{k} {told.parts[k]:.2f} {(cost.parts[k] * scale + (setup if k == 'setup' else 0.0)):.2f}" for k in largest
+        )
         print(f"| {path.stem} | {told.wall:.2f} s | {measured:.2f} s | {told.wall / measured:.2f} | {parts} |", flush=True)
 
 

@@ -80,8 +80,12 @@ def main(n: int = 128, rounds: int = 15) -> None:
     hidden[n // 3 : 2 * n // 3, n // 3 : 2 * n // 3] = np.nan
     wall = np.zeros((n, n), np.uint8)
     wall[:, n // 4] = 1
-    surfaces = {"constant": (np.ones((n, n)), None), "rough": (rough, None), "rough, body": (hidden, None),
-                "rough, body, wall": (hidden, wall)}
+    surfaces = {
+        "constant": (np.ones((n, n)), None),
+        "rough": (rough, None),
+        "rough, body": (hidden, None),
+        "rough, body, wall": (hidden, wall),
+    }
     for _ in range(rounds):
         for name, (height, blocked) in surfaces.items():
             timed(name, "smooth", lambda: lab.smooth(height, blocked))

@@ -8,8 +8,7 @@
 #include <cstdio>
 #include <vector>
 
-static double now()
-{ return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+static double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 template <class Work> static double least(int rounds, Work work)
 {

@@ -56,8 +56,8 @@ def main(body: int = 46, basin: int = 128, steps: int = 200) -> None:
     """Measure and print."""
     # A stiff body, so that the time step is small against what the liquid has to follow: the usual case.
     common = dict(a=-basin / 2, b=basin / 2, n=basin, half=basin / 2, m=body, young=1000.0 * 9.81 * body * 50)
-    print(f"{(body + 1)**3:,} particles, {basin**3:,} cells; liquid = automaton + occupancy + coupling")
-    fast = -(2 * 9.81 * body) ** 0.5
+    print(f"{(body + 1) ** 3:,} particles, {basin**3:,} cells; liquid = automaton + occupancy + coupling")
+    fast = -((2 * 9.81 * body) ** 0.5)
     measure("plunging in", 20, steps, z=basin / 2 + 0.3 * body, v=fast, **common)
     measure("half in, at rest", 400, steps, z=basin / 2, v=0.0, **common)
     measure("far above: asleep", 20, steps, z=3 * basin, v=0.0, **common)

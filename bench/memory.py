@@ -47,27 +47,41 @@ def child(n: int) -> dict:
     # The peak is of the whole process, in kB.
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
     particles = plan.system.particles
-    return {"particles": particles, "springs": len(plan.bonds), "model": (modelled - before) / particles,
-            "lammps": (running - modelled) / particles, "run": (running - before) / particles,
-            "peak": (peak - before) / particles}
+    return {
+        "particles": particles,
+        "springs": len(plan.bonds),
+        "model": (modelled - before) / particles,
+        "lammps": (running - modelled) / particles,
+        "run": (running - before) / particles,
+        "peak": (peak - before) / particles,
+    }
 
 
 def measure(rounds: int = 1, quick: bool = False) -> list[dict]:
     """One row for each size; memory does not vary, so there is one round."""
     rows = []
     for n in (29,) if quick else (29, 59, 99):
-        done = subprocess.run([sys.executable, __file__, "child", str(n)], check=True, capture_output=True, text=True,
-                              timeout=300)
+        done = subprocess.run(
+            [sys.executable, __file__, "child", str(n)], check=True, capture_output=True, text=True, timeout=300
+        )
         rows.append(json.loads(done.stdout))
     return rows
 
 
 def table(rows: list[dict]) -> str:
     """In Markdown."""
-    return markdown(["particles", "springs", "scene, model and plan [kB per particle]", "LAMMPS and plugin", "both, in the run",
-                     "peak, modelling included"],
-                    [(r["particles"], r["springs"], *(1e-3 * r[k] for k in ("model", "lammps", "run", "peak"))) for r in rows]
-                    + [("goal", "", "", "", *(f"≤ {GOALS[k]}" for k in ("run", "peak")))])
+    return markdown(
+        [
+            "particles",
+            "springs",
+            "scene, model and plan [kB per particle]",
+            "LAMMPS and plugin",
+            "both, in the run",
+            "peak, modelling included",
+        ],
+        [(r["particles"], r["springs"], *(1e-3 * r[k] for k in ("model", "lammps", "run", "peak"))) for r in rows]
+        + [("goal", "", "", "", *(f"≤ {GOALS[k]}" for k in ("run", "peak")))],
+    )
 
 
 if __name__ == "__main__":

@@ -110,8 +110,10 @@ def cycles(mover: Mover) -> str:
 
     go(CYCLES // 2)  # LAMMPS and MPI fill their own stores at first
     before, seconds, after = residue(), go(CYCLES), residue()
-    return (f"{CYCLES} instances of {mover.particles} particles made and closed: {1e3 * seconds / CYCLES:.2f} ms each, "
-            f"{(after[0] - before[0]) / CYCLES:.0f} bytes and {after[1] - before[1]} files left")
+    return (
+        f"{CYCLES} instances of {mover.particles} particles made and closed: {1e3 * seconds / CYCLES:.2f} ms each, "
+        f"{(after[0] - before[0]) / CYCLES:.0f} bytes and {after[1] - before[1]} files left"
+    )
 
 
 def main(rounds: int = 15) -> None:
@@ -128,13 +130,19 @@ def main(rounds: int = 15) -> None:
             own = mover.move()
             found[n].append(comm.gather(own))
     if comm.rank == 0:
-        print(f"{'particles':>9} " + "".join(f"{stage:>18}" for stage in STAGES)
-              + f"{'goal':>8} {'first':>8}   [ms, median (least)]")
+        print(
+            f"{'particles':>9} "
+            + "".join(f"{stage:>18}" for stage in STAGES)
+            + f"{'goal':>8} {'first':>8}   [ms, median (least)]"
+        )
         for n, turns in found.items():
             first, *later = [sender | receiver for sender, receiver in turns]
             values = {stage: 1e3 * np.array([turn[stage] for turn in later]) for stage in STAGES}
-            print(f"{movers[n].particles:>9} " + "".join(f"{np.median(v):>9.2f} ({v.min():>6.2f})" for v in values.values())
-                  + f"{SIZES[n]:>8.0f} {1e3 * first['end to end']:>8.1f}")
+            print(
+                f"{movers[n].particles:>9} "
+                + "".join(f"{np.median(v):>9.2f} ({v.min():>6.2f})" for v in values.values())
+                + f"{SIZES[n]:>8.0f} {1e3 * first['end to end']:>8.1f}"
+            )
     comm.Barrier()
     if comm.rank == 1:
         print(cycles(movers[min(SIZES)]), flush=True)

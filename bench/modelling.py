@@ -19,10 +19,9 @@ import numpy as np
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
-from model_samples import SHAPES, model, scene, shape_id, solid  # noqa: E402
-
 from mdanim_lammps.model import build_models, check_geometry, shapes  # noqa: E402
 from mdanim_lammps.scene.scene import Box, Mesh, Sphere  # noqa: E402
+from model_samples import SHAPES, model, scene, shape_id, solid  # noqa: E402
 
 
 def many(shape, step, count=10_000):

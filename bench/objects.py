@@ -14,11 +14,10 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
 def main(side: int = 100) -> None:
     """Measure and print."""
-    from test_many import TEXT
-
     from mdanim_lammps.driver.prepare import prepare
     from mdanim_lammps.engine.instance import Instance
     from mdanim_lammps.scene.parse import parse_scene
+    from test_many import TEXT
 
     start = time.perf_counter()
 

@@ -9,7 +9,6 @@ import sys
 import time
 
 import numpy as np
-
 from mdanim_lammps.driver import islands, planning
 from mdanim_lammps.driver.assign import assign
 
@@ -19,7 +18,7 @@ EXECUTORS = 8
 def least(work, seconds: float = 1.0) -> float:
     """Time of a call [ms], the least of at least 3 and of as many as fit."""
     spent = []
-    while len(spent) < 3 or sum(spent) < seconds and len(spent) < 100:
+    while len(spent) < 3 or (sum(spent) < seconds and len(spent) < 100):
         start = time.perf_counter()
         work()
         spent.append(time.perf_counter() - start)
@@ -34,8 +33,10 @@ def pile(count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
 
 def times() -> None:
     """One row for every number of boxes."""
-    print(f"{'boxes':>7} {'pairs':>7} {'islands':>7} | {'all pairs':>9} {'grid':>7} {'islands':>8} {'assign':>7} {'bundles':>8} "
-          f"{'order':>6} | {'first plan':>10} {'next':>7} {'balanced':>9}  [ms]")
+    print(
+        f"{'boxes':>7} {'pairs':>7} {'islands':>7} | {'all pairs':>9} {'grid':>7} {'islands':>8} {'assign':>7} {'bundles':>8} "
+        f"{'order':>6} | {'first plan':>10} {'next':>7} {'balanced':>9}  [ms]"
+    )
     for count in (10, 64, 1_000, 10_000, 100_000):
         rng = np.random.default_rng(count)
         low, high = pile(count, rng)
@@ -51,22 +52,33 @@ def times() -> None:
         order = planning.z_order(low, high)
         uneven = np.where(first.owner == 0, 3 * particles, 2 * particles)
         naive = f"{least(lambda: islands._all_pairs(*reserved)):9.2f}" if count <= 10_000 else f"{'-':>9}"
-        print(f"{count:7} {len(met):7} {first.label.max() + 1:7} | {naive} {least(lambda: islands._grid_pairs(*reserved)):7.2f} "
-              f"{least(lambda: islands.components(count, met, still)):8.2f} "
-              f"{least(lambda: assign(first.label, 2 * particles, nobody, EXECUTORS, particles=particles, order=order)):7.2f} "
-              f"{least(lambda: planning.bundles(first.label, first.owner, particles, first.teams, order=order)):8.2f} "
-              f"{least(lambda: planning.z_order(low, high)):6.2f} | "
-              f"{least(lambda: planning.plan(*where, 2 * particles, nobody, EXECUTORS, **known)):10.2f} "
-              f"{least(lambda: planning.plan(*where, 2 * particles, first.owner, EXECUTORS, previous=first, **known)):7.2f} "
-              f"{least(lambda: planning.plan(*where, uneven, first.owner, EXECUTORS, previous=first, **known)):9.2f}")
+        print(
+            f"{count:7} {len(met):7} {first.label.max() + 1:7} | {naive} {least(lambda: islands._grid_pairs(*reserved)):7.2f} "
+            f"{least(lambda: islands.components(count, met, still)):8.2f} "
+            f"{least(lambda: assign(first.label, 2 * particles, nobody, EXECUTORS, particles=particles, order=order)):7.2f} "
+            f"{least(lambda: planning.bundles(first.label, first.owner, particles, first.teams, order=order)):8.2f} "
+            f"{least(lambda: planning.z_order(low, high)):6.2f} | "
+            f"{least(lambda: planning.plan(*where, 2 * particles, nobody, EXECUTORS, **known)):10.2f} "
+            f"{least(lambda: planning.plan(*where, 2 * particles, first.owner, EXECUTORS, previous=first, **known)):7.2f} "
+            f"{least(lambda: planning.plan(*where, uneven, first.owner, EXECUTORS, previous=first, **known)):9.2f}"
+        )
 
 
 def crowd() -> None:
     """One row for every crowd."""
-    print("per frame: islands; objects moved, and those that islands that join call for at least [%]; load of the busiest over\n"
-          "the mean, the worst of all frames; bundles, built anew [%], particles in those [%]")
-    for count, executors, volume in ((24, 4, 30.0), (100, 4, 30.0), (1_000, 2, 30.0), (1_000, 4, 30.0), (1_000, 8, 30.0),
-                                     (1_000, 8, 10.0), (10_000, 8, 30.0)):
+    print(
+        "per frame: islands; objects moved, and those that islands that join call for at least [%]; load of the busiest over\n"
+        "the mean, the worst of all frames; bundles, built anew [%], particles in those [%]"
+    )
+    for count, executors, volume in (
+        (24, 4, 30.0),
+        (100, 4, 30.0),
+        (1_000, 2, 30.0),
+        (1_000, 4, 30.0),
+        (1_000, 8, 30.0),
+        (1_000, 8, 10.0),
+        (10_000, 8, 30.0),
+    ):
         print(f"{count:6} objects, one in {volume:.0f}, {executors} executors: " + _fly(count, executors, volume))
 
 
@@ -84,21 +96,31 @@ def _fly(count: int, executors: int, volume: float, frames: int = 100) -> str:
         speed = np.abs(velocity).max(axis=1)
         cost = (2 * particles * rng.uniform(0.95, 1.05, count)).astype(np.int64)  # as measured clocks are
         d = islands.reach(speed, 1.0, 0.0, 0.02)
-        plan = planning.plan(place, place + edge, d, cost, owner, executors, particles=particles, still=still, gap=0.1,
-                             previous=before)
+        plan = planning.plan(
+            place, place + edge, d, cost, owner, executors, particles=particles, still=still, gap=0.1, previous=before
+        )
         if before is not None:
             isle, at = np.unique(plan.label * executors + owner, return_counts=True)
             most = np.zeros(plan.label.max() + 1, np.int64)
             np.maximum.at(most, isle // executors, at)
             new = np.unique(plan.bundle[plan.bundle > before.bundle.max()])
             number = len(np.unique(plan.bundle))
-            rows.append((plan.label.max() + 1, 100 * (plan.owner != owner).mean(), 100 * (1 - most.sum() / count),
-                         plan.load.max() / plan.load.mean(), number, 100 * len(new) / number,
-                         100 * particles[plan.bundle > before.bundle.max()].sum() / particles.sum()))
+            rows.append(
+                (
+                    plan.label.max() + 1,
+                    100 * (plan.owner != owner).mean(),
+                    100 * (1 - most.sum() / count),
+                    plan.load.max() / plan.load.mean(),
+                    number,
+                    100 * len(new) / number,
+                    100 * particles[plan.bundle > before.bundle.max()].sum() / particles.sum(),
+                )
+            )
         owner, before = plan.owner, plan
     mean, worst = np.mean(rows, axis=0), np.max(rows, axis=0)
-    return (f"{mean[0]:.0f}; {mean[1]:.2f}, {mean[2]:.2f}; {mean[3]:.3f}, {worst[3]:.3f}; "
-            f"{mean[4]:.0f}, {mean[5]:.1f}, {mean[6]:.1f}")
+    return (
+        f"{mean[0]:.0f}; {mean[1]:.2f}, {mean[2]:.2f}; {mean[3]:.3f}, {worst[3]:.3f}; {mean[4]:.0f}, {mean[5]:.1f}, {mean[6]:.1f}"
+    )
 
 
 if __name__ == "__main__":

@@ -70,21 +70,47 @@ def measure(rounds: int = 15, quick: bool = False, sizes: tuple[int, ...] = (12,
             for blocks in pair.values():
                 blocks.instance.close()
         pressed = pair["pressed"]
-        rows.append({"cells": cells, "particles": pressed.particles, "touching": pressed.touching, "pairs": pressed.pairs,
-                     "ratio": found["pressed"].over(found["apart"])}
-                    | {name: {"median": 1e9 * s.median, "least": 1e9 * s.least} for name, s in found.items()})
+        rows.append(
+            {
+                "cells": cells,
+                "particles": pressed.particles,
+                "touching": pressed.touching,
+                "pairs": pressed.pairs,
+                "ratio": found["pressed"].over(found["apart"]),
+            }
+            | {name: {"median": 1e9 * s.median, "least": 1e9 * s.least} for name, s in found.items()}
+        )
     return rows
 
 
 def table(rows: list[dict]) -> str:
     """In Markdown."""
-    return markdown(["two blocks of", "particles", "pairs listed", "in touch", "apart [ns per particle-step]", "pressed",
-                     "ratio by medians", "by minima", "goal"],
-                    [(f"{r['cells']}³ cells", r["particles"], r["pairs"], r["touching"],
-                      *(f"{r[k]['median']:.1f} ({r[k]['least']:.1f})"
-                      for k in ("apart", "pressed")), r["ratio"]["medians"], r["ratio"]["minima"],
-                      "≤ 1.3" if r["cells"] == 12 else "")
-                     for r in rows])
+    return markdown(
+        [
+            "two blocks of",
+            "particles",
+            "pairs listed",
+            "in touch",
+            "apart [ns per particle-step]",
+            "pressed",
+            "ratio by medians",
+            "by minima",
+            "goal",
+        ],
+        [
+            (
+                f"{r['cells']}³ cells",
+                r["particles"],
+                r["pairs"],
+                r["touching"],
+                *(f"{r[k]['median']:.1f} ({r[k]['least']:.1f})" for k in ("apart", "pressed")),
+                r["ratio"]["medians"],
+                r["ratio"]["minima"],
+                "≤ 1.3" if r["cells"] == 12 else "",
+            )
+            for r in rows
+        ],
+    )
 
 
 def main(cells: int = 12, rounds: int = 15) -> None:

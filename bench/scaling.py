@@ -52,8 +52,15 @@ control {
 ROWS = "repeat i in 0 .. 7 {{ repeat j in 0 .. 7 {{" + BLOCK + "}} }}"
 SCENES = {
     "crowd": (HERE.parent / "scenes" / "crowd.txt").read_text().replace('include "rubber.txt"', "let rubber = 150 kPa"),
-    "hail": GRAVITY + "ground z 0 m\n" + ROWS.format(n="i*8 + j", place="(i*0.3, j*0.3, 0.3 + 0.1*((i + 2*j) mod 5))", edge=9,
-                                                     more="velocity (rand(-1.5, 1.5), rand(-1.5, 1.5), 0) m/s") + END,
+    "hail": GRAVITY
+    + "ground z 0 m\n"
+    + ROWS.format(
+        n="i*8 + j",
+        place="(i*0.3, j*0.3, 0.3 + 0.1*((i + 2*j) mod 5))",
+        edge=9,
+        more="velocity (rand(-1.5, 1.5), rand(-1.5, 1.5), 0) m/s",
+    )
+    + END,
     "blocks": GRAVITY + ROWS.format(n="i*8 + j", place="(i, j, 0)", edge=9, more="") + END,
     "one": GRAVITY + BLOCK.format(n=0, place="(0, 0, 0)", edge=39, more="") + END,
 }
@@ -117,8 +124,14 @@ def _measure(ready, executors: int, control: str) -> dict:
         else:
             simulate_on(executors, control, ready, folder, **told)
             log = Timeline.read(folder)
-            found = {"cpu": max(log.cpu), "supervisor_cpu": log.supervisor_cpu, "moves": sum(log.moves),
-                     "again": sum(log.retries), "busy": float(log.busy().mean()), "spent": log.spent().mean(axis=0).tolist()}
+            found = {
+                "cpu": max(log.cpu),
+                "supervisor_cpu": log.supervisor_cpu,
+                "moves": sum(log.moves),
+                "again": sum(log.retries),
+                "busy": float(log.busy().mean()),
+                "spent": log.spent().mean(axis=0).tolist(),
+            }
     frames = len(ends)
     return found | {"by_wall": (frames - 1) / (ends[-1] - ends[0]), "by_cpu": frames / found["cpu"], "frames": frames}
 
@@ -126,8 +139,10 @@ def _measure(ready, executors: int, control: str) -> dict:
 def rounds_of(names, cases, rounds: int, frames: int) -> tuple[dict, dict]:
     """All runs of all cases (executors, control), interleaved; and what is known of each scene."""
     ready = {name: load(name, frames * LONGER.get(name, 1)) for name in names}
-    known = {name: {"objects": len(r.system.names), "particles": r.system.particles, "steps": r.certificate.steps_per_frame}
-             for name, r in ready.items()}
+    known = {
+        name: {"objects": len(r.system.names), "particles": r.system.particles, "steps": r.certificate.steps_per_frame}
+        for name, r in ready.items()
+    }
     runs = {name: {case: [] for case in cases} for name in names}
     for turn in range(rounds):
         for name in names:
@@ -158,19 +173,24 @@ def table(runs: dict, known: dict, cases) -> str:
     lines = []
     for name, of in runs.items():
         k = known[name]
-        lines += [f"{name}: {k['objects']} objects, {k['particles']} particles, {k['steps']} steps per frame, "
-                  f"{of[cases[0]][0]['frames']} frames", "",
-                  "| executors | frames/s, wall | times | frames/s of the busiest processor | times | moved | again | "
-                  "supervisor [s] |",
-                  "|---|---|---|---|---|---|---|---|"]
+        lines += [
+            f"{name}: {k['objects']} objects, {k['particles']} particles, {k['steps']} steps per frame, "
+            f"{of[cases[0]][0]['frames']} frames",
+            "",
+            "| executors | frames/s, wall | times | frames/s of the busiest processor | times | moved | again | supervisor [s] |",
+            "|---|---|---|---|---|---|---|---|",
+        ]
         base = of[cases[0]]
         for case in cases:
             rest = ""
             if case[0]:
-                rest = " | ".join(f"{middle(of[case], what):.{n}f}"
-                                  for what, n in (("moves", 0), ("again", 0), ("supervisor_cpu", 2)))
-            lines.append(f"| {label(case)} | {middle(of[case], 'by_wall'):.2f} | {ratio(of[case], base, 'by_wall'):.2f} | "
-                         f"{middle(of[case], 'by_cpu'):.2f} | {ratio(of[case], base, 'by_cpu'):.2f} | {rest or ' | | '} |")
+                rest = " | ".join(
+                    f"{middle(of[case], what):.{n}f}" for what, n in (("moves", 0), ("again", 0), ("supervisor_cpu", 2))
+                )
+            lines.append(
+                f"| {label(case)} | {middle(of[case], 'by_wall'):.2f} | {ratio(of[case], base, 'by_wall'):.2f} | "
+                f"{middle(of[case], 'by_cpu'):.2f} | {ratio(of[case], base, 'by_cpu'):.2f} | {rest or ' | | '} |"
+            )
         lines.append("")
     return "\n".join(lines)
 
@@ -190,8 +210,9 @@ def draw(runs: dict, path: Path, note: str) -> None:
             count = sorted(k for k, c in of if c == control)
             for what, style, told in (("by_wall", "s:", "wall"), ("by_cpu", "o-", "busiest processor")):
                 ratios = [[r[what] / b[what] for r, b in zip(of[k, control], base)] for k in count]
-                axes.plot(count, [statistics.median(r) for r in ratios], style, color=color, markersize=5,
-                          label=f"{control}, {told}")
+                axes.plot(
+                    count, [statistics.median(r) for r in ratios], style, color=color, markersize=5, label=f"{control}, {told}"
+                )
                 if what == "by_cpu":
                     axes.vlines(count, [min(r) for r in ratios], [max(r) for r in ratios], color=color, linewidth=0.8)
         axes.set(title=name, xlabel="executors", ylabel="frames per second over one process", ylim=(0.0, None))
@@ -207,12 +228,17 @@ def run(options) -> None:
     cases = [(0, ""), *((k, control) for k in options.executors for control in COLORS)]
     load_before = os.getloadavg()[0]
     runs, known = rounds_of(["crowd", "hail"], cases, options.rounds, options.frames)
-    note = (f"{os.cpu_count()} cores, {options.rounds} rounds, load of the machine {load_before:.1f} before "
-            f"and {os.getloadavg()[0]:.1f} after")
+    note = (
+        f"{os.cpu_count()} cores, {options.rounds} rounds, load of the machine {load_before:.1f} before "
+        f"and {os.getloadavg()[0]:.1f} after"
+    )
     print(table(runs, known, cases))
     print(note)
-    data = {"note": note, "known": known,
-            "runs": {name: {f"{k} {c}".strip(): r for (k, c), r in of.items()} for name, of in runs.items()}}
+    data = {
+        "note": note,
+        "known": known,
+        "runs": {name: {f"{k} {c}".strip(): r for (k, c), r in of.items()} for name, of in runs.items()},
+    }
     options.json.write_text(json.dumps(data, indent=1) + "\n")
     plot(options)
 
@@ -220,8 +246,9 @@ def run(options) -> None:
 def plot(options) -> None:
     """The picture of scaling.json."""
     data = json.loads(options.json.read_text())
-    runs = {name: {(int(case.split()[0]), case.partition(" ")[2]): r for case, r in of.items()}
-            for name, of in data["runs"].items()}
+    runs = {
+        name: {(int(case.split()[0]), case.partition(" ")[2]): r for case, r in of.items()} for name, of in data["runs"].items()
+    }
     draw(runs, options.plot, data["note"])
     print(f"{options.json}   {options.plot}")
 
@@ -240,6 +267,7 @@ def goals(options) -> None:
 
 # --- model ------------------------------------------------------------------------------------------------------------
 
+
 def model(options) -> None:
     """t_frame = max(work/K imbalance + plan + exchange + moves, supervisor): terms measured, then carried on to 10^3 ranks.
 
@@ -249,8 +277,10 @@ def model(options) -> None:
     data = json.loads(options.json.read_text())
     cost = fit(data)
     print("\n".join(f"{name:<12} {value:.3g} {unit}" for name, (value, unit) in cost.items()))
-    print("\n| particles | executors | work/K, balanced | imbalance | plan, exchange | moves | supervisor | frame [s] | "
-          "times as fast | bound by | were it not for the supervisor |\n|---|---|---|---|---|---|---|---|---|---|---|")
+    print(
+        "\n| particles | executors | work/K, balanced | imbalance | plan, exchange | moves | supervisor | frame [s] | "
+        "times as fast | bound by | were it not for the supervisor |\n|---|---|---|---|---|---|---|---|---|---|---|"
+    )
     for objects, size in ((1_000, 1_000), (10_000, 1_000), (100_000, 1_000)):
         for executors in (1, 16, 128, 1_024):
             if objects < 4 * executors:
@@ -265,11 +295,15 @@ def fit(data: dict) -> dict:
     hail, crowd = (data["runs"][name] for name in ("hail", "crowd"))
     known = data["known"]
     work = statistics.median(r["cpu"] / r["frames"] / known["hail"]["particles"] for r in hail["0"])
-    distributed = {name: [(int(case.split()[0]), r) for case, runs in of.items() if case != "0" for r in runs]
-                   for name, of in (("hail", hail), ("crowd", crowd))}
+    distributed = {
+        name: [(int(case.split()[0]), r) for case, runs in of.items() if case != "0" for r in runs]
+        for name, of in (("hail", hail), ("crowd", crowd))
+    }
     # Of the supervisor: so much for a frame, so much for a particle in it.
-    seen = {name: (known[name]["particles"], statistics.median(r["supervisor_cpu"] / r["frames"] for _, r in runs))
-            for name, runs in distributed.items()}
+    seen = {
+        name: (known[name]["particles"], statistics.median(r["supervisor_cpu"] / r["frames"] for _, r in runs))
+        for name, runs in distributed.items()
+    }
     per_particle = (seen["hail"][1] - seen["crowd"][1]) / (seen["hail"][0] - seen["crowd"][0])
     per_frame = max(0.0, seen["crowd"][1] - per_particle * seen["crowd"][0])
     moving = statistics.median(r["spent"][1] * k / r["moves"] for k, r in distributed["crowd"] if r["moves"])
@@ -282,8 +316,10 @@ def fit(data: dict) -> dict:
         "per_frame": (per_frame, "s of the supervisor per frame, besides"),
         "moved": (moving, "s of executors for an object that moves, with instances built anew (crowd, wall time)"),
         "order": (seconds / 10_000, "s to pack and unpack an order, per object (central: once for each executor)"),
-        "memory": (len(pickle.dumps(scene.plan)) / scene.system.particles + 72,
-                   "bytes of every executor per particle of the scene"),
+        "memory": (
+            len(pickle.dumps(scene.plan)) / scene.system.particles + 72,
+            "bytes of every executor per particle of the scene",
+        ),
         "latency": (LATENCY, "s for a message between hosts (assumed)"),
         "wire": (1.0 / BANDWIDTH, "s per byte between hosts (assumed)"),
     }
@@ -342,10 +378,12 @@ def row(objects: int, size: int, executors: int, cost: dict) -> str:
     frame = max(mine, supervisor)
     terms = {"work": work * imbalance, f"exchange ({control})": exchange[control], "moves": moves}
     bound = "supervisor" if supervisor > mine else max(terms, key=terms.get)
-    return (f"| {particles:,} | {executors:,} | ".replace(",", " ")
-            + f"{work:.3g} | {imbalance:.2f} | {exchange[control]:.2g} | {moves:.2g} | {supervisor:.2g} "
-            + f"| {frame:.3g} | {cost['work'] * particles / frame:.3g} | {bound} | "
-            f"{cost['work'] * particles / mine:.3g} |")
+    return (
+        f"| {particles:,} | {executors:,} | ".replace(",", " ")
+        + f"{work:.3g} | {imbalance:.2f} | {exchange[control]:.2g} | {moves:.2g} | {supervisor:.2g} "
+        + f"| {frame:.3g} | {cost['work'] * particles / frame:.3g} | {bound} | "
+        f"{cost['work'] * particles / mine:.3g} |"
+    )
 
 
 def main() -> None:

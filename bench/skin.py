@@ -9,12 +9,11 @@ import sys
 import time
 from pathlib import Path
 
-from timing import interleaved, markdown
-
 from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine import commands
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.scene.parse import load_scene
+from timing import interleaved, markdown
 
 SKINS = (0.5, 0.75, 1.0, 1.5, 2.0)
 """Over the spacing."""
@@ -49,8 +48,12 @@ def times(scene: Path) -> list:
 
 def main() -> None:
     scenes = [Path(a) for a in sys.argv[1:]] or SCENES
-    print(markdown(["scene", "particles", f"ns per particle-step, skin {commands.SKIN}", *(f"time with {s}" for s in SKINS)],
-                   map(times, scenes)))
+    print(
+        markdown(
+            ["scene", "particles", f"ns per particle-step, skin {commands.SKIN}", *(f"time with {s}" for s in SKINS)],
+            map(times, scenes),
+        )
+    )
 
 
 if __name__ == "__main__":

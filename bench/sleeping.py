@@ -13,7 +13,6 @@ import sys
 import time
 
 import numpy as np
-
 from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.commands import physics
 from mdanim_lammps.engine.instance import Instance
@@ -37,11 +36,15 @@ control {{
 }}
 effects {{ {off} }}
 """
-STONE = ("object stone {{ shape box (18, 18, 18) cm position (0.68, 0, 50) m density 1000 elasticity 1 MPa "
-         "velocity (-0.01, 0, -{v}) {drag} }}")
-HEAP = ("repeat i in 0 .. 9 {{ repeat j in 0 .. 9 {{ object b[10*i + j] {{ shape box (3, 3, 3) cm "
-        "position (1 + 0.3*i, 0.3*j, 50) m "
-        "density 1000 elasticity 1 MPa velocity (-0.01, 0, -{v}) }} }} }}")
+STONE = (
+    "object stone {{ shape box (18, 18, 18) cm position (0.68, 0, 50) m density 1000 elasticity 1 MPa "
+    "velocity (-0.01, 0, -{v}) {drag} }}"
+)
+HEAP = (
+    "repeat i in 0 .. 9 {{ repeat j in 0 .. 9 {{ object b[10*i + j] {{ shape box (3, 3, 3) cm "
+    "position (1 + 0.3*i, 0.3*j, 50) m "
+    "density 1000 elasticity 1 MPa velocity (-0.01, 0, -{v}) }} }} }}"
+)
 SEA = "liquid water {{ basin from (-20, -20, 0) cm to (20, 20, 40) cm density 1000 level 20 cm drag {drag} model {model} }}"
 WET = "liquid off basin off"
 CASES = {
@@ -119,9 +122,11 @@ def main(seconds: float = 60.0) -> None:
     for name, case in CASES.items():
         middle, low, high, bare, pairs = measure(case, seconds)
         sure = " *" if low > 1.0 else ""
-        print(f"| {name} | {1e9 * bare:.1f} | {100 * (middle - 1):+.2f} %{sure} "
-              f"| {100 * (low - 1):+.2f} to {100 * (high - 1):+.2f} % | {pairs} |",
-              flush=True)
+        print(
+            f"| {name} | {1e9 * bare:.1f} | {100 * (middle - 1):+.2f} %{sure} "
+            f"| {100 * (low - 1):+.2f} to {100 * (high - 1):+.2f} % | {pairs} |",
+            flush=True,
+        )
 
 
 if __name__ == "__main__":

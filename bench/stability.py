@@ -63,9 +63,7 @@ def tunnelling(long: bool) -> tuple[str, bool]:
     from contacts import PASSES_AT, PLATE_PASSES_AT, plate_tunnelling_speed, tunnelling_speed
 
     lines = [
-        "| two of, or block on | "
-        + " | ".join(f"displaced by ({x:g}, {y:g}) h" for x, y in OFFSETS)
-        + " | least | taken as |",
+        "| two of, or block on | " + " | ".join(f"displaced by ({x:g}, {y:g}) h" for x, y in OFFSETS) + " | least | taken as |",
         "|---" * (len(OFFSETS) + 3) + "|",
     ]
     good = True
@@ -75,9 +73,7 @@ def tunnelling(long: bool) -> tuple[str, bool]:
             speeds = [speed(cells, offset) for offset in OFFSETS]
             good &= min(speeds) >= taken - 1e-9
             lines.append(
-                f"| {kind}, {cells} cells | "
-                + " | ".join(f"{s:.2f}" for s in speeds)
-                + f" | {min(speeds):.2f} | {taken:g} |"
+                f"| {kind}, {cells} cells | " + " | ".join(f"{s:.2f}" for s in speeds) + f" | {min(speeds):.2f} | {taken:g} |"
             )
     return "\n".join(lines), good
 

@@ -26,9 +26,12 @@ SCENES = {
     "cube of 30^3": f"object a {{ shape box (29, 29, 29) cm position (0, 0, 0) {SOLID} }}",
     "cube of 60^3": f"object a {{ shape box (59, 59, 59) cm position (0, 0, 0) {SOLID} }}",
     "sphere of 27 000": f"object a {{ shape sphere 18 cm position (0, 0, 0) {SOLID} }}",
-    "27 blocks of 10^3": "".join(f"object b{x}{y}{z} {{ shape box (9, 9, 9) cm "
-                                 f"position ({12 * x}, {12 * y}, {12 * z}) cm {SOLID} }}\n"
-                                 for x in range(3) for y in range(3) for z in range(3)),
+    "27 blocks of 10^3": "".join(
+        f"object b{x}{y}{z} {{ shape box (9, 9, 9) cm position ({12 * x}, {12 * y}, {12 * z}) cm {SOLID} }}\n"
+        for x in range(3)
+        for y in range(3)
+        for z in range(3)
+    ),
 }
 """Numbers are of particles."""
 WIDTHS = ("avx512", "avx2", "common")
@@ -73,8 +76,16 @@ def stock(plan, tuned: bool, openmp: bool) -> Iterator[Callable[[int], None]]:
             if openmp:
                 lmp.commands_list(["package omp 1", "suffix omp"])
             lmp.commands_list([*lines, f"read_data {path} fix model NULL Model"])
-        lmp.commands_list(["mass * 1.0", "fix gravity all gravity 9.81 vector 0 0 -1", "fix drag all viscous 1e-9",
-                           "fix nve all nve", f"timestep {plan.certificate.timestep!r}", "run 0 post no"])
+        lmp.commands_list(
+            [
+                "mass * 1.0",
+                "fix gravity all gravity 9.81 vector 0 0 -1",
+                "fix drag all viscous 1e-9",
+                "fix nve all nve",
+                f"timestep {plan.certificate.timestep!r}",
+                "run 0 post no",
+            ]
+        )
         yield lambda steps: lmp.command(f"run {steps} pre no post no")
     finally:
         lmp.close()
@@ -120,16 +131,19 @@ def measure(text: str, rounds: int) -> dict:
 def main(rounds: int = ROUNDS, scenes: tuple[str, ...] = tuple(SCENES)) -> dict[str, dict]:
     """Measure, print a table in Markdown, and return the figures by scene."""
     results = {}
-    print("| scene | contender | ns per particle-step: median, minimum | times as fast as stock: by medians, minima |\n"
-          "|---|---|---|---|")
+    print(
+        "| scene | contender | ns per particle-step: median, minimum | times as fast as stock: by medians, minima |\n"
+        "|---|---|---|---|"
+    )
     for scene in scenes:
         found = results[scene] = measure(SCENES[scene], rounds)
         base = [f(found["ns"][STOCK]) for f in (statistics.median, min)]
         title = f"{scene}: {found['particles']} particles, {found['springs']} springs"
         for name, values in found["ns"].items():
             own = [f(values) for f in (statistics.median, min)]
-            print(f"| {title} | {name} | {own[0]:.1f}, {own[1]:.1f} | {base[0] / own[0]:.2f}, {base[1] / own[1]:.2f} |",
-                  flush=True)
+            print(
+                f"| {title} | {name} | {own[0]:.1f}, {own[1]:.1f} | {base[0] / own[0]:.2f}, {base[1] / own[1]:.2f} |", flush=True
+            )
             title = ""
     return results
 

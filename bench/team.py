@@ -17,11 +17,10 @@ from timing import markdown
 
 def frames_of(scene: Path, frames: int) -> None:
     """On every rank: run, and print what rank 0 knows of all, as JSON."""
-    from mpi4py import MPI
-
     from mdanim_lammps.driver.prepare import prepare
     from mdanim_lammps.engine.instance import Instance
     from mdanim_lammps.scene.parse import load_scene
+    from mpi4py import MPI
 
     world, plan = MPI.COMM_WORLD, prepare(load_scene(scene)).plan
     cpu, wall = [], []
@@ -43,8 +42,12 @@ def frames_of(scene: Path, frames: int) -> None:
 def measured(scene: Path, ranks: int, frames: int) -> dict[str, float]:
     """The same in a fresh start of MPI."""
     mpiexec = Path(sys.executable).parent / "mpiexec"
-    done = subprocess.run([mpiexec, "-n", str(ranks), sys.executable, "-m", "mpi4py", __file__, "--rank", scene, str(frames)],
-                          check=True, capture_output=True, text=True)
+    done = subprocess.run(
+        [mpiexec, "-n", str(ranks), sys.executable, "-m", "mpi4py", __file__, "--rank", scene, str(frames)],
+        check=True,
+        capture_output=True,
+        text=True,
+    )
     return json.loads(next(line for line in done.stdout.splitlines() if line.startswith("found ")).removeprefix("found "))
 
 
@@ -58,9 +61,23 @@ def main(scene: Path, ranks: int = 2, frames: int = 40, rounds: int = 3) -> None
     def middle(n: int, what: str) -> float:
         return statistics.median(run[what] for run in found[n])
 
-    print(markdown(["scene", "particles", "ranks", "ms of a frame, processor", "times as fast", "wall", "times as fast"],
-                   [[scene.stem, found[n][0]["particles"], n, middle(n, "cpu"), middle(1, "cpu") / middle(n, "cpu"),
-                     middle(n, "wall"), middle(1, "wall") / middle(n, "wall")] for n in found]))
+    print(
+        markdown(
+            ["scene", "particles", "ranks", "ms of a frame, processor", "times as fast", "wall", "times as fast"],
+            [
+                [
+                    scene.stem,
+                    found[n][0]["particles"],
+                    n,
+                    middle(n, "cpu"),
+                    middle(1, "cpu") / middle(n, "cpu"),
+                    middle(n, "wall"),
+                    middle(1, "wall") / middle(n, "wall"),
+                ]
+                for n in found
+            ],
+        )
+    )
 
 
 if __name__ == "__main__":

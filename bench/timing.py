@@ -51,10 +51,12 @@ def interleaved(variants: dict[str, Callable[[], float]], rounds: int) -> dict[s
 
 def markdown(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """A table; numbers with three digits that count."""
+
     def cell(value: object) -> str:
         if isinstance(value, float):
             return f"{value:.3g}" if abs(value) < 1000.0 else f"{value:,.0f}"
         return f"{value:,}" if isinstance(value, int) else str(value)
+
     lines = [head, ["---"] * len(head), *([cell(v) for v in row] for row in rows)]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 

@@ -24,6 +24,7 @@ def scenes() -> Path:
 @pytest.fixture
 def prepared(tmp_path):
     """Make a prepared scene from text."""
+
     def make(text: str, name: str = "small"):
         from mdanim_lammps.driver.prepare import prepare
         from mdanim_lammps.scene.parse import load_scene
@@ -31,4 +32,5 @@ def prepared(tmp_path):
         path = tmp_path / f"{name}.txt"
         path.write_text(text, encoding="utf-8")
         return prepare(load_scene(path))
+
     return make

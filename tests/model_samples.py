@@ -4,12 +4,9 @@
 from pathlib import Path
 
 import numpy as np
-
 from mdanim_lammps.errors import Span
 from mdanim_lammps.model import build_models
-from mdanim_lammps.scene.scene import (
-    Box, Cone, Control, Cylinder, Ellipsoid, Mesh, Scene, Solid, Sphere, Torus, Young,
-)
+from mdanim_lammps.scene.scene import Box, Cone, Control, Cylinder, Ellipsoid, Mesh, Scene, Solid, Sphere, Torus, Young
 
 MESHES = Path(__file__).parent / "meshes"
 UPRIGHT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -42,8 +39,7 @@ def scene(*solids, ground=None, walls=None, liquid=None, **control) -> Scene:
     """A scene of these solids."""
     spans = {"resolution": Span("test.txt", 9, 3)}
     return Scene(
-        name="test", control=Control(time=1.0, spans=spans, **control), solids=solids,
-        ground=ground, walls=walls, liquid=liquid,
+        name="test", control=Control(time=1.0, spans=spans, **control), solids=solids, ground=ground, walls=walls, liquid=liquid
     )
 
 

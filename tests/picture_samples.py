@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import numpy as np
-
 from mdanim_lammps.model.basin import plan_grid
 from mdanim_lammps.model.model import Layer, Model, Surface
 from mdanim_lammps.model.springs import types
@@ -20,9 +19,7 @@ def lattice(size, cells, inside=None):
     n = cells + 1
     grid = np.stack(np.meshgrid(*(np.arange(k) for k in n), indexing="ij"), axis=-1).transpose(2, 1, 0, 3)
     points = grid.reshape(-1, 3) / cells * size - np.array(size) / 2
-    corner = np.array(
-        [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
-    )
+    corner = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)])
     low = np.stack(np.meshgrid(*(np.arange(k) for k in cells), indexing="ij"), axis=-1).reshape(-1, 3)
     hexahedron = ((low[:, None] + corner) @ [1, n[0], n[0] * n[1]]).astype(np.int32)
     if inside is not None:
@@ -44,9 +41,7 @@ def outer_quads(hexahedron):
 def model(name, points, hexahedron, position, surface, held=None, mass=1.0):
     """A model of the given lattice; springs along cell edges only, enough for a trajectory."""
     n = len(points)
-    edges = hexahedron[
-        :, [(0, 1), (1, 2), (3, 2), (0, 3), (4, 5), (5, 6), (7, 6), (4, 7), (0, 4), (1, 5), (2, 6), (3, 7)]
-    ]
+    edges = hexahedron[:, [(0, 1), (1, 2), (3, 2), (0, 3), (4, 5), (5, 6), (7, 6), (4, 7), (0, 4), (1, 5), (2, 6), (3, 7)]]
     spring = np.unique(np.sort(edges.reshape(-1, 2), axis=1), axis=0).astype(np.int32)
     share = np.bincount(hexahedron.ravel(), minlength=n) / 8
     layer = np.where(share < 1, Layer.BOUNDARY, Layer.SUB_BOUNDARY).astype(np.uint8)
@@ -88,9 +83,7 @@ def ball(name, radius, spacing, position, rings=24, **options):
     import pyvista as pv
 
     half = int(np.ceil(radius / spacing))
-    points, hexahedron = lattice(
-        (2 * half * spacing,) * 3, (2 * half,) * 3, lambda p: np.linalg.norm(p, axis=-1) < radius
-    )
+    points, hexahedron = lattice((2 * half * spacing,) * 3, (2 * half,) * 3, lambda p: np.linalg.norm(p, axis=-1) < radius)
     skin = pv.Sphere(radius=radius, theta_resolution=2 * rings, phi_resolution=rings)
     vertices, triangle = np.array(skin.points, float), skin.faces.reshape(-1, 4)[:, 1:].astype(np.int32)
     centre = points[hexahedron].mean(axis=1)
@@ -115,9 +108,7 @@ def ball(name, radius, spacing, position, rings=24, **options):
 
 def solid(m, position, color=None):
     """The scene record of a model; its shape is of no concern to pictures."""
-    return records.Solid(
-        m.name, records.Sphere(1.0), position, IDENTITY, records.Young(1e5), mass=1.0, color=color
-    )
+    return records.Solid(m.name, records.Sphere(1.0), position, IDENTITY, records.Young(1e5), mass=1.0, color=color)
 
 
 def slab_scene(**control):
@@ -176,10 +167,7 @@ def falling(models, frames, dt=0.1, floor=0.3, g=9.81):
 
 def pool_scene(models=None, spacing=0.05, color=None, **control):
     """A basin half full of water and, unless others are given, a crate and a ball above it; and the grid."""
-    models = models or [
-        box("crate", (0.4, 0.4, 0.3), (4, 4, 3), (-0.35, 0.1, 0.45)),
-        ball("ball", 0.16, 0.08, (0.45, -0.3, 0.2)),
-    ]
+    models = models or [box("crate", (0.4, 0.4, 0.3), (4, 4, 3), (-0.35, 0.1, 0.45)), ball("ball", 0.16, 0.08, (0.45, -0.3, 0.2))]
     liquid = records.Liquid("water", (-1.0, -0.7, 0.0), (1.0, 0.7, 1.0), 1000.0, volume=1.4, color=color)
     scene = records.Scene(
         name="pool",

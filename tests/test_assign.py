@@ -5,10 +5,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from twin import islands as twin
-
 from mdanim_lammps.driver.assign import assign
 from mdanim_lammps.driver.teams import Team
+from twin import islands as twin
 
 
 def draw(seed, objects, executors, islands=None, spread=1.0):
@@ -26,8 +25,12 @@ def loads(label, cost, owner, executors):
 
 
 @settings(max_examples=200, deadline=None)
-@given(seed=st.integers(0, 2**32 - 1), objects=st.integers(1, 80), executors=st.integers(1, 9),
-       spread=st.sampled_from([0.0, 1.0, 2.0]))
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    objects=st.integers(1, 80),
+    executors=st.integers(1, 9),
+    spread=st.sampled_from([0.0, 1.0, 2.0]),
+)
 def test_islands_are_whole(seed, objects, executors, spread):
     """Put every island on one executor, leave what is still where it was, tell the loads, and do the same again for the same."""
     label, cost, owner = draw(seed, objects, executors, spread=spread)
@@ -42,8 +45,12 @@ def test_islands_are_whole(seed, objects, executors, spread):
 
 
 @settings(max_examples=200, deadline=None)
-@given(seed=st.integers(0, 2**32 - 1), objects=st.integers(1, 300), executors=st.integers(1, 9),
-       spread=st.sampled_from([0.0, 1.0, 2.0]))
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    objects=st.integers(1, 300),
+    executors=st.integers(1, 9),
+    spread=st.sampled_from([0.0, 1.0, 2.0]),
+)
 def test_loads_are_in_balance(seed, objects, executors, spread):
     """Keep the busiest within a tenth of the mean, or of the largest island, if islands are small; else in a packing's bound."""
     label, cost, owner = draw(seed, objects, executors, spread=spread)
@@ -81,8 +88,12 @@ def test_moves_are_few_on_average():
 
 
 @settings(max_examples=150, deadline=None)
-@given(seed=st.integers(0, 2**32 - 1), objects=st.integers(1, 80), executors=st.integers(1, 9),
-       spread=st.sampled_from([0.0, 1.0, 2.0]))
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    objects=st.integers(1, 80),
+    executors=st.integers(1, 9),
+    spread=st.sampled_from([0.0, 1.0, 2.0]),
+)
 def test_nothing_moves_when_nothing_changes(seed, objects, executors, spread):
     """Find nothing to do where the last call has been, nor when all costs change by a few percent alike."""
     label, cost, owner = draw(seed, objects, executors, spread=spread)
@@ -111,19 +122,22 @@ def test_names_of_executors_do_not_matter_in_balance(seed, objects, executors):
     assert np.array_equal(found.owner, renamed)
 
 
-@pytest.mark.parametrize(("label", "cost", "owner", "executors", "expected"), [
-    pytest.param([0, 0, 0], [10, 10, 15], [0, 0, 1], 2, [0, 0, 0], id="an island goes to whom has most of it"),
-    pytest.param([0, 0], [10, 10], [1, 0], 2, [0, 0], id="of equals, the lowest"),
-    pytest.param([0, 0], [30, 10], [-1, 1], 2, [1, 1], id="who has some of it, though nobody has most"),
-    pytest.param([0, 1, 2], [50, 50, 8], [0, 1, 1], 2, [0, 1, 1], id="a little above the mean: stay"),
-    pytest.param([0, 1, 2], [50, 50, 20], [0, 1, 1], 2, [0, 1, 1], id="uneven, but no other way is better"),
-    pytest.param([0, 1, 2, 3], [50, 30, 20, 5], [1, 1, 1, 0], 2, [1, 0, 0, 0], id="the largest stays"),
-    pytest.param([0, 1, 2, 3, 4], [10, 10, 10, 10, 1], [0, 0, 0, 0, 1], 2, [0, 0, 1, 1, 1], id="not more goes than has to"),
-    pytest.param([0, 1, 2], [99, 5, 5], [0, 0, 1], 3, [0, 0, 1], id="within a tenth of the largest island"),
-    pytest.param([0, 1, 2, 3, 4], [30, 30, 20, 20, 20], [0, 1, 0, 1, 1], 2, [0, 0, 1, 1, 1], id="large ones are packed anew"),
-    pytest.param([-1, 0, -1], [99, 5, 99], [2, 0, -1], 3, [2, 0, -1], id="what is still stays, and costs nothing"),
-    pytest.param([0, 1, 2], [0, 0, 0], [-1, -1, -1], 3, [0, 1, 2], id="nobody's, and no cost known yet"),
-])
+@pytest.mark.parametrize(
+    ("label", "cost", "owner", "executors", "expected"),
+    [
+        pytest.param([0, 0, 0], [10, 10, 15], [0, 0, 1], 2, [0, 0, 0], id="an island goes to whom has most of it"),
+        pytest.param([0, 0], [10, 10], [1, 0], 2, [0, 0], id="of equals, the lowest"),
+        pytest.param([0, 0], [30, 10], [-1, 1], 2, [1, 1], id="who has some of it, though nobody has most"),
+        pytest.param([0, 1, 2], [50, 50, 8], [0, 1, 1], 2, [0, 1, 1], id="a little above the mean: stay"),
+        pytest.param([0, 1, 2], [50, 50, 20], [0, 1, 1], 2, [0, 1, 1], id="uneven, but no other way is better"),
+        pytest.param([0, 1, 2, 3], [50, 30, 20, 5], [1, 1, 1, 0], 2, [1, 0, 0, 0], id="the largest stays"),
+        pytest.param([0, 1, 2, 3, 4], [10, 10, 10, 10, 1], [0, 0, 0, 0, 1], 2, [0, 0, 1, 1, 1], id="not more goes than has to"),
+        pytest.param([0, 1, 2], [99, 5, 5], [0, 0, 1], 3, [0, 0, 1], id="within a tenth of the largest island"),
+        pytest.param([0, 1, 2, 3, 4], [30, 30, 20, 20, 20], [0, 1, 0, 1, 1], 2, [0, 0, 1, 1, 1], id="large ones are packed anew"),
+        pytest.param([-1, 0, -1], [99, 5, 99], [2, 0, -1], 3, [2, 0, -1], id="what is still stays, and costs nothing"),
+        pytest.param([0, 1, 2], [0, 0, 0], [-1, -1, -1], 3, [0, 1, 2], id="nobody's, and no cost known yet"),
+    ],
+)
 def test_by_hand(label, cost, owner, executors, expected):
     """Decide as one would by hand."""
     found = assign(np.array(label), np.array(cost), np.array(owner), executors)
@@ -157,6 +171,7 @@ def test_what_cannot_be(cost, owner):
 
 # --- teams --------------------------------------------------------------------------------------------------
 
+
 def heavy(cost, owner, executors, teams=(), particles=None, **more):
     """Assign islands of one object each, 10 particles for every µs."""
     cost = np.array(cost)
@@ -164,16 +179,19 @@ def heavy(cost, owner, executors, teams=(), particles=None, **more):
     return assign(np.arange(len(cost)), cost, np.array(owner), executors, particles=particles, teams=teams, **more)
 
 
-@pytest.mark.parametrize(("cost", "owner", "executors", "sizes", "load"), [
-    pytest.param([8000], [1], 2, [2], [5000, 5000], id="alone: all take part, at 1.6"),
-    pytest.param([8000], [1], 4, [4], [2857] * 4, id="four at 2.8"),
-    pytest.param([5000, 5000], [0, 0], 2, [], [5000, 5000], id="as many as executors: no team"),
-    pytest.param([6000, 4400], [0, 1], 2, [], [6000, 4400], id="not worth it"),
-    pytest.param([1590], [0], 4, [3], [0, 722, 722, 722], id="only as many as have enough particles"),
-    pytest.param([790], [0], 2, [], [0, 790], id="too few particles for two"),
-    pytest.param([6100, 4100], [3, 0], 4, [2, 2], [3812, 3812, 2562, 2562], id="no more members than there are executors"),
-    pytest.param([9000, 9000, 100], [0, 0, 1], 4, [2, 2], [5625, 5625, 5625, 5625], id="two teams of two"),
-])
+@pytest.mark.parametrize(
+    ("cost", "owner", "executors", "sizes", "load"),
+    [
+        pytest.param([8000], [1], 2, [2], [5000, 5000], id="alone: all take part, at 1.6"),
+        pytest.param([8000], [1], 4, [4], [2857] * 4, id="four at 2.8"),
+        pytest.param([5000, 5000], [0, 0], 2, [], [5000, 5000], id="as many as executors: no team"),
+        pytest.param([6000, 4400], [0, 1], 2, [], [6000, 4400], id="not worth it"),
+        pytest.param([1590], [0], 4, [3], [0, 722, 722, 722], id="only as many as have enough particles"),
+        pytest.param([790], [0], 2, [], [0, 790], id="too few particles for two"),
+        pytest.param([6100, 4100], [3, 0], 4, [2, 2], [3812, 3812, 2562, 2562], id="no more members than there are executors"),
+        pytest.param([9000, 9000, 100], [0, 0, 1], 4, [2, 2], [5625, 5625, 5625, 5625], id="two teams of two"),
+    ],
+)
 def test_teams(cost, owner, executors, sizes, load):
     """Form teams of the right size; each has its members to itself and is led by who has the island, if that is free."""
     found = heavy(cost, owner, executors)
@@ -186,8 +204,9 @@ def test_teams(cost, owner, executors, sizes, load):
 
 
 @settings(max_examples=150, deadline=None)
-@given(seed=st.integers(0, 2**32 - 1), islands=st.integers(1, 25), executors=st.integers(2, 8),
-       gain=st.sampled_from([40, 60, 80]))
+@given(
+    seed=st.integers(0, 2**32 - 1), islands=st.integers(1, 25), executors=st.integers(2, 8), gain=st.sampled_from([40, 60, 80])
+)
 def test_teams_are_disjoint_spare_time_and_stay(seed, islands, executors, gain):
     """Form teams only where that spares a twentieth; the busiest is within a packing's bound; they stay when nothing changes."""
     rng = np.random.default_rng(seed)

@@ -54,9 +54,7 @@ def test_stock_style_gives_the_same_forces_energy_and_virial(tmp_path, shuffled)
         )
         total = [lmp.numpy.extract_compute("total", 0, 1), lmp.numpy.extract_compute("p", 0, 1)]
         per_atom = [lmp.numpy.extract_compute("u", 1, 1), *lmp.numpy.extract_compute("s", 1, 2).T]
-        found.append(
-            [lab.by_tag(lmp, "f").ravel(), [lmp.get_thermo("ebond")], *map(np.copy, total + per_atom)]
-        )
+        found.append([lab.by_tag(lmp, "f").ravel(), [lmp.get_thermo("ebond")], *map(np.copy, total + per_atom)])
         lmp.close()
     for stock, ours in zip(*found):
         # Same terms, another order: a few roundings of the largest of them.
@@ -111,13 +109,7 @@ def test_bonds_cut_between_runs_are_noticed(tmp_path):
     lmp = lab.load(
         BODY,
         tmp_path,
-        [
-            "fix run all mdanim/leapfrog",
-            "run 0",
-            "group second molecule 2",
-            "delete_bonds second multi remove",
-            "run 0",
-        ],
+        ["fix run all mdanim/leapfrog", "run 0", "group second molecule 2", "delete_bonds second multi remove", "run 0"],
     )
     force = lab.by_tag(lmp, "f")
     assert np.all(force[BODY.molecule == 2] == 0.0)
@@ -159,10 +151,7 @@ def test_internal_forces_cancel_and_momentum_stays(tmp_path):
 def test_two_particles_in_one_place_feel_no_spring(tmp_path):
     """A spring of length zero has no direction: force zero, no NaN."""
     pair = replace(
-        lab.particles([[0.0, 0, 0], [0.0, 0, 0]], molecule=[1, 1]),
-        bond=np.array([[0, 1]]),
-        k=np.array([1.0]),
-        r0=np.array([1.0]),
+        lab.particles([[0.0, 0, 0], [0.0, 0, 0]], molecule=[1, 1]), bond=np.array([[0, 1]]), k=np.array([1.0]), r0=np.array([1.0])
     )
     lmp = lab.load(pair, tmp_path, ["fix run all mdanim/leapfrog", "run 0"], c=0.5)
     assert np.all(lab.by_tag(lmp, "f") == 0.0)
@@ -182,8 +171,9 @@ def dashpot_loss(lmp) -> float:
 
 def missing(tmp_path, dt: float, commands=()) -> tuple[float, float]:
     """Energy that goes missing from t = 2 to t = 20, and what dashpots say to have taken then, both over the first."""
-    lmp = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog", f"timestep {dt!r}", "thermo_style custom step pe",
-                                    *commands], c=0.1)
+    lmp = lab.load(
+        BODY, tmp_path, ["fix run all mdanim/leapfrog", f"timestep {dt!r}", "thermo_style custom step pe", *commands], c=0.1
+    )
     # Not from t = 0: the forces of a setup see whole-step velocities, which is another motion for half a step.
     energy, lost = zip(*((lab.conserved(lmp, BODY, dt, round(t / dt)), dashpot_loss(lmp)) for t in (2.0, 18.0)))
     lmp.close()
@@ -242,13 +232,7 @@ def test_single_restart_and_data_file_keep_the_coefficients(tmp_path):
         other = plugin_path.lammps()
         for command in ["fix model all property/atom rmass"] if "read_restart" in read[-1] else []:
             read = [*read, command]
-        for command in [
-            *read,
-            "pair_style none",
-            "comm_modify cutoff 3",
-            "fix run all mdanim/leapfrog",
-            "run 0",
-        ]:
+        for command in [*read, "pair_style none", "comm_modify cutoff 3", "fix run all mdanim/leapfrog", "run 0"]:
             other.command(command)
         again = lab.by_tag(other, "f")
         other.close()
@@ -266,12 +250,7 @@ def test_single_restart_and_data_file_keep_the_coefficients(tmp_path):
         pytest.param(["bond_coeff 1 -1.0 1.0"], {}, "K must be >= 0, got -1.0", id="negative K"),
         pytest.param(["bond_coeff 1 1.0 -2"], {}, "r0 must be >= 0, got -2", id="negative rest length"),
         pytest.param(["bond_coeff 1 1.0 1.0 -3"], {}, "c must be >= 0, got -3", id="negative dashpot"),
-        pytest.param(
-            ["bond_coeff 1 1.0 1.0 1.0 1.0"],
-            {},
-            "coefficients are K r0 [c], got 4 words",
-            id="too many words",
-        ),
+        pytest.param(["bond_coeff 1 1.0 1.0 1.0 1.0"], {}, "coefficients are K r0 [c], got 4 words", id="too many words"),
         pytest.param(
             [
                 "thermo_modify lost/bond ignore",

@@ -2,7 +2,6 @@
 """Which LAMMPS instances a plan wants of an executor."""
 
 import numpy as np
-
 from mdanim_lammps.driver.bundle import wanted_bundles
 from mdanim_lammps.driver.planning import FramePlan
 from mdanim_lammps.driver.teams import Team

@@ -8,14 +8,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from twin.lattice import CORNER
-
 from mdanim_lammps.certificate import fit_steps, margin_lines
 from mdanim_lammps.driver.run import simulate
 from mdanim_lammps.effects import EFFECTS
 from mdanim_lammps.effects.contact import plane_stiffness
 from mdanim_lammps.engine.commands import physics
 from mdanim_lammps.errors import DivergedError, RefusedError, SceneError
+from twin.lattice import CORNER
 
 BOX = """
 object a {{
@@ -71,8 +70,9 @@ def test_corner_of_a_cube_sets_the_bound(prepared):
 
 def test_stiffest_object_binds(prepared):
     """Name the object that is 1000 times stiffer."""
-    text = box().replace("control", "object b {\n shape box (4, 4, 4) cm\n position (1, 0, 0) m\n density 1000\n"
-                         " elasticity 100 MPa\n}\ncontrol")
+    text = box().replace(
+        "control", "object b {\n shape box (4, 4, 4) cm\n position (1, 0, 0) m\n density 1000\n elasticity 100 MPa\n}\ncontrol"
+    )
     c = prepared(text).certificate
     assert c.object == "b"
     assert c.span.text.strip() == "elasticity 100 MPa"
@@ -81,8 +81,9 @@ def test_stiffest_object_binds(prepared):
 def test_contact_shortens_the_step(prepared):
     """Include the barrier once there are two objects that may meet."""
     alone = prepared(box()).certificate.bound
-    text = box().replace("control", "object b {\n shape box (4, 4, 4) cm\n position (5, 0, 0) cm\n density 1000\n"
-                         " elasticity 100 kPa\n}\ncontrol")
+    text = box().replace(
+        "control", "object b {\n shape box (4, 4, 4) cm\n position (5, 0, 0) cm\n density 1000\n elasticity 100 kPa\n}\ncontrol"
+    )
     together = prepared(text).certificate.bound
     # Corner: 6.9 E/rho h^2 from springs, 2 * 1.61 * 0.4 * 8 from the barrier (docs/physics-contact.md).
     assert together == pytest.approx(alone * math.sqrt(CORNER / (CORNER + 2 * plane_stiffness(1.6) * 0.4 * 8)), rel=1e-3)
@@ -91,8 +92,9 @@ def test_contact_shortens_the_step(prepared):
 @pytest.mark.parametrize("factor", [0.1, 4, 100])
 def test_stiffer_contact_shortens_the_step_more(prepared, factor):
     """Scale the barrier's part of the bound, and that of the ground, with what the scene says, by --set too."""
-    two = box().replace("control", "object b {\n shape box (4, 4, 4) cm\n position (5, 0, 0) cm\n density 1000\n"
-                        " elasticity 100 kPa\n}\ncontrol")
+    two = box().replace(
+        "control", "object b {\n shape box (4, 4, 4) cm\n position (5, 0, 0) cm\n density 1000\n elasticity 100 kPa\n}\ncontrol"
+    )
     told = two.replace("time 1 s", f"time 1 s\n contact-stiffness {factor}")
     assert told != two
     usual, c = prepared(two).certificate, prepared(told).certificate
@@ -133,13 +135,16 @@ def scene(time, frames=30.0):
     return SimpleNamespace(control=SimpleNamespace(time=time, frames=frames, spans={}))
 
 
-@pytest.mark.parametrize(("time", "frames", "longest", "expected"), [
-    pytest.param(3.0, 30.0, 1e-3, (34, 90, 0), id="whole frames"),
-    pytest.param(3.0, 30.0, 1 / 30, (1, 90, 0), id="step as long as a frame"),
-    pytest.param(3.01, 30.0, 1e-3, (40, 90, 12), id="last frame shorter: a multiple of ten steps per frame"),
-    pytest.param(0.01, 30.0, 1e-3, (40, 0, 12), id="shorter than one frame"),
-    pytest.param(1.0, 30.0, math.inf, (1, 30, 0), id="nothing vibrates"),
-])
+@pytest.mark.parametrize(
+    ("time", "frames", "longest", "expected"),
+    [
+        pytest.param(3.0, 30.0, 1e-3, (34, 90, 0), id="whole frames"),
+        pytest.param(3.0, 30.0, 1 / 30, (1, 90, 0), id="step as long as a frame"),
+        pytest.param(3.01, 30.0, 1e-3, (40, 90, 12), id="last frame shorter: a multiple of ten steps per frame"),
+        pytest.param(0.01, 30.0, 1e-3, (40, 0, 12), id="shorter than one frame"),
+        pytest.param(1.0, 30.0, math.inf, (1, 30, 0), id="nothing vibrates"),
+    ],
+)
 def test_fit_steps(time, frames, longest, expected):
     """Meet frames and end with one time step."""
     per_frame, whole, last = fit_steps(scene(time, frames), longest)
@@ -155,15 +160,20 @@ def test_a_time_that_fits_no_step_is_a_problem():
         fit_steps(scene(math.sqrt(3.0)), 1e-2)
 
 
-@pytest.mark.parametrize(("young", "height", "warned"), [
-    pytest.param("100 kPa", 0.6, True, id="soft ball from 60 cm: 0.29 of the wave speed"),
-    pytest.param("1 MPa", 0.6, False, id="stiffer"),
-    pytest.param("100 kPa", 0.12, False, id="lower"),
-])
+@pytest.mark.parametrize(
+    ("young", "height", "warned"),
+    [
+        pytest.param("100 kPa", 0.6, True, id="soft ball from 60 cm: 0.29 of the wave speed"),
+        pytest.param("1 MPa", 0.6, False, id="stiffer"),
+        pytest.param("100 kPa", 0.12, False, id="lower"),
+    ],
+)
 def test_a_landing_that_is_too_hard_is_told(prepared, young, height, warned):
     """Warn when a fall ends at more than 0.2 of the wave speed, with an elasticity that will do."""
-    text = (f"gravity (0, 0, -9.81)\nground z 0\nobject ball {{\n shape sphere 0.1\n position (0, 0, {height})\n density 1000\n"
-            f" elasticity {young}\n}}\ncontrol {{ time 1 s }}")
+    text = (
+        f"gravity (0, 0, -9.81)\nground z 0\nobject ball {{\n shape sphere 0.1\n position (0, 0, {height})\n density 1000\n"
+        f" elasticity {young}\n}}\ncontrol {{ time 1 s }}"
+    )
     found = [w for w in prepared(text).warnings if "crumpled" in w.message]
     assert bool(found) == warned
     if warned:
@@ -184,17 +194,20 @@ control {{ time 0.8 s  frames 100 fps  resolution {h} cm }}
 """Hits the ground at 0.15 of the wave speed with 360 kPa."""
 
 
-@pytest.mark.parametrize(("shape", "h", "young", "extra", "limit"), [
-    pytest.param("sphere 0.12", 3, 360, "", 0.5 * (12 / 280)**0.45, id="8 cells: its lowest twelve fold"),
-    pytest.param("sphere 0.12", 4, 400, "", 0.2, id="6 cells: 21 of 117 bear the blow"),
-    pytest.param("sphere 0.12", 4, 215, "", 0.2, id="6 cells, nearly too fast for any lattice"),
-    pytest.param("sphere 0.087", 3, 360, "", 0.5 * (4 / 88)**0.45, id="5.6 cells: 4 of 88 bear it"),
-    pytest.param("sphere 0.12", 8, 360, "", 0.2, id="3 cells"),
-    pytest.param("sphere 0.12", 3, 700, "", 0.5 * (12 / 280)**0.45, id="stiffer, so slower for its waves"),
-    pytest.param("sphere 0.12", 3, 360, "damping 0.2", 0.5 * (12 / 280)**0.45, id="damped: no help"),
-    pytest.param("ellipsoid (0.12, 0.12, 0.24)", 4, 360, "", 0.5 * (4 / 224)**0.45, id="pointed"),
-    pytest.param("box (0.24, 0.24, 0.24)", 3, 360, "", 0.2, id="flat"),
-])
+@pytest.mark.parametrize(
+    ("shape", "h", "young", "extra", "limit"),
+    [
+        pytest.param("sphere 0.12", 3, 360, "", 0.5 * (12 / 280) ** 0.45, id="8 cells: its lowest twelve fold"),
+        pytest.param("sphere 0.12", 4, 400, "", 0.2, id="6 cells: 21 of 117 bear the blow"),
+        pytest.param("sphere 0.12", 4, 215, "", 0.2, id="6 cells, nearly too fast for any lattice"),
+        pytest.param("sphere 0.087", 3, 360, "", 0.5 * (4 / 88) ** 0.45, id="5.6 cells: 4 of 88 bear it"),
+        pytest.param("sphere 0.12", 8, 360, "", 0.2, id="3 cells"),
+        pytest.param("sphere 0.12", 3, 700, "", 0.5 * (12 / 280) ** 0.45, id="stiffer, so slower for its waves"),
+        pytest.param("sphere 0.12", 3, 360, "damping 0.2", 0.5 * (12 / 280) ** 0.45, id="damped: no help"),
+        pytest.param("ellipsoid (0.12, 0.12, 0.24)", 4, 360, "", 0.5 * (4 / 224) ** 0.45, id="pointed"),
+        pytest.param("box (0.24, 0.24, 0.24)", 3, 360, "", 0.2, id="flat"),
+    ],
+)
 def test_a_round_body_of_many_cells_folds_up_sooner(prepared, tmp_path, shape, h, young, extra, limit):
     """Warn of exactly the landings after which the guard finds cells inside out, with a cure that cures."""
     ready = prepared(BALL.format(shape=shape, h=h, young=young, extra=extra))
@@ -254,11 +267,14 @@ def test_buoyancy_is_a_spring_to_the_surface(prepared):
     assert soft.bound == pytest.approx(2.0 / math.sqrt(springs + 4 * 9.81 / 0.05), rel=1e-12)
 
 
-@pytest.mark.parametrize(("gamma", "drag", "told"), [
-    pytest.param(4, "", "", id="weak"),
-    pytest.param(4000, "", "liquid drag is strong", id="liquid"),
-    pytest.param(600, "drag 5000", "air drag and liquid drag is strong", id="strong together"),
-])
+@pytest.mark.parametrize(
+    ("gamma", "drag", "told"),
+    [
+        pytest.param(4, "", "", id="weak"),
+        pytest.param(4000, "", "liquid drag is strong", id="liquid"),
+        pytest.param(600, "drag 5000", "air drag and liquid drag is strong", id="strong together"),
+    ],
+)
 def test_strong_drag_of_the_liquid_is_told(prepared, gamma, drag, told):
     """Count gamma rho_l V_i with the drag of air, and take the exponential form where phi is above 0.5."""
     ready = prepared(pool(liquid=f"drag {gamma}").replace("density 500", f"density 500\n  {drag}"))
@@ -270,14 +286,23 @@ def test_strong_drag_of_the_liquid_is_told(prepared, gamma, drag, told):
         assert f"phi = {most:.2g}" in found[0].message
 
 
-@pytest.mark.parametrize(("density", "height", "level", "more", "speed"), [
-    pytest.param(500, 1.1, 0.01, "", 4.41, id="light, shallow: to the floor"),
-    pytest.param(500, 1.1, 0.5, "", None, id="light, deep: never reaches the floor"),
-    pytest.param(2000, 1.6, 0.5, "", 4.95, id="heavy: down to the floor, with half its weight in the liquid"),
-    pytest.param(2000, 1.6, 0.5, "effects { buoyancy off }", 5.42, id="no buoyancy: as through air"),
-    pytest.param(500, 1.6, 0.2, "object raft { shape box (20, 20, 20) cm position (0.3, 0.3, 0.1) density 900 elasticity 1 MPa }",
-                 5.06, id="light, with another floating: to the surface"),
-])
+@pytest.mark.parametrize(
+    ("density", "height", "level", "more", "speed"),
+    [
+        pytest.param(500, 1.1, 0.01, "", 4.41, id="light, shallow: to the floor"),
+        pytest.param(500, 1.1, 0.5, "", None, id="light, deep: never reaches the floor"),
+        pytest.param(2000, 1.6, 0.5, "", 4.95, id="heavy: down to the floor, with half its weight in the liquid"),
+        pytest.param(2000, 1.6, 0.5, "effects { buoyancy off }", 5.42, id="no buoyancy: as through air"),
+        pytest.param(
+            500,
+            1.6,
+            0.2,
+            "object raft { shape box (20, 20, 20) cm position (0.3, 0.3, 0.1) density 900 elasticity 1 MPa }",
+            5.06,
+            id="light, with another floating: to the surface",
+        ),
+    ],
+)
 def test_a_liquid_breaks_a_fall(prepared, density, height, level, more, speed):
     """Count a fall through air down to the surface, and from there what the liquid leaves of the weight."""
     found = [w for w in prepared(pool(density, height, 20, level, more=more)).warnings if "crumpled" in w.message]
@@ -288,6 +313,7 @@ def test_a_liquid_breaks_a_fall(prepared, density, height, level, more, speed):
 
 
 # --- margins --------------------------------------------------------------------------------------------------------
+
 
 def margin(certificate, name, object=None):
     """The margin of this name, of this object where there are several."""
@@ -343,17 +369,20 @@ def test_a_step_near_the_bound_is_told(prepared, fraction, severity, tmp_path):
     from mdanim_lammps.scene.parse import load_scene
 
     bound = prepared(box()).certificate.bound
-    (tmp_path / "near.txt").write_text(box(
-        control=f"timestep {fraction * bound!r} s\n frames {1 / (fraction * bound)!r} fps\n time {100 * fraction * bound!r} s")
-                                       .replace("  time 1 s\n", ""))
+    (tmp_path / "near.txt").write_text(
+        box(
+            control=f"timestep {fraction * bound!r} s\n frames {1 / (fraction * bound)!r} fps\n time {100 * fraction * bound!r} s"
+        ).replace("  time 1 s\n", "")
+    )
     ready = prepare(load_scene(tmp_path / "near.txt"), allow_unstable=True)
     found = margin(ready.certificate, "time step")
     assert found.used == pytest.approx(fraction, rel=1e-9) and found.severity == severity
     assert [w.message.startswith("the time step") for w in ready.warnings] == [True] * (severity != "ok")
 
 
-@pytest.mark.parametrize(("accuracy", "fraction"),
-                         [("preview", 0.7), ("balanced", 0.5), ("reference", 0.25), ('"error 2 %"', 0.5)])
+@pytest.mark.parametrize(
+    ("accuracy", "fraction"), [("preview", 0.7), ("balanced", 0.5), ("reference", 0.25), ('"error 2 %"', 0.5)]
+)
 def test_accuracy_chooses_the_fraction(prepared, accuracy, fraction):
     """Take the accuracy's part of the bound; a target error counts as balanced."""
     c = prepared(box(control=f"accuracy {accuracy}\n frames 1000 fps")).certificate
@@ -361,12 +390,15 @@ def test_accuracy_chooses_the_fraction(prepared, accuracy, fraction):
     assert c.fraction <= fraction * (1 + 1e-12) < c.fraction * c.steps_per_frame / (c.steps_per_frame - 1)
 
 
-@pytest.mark.parametrize(("text", "stress"), [
-    pytest.param(pile(), 1000 * 10 * 0.1 + 2000 * 10 * 0.2, id="all of what stands on it"),
-    pytest.param(pile(x=5), 1000 * 10 * 0.1 + 2000 * 10 * 0.1, id="half of it is over it"),
-    pytest.param(pile(x=11), 1000 * 10 * 0.1, id="beside it"),
-    pytest.param(pile(wide=20), 1000 * 10 * 0.1 + 2000 * 10 * 0.2, id="what is over it of a wider one"),
-])
+@pytest.mark.parametrize(
+    ("text", "stress"),
+    [
+        pytest.param(pile(), 1000 * 10 * 0.1 + 2000 * 10 * 0.2, id="all of what stands on it"),
+        pytest.param(pile(x=5), 1000 * 10 * 0.1 + 2000 * 10 * 0.1, id="half of it is over it"),
+        pytest.param(pile(x=11), 1000 * 10 * 0.1, id="beside it"),
+        pytest.param(pile(wide=20), 1000 * 10 * 0.1 + 2000 * 10 * 0.2, id="what is over it of a wider one"),
+    ],
+)
 def test_load_counts_what_stands_above(prepared, text, stress):
     """rho g H of the object and of the part of others over it, against 0.2 E."""
     c = prepared(text.replace("400 kPa", "40 MPa")).certificate  # so that the foot is the one that is nearest to its limit
@@ -399,12 +431,15 @@ def test_a_thin_part_is_told(prepared, thick, cells, severity):
     assert found.value == pytest.approx(cells, rel=1e-6) and found.severity == severity
 
 
-@pytest.mark.parametrize(("top", "high", "speed", "limit", "severity"), [
-    pytest.param("velocity (0, 0, -8)", 10, 8.0, 0.8, "ok", id="as fast as allowed almost"),
-    pytest.param("velocity (0, 0, -20)", 10, 20.0, 0.8, "warning", id="faster"),
-    pytest.param("velocity (3, 0, -4)", 2.5, 5.0, 0.5, "ok", id="a sheet: less is allowed"),
-    pytest.param("velocity (0, 0, -12)", 2.5, 12.0, 0.5, "warning", id="a sheet, faster"),
-])
+@pytest.mark.parametrize(
+    ("top", "high", "speed", "limit", "severity"),
+    [
+        pytest.param("velocity (0, 0, -8)", 10, 8.0, 0.8, "ok", id="as fast as allowed almost"),
+        pytest.param("velocity (0, 0, -20)", 10, 20.0, 0.8, "warning", id="faster"),
+        pytest.param("velocity (3, 0, -4)", 2.5, 5.0, 0.5, "ok", id="a sheet: less is allowed"),
+        pytest.param("velocity (0, 0, -12)", 2.5, 12.0, 0.5, "warning", id="a sheet, faster"),
+    ],
+)
 def test_closing_speed_is_compared_with_tunnelling(prepared, top, high, speed, limit, severity):
     """Start and fall of two objects that may meet, against what the softer and thinner of them stops."""
     c = prepared(pile(top=top, high=high, z=10.5 + high / 2)).certificate
@@ -478,8 +513,11 @@ def test_margin_lines_tell_what_is_passed_and_sum_up_the_rest(prepared):
 
 def test_a_crowd_does_not_fill_the_certificate(prepared):
     """Tell the hundred smallest bounds."""
-    text = box().replace("object a {", "repeat i in 0 .. 119 {\n object a[i] {").replace("position (0, 0, 0) m",
-                                                                                         "position (i, 0, 0) m")
+    text = (
+        box()
+        .replace("object a {", "repeat i in 0 .. 119 {\n object a[i] {")
+        .replace("position (0, 0, 0) m", "position (i, 0, 0) m")
+    )
     text = text.replace("elasticity 100 kPa\n  \n}", "elasticity (100 + i) * 1 kPa\n}\n}")
     bounds = [m for m in prepared(text).certificate.margins if m.name == "time step"]
     assert len(bounds) == 100 and bounds[0].object == "a[119]"

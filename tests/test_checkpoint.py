@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.results import checkpoint
 from mdanim_lammps.results.checkpoint import Checkpoint

@@ -28,16 +28,19 @@ control {
 
 def run(*arguments, cwd=None):
     """Run the program as a user would."""
-    return subprocess.run([sys.executable, "-m", "mdanim_lammps", *map(str, arguments)], capture_output=True, text=True, cwd=cwd,
-                          timeout=200)
+    return subprocess.run(
+        [sys.executable, "-m", "mdanim_lammps", *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=200
+    )
 
 
 @pytest.fixture
 def scene(tmp_path):
     """Make a scene file."""
+
     def make(text=GOOD, name="cube.txt"):
         (tmp_path / name).write_text(text)
         return tmp_path / name
+
     return make
 
 
@@ -75,7 +78,8 @@ def test_effects_are_told_in_short_lines(scene, scenes):
         "scene    cube.txt  1 object (27 particles)",
         "         effects: springs, gravity, ground",
         "         off: damping (no object has damping), contact (one object), walls (no walls in the scene),",
-        "              basin, liquid, buoyancy, liquid-drag (no liquid in the scene), air-drag (no object has drag)"]
+        "              basin, liquid, buoyancy, liquid-drag (no liquid in the scene), air-drag (no object has drag)",
+    ]
     for name in ("crowd", "float"):
         lines = run("check", scenes / f"{name}.txt").stdout.split("certify")[0].splitlines()
         assert max(map(len, lines)) <= 110
@@ -106,12 +110,18 @@ def test_the_command_that_build_tells_runs(scene, tmp_path):
     path = scene()
     bare = {"PATH": "/usr/bin:/bin"}
     for env in (bare, {"PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin"}):
-        built = subprocess.run([sys.executable, "-m", "mdanim_lammps", "build", path, "--force"], capture_output=True, text=True,
-                               env=os.environ | env, timeout=100)
+        built = subprocess.run(
+            [sys.executable, "-m", "mdanim_lammps", "build", path, "--force"],
+            capture_output=True,
+            text=True,
+            env=os.environ | env,
+            timeout=100,
+        )
         command = built.stdout.splitlines()[-1].removeprefix("built ")
         assert (" lmp " in command) == (env is not bare), command
-        done = subprocess.run(command, shell=True, capture_output=True, text=True, env=plugin_path.environment() | env,
-                              timeout=100)
+        done = subprocess.run(
+            command, shell=True, capture_output=True, text=True, env=plugin_path.environment() | env, timeout=100
+        )
         assert done.returncode == 0 and "Total wall time" in done.stdout, done.stdout + done.stderr
 
 
@@ -127,34 +137,48 @@ def test_compare_and_render_use_an_output_folder(scene):
     assert run("compare", folder, path.parent / "b.out").returncode == 0
 
 
-@pytest.mark.parametrize(("arguments", "code", "words"), [
-    pytest.param(["chekc", "cube.txt"], 2, ["did you mean 'check'"], id="mistyped command"),
-    pytest.param(["cube.txt", "--frobnicate"], 2, ["frobnicate"], id="unknown option"),
-    pytest.param(["missing.txt"], 3, ["missing.txt"], id="no such scene"),
-    pytest.param(["bad.txt"], 3, ["bad.txt:7:14: error", "'kgg'", "did you mean", "^"], id="scene error"),
-    pytest.param(["check", "liquid.txt"], 3, ["cube is 4 cm below the floor of the basin", "move it up by 4 cm",
-                                              "2 cells wide along x"], id="basin"),
-    pytest.param(["check", "alone.txt"], 3, ["no object", "hold all"], id="liquid alone"),
-    pytest.param(["check", "dry.txt"], 3, ["liquid.level needs the liquid, which is off", "switch the liquid on"],
-                 id="liquid off"),
-    pytest.param(["fast.txt"], 4, ["certified bound", "cube", "timestep auto"], id="step above the bound"),
-    pytest.param(["cube.txt", "-n", "0"], 2, ["-n 0", "at least one"], id="no executor"),
-    pytest.param(["study", "cube.txt", "--budget", "soon"], 2, ["--budget soon", "expected a time above 0"], id="study"),
-    pytest.param(["render", "nowhere.out", "--size", "0", "0"], 2, ["between 2 and 8192"], id="no size"),
-    pytest.param(["render", "nowhere.out", "--fps", "-3"], 2, ["--fps -3", "above 0"], id="no rate"),
-    pytest.param(["resume", "nowhere.out"], 7, ["error: nowhere.out does not exist; name the folder"], id="nothing to resume"),
-    pytest.param(["render", "."], 7, ["error: . has no run in it; name the folder"], id="nothing to draw"),
-    pytest.param(["render", "cube.txt"], 7, ["cube.txt is a file, not the output folder"], id="a scene in place of its folder"),
-    pytest.param(["cube.txt", "--set", "nonsense"], 2, ["NAME=VALUE"], id="set without value"),
-    pytest.param(["wrong.txt", "--no-movie"], 6, ["MISSED"], id="missed expectation"),
-])
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        pytest.param(["chekc", "cube.txt"], 2, ["did you mean 'check'"], id="mistyped command"),
+        pytest.param(["cube.txt", "--frobnicate"], 2, ["frobnicate"], id="unknown option"),
+        pytest.param(["missing.txt"], 3, ["missing.txt"], id="no such scene"),
+        pytest.param(["bad.txt"], 3, ["bad.txt:7:14: error", "'kgg'", "did you mean", "^"], id="scene error"),
+        pytest.param(
+            ["check", "liquid.txt"],
+            3,
+            ["cube is 4 cm below the floor of the basin", "move it up by 4 cm", "2 cells wide along x"],
+            id="basin",
+        ),
+        pytest.param(["check", "alone.txt"], 3, ["no object", "hold all"], id="liquid alone"),
+        pytest.param(
+            ["check", "dry.txt"], 3, ["liquid.level needs the liquid, which is off", "switch the liquid on"], id="liquid off"
+        ),
+        pytest.param(["fast.txt"], 4, ["certified bound", "cube", "timestep auto"], id="step above the bound"),
+        pytest.param(["cube.txt", "-n", "0"], 2, ["-n 0", "at least one"], id="no executor"),
+        pytest.param(["study", "cube.txt", "--budget", "soon"], 2, ["--budget soon", "expected a time above 0"], id="study"),
+        pytest.param(["render", "nowhere.out", "--size", "0", "0"], 2, ["between 2 and 8192"], id="no size"),
+        pytest.param(["render", "nowhere.out", "--fps", "-3"], 2, ["--fps -3", "above 0"], id="no rate"),
+        pytest.param(
+            ["resume", "nowhere.out"], 7, ["error: nowhere.out does not exist; name the folder"], id="nothing to resume"
+        ),
+        pytest.param(["render", "."], 7, ["error: . has no run in it; name the folder"], id="nothing to draw"),
+        pytest.param(
+            ["render", "cube.txt"], 7, ["cube.txt is a file, not the output folder"], id="a scene in place of its folder"
+        ),
+        pytest.param(["cube.txt", "--set", "nonsense"], 2, ["NAME=VALUE"], id="set without value"),
+        pytest.param(["wrong.txt", "--no-movie"], 6, ["MISSED"], id="missed expectation"),
+    ],
+)
 def test_exit_codes(scene, arguments, code, words):
     """End with the documented code and a message that says how to go on; never with a traceback."""
     directory = scene().parent
     scene(GOOD.replace("density 1000 kg/m^3", "mass   1.5 kgg"), "bad.txt")
     water = "liquid water {\n basin from (-1, -1, 0) m to (1, 1, 1) m\n density 1000 kg/m^3\n level 0.5 m\n}\n"
-    scene(GOOD + water.replace("(-1, -1, 0) m to (1, 1, 1)", "(-4, -20, 5) cm to (4, 20, 80)").replace(") m\n d", ") cm\n d"),
-          "liquid.txt")
+    scene(
+        GOOD + water.replace("(-1, -1, 0) m to (1, 1, 1)", "(-4, -20, 5) cm to (4, 20, 80)").replace(") m\n d", ") cm\n d"),
+        "liquid.txt",
+    )
     scene("gravity (0, 0, -9.81)\ncontrol { time 1 s }\n" + water, "alone.txt")
     scene(GOOD + water + "effects { liquid off }\nexpect liquid.level = 0.5 m +- 1 cm\n", "dry.txt")
     scene(GOOD.replace("time 0.1 s", "time 0.1 s\n  timestep 1 s"), "fast.txt")
@@ -196,10 +220,12 @@ def test_help_lists_every_command():
 
 def test_check_is_quick(scenes):
     """Import neither pyvista nor MDAnalysis to check a scene of boxes."""
-    code = ("import sys; from mdanim_lammps.cli import main\n"
-            f"try: main(['check', {str(scenes / 'beam.txt')!r}])\n"
-            "except SystemExit: pass\n"
-            "dear = {'pyvista', 'vtk', 'MDAnalysis', 'vtkmodules', 'h5py', 'lammps'}\n"
-            "print(sorted({m.split('.')[0] for m in sys.modules} & dear))")
+    code = (
+        "import sys; from mdanim_lammps.cli import main\n"
+        f"try: main(['check', {str(scenes / 'beam.txt')!r}])\n"
+        "except SystemExit: pass\n"
+        "dear = {'pyvista', 'vtk', 'MDAnalysis', 'vtkmodules', 'h5py', 'lammps'}\n"
+        "print(sorted({m.split('.')[0] for m in sys.modules} & dear))"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.splitlines()[-1] == "[]", done.stdout

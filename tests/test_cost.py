@@ -8,7 +8,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-
 from mdanim_lammps.driver import calibration as calibrating
 from mdanim_lammps.driver.calibration import RATES, calibration, stored_at
 from mdanim_lammps.driver.forecast import fastest, forecast, rebuilds
@@ -66,6 +65,7 @@ def pond(tmp_path_factory):
 
 # --- what it cost -------------------------------------------------------------------------------------------
 
+
 def test_parts_add_up_to_the_wall_time(pond):
     """Leave less than a twentieth of the wall time, from the first word of the scene to the last frame, to nobody."""
     cost = pond[1].cost
@@ -89,8 +89,12 @@ def test_no_second_is_counted_twice(pond):
     """Share the clocks of springs, leap-frog and coupling among all that run under them."""
     ready, _ = pond
     instance = SimpleNamespace(
-        plan=ready.plan, bond_seconds=lambda: 100.0, fix_seconds=lambda fix: 10.0 if fix == "leapfrog" else 0.0,
-        fix_value=lambda fix, k: {7: 1.0, 8: 2.0, 9: 4.0}[k], array=lambda name: ready.plan.columns["lambda"])
+        plan=ready.plan,
+        bond_seconds=lambda: 100.0,
+        fix_seconds=lambda fix: 10.0 if fix == "leapfrog" else 0.0,
+        fix_value=lambda fix, k: {7: 1.0, 8: 2.0, 9: 4.0}[k],
+        array=lambda name: ready.plan.columns["lambda"],
+    )
     clocks = {e.name: e.clocks(instance) for e in EFFECTS}
     account = Account()
     add_clocks(account, instance)
@@ -121,6 +125,7 @@ def test_cost_line_has_the_largest_first():
 
 
 # --- what it will cost --------------------------------------------------------------------------------------
+
 
 def test_a_forecast_has_the_parts_of_a_cost(pond):
     """Name the same effects and lines as the run does, and work of the same names, with the same steps and particles."""
@@ -183,8 +188,10 @@ def test_some_of_many_springs_tell_of_all(monkeypatch):
 
 def test_speeds_come_from_falls(prepared):
     """Take the fall to the ground for the speed that rebuilds lists, and the mean of the free flight where there is none."""
-    text = ("gravity (0, 0, -9.81)\n{}\nobject a {{ shape box (0.1, 0.1, 0.1) position (0, 0, 1.05) mass 1 elasticity 1e6 }}\n"
-            "control {{ time 1 }}\n")
+    text = (
+        "gravity (0, 0, -9.81)\n{}\nobject a {{ shape box (0.1, 0.1, 0.1) position (0, 0, 1.05) mass 1 elasticity 1e6 }}\n"
+        "control {{ time 1 }}\n"
+    )
     assert fastest(prepared(text.format("ground z 0"))) == pytest.approx(2.5 * (2 * 9.81) ** 0.5)
     assert fastest(prepared(text.format(""))) == pytest.approx(0.5 * 9.81, rel=1e-3)
 
@@ -199,6 +206,7 @@ def test_forecast_is_printed(pond):
 
 
 # --- calibration --------------------------------------------------------------------------------------------
+
 
 @pytest.fixture
 def machine(monkeypatch, tmp_path):
@@ -227,17 +235,20 @@ def test_a_machine_is_calibrated_once(machine):
     assert json.loads(stored_at().read_text())["processor"] == calibrating.processor()
 
 
-@pytest.mark.parametrize("spoil", [
-    pytest.param(lambda d: "{ not json", id="broken"),
-    pytest.param(lambda d: json.dumps(d | {"processor": "another"}), id="of another processor"),
-    pytest.param(lambda d: json.dumps(d | {"skin": 0.75}), id="with another skin of lists"),
-    pytest.param(lambda d: json.dumps(d | {"method": calibrating.METHOD - 1}), id="measured in another way"),
-    pytest.param(lambda d: json.dumps({k: d[k] for k in ("processor", "rates")}), id="of a time when none of this was kept"),
-    pytest.param(lambda d: json.dumps(d | {"rates": {"spring": 1e-9}}), id="a rate is missing"),
-    pytest.param(lambda d: json.dumps(d | {"rates": d["rates"] | {"spring": 0.0}}), id="a rate is nothing"),
-    pytest.param(lambda d: json.dumps(d | {"rates": d["rates"] | {"spring": float("nan")}}), id="a rate is no number"),
-    pytest.param(lambda d: json.dumps([1, 2]), id="something else"),
-])
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        pytest.param(lambda d: "{ not json", id="broken"),
+        pytest.param(lambda d: json.dumps(d | {"processor": "another"}), id="of another processor"),
+        pytest.param(lambda d: json.dumps(d | {"skin": 0.75}), id="with another skin of lists"),
+        pytest.param(lambda d: json.dumps(d | {"method": calibrating.METHOD - 1}), id="measured in another way"),
+        pytest.param(lambda d: json.dumps({k: d[k] for k in ("processor", "rates")}), id="of a time when none of this was kept"),
+        pytest.param(lambda d: json.dumps(d | {"rates": {"spring": 1e-9}}), id="a rate is missing"),
+        pytest.param(lambda d: json.dumps(d | {"rates": d["rates"] | {"spring": 0.0}}), id="a rate is nothing"),
+        pytest.param(lambda d: json.dumps(d | {"rates": d["rates"] | {"spring": float("nan")}}), id="a rate is no number"),
+        pytest.param(lambda d: json.dumps([1, 2]), id="something else"),
+    ],
+)
 def test_a_file_that_will_not_do_is_measured_again(machine, spoil):
     """Replace what is broken or foreign."""
     machine.ask()

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
 from mdanim_lammps.effects import EFFECTS, decide
 from mdanim_lammps.effects.contact import plane_stiffness
 from mdanim_lammps.effects.liquid import lattice_cells
@@ -40,8 +39,19 @@ liquid w {
 control { time 1 }
 """
 BARE = "object a {\n shape sphere 0.1\n position (0, 0, 0)\n mass 1\n elasticity 1e5\n}\ncontrol { time 1 }\n"
-LINES = {"springs": 8, "damping": 9, "gravity": 1, "contact": 12, "ground": 2, "walls": 3, "air-drag": 10, "basin": 19,
-         "liquid": 18, "buoyancy": 4, "liquid-drag": 4}
+LINES = {
+    "springs": 8,
+    "damping": 9,
+    "gravity": 1,
+    "contact": 12,
+    "ground": 2,
+    "walls": 3,
+    "air-drag": 10,
+    "basin": 19,
+    "liquid": 18,
+    "buoyancy": 4,
+    "liquid-drag": 4,
+}
 
 
 def verdicts(text):
@@ -59,8 +69,9 @@ def test_each_effect_is_called_for_by_its_line(effect):
 @pytest.mark.parametrize("effect", ["contact", "ground", "walls"])
 def test_what_pushes_back_tells_an_unusual_stiffness(effect):
     """Show contact-stiffness beside what it changes, and only where it is not 1."""
-    usual, told = (verdicts(re.sub(r"control \{", f"control {{ contact-stiffness {f}\n", FULL))[0][effect].reason
-                   for f in ("1", "2.5"))
+    usual, told = (
+        verdicts(re.sub(r"control \{", f"control {{ contact-stiffness {f}\n", FULL))[0][effect].reason for f in ("1", "2.5")
+    )
     assert told == usual + ", 2.5 times as stiff as usual"
 
 
@@ -86,9 +97,7 @@ def test_a_needless_effect_cannot_be_switched_on():
     assert not found["ground"].on and "no ground" in warnings[0].message
 
 
-@pytest.mark.parametrize("text", [
-    pytest.param(BARE.replace("mass 1\n", "mass 1\n hold all\n"), id="one held object"),
-])
+@pytest.mark.parametrize("text", [pytest.param(BARE.replace("mass 1\n", "mass 1\n hold all\n"), id="one held object")])
 def test_held_objects_need_no_springs(text):
     """Leave springs out when nothing can deform."""
     assert not verdicts(text)[0]["springs"].on
@@ -163,11 +172,14 @@ def test_the_liquid_in_lammps_terms(prepared):
         "fix liquid all mdanim/liquid liquid 1000.0 grid 20 16 12 level 0.25 gravity 9.81 cells i2_cell still held "
         "sweeps auto every 4 stride 0.25 period 0.06 seed 3",
     ]
-    fill, fix = commands(prepared(pool(
-        "volume 10 l\n fill from (0, 0, 0.1) m to (0.3, 0.8, 0.6) m\n model paper\n sweeps 7\n drag 2")), "liquid")[2:]
+    fill, fix = commands(
+        prepared(pool("volume 10 l\n fill from (0, 0, 0.1) m to (0.3, 0.8, 0.6) m\n model paper\n sweeps 7\n drag 2")), "liquid"
+    )[2:]
     assert fill == "region fill block 0.0 0.3 0.0 0.8 0.1 0.6"
-    assert fix == ("fix liquid all mdanim/liquid liquid 1000.0 grid 20 16 12 volume 0.01 fill fill gravity 9.81 model paper "
-                   "still held sweeps 7 every 4 stride 0.25 period 0.06 seed 3")
+    assert fix == (
+        "fix liquid all mdanim/liquid liquid 1000.0 grid 20 16 12 volume 0.01 fill fill gravity 9.81 model paper "
+        "still held sweeps 7 every 4 stride 0.25 period 0.06 seed 3"
+    )
 
 
 def test_the_paper_needs_no_lattice_cells(prepared):
@@ -253,8 +265,12 @@ TRACES = {
 """Words of the built files that stand there for one effect alone."""
 FIXES = {"gravity", "contact", "ground", "walls", "basin", "liquid"}
 """Effects that are a fix of this name."""
-TAKES_ALONG = {"springs": {"damping"}, "gravity": {"liquid", "buoyancy", "liquid-drag"},
-               "liquid": {"buoyancy", "liquid-drag"}, "buoyancy": {"liquid-drag"}}
+TAKES_ALONG = {
+    "springs": {"damping"},
+    "gravity": {"liquid", "buoyancy", "liquid-drag"},
+    "liquid": {"buoyancy", "liquid-drag"},
+    "buoyancy": {"liquid-drag"},
+}
 """Effects that cannot be without another."""
 
 
@@ -300,14 +316,20 @@ def test_a_scene_of_nothing_is_nothing(prepared):
     assert live_fixes(ready) == set()
     assert not ready.plan.columns and not ready.plan.tables
     lines = [line for line in written(ready).splitlines() if line.startswith(("fix ", "group ", "region ", "fix_modify "))]
-    assert lines == ["fix model all property/atom rmass ghost yes", "group mobile type 1:4",
-                     "fix leapfrog mobile mdanim/leapfrog", "fix balance all balance 1000 1.1 rcb"]
+    assert lines == [
+        "fix model all property/atom rmass ghost yes",
+        "group mobile type 1:4",
+        "fix leapfrog mobile mdanim/leapfrog",
+        "fix balance all balance 1000 1.1 rcb",
+    ]
 
 
 def test_contact_that_cannot_be_leaves_nothing(prepared):
     """Leave no barrier to two objects that fall side by side."""
-    apart = prepared("gravity (0, 0, -9.81)\n" + "".join(
-        f"object o{k} {{ shape box (0.1, 0.1, 0.1) position ({k}, 0, 1) mass 1 elasticity 1e6 }}\n" for k in range(2))
-        + "control { time 0.1 }\n")
+    apart = prepared(
+        "gravity (0, 0, -9.81)\n"
+        + "".join(f"object o{k} {{ shape box (0.1, 0.1, 0.1) position ({k}, 0, 1) mass 1 elasticity 1e6 }}\n" for k in range(2))
+        + "control { time 0.1 }\n"
+    )
     assert live_fixes(apart) == {"gravity"}
     assert not [word for word in TRACES["contact"] if word in written(apart)]

@@ -7,14 +7,13 @@ from pathlib import Path
 import numpy as np
 import plugin_path
 import pytest
-from twin import world
-
 from mdanim_lammps.driver.prepare import Prepared
 from mdanim_lammps.engine.commands import harmonic_coeff, input_script
 from mdanim_lammps.engine.data_file import data_text, write_data
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.plan import both_ends
 from mdanim_lammps.errors import SetupError
+from twin import world
 
 MEETING = """
 gravity (0, 0, -9.81) m/s^2
@@ -156,8 +155,8 @@ def test_both_ends_are_ascending():
 @pytest.mark.parametrize("text", SCENES)
 def test_lammps_reads_back_our_data_file(prepared, tmp_path, text):
     """Find in LAMMPS every particle, property and spring of the data file, bit for bit."""
-    from mdanim_lammps.engine.plugin import open_lammps
     from mdanim_lammps.engine.commands import prelude
+    from mdanim_lammps.engine.plugin import open_lammps
 
     plan = prepared(text).plan
     path = tmp_path / "data.small"
@@ -190,9 +189,12 @@ def test_a_scene_agrees_with_its_naive_twin(prepared, factor):
     drag = system.drag if system.drag is not None else np.zeros(system.particles)
 
     def force(x):
-        return (world.spring_forces(x, system.spring, system.stiffness, system.rest)[0] + system.mass[:, None] * g
-                + world.barrier_forces(x, system.object, system.boundary, thin, s, reach)[0]
-                + world.ground_forces(x, 0.0, s)[0])
+        return (
+            world.spring_forces(x, system.spring, system.stiffness, system.rest)[0]
+            + system.mass[:, None] * g
+            + world.barrier_forces(x, system.object, system.boundary, thin, s, reach)[0]
+            + world.ground_forces(x, 0.0, s)[0]
+        )
 
     steps = round(48 * prepared(MEETING).certificate.timestep / c.timestep)  # cube on slab and plate on ground, pressed in
     x, v = world.leapfrog(system.position, system.velocity, force, system.mass, drag, c.timestep, steps, ~system.held)
@@ -207,7 +209,8 @@ def test_a_scene_agrees_with_its_naive_twin(prepared, factor):
         assert instance.fix_scalar("contact") == pytest.approx(contact, rel=1e-9)
         assert instance.fix_scalar("ground") == pytest.approx(world.ground_forces(x, 0.0, s)[1], rel=1e-9)
         assert instance.elastic_energy() == pytest.approx(
-            world.spring_forces(x, system.spring, system.stiffness, system.rest)[1], rel=1e-9)
+            world.spring_forces(x, system.spring, system.stiffness, system.rest)[1], rel=1e-9
+        )
 
 
 @pytest.mark.parametrize("text", SCENES)
@@ -330,8 +333,7 @@ def shuffle_sections(text: str, seed: int) -> str:
                 tail = [lines.pop()]
             order.shuffle(lines)
             if title == "Bonds":
-                lines = [" ".join([a, t, j, i]) if n % 2 else row for n, row in enumerate(lines)
-                         for a, t, i, j in [row.split()]]
+                lines = [" ".join([a, t, j, i]) if n % 2 else row for n, row in enumerate(lines) for a, t, i, j in [row.split()]]
             pieces[k] = "\n".join(lines + tail)
     return "\n\n".join(pieces)
 
@@ -349,8 +351,9 @@ def test_last_short_frame_is_dumped(prepared, tmp_path):
 
 def test_an_effect_that_is_off_leaves_no_trace(prepared):
     """Write no command, column or fix for what a scene does not call for."""
-    ready = prepared("object a { shape box (2, 2, 2) cm\n position (0, 0, 0)\n mass 1 g\n elasticity 1 kPa\n }\n"
-                     "control { time 1 s }")
+    ready = prepared(
+        "object a { shape box (2, 2, 2) cm\n position (0, 0, 0)\n mass 1 g\n elasticity 1 kPa\n }\ncontrol { time 1 s }"
+    )
     script = input_script(ready.plan)
     for word in ("gravity", "barrier", "mdanim/wall", "mdanim/liquid", "lambda", " d_", " i2_", "region", "boundary type"):
         assert word not in script, word

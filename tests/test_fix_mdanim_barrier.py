@@ -34,11 +34,7 @@ REACH = np.random.default_rng(5).uniform(0.6, 0.9, len(CLOUD.x))
 def two(gap, words=f"1.5 {RC}", boundary=(True, False), molecule=(1, 2), v=None, group="all", mass=None):
     """Body and commands of two particles that far apart along x, the first of them at the origin."""
     body = lab.particles([[0.0, 0, 0], [gap, 0, 0]], molecule=molecule, boundary=boundary, v=v, mass=mass)
-    return body, [
-        f"fix contact {group} mdanim/barrier boundary inner {words}",
-        "fix run all mdanim/leapfrog",
-        "run 0",
-    ]
+    return body, [f"fix contact {group} mdanim/barrier boundary inner {words}", "fix run all mdanim/leapfrog", "run 0"]
 
 
 @pytest.mark.parametrize(
@@ -141,9 +137,7 @@ def test_a_cloud_equals_the_naive_twin(tmp_path, options):
     assert np.abs(lab.by_tag(lmp, "f") - force).max() < 1e-14
     assert lmp.extract_fix("contact", 0, 0) == pytest.approx(energy, rel=1e-13)
     low, high = boxes(CLOUD.x, CLOUD.molecule)
-    assert lmp.extract_fix("contact", 0, 1, 0) == meeting(
-        low, high, REACH.max() * max(1.0, options.get("ratio", 0)) + 0.4
-    )
+    assert lmp.extract_fix("contact", 0, 1, 0) == meeting(low, high, REACH.max() * max(1.0, options.get("ratio", 0)) + 0.4)
     lmp.close()
 
 
@@ -157,9 +151,7 @@ def test_many_boxes_are_paired_like_one_by_one(tmp_path, large):
         pair = np.concatenate([pair, [[[0.0, 0, 0], [30, 30, 0]], [[0.0, 0, 0], [0, 30, 30]]]])
     body = lab.particles(pair.reshape(-1, 3), molecule=np.repeat(np.arange(1, len(pair) + 1), 2))
     lmp = lab.load(
-        body,
-        tmp_path,
-        ["fix contact all mdanim/barrier boundary inner 1 0.5", "fix run all mdanim/leapfrog", "run 0"],
+        body, tmp_path, ["fix contact all mdanim/barrier boundary inner 1 0.5", "fix run all mdanim/leapfrog", "run 0"]
     )
     expected = meeting(*boxes(body.x, body.molecule), 0.5 + 0.4)
     assert lmp.extract_fix("contact", 0, 1, 0) == expected > 1500
@@ -172,20 +164,13 @@ def test_a_flight_through_others_equals_brute_force_on_the_way(tmp_path):
     lmp = lab.load(
         body,
         tmp_path,
-        [
-            "fix contact all mdanim/barrier boundary inner d_k d_rc",
-            "fix run all mdanim/leapfrog",
-            "timestep 0.02",
-            "run 0",
-        ],
+        ["fix contact all mdanim/barrier boundary inner d_k d_rc", "fix run all mdanim/leapfrog", "timestep 0.02", "run 0"],
         columns={"k": STIFFNESS, "rc": REACH},
     )
     touched = []
     for _ in range(6):
         lmp.command("run 37 pre no post no")
-        force, _ = barrier_forces(
-            lab.by_tag(lmp, "x"), body.molecule, body.boundary, ~body.boundary, STIFFNESS, REACH
-        )
+        force, _ = barrier_forces(lab.by_tag(lmp, "x"), body.molecule, body.boundary, ~body.boundary, STIFFNESS, REACH)
         assert np.abs(lab.by_tag(lmp, "f") - force).max() < 1e-14
         touched.append((force != 0.0).any(1).sum())
     assert min(touched) > 20
@@ -203,10 +188,7 @@ def test_it_sleeps_while_no_boxes_meet(tmp_path):
 def head_on(speed, offset=(0.0, 0.0)):
     """Two blocks of 5^3 cells that close in at ``speed`` wave speeds."""
     half = 0.5 * speed * lab.WAVE_SPEED
-    return lab.join(
-        lab.block((5, 5, 5), velocity=(half, 0.0, 0.0)),
-        lab.block((5, 5, 5), (6.7, *offset), (-half, 0.0, 0.0)),
-    )
+    return lab.join(lab.block((5, 5, 5), velocity=(half, 0.0, 0.0)), lab.block((5, 5, 5), (6.7, *offset), (-half, 0.0, 0.0)))
 
 
 @pytest.mark.parametrize(("speed", "drift"), [(0.05, 1e-3), (0.2, 1e-3), (0.5, 1e-3), (0.8, 5e-3)])
@@ -246,11 +228,7 @@ def test_order_of_particles_changes_no_bit(tmp_path, damp):
     """A bounce with offset, in tag order and shuffled, in one run and in pieces with the forces put back."""
     body, found = head_on(0.4, (0.3, 0.2)), []
     words = f"1.0 {RC}" + (f" damp {damp}" if damp else "")
-    commands = [
-        f"fix contact all mdanim/barrier boundary inner {words}",
-        "fix run all mdanim/leapfrog",
-        "timestep 0.2",
-    ]
+    commands = [f"fix contact all mdanim/barrier boundary inner {words}", "fix run all mdanim/leapfrog", "timestep 0.2"]
     order = np.random.default_rng(1).permutation(len(body.x))
     for case in ({}, {"order": order}):
         lmp = lab.load(body, tmp_path, [*commands, "run 120"], **case)

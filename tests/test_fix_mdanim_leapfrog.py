@@ -18,9 +18,7 @@ def force(x):
 
 def run(folder, fix, steps=50, dt=0.2, **options):
     """x, v in tag order, the fix's scalar and its vector after a run."""
-    lmp = lab.load(
-        BODY, folder, [f"fix run all mdanim/leapfrog {fix}", f"timestep {dt}", f"run {steps}"], **options
-    )
+    lmp = lab.load(BODY, folder, [f"fix run all mdanim/leapfrog {fix}", f"timestep {dt}", f"run {steps}"], **options)
     result = (
         lab.by_tag(lmp, "x"),
         lab.by_tag(lmp, "v"),
@@ -59,8 +57,18 @@ def test_kinetic_energy_is_that_of_the_smooth_path(tmp_path, style, drag):
     """Work out T - dt v.(F' - F)/12 - dt^2 F.F/24m from the forces of the last two steps;
     at the start there is no step before."""
     dt, m = 0.2, BODY.mass[:, None]
-    lmp = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog" + (f" lambda {drag}" if drag else ""), f"run_style {style}",
-                                    "fix_modify run energy no", f"timestep {dt}", "run 0"])
+    lmp = lab.load(
+        BODY,
+        tmp_path,
+        [
+            "fix run all mdanim/leapfrog" + (f" lambda {drag}" if drag else ""),
+            f"run_style {style}",
+            "fix_modify run energy no",
+            f"timestep {dt}",
+            "run 0",
+        ],
+    )
+
     def told():
         return lmp.extract_fix("run", 0, 1, 1)
 
@@ -78,8 +86,11 @@ def test_kinetic_energy_is_that_of_the_smooth_path(tmp_path, style, drag):
         assert told() == pytest.approx(lab.kinetic(BODY, v) - bent - swing, rel=1e-13)
     lmp.command("run 25 pre no")  # in one piece: by passes where there are some
     whole = told()
-    other = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog" + (f" lambda {drag}" if drag else ""), f"timestep {dt}",
-                                      "run_style verlet", "run 63"])
+    other = lab.load(
+        BODY,
+        tmp_path,
+        ["fix run all mdanim/leapfrog" + (f" lambda {drag}" if drag else ""), f"timestep {dt}", "run_style verlet", "run 63"],
+    )
     assert whole == pytest.approx(other.extract_fix("run", 0, 1, 1), rel=1e-12)
     other.close()
     lmp.close()
@@ -88,8 +99,18 @@ def test_kinetic_energy_is_that_of_the_smooth_path(tmp_path, style, drag):
 @pytest.mark.parametrize("style", ["verlet", "verlet/mdanim"])
 def test_kinetic_energy_is_refused_where_it_is_not_known(tmp_path, style):
     """Average over steps with output, which is right; ask in others, which stops the run instead of giving what it was once."""
-    lmp = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog", f"run_style {style}", "timestep 0.2", "thermo 5",
-                                    f"fix mean all ave/time 5 1 5 f_run[2] file {tmp_path / 'mean'}", "run 20"])
+    lmp = lab.load(
+        BODY,
+        tmp_path,
+        [
+            "fix run all mdanim/leapfrog",
+            f"run_style {style}",
+            "timestep 0.2",
+            "thermo 5",
+            f"fix mean all ave/time 5 1 5 f_run[2] file {tmp_path / 'mean'}",
+            "run 20",
+        ],
+    )
     seen = lmp.extract_fix("run", 0, 1, 1)
     assert float((tmp_path / "mean").read_text().split()[-1]) == pytest.approx(seen, rel=1e-5)
     lmp.commands_list(["thermo 10", "unfix mean"])
@@ -117,12 +138,7 @@ def test_terminal_velocity(tmp_path, kind):
     lmp = lab.load(
         lab.particles([[0.0, 0, 0]], mass=[2.0]),
         tmp_path,
-        [
-            f"fix run all mdanim/leapfrog lambda 0.5 drag {kind}",
-            "fix g all gravity 3.0 vector 0 0 -1",
-            "timestep 0.5",
-            "run 400",
-        ],
+        [f"fix run all mdanim/leapfrog lambda 0.5 drag {kind}", "fix g all gravity 3.0 vector 0 0 -1", "timestep 0.5", "run 400"],
     )
     # e^-50 of the start is left.
     assert lab.by_tag(lmp, "v")[0] == pytest.approx([0.0, 0.0, -2.0 * 3.0 / 0.5], rel=1e-12)

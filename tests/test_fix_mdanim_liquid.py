@@ -165,9 +165,7 @@ def test_base_friction_is_added(tmp_path):
     """lambda = base + gamma rho V s."""
     columns = {"lambda": np.zeros(2), "air": np.array([0.25, 0.5])}
     body = lab.particles([[0.0, 0.0, 5.0], [3.0, 0.0, 14.0]])
-    lmp = lab.load(
-        body, tmp_path, [*BASIN, POOL + " buoyancy 2.0 drag 0.1 lambda d_lambda base d_air", "run 0"], columns=columns
-    )
+    lmp = lab.load(body, tmp_path, [*BASIN, POOL + " buoyancy 2.0 drag 0.1 lambda d_lambda base d_air", "run 0"], columns=columns)
     assert lmp.numpy.extract_atom("d_lambda")[:2] == pytest.approx([0.25 + 0.1 * 2.0, 0.5], rel=1e-14)
     lmp.close()
 
@@ -281,8 +279,15 @@ def test_updates_come_after_a_stride(tmp_path):
     and one that is never done none."""
     seen = []
     for stride in (0.1, 1.0, 1e6):
-        lmp = block_in_pool(tmp_path, (3, 3, 3), (-1.5, -1.5, 4.0), ["run 80"], density=1.0, velocity=(0.0, 0.0, -0.2),
-                            pool=f"{POOL} sweeps 1 period 1e6 stride {stride}")
+        lmp = block_in_pool(
+            tmp_path,
+            (3, 3, 3),
+            (-1.5, -1.5, 4.0),
+            ["run 80"],
+            density=1.0,
+            velocity=(0.0, 0.0, -0.2),
+            pool=f"{POOL} sweeps 1 period 1e6 stride {stride}",
+        )
         seen.append(value(lmp, "sweeps"))
         lmp.close()
     assert seen[0] >= 2 * seen[1] > 2 * seen[2] == 0
@@ -292,10 +297,18 @@ def test_updates_come_after_a_period(tmp_path):
     """Of a dam that has just broken, with nothing near it: at looks every 4 steps of 0.3, a period of 6 sees every fifth."""
     seen = []
     for period in (0.06, 0.6, 1e6):  # times sqrt(cell/g) = 10
-        lmp = lab.load(one(60.0), tmp_path, [
-            *BASIN, "region half block -10 0 -10 10 0 16",
-            f"{POOL.replace('level 10', 'volume 1000 fill half')} sweeps 1 period {period}",
-            "fix move all mdanim/leapfrog", "timestep 0.3", "run 80"])
+        lmp = lab.load(
+            one(60.0),
+            tmp_path,
+            [
+                *BASIN,
+                "region half block -10 0 -10 10 0 16",
+                f"{POOL.replace('level 10', 'volume 1000 fill half')} sweeps 1 period {period}",
+                "fix move all mdanim/leapfrog",
+                "timestep 0.3",
+                "run 80",
+            ],
+        )
         seen.append(value(lmp, "sweeps"))
         lmp.close()
     assert seen == [20, 4, 0]
@@ -347,8 +360,13 @@ def test_a_state_is_taken_up_to_the_bit(tmp_path):
     second.close()
 
 
-HEAD = np.dtype([("version", "f8"), *((n, "i8") for n in ("nx", "ny", "nz", "units", "swept", "waited", "calm")),
-                 *((n, "f8") for n in ("travel", "crossed", "work", "lost"))])
+HEAD = np.dtype(
+    [
+        ("version", "f8"),
+        *((n, "i8") for n in ("nx", "ny", "nz", "units", "swept", "waited", "calm")),
+        *((n, "f8") for n in ("travel", "crossed", "work", "lost")),
+    ]
+)
 
 
 @pytest.mark.parametrize("calm", [0, 1])
@@ -361,7 +379,7 @@ def test_a_state_comes_back_whole(tmp_path, calm):
          "run 8"],
     )  # fmt: skip
     stored = state(lmp)
-    head = stored[:HEAD.itemsize].view(HEAD)
+    head = stored[: HEAD.itemsize].view(HEAD)
     assert (head["nx"], head["nz"], head["units"]) == (20, 16, value(lmp, "units"))
     for name, number in dict(swept=77, waited=3, calm=calm, travel=0.1, crossed=0.2, work=0.3, lost=0.4).items():
         head[name] = number

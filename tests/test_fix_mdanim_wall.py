@@ -114,12 +114,15 @@ def test_energy_of_a_bounce(tmp_path):
     lmp.close()
 
 
-@pytest.mark.parametrize("region", [
-    "plane 0 0 0 0 0 1",
-    "block -50 50 -50 50 0 INF",
-    "sphere 1.5 1.5 60 60",
-    "sphere 1.5 1.5 -1 1 side out",  # narrower than the body: the corners of its box pass beside it
-])
+@pytest.mark.parametrize(
+    "region",
+    [
+        "plane 0 0 0 0 0 1",
+        "block -50 50 -50 50 0 INF",
+        "sphere 1.5 1.5 60 60",
+        "sphere 1.5 1.5 -1 1 side out",  # narrower than the body: the corners of its box pass beside it
+    ],
+)
 def test_only_watched_particles_cost_but_none_is_missed(tmp_path, region):
     """Looking at the watch list only, and at the box around all before,
     gives the bits of looking at all particles in every step."""
@@ -130,14 +133,7 @@ def test_only_watched_particles_cost_but_none_is_missed(tmp_path, region):
         lmp = lab.load(
             body,
             tmp_path,
-            [
-                neigh,
-                f"region r {region}",
-                "fix w all mdanim/wall r 1.0",
-                "fix run all mdanim/leapfrog",
-                "timestep 0.2",
-                "run 80",
-            ],
+            [neigh, f"region r {region}", "fix w all mdanim/wall r 1.0", "fix run all mdanim/leapfrog", "timestep 0.2", "run 80"],
         )
         assert lmp.extract_fix("w", 0, 1, 4) > 0.1
         found.append(np.concatenate([lab.by_tag(lmp, "x"), lab.by_tag(lmp, "v")]))
@@ -201,12 +197,7 @@ def test_mistakes_are_refused_with_the_word(tmp_path, region, words, message):
         lab.load(
             SCATTERED,
             tmp_path,
-            [
-                "region a sphere 0 0 0 2",
-                "region b sphere 1 0 0 2",
-                f"region r {region}",
-                f"fix w all mdanim/wall {words}",
-            ],
+            ["region a sphere 0 0 0 2", "region b sphere 1 0 0 2", f"region r {region}", f"fix w all mdanim/wall {words}"],
         ).close()
     assert message in str(caught.value)
 

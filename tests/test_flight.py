@@ -3,9 +3,8 @@
 
 import numpy as np
 import pytest
-from twin import world
-
 from mdanim_lammps.engine.instance import Instance
+from twin import world
 
 SCENE = """
 {gravity}

@@ -6,7 +6,6 @@ import re
 
 import numpy as np
 import pytest
-
 from mdanim_lammps import Trajectory
 from mdanim_lammps.driver.guard import CLASSES, GENEROUS, LEAST, Guard, energy_class, fastest
 from mdanim_lammps.driver.prepare import prepare
@@ -57,21 +56,41 @@ def run(text, folder, *, insist=False):
 BLOCK = "object block { shape box (30, 30, 30) cm position (0, 0, 5) cm density 1000 elasticity 2 kPa hold all }"
 
 
-@pytest.mark.parametrize(("text", "insist", "told"), [
-    pytest.param(hit(young=100, control="timestep 5 ms"), True,
-                 ["ball: the energies do not add up, residual", "of what ball bears", "timestep auto"],
-                 id="time step above the bound"),
-    pytest.param(hit(young=100, time=2, control="timestep 10 ms").replace("100 fps", "1 fps"), True,
-                 ["ball: (LAMMPS stopped|its positions)", "of what ball bears", "timestep auto"], id="far above, few frames"),
-    pytest.param(hit(young=1, speed=-20), False,
-                 ["ball: it has left the ground: all of it is beyond z = 0 m", "of the wave speed", "write elasticity"],
-                 id="thrown through the ground"),
-    pytest.param(hit(shape="sphere 6 cm", young=3, speed=-3.8, time=2), False,
-                 [r"ball: \d+ of its \d+ cells have been inside out since step", "of the wave speed", "write elasticity"],
-                 id="crumpled"),
-    pytest.param(hit(young=2, speed=-6, world="", more=BLOCK), False,
-                 ["ball: it is inside block", "at 6 m/s", "lower speed"], id="into another object"),
-])
+@pytest.mark.parametrize(
+    ("text", "insist", "told"),
+    [
+        pytest.param(
+            hit(young=100, control="timestep 5 ms"),
+            True,
+            ["ball: the energies do not add up, residual", "of what ball bears", "timestep auto"],
+            id="time step above the bound",
+        ),
+        pytest.param(
+            hit(young=100, time=2, control="timestep 10 ms").replace("100 fps", "1 fps"),
+            True,
+            ["ball: (LAMMPS stopped|its positions)", "of what ball bears", "timestep auto"],
+            id="far above, few frames",
+        ),
+        pytest.param(
+            hit(young=1, speed=-20),
+            False,
+            ["ball: it has left the ground: all of it is beyond z = 0 m", "of the wave speed", "write elasticity"],
+            id="thrown through the ground",
+        ),
+        pytest.param(
+            hit(shape="sphere 6 cm", young=3, speed=-3.8, time=2),
+            False,
+            [r"ball: \d+ of its \d+ cells have been inside out since step", "of the wave speed", "write elasticity"],
+            id="crumpled",
+        ),
+        pytest.param(
+            hit(young=2, speed=-6, world="", more=BLOCK),
+            False,
+            ["ball: it is inside block", "at 6 m/s", "lower speed"],
+            id="into another object",
+        ),
+    ],
+)
 def test_a_breakdown_stops_the_run(tmp_path, text, insist, told):
     """Name the step, the object, the cause and what to change; keep good frames and the checkpoint."""
     with pytest.raises(DivergedError) as caught:
@@ -132,11 +151,13 @@ def test_what_lammps_says_is_passed_on(prepared, tmp_path):
     """Blame an object and the time step only where particles have flown apart; other ends speak for themselves."""
     ready = prepared(hit(young=1, speed=-20))
     guard = Guard(ready, tmp_path)
-    flown = guard.broke(7, DivergedError("LAMMPS stopped: ERROR: Bond atoms 1 2\nmissing"),
-                        fastest(ready.system, ready.system.velocity))
+    flown = guard.broke(
+        7, DivergedError("LAMMPS stopped: ERROR: Bond atoms 1 2\nmissing"), fastest(ready.system, ready.system.velocity)
+    )
     assert "ball: LAMMPS stopped: ERROR: Bond atoms 1 2 missing" in str(flown) and "  change: write elasticity" in str(flown)
-    assert "ball: LAMMPS" in str(guard.broke(7, DivergedError("LAMMPS stopped: Lost atoms"),
-                                             fastest(ready.system, ready.system.velocity[:5])))
+    assert "ball: LAMMPS" in str(
+        guard.broke(7, DivergedError("LAMMPS stopped: Lost atoms"), fastest(ready.system, ready.system.velocity[:5]))
+    )
     other = str(guard.broke(7, DivergedError("LAMMPS stopped: ERROR: no open cell is left"), 0))
     assert other.startswith("step 7, t = ") and "no open cell" in other and "cause" not in other and str(tmp_path) in other
 
@@ -159,8 +180,9 @@ def two(prepared):
     def make(a=BOX, b=BOX, at=(0.0, 0.0, 1.0), more=""):
         system = prepared(TWO.format(a=a, b=b, more=more)).system
         x = system.position.copy()
-        x[system.first[1]:] += np.array(at) - [0.0, 0.0, 1.0]
+        x[system.first[1] :] += np.array(at) - [0.0, 0.0, 1.0]
         return Geometry(system), x
+
     return make
 
 
@@ -185,22 +207,25 @@ def test_a_glance_tells_how_far_objects_reach(two):
     assert found == 0
     first = geometry.system.first
     for m in range(2):
-        part = x[first[m]:first[m + 1]]
+        part = x[first[m] : first[m + 1]]
         assert np.array_equal(reach[m], np.concatenate([part.max(0), -part.min(0)]))
     x[-1, 2] -= 0.1
     found, reach = geometry.glance(x, v)
-    assert found == INVERTED and -reach[1, 5] == x[first[1]:, 2].min()
+    assert found == INVERTED and -reach[1, 5] == x[first[1] :, 2].min()
     v[5, 1] = np.nan
     assert geometry.glance(x, v)[0] == NOT_FINITE
 
 
-@pytest.mark.parametrize(("change", "expected"), [
-    pytest.param(lambda x: x, 0, id="as it is"),
-    pytest.param(lambda x: x[:, [1, 2, 0]], 0, id="rotated"),
-    pytest.param(lambda x: x * [1.0, 1.0, 0.05], 0, id="pressed flat"),
-    pytest.param(lambda x: x * [1.0, 1.0, -1.0], 250, id="mirrored"),
-    pytest.param(lambda x: x * [1.0, 1.0, 0.0], 250, id="no thickness"),
-])
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        pytest.param(lambda x: x, 0, id="as it is"),
+        pytest.param(lambda x: x[:, [1, 2, 0]], 0, id="rotated"),
+        pytest.param(lambda x: x * [1.0, 1.0, 0.05], 0, id="pressed flat"),
+        pytest.param(lambda x: x * [1.0, 1.0, -1.0], 250, id="mirrored"),
+        pytest.param(lambda x: x * [1.0, 1.0, 0.0], 250, id="no thickness"),
+    ],
+)
 def test_inverted_cells_are_counted(two, change, expected):
     """See a mirrored cell, and no turned or squeezed one."""
     geometry, x = two()
@@ -214,17 +239,20 @@ def test_a_corner_pushed_through_its_cell_inverts_it(two):
     assert np.flatnonzero(geometry.inverted(x)).tolist() == [0]
 
 
-@pytest.mark.parametrize(("b", "at", "more", "found"), [
-    pytest.param(BOX, (0.0, 0.0, 0.11), "", None, id="apart"),
-    pytest.param(BOX, (0.003, 0.007, 0.091), "", None, id="0.45 of a cell deep, as in the hardest contact"),
-    pytest.param(BOX, (0.003, 0.007, 0.065), "", {0, 1}, id="almost two cells deep"),
-    pytest.param(BOX, (0.0, 0.0, 0.0), "", {0, 1}, id="all of it"),
-    pytest.param(BOX, (0.0, 0.0, 0.0), "hold all", None, id="both held: they may overlap"),
-    pytest.param("sphere 3 cm", (0.01, 0.0, 0.0), "", (1, 0), id="a small one within"),
-    pytest.param(SHEET, (0.0, 0.0, 0.055), "", None, id="a sheet on it"),
-    pytest.param(SHEET, (0.0, 0.0, 0.005), "", (1, 0), id="a sheet in it"),
-    pytest.param("torus 12 cm 4 cm", (0.0, 0.0, 0.0), "", None, id="a ring around it: the ring's middle is in the box"),
-])
+@pytest.mark.parametrize(
+    ("b", "at", "more", "found"),
+    [
+        pytest.param(BOX, (0.0, 0.0, 0.11), "", None, id="apart"),
+        pytest.param(BOX, (0.003, 0.007, 0.091), "", None, id="0.45 of a cell deep, as in the hardest contact"),
+        pytest.param(BOX, (0.003, 0.007, 0.065), "", {0, 1}, id="almost two cells deep"),
+        pytest.param(BOX, (0.0, 0.0, 0.0), "", {0, 1}, id="all of it"),
+        pytest.param(BOX, (0.0, 0.0, 0.0), "hold all", None, id="both held: they may overlap"),
+        pytest.param("sphere 3 cm", (0.01, 0.0, 0.0), "", (1, 0), id="a small one within"),
+        pytest.param(SHEET, (0.0, 0.0, 0.055), "", None, id="a sheet on it"),
+        pytest.param(SHEET, (0.0, 0.0, 0.005), "", (1, 0), id="a sheet in it"),
+        pytest.param("torus 12 cm 4 cm", (0.0, 0.0, 0.0), "", None, id="a ring around it: the ring's middle is in the box"),
+    ],
+)
 def test_objects_inside_each_other_are_found(two, b, at, more, found):
     """Tell depth beyond contact from contact, whatever the boxes say."""
     geometry, x = two(b=b, at=at, more=more)
@@ -236,7 +264,7 @@ def test_a_sheet_that_holds_the_centre_of_another_is_entered(two):
     """Ask for the centre where a body has no deeper cells: two crossed sheets, and two on each other."""
     for angle, at, found in ((1, (0.0, 0.0, 0.0), True), (0, (0.0, 0.0, 0.021), False)):
         geometry, x = two(a=SHEET, b=SHEET, at=at)
-        part = x[geometry.system.first[1]:]
+        part = x[geometry.system.first[1] :]
         if angle:
             part[:] = part[:, [0, 2, 1]]
         assert (geometry.sunk(x) is not None) == found

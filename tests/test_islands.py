@@ -5,9 +5,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from twin import islands as twin
-
 from mdanim_lammps.driver import islands
+from twin import islands as twin
 
 
 def crowd(rng, count, spread=1.0, lattice=False):
@@ -31,14 +30,17 @@ def test_boxes_by_hand():
     assert low.tolist() == [[-0.5] * 3, [-2.0] * 3] and high.tolist() == [[1.5] * 3, [3.0] * 3]
 
 
-@pytest.mark.parametrize(("shift", "gap", "meet"), [
-    pytest.param((1.0, 0.0, 0.0), 0.0, True, id="touch"),
-    pytest.param((np.nextafter(1.0, 2.0), 0.0, 0.0), 0.0, False, id="apart by a rounding"),
-    pytest.param((0.0, 1.5, 0.0), 0.5, True, id="apart by the gap"),
-    pytest.param((0.0, 0.0, -1.75), 0.5, False, id="apart by more, on the other side"),
-    pytest.param((1.25, -1.25, 1.25), 0.25, True, id="corner to corner"),
-    pytest.param((0.0, 0.0, 0.0), 0.0, True, id="the same box"),
-])
+@pytest.mark.parametrize(
+    ("shift", "gap", "meet"),
+    [
+        pytest.param((1.0, 0.0, 0.0), 0.0, True, id="touch"),
+        pytest.param((np.nextafter(1.0, 2.0), 0.0, 0.0), 0.0, False, id="apart by a rounding"),
+        pytest.param((0.0, 1.5, 0.0), 0.5, True, id="apart by the gap"),
+        pytest.param((0.0, 0.0, -1.75), 0.5, False, id="apart by more, on the other side"),
+        pytest.param((1.25, -1.25, 1.25), 0.25, True, id="corner to corner"),
+        pytest.param((0.0, 0.0, 0.0), 0.0, True, id="the same box"),
+    ],
+)
 @pytest.mark.parametrize("way", [islands._all_pairs, islands._grid_pairs])
 def test_two_boxes(way, shift, gap, meet):
     """Tell unit cubes that meet from those that do not."""
@@ -47,8 +49,14 @@ def test_two_boxes(way, shift, gap, meet):
 
 
 @settings(max_examples=150, deadline=None)
-@given(seed=st.integers(0, 2**32 - 1), count=st.integers(0, 60), spread=st.sampled_from([0.0, 0.5, 2.0]), lattice=st.booleans(),
-       gap=st.sampled_from([0.0, 0.1, 1.0, 5.0]), far=st.sampled_from([0.0, 1e3, 1e12]))
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    count=st.integers(0, 60),
+    spread=st.sampled_from([0.0, 0.5, 2.0]),
+    lattice=st.booleans(),
+    gap=st.sampled_from([0.0, 0.1, 1.0, 5.0]),
+    far=st.sampled_from([0.0, 1e3, 1e12]),
+)
 def test_grid_finds_what_the_twin_finds(seed, count, spread, lattice, gap, far):
     """Find the same pairs three ways, wherever the boxes are, some of them far from the others."""
     rng = np.random.default_rng(seed)
@@ -93,12 +101,15 @@ def test_most_boxes_are_never_looked_at(monkeypatch, share, edge):
     assert sum(tried) < 20 * len(found) < 4000 * 3999 / 20
 
 
-@pytest.mark.parametrize("broken", [
-    pytest.param(lambda low, high: (low * np.nan, high, 0.0), id="not a number"),
-    pytest.param(lambda low, high: (low, high + np.inf, 0.0), id="infinite"),
-    pytest.param(lambda low, high: (high, low, 0.0), id="inside out"),
-    pytest.param(lambda low, high: (low, high, -1.0), id="negative gap"),
-])
+@pytest.mark.parametrize(
+    "broken",
+    [
+        pytest.param(lambda low, high: (low * np.nan, high, 0.0), id="not a number"),
+        pytest.param(lambda low, high: (low, high + np.inf, 0.0), id="infinite"),
+        pytest.param(lambda low, high: (high, low, 0.0), id="inside out"),
+        pytest.param(lambda low, high: (low, high, -1.0), id="negative gap"),
+    ],
+)
 def test_no_boxes(broken):
     """Refuse what is no box: a plan made of it would let objects pass through each other."""
     with pytest.raises(ValueError):

@@ -7,11 +7,10 @@ import subprocess
 import sys
 
 import pytest
-from test_run import FALL
-
 from mdanim_lammps import Scene
 from mdanim_lammps.driver import launch
 from mdanim_lammps.errors import ExitCode, SetupError, UsageError
+from test_run import FALL
 
 OBITUARY = """\
 Abort(1) on node 0 (rank 0 in comm 0): application called MPI_Abort(MPI_COMM_WORLD, 1) - process 0
@@ -48,12 +47,19 @@ def test_what_ranks_say_is_passed_on_but_for_obituaries(capsys):
     assert capsys.readouterr().err == "ValueError: from a rank\n" and len(said) == 7
 
 
-@pytest.mark.parametrize(("words", "checkpoint", "told"), [
-    pytest.param(OBITUARY, True, r"lost \(EXIT CODE: 9\).*go on with: mdanim-lammps resume", id="killed"),
-    pytest.param("RuntimeError: no\nMemoryError: too large\n", True, r"lost \(MemoryError: too large\)",
-                 id="the last error is the cause"),
-    pytest.param("", False, r"lost \(exit code 7\).*nothing was kept yet", id="without a word"),
-])
+@pytest.mark.parametrize(
+    ("words", "checkpoint", "told"),
+    [
+        pytest.param(OBITUARY, True, r"lost \(EXIT CODE: 9\).*go on with: mdanim-lammps resume", id="killed"),
+        pytest.param(
+            "RuntimeError: no\nMemoryError: too large\n",
+            True,
+            r"lost \(MemoryError: too large\)",
+            id="the last error is the cause",
+        ),
+        pytest.param("", False, r"lost \(exit code 7\).*nothing was kept yet", id="without a word"),
+    ],
+)
 def test_lost_ranks_are_told_in_one_message(tmp_path, words, checkpoint, told):
     """Why, and how to go on."""
     if checkpoint:
@@ -66,8 +72,9 @@ def test_lost_ranks_are_told_in_one_message(tmp_path, words, checkpoint, told):
 def test_no_executor_is_too_few(tmp_path, count):
     """A usage error, from the command line and from Python."""
     (tmp_path / "fall.txt").write_text(FALL)
-    done = subprocess.run([sys.executable, "-m", "mdanim_lammps", str(tmp_path / "fall.txt"), "-n", str(count)],
-                          capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-m", "mdanim_lammps", str(tmp_path / "fall.txt"), "-n", str(count)], capture_output=True, text=True
+    )
     assert done.returncode == ExitCode.USAGE and f"-n {count}: at least one executor" in done.stderr
     assert not (tmp_path / "fall.out").exists()
     with pytest.raises(UsageError, match="at least one"):

@@ -6,14 +6,27 @@ from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
-import pytest
-
 import mdanim_lammps
+import pytest
 
 ROOT = Path(mdanim_lammps.__file__).parent
 SCRIPTS = sorted(p for folder in ("bench", "docs") for p in (Path(__file__).parents[1] / folder).rglob("*.py"))
-ROOMS = ["errors", "scene", "model", "effects", "certificate", "engine", "results", "driver", "study", "picture", "report", "api",
-         "cli", "__main__"]
+ROOMS = [
+    "errors",
+    "scene",
+    "model",
+    "effects",
+    "certificate",
+    "engine",
+    "results",
+    "driver",
+    "study",
+    "picture",
+    "report",
+    "api",
+    "cli",
+    "__main__",
+]
 
 
 def room(path: Path) -> str:
@@ -30,8 +43,9 @@ def imported_rooms(path: Path) -> set[str]:
         if isinstance(node, ast.ImportFrom):
             base = package[: len(package) - node.level + 1] if node.level else ()
             target = (*base, *(node.module or "").split("."))
-            names = [".".join(filter(None, (*target, *([a.name] if len(target) == 1 or not node.module else []))))
-                     for a in node.names]
+            names = [
+                ".".join(filter(None, (*target, *([a.name] if len(target) == 1 or not node.module else [])))) for a in node.names
+            ]
         elif isinstance(node, ast.Import):
             names = [a.name for a in node.names]
         for name in names:
@@ -63,7 +77,7 @@ def test_scripts_import_what_there_is(path):
         if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "mdanim_lammps":
             module = import_module(node.module)
             for name in node.names:
-                found = hasattr(module, name.name) or hasattr(module, "__path__") and find_spec(f"{node.module}.{name.name}")
+                found = hasattr(module, name.name) or (hasattr(module, "__path__") and find_spec(f"{node.module}.{name.name}"))
                 assert found, f"line {node.lineno}: {name.name}"
 
 

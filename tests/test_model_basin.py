@@ -9,15 +9,20 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from model_samples import MESHES, SHAPES, scene, shape_id, solid
-
 from mdanim_lammps.errors import Span
 from mdanim_lammps.model import basin, build_models, check_basin, shapes
 from mdanim_lammps.model.system import assemble
 from mdanim_lammps.scene.scene import Box, HoldAll, HoldFaces, Liquid, LiquidModel, Mesh, Side, Switch
+from model_samples import MESHES, SHAPES, scene, shape_id, solid
 
-WATER = Liquid("water", (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), 1000.0, volume=0.5,
-               spans={word: Span("test.txt", line, 3) for line, word in enumerate(("basin", "volume", "level"), 11)})
+WATER = Liquid(
+    "water",
+    (0.0, 0.0, 0.0),
+    (1.0, 1.0, 1.0),
+    1000.0,
+    volume=0.5,
+    spans={word: Span("test.txt", line, 3) for line, word in enumerate(("basin", "volume", "level"), 11)},
+)
 CUBE = Box((0.4, 0.4, 0.4))
 ABOVE = (0.5, 0.5, 1.5)
 
@@ -34,6 +39,7 @@ def problems(*solids, h=0.1, effects=None, **liquid):
 
 
 # --- cells --------------------------------------------------------------------------------------------------
+
 
 @settings(derandomize=True)
 @given(st.tuples(*[st.floats(0.2, 5.0)] * 3), st.floats(0.01, 0.06))
@@ -60,17 +66,21 @@ def test_cells_belong_to_a_region_by_their_centre():
     assert grid.cells_within((0.04, 0, 0), (0.24, 1, 0.26)) == 2 * 10 * 3
 
 
-@pytest.mark.parametrize(("liquid", "level"), [
-    pytest.param({"volume": 0.5}, 0.5, id="volume"),
-    pytest.param({"volume": None, "level": 0.3}, 0.3, id="level"),
-    pytest.param({"volume": None, "level": 0.8, "fill": ((0.0, 0.0, 0.4), (0.5, 1.0, 1.0))}, 0.2, id="dam"),
-])
+@pytest.mark.parametrize(
+    ("liquid", "level"),
+    [
+        pytest.param({"volume": 0.5}, 0.5, id="volume"),
+        pytest.param({"volume": None, "level": 0.3}, 0.3, id="level"),
+        pytest.param({"volume": None, "level": 0.8, "fill": ((0.0, 0.0, 0.4), (0.5, 1.0, 1.0))}, 0.2, id="dam"),
+    ],
+)
 def test_level_at_rest(liquid, level):
     """Spread what is poured over the whole floor."""
     assert basin.liquid_level(replace(WATER, **liquid)) == pytest.approx(level, rel=1e-12)
 
 
 # --- particles' volumes -------------------------------------------------------------------------------------
+
 
 @pytest.mark.parametrize("shape", SHAPES, ids=shape_id)
 def test_particles_share_the_true_volume(shape):
@@ -87,6 +97,7 @@ def test_particles_share_the_true_volume(shape):
 
 
 # --- what does not fit --------------------------------------------------------------------------------------
+
 
 def test_a_basin_with_a_floating_block_is_fine():
     """Find nothing wrong, also with an obstacle that sticks out of the basin."""
@@ -130,20 +141,22 @@ def test_liquid_has_room_only_beside_what_stands_in_it(volume, fits):
 @pytest.mark.parametrize(("volume", "fits"), [(0.46, True), (0.48, False)])
 def test_liquid_has_room_only_in_what_is_filled(volume, fits):
     """The same with a fill region that half of the block stands in."""
-    found = problems(block(position=(0.5, 0.5, 0.3), hold=(HoldAll(),)), volume=volume,
-                     fill=((0.0, 0.0, 0.0), (0.5, 1.0, 1.0)))
+    found = problems(block(position=(0.5, 0.5, 0.3), hold=(HoldAll(),)), volume=volume, fill=((0.0, 0.0, 0.0), (0.5, 1.0, 1.0)))
     assert fits == (not found)
     if not fits:
         assert "the part that is filled has room for 468 l" in found[0].message
 
 
-@pytest.mark.parametrize(("density", "rest", "fits"), [
-    pytest.param(500.0, {}, True, id="floats: displaces half of its volume"),
-    pytest.param(2000.0, {}, False, id="sinks: displaces all of it"),
-    pytest.param(500.0, {"model": LiquidModel.PAPER}, False, id="the paper's model: may sink"),
-    pytest.param(500.0, {"effects": {"buoyancy": Switch.OFF}}, False, id="without buoyancy"),
-    pytest.param(2000.0, {"effects": {"liquid": Switch.OFF}}, True, id="without liquid"),
-])
+@pytest.mark.parametrize(
+    ("density", "rest", "fits"),
+    [
+        pytest.param(500.0, {}, True, id="floats: displaces half of its volume"),
+        pytest.param(2000.0, {}, False, id="sinks: displaces all of it"),
+        pytest.param(500.0, {"model": LiquidModel.PAPER}, False, id="the paper's model: may sink"),
+        pytest.param(500.0, {"effects": {"buoyancy": Switch.OFF}}, False, id="without buoyancy"),
+        pytest.param(2000.0, {"effects": {"liquid": Switch.OFF}}, True, id="without liquid"),
+    ],
+)
 def test_a_body_needs_room_to_sink_in(density, rest, fits):
     """Refuse 0.064 m^3 into a basin with 0.05 m^3 of room, at its place."""
     found = problems(block(density=density), volume=0.95, **rest)
@@ -218,6 +231,7 @@ BOAT = Mesh(Path(__file__).parents[1] / "scenes/meshes/boat.stl", 0.01)
 
 def test_an_open_hull_is_told():
     """Warn of the boat under model surface, not of a duck, nor under model pressure."""
+
     def told(shape, **liquid):
         made = scene(block(shape, "boat"), resolution=0.03, liquid=replace(WATER, high=(2.0, 2.0, 2.0), **liquid))
         return basin.open_hulls(made, build_models(made))

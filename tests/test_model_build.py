@@ -7,15 +7,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mdanim_lammps.errors import SceneError
+from mdanim_lammps.model import Layer, build_models, shapes
+from mdanim_lammps.scene.scene import Box, Cylinder, HoldAll, HoldFaces, HoldWithin, Mesh, Side, Sphere, SpringConstant, Young
 from model_samples import SHAPES, assert_closed, model, rotation, scene, shape_id, solid
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
-
-from mdanim_lammps.errors import SceneError
-from mdanim_lammps.model import Layer, build_models, shapes
-from mdanim_lammps.scene.scene import (
-    Box, Cylinder, HoldAll, HoldFaces, HoldWithin, Mesh, Side, Sphere, SpringConstant, Young,
-)
 
 every_shape = pytest.mark.parametrize("shape", SHAPES, ids=shape_id)
 number = st.floats(-3.0, 3.0)
@@ -27,8 +24,15 @@ vectors = st.tuples(number, number, number)
 def test_what_holds_for_every_body(shape, cells, mass, position, angles, velocity, spin):
     """Keep mass, centre of mass, momentum, order of springs and layers for any solid that can be built."""
     try:
-        body = model(shape, shapes.thickness(shape) / cells, mass=mass, position=position,
-                     rotation=rotation(*angles), velocity=velocity, spin=spin)
+        body = model(
+            shape,
+            shapes.thickness(shape) / cells,
+            mass=mass,
+            position=position,
+            rotation=rotation(*angles),
+            velocity=velocity,
+            spin=spin,
+        )
     except SceneError:
         # Only a tip or a neck that this spacing misses may keep a shape from being built.
         assert cells < 3
@@ -42,7 +46,7 @@ def test_what_holds_for_every_body(shape, cells, mass, position, angles, velocit
     np.testing.assert_allclose(body.velocity - velocity, np.cross(spin, body.position - position), atol=1e-12)
 
     i, j = body.spring.astype(np.int64).T
-    assert (0 <= i).all() and (i < j).all() and (j < n).all()
+    assert (i >= 0).all() and (i < j).all() and (j < n).all()
     assert (np.diff(i * n + j) > 0).all()
     length = np.linalg.norm(body.position[j] - body.position[i], axis=1)
     np.testing.assert_allclose(length, body.rest, rtol=1e-12)
@@ -73,7 +77,9 @@ def test_turning_a_solid_turns_its_model(shape):
         np.testing.assert_array_equal(getattr(here, name), getattr(there, name))
     np.testing.assert_allclose(
         there.surface.vertices(there.position),
-        here.surface.vertices(here.position) @ np.array(turn).T + (1.0, -2.0, 3.0), atol=1e-13)
+        here.surface.vertices(here.position) @ np.array(turn).T + (1.0, -2.0, 3.0),
+        atol=1e-13,
+    )
 
 
 @every_shape
@@ -142,14 +148,18 @@ def test_damping_and_drag_are_absent_unless_asked_for():
 
 # --- hold ---------------------------------------------------------------------------------------------------
 
-@pytest.mark.parametrize(("hold", "count"), [
-    pytest.param(HoldFaces((Side.MINUS_X,)), 5 * 4, id="one face"),
-    pytest.param(HoldFaces((Side.MINUS_X, Side.PLUS_X)), 2 * 5 * 4, id="two faces"),
-    pytest.param(HoldFaces((Side.PLUS_X, Side.PLUS_Z)), 5 * 4 + 7 * 5 - 5, id="two faces with a common edge"),
-    pytest.param(HoldWithin((-3.0, -2.0, -1.5), (-3.0, 2.0, 1.5)), 5 * 4, id="a flat box on a face"),
-    pytest.param(HoldWithin((-0.1, -9.0, -9.0), (9.0, 9.0, 9.0)), 4 * 5 * 4, id="half of it"),
-    pytest.param(HoldAll(), 7 * 5 * 4, id="all"),
-])
+
+@pytest.mark.parametrize(
+    ("hold", "count"),
+    [
+        pytest.param(HoldFaces((Side.MINUS_X,)), 5 * 4, id="one face"),
+        pytest.param(HoldFaces((Side.MINUS_X, Side.PLUS_X)), 2 * 5 * 4, id="two faces"),
+        pytest.param(HoldFaces((Side.PLUS_X, Side.PLUS_Z)), 5 * 4 + 7 * 5 - 5, id="two faces with a common edge"),
+        pytest.param(HoldWithin((-3.0, -2.0, -1.5), (-3.0, 2.0, 1.5)), 5 * 4, id="a flat box on a face"),
+        pytest.param(HoldWithin((-0.1, -9.0, -9.0), (9.0, 9.0, 9.0)), 4 * 5 * 4, id="half of it"),
+        pytest.param(HoldAll(), 7 * 5 * 4, id="all"),
+    ],
+)
 def test_hold_catches_exactly_these_particles(hold, count):
     """Hold particles of 6 x 4 x 3 cells on faces, or within a box of the world, and stop them."""
     body = model(Box((6.0, 4.0, 3.0)), 1.0, hold=(hold,), velocity=(1.0, 0.5, 0), spin=(0, 2.0, 0))
@@ -195,14 +205,16 @@ def test_a_hold_that_catches_nothing_is_a_problem():
 
 # --- many objects -------------------------------------------------------------------------------------------
 
+
 def test_equal_objects_share_what_cannot_change():
     """Make the springs of a thousand equal cubes once, read-only; give each its own positions."""
     cubes = [solid(Box((0.2, 0.2, 0.2)), f"cube[{i}]", position=(0.3 * i, 0, 0)) for i in range(1000)]
     seen = []
     models = build_models(scene(*cubes, resolution=0.1), progress=lambda *count: seen.append(count))
     assert [m.name for m in models] == [c.name for c in cubes]
-    assert all(m.spring is models[0].spring and m.spring_type is models[0].spring_type and m.mass is models[0].mass
-               for m in models)
+    assert all(
+        m.spring is models[0].spring and m.spring_type is models[0].spring_type and m.mass is models[0].mass for m in models
+    )
     assert not models[0].spring.flags.writeable and not models[0].mass.flags.writeable
     assert models[0].position.flags.writeable and not np.shares_memory(models[0].position, models[1].position)
     apart = models[-1].position - models[0].position
@@ -213,8 +225,7 @@ def test_equal_objects_share_what_cannot_change():
 def test_objects_of_other_stuff_do_not_share_it():
     """Share the lattice, not the springs, between a soft and a hard cube of one shape."""
     cube = solid(Box((0.2, 0.2, 0.2)))
-    soft, hard, heavy = build_models(scene(
-        cube, replace(cube, elasticity=Young(2.0)), replace(cube, mass=3.0), resolution=0.1))
+    soft, hard, heavy = build_models(scene(cube, replace(cube, elasticity=Young(2.0)), replace(cube, mass=3.0), resolution=0.1))
     assert soft.spring is hard.spring
     assert hard.stiffness[0] == 2 * soft.stiffness[0]
     assert heavy.mass[0] == pytest.approx(3 * soft.mass[0])

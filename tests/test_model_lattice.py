@@ -6,13 +6,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from model_samples import assert_closed, enclosed_volume, model
-from twin import lattice as twin
-
 from mdanim_lammps.model import Layer
 from mdanim_lammps.model.embed import _faces
 from mdanim_lammps.model.lattice import CORNERS, OFFSETS, Cells, make_lattice
 from mdanim_lammps.scene.scene import Box
+from model_samples import assert_closed, enclosed_volume, model
+from twin import lattice as twin
 
 LAYER = {"inner": Layer.INNER, "sub": Layer.SUB_BOUNDARY, "boundary": Layer.BOUNDARY, "thin": Layer.THIN}
 fillings = arrays(bool, st.tuples(*[st.integers(1, 4)] * 3)).filter(np.any)
@@ -64,14 +63,17 @@ def test_centre_of_mass_is_the_origin(filled):
     np.testing.assert_allclose(centres.mean(axis=0), 0, atol=1e-12)
 
 
-@pytest.mark.parametrize(("count", "inner", "sub", "boundary", "thin"), [
-    pytest.param((1, 1, 1), 0, 0, 0, 8, id="one cell: nothing inside"),
-    pytest.param((5, 5, 1), 0, 0, 0, 72, id="plate of one cell"),
-    pytest.param((2, 2, 2), 0, 1, 26, 0, id="one particle inside guards all, corners too"),
-    pytest.param((4, 4, 4), 1, 26, 98, 0, id="cube"),
-    pytest.param((6, 1, 6), 0, 0, 0, 98, id="plate on edge"),
-    pytest.param((8, 4, 2), 0, 21, 114, 0, id="two cells: all that is inside touches the boundary"),
-])
+@pytest.mark.parametrize(
+    ("count", "inner", "sub", "boundary", "thin"),
+    [
+        pytest.param((1, 1, 1), 0, 0, 0, 8, id="one cell: nothing inside"),
+        pytest.param((5, 5, 1), 0, 0, 0, 72, id="plate of one cell"),
+        pytest.param((2, 2, 2), 0, 1, 26, 0, id="one particle inside guards all, corners too"),
+        pytest.param((4, 4, 4), 1, 26, 98, 0, id="cube"),
+        pytest.param((6, 1, 6), 0, 0, 0, 98, id="plate on edge"),
+        pytest.param((8, 4, 2), 0, 21, 114, 0, id="two cells: all that is inside touches the boundary"),
+    ],
+)
 def test_layers_of_cuboids(count, inner, sub, boundary, thin):
     """Sort particles into layers (Wcislo 1999, sec. 3.3.2); hand-made numbers."""
     layer = model(Box(tuple(map(float, count))), 1.0).layer

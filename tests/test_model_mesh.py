@@ -3,10 +3,9 @@
 
 import numpy as np
 import pytest
-from model_samples import MESHES, assert_closed, enclosed_volume
-
 from mdanim_lammps.model import mesh, shapes
 from mdanim_lammps.scene.scene import Box, Mesh, Sphere, Torus
+from model_samples import MESHES, assert_closed, enclosed_volume
 
 
 def written(tmp_path, shape, size=0.1, suffix=".stl"):
@@ -29,12 +28,15 @@ def test_triangles_are_turned_outward(name):
     np.testing.assert_allclose(body.points.max(axis=0), [0.2, 0.15, 0.1])
 
 
-@pytest.mark.parametrize(("name", "words"), [
-    pytest.param("open.obj", ("not closed", "3 edges", "fill"), id="a triangle is missing"),
-    pytest.param("fin.obj", ("not closed", "2 edges"), id="a fin of no thickness"),
-    pytest.param("missing.stl", ("No such file", "folder of the scene"), id="no such file"),
-    pytest.param("make_meshes.py", ("unknown kind of file '.py'", "STL, OBJ or PLY"), id="not a mesh"),
-])
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        pytest.param("open.obj", ("not closed", "3 edges", "fill"), id="a triangle is missing"),
+        pytest.param("fin.obj", ("not closed", "2 edges"), id="a fin of no thickness"),
+        pytest.param("missing.stl", ("No such file", "folder of the scene"), id="no such file"),
+        pytest.param("make_meshes.py", ("unknown kind of file '.py'", "STL, OBJ or PLY"), id="not a mesh"),
+    ],
+)
 def test_files_that_are_no_body_are_refused(name, words):
     """Say what is wrong with the file, and what to do."""
     with pytest.raises(mesh.MeshError) as caught:
@@ -43,14 +45,21 @@ def test_files_that_are_no_body_are_refused(name, words):
     assert all(word in text for word in words), text
 
 
-@pytest.mark.parametrize(("name", "content", "words"), [
-    ("empty.stl", b"", "mesh empty.stl"),
-    ("noise.ply", b"\x00\x01 no mesh at all", "mesh noise.ply"),
-    ("points.obj", b"v 0 0 0\nv 1 0 0\n", "holds no triangle"),
-    ("sheet.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n", "encloses no volume"),
-    ("three.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 1\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n"
-                  b"f 2 3 4\nf 3 1 4\nf 2 3 5\nf 3 1 5\nf 2 4 5\nf 4 1 5\n", "more than two triangles"),
-])
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("empty.stl", b"", "mesh empty.stl"),
+        ("noise.ply", b"\x00\x01 no mesh at all", "mesh noise.ply"),
+        ("points.obj", b"v 0 0 0\nv 1 0 0\n", "holds no triangle"),
+        ("sheet.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n", "encloses no volume"),
+        (
+            "three.obj",
+            b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 1\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n"
+            b"f 2 3 4\nf 3 1 4\nf 2 3 5\nf 3 1 5\nf 2 4 5\nf 4 1 5\n",
+            "more than two triangles",
+        ),
+    ],
+)
 def test_broken_files_are_refused(tmp_path, name, content, words):
     """Raise MeshError, and nothing else, for files that hold no body."""
     (tmp_path / name).write_bytes(content)
@@ -74,8 +83,7 @@ def test_the_origin_is_the_centre_of_mass_not_of_the_corners():
 
 
 @pytest.mark.parametrize("suffix", [".stl", ".ply"])
-@pytest.mark.parametrize(
-    "shape", [Sphere(0.5), Torus(0.5, 0.2), Box((1.0, 0.5, 0.3))], ids=["ball", "ring", "box"])
+@pytest.mark.parametrize("shape", [Sphere(0.5), Torus(0.5, 0.2), Box((1.0, 0.5, 0.3))], ids=["ball", "ring", "box"])
 def test_a_mesh_of_a_shape_is_that_shape(tmp_path, shape, suffix):
     """Find volume, thickness and inside of a shape that comes from a file (facets cost up to 1.5 %)."""
     made = written(tmp_path, shape, suffix=suffix)
@@ -83,8 +91,7 @@ def test_a_mesh_of_a_shape_is_that_shape(tmp_path, shape, suffix):
     assert shapes.thickness(made) == pytest.approx(shapes.thickness(shape), rel=0.03)
     points = np.random.default_rng(2).uniform(-0.8, 0.8, (20000, 3))
     clear = abs(shapes.depth(shape, points)) > 0.01
-    np.testing.assert_array_equal(
-        shapes.contains(made, points[clear]), shapes.contains(shape, points[clear]))
+    np.testing.assert_array_equal(shapes.contains(made, points[clear]), shapes.contains(shape, points[clear]))
 
 
 def test_points_in_line_with_corners_and_edges_are_not_confused():

@@ -8,15 +8,13 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from model_samples import MESHES, SHAPES, rotation, scene, shape_id, solid
-
 from mdanim_lammps.model import build_models, check_geometry, shapes
 from mdanim_lammps.scene.scene import Box, Cylinder, HoldAll, Liquid, Mesh, Sphere, Torus, Walls
+from model_samples import MESHES, SHAPES, rotation, scene, shape_id, solid
 
 CUBE = Box((1.0, 1.0, 1.0))
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
-MOVES = {"up": (0, 0, 1), "down": (0, 0, -1), "to +x": (1, 0, 0), "to -x": (-1, 0, 0), "to +y": (0, 1, 0),
-         "to -y": (0, -1, 0)}
+MOVES = {"up": (0, 0, 1), "down": (0, 0, -1), "to +x": (1, 0, 0), "to -x": (-1, 0, 0), "to +y": (0, 1, 0), "to -y": (0, -1, 0)}
 
 
 def problems(*solids, h=0.25, **rest):
@@ -32,14 +30,17 @@ def moved(body, hint):
     return replace(body, position=tuple(body.position + step))
 
 
-@pytest.mark.parametrize(("position", "deep"), [
-    pytest.param((0, 0, 1.0), None, id="one stands on the other"),
-    pytest.param((0, 0, 1.5), None, id="apart"),
-    pytest.param((1.0, 1.0, 1.0), None, id="corner to corner"),
-    pytest.param((0.3, 0.2, 0.97), "3 cm", id="a little inside"),
-    pytest.param((0, 0.5, 0), "50 cm", id="half inside"),
-    pytest.param((0, 0, 0), "cm", id="the same place"),
-])
+@pytest.mark.parametrize(
+    ("position", "deep"),
+    [
+        pytest.param((0, 0, 1.0), None, id="one stands on the other"),
+        pytest.param((0, 0, 1.5), None, id="apart"),
+        pytest.param((1.0, 1.0, 1.0), None, id="corner to corner"),
+        pytest.param((0.3, 0.2, 0.97), "3 cm", id="a little inside"),
+        pytest.param((0, 0.5, 0), "50 cm", id="half inside"),
+        pytest.param((0, 0, 0), "cm", id="the same place"),
+    ],
+)
 def test_two_cubes(position, deep):
     """Let touching cubes be, and tell how deep others are."""
     found = problems(solid(CUBE, "a"), solid(CUBE, "b", position=position))
@@ -68,26 +69,32 @@ def test_an_offered_move_frees_any_two_bodies(first, second, shift, angles):
     assert not problems(a, moved(b, found[0].hint), h=0.12)
 
 
-@pytest.mark.parametrize(("first", "second", "position"), [
-    pytest.param(CUBE, Sphere(0.2), (0.1, 0, 0), id="a ball inside a cube"),
-    pytest.param(Sphere(0.2), CUBE, (0.1, 0, 0), id="a cube around a ball"),
-    pytest.param(Box((3.0, 0.3, 0.3)), Box((0.3, 0.3, 3.0)), (0.02, 0.03, 0.01), id="two bars that cross"),
-    pytest.param(Box((3.0, 3.0, 0.2)), Cylinder(0.15, 4.0), (0.4, 0.4, 0.3), id="a rod through a plate"),
-    pytest.param(Torus(1.0, 0.3), Sphere(0.4), (1.0, 0, 0), id="a ball on the ring's tube"),
-    pytest.param(Mesh(MESHES / "cuboid.obj", 0.5), Sphere(0.2), (0.6, 0.4, 0.2), id="a ball inside a mesh"),
-])
+@pytest.mark.parametrize(
+    ("first", "second", "position"),
+    [
+        pytest.param(CUBE, Sphere(0.2), (0.1, 0, 0), id="a ball inside a cube"),
+        pytest.param(Sphere(0.2), CUBE, (0.1, 0, 0), id="a cube around a ball"),
+        pytest.param(Box((3.0, 0.3, 0.3)), Box((0.3, 0.3, 3.0)), (0.02, 0.03, 0.01), id="two bars that cross"),
+        pytest.param(Box((3.0, 3.0, 0.2)), Cylinder(0.15, 4.0), (0.4, 0.4, 0.3), id="a rod through a plate"),
+        pytest.param(Torus(1.0, 0.3), Sphere(0.4), (1.0, 0, 0), id="a ball on the ring's tube"),
+        pytest.param(Mesh(MESHES / "cuboid.obj", 0.5), Sphere(0.2), (0.6, 0.4, 0.2), id="a ball inside a mesh"),
+    ],
+)
 def test_overlaps_of_all_kinds_are_found(first, second, position):
     """Find bodies inside others, around others and through others."""
     assert len(problems(solid(first, "a"), solid(second, "b", position=position), h=0.1)) == 1
 
 
-@pytest.mark.parametrize(("first", "second", "position"), [
-    pytest.param(Torus(1.0, 0.3), Sphere(0.5), (0, 0, 0), id="a ball in the hole of a ring"),
-    pytest.param(Sphere(0.5), Sphere(0.5), (1.0, 0, 0), id="two balls that touch"),
-    pytest.param(Sphere(0.5), Sphere(0.5), (0.71, 0.71, 0), id="bounding boxes overlap, balls do not"),
-    pytest.param(CUBE, Sphere(0.5), (0, 0, 1.0), id="a ball on a cube"),
-    pytest.param(Torus(1.0, 0.2), Torus(1.0, 0.2), (0, 0, 0.4), id="rings on each other"),
-])
+@pytest.mark.parametrize(
+    ("first", "second", "position"),
+    [
+        pytest.param(Torus(1.0, 0.3), Sphere(0.5), (0, 0, 0), id="a ball in the hole of a ring"),
+        pytest.param(Sphere(0.5), Sphere(0.5), (1.0, 0, 0), id="two balls that touch"),
+        pytest.param(Sphere(0.5), Sphere(0.5), (0.71, 0.71, 0), id="bounding boxes overlap, balls do not"),
+        pytest.param(CUBE, Sphere(0.5), (0, 0, 1.0), id="a ball on a cube"),
+        pytest.param(Torus(1.0, 0.2), Torus(1.0, 0.2), (0, 0, 0.4), id="rings on each other"),
+    ],
+)
 def test_bodies_that_only_touch_are_left_alone(first, second, position):
     """Look at true surfaces, not at boxes, nor at particles of the staircase."""
     assert not problems(solid(first, "a"), solid(second, "b", position=position), h=0.1)
@@ -96,8 +103,7 @@ def test_bodies_that_only_touch_are_left_alone(first, second, position):
 def test_linked_rings_are_fine():
     """Let one ring pass through the hole of another."""
     ring = Torus(1.0, 0.2)
-    assert not problems(
-        solid(ring, "a"), solid(ring, "b", position=(1.0, 0, 0), rotation=rotation(np.pi / 2, 0, 0)), h=0.1)
+    assert not problems(solid(ring, "a"), solid(ring, "b", position=(1.0, 0, 0), rotation=rotation(np.pi / 2, 0, 0)), h=0.1)
 
 
 def test_turned_cubes_that_touch_are_left_alone():
@@ -127,12 +133,15 @@ def test_the_host_is_asked_in_its_own_frame():
         assert len(problems(bar, solid(Sphere(0.1), "ball", position=at), h=0.1)) == count
 
 
-@pytest.mark.parametrize(("position", "words"), [
-    pytest.param((0, 0, 0.5), None, id="stands on the ground"),
-    pytest.param((0, 0, 0.47), ("3 cm below the ground", "move it up by 3 cm"), id="sunk"),
-    pytest.param((1.6, 0, 1.0), ("10 cm outside the walls at +x", "move it to -x by 10 cm"), id="through"),
-    pytest.param((0, -5.0, 1.0), ("3.5 m outside the walls at -y", "move it to +y by 3.5 m"), id="outside"),
-])
+@pytest.mark.parametrize(
+    ("position", "words"),
+    [
+        pytest.param((0, 0, 0.5), None, id="stands on the ground"),
+        pytest.param((0, 0, 0.47), ("3 cm below the ground", "move it up by 3 cm"), id="sunk"),
+        pytest.param((1.6, 0, 1.0), ("10 cm outside the walls at +x", "move it to -x by 10 cm"), id="through"),
+        pytest.param((0, -5.0, 1.0), ("3.5 m outside the walls at -y", "move it to +y by 3.5 m"), id="outside"),
+    ],
+)
 def test_ground_and_walls(position, words):
     """Keep objects above the ground and within the walls."""
     found = problems(solid(CUBE, "cube", position=position), ground=0.0, walls=Walls((-2, -2, -9), (2, 2, 9)))

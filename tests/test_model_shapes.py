@@ -5,10 +5,9 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
-from model_samples import MESHES, SHAPES, assert_closed, enclosed_volume, shape_id
-
 from mdanim_lammps.model import shapes
 from mdanim_lammps.scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere, Torus
+from model_samples import MESHES, SHAPES, assert_closed, enclosed_volume, shape_id
 
 every_shape = pytest.mark.parametrize("shape", SHAPES, ids=shape_id)
 
@@ -20,16 +19,19 @@ def test_every_shape_of_the_language_has_its_laws():
     assert set(shapes.LAWS) == set(get_args(Shape)) == {type(s) for s in SHAPES}
 
 
-@pytest.mark.parametrize(("shape", "volume", "thickness"), [
-    pytest.param(Box((1, 2, 3)), 6, 1, id="box"),
-    pytest.param(Sphere(2), 4 / 3 * pi * 8, 4, id="sphere"),
-    pytest.param(Ellipsoid((3, 2, 1)), 8 * pi, 2, id="ellipsoid"),
-    pytest.param(Cylinder(2, 3), 12 * pi, 3, id="disc: its height"),
-    pytest.param(Cylinder(1, 3), 3 * pi, 2, id="rod: its diameter"),
-    pytest.param(Cone(3, 4), 12 * pi, 3, id="cone: 3-4-5 triangle, inscribed ball of radius 12/8"),
-    pytest.param(Torus(3, 1), 6 * pi**2, 2, id="torus"),
-    pytest.param(Mesh(MESHES / "cuboid.obj", 0.5), 3, 1, id="mesh: 4 x 3 x 2, half size"),
-])
+@pytest.mark.parametrize(
+    ("shape", "volume", "thickness"),
+    [
+        pytest.param(Box((1, 2, 3)), 6, 1, id="box"),
+        pytest.param(Sphere(2), 4 / 3 * pi * 8, 4, id="sphere"),
+        pytest.param(Ellipsoid((3, 2, 1)), 8 * pi, 2, id="ellipsoid"),
+        pytest.param(Cylinder(2, 3), 12 * pi, 3, id="disc: its height"),
+        pytest.param(Cylinder(1, 3), 3 * pi, 2, id="rod: its diameter"),
+        pytest.param(Cone(3, 4), 12 * pi, 3, id="cone: 3-4-5 triangle, inscribed ball of radius 12/8"),
+        pytest.param(Torus(3, 1), 6 * pi**2, 2, id="torus"),
+        pytest.param(Mesh(MESHES / "cuboid.obj", 0.5), 3, 1, id="mesh: 4 x 3 x 2, half size"),
+    ],
+)
 def test_volume_and_thickness(shape, volume, thickness):
     """Know volumes exactly, and the thickness of the thinnest part."""
     assert shapes.volume(shape) == pytest.approx(volume, rel=1e-12)
@@ -99,16 +101,20 @@ def test_contains_fill_and_depth_agree(shape):
     np.testing.assert_array_equal(shapes.depth(shape, points) > 0, inside)
 
 
-@pytest.mark.parametrize(("shape", "point", "depth"), [
-    (Box((2, 4, 6)), (0.5, 0, 0), 0.5),
-    (Sphere(2), (0, 1.5, 0), 0.5),
-    (Ellipsoid((3, 2, 1)), (0, 0, 0.75), 0.25),
-    (Cylinder(1, 4), (0, 0.5, 1.8), 0.2),
-    (Cone(3, 4), (0, 0, -0.75), 0.25),
-    (Cone(3, 4), (0, 0, 2), 0.6),
-    (Torus(3, 1), (0, 3.5, 0), 0.5),
-    (Mesh(MESHES / "cuboid.obj"), (1.5, 0, 0), 0.5),
-], ids=lambda v: shape_id(v) if not isinstance(v, (tuple, float, int)) else None)
+@pytest.mark.parametrize(
+    ("shape", "point", "depth"),
+    [
+        (Box((2, 4, 6)), (0.5, 0, 0), 0.5),
+        (Sphere(2), (0, 1.5, 0), 0.5),
+        (Ellipsoid((3, 2, 1)), (0, 0, 0.75), 0.25),
+        (Cylinder(1, 4), (0, 0.5, 1.8), 0.2),
+        (Cone(3, 4), (0, 0, -0.75), 0.25),
+        (Cone(3, 4), (0, 0, 2), 0.6),
+        (Torus(3, 1), (0, 3.5, 0), 0.5),
+        (Mesh(MESHES / "cuboid.obj"), (1.5, 0, 0), 0.5),
+    ],
+    ids=lambda v: shape_id(v) if not isinstance(v, (tuple, float, int)) else None,
+)
 def test_depth_is_the_distance_to_the_surface(shape, point, depth):
     """Measure how deep a point lies; hand-made numbers (cone: 1 m below the tip, times sin of 3-4-5)."""
     assert shapes.depth(shape, np.array([point])) == pytest.approx([depth], rel=1e-6)

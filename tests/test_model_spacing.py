@@ -5,23 +5,25 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from model_samples import MESHES, SHAPES, model, scene, shape_id, solid
-
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.model import build_models, plan_spacing, shapes, spacing
 from mdanim_lammps.model.cells import _without_nubs, box_counts, fill_cells
 from mdanim_lammps.model.springs import MAX_ASPECT
 from mdanim_lammps.scene.scene import Accuracy, Box, Cone, Cylinder, HoldAll, Liquid, Mesh, Sphere
+from model_samples import MESHES, SHAPES, model, scene, shape_id, solid
 
 BEAM = Box((1.2, 0.3, 0.1))
 
 
-@pytest.mark.parametrize(("accuracy", "h"), [
-    (Accuracy.PREVIEW, 0.05),
-    (Accuracy.BALANCED, 0.025),
-    (Accuracy.REFERENCE, 0.0125),
-    pytest.param(0.02, 0.025, id="target error: as balanced"),
-])
+@pytest.mark.parametrize(
+    ("accuracy", "h"),
+    [
+        (Accuracy.PREVIEW, 0.05),
+        (Accuracy.BALANCED, 0.025),
+        (Accuracy.REFERENCE, 0.0125),
+        pytest.param(0.02, 0.025, id="target error: as balanced"),
+    ],
+)
 def test_accuracy_is_the_number_of_cells_across_the_thinnest_part(accuracy, h):
     """Divide the thinnest part of all solids, and name the solid that has it."""
     plan = plan_spacing(scene(solid(Sphere(0.3), "ball"), solid(BEAM, "beam"), accuracy=accuracy))
@@ -98,15 +100,18 @@ def test_particles_are_estimated_well(shape):
         assert spacing.estimate_particles(shape, h) == pytest.approx(len(model(shape, h).position), rel=0.25)
 
 
-@pytest.mark.parametrize(("size", "h", "count"), [
-    pytest.param((1.2, 0.3, 0.1), 0.025, (48, 12, 4), id="cubes"),
-    pytest.param((1.0, 1.0, 1.0), 0.3, (3, 3, 3), id="spacing grows to divide a cube"),
-    pytest.param((1.0, 1.0, 1.0), 1.0, (1, 1, 1), id="one cell"),
-    pytest.param((0.9, 0.6, 0.31), 0.1, (9, 6, 3), id="slightly long cells along z"),
-    pytest.param((10.0, 1.0, 0.101), 0.1, (100, 10, 1), id="plate"),
-    pytest.param((1.2, 2.1, 2.1), 0.5, (2, 4, 4), id="fewer, longer cells where more would be further off"),
-    pytest.param((1.25, 1.25, 1.0), 0.5, (3, 3, 2), id="near the spacing: 4 x 4 x 3 are nearer to cubes"),
-])
+@pytest.mark.parametrize(
+    ("size", "h", "count"),
+    [
+        pytest.param((1.2, 0.3, 0.1), 0.025, (48, 12, 4), id="cubes"),
+        pytest.param((1.0, 1.0, 1.0), 0.3, (3, 3, 3), id="spacing grows to divide a cube"),
+        pytest.param((1.0, 1.0, 1.0), 1.0, (1, 1, 1), id="one cell"),
+        pytest.param((0.9, 0.6, 0.31), 0.1, (9, 6, 3), id="slightly long cells along z"),
+        pytest.param((10.0, 1.0, 0.101), 0.1, (100, 10, 1), id="plate"),
+        pytest.param((1.2, 2.1, 2.1), 0.5, (2, 4, 4), id="fewer, longer cells where more would be further off"),
+        pytest.param((1.25, 1.25, 1.0), 0.5, (3, 3, 2), id="near the spacing: 4 x 4 x 3 are nearer to cubes"),
+    ],
+)
 def test_cuboids_are_divided_into_near_cubes(size, h, count):
     """Find the division that has nearly cubic cells near the spacing."""
     assert box_counts(size, h) == count

@@ -6,15 +6,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from model_samples import model
-from scipy.sparse import diags
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
-from twin import lattice as twin
-
 from mdanim_lammps.model import lattice as lattice_module
 from mdanim_lammps.model.lattice import AXES, OFFSETS, Cells, make_lattice
 from mdanim_lammps.model.springs import dashpots, spring_constants, stiffness, types
 from mdanim_lammps.scene.scene import Box, SpringConstant, Young
+from model_samples import model
+from scipy.sparse import diags
+from scipy.sparse.linalg import LinearOperator, eigsh, splu
+from twin import lattice as twin
 
 NU = 0.25
 
@@ -50,7 +49,8 @@ def stretched(body):
     planes = np.unique(x[:, 0].round(6))
     middle, near, far = (np.abs(x[:, 0] - planes[n]) < 1e-6 for n in (len(planes) // 2, len(planes) // 3, -1 - len(planes) // 3))
     along = (u[far, 0] @ body.share[far] / body.share[far].sum() - u[near, 0] @ body.share[near] / body.share[near].sum()) / (
-        x[far, 0].mean() - x[near, 0].mean())
+        x[far, 0].mean() - x[near, 0].mean()
+    )
     across = np.polyfit(x[middle, 1], u[middle, 1], 1)[0]
     return 1e-3 / along, -across / along
 
@@ -63,11 +63,14 @@ def test_a_bar_is_as_stiff_as_its_material_however_thin(cells):
     assert nu == pytest.approx(NU, abs=5e-5)
 
 
-@pytest.mark.parametrize(("size", "cell"), [
-    pytest.param((28.8, 4.0, 4.0), (1.2, 1.0, 1.0), id="long cells along the pull"),
-    pytest.param((24.0, 4.8, 4.8), (1.0, 1.2, 1.2), id="flat cells"),
-    pytest.param((24.0, 4.4, 4.8), (1.0, 1.1, 1.2), id="three different edges"),
-])
+@pytest.mark.parametrize(
+    ("size", "cell"),
+    [
+        pytest.param((28.8, 4.0, 4.0), (1.2, 1.0, 1.0), id="long cells along the pull"),
+        pytest.param((24.0, 4.8, 4.8), (1.0, 1.2, 1.2), id="flat cells"),
+        pytest.param((24.0, 4.4, 4.8), (1.0, 1.1, 1.2), id="three different edges"),
+    ],
+)
 def test_a_bar_of_cuboid_cells_is_isotropic_too(size, cell, monkeypatch):
     """Pull bars with aspects up to 1.2: exactly, if no cell moves its springs inward; else within 1e-4 and 0.001,
     since edges that are much weaker than diagonals would have to move more than three times their part."""
@@ -161,13 +164,16 @@ def cantilever(cells):
     return deflection, np.sqrt(w2) / twin.first_frequency(length, side, 1.0, NU, 1.0)
 
 
-@pytest.mark.parametrize(("cells", "bend", "tone"), [
-    # docs/physics-solids.md: measured 1.001 and 1.001, 0.992 and 1.005, 0.992 and 1.005, 0.996 and 1.003
-    pytest.param(2, 0.003, 0.003, id="2 cells: 0.3 %"),
-    pytest.param(3, 0.010, 0.006, id="3 cells: 1 % and 0.6 %"),
-    pytest.param(4, 0.010, 0.006, id="4 cells: 1 % and 0.6 %"),
-    pytest.param(8, 0.005, 0.004, id="8 cells: 0.5 % and 0.4 %"),
-])
+@pytest.mark.parametrize(
+    ("cells", "bend", "tone"),
+    [
+        # docs/physics-solids.md: measured 1.001 and 1.001, 0.992 and 1.005, 0.992 and 1.005, 0.996 and 1.003
+        pytest.param(2, 0.003, 0.003, id="2 cells: 0.3 %"),
+        pytest.param(3, 0.010, 0.006, id="3 cells: 1 % and 0.6 %"),
+        pytest.param(4, 0.010, 0.006, id="4 cells: 1 % and 0.6 %"),
+        pytest.param(8, 0.005, 0.004, id="8 cells: 0.5 % and 0.4 %"),
+    ],
+)
 def test_cantilever_against_timoshenko(cells, bend, tone):
     """Bend a clamped bar and let it swing: deflection and first frequency, L/t = 10."""
     deflection, frequency = cantilever(cells)

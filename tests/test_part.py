@@ -5,7 +5,6 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
-
 from mdanim_lammps.driver.energy import energies, stored
 from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.data_file import data_text
@@ -213,7 +212,7 @@ def test_the_liquid_alone(prepared):
     """Run the pond without any object, as it goes on when all have left."""
     text = POND.replace("MODEL", "")
     for name in ("wall", "raft"):
-        text = text[: text.index(f"object {name}")] + text[text.index("}", text.index(f"object {name}")) + 2:]
+        text = text[: text.index(f"object {name}")] + text[text.index("}", text.index(f"object {name}")) + 2 :]
     plan = prepared(text).plan
     with Instance(plan) as whole, Instance(Parts(plan).part((), True)) as alone:
         whole.setup()
@@ -227,6 +226,7 @@ def test_the_liquid_alone(prepared):
 
 def test_the_liquid_alone_takes_one_process(prepared):
     """Refuse several ranks before LAMMPS hangs in cutting up an empty space."""
+
     class Two:
         def Get_size(self):
             return 2
@@ -249,7 +249,7 @@ def test_a_part_says_what_a_plan_of_its_own_would_say(prepared):
     """Slice to what the same objects give in a scene of their own: system, types, tables of tags, springs at both ends."""
     text = POND.replace("MODEL", "model pressure")
     whole, name = prepared(text), "object higher"
-    without = text[: text.index(name)] + text[text.index("}", text.index(name)) + 2:]
+    without = text[: text.index(name)] + text[text.index("}", text.index(name)) + 2 :]
     own = prepared(without)
     part = Parts(whole.plan).part((0, 1, 3), True)
     own_plan = make_plan(own.scene, own.system, own.verdicts, whole.certificate)
@@ -284,14 +284,17 @@ def test_effects_with_nothing_to_act_on_are_left_out(prepared):
     assert set(pond.part((0,), True).columns) == {"stiffness", "lambda", "volume", "gamma", "air"}
 
 
-@pytest.mark.parametrize(("objects", "liquid", "why"), [
-    pytest.param((2, 0), False, "must ascend", id="another order"),
-    pytest.param((1, 1), False, "must ascend", id="one of them twice"),
-    pytest.param((1, 6), False, "within 0 and 5", id="not there"),
-    pytest.param((-1, 2), False, "within 0 and 5", id="counted from the end"),
-    pytest.param((0,), True, "no liquid", id="no liquid"),
-    pytest.param((), False, "needs an object", id="nothing"),
-])
+@pytest.mark.parametrize(
+    ("objects", "liquid", "why"),
+    [
+        pytest.param((2, 0), False, "must ascend", id="another order"),
+        pytest.param((1, 1), False, "must ascend", id="one of them twice"),
+        pytest.param((1, 6), False, "within 0 and 5", id="not there"),
+        pytest.param((-1, 2), False, "within 0 and 5", id="counted from the end"),
+        pytest.param((0,), True, "no liquid", id="no liquid"),
+        pytest.param((), False, "needs an object", id="nothing"),
+    ],
+)
 def test_parts_that_are_refused(prepared, objects, liquid, why):
     """Say what is wrong."""
     with pytest.raises(ValueError, match=why):
@@ -322,10 +325,13 @@ def test_a_state_of_other_particles_is_refused(prepared):
             one.put(0, other.state())
 
 
-@pytest.mark.parametrize("chain", [
-    pytest.param([(1, 4), (0, 2), (2, 3), (0, 1, 2, 3, 4, 5), (0, 2)], id="that meet"),
-    pytest.param([(3,), (2,), (0,), (1,)], id="alone"),
-])
+@pytest.mark.parametrize(
+    "chain",
+    [
+        pytest.param([(1, 4), (0, 2), (2, 3), (0, 1, 2, 3, 4, 5), (0, 2)], id="that meet"),
+        pytest.param([(3,), (2,), (0,), (1,)], id="alone"),
+    ],
+)
 def test_an_instance_filled_anew_is_as_a_new_one(prepared, chain):
     """Damped, dragged and thin objects, more and fewer, one after the other in one instance: bits and energies,
     losses from 0, of new ones."""
@@ -359,9 +365,13 @@ def test_an_instance_is_not_filled_with_what_it_has_no_place_for(prepared):
     """Other columns, more types of springs than there is room for, and the liquid take a new one; the old one is as it was."""
     parts = Parts(prepared(SHELF).plan)
     pond = Parts(prepared(POND.replace("MODEL", "")).plan)
-    rich = prepared("\n".join(f"object o{k} {{ shape box (5, 5, 5) cm  position ({10 * k}, 0, 0) cm  mass 1 kg  "
-                              f"elasticity {k} kPa }}"
-                              for k in range(1, 90)) + "control { time 0.1 s  resolution 2.5 cm }").plan
+    rich = prepared(
+        "\n".join(
+            f"object o{k} {{ shape box (5, 5, 5) cm  position ({10 * k}, 0, 0) cm  mass 1 kg  elasticity {k} kPa }}"
+            for k in range(1, 90)
+        )
+        + "control { time 0.1 s  resolution 2.5 cm }"
+    ).plan
     assert len(rich.coefficients) > 256
     with Instance(parts.part((0,), False)) as instance, Instance(pond.part((0,), True)) as wet:
         instance.setup()

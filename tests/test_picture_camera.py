@@ -5,19 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from picture_samples import box, falling, slab_scene, solid, write
-
-from mdanim_lammps.picture.camera import (
-    FIELD_OF_VIEW,
-    MARGIN,
-    CameraPath,
-    action_of,
-    automatic_view,
-    fit_view,
-    hermite_weights,
-)
+from mdanim_lammps.picture.camera import FIELD_OF_VIEW, MARGIN, CameraPath, action_of, automatic_view, fit_view, hermite_weights
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.scene import Camera, Control, Scene
+from picture_samples import box, falling, slab_scene, solid, write
 
 
 def project(view, points, aspect):
@@ -51,19 +42,14 @@ def test_fit_is_tight(aspect):
     assert (depth > 0).all()
     assert np.abs(seen).max() == pytest.approx(MARGIN, abs=1e-9)
     np.testing.assert_allclose(
-        seen.max(axis=0)[np.abs(seen).max(axis=0).argmax()],
-        -seen.min(axis=0)[np.abs(seen).max(axis=0).argmax()],
-        atol=1e-9,
+        seen.max(axis=0)[np.abs(seen).max(axis=0).argmax()], -seen.min(axis=0)[np.abs(seen).max(axis=0).argmax()], atol=1e-9
     )
 
 
 @pytest.mark.parametrize("size", [(4.0, 0.2, 0.2), (0.2, 0.2, 4.0), (0.2, 4.0, 0.2)])
 def test_wide_and_tall_scenes_fit(tmp_path, size):
     """Every surface point of every frame is in the picture, whatever the shape of the scene."""
-    models = [
-        box("a", size, (2, 2, 2), (0, 0, size[2] / 2)),
-        box("b", (0.3, 0.3, 0.3), (1, 1, 1), (0.5, 0.5, 1)),
-    ]
+    models = [box("a", size, (2, 2, 2), (0, 0, size[2] / 2)), box("b", (0.3, 0.3, 0.3), (1, 1, 1), (0.5, 0.5, 1))]
     frames = [((0, 0, 0), (0.3 * k, 0.1 * k, 0.02 * k**2)) for k in range(8)]
     with moving(tmp_path, models, frames) as t:
         view = automatic_view(action_of(t), 16 / 9)
@@ -71,8 +57,7 @@ def test_wide_and_tall_scenes_fit(tmp_path, size):
             seen, depth = project(view, t.catalogue.skin.vertices(t.position(i)), 16 / 9)
             assert (depth > 0).all() and np.abs(seen).max() < 1.0
         largest = max(
-            np.ptp(project(view, t.catalogue.skin.vertices(t.position(i)), 16 / 9)[0], axis=0).max()
-            for i in range(len(t))
+            np.ptp(project(view, t.catalogue.skin.vertices(t.position(i)), 16 / 9)[0], axis=0).max() for i in range(len(t))
         )
         assert largest > 0.6  # of 2: the action fills the picture
 
@@ -98,10 +83,7 @@ def test_long_runs_are_looked_at_in_stretches(tmp_path, monkeypatch):
 
 def test_what_falls_out_does_not_shrink_the_rest(tmp_path):
     """Without ground, an object that drops away for good is followed only a little way."""
-    models = [
-        box("stays", (1, 1, 0.2), (2, 2, 1), (0, 0, 0)),
-        box("falls", (0.2, 0.2, 0.2), (1, 1, 1), (0, 0, 1)),
-    ]
+    models = [box("stays", (1, 1, 0.2), (2, 2, 1), (0, 0, 0)), box("falls", (0.2, 0.2, 0.2), (1, 1, 1), (0, 0, 1))]
     frames = [((0, 0, 0), (0.05 * k, 0, -0.05 * k**2)) for k in range(30)]
     with moving(tmp_path, models, frames, ground=None) as t:
         action = action_of(t)
@@ -141,14 +123,10 @@ def test_look_follows_an_object(tmp_path):
         np.testing.assert_allclose(two.at(0.3).look, [0, 0, 0], atol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("count", "followed"), [pytest.param(4, True, id="few"), pytest.param(40, False, id="crowd")]
-)
+@pytest.mark.parametrize(("count", "followed"), [pytest.param(4, True, id="few"), pytest.param(40, False, id="crowd")])
 def test_a_crowd_is_not_ruled_by_a_runaway(tmp_path, count, followed):
     """The camera holds an object that runs off, unless it is one of a crowd."""
     models = [box(f"b[{i}]", (0.1, 0.1, 0.1), (1, 1, 1), (2.0 * i / count, 0, 0.05)) for i in range(count)]
     frames = [tuple((4.0 * k if i == 0 else 0.0, 0, 0) for i in range(count)) for k in range(2)]
     with moving(tmp_path, models, frames) as t:
-        assert action_of(t).bounds[1][0] == pytest.approx(
-            4.05 if followed else models[-1].position[:, 0].max()
-        )
+        assert action_of(t).bounds[1][0] == pytest.approx(4.05 if followed else models[-1].position[:, 0].max())

@@ -8,15 +8,14 @@ import ctypes
 import numpy as np
 import plugin_lab as lab
 import pytest
-from picture_samples import box, column_centres, flat, pool_scene, raw_of, wet_frames, write
-from test_fix_mdanim_liquid import handle, library
-from test_picture_liquid import SIZE, dry, spot
-
 from mdanim_lammps.model.basin import Grid
 from mdanim_lammps.picture.liquid import Blocks, kept_dry, undersides
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.scene import Camera, Render
+from picture_samples import box, column_centres, flat, pool_scene, raw_of, wet_frames, write
+from test_fix_mdanim_liquid import handle, library
+from test_picture_liquid import SIZE, dry, spot
 
 # --- what the fix tells -----------------------------------------------------------------------------------
 

@@ -7,10 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from picture_samples import box, column_centres, dam, flat, pool_scene, raw_of, splash, wet_frames, write
-from test_picture_camera import project
-from test_picture_render import hue_mask
-
 from mdanim_lammps.model.basin import Grid
 from mdanim_lammps.picture import tank
 from mdanim_lammps.picture.camera import action_of
@@ -18,6 +14,9 @@ from mdanim_lammps.picture.liquid import Blocks, Sheet
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.scene import Camera, Render
+from picture_samples import box, column_centres, dam, flat, pool_scene, raw_of, splash, wet_frames, write
+from test_picture_camera import project
+from test_picture_render import hue_mask
 
 GRID = Grid((-1.0, -0.7, 0.2), (1.0, 0.7, 1.2), (20, 14, 10))
 SIZE = (480, 270)
@@ -222,6 +221,7 @@ def test_cells_show_steps_and_the_sheet_does_not(tmp_path):
 
     def step(grid):
         return np.where(column_centres(grid)[0] < 0, 0.6, 0.4)
+
     above = Render(camera=(Camera((0.0, -2.5, 3.5), (0.0, 0.0, 0.3)),))
     cells, view = picture(tmp_path / "c.h5", flat, models, replace(above, liquid="cells"), raw=step)
     level, _ = picture(tmp_path / "l.h5", flat, models, replace(above, liquid="cells"), raw=flat)

@@ -8,13 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from picture_samples import falling, slab_scene, write
-
 from mdanim_lammps.errors import OutputError, SetupError
 from mdanim_lammps.picture import movie
 from mdanim_lammps.picture.movie import movie_frames, render_movie, render_still
 from mdanim_lammps.results.trajectory import Trajectory, TrajectoryWriter
 from mdanim_lammps.scene.scene import Render
+from picture_samples import falling, slab_scene, write
 
 SMALL = Render(size=(160, 90))
 
@@ -155,8 +154,6 @@ def test_failing_process_is_named(short, tmp_path, monkeypatch):
 def test_no_frames_no_movie(tmp_path):
     """A run that ended before its first frame has nothing to show."""
     scene, models = slab_scene()
-    TrajectoryWriter(tmp_path / "trajectory.h5", scene, models, dt=0.01, steps_per_frame=10).close(
-        finished=False
-    )
+    TrajectoryWriter(tmp_path / "trajectory.h5", scene, models, dt=0.01, steps_per_frame=10).close(finished=False)
     with pytest.raises(OutputError, match="holds no frame"):
         render_movie(tmp_path, SMALL, tmp_path / "movie.mp4")

@@ -7,13 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from picture_samples import ball, box, falling, slab_scene, solid, write
-
-from mdanim_lammps.picture.palette import LOW, OBJECTS, STILL, object_colors, rgb
 from mdanim_lammps.picture import render as drawing
+from mdanim_lammps.picture.palette import LOW, OBJECTS, STILL, object_colors, rgb
 from mdanim_lammps.picture.render import Painter, grid_spacing, nearest_around
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.scene import Camera, Control, Render, Scene, Walls
+from picture_samples import ball, box, falling, slab_scene, solid, write
 
 SIZE = (320, 180)
 
@@ -48,10 +47,7 @@ def pixel_of(view, point):
 
 def test_objects_are_seen_where_they_are(tmp_path):
     """A red and a green cube appear at the projections of their centres and nowhere else."""
-    models = [
-        box("red", (0.3,) * 3, (2,) * 3, (-0.5, 0, 0.5)),
-        box("green", (0.3,) * 3, (2,) * 3, (0.5, 0, 0.2)),
-    ]
+    models = [box("red", (0.3,) * 3, (2,) * 3, (-0.5, 0, 0.5)), box("green", (0.3,) * 3, (2,) * 3, (0.5, 0, 0.2))]
     with trajectory(tmp_path, models, colors=["#d02020", "#20a020"]) as t:
         with Painter(t, size=SIZE) as painter:
             image, view = painter.frame(0) / 255.0, painter.view(0.0)
@@ -107,9 +103,7 @@ def test_nothing_shades_itself(tmp_path):
     slab = box("slab", (1.6, 1.6, 0.1), (8, 8, 1), (0, 0, 0.15))
     with trajectory(tmp_path, [slab]) as t, Painter(t, size=SIZE) as painter:
         image, view = painter.frame(0).astype(float), painter.view(0.0)
-    spots = [
-        pixel_of(view, (x, y, 0.2)) for x in np.linspace(-0.6, 0.6, 15) for y in np.linspace(-0.6, 0.6, 15)
-    ]
+    spots = [pixel_of(view, (x, y, 0.2)) for x in np.linspace(-0.6, 0.6, 15) for y in np.linspace(-0.6, 0.6, 15)]
     values = np.array([image[int(row), int(column)].sum() for column, row in spots])
     assert np.ptp(values) < 0.04 * values.mean()
 
@@ -202,10 +196,7 @@ def test_same_frame_same_picture(tmp_path):
 def test_frames_differ_where_things_move(tmp_path):
     """A falling cube changes the picture."""
     scene, models = slab_scene()
-    with (
-        Trajectory(write(tmp_path / "t.h5", scene, models, falling(models, 4))) as t,
-        Painter(t, size=SIZE) as painter,
-    ):
+    with Trajectory(write(tmp_path / "t.h5", scene, models, falling(models, 4))) as t, Painter(t, size=SIZE) as painter:
         change = np.abs(painter.frame(0).astype(int) - painter.frame(3)).max(axis=2)
     assert (change > 40).mean() > 0.02
 
@@ -213,15 +204,11 @@ def test_frames_differ_where_things_move(tmp_path):
 def test_colours_are_settled_by_index():
     """Held objects are grey, chosen colours stay, the others take the palette in turn."""
     colors = object_colors(["", "", "#010203", ""], np.array([True, False, False, False]))
-    assert colors.tolist() == [
-        [int(c[i : i + 2], 16) for i in (1, 3, 5)] for c in (STILL, OBJECTS[0], "#010203", OBJECTS[2])
-    ]
+    assert colors.tolist() == [[int(c[i : i + 2], 16) for i in (1, 3, 5)] for c in (STILL, OBJECTS[0], "#010203", OBJECTS[2])]
     assert len({*OBJECTS, STILL, LOW}) == len(OBJECTS) + 2
 
 
-@pytest.mark.parametrize(
-    ("size", "spacing"), [(12.0, 1.0), (1.2, 0.1), (20.0, 2.0), (70.0, 5.0), (110.0, 10.0)]
-)
+@pytest.mark.parametrize(("size", "spacing"), [(12.0, 1.0), (1.2, 0.1), (20.0, 2.0), (70.0, 5.0), (110.0, 10.0)])
 def test_grid_spacing_is_a_round_number(size, spacing):
     """1, 2 or 5 times a power of ten."""
     assert grid_spacing(size) == pytest.approx(spacing)

@@ -5,11 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from picture_samples import ball, box, slab_scene, solid
-
 from mdanim_lammps.picture.surfaces import shaded_mesh
 from mdanim_lammps.results.catalogue import catalogue_of
 from mdanim_lammps.scene import scene as records
+from picture_samples import ball, box, slab_scene, solid
 
 
 def prepared(*models, pixel=None):

@@ -3,13 +3,24 @@
 
 import numpy as np
 import pytest
-from test_cli import GOOD, run
-
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.picture.palette import rgb
 from mdanim_lammps.picture.timeline import (
-    COLUMNS, DOING, NOBODY, ROWS, SINGLE, bars, draw, edges, executor_colors, headline, ownership, shares)
+    COLUMNS,
+    DOING,
+    NOBODY,
+    ROWS,
+    SINGLE,
+    bars,
+    draw,
+    edges,
+    executor_colors,
+    headline,
+    ownership,
+    shares,
+)
 from mdanim_lammps.results.timeline import KINDS, Timeline
+from test_cli import GOOD, run
 
 
 def log(executors=2, objects=3, frames=4):
@@ -19,8 +30,11 @@ def log(executors=2, objects=3, frames=4):
         of = np.where(np.arange(objects) == 1, 0, (np.arange(objects) + frame) % executors)
         timeline.add(frame, [np.flatnonzero((of == e) & (np.arange(objects) > 0)) for e in range(executors)], 1, int(frame == 2))
         for e in range(executors if frame else 0):
-            timeline.spans += [(e, "moving", frame, frame - 1.0, frame - 0.9), (e, "simulating", frame, frame - 0.9, frame - 0.4),
-                               (e, "frozen" if frame == 2 else "waiting", frame, frame - 0.4, frame - 0.1 * e)]
+            timeline.spans += [
+                (e, "moving", frame, frame - 1.0, frame - 0.9),
+                (e, "simulating", frame, frame - 0.9, frame - 0.4),
+                (e, "frozen" if frame == 2 else "waiting", frame, frame - 0.4, frame - 0.1 * e),
+            ]
     return timeline
 
 
@@ -79,7 +93,7 @@ def test_groups_show_how_many_each_has(objects):
     rows = len(picture)
     assert rows == min(objects, ROWS)
     for a, b in zip(edges(objects), edges(objects)[1:]):
-        mine = picture[-(-a * rows // objects):b * rows // objects, 1]
+        mine = picture[-(-a * rows // objects) : b * rows // objects, 1]
         for e in range(3):
             found = (mine == colors[e]).all(axis=1).sum()
             assert abs(found - (owner[1, a:b] == e).sum() * rows / objects) <= 2.0
@@ -99,11 +113,15 @@ def test_a_picture_of_any_size(tmp_path, executors, objects, frames):
     assert (tmp_path / "t.png").read_bytes()[:4] == b"\x89PNG"
 
 
-@pytest.mark.parametrize(("title", "executors", "line"), [
-    pytest.param("Which of them float?", 2, "Which of them float? – 2 executors, owners decided by the supervisor",
-                 id="a question"),
-    pytest.param("", 1, "Run – 1 executor, owners decided by the supervisor", id="no title"),
-])
+@pytest.mark.parametrize(
+    ("title", "executors", "line"),
+    [
+        pytest.param(
+            "Which of them float?", 2, "Which of them float? – 2 executors, owners decided by the supervisor", id="a question"
+        ),
+        pytest.param("", 1, "Run – 1 executor, owners decided by the supervisor", id="no title"),
+    ],
+)
 def test_the_headline_reads_well_after_any_title(title, executors, line):
     """Put nothing behind a title that would follow its question mark as a second mark."""
     assert headline(log(executors), title) == line

@@ -3,8 +3,6 @@
 
 import numpy as np
 import pytest
-from test_part import POND
-
 from mdanim_lammps.driver import planner as module
 from mdanim_lammps.driver.messages import Report
 from mdanim_lammps.driver.planner import Planner
@@ -12,6 +10,7 @@ from mdanim_lammps.driver.planning import Settings
 from mdanim_lammps.driver.source import Broken
 from mdanim_lammps.engine.part import Parts
 from mdanim_lammps.errors import DivergedError
+from test_part import POND
 
 ROW = """
 repeat i in 1 .. 8 {
@@ -36,8 +35,10 @@ def report(parts, owner, cost=1000, shift=0.0, speed=1.0, fingerprint="", **more
     low, high = (f.reduceat(system.position, system.first[:-1]) + shift for f in (np.minimum, np.maximum))
     cost, speed = (np.broadcast_to(value, len(low)) for value in (cost, speed))
     mine = [np.flatnonzero(np.asarray(owner) == e) for e in (0, 1)]
-    return [Report(m, low[m], high[m], speed[m].astype(float), cost[m].astype(np.int64), fingerprint=fingerprint, **more)
-            for m in mine]
+    return [
+        Report(m, low[m], high[m], speed[m].astype(float), cost[m].astype(np.int64), fingerprint=fingerprint, **more)
+        for m in mine
+    ]
 
 
 EQUAL = [0, 0, 0, 0, 1, 1, 1, 1]
@@ -119,14 +120,17 @@ def test_who_escapes_for_ever_is_named(parts):
     assert found.value.solid == 5
 
 
-@pytest.mark.parametrize(("settings", "joined", "steps"), [
-    pytest.param({"worth": 0}, 1000, [40, 40, 7], id="whole frames while loads are in balance"),
-    pytest.param({"worth": 0}, 40, [20, 20, 20, 20, 7], id="halves, but for a frame that is short anyway"),
-    pytest.param({"worth": 0}, 10, [5] * 16 + [7], id="eighths"),
-    pytest.param({"worth": 10**9}, 10, [40, 40, 7], id="not worth it"),
-    pytest.param({"worth": 0, "finest": 2}, 10, [40, 40, 7], id="halves would not help"),
-    pytest.param({"worth": 0}, 4, [40, 40, 2, 2, 3], id="eighths would not help, but of seven steps they do"),
-])
+@pytest.mark.parametrize(
+    ("settings", "joined", "steps"),
+    [
+        pytest.param({"worth": 0}, 1000, [40, 40, 7], id="whole frames while loads are in balance"),
+        pytest.param({"worth": 0}, 40, [20, 20, 20, 20, 7], id="halves, but for a frame that is short anyway"),
+        pytest.param({"worth": 0}, 10, [5] * 16 + [7], id="eighths"),
+        pytest.param({"worth": 10**9}, 10, [40, 40, 7], id="not worth it"),
+        pytest.param({"worth": 0, "finest": 2}, 10, [40, 40, 7], id="halves would not help"),
+        pytest.param({"worth": 0}, 4, [40, 40, 2, 2, 3], id="eighths would not help, but of seven steps they do"),
+    ],
+)
 def test_windows_that_end_at_frames(parts, settings, joined, steps):
     """Cubes so fast that all are one island in windows of ``joined`` steps, and apart in shorter ones: the longest window that
     leaves two executors in balance is chosen."""

@@ -9,9 +9,7 @@ import plugin_lab as lab
 import plugin_path
 import pytest
 
-BODY = lab.shaken(
-    lab.join(lab.block((3, 3, 3)), lab.block((3, 2, 2), (4.4, 0.3, 0.2), (-0.3, 0.0, 0.0))), 0.02
-)
+BODY = lab.shaken(lab.join(lab.block((3, 3, 3)), lab.block((3, 2, 2), (4.4, 0.3, 0.2), (-0.3, 0.0, 0.0))), 0.02)
 COLUMNS = {"k": np.linspace(0.5, 1.5, len(BODY.x)), "drag": np.linspace(0.0, 0.02, len(BODY.x))}
 PHYSICS = [
     "mass * 1.0",
@@ -124,15 +122,9 @@ def test_a_second_object_may_follow_the_first(tmp_path):
     table = {}
     for molecule in (1, 2):
         pick = np.flatnonzero(BODY.molecule == molecule)
-        part = replace(
-            BODY, **{n: getattr(BODY, n)[pick] for n in ("x", "v", "mass", "molecule", "boundary")}
-        )
+        part = replace(BODY, **{n: getattr(BODY, n)[pick] for n in ("x", "v", "mass", "molecule", "boundary")})
         inside = slice(first[pick[0]], first[pick[-1] + 1])
-        table[molecule] = (
-            first[pick[0] : pick[-1] + 2] - first[pick[0]],
-            partner[inside].copy(),
-            kind[inside].copy(),
-        )
+        table[molecule] = (first[pick[0] : pick[-1] + 2] - first[pick[0]], partner[inside].copy(), kind[inside].copy())
         # Tags go on from the first object.
         arrays = [
             np.ascontiguousarray(a, t)
@@ -169,11 +161,7 @@ def test_a_second_object_may_follow_the_first(tmp_path):
     ("change", "message"),
     [
         pytest.param({"room": 5}, "there is room for 5; raise extra/bond/per/atom", id="no room for bonds"),
-        pytest.param(
-            {"columns": {**COLUMNS, "spin": COLUMNS["k"]}},
-            "no per-particle property d_spin",
-            id="unknown property",
-        ),
+        pytest.param({"columns": {**COLUMNS, "spin": COLUMNS["k"]}}, "no per-particle property d_spin", id="unknown property"),
         pytest.param({"kind": 99}, "bond type 99 is not within 1 and", id="unknown bond type"),
         pytest.param({"odd": True}, "both ends", id="a bond at one end only"),
     ],
@@ -196,8 +184,12 @@ def give_springs(lmp, pair=BODY.bond, kind=None):
     arrays = [np.ascontiguousarray(a, np.int32) for a in (pair, lab.bond_types(BODY)[1] if kind is None else kind)]
     error = ctypes.create_string_buffer(256)
     status = ctypes.CDLL(plugin_path.folder() + "/mdanimplugin.so").mdanim_give_springs(
-        ctypes.c_void_p(getattr(lmp.lmp, "value", lmp.lmp)), len(pair), *(a.ctypes.data_as(ctypes.c_void_p) for a in arrays),
-        error, len(error))
+        ctypes.c_void_p(getattr(lmp.lmp, "value", lmp.lmp)),
+        len(pair),
+        *(a.ctypes.data_as(ctypes.c_void_p) for a in arrays),
+        error,
+        len(error),
+    )
     return status, error.value.decode()
 
 
@@ -222,18 +214,23 @@ def test_springs_that_are_given_act_as_bonds_do(without_bonds, tmp_path):
     assert without_bonds.get_thermo("ebond") == read[3] and without_bonds.extract_global("nbonds") == 0
 
 
-@pytest.mark.parametrize(("wrong", "message"), [
-    pytest.param({"style": "zero"}, "springs need 'bond_style mdanim/harmonic'", id="another style"),
-    pytest.param({"kind": 99}, "bond type 99 is not within 1 and", id="unknown bond type"),
-    pytest.param({"pair": BODY.bond[:, ::-1]}, "spring 0 is 1, 0", id="higher particle first"),
-    pytest.param({"pair": BODY.bond[[1, 0]]}, "spring 1 is 0, 1", id="not sorted"),
-    pytest.param({"pair": np.array([[0, len(BODY.x)]])}, f"spring 0 is 0, {len(BODY.x)}", id="no such particle"),
-])
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        pytest.param({"style": "zero"}, "springs need 'bond_style mdanim/harmonic'", id="another style"),
+        pytest.param({"kind": 99}, "bond type 99 is not within 1 and", id="unknown bond type"),
+        pytest.param({"pair": BODY.bond[:, ::-1]}, "spring 0 is 1, 0", id="higher particle first"),
+        pytest.param({"pair": BODY.bond[[1, 0]]}, "spring 1 is 0, 1", id="not sorted"),
+        pytest.param({"pair": np.array([[0, len(BODY.x)]])}, f"spring 0 is 0, {len(BODY.x)}", id="no such particle"),
+    ],
+)
 def test_wrong_springs_come_back_as_text(without_bonds, wrong, message):
     """Name the first that cannot be."""
     pair = wrong.get("pair", BODY.bond)
-    for command in [f"bond_style {wrong.get('style', 'mdanim/harmonic')}",
-                    "bond_coeff *" + " 1.0" * (2 if "style" not in wrong else 0)]:
+    for command in [
+        f"bond_style {wrong.get('style', 'mdanim/harmonic')}",
+        "bond_coeff *" + " 1.0" * (2 if "style" not in wrong else 0),
+    ]:
         without_bonds.command(command)
     status, text = give_springs(without_bonds, pair, np.full(len(pair), wrong.get("kind", 1)))
     assert status == 1 and message in text
@@ -270,8 +267,14 @@ def set_table(lmp, name="cell", table=TABLE, tags=None):
     tags = np.arange(1, len(table) + 1, dtype=np.int32) if tags is None else tags
     error = ctypes.create_string_buffer(256)
     status = ctypes.CDLL(plugin_path.folder() + "/mdanimplugin.so").mdanim_set_table(
-        ctypes.c_void_p(getattr(lmp.lmp, "value", lmp.lmp)), name.encode(), table.shape[1], len(table),
-        tags.ctypes.data_as(ctypes.c_void_p), table.ctypes.data_as(ctypes.c_void_p), error, len(error),
+        ctypes.c_void_p(getattr(lmp.lmp, "value", lmp.lmp)),
+        name.encode(),
+        table.shape[1],
+        len(table),
+        tags.ctypes.data_as(ctypes.c_void_p),
+        table.ctypes.data_as(ctypes.c_void_p),
+        error,
+        len(error),
     )
     return status, error.value.decode()
 
@@ -295,11 +298,14 @@ def test_a_table_reaches_its_particles(with_table):
     assert np.array_equal(found[3:5], -TABLE[3:5]) and np.array_equal(found[5:], TABLE[5:])
 
 
-@pytest.mark.parametrize(("name", "table", "message"), [
-    pytest.param("cells", TABLE, "no per-particle table i2_cells; use 'fix ID all property/atom i2_cells 7'", id="unknown"),
-    pytest.param("k", TABLE, "no per-particle table i2_k", id="a column of numbers"),
-    pytest.param("cell", TABLE[:, :5].copy(), "has 7 columns, 5 are given", id="another width"),
-])
+@pytest.mark.parametrize(
+    ("name", "table", "message"),
+    [
+        pytest.param("cells", TABLE, "no per-particle table i2_cells; use 'fix ID all property/atom i2_cells 7'", id="unknown"),
+        pytest.param("k", TABLE, "no per-particle table i2_k", id="a column of numbers"),
+        pytest.param("cell", TABLE[:, :5].copy(), "has 7 columns, 5 are given", id="another width"),
+    ],
+)
 def test_a_wrong_table_comes_back_as_text(with_table, name, table, message):
     """Name the cause and the way out."""
     status, text = set_table(with_table, name, table)

@@ -47,8 +47,9 @@ def test_objects_fall_and_bounce(prepared):
     flight = _Flight(prepared(FALLING.format(speed=2)))
     start = flight.low.copy()
     flight.to(0.4)
-    assert flight.low[0, 2] == pytest.approx(1.25 - 5.0 * 0.4**2, abs=0.03) and flight.velocity[0, 2] == pytest.approx(-4.0,
-                                                                                                                       abs=0.06)
+    assert flight.low[0, 2] == pytest.approx(1.25 - 5.0 * 0.4**2, abs=0.03) and flight.velocity[0, 2] == pytest.approx(
+        -4.0, abs=0.06
+    )
     flight.to(0.7)
     assert flight.velocity[0].tolist() == pytest.approx([-2.0, 0.0, 3.0], abs=0.1) and flight.low[0].min() > -1.0
     assert np.array_equal(flight.low[1], start[1]) and flight.boxes()[2][1] == 0.0  # held in part
@@ -68,19 +69,40 @@ def test_what_is_heavy_runs_on_a_team(prepared):
     assert 1.4 < team.faster <= 1.6 and team.team == 2.0
 
 
-@pytest.mark.parametrize(("found", "lines"), [
-    pytest.param(Prospect(4, 1.0, 3.9, 64, 6, 0.1, 1.0), ["in the first second of the film at most 3.9 times as fast as one"],
-                 id="all shared"),
-    pytest.param(Prospect(2, 1.0, 1.36, 64, 36, 0.561, 1.0), [
-        "in the first second of the film at most 1.4 times as fast as one:",
-        "36 of 64 objects, 56 % of the work, are near each other and run together"], id="some near"),
-    pytest.param(Prospect(2, 0.5, 1.0, 3, 3, 1.0, 1.0), [
-        "in the first 0.5 s of the film no faster than one:",
-        "3 of 3 objects, all of the work, are near each other and run together"], id="one island"),
-    pytest.param(Prospect(3, 1.0, 1.6, 2, 1, 0.93, 2.0), [
-        "in the first second of the film at most 1.6 times as fast as one:",
-        "one object is 93 % of the work, on 2 executors at once"], id="a team"),
-])
+@pytest.mark.parametrize(
+    ("found", "lines"),
+    [
+        pytest.param(
+            Prospect(4, 1.0, 3.9, 64, 6, 0.1, 1.0),
+            ["in the first second of the film at most 3.9 times as fast as one"],
+            id="all shared",
+        ),
+        pytest.param(
+            Prospect(2, 1.0, 1.36, 64, 36, 0.561, 1.0),
+            [
+                "in the first second of the film at most 1.4 times as fast as one:",
+                "36 of 64 objects, 56 % of the work, are near each other and run together",
+            ],
+            id="some near",
+        ),
+        pytest.param(
+            Prospect(2, 0.5, 1.0, 3, 3, 1.0, 1.0),
+            [
+                "in the first 0.5 s of the film no faster than one:",
+                "3 of 3 objects, all of the work, are near each other and run together",
+            ],
+            id="one island",
+        ),
+        pytest.param(
+            Prospect(3, 1.0, 1.6, 2, 1, 0.93, 2.0),
+            [
+                "in the first second of the film at most 1.6 times as fast as one:",
+                "one object is 93 % of the work, on 2 executors at once",
+            ],
+            id="a team",
+        ),
+    ],
+)
 def test_lines_say_what_to_expect(found, lines):
     """Say how much faster at most, and why not more."""
     assert [line.strip() for line in prospect_lines(found)] == lines
@@ -93,8 +115,9 @@ def test_a_run_and_a_check_tell_it(tmp_path):
     told = "in the first second of the film"
 
     def words(*arguments):
-        done = subprocess.run([sys.executable, "-m", "mdanim_lammps", *arguments], capture_output=True, text=True, cwd=tmp_path,
-                              timeout=200)
+        done = subprocess.run(
+            [sys.executable, "-m", "mdanim_lammps", *arguments], capture_output=True, text=True, cwd=tmp_path, timeout=200
+        )
         assert done.returncode == 0, done.stderr
         return done.stdout
 

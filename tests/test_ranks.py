@@ -22,11 +22,16 @@ CUT = Path(__file__).parent / "mpi" / "cut.py"
 CHANGED = Path(__file__).parent / "mpi" / "changed.py"
 CYCLES = Path(__file__).parent / "mpi" / "cycles.py"
 NEARER = MEETING.replace("44) cm", "42.6) cm").replace("-4, 5) cm", "-4, 3.5) cm")
-SCENES = {"solids": NEARER.replace("drag 0.8", "drag 0.8\n  damping 0.05"), "liquid": SPLASH,
-          "pressure": SPLASH.replace("volume 45 l", "volume 45 l model pressure")}
-MOVING = {**{name: SHAPES[name] for name in ("sphere", "held", "damped", "damped beside others", "damped and held")}, **EFFECTS,
-          "mesh": f'object a {{ shape mesh "{MESHES / "dumbbell.obj"}" scale 1/30 position (0, 0, 0) spin (3, 2, 15) rad/s '
-                  f"{SOLID} }}"}
+SCENES = {
+    "solids": NEARER.replace("drag 0.8", "drag 0.8\n  damping 0.05"),
+    "liquid": SPLASH,
+    "pressure": SPLASH.replace("volume 45 l", "volume 45 l model pressure"),
+}
+MOVING = {
+    **{name: SHAPES[name] for name in ("sphere", "held", "damped", "damped beside others", "damped and held")},
+    **EFFECTS,
+    "mesh": f'object a {{ shape mesh "{MESHES / "dumbbell.obj"}" scale 1/30 position (0, 0, 0) spin (3, 2, 15) rad/s {SOLID} }}',
+}
 """Scenes whose steps are taken by passes."""
 ACCOUNTS = np.s_[80:96]
 """Bytes of a liquid's state that only tell energies, StateHead in fix_mdanim_liquid.cpp."""
@@ -36,15 +41,19 @@ def on_ranks(program: Path, ranks: int, *arguments: object) -> str:
     """What a Python program prints on so many ranks; ``-m mpi4py`` ends all of them when one raises."""
     done = subprocess.run(
         [plugin_path.BIN / "mpiexec", "-n", str(ranks), sys.executable, "-m", "mpi4py", program, *map(str, arguments)],
-        capture_output=True, text=True, timeout=900,
-        env={**plugin_path.environment(), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))})
+        capture_output=True,
+        text=True,
+        timeout=900,
+        env={**plugin_path.environment(), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize(("name", "ranks"), [
-    ("solids", 2), ("solids", 3), ("solids", 4), ("liquid", 2), ("liquid", 4), ("pressure", 3)])
+@pytest.mark.parametrize(
+    ("name", "ranks"), [("solids", 2), ("solids", 3), ("solids", 4), ("liquid", 2), ("liquid", 4), ("pressure", 3)]
+)
 def test_ranks_see_what_one_sees(tmp_path, name, ranks):
     """Follow contact, dashpots, drag, held particles and liquid, take back steps, move all particles: the same bits on
     all ranks."""
@@ -55,17 +64,32 @@ def test_ranks_see_what_one_sees(tmp_path, name, ranks):
     film = np.load(tmp_path / "film.npz")
     same(film, alone)
     for what in ("x", "v", "f"):
-        assert (np.array_equal(film[f"again {what}"], film[f"end {what}"]) and
-                np.array_equal(film[f"new {what}"], film[f"end {what}"]))
+        assert np.array_equal(film[f"again {what}"], film[f"end {what}"]) and np.array_equal(
+            film[f"new {what}"], film[f"end {what}"]
+        )
     assert (film["end x"] != film["start x"]).any()
     assert np.abs(film["end energies"]).min() > 0.0 if name == "solids" else (film["end cells"] != film["start cells"]).any()
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize(("name", "ranks"), [(name, 2) for name in MOVING] + [
-    ("held", 3), ("walls and contact", 3), ("liquid", 4), ("contact", 4), ("mesh", 4), ("air", 3),
-    ("damped", 4), ("damped beside others", 3), ("damped walls", 4), ("damped contact", 3), ("damped in liquid", 4),
-    ("damped, all at once", 3)])
+@pytest.mark.parametrize(
+    ("name", "ranks"),
+    [(name, 2) for name in MOVING]
+    + [
+        ("held", 3),
+        ("walls and contact", 3),
+        ("liquid", 4),
+        ("contact", 4),
+        ("mesh", 4),
+        ("air", 3),
+        ("damped", 4),
+        ("damped beside others", 3),
+        ("damped walls", 4),
+        ("damped contact", 3),
+        ("damped in liquid", 4),
+        ("damped, all at once", 3),
+    ],
+)
 def test_passes_with_ghosts_give_the_bits_of_one_rank(tmp_path, name, ranks):
     """Film bodies that are split among ranks: the bits of run_style verlet on one, and all ranks took most steps by passes."""
     path = tmp_path / "scene.txt"
@@ -81,15 +105,22 @@ def test_passes_with_ghosts_give_the_bits_of_one_rank(tmp_path, name, ranks):
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize(("size", "turned", "across"), [
-    ((22.5, 22.5, 22.5), "", False), ((22.5, 22.5, 22.5), "orientation axis (0, 0, 1) angle 90 deg", False),
-    ((47.5, 10, 10), "", True)])
+@pytest.mark.parametrize(
+    ("size", "turned", "across"),
+    [
+        ((22.5, 22.5, 22.5), "", False),
+        ((22.5, 22.5, 22.5), "orientation axis (0, 0, 1) angle 90 deg", False),
+        ((47.5, 10, 10), "", True),
+    ],
+)
 def test_space_is_cut_along_rows_where_that_is_as_good(tmp_path, size, turned, across):
     """Share a cube of 10 particles along each edge, as it is and turned, between two ranks, and a rod of 20 x 5 x 5:
     only that is cut across."""
     path, row = tmp_path / "scene.txt", round(size[0] / 2.5) + 1
-    path.write_text(f"object a {{ shape box {size} cm position (0, 0, 0) m {turned} density 900 elasticity 1 MPa }}\n"
-                    "control { time 0.1 s  frames 100 fps  resolution 2.5 cm }")
+    path.write_text(
+        f"object a {{ shape box {size} cm position (0, 0, 0) m {turned} density 900 elasticity 1 MPa }}\n"
+        "control { time 0.1 s  frames 100 fps  resolution 2.5 cm }"
+    )
     rows, particles = np.array([line.split() for line in on_ranks(CUT, 2, path, row).splitlines()], int).T
     assert particles[0] == particles[1]
     assert (rows == (particles.sum() if across else particles) // row).all()
@@ -165,11 +196,14 @@ def left_behind(folder: Path, count: int, how: str) -> tuple[float, int]:
 
 
 @pytest.mark.parametrize("how", ["new", "spare"])
-@pytest.mark.parametrize(("count", "most"), [
-    pytest.param(300, 4e3, id="some"),
-    # More than MPI has context identifiers, if they were not given back.
-    pytest.param(6000, 4e2, id="thousands", marks=[pytest.mark.soak, pytest.mark.timeout(0)]),
-])
+@pytest.mark.parametrize(
+    ("count", "most"),
+    [
+        pytest.param(300, 4e3, id="some"),
+        # More than MPI has context identifiers, if they were not given back.
+        pytest.param(6000, 4e2, id="thousands", marks=[pytest.mark.soak, pytest.mark.timeout(0)]),
+    ],
+)
 def test_instances_leave_nothing_behind(tmp_path, count, most, how):
     """Make and close, or fill anew, one after the other: no file stays open, and no memory is lost beyond what an
     allocator keeps."""

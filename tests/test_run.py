@@ -11,7 +11,6 @@ import time
 
 import numpy as np
 import pytest
-
 from mdanim_lammps import Scene, Trajectory
 from mdanim_lammps.driver.run import Interrupted, simulate, write_inputs
 from mdanim_lammps.errors import DivergedError, OutputError
@@ -59,15 +58,25 @@ def fall(tmp_path_factory):
 def test_output_folder_is_complete(fall):
     """Leave every file of the contract, and nothing half written."""
     names = {p.name for p in fall.folder.iterdir()}
-    assert {"manifest.json", "scene.lock.txt", "data.fall", "in.fall", "certificate.json", "trajectory.h5", "checkpoint",
-            "ledger.csv", "cost.json", "summary.json"} == names
+    assert {
+        "manifest.json",
+        "scene.lock.txt",
+        "data.fall",
+        "in.fall",
+        "certificate.json",
+        "trajectory.h5",
+        "checkpoint",
+        "ledger.csv",
+        "cost.json",
+        "summary.json",
+    } == names
 
 
 def test_expectations_are_measured(fall):
     """Evaluate every expect line with a finite value, and meet it."""
     assert len(fall.outcomes) == 4 and not fall.missed
     assert all(np.isfinite(o.found) for o in fall.outcomes)
-    assert 0.0 < fall.outcomes[1].found < 0.5 and 0.0 < fall.outcomes[2].found
+    assert 0.0 < fall.outcomes[1].found < 0.5 and fall.outcomes[2].found > 0.0
 
 
 def test_a_missed_expectation_is_reported(tmp_path):
@@ -131,8 +140,11 @@ def test_interrupted_run_resumes_bit_for_bit(fall, tmp_path, sent):
     (tmp_path / "long.txt").write_text(text)
     whole = Scene.load(tmp_path / "long.txt").run(tmp_path / "whole.out")
     out = tmp_path / "cut.out"
-    process = subprocess.Popen([sys.executable, "-m", "mdanim_lammps", str(tmp_path / "long.txt"), "-o", str(out), "--no-movie"],
-                               stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [sys.executable, "-m", "mdanim_lammps", str(tmp_path / "long.txt"), "-o", str(out), "--no-movie"],
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     deadline = time.monotonic() + 60
     while not (out / "checkpoint").exists() and time.monotonic() < deadline:
         time.sleep(0.02)
@@ -142,8 +154,9 @@ def test_interrupted_run_resumes_bit_for_bit(fall, tmp_path, sent):
         pytest.skip("the run ended before the signal came")
     assert process.returncode == 130, error
     assert "mdanim-lammps resume" in error and "Traceback" not in error
-    resumed = subprocess.run([sys.executable, "-m", "mdanim_lammps", "resume", str(out), "--no-movie"],
-                             capture_output=True, text=True)
+    resumed = subprocess.run(
+        [sys.executable, "-m", "mdanim_lammps", "resume", str(out), "--no-movie"], capture_output=True, text=True
+    )
     assert resumed.returncode in (0, 6), resumed.stderr
     assert compare(whole.folder, out).equal
     # Dashpots see half-step velocities, so what they lose in the step across the cut is known to second order only; energies
@@ -170,8 +183,9 @@ def test_killed_run_keeps_its_frames(tmp_path):
     if (out / "summary.json").exists():
         pytest.skip("the run ended before it was killed")
     assert Checkpoint.read(out / "checkpoint").x.shape[1] == 3
-    resumed = subprocess.run([sys.executable, "-m", "mdanim_lammps", "resume", str(out), "--no-movie", "-q"],
-                             capture_output=True, text=True)
+    resumed = subprocess.run(
+        [sys.executable, "-m", "mdanim_lammps", "resume", str(out), "--no-movie", "-q"], capture_output=True, text=True
+    )
     assert resumed.returncode in (0, 6), resumed.stderr
     with Trajectory(out) as t:
         assert len(t) == 16
@@ -224,9 +238,11 @@ def test_force_never_deletes_a_folder_that_only_looks_like_ours(fall):
 
 def stop_at(frame):
     """A watcher that interrupts the run after this frame, as Ctrl-C does."""
+
     def watch(progress):
         if progress.frame == frame:
             os.kill(os.getpid(), signal.SIGINT)
+
     return watch
 
 
@@ -238,6 +254,7 @@ def test_a_file_named_stop_stops_the_run(tmp_path):
     def watch(progress):
         if progress.frame == 2:
             (folder / "stop").touch()
+
     with pytest.raises(Interrupted, match="resume"):
         Scene.load(tmp_path / "fall.txt").run(folder, watch=watch)
     assert Checkpoint.read(folder / "checkpoint").frame == 2
@@ -271,11 +288,14 @@ def test_a_checkpoint_of_another_run_is_refused(fall, tmp_path):
         simulate(Scene.load(tmp_path / "fall.txt").prepared, tmp_path, resume=checkpoint)
 
 
-@pytest.mark.parametrize("damage", [
-    pytest.param(lambda b: b"", id="empty"),
-    pytest.param(lambda b: b[: len(b) // 2], id="half"),
-    pytest.param(lambda b: b"nonsense", id="no archive"),
-])
+@pytest.mark.parametrize(
+    "damage",
+    [
+        pytest.param(lambda b: b"", id="empty"),
+        pytest.param(lambda b: b[: len(b) // 2], id="half"),
+        pytest.param(lambda b: b"nonsense", id="no archive"),
+    ],
+)
 def test_a_damaged_checkpoint_is_told(fall, tmp_path, damage):
     """Say that there is nothing to resume from."""
     (tmp_path / "checkpoint").write_bytes(damage((fall.folder / "checkpoint").read_bytes()))
@@ -405,8 +425,11 @@ def test_interrupt_in_a_liquid_resumes_bit_for_bit(splash, tmp_path, frame):
 
 def test_a_liquid_without_anything_that_moves_levels(tmp_path):
     """Let a dam of liquid run down beside a held block, a little in every frame, though nothing in the scene vibrates."""
-    (tmp_path / "dam.txt").write_text(SPLASH.split("expect")[0].replace("drag 5", "hold all").replace(
-        "volume 90 l", "volume 45 l\n  fill from (-30, -30, 0) cm to (0, 30, 50) cm"))
+    (tmp_path / "dam.txt").write_text(
+        SPLASH.split("expect")[0]
+        .replace("drag 5", "hold all")
+        .replace("volume 90 l", "volume 45 l\n  fill from (-30, -30, 0) cm to (0, 30, 50) cm")
+    )
     Scene.load(tmp_path / "dam.txt").run()
     with Trajectory(tmp_path / "dam.out") as t:
         assert np.ptp(t.liquid_height(0)) > 0.1 and np.ptp(t.liquid_height(len(t) - 1)) < 0.03

@@ -35,11 +35,7 @@ def problems(path) -> list:
 
 def test_include_is_relative_to_its_file(write):
     """Read a file beside the one that includes it, in its place."""
-    path = write(
-        main='include "parts/a.txt"\n' + CONTROL,
-        parts__a='include "b.txt"\n' + BALL,
-        parts__b="let r = 2 m\n",
-    )
+    path = write(main='include "parts/a.txt"\n' + CONTROL, parts__a='include "b.txt"\n' + BALL, parts__b="let r = 2 m\n")
     assert load_scene(path).solids[0].shape == records.Sphere(2.0)
 
 
@@ -54,14 +50,10 @@ def test_include_inside_a_block(write):
 
 def test_problem_in_an_included_file_shows_the_chain(write, tmp_path):
     """Point at the line in the included file, and at the includes that lead there."""
-    (problem,) = problems(
-        write(main='\ninclude "a.txt"\n' + BALL + CONTROL, a='include "b.txt"\n', b="\nlet r = 2 mn\n")
-    )
+    (problem,) = problems(write(main='\ninclude "a.txt"\n' + BALL + CONTROL, a='include "b.txt"\n', b="\nlet r = 2 mn\n"))
     assert problem.file == str(tmp_path / "b.txt")
     assert (problem.line, problem.column) == (2, 11)
-    assert str(problem).endswith(
-        f"included from {tmp_path}/a.txt:1:1\n        included from {tmp_path}/main.txt:2:1"
-    )
+    assert str(problem).endswith(f"included from {tmp_path}/a.txt:1:1\n        included from {tmp_path}/main.txt:2:1")
 
 
 def test_circle_of_includes_is_shown(write):
@@ -74,13 +66,9 @@ def test_circle_of_includes_is_shown(write):
 
 def test_sixteen_levels_of_includes(write):
     """Read sixteen levels, refuse seventeen."""
-    files = {f"f{n}": f'include "f{n + 1}.txt"\n' for n in range(16)} | {
-        "f16": "let r = 1\n" + BALL + CONTROL
-    }
+    files = {f"f{n}": f'include "f{n + 1}.txt"\n' for n in range(16)} | {"f16": "let r = 1\n" + BALL + CONTROL}
     assert len(load_scene(write(**files)).solids) == 1
-    files = {f"f{n}": f'include "f{n + 1}.txt"\n' for n in range(17)} | {
-        "f17": "let r = 1\n" + BALL + CONTROL
-    }
+    files = {f"f{n}": f'include "f{n + 1}.txt"\n' for n in range(17)} | {"f17": "let r = 1\n" + BALL + CONTROL}
     assert "more than 16 levels deep: f0.txt -> f1.txt" in problems(write(**files))[0].message
 
 
@@ -122,21 +110,16 @@ def test_mesh_is_found_beside_its_scene(write, tmp_path):
     """Store the absolute path of a mesh; the scale is metres per unit."""
     path = write(
         main='include "parts/a.txt"\nlet r = 1\n' + CONTROL,
-        parts__a='object m { shape mesh "duck.STL" scale 1/1000\n'
-        "position (0, 0, 0) m mass 1 kg elasticity 1 MPa }\n",
+        parts__a='object m { shape mesh "duck.STL" scale 1/1000\nposition (0, 0, 0) m mass 1 kg elasticity 1 MPa }\n',
     )
     (tmp_path / "parts" / "duck.STL").write_bytes(b"solid")
-    assert load_scene(path).solids[0].shape == records.Mesh(
-        (tmp_path / "parts" / "duck.STL").resolve(), 0.001
-    )
+    assert load_scene(path).solids[0].shape == records.Mesh((tmp_path / "parts" / "duck.STL").resolve(), 0.001)
 
 
 def test_text_finds_its_files_in_a_folder(write, tmp_path):
     """A scene from a text reads its includes from a folder that is told."""
     write(size="let r = 3 m\n")
-    assert parse_scene('include "size.txt"\n' + BALL + CONTROL, folder=tmp_path).solids[
-        0
-    ].shape == records.Sphere(3.0)
+    assert parse_scene('include "size.txt"\n' + BALL + CONTROL, folder=tmp_path).solids[0].shape == records.Sphere(3.0)
     with pytest.raises(SceneError, match="is not there"):
         parse_scene('include "size.txt"\n' + BALL + CONTROL, folder=tmp_path / "other")
 

@@ -16,9 +16,7 @@ from mdanim_lammps.scene.words import BLOCKS, GLOBALS, IMMERSION, KEYWORDS, QUAN
 SCENES = Path(__file__).parent.parent / "scenes"
 
 # Fixed examples, so that every run of the tests is the same run.
-steady = settings(
-    max_examples=150, derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow]
-)
+steady = settings(max_examples=150, derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 
 @pytest.mark.parametrize("name", ["beam", "float", "crowd"])
@@ -38,13 +36,11 @@ positive = st.floats(1e-9, 1e9)
 vectors = st.tuples(numbers, numbers, numbers)
 sizes = st.tuples(positive, positive, positive)
 colors = st.none() | st.from_regex(r"#[0-9a-f]{6}", fullmatch=True)
-texts = st.text(
-    st.characters(blacklist_characters='"\n\r\ufeff\0', blacklist_categories=("Cs",)), max_size=20
-)
+texts = st.text(st.characters(blacklist_characters='"\n\r\ufeff\0', blacklist_categories=("Cs",)), max_size=20)
 words = st.from_regex(r"[a-zA-Z_][a-zA-Z0-9_]{0,8}", fullmatch=True)
-names = st.builds(
-    lambda w, i: w if i is None else f"{w}[{i}]", words, st.none() | st.integers(-5, 10**6)
-).filter(lambda n: n not in GLOBALS)
+names = st.builds(lambda w, i: w if i is None else f"{w}[{i}]", words, st.none() | st.integers(-5, 10**6)).filter(
+    lambda n: n not in GLOBALS
+)
 
 
 @st.composite
@@ -142,19 +138,14 @@ def scenes(draw):
         )
     cameras = draw(
         st.lists(
-            st.builds(
-                records.Camera,
-                vectors,
-                vectors | st.sampled_from([b.name for b in bodies]),
-                up=vectors.filter(any),
-            ),
+            st.builds(records.Camera, vectors, vectors | st.sampled_from([b.name for b in bodies]), up=vectors.filter(any)),
             max_size=1,
         )
     )
     cameras = tuple(c for c in cameras if c.eye != c.look)
     expects = []
     for kind, quantity in draw(st.lists(st.sampled_from(sorted(QUANTITIES)), max_size=3)):
-        if wet or kind != "liquid" and quantity not in IMMERSION:
+        if wet or (kind != "liquid" and quantity not in IMMERSION):
             subject = kind if kind in GLOBALS else draw(st.sampled_from([b.name for b in bodies]))
             time = draw(st.none() | st.floats(0, control.time))
             expects.append(records.Expect(subject, quantity, draw(numbers), draw(st.floats(0, 1e3)), time))
@@ -167,11 +158,7 @@ def scenes(draw):
         liquid=liquid,
         ground=draw(st.none() | numbers),
         walls=draw(st.none() | st.just(records.Walls((-2e6,) * 3, (2e6,) * 3))),
-        effects=draw(
-            st.dictionaries(
-                st.sampled_from(sorted(KEYWORDS["effects"])), st.sampled_from(records.Switch), max_size=3
-            )
-        ),
+        effects=draw(st.dictionaries(st.sampled_from(sorted(KEYWORDS["effects"])), st.sampled_from(records.Switch), max_size=3)),
         render=records.Render(
             size=draw(st.tuples(*[st.integers(1, 4000)] * 2)),
             movie=draw(st.none() | texts),

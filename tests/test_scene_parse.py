@@ -19,12 +19,7 @@ CONTROL = "control { time 3 s }\n"
 def text(top: str = "", **settings: str | None) -> str:
     """A scene with one ball on lines 2 to 5 (for an empty ``top``); None leaves a setting out."""
     lines = BALL | settings
-    return (
-        f"{top}object ball {{\n"
-        + "".join(f"  {w} {v}\n" for w, v in lines.items() if v is not None)
-        + "}\n"
-        + CONTROL
-    )
+    return f"{top}object ball {{\n" + "".join(f"  {w} {v}\n" for w, v in lines.items() if v is not None) + "}\n" + CONTROL
 
 
 def ball(top: str = "", **settings: str | None) -> records.Solid:
@@ -235,8 +230,7 @@ def test_control_setting(setting, field, value):
 def test_top_level():
     """Read ground, walls, effects and title, and remember where they stand."""
     scene = parse_scene(
-        'title "a # b"\nground z -5 cm\nwalls from (-1, -1, 0) m to (1, 1, 2) m\n'
-        "effects { contact off air-drag auto }\n" + text()
+        'title "a # b"\nground z -5 cm\nwalls from (-1, -1, 0) m to (1, 1, 2) m\neffects { contact off air-drag auto }\n' + text()
     )
     assert scene.title == "a # b"
     assert scene.ground == -0.05
@@ -295,13 +289,8 @@ def test_ground_within_a_basin_is_flagged(ground, told):
 def test_expect_of_an_indexed_object():
     """Check one object of a repeat, in a repeat."""
     body = text(mass="i kg").replace("object ball", "object ball[i]").replace(CONTROL, "")
-    scene = parse_scene(
-        f"repeat i in 1 .. 2 {{ {body} expect ball[i].position.x at i s = i cm +- 1 mm }}\n" + CONTROL
-    )
-    assert [(e.subject, e.time, e.value) for e in scene.expects] == [
-        ("ball[1]", 1.0, 0.01),
-        ("ball[2]", 2.0, 0.02),
-    ]
+    scene = parse_scene(f"repeat i in 1 .. 2 {{ {body} expect ball[i].position.x at i s = i cm +- 1 mm }}\n" + CONTROL)
+    assert [(e.subject, e.time, e.value) for e in scene.expects] == [("ball[1]", 1.0, 0.01), ("ball[2]", 2.0, 0.02)]
 
 
 def test_spans_point_at_values():
@@ -611,9 +600,7 @@ MISTAKES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("scene", "line", "column", "words", "hint"), [m[1:] for m in MISTAKES], ids=[m[0] for m in MISTAKES]
-)
+@pytest.mark.parametrize(("scene", "line", "column", "words", "hint"), [m[1:] for m in MISTAKES], ids=[m[0] for m in MISTAKES])
 def test_mistake(scene, line, column, words, hint):
     """Tell the place, the cause with the value found, and a way out."""
     with pytest.raises(SceneError) as error:
@@ -634,15 +621,10 @@ def test_one_mistake_is_one_problem(scene):
 
 def test_all_problems_in_one_pass():
     """Go on after a bad line and after a bad block."""
-    scene = (
-        text(mass="2 kgg", shape="spere 1 m").replace("time 3 s", "time 3 kg\n frams 30 fps\n seed -1")
-        + "objct b { }\n"
-    )
+    scene = text(mass="2 kgg", shape="spere 1 m").replace("time 3 s", "time 3 kg\n frams 30 fps\n seed -1") + "objct b { }\n"
     with pytest.raises(SceneError) as error:
         parse_scene(scene)
-    assert [p.line for p in error.value.problems] == [2, 4, 7, 8, 9, 10, 10, 10, 10, 10][
-        : len(error.value.problems)
-    ]
+    assert [p.line for p in error.value.problems] == [2, 4, 7, 8, 9, 10, 10, 10, 10, 10][: len(error.value.problems)]
     assert len(error.value.problems) >= 6
 
 

@@ -9,30 +9,34 @@ from mdanim_lammps.scene.wording import PREFIXED, at_least, estimate, number, sa
 from test_cli import GOOD
 
 
-@pytest.mark.parametrize(("value", "si", "digits", "text"), [
-    pytest.param(176.3e3, "Pa", 3, "176 kPa", id="a prefix for a power of ten"),
-    pytest.param(1.8e2, "Pa", 2, "180 Pa", id="two digits, and no power of ten for the third"),
-    pytest.param(2e9, "Pa", 3, "2 GPa", id="the largest prefix"),
-    pytest.param(999.9, "Pa", 3, "1 kPa", id="the unit is that of the rounded number"),
-    pytest.param(0.034, "m", 3, "3.4 cm", id="a length"),
-    pytest.param(-0.0051, "m", 3, "-5.1 mm", id="below zero"),
-    pytest.param(0.0, "m", 3, "0 m", id="nothing has no size"),
-    pytest.param(3.0e-17, "m", 3, "3e-17 m", id="too small for any unit"),
-    pytest.param(3.36e-5, "s", 3, "0.0336 ms", id="a time step"),
-    pytest.param(2.5, "s", 3, "2.5 s", id="a time"),
-    pytest.param(0.0453, "m^3", 3, "45.3 l", id="a volume"),
-    pytest.param(12345.6, "kg/m^3", 3, "12300 kg/m^3", id="no prefix, five digits"),
-    pytest.param(123456.0, "J", 3, "1.23e5 J", id="six digits"),
-    pytest.param(123456.0, "J", 6, "123456 J", id="six digits that are known"),
-    pytest.param(float("inf"), "s", 3, "inf s", id="not finite"),
-])
+@pytest.mark.parametrize(
+    ("value", "si", "digits", "text"),
+    [
+        pytest.param(176.3e3, "Pa", 3, "176 kPa", id="a prefix for a power of ten"),
+        pytest.param(1.8e2, "Pa", 2, "180 Pa", id="two digits, and no power of ten for the third"),
+        pytest.param(2e9, "Pa", 3, "2 GPa", id="the largest prefix"),
+        pytest.param(999.9, "Pa", 3, "1 kPa", id="the unit is that of the rounded number"),
+        pytest.param(0.034, "m", 3, "3.4 cm", id="a length"),
+        pytest.param(-0.0051, "m", 3, "-5.1 mm", id="below zero"),
+        pytest.param(0.0, "m", 3, "0 m", id="nothing has no size"),
+        pytest.param(3.0e-17, "m", 3, "3e-17 m", id="too small for any unit"),
+        pytest.param(3.36e-5, "s", 3, "0.0336 ms", id="a time step"),
+        pytest.param(2.5, "s", 3, "2.5 s", id="a time"),
+        pytest.param(0.0453, "m^3", 3, "45.3 l", id="a volume"),
+        pytest.param(12345.6, "kg/m^3", 3, "12300 kg/m^3", id="no prefix, five digits"),
+        pytest.param(123456.0, "J", 3, "1.23e5 J", id="six digits"),
+        pytest.param(123456.0, "J", 6, "123456 J", id="six digits that are known"),
+        pytest.param(float("inf"), "s", 3, "inf s", id="not finite"),
+    ],
+)
 def test_quantities_are_written_as_people_do(value, si, digits, text):
     """Write some digits and the unit that suits the size."""
     assert say(value, si, digits) == text
 
 
-@pytest.mark.parametrize(("value", "text"),
-                         [(0.001, "0.001"), (0.00099, "9.9e-4"), (99_949.0, "99900"), (99_960.0, "1e5"), (0.16249, "0.162")])
+@pytest.mark.parametrize(
+    ("value", "text"), [(0.001, "0.001"), (0.00099, "9.9e-4"), (99_949.0, "99900"), (99_960.0, "1e5"), (0.16249, "0.162")]
+)
 def test_powers_of_ten_stand_only_at_the_ends(value, text):
     """Write no power of ten between 0.001 and 99999."""
     assert number(value) == text

@@ -18,13 +18,7 @@ WATER = {"basin": "from (-1, -1, 0) m to (1, 1, 1.2) m", "density": "1000 kg/m^3
 
 def scene(block: str, **settings: str):
     """A small scene in which one block has these settings in place of, or beside, its usual ones."""
-    blocks = {
-        "object": dict(BALL),
-        "liquid": dict(WATER),
-        "control": {"time": "3 s"},
-        "render": {},
-        "effects": {},
-    }
+    blocks = {"object": dict(BALL), "liquid": dict(WATER), "control": {"time": "3 s"}, "render": {}, "effects": {}}
     top = {"gravity": "(0, 0, -9.81) m/s^2"}
     chosen = blocks[block] if block else top
     for word in settings:
@@ -60,15 +54,11 @@ def test_default_of_each_keyword_is_the_default(k):
 
 def test_default_gravity_is_none():
     """Writing zero gravity is writing no gravity."""
-    text = (
-        "object a { shape sphere 1 m position (0, 0, 0) m mass 1 kg elasticity 1 MPa } control { time 1 s }"
-    )
+    text = "object a { shape sphere 1 m position (0, 0, 0) m mass 1 kg elasticity 1 MPa } control { time 1 s }"
     assert parse_scene(f"gravity {KEYWORDS['']['gravity'].default}\n{text}") == parse_scene(text)
 
 
-@pytest.mark.parametrize(
-    "k", [k for k in WORDS if k.rule is not Rule.ANY], ids=lambda k: f"{k.block}.{k.name}"
-)
+@pytest.mark.parametrize("k", [k for k in WORDS if k.rule is not Rule.ANY], ids=lambda k: f"{k.block}.{k.name}")
 def test_rule_of_each_keyword_is_kept(k):
     """A number that breaks the rule is refused in the words of the table."""
     bad = {"shape": "sphere -1 m", "size": "(0, 5)"}.get(k.name, f"-{k.example}")
@@ -84,13 +74,7 @@ def test_every_quantity_can_be_expected(quantity):
     name = kind if kind in GLOBALS else "ball"
     unit = QUANTITIES[quantity][0].replace("1", "")
     expect = scene("", expect=f"{name}.{what} at 1 s = 0.5 {unit} +- 0.1 {unit}").expects[0]
-    assert (expect.subject, expect.quantity, expect.value, expect.tolerance, expect.time) == (
-        name,
-        what,
-        0.5,
-        0.1,
-        1.0,
-    )
+    assert (expect.subject, expect.quantity, expect.value, expect.tolerance, expect.time) == (name, what, 0.5, 0.1, 1.0)
 
 
 def test_forms_are_unambiguous():

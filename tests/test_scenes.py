@@ -6,7 +6,6 @@ import sys
 from pathlib import Path
 
 import pytest
-
 from mdanim_lammps import Scene
 
 SCENES = Path(__file__).parent.parent / "scenes"
@@ -30,6 +29,7 @@ def test_scene_is_within_all_limits(name):
 
 def test_demo_scene_checks_from_the_command_line():
     """Check the scene of `make demo` as a user would."""
-    done = subprocess.run([sys.executable, "-m", "mdanim_lammps", "check", str(SCENES / "beam.txt")], capture_output=True,
-                          text=True)
+    done = subprocess.run(
+        [sys.executable, "-m", "mdanim_lammps", "check", str(SCENES / "beam.txt")], capture_output=True, text=True
+    )
     assert done.returncode == 0 and "set by: beam" in done.stdout

@@ -11,7 +11,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-
 from mdanim_lammps import Scene
 from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.driver.run import Interrupted
@@ -109,12 +108,15 @@ def test_a_reference_does_not_flatter_its_neighbour():
     assert converge(steps, tracks, 2.0).order == pytest.approx(2.0, abs=0.01)
 
 
-@pytest.mark.parametrize(("sizes", "why"), [
-    pytest.param([0.0, 0.0, 0.0], "round-off", id="all the same"),
-    pytest.param([0.1, 0.1, 0.0], "runs converge", id="no nearer from step to step"),
-    pytest.param([0.9, -0.9, 0.8, -0.7], "runs converge", id="as far apart as can be"),
-    pytest.param([0.1, 0.0], "three runs", id="two runs"),
-])
+@pytest.mark.parametrize(
+    ("sizes", "why"),
+    [
+        pytest.param([0.0, 0.0, 0.0], "round-off", id="all the same"),
+        pytest.param([0.1, 0.1, 0.0], "runs converge", id="no nearer from step to step"),
+        pytest.param([0.9, -0.9, 0.8, -0.7], "runs converge", id="as far apart as can be"),
+        pytest.param([0.1, 0.0], "three runs", id="two runs"),
+    ],
+)
 def test_no_order_where_there_is_none(sizes, why):
     """Say why instead of giving a number, and doubt the finest run by as much as it is from the one before it."""
     steps = [0.2, 0.1, 0.05, 0.025][: len(sizes)]
@@ -166,12 +168,15 @@ def test_not_ranked_what_differs_less_than_the_spread():
 
 def test_closed_forms_are_sharp_expects():
     """Measure errors by what a line states as the truth, not by bounds and not by vague lines."""
-    scene = parse_scene(BAR + """
+    scene = parse_scene(
+        BAR
+        + """
 expect bar.position.z at 0.1 s = 0.9 +- 0.05 m
 expect bar.position.z at 0.1 s = 0.9 +- 0.5 m
 expect bar.velocity.z at 0.1 s = -1 +- 0.1 m/s
 expect energy.residual = 0 +- 1e-3
-""")
+"""
+    )
     swing = track()[:, :1]
     found = sharp(scene.expects, ["bar"], swing, TIMES)
     assert found == {0: extent(swing), 1: extent(swing), 3: pytest.approx(12.0 / 2, rel=0.03)}  # a speed of 6, by differences
@@ -196,6 +201,7 @@ def test_advice_for_a_scene_without_order():
 
 
 # --- studies ----------------------------------------------------------------------------------------------------------
+
 
 def test_study_leaves_its_files(bar_study, bar_file):
     """Keep points, errors, seconds and the order of each ladder, a table and a picture, and no temporary folder."""
@@ -248,6 +254,7 @@ def test_study_repeats_and_shows_spread(bar_study):
 
 def test_study_goes_on(bar_study, bar_file, monkeypatch):
     """Measure nothing again that is there, and come to the same result."""
+
     def refuse(*_, **__):
         raise AssertionError("measured again")
 
@@ -383,8 +390,11 @@ def test_ladders_of_what_a_scene_has(scenes):
 
 def test_contact_ladder_goes_with_the_scene(prepared):
     """Take a quarter to eight times what the scene says, within what the language takes, softest first."""
-    for said, factors in (("", [0.25, 0.5, 1, 2, 4, 8]), ("contact-stiffness 0.3", [0.15, 0.3, 0.6, 1.2, 2.4]),
-                          ("contact-stiffness 40", [10, 20, 40, 80])):
+    for said, factors in (
+        ("", [0.25, 0.5, 1, 2, 4, 8]),
+        ("contact-stiffness 0.3", [0.15, 0.3, 0.6, 1.2, 2.4]),
+        ("contact-stiffness 40", [10, 20, 40, 80]),
+    ):
         ready = prepared(BLOCKS.format(v=1.0).replace("1000 fps", f"1000 fps {said}"))
         own = own_setting(ready.scene, ready)
         found, _ = ladders(ready.scene, ready, own)
@@ -399,9 +409,8 @@ def test_contact_ladder_goes_with_the_scene(prepared):
 
 def test_contact_ladder_trades_depth_for_time(tmp_path, monkeypatch):
     """Sink in less the stiffer contact is, in shorter time steps, and tell both in table, files and plot."""
-    from rich.console import Console
-
     from mdanim_lammps.study.report import table
+    from rich.console import Console
 
     monkeypatch.setattr(bench, "REPEATS", 1)
     scene = parse_scene(BLOCKS.format(v=0.2 * WAVE))
@@ -439,6 +448,7 @@ def test_liquid_repeats_have_another_seed(scenes, tmp_path):
 
 
 # --- must hold: order of the time step, drift of the classes ----------------------------------------------------------
+
 
 def test_beam_has_order_two_in_the_time_step(scenes, tmp_path, monkeypatch):
     """Follow the beam through the blow of the cube, which C1 contact keeps at 2.0 +- 0.2."""
@@ -550,8 +560,19 @@ def test_target_steps_back_from_an_overshoot(target_file, monkeypatch):
     def made_up(scene, setting, *_, **__):
         seen.append(setting.cells)
         work = setting.cells**4 / setting.fraction
-        return Sample(setting, 1e-3, 100, round(work), work, work * 1e-6, 0.0, 0.0, (0.0,), TIMES,
-                      track(1.0 + errors.get(setting.cells, 1e-3 / setting.cells)))
+        return Sample(
+            setting,
+            1e-3,
+            100,
+            round(work),
+            work,
+            work * 1e-6,
+            0.0,
+            0.0,
+            (0.0,),
+            TIMES,
+            track(1.0 + errors.get(setting.cells, 1e-3 / setting.cells)),
+        )
 
     monkeypatch.setattr(bench, "measure", made_up)
     target_file.write_text(TARGET.replace("8 %", "1 %"))
@@ -560,17 +581,22 @@ def test_target_steps_back_from_an_overshoot(target_file, monkeypatch):
     assert max(seen) > 5
 
 
-@pytest.mark.parametrize(("error", "fraction"), [
-    pytest.param(0.005, 0.7, id="small: the longest step"),
-    pytest.param(0.012, 0.5, id="no more than a quarter of 1 %"),
-    pytest.param(0.05, 0.25, id="large"),
-])
+@pytest.mark.parametrize(
+    ("error", "fraction"),
+    [
+        pytest.param(0.005, 0.7, id="small: the longest step"),
+        pytest.param(0.012, 0.5, id="no more than a quarter of 1 %"),
+        pytest.param(0.05, 0.25, id="large"),
+    ],
+)
 def test_target_chooses_a_time_step(error, fraction, target_file, monkeypatch):
     """Give a quarter of the target to the time step, and count what it adds."""
+
     def made_up(scene, s, *_, **__):
         work = s.cells**4 / s.fraction
-        return Sample(s, 1e-3, 100, 10, work, work * 1e-6, 0.0, 0.0, (0.0,), TIMES,
-                      track(1.0 + 0.08 * s.cells**-2 + error * s.fraction**2))
+        return Sample(
+            s, 1e-3, 100, 10, work, work * 1e-6, 0.0, 0.0, (0.0,), TIMES, track(1.0 + 0.08 * s.cells**-2 + error * s.fraction**2)
+        )
 
     monkeypatch.setattr(bench, "measure", made_up)
     target_file.write_text(TARGET.replace("8 %", "1 %"))
@@ -578,7 +604,8 @@ def test_target_chooses_a_time_step(error, fraction, target_file, monkeypatch):
     assert choice.fraction == fraction
     swing = distance(np.zeros_like(track()), track()) / extent(track())  # rms over the extent
     assert choice.reached == pytest.approx(
-        swing * (0.08 / choice.cells**2 + error * fraction**2 * (2.0 / choice.cells) ** 2), rel=0.05)
+        swing * (0.08 / choice.cells**2 + error * fraction**2 * (2.0 / choice.cells) ** 2), rel=0.05
+    )
 
 
 def test_stored_target_of_another_scene_is_not_used(target_file):
@@ -678,6 +705,7 @@ def _meets_at_fair_cost(choice, rows, target: float) -> None:
     chosen = next((p, off) for p, off in rows if (p.setting.cells, p.setting.fraction) == (choice.cells, choice.fraction))
     assert chosen[1] <= target and choice.met
     assert {(n, f) for n in range(2, int(choice.cells) + 1) for f in (0.9, 0.7)} <= {
-        (p.setting.cells, p.setting.fraction) for p, _ in rows}, "not every cheaper point was measured"
+        (p.setting.cells, p.setting.fraction) for p, _ in rows
+    }, "not every cheaper point was measured"
     best = min(p.work for p, off in rows if off <= target)
     assert chosen[0].work <= 2.0 * best

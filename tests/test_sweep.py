@@ -5,7 +5,6 @@ import random
 
 import numpy as np
 import pytest
-
 from mdanim_lammps.effects import EFFECTS, decide
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.model.sweep import Sweeps, _overlaps, bounding_radius, can_meet, closest, sweeps
@@ -41,30 +40,40 @@ def pair(top="", a="", b=""):
     return parse_scene(PAIR.format(top=top, a=a, b=b))
 
 
-@pytest.mark.parametrize(("scene", "meet"), [
-    pytest.param(pair(), False, id="at rest, without forces"),
-    pytest.param(pair(a="velocity (5, 0, 0)"), True, id="thrown at the other: 2.5 m"),
-    pytest.param(pair(a="velocity (-5, 0, 0)"), False, id="thrown away"),
-    pytest.param(pair(a="velocity (5, 0, 0)", b="velocity (0, 6, 0)"), True, id="boxes meet, balls do not: may meet"),
-    pytest.param(pair(a="velocity (2, 0, 0)"), False, id="too slow: 1 m of 1.8 m"),
-    pytest.param(pair("gravity (20, 0, 0)", b="hold all"), True, id="falls onto a held one: 2.5 m"),
-    pytest.param(pair("gravity (20, 0, 0)\neffects { gravity off }", b="hold all"), False, id="gravity is switched off"),
-    pytest.param(pair("gravity (20, 0, 0)"), True, id="side by side they fall, but boxes do not know when"),
-    pytest.param(pair(DOWN), False, id="fall side by side"),
-    pytest.param(pair(DOWN + "ground z 0"), False, id="bounce side by side: the ground pushes up only"),
-    pytest.param(pair(DOWN + "ground z 0", a="velocity (5, 0, 0)"), True, id="bounces over to the other"),
-    pytest.param(pair(DOWN + "walls from (-0.15, -9, 0) to (9, 9, 9)", a="velocity (-5, 0, 0)"), True,
-                 id="comes back from a wall"),
-    pytest.param(pair(DOWN + "walls from (-9, -9, 0) to (2.15, 9, 9)", b="velocity (5, 0, 0)"), True,
-                 id="comes back from the other wall"),
-    pytest.param(pair(DOWN + "walls from (-0.15, -9, 0) to (9, 9, 9)\neffects { walls off }", a="velocity (-5, 0, 0)"), False,
-                 id="the wall is switched off"),
-    pytest.param(pair(DOWN + POOL.format(z=-2, top=0, level=-1)), True, id="a liquid pushes wherever it likes"),
-    pytest.param(pair(DOWN + POOL.format(z=-9, top=-8, level=-8.5)), False, id="the liquid is out of reach"),
-    pytest.param(pair(a="spin (0, 0, 4000)"), True, id="spins 11 times as fast as waves"),
-    pytest.param(pair(a="spin (0, 0, 20)\n drag 1"), False, id="spins"),
-    pytest.param(pair("effects { springs off }", a="spin (0, 0, 60)"), True, id="loose particles fly off by 3 m"),
-])
+@pytest.mark.parametrize(
+    ("scene", "meet"),
+    [
+        pytest.param(pair(), False, id="at rest, without forces"),
+        pytest.param(pair(a="velocity (5, 0, 0)"), True, id="thrown at the other: 2.5 m"),
+        pytest.param(pair(a="velocity (-5, 0, 0)"), False, id="thrown away"),
+        pytest.param(pair(a="velocity (5, 0, 0)", b="velocity (0, 6, 0)"), True, id="boxes meet, balls do not: may meet"),
+        pytest.param(pair(a="velocity (2, 0, 0)"), False, id="too slow: 1 m of 1.8 m"),
+        pytest.param(pair("gravity (20, 0, 0)", b="hold all"), True, id="falls onto a held one: 2.5 m"),
+        pytest.param(pair("gravity (20, 0, 0)\neffects { gravity off }", b="hold all"), False, id="gravity is switched off"),
+        pytest.param(pair("gravity (20, 0, 0)"), True, id="side by side they fall, but boxes do not know when"),
+        pytest.param(pair(DOWN), False, id="fall side by side"),
+        pytest.param(pair(DOWN + "ground z 0"), False, id="bounce side by side: the ground pushes up only"),
+        pytest.param(pair(DOWN + "ground z 0", a="velocity (5, 0, 0)"), True, id="bounces over to the other"),
+        pytest.param(
+            pair(DOWN + "walls from (-0.15, -9, 0) to (9, 9, 9)", a="velocity (-5, 0, 0)"), True, id="comes back from a wall"
+        ),
+        pytest.param(
+            pair(DOWN + "walls from (-9, -9, 0) to (2.15, 9, 9)", b="velocity (5, 0, 0)"),
+            True,
+            id="comes back from the other wall",
+        ),
+        pytest.param(
+            pair(DOWN + "walls from (-0.15, -9, 0) to (9, 9, 9)\neffects { walls off }", a="velocity (-5, 0, 0)"),
+            False,
+            id="the wall is switched off",
+        ),
+        pytest.param(pair(DOWN + POOL.format(z=-2, top=0, level=-1)), True, id="a liquid pushes wherever it likes"),
+        pytest.param(pair(DOWN + POOL.format(z=-9, top=-8, level=-8.5)), False, id="the liquid is out of reach"),
+        pytest.param(pair(a="spin (0, 0, 4000)"), True, id="spins 11 times as fast as waves"),
+        pytest.param(pair(a="spin (0, 0, 20)\n drag 1"), False, id="spins"),
+        pytest.param(pair("effects { springs off }", a="spin (0, 0, 60)"), True, id="loose particles fly off by 3 m"),
+    ],
+)
 def test_who_can_meet(scene, meet):
     """Tell pairs that may come within reach from those that cannot."""
     found = can_meet(scene)
@@ -108,14 +117,20 @@ def test_bounding_radius():
 
 def test_held_beams_side_by_side_do_not_meet():
     """Leave contact out for clamped bars a little apart, unless they are so soft that they sag into each other's box."""
-    text = DOWN + "".join(
-        f"object bar{k} {{ shape box (1, 0.1, 0.1) position (0, {0.6 * k}, 0) density 1000 elasticity MODULUS hold face -x }}\n"
-        for k in range(2)) + "control { time 1 }\n"
+    text = (
+        DOWN
+        + "".join(
+            f"object bar{k} {{ shape box (1, 0.1, 0.1) position (0, {0.6 * k}, 0) density 1000 elasticity MODULUS hold face -x }}\n"
+            for k in range(2)
+        )
+        + "control { time 1 }\n"
+    )
     assert can_meet(parse_scene(text.replace("MODULUS", "1e9"))) is None
     assert can_meet(parse_scene(text.replace("MODULUS", "1e5"))) is not None
 
 
 # --- pairs --------------------------------------------------------------------------------------------------
+
 
 def boxes(n: int, size: float, seed: int) -> Sweeps:
     """Boxes at random places in a cube; a third of them is held. Corners are whole numbers, so that many boxes just touch."""
@@ -128,9 +143,14 @@ def boxes(n: int, size: float, seed: int) -> Sweeps:
 def test_pairs_are_those_of_the_naive_way(n, size, monkeypatch):
     """Find each pair of overlapping boxes once, in blocks of any size."""
     swept = boxes(n, size, n)
-    naive = {(i, j) for i in range(n) for j in range(i + 1, n)
-             if (swept.low[i] <= swept.high[j]).all() and (swept.low[j] <= swept.high[i]).all()
-             and not (swept.fixed[i] and swept.fixed[j])}
+    naive = {
+        (i, j)
+        for i in range(n)
+        for j in range(i + 1, n)
+        if (swept.low[i] <= swept.high[j]).all()
+        and (swept.low[j] <= swept.high[i]).all()
+        and not (swept.fixed[i] and swept.fixed[j])
+    }
     for block in (1, 50, 1 << 20):
         monkeypatch.setattr("mdanim_lammps.model.sweep.BLOCK", block)
         found = [tuple(p) for pairs in _overlaps(swept) for p in pairs.tolist()]
@@ -139,14 +159,17 @@ def test_pairs_are_those_of_the_naive_way(n, size, monkeypatch):
 
 def test_ten_thousand_objects_are_looked_through():
     """Find no pair, and the nearest, among 10^4 balls that fall side by side."""
-    text = DOWN + ("ground z 0\nrepeat i in 0 .. 99 {\n repeat j in 0 .. 99 {\n object c[i*100 + j] { shape sphere 0.05 "
-                   "position (0.5*i, 0.5*j, 1) mass 1 elasticity 1e6 }\n }\n}\ncontrol { time 2 }\n")
+    text = DOWN + (
+        "ground z 0\nrepeat i in 0 .. 99 {\n repeat j in 0 .. 99 {\n object c[i*100 + j] { shape sphere 0.05 "
+        "position (0.5*i, 0.5*j, 1) mass 1 elasticity 1e6 }\n }\n}\ncontrol { time 2 }\n"
+    )
     scene = parse_scene(text.replace("(0.5*i, 0.5*j, 1)", "(0.5*i - 0.02*max(0, i - 98)*max(0, 1 - j), 0.5*j, 1)"))
     first, second, apart = closest(scene)
     assert (first.name, second.name) == ("c[9800]", "c[9900]") and 0.2 < apart < 0.3
 
 
 # --- never too small ----------------------------------------------------------------------------------------
+
 
 def random_scene(draw: random.Random) -> str:
     """Two objects of any kind that fly, fall, swim, hang or spin, with contact switched off."""
@@ -156,17 +179,20 @@ def random_scene(draw: random.Random) -> str:
     if gravity == "(0, 0, -9.81)" and draw.random() < 0.4:
         text += f"liquid w {{ basin from (-1.5, -1.5, -0.5) to (1.5, 1.5, 2) density 1000 level {draw.uniform(0.2, 1.2):.3f} }}\n"
     for k, x in enumerate((-0.9, 0.9)):
-        shape = draw.choice(["sphere 0.15", "box (0.3, 0.2, 0.4)", "torus 0.15 0.06", "cylinder 0.1 0.3",
-                             "box (0.6, 0.15, 0.15)"])
+        shape = draw.choice(
+            ["sphere 0.15", "box (0.3, 0.2, 0.4)", "torus 0.15 0.06", "cylinder 0.1 0.3", "box (0.6, 0.15, 0.15)"]
+        )
         held = shape.startswith("box") and draw.random() < 0.3
         velocity = [0.0 if held else draw.choice([0, 1]) * draw.uniform(-2, 2) for _ in range(3)]
         spin = [0.0 if held else draw.choice([0, 0, 1]) * draw.uniform(-8, 8) for _ in range(3)]
-        text += (f"object o{k} {{\n shape {shape}\n density {draw.choice([200, 800, 3000])}\n"
-                 f" elasticity {draw.choice([2e4, 1e5, 1e6])}\n"
-                 f" position ({x}, {draw.uniform(-0.6, 0.6)}, {draw.uniform(0.5, 1.6)})\n"
-                 f" orientation euler ({draw.uniform(-90, 90)}, {draw.uniform(-90, 90)}, 0) deg\n"
-                 f" velocity ({', '.join(map(str, velocity))})\n spin ({', '.join(map(str, spin))})\n"
-                 f" {'hold face -x' if held else draw.choice(['', 'drag 2', 'damping 0.2'])}\n}}\n")
+        text += (
+            f"object o{k} {{\n shape {shape}\n density {draw.choice([200, 800, 3000])}\n"
+            f" elasticity {draw.choice([2e4, 1e5, 1e6])}\n"
+            f" position ({x}, {draw.uniform(-0.6, 0.6)}, {draw.uniform(0.5, 1.6)})\n"
+            f" orientation euler ({draw.uniform(-90, 90)}, {draw.uniform(-90, 90)}, 0) deg\n"
+            f" velocity ({', '.join(map(str, velocity))})\n spin ({', '.join(map(str, spin))})\n"
+            f" {'hold face -x' if held else draw.choice(['', 'drag 2', 'damping 0.2'])}\n}}\n"
+        )
     return text + f"control {{ time {draw.uniform(0.1, 0.5):.2f}\n frames 100\n resolution 0.06 }}\neffects {{ contact off }}\n"
 
 

@@ -5,7 +5,6 @@ import json
 
 import numpy as np
 import pytest
-
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.results.timeline import TIMELINE, Timeline
 

@@ -3,7 +3,6 @@
 
 import numpy as np
 import pytest
-
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SetupError
 
@@ -99,8 +98,10 @@ def test_a_trace_that_looks_less_often_leaves_nothing_out(prepared, every):
 
 def test_a_trace_looks_at_least_at_times(prepared):
     """Refuse a number of steps that is none."""
-    with Instance(prepared(SCENE).plan) as instance, pytest.raises(
-            SetupError, match="after every 1 or more steps, 0 are asked for"):
+    with (
+        Instance(prepared(SCENE).plan) as instance,
+        pytest.raises(SetupError, match="after every 1 or more steps, 0 are asked for"),
+    ):
         instance.look_every(0)
 
 

@@ -13,13 +13,12 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from picture_samples import ball, dam, falling, flat, pool_scene, raw_of, slab_scene, splash, wet_frames, write
-
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.model.basin import Grid
 from mdanim_lammps.model.model import Layer
 from mdanim_lammps.results.trajectory import Trajectory, TrajectoryWriter, part_of, trajectory_bytes
 from mdanim_lammps.scene.scene import Save, Walls
+from picture_samples import ball, dam, falling, flat, pool_scene, raw_of, slab_scene, splash, wet_frames, write
 
 FRAMES = 6
 
@@ -105,18 +104,11 @@ def test_file_alone_is_enough(slab, tmp_path):
         solids=(replace(scene.solids[0], color="#102030"), *scene.solids[1:]),
     )
     text = 'title "A cube — and a ball"\n' * 3000
-    with TrajectoryWriter(
-        tmp_path / "t.h5", scene, models, dt=0.01, steps_per_frame=10, scene_text=text
-    ) as out:
+    with TrajectoryWriter(tmp_path / "t.h5", scene, models, dt=0.01, steps_per_frame=10, scene_text=text) as out:
         out.write(0, 0.0, *falling_frame(models))
     with Trajectory(tmp_path / "t.h5") as t:
         c = t.catalogue
-        assert (c.title, c.scene_text, c.ground, c.walls) == (
-            scene.title,
-            text,
-            0.0,
-            ((-1, -2, 0), (1, 2, 3)),
-        )
+        assert (c.title, c.scene_text, c.ground, c.walls) == (scene.title, text, 0.0, ((-1, -2, 0), (1, 2, 3)))
         assert c.colors == ("#102030", "", "") and c.still.tolist() == [True, False, False]
         assert (t.dt, t.steps_per_frame) == (0.01, 10)
         np.testing.assert_array_equal(c.held, np.concatenate([m.held for m in models]))
@@ -136,9 +128,7 @@ def test_equal_surfaces_are_stored_once(tmp_path):
     solids = tuple(replace(scene.solids[0], name=m.name) for m in models)
     path = tmp_path / "crowd.h5"
     with TrajectoryWriter(path, replace(scene, solids=solids), models, dt=1.0, steps_per_frame=1) as out:
-        out.write(
-            0, 0.0, np.concatenate([m.position for m in models]), np.concatenate([m.velocity for m in models])
-        )
+        out.write(0, 0.0, np.concatenate([m.position for m in models]), np.concatenate([m.velocity for m in models]))
     with Trajectory(path) as t:
         assert len(t.catalogue.surfaces) == 1
         mesh = t.surface(0)
@@ -159,9 +149,7 @@ def test_mdanalysis_reads_it(slab, tmp_path):
             np.testing.assert_array_equal(ts.velocities, velocity.astype(np.float32))
             cube = universe.select_atoms("resname cube")
             # Centre from float32 positions of about 1 m: their rounding, 6e-8.
-            np.testing.assert_allclose(
-                cube.center_of_mass(), t.objects["cube"].center_of_mass[ts.frame], atol=2e-7
-            )
+            np.testing.assert_allclose(cube.center_of_mass(), t.objects["cube"].center_of_mass[ts.frame], atol=2e-7)
         assert len(universe.bonds) == sum(len(m.spring) for m in models)
         assert universe.trajectory.dt == pytest.approx(0.1)
 
@@ -230,9 +218,7 @@ def test_killed_writer_loses_no_flushed_frame(slab, tmp_path, after):
     """Kill -9 a writer at no particular moment: all frames it had flushed are there and right."""
     _, models, _ = slab
     writer = subprocess.Popen(
-        [sys.executable, "-c", KILLED, str(Path(__file__).parent), str(tmp_path)],
-        stdout=subprocess.PIPE,
-        text=True,
+        [sys.executable, "-c", KILLED, str(Path(__file__).parent), str(tmp_path)], stdout=subprocess.PIPE, text=True
     )
     for line in writer.stdout:
         if int(line) >= after:
@@ -254,12 +240,8 @@ def test_append_goes_on_after_a_kill(slab, tmp_path):
     """Resume from step 20 of a killed run: later frames are cut and written anew, and the end is whole."""
     scene, models, frames = slab
     path = tmp_path / "trajectory.h5"
-    code = (
-        KILLED.replace("1000", "5").replace("i % 3 == 2", "True") + "os.kill(os.getpid(), signal.SIGKILL)\n"
-    )
-    died = subprocess.run(
-        [sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)], capture_output=True
-    )
+    code = KILLED.replace("1000", "5").replace("i % 3 == 2", "True") + "os.kill(os.getpid(), signal.SIGKILL)\n"
+    died = subprocess.run([sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)], capture_output=True)
     assert died.returncode == -signal.SIGKILL
     with TrajectoryWriter.append(path, scene, models, after_step=20) as out:
         with pytest.raises(ValueError, match="found 20"):
@@ -297,14 +279,10 @@ def test_full_disk_is_an_output_error(slab, tmp_path):
     """A file that may not grow gives the cause and the way out, and what was flushed stays readable."""
     code = KILLED.replace(
         "scene, models = slab_scene()",
-        "scene, models = slab_scene()\nimport resource\n"
-        "resource.setrlimit(resource.RLIMIT_FSIZE, (800_000, 800_000))",
+        "scene, models = slab_scene()\nimport resource\nresource.setrlimit(resource.RLIMIT_FSIZE, (800_000, 800_000))",
     )
     died = subprocess.run(
-        [sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)],
-        capture_output=True,
-        text=True,
-        timeout=60,
+        [sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)], capture_output=True, text=True, timeout=60
     )
     assert died.returncode == 1
     assert "OutputError" in died.stderr and "File too large; make room" in died.stderr.replace("'", "")
@@ -405,19 +383,14 @@ WET = (
     KILLED.replace("falling, slab_scene", "pool_scene, splash, wet_frames")
     .replace("models = slab_scene()", "models, grid = pool_scene(spacing=0.1)")
     .replace("steps_per_frame=10", "steps_per_frame=10, grid=grid")
-    .replace(
-        "falling(models, 1000)",
-        "wet_frames(models, *[(splash(grid, level=0.1 + 0.01 * k),) * 2 for k in range(50)])",
-    )
+    .replace("falling(models, 1000)", "wet_frames(models, *[(splash(grid, level=0.1 + 0.01 * k),) * 2 for k in range(50)])")
 )
 
 
 def test_heights_survive_a_kill_and_a_resume(tmp_path):
     """Kill -9 a writer with a liquid, go on from an earlier frame: kept frames keep their heights, new ones follow."""
     code = WET + "os.kill(os.getpid(), signal.SIGKILL)\n"
-    died = subprocess.run(
-        [sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)], capture_output=True
-    )
+    died = subprocess.run([sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)], capture_output=True)
     assert died.returncode == -signal.SIGKILL
     scene, models, grid, frames = pool()
     with Trajectory(tmp_path) as t:

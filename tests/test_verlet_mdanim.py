@@ -26,58 +26,64 @@ SHAPES = {
     "sphere": f"object a {{ shape sphere 5 cm position (0, 0, 0) {SOLID} spin (3, 2, 40) rad/s }}",
     "plate": f"object a {{ shape box (12, 12, 1) cm position (0, 0, 0) {SOLID} spin (9, 2, 4) rad/s }}",
     "needle": f"object a {{ shape box (1, 1, 9) cm position (0, 0, 0) {SOLID} spin (9, 2, 4) rad/s }}",
-    "several": "\n".join(f"object a{i} {{ shape box ({2 + i}, 3, {5 - i}) cm position ({9 * i}, 0, 0) cm {SOLID} "
-                         f"spin (9, {i}, 4) rad/s }}"
-                         for i in range(4)),
+    "several": "\n".join(
+        f"object a{i} {{ shape box ({2 + i}, 3, {5 - i}) cm position ({9 * i}, 0, 0) cm {SOLID} spin (9, {i}, 4) rad/s }}"
+        for i in range(4)
+    ),
     "damped": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOFT} spin (30, 20, 40) rad/s }}",
     "damped beside others": f"object a {{ shape box (5, 4, 6) cm position (0, 0, 0) {SOFT} spin (3, 40, 4) rad/s }}\n"
-                            f"object b {{ shape box (6, 5, 4) cm position (9, 0, 0) cm {SOLID} spin (40, 2, 4) rad/s }}\n"
-                            f"object c {{ shape sphere 3 cm position (-9, 0, 0) cm {SOFT} drag 0.3 spin (4, 2, 40) rad/s }}",
+    f"object b {{ shape box (6, 5, 4) cm position (9, 0, 0) cm {SOLID} spin (40, 2, 4) rad/s }}\n"
+    f"object c {{ shape sphere 3 cm position (-9, 0, 0) cm {SOFT} drag 0.3 spin (4, 2, 40) rad/s }}",
     "damped and held": f"object a {{ shape box (9, 4, 4) cm position (0, 0, 0) {SOFT} hold face -x }}",
     "held": f"object a {{ shape box (9, 4, 4) cm position (0, 0, 0) {SOLID} hold face -x }}",
 }
 EFFECTS = {
     "contact": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} velocity (1, 0.1, 0) }}\n"
-               f"object b {{ shape box (5, 6, 7) cm position (9, 0, 0.5) cm {SOLID} velocity (-1, 0, 0) }}",
+    f"object b {{ shape box (5, 6, 7) cm position (9, 0, 0.5) cm {SOLID} velocity (-1, 0, 0) }}",
     "ground": f"ground z -5 cm\nobject a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} velocity (1, 0, -2) "
-              "spin (0, 8, 0) rad/s }",
+    "spin (0, 8, 0) rad/s }",
     "walls and contact": "walls from (-8, -8, -8) cm to (14, 8, 12) cm\n"
-                         f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOLID} velocity (2, 0, -2) }}\n"
-                         f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}",
+    f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOLID} velocity (2, 0, -2) }}\n"
+    f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}",
     # What is common to both is faster than what they hit each other with.
     "contact in flight": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} velocity (4, 5.1, 0) }}\n"
-                         f"object b {{ shape box (5, 6, 7) cm position (9, 0, 0.5) cm {SOLID} velocity (2, 5, 0) }}",
+    f"object b {{ shape box (5, 6, 7) cm position (9, 0, 0.5) cm {SOLID} velocity (2, 5, 0) }}",
     "beside each other": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} velocity (1, 0, 0) }}\n"
-                         f"object b {{ shape box (5, 6, 7) cm position (7.6, 0, 0) cm {SOLID} velocity (1, 0, 0) }}",
+    f"object b {{ shape box (5, 6, 7) cm position (7.6, 0, 0) cm {SOLID} velocity (1, 0, 0) }}",
     "damped, all at once": "walls from (-8, -8, -8) cm to (11, 8, 12) cm\n"
-                   f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOFT} drag 0.3 velocity (2, 0, -2) }}\n"
-                   f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}\n"
-                   "liquid w { basin from (-7, -7, -7) cm to (10, 7, 20) cm density 1000 level -5 cm drag 4 }",
+    f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOFT} drag 0.3 velocity (2, 0, -2) }}\n"
+    f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}\n"
+    "liquid w { basin from (-7, -7, -7) cm to (10, 7, 20) cm density 1000 level -5 cm drag 4 }",
     "air": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} drag 0.5 velocity (3, 0, 0) }}\n"
-           f"object b {{ shape box (5, 5, 5) cm position (1, 0, 0) {SOLID} }}",
+    f"object b {{ shape box (5, 5, 5) cm position (1, 0, 0) {SOLID} }}",
     "damped contact": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOFT} velocity (1, 0.1, 0) }}\n"
-                      f"object b {{ shape box (5, 6, 7) cm position (9, 0, 0.5) cm {SOLID} velocity (-1, 0, 0) }}\n"
-                      f"object c {{ shape box (4, 4, 4) cm position (0, 0, 9) cm {SOFT} velocity (0, 0, -2) }}",
+    f"object b {{ shape box (5, 6, 7) cm position (9, 0, 0.5) cm {SOLID} velocity (-1, 0, 0) }}\n"
+    f"object c {{ shape box (4, 4, 4) cm position (0, 0, 9) cm {SOFT} velocity (0, 0, -2) }}",
     "damped walls": "walls from (-8, -8, -8) cm to (14, 8, 12) cm\n"
-                    f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOFT} velocity (2, 0, -2) }}\n"
-                    f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}",
+    f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOFT} velocity (2, 0, -2) }}\n"
+    f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}",
     "damped in liquid": "object a { shape box (6, 6, 6) cm position (0, 0, 14) cm density 500 elasticity 0.2 MPa damping 0.1 }\n"
-                        "object b { shape box (4, 4, 4) cm position (0, 0, 24) cm density 500 elasticity 0.2 MPa "
-                        "velocity (0, 0, -3) }\n"
-                        "liquid w { basin from (-10, -10, 0) cm to (10, 10, 40) cm density 1000 level 12 cm drag 4 }",
-    "liquid": f"object a {{ shape box (6, 6, 6) cm position (0, 0, 14) cm density 500 elasticity 0.2 MPa drag 0.1 }}\n"
-              f"object b {{ shape box (4, 4, 4) cm position (0, 0, 24) cm density 500 elasticity 0.2 MPa velocity (0, 0, -3) }}\n"
-              "liquid w { basin from (-10, -10, 0) cm to (10, 10, 40) cm density 1000 level 12 cm drag 4 }",
+    "object b { shape box (4, 4, 4) cm position (0, 0, 24) cm density 500 elasticity 0.2 MPa "
+    "velocity (0, 0, -3) }\n"
+    "liquid w { basin from (-10, -10, 0) cm to (10, 10, 40) cm density 1000 level 12 cm drag 4 }",
+    "liquid": "object a { shape box (6, 6, 6) cm position (0, 0, 14) cm density 500 elasticity 0.2 MPa drag 0.1 }\n"
+    "object b { shape box (4, 4, 4) cm position (0, 0, 24) cm density 500 elasticity 0.2 MPa velocity (0, 0, -3) }\n"
+    "liquid w { basin from (-10, -10, 0) cm to (10, 10, 40) cm density 1000 level 12 cm drag 4 }",
 }
 
 
 # After contact and walls, for which places suffice, one that asks for velocities, and then walls again, where particles are that
 # have felt it.
-LATER = ("fix damped mobile mdanim/barrier boundary inner d_stiffness d_reach damp 0.5",
-         "region room block -0.08 0.13 -0.08 0.08 -0.0285 0.12", "fix room mobile mdanim/wall room d_stiffness")
-BETWEEN = ("walls from (-8, -8, -2.9) cm to (13, 8, 12) cm\n"
-           f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOFT} velocity (2, 0, -2) }}\n"
-           f"object b {{ shape box (5, 5, 5) cm position (6.2, 0, 0) cm {SOLID} velocity (-2, 0, -2) }}")
+LATER = (
+    "fix damped mobile mdanim/barrier boundary inner d_stiffness d_reach damp 0.5",
+    "region room block -0.08 0.13 -0.08 0.08 -0.0285 0.12",
+    "fix room mobile mdanim/wall room d_stiffness",
+)
+BETWEEN = (
+    "walls from (-8, -8, -2.9) cm to (13, 8, 12) cm\n"
+    f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOFT} velocity (2, 0, -2) }}\n"
+    f"object b {{ shape box (5, 5, 5) cm position (6.2, 0, 0) cm {SOLID} velocity (-2, 0, -2) }}"
+)
 """Two blocks that hit each other and both floors at the same time."""
 
 
@@ -140,8 +146,10 @@ def test_blocks_give_the_bits_of_verlet(name):
         np.testing.assert_allclose(told, energies, rtol=1e-12, atol=1e-15)
 
 
-@pytest.mark.parametrize(("name", "fix", "entry"), [
-    ("contact", "contact", 3), ("ground", "ground", 5), ("walls and contact", "walls", 5), ("liquid", "liquid", None)])
+@pytest.mark.parametrize(
+    ("name", "fix", "entry"),
+    [("contact", "contact", 3), ("ground", "ground", 5), ("walls and contact", "walls", 5), ("liquid", "liquid", None)],
+)
 def test_the_effects_of_these_scenes_wake_up(name, fix, entry):
     """See pairs in touch, walls that have been met, a liquid that lifts: else the comparison above would be one of sleepers."""
     ready = prepare(parse_scene(FALL + EFFECTS[name] + "\n" + END))
@@ -165,9 +173,18 @@ def test_forces_are_added_in_the_order_of_fixes():
         assert np.array_equal(found, plain) and np.array_equal(seen, trace), width
 
 
-@pytest.mark.parametrize(("name", "more", "some"), [
-    ("contact", (), False), ("beside each other", (), False), ("ground", (), False), ("damped walls", (), False),
-    ("damped walls", LATER[:1], True), ("damped walls", LATER[1:], False), ("damped, all at once", (), True)])
+@pytest.mark.parametrize(
+    ("name", "more", "some"),
+    [
+        ("contact", (), False),
+        ("beside each other", (), False),
+        ("ground", (), False),
+        ("damped walls", (), False),
+        ("damped walls", LATER[:1], True),
+        ("damped walls", LATER[1:], False),
+        ("damped, all at once", (), True),
+    ],
+)
 def test_nobody_is_held_back_for_forces_of_places_alone(name, more, some):
     """Count particles that do not move in passes, while somebody pushes: those of fixes that ask for more than places."""
     ready = prepare(parse_scene(FALL + EFFECTS[name] + "\n" + END))
@@ -186,8 +203,10 @@ def test_nobody_is_held_back_for_forces_of_places_alone(name, more, some):
         assert name != "beside each other" or instance.fix_value("contact", 1) > 0
 
 
-@pytest.mark.parametrize(("ground", "least", "most"), [
-    pytest.param("", 0, 2, id="alone"), pytest.param("ground z -4.1 cm\n", 20, 100, id="on the ground")])
+@pytest.mark.parametrize(
+    ("ground", "least", "most"),
+    [pytest.param("", 0, 2, id="alone"), pytest.param("ground z -4.1 cm\n", 20, 100, id="on the ground")],
+)
 def test_what_all_share_makes_no_lists(ground, least, most):
     """Let two bodies side by side fly a hundred times half the skin: contact alone needs no new lists, the ground does."""
     text = ground + EFFECTS["beside each other"].replace("(1, 0, 0)", "(20, 0, 0)")
@@ -203,7 +222,8 @@ def test_what_all_share_makes_no_lists(ground, least, most):
 def test_pieces_of_a_run_change_no_bit():
     """Cut a run with contact and air in pieces of 1, 2, 3 … steps."""
     text = EFFECTS["contact"] + EFFECTS["air"].replace("object a", "object c").replace("object b", "object d").replace(
-        "(0, 0, 0)", "(0, 0, 1)").replace("(1, 0, 0)", "(1, 0, 1)")
+        "(0, 0, 0)", "(0, 0, 1)"
+    ).replace("(1, 0, 0)", "(1, 0, 1)")
     whole = film(text, "verlet/mdanim", (300,))[0][-1]
     assert np.array_equal(film(text, "verlet/mdanim", tuple(range(1, 25)))[0][-1], whole)
 
@@ -214,8 +234,10 @@ def lab_state(body, folder, commands, **options) -> tuple[np.ndarray, int]:
     library = ctypes.CDLL(plugin_path.folder() + "/mdanimplugin.so")
     library.mdanim_passes.restype = ctypes.c_longlong
     try:
-        return (np.concatenate([lab.by_tag(lmp, a) for a in "xvf"]),
-                library.mdanim_passes(ctypes.c_void_p(getattr(lmp.lmp, "value", lmp.lmp))))
+        return (
+            np.concatenate([lab.by_tag(lmp, a) for a in "xvf"]),
+            library.mdanim_passes(ctypes.c_void_p(getattr(lmp.lmp, "value", lmp.lmp))),
+        )
     finally:
         lmp.close()
 
@@ -234,8 +256,9 @@ def test_order_of_particles_changes_no_bit(tmp_path, drag):
     assert np.array_equal(straight, shuffled)
 
 
-@pytest.mark.parametrize("stranger", ["fix other all viscous 0.01", "fix other all gravity 0.1 vector 0 0 -1",
-                                      "fix other all momentum 7 linear 1 1 1"])
+@pytest.mark.parametrize(
+    "stranger", ["fix other all viscous 0.01", "fix other all gravity 0.1 vector 0 0 -1", "fix other all momentum 7 linear 1 1 1"]
+)
 def test_what_is_not_known_gets_the_plain_step(tmp_path, stranger):
     """Add a fix of LAMMPS's own that acts in steps: no passes, and the motion of run_style verlet."""
     found, none = lab_state(BODY, tmp_path, [stranger, *MOVE, "run_style verlet/mdanim", "run 50"])
@@ -253,9 +276,18 @@ def test_somebody_who_looks_sees_every_step_he_asks_for(tmp_path):
     texts = []
     for style in ("verlet", "verlet/mdanim"):
         path = tmp_path / style.replace("/", "-")
-        lab_state(BODY, tmp_path, [*MOVE, f"run_style {style}", f"dump d all custom 7 {path} id x y z vx vy vz fx",
-                                   "dump_modify d sort id format float %.17g", "fix b all balance 10 1.0 shift x 5 1.1",
-                                   "run 50"])
+        lab_state(
+            BODY,
+            tmp_path,
+            [
+                *MOVE,
+                f"run_style {style}",
+                f"dump d all custom 7 {path} id x y z vx vy vz fx",
+                "dump_modify d sort id format float %.17g",
+                "fix b all balance 10 1.0 shift x 5 1.1",
+                "run 50",
+            ],
+        )
         texts.append(path.read_text())
     frames = [[part.partition("ITEM: ATOMS")[::2] for part in text.split("ITEM: TIMESTEP")[1:]] for text in texts]
     assert len(frames[0]) == len(frames[1]) == 8
@@ -268,19 +300,30 @@ def test_somebody_who_looks_sees_every_step_he_asks_for(tmp_path):
 def test_lists_are_rebuilt_before_anybody_has_gone_half_the_skin(tmp_path):
     """Let a fast body pass through a region watched by a wall: it is pushed back as with run_style verlet, bit for bit."""
     fast = lab.block((3, 3, 3), (0.0, 0.0, 0.0), (0.7, 0.0, 0.0))
-    commands = ["region room block -5 9 -5 9 -5 9", "fix wall all mdanim/wall room 3.0", "fix run all mdanim/leapfrog",
-                "timestep 0.1"]
+    commands = [
+        "region room block -5 9 -5 9 -5 9",
+        "fix wall all mdanim/wall room 3.0",
+        "fix run all mdanim/leapfrog",
+        "timestep 0.1",
+    ]
     found, taken = lab_state(fast, tmp_path, [*commands, "run_style verlet/mdanim", "run 200"])
     plain, _ = lab_state(fast, tmp_path, [*commands, "run_style verlet", "run 200"])
     assert taken > 100
     assert np.array_equal(found, plain)
-    assert found[: len(fast.x), 0].max() < 9.5 and found[len(fast.x): 2 * len(fast.x), 0].mean() < 0.0
+    assert found[: len(fast.x), 0].max() < 9.5 and found[len(fast.x) : 2 * len(fast.x), 0].mean() < 0.0
 
 
-@pytest.mark.parametrize(("often", "wall", "least"), [
-    ("check no", False, 49), ("every 7 delay 14 check no", False, 49), ("once yes check no", False, 49),
-    ("once yes check yes", True, 1),
-    ("once yes check no", True, 1), ("check no", True, 0)])
+@pytest.mark.parametrize(
+    ("often", "wall", "least"),
+    [
+        ("check no", False, 49),
+        ("every 7 delay 14 check no", False, 49),
+        ("once yes check no", False, 49),
+        ("once yes check yes", True, 1),
+        ("once yes check no", True, 1),
+        ("check no", True, 0),
+    ],
+)
 def test_lists_are_made_when_lammps_is_told_to(tmp_path, often, wall, least):
     """Switch off the check of how far particles have gone, and rebuilding: passes where no lists are looked at,
     and the plain bits."""
@@ -296,24 +339,31 @@ def test_lists_are_made_when_lammps_is_told_to(tmp_path, often, wall, least):
 def test_only_the_group_is_pushed(tmp_path):
     """Let contact push one of two bodies alone, the first: the other one flies on as if nobody was there."""
     pair = lab.join(lab.block((4, 3, 3)), lab.block((3, 4, 3), (4.8, 0.0, 0.0), (-0.2, 0.0, 0.0)))
-    commands = ["group first molecule 1", "fix push first mdanim/barrier boundary inner 1.0 1.6", "fix run all mdanim/leapfrog",
-                "timestep 0.2"]
+    commands = [
+        "group first molecule 1",
+        "fix push first mdanim/barrier boundary inner 1.0 1.6",
+        "fix run all mdanim/leapfrog",
+        "timestep 0.2",
+    ]
     found, taken = lab_state(pair, tmp_path, [*commands, "run_style verlet/mdanim", "run 60"])
     plain, none = lab_state(pair, tmp_path, [*commands, "run_style verlet", "run 60"])
     assert (taken, none) == (59, 0)
     assert np.array_equal(found, plain)
     n, first = len(pair.x), pair.molecule == 1
-    np.testing.assert_allclose(found[n:2 * n][~first], pair.v[~first], rtol=0, atol=1e-12)
-    assert found[n:2 * n][first].mean(0)[0] < -0.01
+    np.testing.assert_allclose(found[n : 2 * n][~first], pair.v[~first], rtol=0, atol=1e-12)
+    assert found[n : 2 * n][first].mean(0)[0] < -0.01
 
 
-@pytest.mark.parametrize(("command", "message"), [
-    ("run_style verlet/mdanim fast", "unknown keyword fast; it knows width"),
-    ("run_style verlet/mdanim width", "width takes one word"),
-    ("run_style verlet/mdanim width avx1024", "width avx1024 is unknown or this processor does not have it"),
-    ("fix g all mdanim/gravity 0 0", "fix mdanim/gravity"),
-    ("fix g all mdanim/gravity 0 0 1 2", "gx gy gz are all it takes, got also 2"),
-])
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        ("run_style verlet/mdanim fast", "unknown keyword fast; it knows width"),
+        ("run_style verlet/mdanim width", "width takes one word"),
+        ("run_style verlet/mdanim width avx1024", "width avx1024 is unknown or this processor does not have it"),
+        ("fix g all mdanim/gravity 0 0", "fix mdanim/gravity"),
+        ("fix g all mdanim/gravity 0 0 1 2", "gx gy gz are all it takes, got also 2"),
+    ],
+)
 def test_mistakes_are_refused(tmp_path, command, message):
     """Give one wrong word."""
     with pytest.raises(Exception) as caught:
@@ -343,14 +393,22 @@ def test_springs_with_and_without_dashpots_in_one_block(tmp_path):
         assert np.array_equal(found, plain)
 
 
-@pytest.mark.parametrize("change", ["bond_coeff * 0.3 1.1", "bond_coeff 1 0.2 1.0 0.1",
-                                    "group second molecule 2\ndelete_bonds second multi remove",
-                                    "set group all mass 2.0", "timestep 0.1"])
+@pytest.mark.parametrize(
+    "change",
+    [
+        "bond_coeff * 0.3 1.1",
+        "bond_coeff 1 0.2 1.0 0.1",
+        "group second molecule 2\ndelete_bonds second multi remove",
+        "set group all mass 2.0",
+        "timestep 0.1",
+    ],
+)
 def test_what_changes_between_two_runs_is_noticed(tmp_path, change):
     """Change springs, masses or the time step after a run: passes go on with what is there now."""
-    found, plain = (lab_state(BODY, tmp_path,
-                              [*MOVE, f"run_style {style}", "run 40", *change.split("\n"), "run 40", "run 20 pre no"])
-                    for style in ("verlet/mdanim", "verlet"))
+    found, plain = (
+        lab_state(BODY, tmp_path, [*MOVE, f"run_style {style}", "run 40", *change.split("\n"), "run 40", "run 20 pre no"])
+        for style in ("verlet/mdanim", "verlet")
+    )
     assert found[1] == 97 and plain[1] == 0
     assert np.array_equal(found[0], plain[0])
 
@@ -358,10 +416,26 @@ def test_what_changes_between_two_runs_is_noticed(tmp_path, change):
 @pytest.mark.parametrize("first", [[], ["run 3"]], ids=["from the start", "after a run without"])
 def test_who_reads_the_list_of_bonds_finds_it(tmp_path, first):
     """Let stock fix bond/break, which knows springs by LAMMPS's list of bonds alone, take the longer of two."""
-    chain = replace(lab.particles([[0.0, 0, 0], [1.5, 0, 0], [3.0, 0, 0], [6.0, 0, 0]], molecule=[1, 1, 1, 1]),
-                    bond=np.array([[0, 1], [2, 3]]), k=np.full(2, 0.1), r0=np.full(2, 1.0))
-    lmp = lab.load(chain, tmp_path, ["fix run all mdanim/leapfrog", "timestep 0.01", "run_style verlet/mdanim", *first,
-                                     "fix break all bond/break 5 1 2.5", "run 7"], special="0 1 1", cutoff=6.0)
+    chain = replace(
+        lab.particles([[0.0, 0, 0], [1.5, 0, 0], [3.0, 0, 0], [6.0, 0, 0]], molecule=[1, 1, 1, 1]),
+        bond=np.array([[0, 1], [2, 3]]),
+        k=np.full(2, 0.1),
+        r0=np.full(2, 1.0),
+    )
+    lmp = lab.load(
+        chain,
+        tmp_path,
+        [
+            "fix run all mdanim/leapfrog",
+            "timestep 0.01",
+            "run_style verlet/mdanim",
+            *first,
+            "fix break all bond/break 5 1 2.5",
+            "run 7",
+        ],
+        special="0 1 1",
+        cutoff=6.0,
+    )
     force = lab.by_tag(lmp, "f")[:, 0]
     assert force[0] == -force[1] == pytest.approx(0.05, rel=1e-2)
     assert np.all(force[2:] == 0.0)

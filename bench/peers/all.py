@@ -33,20 +33,37 @@ BAR["exact"] = float(mean_sag(BAR["time"], **{k: BAR[k] for k in ("length", "thi
 """Mean sag then [m], of a Timoshenko beam."""
 POOL = dict(width=1.0, level=0.6, side=0.3, middle=0.5, z=0.85, density=500.0, time=1.0)
 CASES = {
-    "cube": ("A cube of 1 m, E 5e5 Pa, 1000 kg/m³, falls 0.1 m onto the ground, 10 648 nodes; ours and MuJoCo at half of the "
-             "largest step they bear, other springs at our step",
-             CUBE | {"h": 1.0 / 21.0, "fraction": 0.5},
-             {"ours": 1.0, "mujoco_flex": 40.0, "taichi_springs": 2.0, "taichi_springs, serial": None, "openmm_springs": None,
-              "pybullet_soft": None}),
-    "cube, largest step": ("The same at the largest step they bear: ours is the certified bound, MuJoCo's was found by trying",
-                           CUBE | {"h": 1.0 / 21.0, "fraction": 1.0}, {"ours": 1.0, "mujoco_flex": 40.0}),
-    "cantilever": ("A bar of 1 m × 0.1 m × 0.1 m, E 5e6 Pa, clamped and let go under 1 m/s², 4 cells thick; error of the mean "
-                   "sag after half a period",
-                   BAR | {"h": 0.025}, {"ours": 1.0, "mujoco_flex": None}),
+    "cube": (
+        "A cube of 1 m, E 5e5 Pa, 1000 kg/m³, falls 0.1 m onto the ground, 10 648 nodes; ours and MuJoCo at half of the "
+        "largest step they bear, other springs at our step",
+        CUBE | {"h": 1.0 / 21.0, "fraction": 0.5},
+        {
+            "ours": 1.0,
+            "mujoco_flex": 40.0,
+            "taichi_springs": 2.0,
+            "taichi_springs, serial": None,
+            "openmm_springs": None,
+            "pybullet_soft": None,
+        },
+    ),
+    "cube, largest step": (
+        "The same at the largest step they bear: ours is the certified bound, MuJoCo's was found by trying",
+        CUBE | {"h": 1.0 / 21.0, "fraction": 1.0},
+        {"ours": 1.0, "mujoco_flex": 40.0},
+    ),
+    "cantilever": (
+        "A bar of 1 m × 0.1 m × 0.1 m, E 5e6 Pa, clamped and let go under 1 m/s², 4 cells thick; error of the mean "
+        "sag after half a period",
+        BAR | {"h": 0.025},
+        {"ours": 1.0, "mujoco_flex": None},
+    ),
     "cantilever, 2 cells": ("The same 2 cells thick", BAR | {"h": 0.05}, {"ours": 1.0, "mujoco_flex": None}),
     "cantilever, 8 cells": ("The same 8 cells thick", BAR | {"h": 0.0125}, {"ours": 1.0, "mujoco_flex": None}),
-    "float": ("A box of 0.3 m, 500 kg/m³, dropped into 1 m × 1 m × 0.6 m of water, spacing 0.0288 m", POOL | {"h": 0.0288},
-              {"ours": 1.0, "lammps_sph": 300.0}),
+    "float": (
+        "A box of 0.3 m, 500 kg/m³, dropped into 1 m × 1 m × 0.6 m of water, spacing 0.0288 m",
+        POOL | {"h": 0.0288},
+        {"ours": 1.0, "lammps_sph": 300.0},
+    ),
 }
 """Title, numbers of the scene, and contenders with the goal: how many times as much as ours they take. A contender is a file
 here, and which of its ways to do it if there are several."""
@@ -62,8 +79,9 @@ def contender(name: str, scene: str, case: dict) -> dict:
     try:
         with tempfile.TemporaryDirectory() as folder:  # some leave files where they run
             words = [python, HERE / f"{file}.py", scene.split(",")[0], json.dumps(case | {"way": way})]
-            done = subprocess.run(words, capture_output=True, text=True, timeout=case["limit"] + BEGIN, env=os.environ | alone,
-                                  cwd=folder)
+            done = subprocess.run(
+                words, capture_output=True, text=True, timeout=case["limit"] + BEGIN, env=os.environ | alone, cwd=folder
+            )
     except subprocess.TimeoutExpired:
         return {"failed": f"no figure within {case['limit'] + BEGIN:.0f} s"}
     lines = done.stdout.strip().splitlines()
@@ -97,10 +115,35 @@ def equal_error(found: dict[str, list[dict]]) -> str:
         enough = [r for r in ours if abs(r["error"]) <= abs(peer["error"])]
         if enough:
             best = min(enough, key=lambda r: r["cost"])
-            lines.append((peer["contender"], peer["nodes"], f"{100 * peer['error']:+.1f} %", peer["cost"], best["nodes"],
-                          f"{100 * best['error']:+.1f} %", best["cost"], peer["cost"] / best["cost"]))
-    return markdown(["peer", "its nodes", "its error", "processor seconds per simulated second", "our nodes", "our error", "ours",
-                     "peer over ours"], lines) if lines else ""
+            lines.append(
+                (
+                    peer["contender"],
+                    peer["nodes"],
+                    f"{100 * peer['error']:+.1f} %",
+                    peer["cost"],
+                    best["nodes"],
+                    f"{100 * best['error']:+.1f} %",
+                    best["cost"],
+                    peer["cost"] / best["cost"],
+                )
+            )
+    return (
+        markdown(
+            [
+                "peer",
+                "its nodes",
+                "its error",
+                "processor seconds per simulated second",
+                "our nodes",
+                "our error",
+                "ours",
+                "peer over ours",
+            ],
+            lines,
+        )
+        if lines
+        else ""
+    )
 
 
 def table(rows: list[dict]) -> str:
@@ -117,10 +160,33 @@ def table(rows: list[dict]) -> str:
         size = f"{r['nodes']:,}" + (f" + {r['cells']:,} cells" if "cells" in r else "")
         name = r["contender"].partition(",")[0]
         goal = f"≥ {r['goal']:g}" if r["goal"] and name != "ours" else ""
-        lines.append((f"{name} {r['version']}" + (f", {r['note']}" if "note" in r else ""), size, r["dt"], r["steps"],
-                      f"{about}{r['cost']:.3g} ({r['least']:.3g})", r["rounds"], ratio, goal, error))
-    return markdown(["contender", "nodes", "step [s]", "steps taken", "processor seconds per simulated second, median (least)",
-                     "rounds", "over ours", "goal", "error"], lines)
+        lines.append(
+            (
+                f"{name} {r['version']}" + (f", {r['note']}" if "note" in r else ""),
+                size,
+                r["dt"],
+                r["steps"],
+                f"{about}{r['cost']:.3g} ({r['least']:.3g})",
+                r["rounds"],
+                ratio,
+                goal,
+                error,
+            )
+        )
+    return markdown(
+        [
+            "contender",
+            "nodes",
+            "step [s]",
+            "steps taken",
+            "processor seconds per simulated second, median (least)",
+            "rounds",
+            "over ours",
+            "goal",
+            "error",
+        ],
+        lines,
+    )
 
 
 def main() -> None:
@@ -136,9 +202,12 @@ def main() -> None:
         parser.error(f"unknown: {', '.join(sorted(unknown))}; scenes are {', '.join(CASES)}")
     limit, rounds = options.limit or (3.0 if options.quick else 30.0), options.rounds or (1 if options.quick else 5)
     busy = os.getloadavg()[0] / os.cpu_count()
-    text = (f"`python bench/peers/all.py`, {limit:g} processor seconds at most for each, {rounds} rounds where they fit, load at "
-            f"the start {busy:.1f} per core" + (" (**a busy machine**)" if busy > 0.3 else "")
-            + "; ~ extrapolated from the part of the scene that fitted.\n")
+    text = (
+        f"`python bench/peers/all.py`, {limit:g} processor seconds at most for each, {rounds} rounds where they fit, load at "
+        f"the start {busy:.1f} per core"
+        + (" (**a busy machine**)" if busy > 0.3 else "")
+        + "; ~ extrapolated from the part of the scene that fitted.\n"
+    )
     found, start = {}, time.perf_counter()
     for scene in options.scenes:
         found[scene] = measure(scene, limit, rounds)

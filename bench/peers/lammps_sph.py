@@ -48,7 +48,7 @@ group wall type 2
 group body type 3
 mass 1 {1000.0 * h**3}
 mass 2 {1000.0 * h**3}
-mass 3 {case['density'] * h**3}
+mass 3 {case["density"] * h**3}
 set group all sph/rho 1000.0
 set group all sph/cv 1.0
 pair_style hybrid/overlay sph/rhosum 0 sph/taitwater

@@ -33,14 +33,36 @@ scene, case = words()
 h, young = case["h"], case["young"]
 if scene == "cube":
     n = round(1.0 / h) + 1
-    text = dict(dt=case["fraction"] * LARGEST * h, integrator="Euler", gravity=9.81, nx=n, ny=n, nz=n, z=case["z"],
-                mass=case["density"], damping=0.0, pin="", floor='<geom type="plane" size="5 5 .1"/>')
+    text = dict(
+        dt=case["fraction"] * LARGEST * h,
+        integrator="Euler",
+        gravity=9.81,
+        nx=n,
+        ny=n,
+        nz=n,
+        z=case["z"],
+        mass=case["density"],
+        damping=0.0,
+        pin="",
+        floor='<geom type="plane" size="5 5 .1"/>',
+    )
 else:
     across = round(case["thickness"] / h) + 1
     along = round(case["length"] / h) + 1
     mass = case["density"] * case["length"] * case["thickness"] ** 2
-    text = dict(dt=IMPLICIT, integrator="discrete", gravity=case["gravity"], nx=along, ny=across, nz=across, z=1.0, mass=mass,
-                damping=0.0, pin=f'<pin gridrange="0 0 0 0 {across - 1} {across - 1}"/>', floor="")
+    text = dict(
+        dt=IMPLICIT,
+        integrator="discrete",
+        gravity=case["gravity"],
+        nx=along,
+        ny=across,
+        nz=across,
+        z=1.0,
+        mass=mass,
+        damping=0.0,
+        pin=f'<pin gridrange="0 0 0 0 {across - 1} {across - 1}"/>',
+        floor="",
+    )
 model = mujoco.MjModel.from_xml_string(MODEL.format(h=h, radius=0.1 * h, young=young, **text))
 data = mujoco.MjData(model)
 mujoco.mj_forward(model, data)

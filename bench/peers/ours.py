@@ -45,8 +45,15 @@ def main() -> None:
     plan, system, dt = ready.plan, ready.system, ready.certificate.timestep
     if "lattice" in case:
         stiffness, length = plan.coefficients[plan.bond_kind - 1, :2].T
-        np.savez(case["lattice"], position=system.position, mass=system.mass, pair=plan.bonds, stiffness=stiffness,
-                 length=length, dt=dt)
+        np.savez(
+            case["lattice"],
+            position=system.position,
+            mass=system.mass,
+            pair=plan.bonds,
+            stiffness=stiffness,
+            length=length,
+            dt=dt,
+        )
     with Instance(plan) as instance:
         instance.setup()
         chunk = ready.certificate.steps_per_frame

@@ -14,8 +14,10 @@ _, case = words()
 h = case["h"]
 n = round(1.0 / h) + 1
 DT = 2e-3
-CORNERS = {0: [(0, 3, 5, 6), (0, 1, 3, 5), (0, 2, 3, 6), (0, 4, 5, 6), (3, 5, 6, 7)],
-           1: [(1, 2, 4, 7), (0, 1, 2, 4), (1, 2, 3, 7), (1, 4, 5, 7), (2, 4, 6, 7)]}
+CORNERS = {
+    0: [(0, 3, 5, 6), (0, 1, 3, 5), (0, 2, 3, 6), (0, 4, 5, 6), (3, 5, 6, 7)],
+    1: [(1, 2, 4, 7), (0, 1, 2, 4), (1, 2, 3, 7), (1, 4, 5, 7), (2, 4, 6, 7)],
+}
 """Tetrahedra of a cell by corners x + 2 y + 4 z; neighbours are mirrored, so that their faces fit."""
 nodes = np.array(list(product(range(n), repeat=3)), float) * h
 cells = []
@@ -42,9 +44,16 @@ with tempfile.TemporaryDirectory() as folder:
     pybullet.createMultiBody(0, floor)
     nu, young = 0.25, case["young"]
     body = pybullet.loadSoftBody(
-        str(path), basePosition=[0, 0, case["z"] - 0.5], mass=case["density"], useNeoHookean=1,
+        str(path),
+        basePosition=[0, 0, case["z"] - 0.5],
+        mass=case["density"],
+        useNeoHookean=1,
         NeoHookeanMu=young / (2 * (1 + nu)),
-        NeoHookeanLambda=young * nu / ((1 + nu) * (1 - 2 * nu)), NeoHookeanDamping=0.01, useFaceContact=1, collisionMargin=0.006)
+        NeoHookeanLambda=young * nu / ((1 + nu) * (1 - 2 * nu)),
+        NeoHookeanDamping=0.01,
+        useFaceContact=1,
+        collisionMargin=0.006,
+    )
 if body < 0:
     raise SystemExit("loadSoftBody did not take the mesh")
 found = run(lambda count: [pybullet.stepSimulation() for _ in range(count)], DT, case["time"], case["limit"], 1)

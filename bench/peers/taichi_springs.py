@@ -16,7 +16,7 @@ lattice = np.load(case["lattice"])
 n, dt = len(lattice["mass"]), float(lattice["dt"])
 serial = case["way"] == "serial"
 pair, copies = lattice["pair"], 1 if serial else 2
-owner, partner = (pair.T if serial else np.concatenate([pair, pair[:, ::-1]]).T)
+owner, partner = pair.T if serial else np.concatenate([pair, pair[:, ::-1]]).T
 order = np.lexsort((partner, owner))
 first = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=n))]).astype(np.int32)
 

@@ -39,14 +39,12 @@ MDANIM_EXPORT void mdanim_automaton_sweep(void *a, std::uint64_t when, int count
   for (int n = 0; n < count; ++n) automaton(a).sweep(when + n);
 }
 
-MDANIM_EXPORT void mdanim_automaton_plain_sweep(void *a, std::uint64_t when)
-{ automaton(a).plain_sweep(when); }
+MDANIM_EXPORT void mdanim_automaton_plain_sweep(void *a, std::uint64_t when) { automaton(a).plain_sweep(when); }
 
 MDANIM_EXPORT int mdanim_automaton_at_rest(void *a) { return automaton(a).at_rest(); }
 
 // Returns how many cells changed, or -1 with a message.
-MDANIM_EXPORT long mdanim_automaton_displace(void *a, const std::uint8_t *solid, std::uint64_t when,
-                                             char *error, int error_size)
+MDANIM_EXPORT long mdanim_automaton_displace(void *a, const std::uint8_t *solid, std::uint64_t when, char *error, int error_size)
 {
   try {
     return automaton(a).displace(solid, when);

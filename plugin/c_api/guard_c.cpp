@@ -23,18 +23,18 @@ namespace {
 struct Model {
   long long count;
   const long long *first_particle;
-  const unsigned char *boundary;      // whether a particle is on the surface, (N)
+  const unsigned char *boundary;    // whether a particle is on the surface, (N)
   const long long *first_cell;
-  const int *corner;                  // VTK order, (C, 8)
-  const unsigned char *deep;          // whether a cell has no corner on the surface, (C)
-  const double *spacing;              // (M)
-  const double *mass;                 // (N)
-  const unsigned char *still;         // whether an object never moves, (M)
+  const int *corner;             // VTK order, (C, 8)
+  const unsigned char *deep;     // whether a cell has no corner on the surface, (C)
+  const double *spacing;         // (M)
+  const double *mass;            // (N)
+  const unsigned char *still;    // whether an object never moves, (M)
 };
 
 // The same where it is now.
 struct Objects : Model {
-  const double *x;                    // (N, 3)
+  const double *x;    // (N, 3)
 
   Vec3 at(int i) const { return vec3(x + 3 * static_cast<std::size_t>(i)); }
   Vec3 middle(long long c) const { return 0.5 * (at(corner[8 * c]) + at(corner[8 * c + 6])); }

@@ -47,8 +47,7 @@ MDANIM_EXPORT void mdanim_level_get(void *pool, std::uint8_t *content)
   p->each_cell([&](std::size_t place, std::size_t n) { content[n] = p->cells.content[place]; });
 }
 
-MDANIM_EXPORT long mdanim_level_move(void *pool, std::uint64_t seed, std::uint64_t when, double rate,
-                                     long at_least)
+MDANIM_EXPORT long mdanim_level_move(void *pool, std::uint64_t seed, std::uint64_t when, double rate, long at_least)
 {
   auto *p = static_cast<Pool *>(pool);
   return p->leveller.move(p->cells, seed, when, rate, at_least);
@@ -60,6 +59,5 @@ MDANIM_EXPORT int mdanim_level_heights(void *pool, double *height, int just_move
   return p->leveller.heights(p->cells, height, just_moved != 0);
 }
 
-MDANIM_EXPORT void mdanim_smooth_surface(int nx, int ny, const double *height, const std::uint8_t *blocked,
-                                         double *smooth)
+MDANIM_EXPORT void mdanim_smooth_surface(int nx, int ny, const double *height, const std::uint8_t *blocked, double *smooth)
 { mdanim::smooth_surface(nx, ny, height, blocked, smooth); }

@@ -53,13 +53,12 @@ MDANIM_EXPORT int mdanim_liquid_get_state(void *handle, const char *fix, unsigne
 }
 
 // To be called before the setup of a run. Returns 0, or 1 with a message in `error`.
-MDANIM_EXPORT int mdanim_liquid_set_state(void *handle, const char *fix, const unsigned char *bytes,
-                                          long long size, char *error, int error_size)
+MDANIM_EXPORT int mdanim_liquid_set_state(void *handle, const char *fix, const unsigned char *bytes, long long size, char *error,
+                                          int error_size)
 {
   try {
     FixMdanimLiquid *found = liquid(handle, fix);
-    const std::string why =
-        found ? found->set_state(bytes, size) : std::string("there is no fix mdanim/liquid ") + fix;
+    const std::string why = found ? found->set_state(bytes, size) : std::string("there is no fix mdanim/liquid ") + fix;
     if (why.empty()) return 0;
     snprintf(error, error_size, "%s", why.c_str());
   } catch (const std::exception &e) {

@@ -40,15 +40,14 @@ void check_bonds(const Atom *atom, int n, const int *tag, const Bonds &bonds)
   for (int i = 0; i < n; ++i) {
     const long long count = bonds.first[i + 1] - bonds.first[i];
     if (count < 0 || count > atom->bond_per_atom)
-      fail("particle " + number(tag[i]) + " has " + number(count) + " bonds, there is room for " +
-           number(atom->bond_per_atom) + "; raise extra/bond/per/atom of create_box");
+      fail("particle " + number(tag[i]) + " has " + number(count) + " bonds, there is room for " + number(atom->bond_per_atom) +
+           "; raise extra/bond/per/atom of create_box");
   }
   for (long long b = 0; b < bonds.first[n]; ++b)
     if (bonds.type[b] < 1 || bonds.type[b] > atom->nbondtypes)
       fail("bond type " + number(bonds.type[b]) + " is not within 1 and " + number(atom->nbondtypes) +
            "; raise bond/types of create_box");
-  if (bonds.first[n] % 2)
-    fail("bonds must be given at both ends, got an odd number of entries: " + number(bonds.first[n]));
+  if (bonds.first[n] % 2) fail("bonds must be given at both ends, got an odd number of entries: " + number(bonds.first[n]));
 }
 
 double *custom_property(Atom *atom, const char *name)
@@ -56,22 +55,19 @@ double *custom_property(Atom *atom, const char *name)
   int is_double = 0, columns = 0;
   const int index = atom->find_custom(name, is_double, columns);
   if (index < 0 || !is_double || columns)
-    fail(std::string("there is no per-particle property d_") + name + "; use 'fix ID all property/atom d_" +
-         name + "'");
+    fail(std::string("there is no per-particle property d_") + name + "; use 'fix ID all property/atom d_" + name + "'");
   return atom->dvector[index];
 }
 
-void insert(LAMMPS *lmp, int n, const int *tag, const int *type, const int *molecule, const double *x,
-            const double *v, const double *rmass, int properties, const char *const *name,
-            const double *property, const Bonds &bonds)
+void insert(LAMMPS *lmp, int n, const int *tag, const int *type, const int *molecule, const double *x, const double *v,
+            const double *rmass, int properties, const char *const *name, const double *property, const Bonds &bonds)
 {
   Atom *atom = lmp->atom;
   if (atom->map_style == Atom::MAP_NONE && atom->map_user == Atom::MAP_NONE)
     fail("an atom map is needed; put 'atom_modify map array' before the box is made");
   if (lmp->force->newton_bond) fail("bonds are stored at both ends; put 'newton off' before the box is made");
   if (molecule && !atom->molecule) fail("the atom style has no molecule IDs; use 'atom_style bond'");
-  if (rmass && !atom->rmass)
-    fail("particles have no mass of their own; use 'fix ID all property/atom rmass'");
+  if (rmass && !atom->rmass) fail("particles have no mass of their own; use 'fix ID all property/atom rmass'");
   check_bonds(atom, n, tag, bonds);
   for (int p = 0; p < properties; ++p) custom_property(atom, name[p]);
 
@@ -84,8 +80,7 @@ void insert(LAMMPS *lmp, int n, const int *tag, const int *type, const int *mole
     fail(text);
   }
   if (atom->natoms != before + n)
-    fail("LAMMPS took " + number(atom->natoms - before) + " of " + number(n) +
-         " particles; the others lie outside the box");
+    fail("LAMMPS took " + number(atom->natoms - before) + " of " + number(n) + " particles; the others lie outside the box");
   atom->data_fix_compute_variable(first,
                                   atom->nlocal);    // what fixes keep per particle gets its initial value
 
@@ -169,10 +164,10 @@ double of_bonds(void *handle, const char *what)
 // 3); rmass (n) or null; property (properties, n) for names without their d_; bond_first (n + 1) or null for no bonds. Every rank
 // calls it with the same arguments. Returns 0, or 1 with a message in `error`; after an error the instance is
 // to be closed.
-MDANIM_EXPORT int mdanim_insert(void *handle, int n, const int *tag, const int *type, const int *molecule,
-                                const double *x, const double *v, const double *rmass, int properties,
-                                const char *const *name, const double *property, const long long *bond_first,
-                                const int *bond_partner, const int *bond_type, char *error, int error_size)
+MDANIM_EXPORT int mdanim_insert(void *handle, int n, const int *tag, const int *type, const int *molecule, const double *x,
+                                const double *v, const double *rmass, int properties, const char *const *name,
+                                const double *property, const long long *bond_first, const int *bond_partner,
+                                const int *bond_type, char *error, int error_size)
 {
   try {
     insert(static_cast<LAMMPS *>(handle), n, tag, type, molecule, x, v, rmass, properties, name, property,

@@ -23,8 +23,7 @@ using namespace LAMMPS_NS;
 static FixMdanimLeapfrog *leapfrog(void *handle)
 {
   const auto found = static_cast<LAMMPS *>(handle)->modify->get_fix_by_style("^mdanim/leapfrog$");
-  if (found.size() != 1)
-    throw std::runtime_error("one fix mdanim/leapfrog is needed, there are " + std::to_string(found.size()));
+  if (found.size() != 1) throw std::runtime_error("one fix mdanim/leapfrog is needed, there are " + std::to_string(found.size()));
   return dynamic_cast<FixMdanimLeapfrog *>(found.front());
 }
 

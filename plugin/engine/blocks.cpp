@@ -189,8 +189,10 @@ void Blocks::lie_at(const std::vector<int> &places, int own)
   place.assign(own, -1);
   ghosts.clear();
   for (int i = 0; i < particles; ++i) {
-    if (index[i] < own) place[index[i]] = i;
-    else ghosts.push_back(i);
+    if (index[i] < own)
+      place[index[i]] = i;
+    else
+      ghosts.push_back(i);
   }
   total.resize(3 * static_cast<std::size_t>(particles));
 }
@@ -446,10 +448,10 @@ std::size_t Blocks::bytes() const
   for (const Bringer &b : bringers)
     of_bringers += b.particle.capacity() * sizeof(int) + b.ghosts.capacity() * sizeof(Ghost) + b.slot.capacity() * sizeof(long);
   return of_bringers + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + damped_laws.bytes() +
-      motions.bytes() + memory.bytes() +
-      (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
-          sizeof(int) +
-      total.capacity() * sizeof(double);
+         motions.bytes() + memory.bytes() +
+         (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
+             sizeof(int) +
+         total.capacity() * sizeof(double);
 }
 
 // --- widths ---

@@ -35,7 +35,7 @@ class Catalogue {
 
 // What a particle's motion depends on.
 struct Mover {
-  double pulled;    // mass that gravity pulls at
+  double pulled;                 // mass that gravity pulls at
   double mass, kick, dt, phi;    // see Motion
 };
 
@@ -77,7 +77,7 @@ class Blocks {
 
   // Every block with one of these particles is held back, no other; ghosts among them are left out.
   void hold_back(const std::vector<int> &particles, bool everything);
-  bool friction_acts() const;    // on a block that is not held back
+  bool friction_acts() const;                                                                // on a block that is not held back
   const std::vector<int> &held_back() const { return index.empty() ? outside : waiting; }    // all particles of such blocks
 
   void take_in(const double *const *x, const double *const *v);
@@ -97,12 +97,12 @@ class Blocks {
   void take_in_ghosts(const double *const *x, const double *const *v);
   // The same from blocks to blocks, of particles in our own order: three numbers for each, or six with velocities.
   Vec3 where(int i) const { return {x[0][ours(i)], x[1][ours(i)], x[2][ours(i)]}; }    // an own particle in LAMMPS's order
-  int place_of(int i) const { return place[i]; }    // of an own particle, in that order
+  int place_of(int i) const { return place[i]; }                                       // of an own particle, in that order
   const std::vector<int> &ghost_places() const { return ghosts; }
   void pack(const std::vector<int> &particles, bool velocities, double *to) const;
   void unpack(const std::vector<int> &particles, bool velocities, const double *from);
 
-  void fill(Pass &pass, double *const *f);    // f: where forces on those that are held back go
+  void fill(Pass &pass, double *const *f);         // f: where forces on those that are held back go
   void give_out_forces(double *const *f) const;    // there they are after a pass and this
   std::size_t bytes() const;
 
@@ -130,14 +130,14 @@ class Blocks {
     std::vector<long> slot;    // of each particle's force in `brought`; of ghosts all the same one, in a row of no block
   };
   std::vector<Bringer> bringers;
-  Doubles brought;    // see Pass
-  std::vector<int> index, place;      // of a particle in LAMMPS's arrays, and back; `index` empty where the orders are the same
+  Doubles brought;                     // see Pass
+  std::vector<int> index, place;       // of a particle in LAMMPS's arrays, and back; `index` empty where the orders are the same
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
   std::vector<double> total;           // see Pass, in our order
   int owned = 0;                       // in LAMMPS's arrays, ghosts come after them
   Catalogue laws, damped_laws, motions;
   unsigned usual_laws = 0;    // how many there were when cuts were put together first after start()
-  Doubles memory;    // of the arrays
+  Doubles memory;             // of the arrays
   double *x[3], *v[3], *f[3];
   double *part[3] = {}, *last[3] = {}, *seen[3] = {};    // where damped
 };

@@ -47,10 +47,7 @@ struct Box {
     return b;
   }
   bool contains(const double *x) const
-  {
-    return x[0] >= low(0) && x[0] <= high(0) && x[1] >= low(1) && x[1] <= high(1) && x[2] >= low(2) &&
-        x[2] <= high(2);
-  }
+  { return x[0] >= low(0) && x[0] <= high(0) && x[1] >= low(1) && x[1] <= high(1) && x[2] >= low(2) && x[2] <= high(2); }
 
   static constexpr double FAR = std::numeric_limits<double>::max();
 };

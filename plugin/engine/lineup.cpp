@@ -116,8 +116,10 @@ Lineup::Piece Lineup::made(const Bonded &known, const Run &run) const
   std::vector<SpringRows::Row> row(piece.tag.size());
   each_bond([&](int n, int, int partner, int type) {
     const int here = of_tag[known.tag[ordered[n]] - lowest], there = of_tag[partner - lowest];
-    if (there > here) row[here].link.push_back({there - here, type});
-    else if (!own[there]) row[there].link.push_back({here - there, type});
+    if (there > here)
+      row[here].link.push_back({there - here, type});
+    else if (!own[there])
+      row[there].link.push_back({here - there, type});
   });
   const auto farther = [](const SpringRows::Link &a, const SpringRows::Link &b) { return a.offset > b.offset; };
   piece.rows = SpringRows(static_cast<int>(row.size()));
@@ -134,7 +136,7 @@ std::size_t Lineup::bytes() const
   std::size_t sum = (index.capacity() + ordered.capacity()) * sizeof(int);
   for (const Piece &piece : all)
     sum += (piece.own.capacity() + piece.tag.capacity() + piece.object.capacity()) * sizeof(int) + piece.rows.bytes() +
-        piece.cut.bytes();
+           piece.cut.bytes();
   return sum;
 }
 

@@ -17,11 +17,11 @@ namespace mdanim {
 struct Bonded {
   int own;
   const int *tag, *object;
-  const int *bonds;                   // how many each own particle has
-  const int *const *type;             // 0 and less: switched off
-  const int *const *partner;          // tags
-  std::function<int(int tag)> find;           // index of a partner, negative where it is not known;
-  std::function<void(int i, int tag)> lost;   // that is an error; i negative where nobody has a bond to it any more
+  const int *bonds;                            // how many each own particle has
+  const int *const *type;                      // 0 and less: switched off
+  const int *const *partner;                   // tags
+  std::function<int(int tag)> find;            // index of a partner, negative where it is not known;
+  std::function<void(int i, int tag)> lost;    // that is an error; i negative where nobody has a bond to it any more
 };
 
 class Lineup {

@@ -50,11 +50,15 @@ class Loss {
     const double now = -sum_of(force, v);
     if (setup) sum += tail;
     // Where particles were re-ordered, F^n . v^{n+1/2} is taken for the mean of F^n . v^{n-1/2} and F^{n+1} . v^{n+1/2}.
-    else if (begun) sum += 0.5 * dt * power;
-    else if (power != 0.0 || now != 0.0) sum += 0.5 * dt * (power + (kept ? -sum_of(last, v) : 0.5 * (power + now)));
+    else if (begun)
+      sum += 0.5 * dt * power;
+    else if (power != 0.0 || now != 0.0)
+      sum += 0.5 * dt * (power + (kept ? -sum_of(last, v) : 0.5 * (power + now)));
     double change = 0.0;
-    if (setup) bend = 0.0;
-    else if (kept >= 2) bend = -ahead;    // else particles were re-ordered: that of the last step is taken once more
+    if (setup)
+      bend = 0.0;
+    else if (kept >= 2)
+      bend = -ahead;    // else particles were re-ordered: that of the last step is taken once more
     if (!setup && kept >= 2)
       for (int i = 0; i < particles; ++i) bend += dot(force[i] - older[i], vec3(v[i]) - seen[i]);
     if (!setup && kept >= 1)
@@ -109,7 +113,7 @@ class Loss {
   std::size_t bytes() const
   {
     return (force.capacity() + last.capacity() + older.capacity() + seen.capacity()) * sizeof(Vec3) +
-        order.capacity() * sizeof(long long);
+           order.capacity() * sizeof(long long);
   }
 
  private:
@@ -125,9 +129,9 @@ class Loss {
   std::vector<long long> order;            // tags
   int kept = 0;                            // how many older forces are of the same particles
   double sum = 0.0, tail = 0.0, power = 0.0;
-  double bend = 0.0;         // sum of (F^n - F^{n-2}) . (v^{n-1/2} - v^{n-3/2})
-  double ahead = 0.0;        // sum of F^{n-2} . (v^{n-1/2} - v^{n-3/2}), as far as `older` no longer tells it
-  bool begun = false;        // the last forces were those of a setup
+  double bend = 0.0;     // sum of (F^n - F^{n-2}) . (v^{n-1/2} - v^{n-3/2})
+  double ahead = 0.0;    // sum of F^{n-2} . (v^{n-1/2} - v^{n-3/2}), as far as `older` no longer tells it
+  bool begun = false;    // the last forces were those of a setup
   bool reordered = false;
 };
 

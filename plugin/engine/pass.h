@@ -19,10 +19,10 @@ struct Entry {
 // on, offsets descending.
 struct Block {
   int start;
-  short lanes;      // of its own; what else is loaded with them belongs to others and is left as it is
-  bool held_back;   // others add to its forces before it may move
-  bool damped;      // some of its particles have dashpots
-  bool bound;       // some have springs
+  short lanes;       // of its own; what else is loaded with them belongs to others and is left as it is
+  bool held_back;    // others add to its forces before it may move
+  bool damped;       // some of its particles have dashpots
+  bool bound;        // some have springs
   unsigned end;
   int brought;        // first of its rows of Pass::brought; negative for none
   unsigned motion;    // row of Pass::motion
@@ -52,24 +52,24 @@ struct Pass {
   const Block *block;
   int blocks;
   const Entry *entry;
-  const double *law;       // rows of push and pull (spring.h), one of each for every lane
+  const double *law;           // rows of push and pull (spring.h), one of each for every lane
   const double *damped_law;    // rows of push, pull and c; null where nothing is damped
-  const double *motion;    // see Motion
-  double *x[3], *v[3];     // x^n -> x^{n+1}, v^{n-1/2} -> v^{n+1/2}
-  double *f[3];            // what lower partners have done so far; nothing before and after a pass
+  const double *motion;        // see Motion
+  double *x[3], *v[3];         // x^n -> x^{n+1}, v^{n-1/2} -> v^{n+1/2}
+  double *f[3];                // what lower partners have done so far; nothing before and after a pass
   // With dashpots: their part of f; their forces of the last step, F^{n-1} -> F^n, and the velocities that those of this step
   // have seen, v^{n-3/2} -> v^{n-1/2}. Of what is held back F^n stays in `part`, and the other two as they are.
   double *part[3], *last[3], *seen[3];
-  double gravity[3];       // [velocity/time]
-  const double *brought;   // rows of forces from elsewhere, (3, lanes) each, to be added after gravity:
-  int bringers;            // so many in a row for a block that has any
+  double gravity[3];        // [velocity/time]
+  const double *brought;    // rows of forces from elsewhere, (3, lanes) each, to be added after gravity:
+  int bringers;             // so many in a row for a block that has any
   Friction friction;
   double *total;    // (N, 3): sum of all forces on the particles of blocks that are held back
   double *trace;    // rows of TRACE, one of each object: to be grown; null for none
   bool looks;       // where particles are after this pass; else the trace takes note of their speeds alone
   bool bends;       // `bend` is asked for
 
-  double fastest;          // largest v^2 of what has moved
+  double fastest;                   // largest v^2 of what has moved
   double final_loss, first_loss;    // to friction in either half step
   DashpotSums dashpots;             // but for what is held back
   double bend;                      // dt v^{n+1/2} . F^n of what has moved

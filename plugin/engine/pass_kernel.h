@@ -8,8 +8,8 @@
 // upper ones.
 
 #include "engine/pass.h"
-#include "laws/spring.h"
 #include "engine/vectors.h"
+#include "laws/spring.h"
 
 namespace mdanim {
 namespace {
@@ -254,8 +254,10 @@ template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_INLINE void go(Pas
   tally.box.open();
   unsigned e = 0;
   for (int n = 0; n < pass.blocks; ++n) {
-    if (DAMPED && pass.block[n].damped) feel<true>(pass, pass.block[n], e, total[n & 1]);
-    else feel<false>(pass, pass.block[n], e, total[n & 1]);
+    if (DAMPED && pass.block[n].damped)
+      feel<true>(pass, pass.block[n], e, total[n & 1]);
+    else
+      feel<false>(pass, pass.block[n], e, total[n & 1]);
     if (__builtin_expect(pass.block[n].brought >= 0, 0)) add_brought(pass, pass.block[n], total[n & 1]);
     if (n) move<FRICTION, TRACED, DAMPED>(pass, pass.block[n - 1], total[~n & 1], tally);
   }
@@ -273,22 +275,32 @@ template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_INLINE void go(Pas
 
 template <Friction FRICTION, bool TRACED> MDANIM_INLINE void with_or_without_dashpots(Pass &pass)
 {
-  if (pass.damped_law) go<FRICTION, TRACED, true>(pass);
-  else go<FRICTION, TRACED, false>(pass);
+  if (pass.damped_law)
+    go<FRICTION, TRACED, true>(pass);
+  else
+    go<FRICTION, TRACED, false>(pass);
 }
 
 template <Friction FRICTION> MDANIM_INLINE void with_or_without_trace(Pass &pass)
 {
-  if (pass.trace) with_or_without_dashpots<FRICTION, true>(pass);
-  else with_or_without_dashpots<FRICTION, false>(pass);
+  if (pass.trace)
+    with_or_without_dashpots<FRICTION, true>(pass);
+  else
+    with_or_without_dashpots<FRICTION, false>(pass);
 }
 
 MDANIM_INLINE void whole_pass(Pass &pass)
 {
   switch (pass.friction) {
-  case Friction::NONE: with_or_without_trace<Friction::NONE>(pass); break;
-  case Friction::IMPLICIT: with_or_without_trace<Friction::IMPLICIT>(pass); break;
-  case Friction::EXPONENTIAL: with_or_without_trace<Friction::EXPONENTIAL>(pass); break;
+    case Friction::NONE:
+      with_or_without_trace<Friction::NONE>(pass);
+      break;
+    case Friction::IMPLICIT:
+      with_or_without_trace<Friction::IMPLICIT>(pass);
+      break;
+    case Friction::EXPONENTIAL:
+      with_or_without_trace<Friction::EXPONENTIAL>(pass);
+      break;
   }
 }
 

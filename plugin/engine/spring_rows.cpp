@@ -40,8 +40,6 @@ void SpringRows::add(const Row &row)
 }
 
 std::size_t SpringRows::bytes() const
-{
-  return (kind.capacity() + first.capacity() + lowers.capacity()) * sizeof(int) + distinct.capacity() * sizeof(Link);
-}
+{ return (kind.capacity() + first.capacity() + lowers.capacity()) * sizeof(int) + distinct.capacity() * sizeof(Link); }
 
 }    // namespace mdanim

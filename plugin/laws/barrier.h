@@ -35,8 +35,7 @@ inline double reduced_mass(double a, double b) { return a * b / (a + b); }
 inline double barrier_energy(int power, double k, double rc, double q)
 { return power == 3 ? k * rc * rc / 3.0 * (q * q * q) : 0.5 * k * (rc * q) * (rc * q); }
 
-inline double barrier_force(int power, double k, double rc, double q)
-{ return power == 3 ? k * rc * (q * q) : k * (rc * q); }
+inline double barrier_force(int power, double k, double rc, double q) { return power == 3 ? k * rc * (q * q) : k * (rc * q); }
 
 // Unit vector from j to i. Two particles in one place are pushed apart along x, the lower tag towards -x.
 inline Vec3 direction(const Vec3 &rij, double r, bool i_has_lower_tag)

@@ -13,8 +13,7 @@ namespace mdanim {
 // Part of a particle's volume that is below the surface: s = clip((eta - z)/h + 1/2, 0, 1), in units of the
 // cell height h, with `eta` the depth of the liquid there and `z` the particle's height, both above the
 // basin's floor. Liquid shallower than a cell immerses in proportion, so that a dry floor lifts nothing.
-inline double immersed_part(double eta, double z)
-{ return std::clamp(eta - z + 0.5, 0.0, 1.0) * std::clamp(eta, 0.0, 1.0); }
+inline double immersed_part(double eta, double z) { return std::clamp(eta - z + 0.5, 0.0, 1.0) * std::clamp(eta, 0.0, 1.0); }
 
 // Upward force on volume V with the part s immersed: Archimedes, rho_l V s g. Equal to the paper's modified
 // gravity g (1 - s rho_l/rho_s) on a particle of mass rho_s V.
@@ -26,16 +25,15 @@ inline Vec3 corner_push(double p, const Vec3 &a, const Vec3 &b, const Vec3 &c, c
 { return (-0.125 * p) * cross(c - a, d - b); }
 
 // Friction coefficient of the immersed part, eq. (3.9): F = -gamma rho_l V s v.
-inline double liquid_lambda(double gamma, double rho, double volume, double s)
-{ return gamma * rho * volume * s; }
+inline double liquid_lambda(double gamma, double rho, double volume, double s) { return gamma * rho * volume * s; }
 
 // Value at (x, y) of a field known at the centres of unit cells, bilinear, constant beyond the outermost
 // centres; a blocked cell (not 0) says what the cell of the point says, so that nothing is mixed across a
 // wall.
 inline double at_point(const double *field, const unsigned char *blocked, int nx, int ny, double x, double y)
 {
-  const long own = static_cast<long>(std::clamp(static_cast<int>(y), 0, ny - 1)) * nx +
-      std::clamp(static_cast<int>(x), 0, nx - 1);
+  const long own =
+      static_cast<long>(std::clamp(static_cast<int>(y), 0, ny - 1)) * nx + std::clamp(static_cast<int>(x), 0, nx - 1);
   const auto value = [&](int cx, int cy) {
     const long c = static_cast<long>(cy) * nx + cx;
     return field[blocked[c] ? own : c];

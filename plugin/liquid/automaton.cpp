@@ -78,8 +78,7 @@ void permute_block(std::uint8_t *a, int row, const Sources &from)
   a[row] = was[from[3]];
 }
 
-int open_corners(const std::uint8_t *a, int row)
-{ return (a[0] & 1) | (a[1] & 2) | (a[row + 1] & 4) | (a[row] & 8); }
+int open_corners(const std::uint8_t *a, int row) { return (a[0] & 1) | (a[1] & 2) | (a[row + 1] & 4) | (a[row] & 8); }
 
 // Whether a block has solid corners and can change all the same, by its open ones.
 std::array<bool, 16> all_broken()
@@ -100,8 +99,7 @@ struct Automaton::Spill {
 };
 
 Automaton::Automaton(int nx, int ny, int nz, std::uint64_t seed, Vertical vertical)
-    : cells(nx, ny, nz), seed(seed), vertical(vertical), kernels(nullptr), even(make_blocks(0)),
-      odd(make_blocks(-1)), layers(nz)
+    : cells(nx, ny, nz), seed(seed), vertical(vertical), kernels(nullptr), even(make_blocks(0)), odd(make_blocks(-1)), layers(nz)
 {
   for (int number = 0; number < INSTRUCTION_SETS; ++number) use_instruction_set(number);
   touched();
@@ -141,8 +139,8 @@ void Automaton::sort_block(Blocks &blocks, int bx, int by, int z)
   if (BROKEN[open]) {
     if (mine < 0) {
       mine = static_cast<int>(broken.size());
-      broken.push_back({static_cast<std::uint32_t>(place - z * cells.layer),
-                        static_cast<std::uint32_t>(blocks.block(bx, by)), 0});
+      broken.push_back(
+          {static_cast<std::uint32_t>(place - z * cells.layer), static_cast<std::uint32_t>(blocks.block(bx, by)), 0});
     }
     broken[mine].open = static_cast<std::uint8_t>(open);
   } else if (mine >= 0) {
@@ -200,8 +198,7 @@ void Automaton::horizontal(Blocks &blocks, int z)
   const int in_layer = blocks.nx * blocks.ny;
   if (blocks.group != z / LAYERS_PER_WORD) {
     blocks.group = z / LAYERS_PER_WORD;
-    kernels->draw_words(blocks.key, blocks.word(0, z), in_layer, blocks.draws.data(),
-                        blocks.draws.data() + in_layer);
+    kernels->draw_words(blocks.key, blocks.word(0, z), in_layer, blocks.draws.data(), blocks.draws.data() + in_layer);
   }
   const int bits = 2 * (z % LAYERS_PER_WORD), shift = bits % 16;
   const std::uint16_t *draws = blocks.draws.data() + (bits < 16 ? 0 : in_layer);
@@ -216,8 +213,8 @@ void Automaton::vertical_pair(int z)
 {
   if (z < 0 || z + 1 >= cells.nz || !exchanges(z)) return;
   const std::size_t lower = (z + 1) * cells.layer, upper = lower + cells.layer;
-  if (kernels->exchange(&cells.content[lower], &cells.content[upper], &cells.open[lower], &cells.open[upper],
-                        cells.layer, vertical))
+  if (kernels->exchange(&cells.content[lower], &cells.content[upper], &cells.open[lower], &cells.open[upper], cells.layer,
+                        vertical))
     layers[z] = layers[z + 1] = {ANYTHING, false, true};
 }
 
@@ -252,8 +249,7 @@ void Automaton::plain_sweep(std::uint64_t when)
           const std::size_t place = cells.at(blocks.first + 2 * bx, blocks.first + 2 * by, z);
           const std::uint32_t word = draw32(key, blocks.word(blocks.block(bx, by), z));
           const int draw = word >> 2 * (z % LAYERS_PER_WORD) & 3;
-          permute_block(&cells.content[place], cells.row,
-                        horizontal_rule(open_corners(&cells.open[place], cells.row), draw));
+          permute_block(&cells.content[place], cells.row, horizontal_rule(open_corners(&cells.open[place], cells.row), draw));
         }
   };
   const auto exchange = [&](int first) {
@@ -354,15 +350,13 @@ long Automaton::displace(const std::uint8_t *solid, std::uint64_t when)
     }
     for (std::size_t place : stilled) cells.still[place] ^= 1;
     const auto number = [](int n) { return std::to_string(n); };
-    throw std::runtime_error("a solid fills cell (" + number(spill.x) + ", " + number(spill.y) + ", " +
-                             number(spill.z) + ") of the basin and there is no room for the " +
-                             number(spill.units) + " units of liquid in it; enlarge the basin or lower the " +
-                             "liquid's level");
+    throw std::runtime_error("a solid fills cell (" + number(spill.x) + ", " + number(spill.y) + ", " + number(spill.z) +
+                             ") of the basin and there is no room for the " + number(spill.units) +
+                             " units of liquid in it; enlarge the basin or lower the " + "liquid's level");
   }
 
   for (const Spill &s : turned) {
-    for (Blocks *blocks : {&even, &odd})
-      sort_block(*blocks, (s.x - blocks->first) / 2, (s.y - blocks->first) / 2, s.z);
+    for (Blocks *blocks : {&even, &odd}) sort_block(*blocks, (s.x - blocks->first) / 2, (s.y - blocks->first) / 2, s.z);
     layers[s.z] = {ANYTHING, false, false};
   }
   for (const Spill &s : arrived) layers[s.z] = {ANYTHING, false, false};

@@ -73,8 +73,8 @@ class Automaton {
     std::vector<std::vector<Broken>> broken;    // of each layer, in any order
     std::vector<int> slot;                      // of each block in that list, or -1
     std::uint64_t key = 0;
-    int group = -1;                       // whose draws are at hand
-    std::vector<std::uint16_t> draws;     // 8 layers of the group, then the other 8
+    int group = -1;                      // whose draws are at hand
+    std::vector<std::uint16_t> draws;    // 8 layers of the group, then the other 8
 
     int block(int bx, int by) const { return by * nx + bx; }
     std::uint32_t word(int block, int z) const;

@@ -5,8 +5,8 @@
 #ifndef MDANIM_AUTOMATON_KERNELS_H
 #define MDANIM_AUTOMATON_KERNELS_H
 
-#include "liquid/automaton.h"
 #include "laws/counter_rng.h"
+#include "liquid/automaton.h"
 
 namespace mdanim {
 
@@ -23,16 +23,15 @@ struct Kernels {
   // Draws first … first + n - 1 under a key, halves apart.
   void (*draw_words)(std::uint64_t key, std::uint32_t first, int n, std::uint16_t *low, std::uint16_t *high);
   // Permute the blocks of a layer whose four cells are open, each by the two bits of its draw at `shift`.
-  void (*permute)(std::uint8_t *content, const std::uint8_t *open, int row, int nx, int ny,
-                  const std::uint16_t *draws, int shift);
+  void (*permute)(std::uint8_t *content, const std::uint8_t *open, int row, int nx, int ny, const std::uint16_t *draws,
+                  int shift);
   // Eq. (4.16) for n pairs of cells, one above the other. Returns whether anything changed.
-  bool (*exchange)(std::uint8_t *lower, std::uint8_t *upper, const std::uint8_t *open_lower,
-                   const std::uint8_t *open_upper, std::size_t n, Vertical vertical);
+  bool (*exchange)(std::uint8_t *lower, std::uint8_t *upper, const std::uint8_t *open_lower, const std::uint8_t *open_upper,
+                   std::size_t n, Vertical vertical);
   // What n cells hold, as bits of Holds.
   std::uint8_t (*look)(const std::uint8_t *content, const std::uint8_t *open, std::size_t n);
   // Whether n cells are other than `solid` (0 open, 1 solid, 2 solid and still) says.
-  bool (*differ)(const std::uint8_t *solid, const std::uint8_t *open, const std::uint8_t *still,
-                 std::size_t n);
+  bool (*differ)(const std::uint8_t *solid, const std::uint8_t *open, const std::uint8_t *still, std::size_t n);
 };
 
 #define MDANIM_INLINE inline __attribute__((always_inline))
@@ -52,8 +51,7 @@ MDANIM_INLINE void draw_words(std::uint64_t key, std::uint32_t first, int n, std
 // Quarter turns of the ring a b / d c: one if bit 1 of the draw is set, two more if bit 0 is. So 0 1 2 3
 // stand for nothing, both diagonals swapped, +1, -1.
 MDANIM_INLINE void permute_row(Pair *__restrict ab, Pair *__restrict dc, const Pair *__restrict open_ab,
-                               const Pair *__restrict open_dc, int n, const std::uint16_t *__restrict draws,
-                               int shift)
+                               const Pair *__restrict open_dc, int n, const std::uint16_t *__restrict draws, int shift)
 {
   for (int i = 0; i < n; ++i) {
     const std::uint16_t whole = -((open_ab[i] & open_dc[i]) == 0xffff), draw = draws[i] >> shift;
@@ -67,19 +65,17 @@ MDANIM_INLINE void permute_row(Pair *__restrict ab, Pair *__restrict dc, const P
   }
 }
 
-MDANIM_INLINE void permute(std::uint8_t *content, const std::uint8_t *open, int row, int nx, int ny,
-                           const std::uint16_t *draws, int shift)
+MDANIM_INLINE void permute(std::uint8_t *content, const std::uint8_t *open, int row, int nx, int ny, const std::uint16_t *draws,
+                           int shift)
 {
   for (int by = 0; by < ny; ++by, content += 2 * row, open += 2 * row, draws += nx)
-    permute_row(reinterpret_cast<Pair *>(content), reinterpret_cast<Pair *>(content + row),
-                reinterpret_cast<const Pair *>(open), reinterpret_cast<const Pair *>(open + row), nx, draws,
-                shift);
+    permute_row(reinterpret_cast<Pair *>(content), reinterpret_cast<Pair *>(content + row), reinterpret_cast<const Pair *>(open),
+                reinterpret_cast<const Pair *>(open + row), nx, draws, shift);
 }
 
 template <Vertical VERTICAL>
 MDANIM_INLINE bool exchange(std::uint8_t *__restrict lower, std::uint8_t *__restrict upper,
-                            const std::uint8_t *__restrict open_lower,
-                            const std::uint8_t *__restrict open_upper, std::size_t n)
+                            const std::uint8_t *__restrict open_lower, const std::uint8_t *__restrict open_upper, std::size_t n)
 {
   std::uint8_t changed = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -93,8 +89,7 @@ MDANIM_INLINE bool exchange(std::uint8_t *__restrict lower, std::uint8_t *__rest
   return changed != 0;
 }
 
-MDANIM_INLINE std::uint8_t look(const std::uint8_t *__restrict content, const std::uint8_t *__restrict open,
-                                std::size_t n)
+MDANIM_INLINE std::uint8_t look(const std::uint8_t *__restrict content, const std::uint8_t *__restrict open, std::size_t n)
 {
   std::uint8_t zero = 0, one = 0, more = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -119,45 +114,39 @@ MDANIM_INLINE bool differ(const std::uint8_t *__restrict solid, const std::uint8
 }    // namespace kernel
 
 // The loops once more for each instruction set: what is inlined takes the attribute of where it is.
-#define MDANIM_KERNELS(SET, TARGET, RUNS_HERE)                                                              \
-  namespace SET {                                                                                           \
-  TARGET inline void draw_words(std::uint64_t key, std::uint32_t first, int n, std::uint16_t *low,          \
-                                std::uint16_t *high)                                                        \
-  { kernel::draw_words(key, first, n, low, high); }                                                         \
-  TARGET inline void permute(std::uint8_t *content, const std::uint8_t *open, int row, int nx, int ny,      \
-                             const std::uint16_t *draws, int shift)                                         \
-  { kernel::permute(content, open, row, nx, ny, draws, shift); }                                            \
-  TARGET inline bool exchange(std::uint8_t *lower, std::uint8_t *upper, const std::uint8_t *open_lower,     \
-                              const std::uint8_t *open_upper, std::size_t n, Vertical vertical)             \
-  {                                                                                                         \
-    return vertical == Vertical::LOWER                                                                      \
-        ? kernel::exchange<Vertical::LOWER>(lower, upper, open_lower, open_upper, n)                        \
-        : kernel::exchange<Vertical::ANY>(lower, upper, open_lower, open_upper, n);                         \
-  }                                                                                                         \
-  TARGET inline std::uint8_t look(const std::uint8_t *content, const std::uint8_t *open, std::size_t n)     \
-  { return kernel::look(content, open, n); }                                                                \
-  TARGET inline bool differ(const std::uint8_t *solid, const std::uint8_t *open, const std::uint8_t *still, \
-                            std::size_t n)                                                                  \
-  { return kernel::differ(solid, open, still, n); }                                                         \
-  inline bool runs_here() { return RUNS_HERE; }                                                             \
+#define MDANIM_KERNELS(SET, TARGET, RUNS_HERE)                                                                                   \
+  namespace SET {                                                                                                                \
+  TARGET inline void draw_words(std::uint64_t key, std::uint32_t first, int n, std::uint16_t *low, std::uint16_t *high)          \
+  { kernel::draw_words(key, first, n, low, high); }                                                                              \
+  TARGET inline void permute(std::uint8_t *content, const std::uint8_t *open, int row, int nx, int ny,                           \
+                             const std::uint16_t *draws, int shift)                                                              \
+  { kernel::permute(content, open, row, nx, ny, draws, shift); }                                                                 \
+  TARGET inline bool exchange(std::uint8_t *lower, std::uint8_t *upper, const std::uint8_t *open_lower,                          \
+                              const std::uint8_t *open_upper, std::size_t n, Vertical vertical)                                  \
+  {                                                                                                                              \
+    return vertical == Vertical::LOWER ? kernel::exchange<Vertical::LOWER>(lower, upper, open_lower, open_upper, n)              \
+                                       : kernel::exchange<Vertical::ANY>(lower, upper, open_lower, open_upper, n);               \
+  }                                                                                                                              \
+  TARGET inline std::uint8_t look(const std::uint8_t *content, const std::uint8_t *open, std::size_t n)                          \
+  { return kernel::look(content, open, n); }                                                                                     \
+  TARGET inline bool differ(const std::uint8_t *solid, const std::uint8_t *open, const std::uint8_t *still, std::size_t n)       \
+  { return kernel::differ(solid, open, still, n); }                                                                              \
+  inline bool runs_here() { return RUNS_HERE; }                                                                                  \
   }
 
 MDANIM_KERNELS(common, , true)
 #if defined(__x86_64__) && defined(__GNUC__)
 MDANIM_KERNELS(avx2, __attribute__((target("avx2"))), __builtin_cpu_supports("avx2"))
 MDANIM_KERNELS(avx512, __attribute__((target("avx512f,avx512bw,avx512vl,avx512dq"))),
-               __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-                   __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
+               __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
+                   __builtin_cpu_supports("avx512dq"))
 #endif
 
 constexpr Kernels KERNELS[] = {
-    {"common", common::runs_here, common::draw_words, common::permute, common::exchange,
-     common::look, common::differ},
+    {"common", common::runs_here, common::draw_words, common::permute, common::exchange, common::look, common::differ},
 #if defined(__x86_64__) && defined(__GNUC__)
-    {"avx2", avx2::runs_here, avx2::draw_words, avx2::permute, avx2::exchange,
-     avx2::look, avx2::differ},
-    {"avx512", avx512::runs_here, avx512::draw_words, avx512::permute, avx512::exchange,
-     avx512::look, avx512::differ},
+    {"avx2", avx2::runs_here, avx2::draw_words, avx2::permute, avx2::exchange, avx2::look, avx2::differ},
+    {"avx512", avx512::runs_here, avx512::draw_words, avx512::permute, avx512::exchange, avx512::look, avx512::differ},
 #endif
 };
 constexpr int INSTRUCTION_SETS = sizeof(KERNELS) / sizeof(KERNELS[0]);

@@ -39,7 +39,7 @@ struct Bytes {
     std::uint64_t result = 0;
     for (int i = 0; i < CHUNK / 8; ++i) {
       const std::uint64_t v = w[i] & which;
-      const std::uint64_t high = (((v & LOW7) + LOW7) | v) & HIGH;    // 0x80 in every byte that is not 0
+      const std::uint64_t high = (((v & LOW7) + LOW7) | v) & HIGH;         // 0x80 in every byte that is not 0
       result |= (((high >> 7) * 0x0102040810204080u) >> 56) << (8 * i);    // gathered in the top byte
     }
     return result;
@@ -166,7 +166,7 @@ void Bodies::find_runs(int row)
   const Word *wet = at(liquid, row);
   begin[row] = runs.size();
   for (int k = 0; k < row_words; ++k)
-    for (Word rest = wet[k]; rest != 0; ) {
+    for (Word rest = wet[k]; rest != 0;) {
       const int from = __builtin_ctzll(rest);
       const Word after = ~(rest >> from) & (~Word(0) >> from);    // where this run of ones ends
       const int to = (after == 0 ? 64 : from + __builtin_ctzll(after)) - 1;

@@ -17,13 +17,13 @@ namespace mdanim {
 // A body: cells with content, connected through faces. Exposed: the cell above is open and empty, or is none,
 // for a basin is open at the top. Beside it: open and empty, with a face in common.
 struct Body {
-  long exposed = 0;           // cells
-  long excess = 0;            // units above 1 in a cell
-  int highest = -1;           // layer of the highest exposed cell; -1 none
-  int lowest = INT_MAX;       // layer of the lowest cell beside it
-  long full = 0;              // exposed cells in the highest layer that stand on liquid
-  long part = 0;              // exposed cells one layer lower
-  bool deep = false;          // an exposed cell stands on liquid or on the floor
+  long exposed = 0;        // cells
+  long excess = 0;         // units above 1 in a cell
+  int highest = -1;        // layer of the highest exposed cell; -1 none
+  int lowest = INT_MAX;    // layer of the lowest cell beside it
+  long full = 0;           // exposed cells in the highest layer that stand on liquid
+  long part = 0;           // exposed cells one layer lower
+  bool deep = false;       // an exposed cell stands on liquid or on the floor
   bool level() const { return excess == 0 && highest <= lowest; }
 };
 
@@ -83,7 +83,7 @@ class Bodies {
 
   int nx = 0, ny = 0, nz = 0, row_words = 0;
   std::vector<Word> liquid, empty, beside;
-  int highest = -1;               // layer of the highest exposed cell
+  int highest = -1;    // layer of the highest exposed cell
 
   std::vector<Run> runs;          // from the top layer down
   std::vector<int> parent;        // of runs: a forest with a tree per body

@@ -18,8 +18,8 @@ struct Cells {
   static constexpr int FULLEST = 250;                      // most that a cell may hold
 
   Cells(int nx, int ny, int nz)
-      : nx(nx), ny(ny), nz(nz), row((nx + 3) & ~1), layer(static_cast<std::size_t>(row) * (ny + 2)),
-        content(layer * (nz + 2), 0), open(layer * (nz + 2), SOLID), still(layer * (nz + 2), 1)
+      : nx(nx), ny(ny), nz(nz), row((nx + 3) & ~1), layer(static_cast<std::size_t>(row) * (ny + 2)), content(layer * (nz + 2), 0),
+        open(layer * (nz + 2), SOLID), still(layer * (nz + 2), 1)
   {
     for (int z = 0; z < nz; ++z)
       for (int y = 0; y < ny; ++y)
@@ -30,11 +30,9 @@ struct Cells {
   }
 
   // Place of a cell in the arrays; -1 and n are the rim.
-  std::size_t at(int x, int y, int z) const
-  { return (z + 1) * layer + static_cast<std::size_t>(y + 1) * row + (x + 1); }
+  std::size_t at(int x, int y, int z) const { return (z + 1) * layer + static_cast<std::size_t>(y + 1) * row + (x + 1); }
   // Its number among the cells proper, by which draws are keyed: it does not know the rim.
-  std::uint64_t number(int x, int y, int z) const
-  { return (static_cast<std::uint64_t>(z) * ny + y) * nx + x; }
+  std::uint64_t number(int x, int y, int z) const { return (static_cast<std::uint64_t>(z) * ny + y) * nx + x; }
 
   // Calls f(x, y, z) for all cells in the order of their numbers.
   template <class F> void each(F &&f) const
@@ -47,11 +45,9 @@ struct Cells {
   int nx, ny, nz;
   int row;
   std::size_t layer;
-  std::vector<std::uint8_t>
-      content;    // 0 none, 1 at rest pressure, more under pressure; always 0 in solid cells
-  std::vector<std::uint8_t> open;    // OPEN or SOLID
-  std::vector<std::uint8_t>
-      still;    // 1 where what fills the cell never moves (held objects, the rim), else 0
+  std::vector<std::uint8_t> content;    // 0 none, 1 at rest pressure, more under pressure; always 0 in solid cells
+  std::vector<std::uint8_t> open;       // OPEN or SOLID
+  std::vector<std::uint8_t> still;      // 1 where what fills the cell never moves (held objects, the rim), else 0
 };
 
 }    // namespace mdanim

@@ -35,8 +35,8 @@ long Leveller::move(Cells &cells, std::uint64_t seed, std::uint64_t when, double
 void Leveller::collect(const Cells &cells)
 {
   const auto add = [&](Groups &groups, int body, int x, int y, int z) {
-    groups.added.push_back({body, z, static_cast<std::uint32_t>(cells.number(x, y, z)),
-                            static_cast<std::uint32_t>(cells.at(x, y, z))});
+    groups.added.push_back(
+        {body, z, static_cast<std::uint32_t>(cells.number(x, y, z)), static_cast<std::uint32_t>(cells.at(x, y, z))});
   };
   for (const auto &e : bodies.excess) add(excess, bodies.body_of(e.x, e.y, e.z), e.x, e.y, e.z);
   for (int z = bodies.top; z > bodies.lowest; --z)
@@ -149,8 +149,7 @@ bool Leveller::heights(const Cells &cells, double *height, bool just_moved)
       }
     }
   for (int y = 0; y < cells.ny; ++y)
-    forget_solid(cells, y, &undecided[static_cast<std::size_t>(y) * words],
-                 height + static_cast<std::size_t>(y) * cells.nx);
+    forget_solid(cells, y, &undecided[static_cast<std::size_t>(y) * words], height + static_cast<std::size_t>(y) * cells.nx);
   for (int y = 0; y < cells.ny; ++y) pile_up(cells, y, height + static_cast<std::size_t>(y) * cells.nx);
   return std::all_of(bodies.all.begin(), bodies.all.end(), [](const Body &b) { return b.level(); });
 }
@@ -165,8 +164,7 @@ void Leveller::pile_up(const Cells &cells, int y, double *height)
   bed.assign(cells.nx, 0);
   pile.assign(cells.nx, 0);
   for (int z = 0; z <= bodies.top; ++z) {
-    const std::uint8_t *const open = &cells.open[cells.at(0, y, z)],
-                              *const content = &cells.content[cells.at(0, y, z)];
+    const std::uint8_t *const open = &cells.open[cells.at(0, y, z)], *const content = &cells.content[cells.at(0, y, z)];
     const std::int32_t *const e = ends.data();
     std::int32_t *const b = bed.data(), *const p = pile.data();
 #pragma GCC ivdep

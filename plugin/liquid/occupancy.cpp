@@ -31,16 +31,12 @@ std::size_t CellBox::size() const
   return static_cast<std::size_t>(high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]);
 }
 
-Occupancy::Occupancy(int nx, int ny, int nz)
-    : nx(nx), ny(ny), nz(nz), count(static_cast<std::size_t>(nx) * ny * nz, 0)
-{
-}
+Occupancy::Occupancy(int nx, int ny, int nz) : nx(nx), ny(ny), nz(nz), count(static_cast<std::size_t>(nx) * ny * nz, 0) {}
 
 void Occupancy::add(const Vec3 &place, int weight)
 {
   // Written so that a place that is no number is outside.
-  if (!(place.x >= 0.0 && place.x < nx && place.y >= 0.0 && place.y < ny && place.z >= 0.0 && place.z < nz))
-    return;
+  if (!(place.x >= 0.0 && place.x < nx && place.y >= 0.0 && place.y < ny && place.z >= 0.0 && place.z < nz)) return;
   const int x = static_cast<int>(place.x), y = static_cast<int>(place.y), z = static_cast<int>(place.z);
   count[(static_cast<std::size_t>(z) * ny + y) * nx + x] += weight;
   touched.take_in(x, y, z);
@@ -51,12 +47,9 @@ void Occupancy::add_particle(const Vec3 &place) { add(place, FULL); }
 void Occupancy::add_cell(const Vec3 corner[8])
 {
   // Mean edges; their triple product is the volume of the cell, whatever way it is turned or squeezed.
-  const Vec3 a = 0.25 *
-      ((corner[1] - corner[0]) + (corner[2] - corner[3]) + (corner[5] - corner[4]) + (corner[6] - corner[7]));
-  const Vec3 b = 0.25 *
-      ((corner[3] - corner[0]) + (corner[2] - corner[1]) + (corner[7] - corner[4]) + (corner[6] - corner[5]));
-  const Vec3 c = 0.25 *
-      ((corner[4] - corner[0]) + (corner[5] - corner[1]) + (corner[6] - corner[2]) + (corner[7] - corner[3]));
+  const Vec3 a = 0.25 * ((corner[1] - corner[0]) + (corner[2] - corner[3]) + (corner[5] - corner[4]) + (corner[6] - corner[7]));
+  const Vec3 b = 0.25 * ((corner[3] - corner[0]) + (corner[2] - corner[1]) + (corner[7] - corner[4]) + (corner[6] - corner[5]));
+  const Vec3 c = 0.25 * ((corner[4] - corner[0]) + (corner[5] - corner[1]) + (corner[6] - corner[2]) + (corner[7] - corner[3]));
   const int weight = static_cast<int>(std::min(1.0e3, std::fabs(dot(cross(a, b), c))) * 64.0 + 0.5);
   if (weight == 0) return;
 

@@ -29,7 +29,7 @@ struct Region {
 
 // Free columns side by side in a row.
 struct Run {
-  std::size_t place;    // of the first one, here
+  std::size_t place;     // of the first one, here
   std::size_t number;    // of the first one, in arrays without a rim
   int length, region;
 };
@@ -51,8 +51,7 @@ class Surface {
   double mean_around(std::size_t place) const;
 
   std::size_t at(int x, int y) const { return static_cast<std::size_t>(y + 1) * row + x + 1; }
-  std::array<std::size_t, 4> around(std::size_t place) const
-  { return {place - 1, place + 1, place - row, place + row}; }
+  std::array<std::size_t, 4> around(std::size_t place) const { return {place - 1, place + 1, place - row, place + row}; }
   void set(std::size_t place, double height)
   {
     value[place] = height;
@@ -62,10 +61,10 @@ class Surface {
   int nx = 0, ny = 0, row = 0;
   std::vector<Run> runs;
   std::vector<Region> regions;
-  std::vector<int> parent;                       // of runs: a forest with a tree per region
+  std::vector<int> parent;    // of runs: a forest with a tree per region
   std::vector<std::uint8_t> free, known, wanted;
-  std::vector<double> value;                     // 0 where not known
-  std::vector<float> keep, take;                 // factors of a column and of its neighbours in a step
+  std::vector<double> value;        // 0 where not known
+  std::vector<float> keep, take;    // factors of a column and of its neighbours in a step
   std::vector<float> sum, weight, next_sum, next_weight;
   std::vector<std::size_t> ring, next_ring;
   std::vector<double> means;
@@ -150,8 +149,7 @@ void Surface::spread_level()
 // cell in waves of tens of cells.
 void Surface::filter(const double *height)
 {
-  for (auto *numbers : {&keep, &take, &sum, &weight, &next_sum, &next_weight})
-    numbers->assign(value.size(), 0.0f);
+  for (auto *numbers : {&keep, &take, &sum, &weight, &next_sum, &next_weight}) numbers->assign(value.size(), 0.0f);
   for (const Run &run : runs)
     for (int n = 0; n < run.length; ++n) {
       const std::size_t place = run.place + n;
@@ -164,8 +162,7 @@ void Surface::filter(const double *height)
   for (int n = 0; n < STEPS; ++n) step();
   for (const Run &run : runs)
     for (std::size_t place = run.place; place < run.place + run.length; ++place)
-      if (weight[place] > 0.0f)
-        set(place, regions[run.region].lowest + static_cast<double>(sum[place]) / weight[place]);
+      if (weight[place] > 0.0f) set(place, regions[run.region].lowest + static_cast<double>(sum[place]) / weight[place]);
 }
 
 // Opposite neighbours are added first: mirrored or transposed heights give mirrored or transposed bits.
@@ -196,8 +193,7 @@ void Surface::fill(bool blocked_too)
   };
   ring.clear();
   for (int y = 0; y < ny; ++y)
-    for (std::size_t n = at(0, y); n < at(nx, y); ++n)
-      wanted[n] = (known[n] ^ 1) & (free[n] | static_cast<int>(blocked_too));
+    for (std::size_t n = at(0, y); n < at(nx, y); ++n) wanted[n] = (known[n] ^ 1) & (free[n] | static_cast<int>(blocked_too));
   for (int y = 0; y < ny; ++y) {
     if (!std::memchr(&wanted[at(0, y)], 1, nx)) continue;
     for (std::size_t place = at(0, y); place < at(nx, y); ++place) {

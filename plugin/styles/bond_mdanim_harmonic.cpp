@@ -52,8 +52,7 @@ void BondMdanimHarmonic::allocate()
 void BondMdanimHarmonic::coeff(int narg, char **arg)
 {
   if (narg < 3) utils::missing_cmd_args(FLERR, "bond_coeff mdanim/harmonic", error);
-  if (narg > 4)
-    error->all(FLERR, 4, "bond_style mdanim/harmonic: coefficients are K r0 [c], got {} words", narg - 1);
+  if (narg > 4) error->all(FLERR, 4, "bond_style mdanim/harmonic: coefficients are K r0 [c], got {} words", narg - 1);
   if (!allocated) allocate();
 
   int low, high;
@@ -74,23 +73,18 @@ void BondMdanimHarmonic::coeff(int narg, char **arg)
 void BondMdanimHarmonic::init_style()
 {
   if (force->newton_bond)
-    error->all(FLERR,
-               "bond_style mdanim/harmonic: every bond must be stored at both ends; put 'newton off' (or "
-               "'newton on off') before the box is made");
+    error->all(FLERR, "bond_style mdanim/harmonic: every bond must be stored at both ends; put 'newton off' (or "
+                      "'newton on off') before the box is made");
   if (atom->map_style == Atom::MAP_NONE)
-    error->all(
-        FLERR,
-        "bond_style mdanim/harmonic: needs an atom map; put 'atom_modify map array' before the box is made");
+    error->all(FLERR, "bond_style mdanim/harmonic: needs an atom map; put 'atom_modify map array' before the box is made");
   damped = std::any_of(spring.begin(), spring.end(), [](const Spring &s) { return s.c > 0.0; });
   const bool ghosts = comm->nprocs > 1 || domain->xperiodic || domain->yperiodic || domain->zperiodic;
   if (damped && ghosts && !comm->ghost_velocity)
-    error->all(
-        FLERR,
-        "bond_style mdanim/harmonic: a dashpot (c > 0) needs the velocities of particles of other ranks; "
-        "use 'comm_modify vel yes'");
+    error->all(FLERR, "bond_style mdanim/harmonic: a dashpot (c > 0) needs the velocities of particles of other ranks; "
+                      "use 'comm_modify vel yes'");
   const auto &fixes = modify->get_fix_list();
-  bonds_are_swapped = std::any_of(fixes.begin(), fixes.end(),
-                                  [](const Fix *fix) { return utils::strmatch(fix->style, "^bond/"); });
+  bonds_are_swapped =
+      std::any_of(fixes.begin(), fixes.end(), [](const Fix *fix) { return utils::strmatch(fix->style, "^bond/"); });
   coefficients_may_differ = true;
 }
 
@@ -113,8 +107,8 @@ bool BondMdanimHarmonic::source_changed()
   }
   const bool partners_may_differ = update->setupflag || bonds_are_swapped;
   bool same = atom->nghost == 0 && static_cast<int>(source.tag.size()) == nlocal &&
-      std::equal(source.tag.begin(), source.tag.end(), atom->tag) &&
-      std::equal(source.count.begin(), source.count.end(), atom->num_bond);
+              std::equal(source.tag.begin(), source.tag.end(), atom->tag) &&
+              std::equal(source.count.begin(), source.count.end(), atom->num_bond);
   Row row;
   for (int i = 0; same && partners_may_differ && i < nlocal; ++i) same = !has_changed(i, row);
   if (same) return false;
@@ -169,12 +163,11 @@ void BondMdanimHarmonic::lost_partner(int i, int partner) const
                "bond_style mdanim/harmonic: bonds to particle {} were changed without a setup; leave out 'pre no' of this run, "
                "which is at step {}",
                partner, update->ntimestep);
-  error->one(
-      FLERR,
-      "bond_style mdanim/harmonic: particle {} has lost its bond partner {} at step {}; if the "
-      "bodies move as they should, raise the ghost cutoff ('comm_modify cutoff'); if they fly apart, "
-      "lower the time step",
-      atom->tag[i], partner, update->ntimestep);
+  error->one(FLERR,
+             "bond_style mdanim/harmonic: particle {} has lost its bond partner {} at step {}; if the "
+             "bodies move as they should, raise the ghost cutoff ('comm_modify cutoff'); if they fly apart, "
+             "lower the time step",
+             atom->tag[i], partner, update->ntimestep);
 }
 
 // The bonds of particle i in the order in which their forces are summed: lower partners from the lowest tag up, which may be left
@@ -199,8 +192,7 @@ void BondMdanimHarmonic::look_up(int i, bool halves, Row &row) const
     before = other;
   }
   const auto tag_of = [tag, i](const SpringRows::Link &l) { return tag[i + l.offset]; };
-  if (!ascending)
-    std::stable_sort(link.begin(), link.end(), [&](const auto &a, const auto &b) { return tag_of(a) < tag_of(b); });
+  if (!ascending) std::stable_sort(link.begin(), link.end(), [&](const auto &a, const auto &b) { return tag_of(a) < tag_of(b); });
   const auto upper = std::find_if(link.begin(), link.end(), [&](const auto &l) { return tag_of(l) > own; });
   row.lower = static_cast<int>(upper - link.begin());
   std::reverse(upper, link.end());
@@ -247,8 +239,8 @@ bool BondMdanimHarmonic::halves(HalfBonds &half) const
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
-static void spring_forces(int n, const double *__restrict push, const double *__restrict pull,
-                          double *__restrict x, double *__restrict y, double *__restrict z)
+static void spring_forces(int n, const double *__restrict push, const double *__restrict pull, double *__restrict x,
+                          double *__restrict y, double *__restrict z)
 {
   for (int b = 0; b < n; ++b) {
     const double factor = force_factor(push[b], pull[b], (x[b] * x[b] + y[b] * y[b]) + z[b] * z[b]);
@@ -265,8 +257,7 @@ __attribute__((target_clones("avx512f", "avx2", "default")))
 static void spring_energies(int n, const double *__restrict x, const double *__restrict y, const double *__restrict z,
                             const double *__restrict r0, double *__restrict K)
 {
-  for (int b = 0; b < n; ++b)
-    K[b] = mdanim::energy({K[b], r0[b], 0.0}, std::sqrt((x[b] * x[b] + y[b] * y[b]) + z[b] * z[b]));
+  for (int b = 0; b < n; ++b) K[b] = mdanim::energy({K[b], r0[b], 0.0}, std::sqrt((x[b] * x[b] + y[b] * y[b]) + z[b] * z[b]));
 }
 
 // The springs of rows [begin, end), `n` in all, into `stretch`.
@@ -390,8 +381,10 @@ void BondMdanimHarmonic::compute(int eflag, int vflag)
     if (eflag_global) energies(begin, end, springs);
     spring_forces(springs, stretch.push.data(), stretch.pull.data(), stretch.x.data(), stretch.y.data(), stretch.z.data());
     if (on) dashpots(begin, end, *on);
-    if (upper_only) sum_halves(begin, end);
-    else sum_rows(begin, end);
+    if (upper_only)
+      sum_halves(begin, end);
+    else
+      sum_rows(begin, end);
   }
   if (on) loss.step(atom->v, update->dt, update->setupflag);
   if (eflag_atom || vflag_either) tally();
@@ -452,7 +445,7 @@ void BondMdanimHarmonic::refuse_if_given()
 {
   if (given)
     error->one(FLERR, "bond_style mdanim/harmonic: springs were given to it by mdanim_give_springs, and a file would be "
-               "without them; let the particles have their bonds themselves");
+                      "without them; let the particles have their bonds themselves");
 }
 
 void BondMdanimHarmonic::write_restart(FILE *fp)
@@ -482,7 +475,7 @@ double BondMdanimHarmonic::memory_usage()
 {
   const auto ints = source.tag.capacity() + source.count.capacity();
   return Bond::memory_usage() + rows.bytes() + loss.bytes() + ints * sizeof(int) + received.force.capacity() * sizeof(Vec3) +
-      law.capacity() * sizeof(Law) + (5.0 * stretch.x.capacity() + 2.0 * stretch.K.capacity()) * sizeof(double);
+         law.capacity() * sizeof(Law) + (5.0 * stretch.x.capacity() + 2.0 * stretch.K.capacity()) * sizeof(double);
 }
 
 // For objects.cpp: "seconds" and "lost" of this rank.

@@ -5,8 +5,8 @@
 #ifndef LMP_BOND_MDANIM_HARMONIC_H
 #define LMP_BOND_MDANIM_HARMONIC_H
 
-#include "engine/blocks.h"
 #include "bond.h"
+#include "engine/blocks.h"
 #include "engine/loss.h"
 #include "laws/spring.h"
 #include "laws/vec3.h"
@@ -39,9 +39,9 @@ class BondMdanimHarmonic : public Bond {
   // summed.
   bool halves(mdanim::HalfBonds &half) const;
   const std::vector<mdanim::Law> &laws() const { return law; }    // by bond type
-  [[noreturn]] void lost_partner(int i, int partner) const;    // the error that particle i, or nobody, has this one, a tag
+  [[noreturn]] void lost_partner(int i, int partner) const;       // the error that particle i, or nobody, has this one, a tag
   mdanim::Loss *account() { return damped ? &loss : nullptr; }    // of dashpots, all ranks or none
-  bigint version() const { return made; }    // another number for other springs
+  bigint version() const { return made; }                         // another number for other springs
   void took(double more) { seconds += more; }
 
  private:
@@ -84,16 +84,16 @@ class BondMdanimHarmonic : public Bond {
   template <class Visit> void each_spring(Visit visit) const;    // visit(i, j, type, r_ij)
   void tally();
 
-  std::vector<mdanim::Spring> spring;    // by bond type
-  std::vector<mdanim::Law> law;          // the same
-  bool damped = false;                   // some spring has a dashpot
+  std::vector<mdanim::Spring> spring;      // by bond type
+  std::vector<mdanim::Law> law;            // the same
+  bool damped = false;                     // some spring has a dashpot
   bool coefficients_may_differ = false;    // since their laws were made
-  bool bonds_are_swapped = false;        // some fix changes partners during a run
-  mdanim::SpringRows rows;    // of local particles, to local ones and ghosts
-  bool upper_only = false;    // only partners of a higher tag, see sum_halves()
-  bool given = false;         // by take(), not by the particles
-  bigint made = 0;    // version
-  bigint made_after = -1;    // build of lists
+  bool bonds_are_swapped = false;          // some fix changes partners during a run
+  mdanim::SpringRows rows;                 // of local particles, to local ones and ghosts
+  bool upper_only = false;                 // only partners of a higher tag, see sum_halves()
+  bool given = false;                      // by take(), not by the particles
+  bigint made = 0;                         // version
+  bigint made_after = -1;                  // build of lists
   Source source;
   Stretch stretch;
   Ring received;

@@ -5,9 +5,9 @@
 
 #include "styles/fix_mdanim_barrier.h"
 
-#include "laws/barrier.h"
 #include "engine/blocks.h"
 #include "engine/stopwatch.h"
+#include "laws/barrier.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -54,24 +54,20 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
 
   for (int iarg = 7; iarg < narg;) {
     const int words = strcmp(arg[iarg], "thin") == 0 ? 2 : 1;
-    if (iarg + words >= narg)
-      utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/barrier {}", arg[iarg]), error);
+    if (iarg + words >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/barrier {}", arg[iarg]), error);
     if (strcmp(arg[iarg], "thin") == 0) {
       thin_bit = group_bit(iarg + 1, arg[iarg + 1]);
       thin_ratio = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
-      if (!(thin_ratio > 0.0))
-        error->all(FLERR, iarg + 2, "fix mdanim/barrier: thin ratio must be > 0, got {}", arg[iarg + 2]);
+      if (!(thin_ratio > 0.0)) error->all(FLERR, iarg + 2, "fix mdanim/barrier: thin ratio must be > 0, got {}", arg[iarg + 2]);
     } else if (strcmp(arg[iarg], "damp") == 0) {
       damping = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (!(damping >= 0.0))
-        error->all(FLERR, iarg + 1, "fix mdanim/barrier: damp must be >= 0, got {}", arg[iarg + 1]);
+      if (!(damping >= 0.0)) error->all(FLERR, iarg + 1, "fix mdanim/barrier: damp must be >= 0, got {}", arg[iarg + 1]);
     } else if (strcmp(arg[iarg], "power") == 0) {
       power = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
       if (power != 2 && power != 3)
         error->all(FLERR, iarg + 1, "fix mdanim/barrier: power must be 2 or 3, got {}", arg[iarg + 1]);
     } else {
-      error->all(FLERR, iarg, "fix mdanim/barrier: unknown keyword {}; it knows thin, damp and power",
-                 arg[iarg]);
+      error->all(FLERR, iarg, "fix mdanim/barrier: unknown keyword {}; it knows thin, damp and power", arg[iarg]);
     }
     iarg += 1 + words;
   }
@@ -80,8 +76,7 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
 int FixMdanimBarrier::group_bit(int iarg, const char *word)
 {
   const int index = group->find(word);
-  if (index < 0)
-    error->all(FLERR, iarg, "fix mdanim/barrier: there is no group {}; make it before this fix", word);
+  if (index < 0) error->all(FLERR, iarg, "fix mdanim/barrier: there is no group {}; make it before this fix", word);
   return group->bitmask[index];
 }
 
@@ -90,16 +85,14 @@ int FixMdanimBarrier::setmask() { return POST_NEIGHBOR | POST_FORCE; }
 void FixMdanimBarrier::init()
 {
   const auto refuse = [this](const char *why) { error->all(FLERR, "fix {} mdanim/barrier: {}", id, why); };
-  if (utils::strmatch(update->integrate_style, "^respa"))
-    refuse("run_style respa is not supported; use run_style verlet");
+  if (utils::strmatch(update->integrate_style, "^respa")) refuse("run_style respa is not supported; use run_style verlet");
   if (domain->dimension != 3) refuse("the box has 2 dimensions, 3 are needed; use 'dimension 3'");
   if (domain->triclinic) refuse("the box is triclinic; use an orthogonal one");
   if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
     refuse("the box is periodic; put 'boundary s s s' (or f) before the box is made");
   if (!atom->molecule_flag)
     refuse("objects are told apart by molecule IDs; use 'atom_style bond' or 'fix ID all property/atom mol'");
-  if (atom->map_style == Atom::MAP_NONE)
-    refuse("needs an atom map; put 'atom_modify map array' before the box is made");
+  if (atom->map_style == Atom::MAP_NONE) refuse("needs an atom map; put 'atom_modify map array' before the box is made");
   if (neighbor->every != 1 || neighbor->delay != 0 || neighbor->build_once)
     refuse("a pair may come into reach between two rebuilds; use 'neigh_modify every 1 delay 0 check yes "
            "once no'");
@@ -110,11 +103,10 @@ void FixMdanimBarrier::init()
 
   for (int i = 0; i < atom->nlocal; ++i)
     if (role(i) != NONE && atom->molecule[i] <= 0)
-      error->one(
-          FLERR,
-          "fix {} mdanim/barrier: particle {} belongs to no object, its molecule ID is {}; give it one > 0 "
-          "('set group … mol …')",
-          id, atom->tag[i], atom->molecule[i]);
+      error->one(FLERR,
+                 "fix {} mdanim/barrier: particle {} belongs to no object, its molecule ID is {}; give it one > 0 "
+                 "('set group … mol …')",
+                 id, atom->tag[i], atom->molecule[i]);
 }
 
 // --- candidates, when LAMMPS rebuilds ---
@@ -140,8 +132,8 @@ void FixMdanimBarrier::collect_own()
   own.resize(atom->nlocal + atom->nghost);
   const double *k = stiffness.values(lmp), *rc = reach.values(lmp);
   for (int i = 0; i < atom->nlocal; ++i)
-    own[i] = {k ? k[i] : stiffness.number, rc ? rc[i] : reach.number,
-              mass_of(atom->rmass, atom->mass, atom->type, i), atom->molecule[i]};
+    own[i] = {k ? k[i] : stiffness.number, rc ? rc[i] : reach.number, mass_of(atom->rmass, atom->mass, atom->type, i),
+              atom->molecule[i]};
   comm->forward_comm(this);
 }
 
@@ -160,8 +152,7 @@ int FixMdanimBarrier::pack_forward_comm(int n, int *list, double *buf, int, int 
 
 void FixMdanimBarrier::unpack_forward_comm(int n, int start, double *buf)
 {
-  for (int i = start; i < start + n; ++i, buf += 4)
-    own[i] = {buf[0], buf[1], buf[2], static_cast<tagint>(buf[3])};
+  for (int i = start; i < start + n; ++i, buf += 4) own[i] = {buf[0], buf[1], buf[2], static_cast<tagint>(buf[3])};
 }
 
 // The longest reach of any pair, and eq. (3.14) for every object, index = molecule ID; the same on all ranks.
@@ -222,9 +213,9 @@ struct FixMdanimBarrier::Search {
 
   const FixMdanimBarrier &fix;
   const double range, skin;
-  std::vector<Near> near;                // ascending by tag
-  std::vector<int> begin, of_object;     // those of object n, by their places in `near`:
-                                         // of_object[begin[n]] to [begin[n + 1] - 1]
+  std::vector<Near> near;               // ascending by tag
+  std::vector<int> begin, of_object;    // those of object n, by their places in `near`:
+                                        // of_object[begin[n]] to [begin[n + 1] - 1]
   std::vector<Found> found;
 
   Search(const FixMdanimBarrier &fix, double range) : fix(fix), range(range), skin(fix.neighbor->skin) {}
@@ -345,11 +336,10 @@ void FixMdanimBarrier::find_candidates()
   const double range = survey(boxes) + neighbor->skin;
   const double ghosts = std::min({comm->cutghost[0], comm->cutghost[1], comm->cutghost[2]});
   if (comm->nprocs > 1 && ghosts < range)
-    error->all(
-        FLERR,
-        "fix {} mdanim/barrier: particles of other ranks are seen up to {:.6g}, reach and skin need {:.6g}; "
-        "use 'comm_modify cutoff {:.6g}'",
-        id, ghosts, range, 1.001 * range);
+    error->all(FLERR,
+               "fix {} mdanim/barrier: particles of other ranks are seen up to {:.6g}, reach and skin need {:.6g}; "
+               "use 'comm_modify cutoff {:.6g}'",
+               id, ghosts, range, 1.001 * range);
 
   const auto meeting = meeting_pairs(boxes, range);
   meeting_objects = static_cast<bigint>(meeting.size());
@@ -512,18 +502,26 @@ double FixMdanimBarrier::compute_vector(int n)
 {
   double all = 0.0;
   switch (n) {
-  case 0: return static_cast<double>(meeting_objects);
-  case 1: return sum(pairs);
-  case 2: return sum(touching);
-  case 3: MPI_Allreduce(&deepest, &all, 1, MPI_DOUBLE, MPI_MIN, world); return all;
-  case 4: return sum(loss.total());
-  default: MPI_Allreduce(&seconds, &all, 1, MPI_DOUBLE, MPI_MAX, world); return all;
+    case 0:
+      return static_cast<double>(meeting_objects);
+    case 1:
+      return sum(pairs);
+    case 2:
+      return sum(touching);
+    case 3:
+      MPI_Allreduce(&deepest, &all, 1, MPI_DOUBLE, MPI_MIN, world);
+      return all;
+    case 4:
+      return sum(loss.total());
+    default:
+      MPI_Allreduce(&seconds, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+      return all;
   }
 }
 
 double FixMdanimBarrier::memory_usage()
 {
   return own.capacity() * sizeof(Own) + strip.capacity() * sizeof(Strip) + reach2.bytes() + law.capacity() * sizeof(Law) +
-      lanes.capacity() * sizeof(Lanes) + (particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) +
-      here.bytes() + on.capacity() * sizeof(double) + slot.capacity() * sizeof(long) + loss.bytes();
+         lanes.capacity() * sizeof(Lanes) + (particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) +
+         here.bytes() + on.capacity() * sizeof(double) + slot.capacity() * sizeof(long) + loss.bytes();
 }

@@ -5,11 +5,11 @@
 #define LMP_FIX_MDANIM_BARRIER_H
 
 #include "engine/boxes.h"
-#include "fix.h"
 #include "engine/guest.h"
 #include "engine/loss.h"
-#include "styles/particle_value.h"
+#include "fix.h"
 #include "laws/vec3.h"
+#include "styles/particle_value.h"
 
 #include <vector>
 
@@ -67,20 +67,20 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
   int power = 3;
   mdanim::ParticleValue stiffness, reach;
 
-  std::vector<Own> own;      // local and ghost particles
+  std::vector<Own> own;    // local and ghost particles
 
   // Candidates, numbered ascending by the lower tag and then by the higher one, so that who goes through them adds up the forces
   // on every particle in ascending order of its partners' tags. There are numbers in between that are no pairs (touch.h).
   std::vector<mdanim::Strip> strip;
-  mdanim::Doubles reach2;               // squares of the reach of pairs, 0 for what is none
-  std::vector<Law> law;                 // and what else is known of them
-  int last_high = 0;                    // the higher one of the last pair
-  std::vector<int> particle;            // that have candidates, local or ghost: first boundary, then barrier,
-                                        // each ascending by tag
-  std::vector<int> unmoved;             // those of them, as places in it, that this rank adds no forces to
-  const mdanim::Touch *touch;           // who looks for those in touch
-  std::vector<mdanim::Lanes> lanes;     // where there are some in this step
-  std::vector<int> touching_pair;       // in this step
+  mdanim::Doubles reach2;              // squares of the reach of pairs, 0 for what is none
+  std::vector<Law> law;                // and what else is known of them
+  int last_high = 0;                   // the higher one of the last pair
+  std::vector<int> particle;           // that have candidates, local or ghost: first boundary, then barrier,
+                                       // each ascending by tag
+  std::vector<int> unmoved;            // those of them, as places in it, that this rank adds no forces to
+  const mdanim::Touch *touch;          // who looks for those in touch
+  std::vector<mdanim::Lanes> lanes;    // where there are some in this step
+  std::vector<int> touching_pair;      // in this step
   // In a step without passes: positions of these particles, forces on them, and where in `on` those of each begin.
   mdanim::Places here;
   std::vector<double> on;

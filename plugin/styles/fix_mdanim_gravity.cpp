@@ -3,8 +3,8 @@
 
 #include "styles/fix_mdanim_gravity.h"
 
-#include "styles/particle_value.h"
 #include "engine/stopwatch.h"
+#include "styles/particle_value.h"
 
 #include "atom.h"
 #include "error.h"

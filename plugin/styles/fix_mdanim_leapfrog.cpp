@@ -3,8 +3,8 @@
 
 #include "styles/fix_mdanim_leapfrog.h"
 
-#include "laws/leapfrog.h"
 #include "engine/stopwatch.h"
+#include "laws/leapfrog.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -43,25 +43,24 @@ FixMdanimLeapfrog::FixMdanimLeapfrog(LAMMPS *lmp, int narg, char **arg) : Fix(lm
 
   int drag_word = 0;
   for (int iarg = 3; iarg < narg; iarg += 2) {
-    if (iarg + 1 >= narg)
-      utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/leapfrog {}", arg[iarg]), error);
+    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/leapfrog {}", arg[iarg]), error);
     if (strcmp(arg[iarg], "lambda") == 0) {
       lambda = ParticleValue(lmp, "fix mdanim/leapfrog: lambda", iarg + 1, arg[iarg + 1]);
       has_drag = true;
     } else if (strcmp(arg[iarg], "drag") == 0) {
       drag_word = iarg;
-      if (strcmp(arg[iarg + 1], "exp") == 0) exponential = true;
-      else if (strcmp(arg[iarg + 1], "implicit") == 0) exponential = false;
+      if (strcmp(arg[iarg + 1], "exp") == 0)
+        exponential = true;
+      else if (strcmp(arg[iarg + 1], "implicit") == 0)
+        exponential = false;
       else
-        error->all(FLERR, iarg + 1, "fix mdanim/leapfrog: drag must be implicit or exp, got {}",
-                   arg[iarg + 1]);
+        error->all(FLERR, iarg + 1, "fix mdanim/leapfrog: drag must be implicit or exp, got {}", arg[iarg + 1]);
     } else {
       error->all(FLERR, iarg, "fix mdanim/leapfrog: unknown keyword {}; it knows lambda and drag", arg[iarg]);
     }
   }
   if (drag_word && !has_drag)
-    error->all(FLERR, drag_word,
-               "fix mdanim/leapfrog: drag says how lambda is used, but there is no lambda; add one");
+    error->all(FLERR, drag_word, "fix mdanim/leapfrog: drag says how lambda is used, but there is no lambda; add one");
 }
 
 int FixMdanimLeapfrog::setmask() { return INITIAL_INTEGRATE | FINAL_INTEGRATE; }
@@ -70,8 +69,7 @@ void FixMdanimLeapfrog::init()
 {
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "fix mdanim/leapfrog: run_style respa is not supported; use run_style verlet");
-  if (domain->dimension != 3)
-    error->all(FLERR, "fix mdanim/leapfrog: dimension must be 3, got {}", domain->dimension);
+  if (domain->dimension != 3) error->all(FLERR, "fix mdanim/leapfrog: dimension must be 3, got {}", domain->dimension);
   lambda.init(lmp);
   reset_dt();
   largest_phi = 0.0;
@@ -100,9 +98,7 @@ double FixMdanimLeapfrog::largest_phi_here() const
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; ++i)
     if (atom->mask[i] & groupbit)
-      largest = std::max(largest,
-                         (own ? own[i] : lambda.number) * half_dt /
-                             mass_of(atom->rmass, atom->mass, atom->type, i));
+      largest = std::max(largest, (own ? own[i] : lambda.number) * half_dt / mass_of(atom->rmass, atom->mass, atom->type, i));
   return largest;
 }
 
@@ -169,7 +165,9 @@ void FixMdanimLeapfrog::initial_integrate(int)
 }
 
 void FixMdanimLeapfrog::first_half()
-{ half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.first_half(v, f); }, true); }
+{
+  half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.first_half(v, f); }, true);
+}
 
 void FixMdanimLeapfrog::drift()
 {
@@ -213,15 +211,14 @@ bool FixMdanimLeapfrog::looks()
 
 std::string FixMdanimLeapfrog::start_trace(int objects)
 {
-  if (!atom->molecule_flag)
-    return "objects are told apart by molecule IDs, and there are none; use 'atom_style bond'";
+  if (!atom->molecule_flag) return "objects are told apart by molecule IDs, and there are none; use 'atom_style bond'";
   const auto [first, last] = std::minmax_element(atom->molecule, atom->molecule + atom->nlocal);
   tagint bounds[2] = {objects, -1};    // the largest ID, and the smallest with its sign changed
   if (atom->nlocal) bounds[0] = *last, bounds[1] = -*first;
   MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_LMP_TAGINT, MPI_MAX, world);
   if (bounds[0] > objects || -bounds[1] < 1)
-    return fmt::format("molecule IDs go from {} to {}, they must be within 1 and the {} objects to trace", -bounds[1],
-                       bounds[0], objects);
+    return fmt::format("molecule IDs go from {} to {}, they must be within 1 and the {} objects to trace", -bounds[1], bounds[0],
+                       objects);
   trace.assign(objects, Way());
   for (int i = 0; i < atom->nlocal; ++i) trace[atom->molecule[i] - 1].box.include(atom->x[i]);
   look_after = 1;
@@ -247,7 +244,9 @@ void FixMdanimLeapfrog::final_integrate()
 }
 
 void FixMdanimLeapfrog::final_half()
-{ half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.final_half(v, f); }, false); }
+{
+  half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.final_half(v, f); }, false);
+}
 
 // --- together with run_style verlet/mdanim ---
 
@@ -345,8 +344,10 @@ double FixMdanimLeapfrog::bend() const
 double FixMdanimLeapfrog::kinetic()
 {
   if (!told)
-    error->all(FLERR, "fix {} mdanim/leapfrog: kinetic energy, f_{}[2], is worked out in steps with output alone; ask for it in "
-               "these, as thermo_style does", id, id);
+    error->all(FLERR,
+               "fix {} mdanim/leapfrog: kinetic energy, f_{}[2], is worked out in steps with output alone; ask for it in "
+               "these, as thermo_style does",
+               id, id);
   double swing = 0.0, sum = 0.0;
   each([&](int i) {
     const double mass = mass_of(atom->rmass, atom->mass, atom->type, i);
@@ -386,7 +387,6 @@ void FixMdanimLeapfrog::restart(char *buffer)
   double list[2];
   memcpy(list, buffer, sizeof list);
   if (list[0] != RESTART_VERSION)
-    error->all(FLERR, "fix mdanim/leapfrog: restart state has version {}, {} is needed", list[0],
-               RESTART_VERSION);
+    error->all(FLERR, "fix mdanim/leapfrog: restart state has version {}, {} is needed", list[0], RESTART_VERSION);
   lost = comm->me == 0 ? list[1] : 0.0;
 }

@@ -53,10 +53,10 @@ class FixMdanimLeapfrog : public Fix {
   mdanim::Friction friction() const;
   mdanim::Mover mover(int i);
   double *trace_rows() { return trace.empty() ? nullptr : trace.front().box.bound; }
-  bool looks();    // asked once in every pass
+  bool looks();                                           // asked once in every pass
   void finish_step(const std::vector<int> &particles);    // v^{n-1/2} -> v^n
   void begin_step(const std::vector<int> &particles);     // v^n -> v^{n+1/2}, r^n -> r^{n+1}
-  bool tells_of(bigint step) const;    // whether kinetic() may be asked for in that step
+  bool tells_of(bigint step) const;                       // whether kinetic() may be asked for in that step
   // By others, in its name; `bend` is what bend() tells, of the particles that they have moved.
   void moved(double final_loss, double first_loss, double bend, double more_seconds);
 
@@ -81,7 +81,7 @@ class FixMdanimLeapfrog : public Fix {
   double largest_phi = 0.0;    // seen on this rank in this run
   double seconds = 0.0;
   const std::vector<int> *only = nullptr;    // particles to move now; null for all
-  std::vector<int> *sent = nullptr;    // while ghosts are surveyed
+  std::vector<int> *sent = nullptr;          // while ghosts are surveyed
   std::vector<Known> *known = nullptr;
   struct Way {
     mdanim::Box box;

@@ -4,8 +4,8 @@
 
 #include "styles/fix_mdanim_liquid.h"
 
-#include "laws/buoyancy.h"
 #include "engine/stopwatch.h"
+#include "laws/buoyancy.h"
 #include "liquid/surface.h"
 
 #include "atom.h"
@@ -36,12 +36,10 @@ static constexpr double STATE_VERSION = 2.0;
 // Reasons and measurements: docs/physics-liquid.md.
 static constexpr double SWEEPS_PER_CELL = 8.0;    // that the fastest solid travels
 static constexpr int MOST_SWEEPS = 4096;          // per update; also parts the keys of their random numbers
-static constexpr double LEVEL_RATE =
-    0.11;    // share of exposed cells moved while a shallow-water wave crosses one cell
-static constexpr double SAMPLED = 4.0;    // cells above the liquid up to which solids are marked
-static constexpr double NEAR = 8.0;       // cells above the liquid up to which their motion counts
-static constexpr double SPLASH =
-    1.5;    // cells below the surface within which an empty cell is taken for a ripple
+static constexpr double LEVEL_RATE = 0.11;        // share of exposed cells moved while a shallow-water wave crosses one cell
+static constexpr double SAMPLED = 4.0;            // cells above the liquid up to which solids are marked
+static constexpr double NEAR = 8.0;               // cells above the liquid up to which their motion counts
+static constexpr double SPLASH = 1.5;             // cells below the surface within which an empty cell is taken for a ripple
 static constexpr std::uint8_t SOLID_CODE = 255, STILL_CODE = 254;
 
 // --- the command ---
@@ -65,14 +63,10 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   if (narg < 9) utils::missing_cmd_args(FLERR, "fix mdanim/liquid", error);
   region_id = arg[3];
   Region *region = domain->get_region_by_id(region_id);
-  if (!region)
-    error->all(FLERR, 3, "fix mdanim/liquid: there is no region {}; make it before this fix", arg[3]);
-  if (strcmp(region->style, "block") != 0 || !region->interior || region->dynamic_check() ||
-      !region->bboxflag)
-    error->all(
-        FLERR, 3,
-        "fix mdanim/liquid: the basin must be a finite, resting region of style block, side in; {} is not",
-        arg[3]);
+  if (!region) error->all(FLERR, 3, "fix mdanim/liquid: there is no region {}; make it before this fix", arg[3]);
+  if (strcmp(region->style, "block") != 0 || !region->interior || region->dynamic_check() || !region->bboxflag)
+    error->all(FLERR, 3, "fix mdanim/liquid: the basin must be a finite, resting region of style block, side in; {} is not",
+               arg[3]);
   rho = utils::numeric(FLERR, arg[4], false, lmp);
   if (!(rho > 0.0)) error->all(FLERR, 4, "fix mdanim/liquid: density must be > 0, got {}", arg[4]);
   if (strcmp(arg[5], "grid") != 0)
@@ -81,25 +75,21 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   double bytes = 1.0;
   for (int d = 0; d < 3; ++d) {
     n[d] = utils::inumeric(FLERR, arg[6 + d], false, lmp);
-    if (n[d] < 1)
-      error->all(FLERR, 6 + d, "fix mdanim/liquid: grid must be >= 1 along every axis, got {}", arg[6 + d]);
+    if (n[d] < 1) error->all(FLERR, 6 + d, "fix mdanim/liquid: grid must be >= 1 along every axis, got {}", arg[6 + d]);
     bytes *= n[d];
   }
   if (bytes > 1.5e9)    // the state, of a byte a cell and 8 a column, must fit into a restart file's int
-    error->all(FLERR, 6, "fix mdanim/liquid: a grid of {:.3g} cells is too large; use fewer, larger cells",
-               bytes);
+    error->all(FLERR, 6, "fix mdanim/liquid: a grid of {:.3g} cells is too large; use fewer, larger cells", bytes);
 
   bool has_volume = false;
   Vertical vertical = Vertical::LOWER;
   for (int iarg = 9; iarg < narg;) {
-    if (iarg + 1 >= narg)
-      utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", arg[iarg]), error);
+    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", arg[iarg]), error);
     const char *word = arg[iarg], *value = arg[iarg + 1];
     int used = 2;
     if (strcmp(word, "volume") == 0) {
       volume_asked = utils::numeric(FLERR, value, false, lmp);
-      if (!(volume_asked > 0.0))
-        error->all(FLERR, iarg + 1, "fix mdanim/liquid: volume must be > 0, got {}", value);
+      if (!(volume_asked > 0.0)) error->all(FLERR, iarg + 1, "fix mdanim/liquid: volume must be > 0, got {}", value);
       has_volume = true;
     } else if (strcmp(word, "level") == 0) {
       level_asked = utils::numeric(FLERR, value, false, lmp);
@@ -110,43 +100,42 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
         error->all(FLERR, iarg + 1, "fix mdanim/liquid: there is no region {} to fill", value);
     } else if (strcmp(word, "gravity") == 0) {
       g = utils::numeric(FLERR, value, false, lmp);
-      if (!(g > 0.0))
-        error->all(FLERR, iarg + 1, "fix mdanim/liquid: gravity, along -z, must be > 0, got {}", value);
+      if (!(g > 0.0)) error->all(FLERR, iarg + 1, "fix mdanim/liquid: gravity, along -z, must be > 0, got {}", value);
     } else if (strcmp(word, "model") == 0) {
-      if (strcmp(value, "surface") == 0) model = Model::SURFACE;
-      else if (strcmp(value, "paper") == 0) model = Model::PAPER;
-      else error->all(FLERR, iarg + 1, "fix mdanim/liquid: model must be surface or paper, got {}", value);
+      if (strcmp(value, "surface") == 0)
+        model = Model::SURFACE;
+      else if (strcmp(value, "paper") == 0)
+        model = Model::PAPER;
+      else
+        error->all(FLERR, iarg + 1, "fix mdanim/liquid: model must be surface or paper, got {}", value);
     } else if (strcmp(word, "vertical") == 0) {
-      if (strcmp(value, "lower") == 0) vertical = Vertical::LOWER;
-      else if (strcmp(value, "any") == 0) vertical = Vertical::ANY;
-      else error->all(FLERR, iarg + 1, "fix mdanim/liquid: vertical must be lower or any, got {}", value);
+      if (strcmp(value, "lower") == 0)
+        vertical = Vertical::LOWER;
+      else if (strcmp(value, "any") == 0)
+        vertical = Vertical::ANY;
+      else
+        error->all(FLERR, iarg + 1, "fix mdanim/liquid: vertical must be lower or any, got {}", value);
     } else if (strcmp(word, "seed") == 0) {
       seed = static_cast<std::uint64_t>(utils::bnumeric(FLERR, value, false, lmp));
     } else {
       used = keyword(iarg, narg, arg);
       if (!used)
-        error->all(
-            FLERR, iarg,
-            "fix mdanim/liquid: unknown keyword {}; it knows volume, level, fill, gravity, model, vertical, "
-            "seed, buoyancy, drag, lambda, base, cells, faces, still, sweeps, every, stride and period",
-            word);
+        error->all(FLERR, iarg,
+                   "fix mdanim/liquid: unknown keyword {}; it knows volume, level, fill, gravity, model, vertical, "
+                   "seed, buoyancy, drag, lambda, base, cells, faces, still, sweeps, every, stride and period",
+                   word);
     }
     iarg += used;
   }
   if (has_volume == has_level)
-    error->all(FLERR, "fix mdanim/liquid: write either volume V or level Z, {}",
-               has_level ? "not both" : "one of them");
-  if (g < 0.0)
-    error->all(FLERR,
-               "fix mdanim/liquid: gravity G is missing; liquid lies flat only under gravity along -z");
+    error->all(FLERR, "fix mdanim/liquid: write either volume V or level Z, {}", has_level ? "not both" : "one of them");
+  if (g < 0.0) error->all(FLERR, "fix mdanim/liquid: gravity G is missing; liquid lies flat only under gravity along -z");
 
   low = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
-  cell = {(region->extent_xhi - low.x) / n[0], (region->extent_yhi - low.y) / n[1],
-          (region->extent_zhi - low.z) / n[2]};
+  cell = {(region->extent_xhi - low.x) / n[0], (region->extent_yhi - low.y) / n[1], (region->extent_zhi - low.z) / n[2]};
   shortest = std::min({cell.x, cell.y, cell.z});
   if (has_level && !(level_asked > low.z && level_asked <= region->extent_zhi))
-    error->all(FLERR, "fix mdanim/liquid: level {} is not within the basin, {} to {}", level_asked, low.z,
-               region->extent_zhi);
+    error->all(FLERR, "fix mdanim/liquid: level {} is not within the basin, {} to {}", level_asked, low.z, region->extent_zhi);
 
   try {
     automaton = std::make_unique<Automaton>(n[0], n[1], n[2], seed, vertical);
@@ -154,8 +143,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
     moving_count = std::make_unique<Occupancy>(n[0], n[1], n[2]);
     solid.assign(still_count->count.size(), 0);
   } catch (const std::bad_alloc &) {
-    error->one(FLERR, "fix mdanim/liquid: no memory for a grid of {:.3g} cells; use fewer, larger cells",
-               bytes);
+    error->one(FLERR, "fix mdanim/liquid: no memory for a grid of {:.3g} cells; use fewer, larger cells", bytes);
   }
   height.assign(columns(), 0.0);
   eta.assign(columns(), 0.0);
@@ -167,10 +155,9 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
 int FixMdanimLiquid::keyword(int iarg, int narg, char **arg)
 {
   const char *word = arg[iarg];
-  static const char *const known[] = {"buoyancy", "drag",  "lambda", "base", "cells",
-                                      "faces",    "still", "sweeps", "every", "stride", "period"};
-  if (std::none_of(std::begin(known), std::end(known), [&](const char *k) { return strcmp(k, word) == 0; }))
-    return 0;
+  static const char *const known[] = {"buoyancy", "drag",   "lambda", "base",   "cells", "faces",
+                                      "still",    "sweeps", "every",  "stride", "period"};
+  if (std::none_of(std::begin(known), std::end(known), [&](const char *k) { return strcmp(k, word) == 0; })) return 0;
   if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", word), error);
   const char *value = arg[iarg + 1];
   if (strcmp(word, "buoyancy") == 0) {
@@ -181,27 +168,23 @@ int FixMdanimLiquid::keyword(int iarg, int narg, char **arg)
     slows = true;
   } else if (strcmp(word, "lambda") == 0 || strcmp(word, "base") == 0) {
     if (!utils::strmatch(value, "^d_"))
-      error->all(FLERR, iarg + 1, "fix mdanim/liquid: {} must be a per-particle property d_NAME, got {}",
-                 word, value);
+      error->all(FLERR, iarg + 1, "fix mdanim/liquid: {} must be a per-particle property d_NAME, got {}", word, value);
     (strcmp(word, "base") == 0 ? base_name : lambda_name) = value + 2;
     writable(value + 2, word);
   } else if (strcmp(word, "cells") == 0 || strcmp(word, "faces") == 0) {
     if (!utils::strmatch(value, "^i2_"))
-      error->all(FLERR, iarg + 1, "fix mdanim/liquid: {} must be a per-particle property i2_NAME, got {}",
-                 word, value);
+      error->all(FLERR, iarg + 1, "fix mdanim/liquid: {} must be a per-particle property i2_NAME, got {}", word, value);
     (strcmp(word, "cells") == 0 ? corners_name : faces_name) = value + 3;
   } else if (strcmp(word, "still") == 0) {
     still_bit = group_bit(iarg + 1, value);
   } else if (strcmp(word, "sweeps") == 0) {
     sweeps = strcmp(value, "auto") == 0 ? 0 : utils::inumeric(FLERR, value, false, lmp);
     if (strcmp(value, "auto") != 0 && (sweeps < 1 || sweeps > MOST_SWEEPS))
-      error->all(FLERR, iarg + 1, "fix mdanim/liquid: sweeps must be auto or 1 to {}, got {}", MOST_SWEEPS,
-                 value);
+      error->all(FLERR, iarg + 1, "fix mdanim/liquid: sweeps must be auto or 1 to {}, got {}", MOST_SWEEPS, value);
   } else if (strcmp(word, "stride") == 0 || strcmp(word, "period") == 0) {
     double &number = strcmp(word, "stride") == 0 ? stride : period;
     number = utils::numeric(FLERR, value, false, lmp);
-    if (!(number > 0.0))
-      error->all(FLERR, iarg + 1, "fix mdanim/liquid: {} must be > 0, got {}", word, value);
+    if (!(number > 0.0)) error->all(FLERR, iarg + 1, "fix mdanim/liquid: {} must be > 0, got {}", word, value);
   } else {
     every = utils::inumeric(FLERR, value, false, lmp);
     if (every < 1) error->all(FLERR, iarg + 1, "fix mdanim/liquid: every must be >= 1, got {}", value);
@@ -214,8 +197,7 @@ int FixMdanimLiquid::modify_param(int narg, char **arg) { return keyword(0, narg
 int FixMdanimLiquid::group_bit(int iarg, const char *word)
 {
   const int index = group->find(word);
-  if (index < 0)
-    error->all(FLERR, iarg, "fix mdanim/liquid: there is no group {}; make it before this fix", word);
+  if (index < 0) error->all(FLERR, iarg, "fix mdanim/liquid: there is no group {}; make it before this fix", word);
   return group->bitmask[index];
 }
 
@@ -225,11 +207,10 @@ double *FixMdanimLiquid::writable(const std::string &name, const char *keyword)
   int is_double = 0, width = 0;
   const int index = atom->find_custom(name.c_str(), is_double, width);
   if (index < 0 || !is_double || width)
-    error->all(
-        FLERR,
-        "fix mdanim/liquid: {} names d_{}, which is no per-particle property; make it with 'fix ID all "
-        "property/atom d_{}'",
-        keyword, name, name);
+    error->all(FLERR,
+               "fix mdanim/liquid: {} names d_{}, which is no per-particle property; make it with 'fix ID all "
+               "property/atom d_{}'",
+               keyword, name, name);
   return atom->dvector[index];
 }
 
@@ -253,46 +234,35 @@ void FixMdanimLiquid::init()
 {
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "fix {} mdanim/liquid: run_style respa is not supported; use run_style verlet", id);
-  if (domain->dimension != 3)
-    error->all(FLERR, "fix {} mdanim/liquid: dimension must be 3, got {}", id, domain->dimension);
+  if (domain->dimension != 3) error->all(FLERR, "fix {} mdanim/liquid: dimension must be 3, got {}", id, domain->dimension);
   if (domain->triclinic) error->all(FLERR, "fix {} mdanim/liquid: a triclinic box is not supported", id);
   if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
-    error->all(FLERR, "fix {} mdanim/liquid: periodic boundaries are not supported; use boundary s, f or m",
-               id);
+    error->all(FLERR, "fix {} mdanim/liquid: periodic boundaries are not supported; use boundary s, f or m", id);
   if (slows && lambda_name.empty())
-    error->all(FLERR,
-               "fix {} mdanim/liquid: drag needs lambda d_NAME, the property that fix mdanim/leapfrog reads",
-               id);
+    error->all(FLERR, "fix {} mdanim/liquid: drag needs lambda d_NAME, the property that fix mdanim/leapfrog reads", id);
   if (!slows && !(lambda_name.empty() && base_name.empty()))
-    error->all(FLERR,
-               "fix {} mdanim/liquid: lambda and base say where drag goes, but there is no drag; add one",
-               id);
+    error->all(FLERR, "fix {} mdanim/liquid: lambda and base say where drag goes, but there is no drag; add one", id);
   if (slows && !lifts)
-    error->all(
-        FLERR,
-        "fix {} mdanim/liquid: drag acts on the volume of particles, which buoyancy gives; add buoyancy", id);
+    error->all(FLERR, "fix {} mdanim/liquid: drag acts on the volume of particles, which buoyancy gives; add buoyancy", id);
   if (lifts) volume.init(lmp);
   if (slows) gamma.init(lmp);
   if (!corners_name.empty() && width_of(corners_name) != 7)
-    error->all(
-        FLERR,
-        "fix {} mdanim/liquid: cells names i2_{}, which is no property of 7 integers; make it with 'fix ID all "
-        "property/atom i2_{} 7 ghost yes'",
-        id, corners_name, corners_name);
+    error->all(FLERR,
+               "fix {} mdanim/liquid: cells names i2_{}, which is no property of 7 integers; make it with 'fix ID all "
+               "property/atom i2_{} 7 ghost yes'",
+               id, corners_name, corners_name);
   if (!faces_name.empty()) {
     faces_width = width_of(faces_name);
     if (faces_width == 0 || faces_width % 3)
-      error->all(
-          FLERR,
-          "fix {} mdanim/liquid: faces names i2_{}, which is no property of 3 integers a face; make it with 'fix ID all "
-          "property/atom i2_{} 36'",
-          id, faces_name, faces_name);
+      error->all(FLERR,
+                 "fix {} mdanim/liquid: faces names i2_{}, which is no property of 3 integers a face; make it with 'fix ID all "
+                 "property/atom i2_{} 36'",
+                 id, faces_name, faces_name);
     if (model == Model::PAPER)
       error->all(FLERR, "fix {} mdanim/liquid: model paper knows no pressure on faces; leave faces out", id);
   }
   if (!(corners_name.empty() && faces_name.empty()) && atom->map_style == Atom::MAP_NONE)
-    error->all(FLERR, "fix {} mdanim/liquid: cells and faces need an atom map; use 'atom_modify map array'",
-               id);
+    error->all(FLERR, "fix {} mdanim/liquid: cells and faces need an atom map; use 'atom_modify map array'", id);
   // Lists are then rebuilt as soon as a particle has moved by half the skin.
   watching = neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once;
 }
@@ -323,11 +293,10 @@ void FixMdanimLiquid::add_bodies(Occupancy &into, bool still, double below)
     for (int k = 0; k < 7; ++k) {
       at[k + 1] = atom->map(corners[i][k]);
       if (at[k + 1] < 0)
-        error->one(
-            FLERR,
-            "fix {} mdanim/liquid: particle {}, a corner of the lattice cell of particle {}, is out of reach; raise "
-            "comm_modify cutoff",
-            id, corners[i][k], atom->tag[i]);
+        error->one(FLERR,
+                   "fix {} mdanim/liquid: particle {}, a corner of the lattice cell of particle {}, is out of reach; raise "
+                   "comm_modify cutoff",
+                   id, corners[i][k], atom->tag[i]);
       all &= mask[at[k + 1]];
     }
     if (static_cast<bool>(all & still_bit) != still) continue;
@@ -363,8 +332,7 @@ void FixMdanimLiquid::sum_over_ranks(Occupancy &counted)
     int *packed = part.data();
     for (int z = box.low[2]; z < box.high[2]; ++z)
       for (int y = box.low[1]; y < box.high[1]; ++y, packed += width)
-        copy(&counted.count[(static_cast<std::size_t>(z) * counted.ny + y) * counted.nx + box.low[0]],
-             packed);
+        copy(&counted.count[(static_cast<std::size_t>(z) * counted.ny + y) * counted.nx + box.low[0]], packed);
   };
   rows([&](const int *grid, int *packed) { std::copy_n(grid, width, packed); });
   MPI_Allreduce(MPI_IN_PLACE, part.data(), static_cast<int>(part.size()), MPI_INT, MPI_SUM, world);
@@ -445,17 +413,14 @@ void FixMdanimLiquid::pour()
     units = static_cast<std::int64_t>(volume_asked / (cell.x * cell.y * cell.z) + 0.5);
   }
   if (units < 1)
-    error->all(
-        FLERR,
-        "fix {} mdanim/liquid: {} is less than half a cell of liquid; use more liquid or smaller cells", id,
-        has_level ? fmt::format("level {}", level_asked) : fmt::format("volume {}", volume_asked));
+    error->all(FLERR, "fix {} mdanim/liquid: {} is less than half a cell of liquid; use more liquid or smaller cells", id,
+               has_level ? fmt::format("level {}", level_asked) : fmt::format("volume {}", volume_asked));
   const long left = automaton->fill(units, within.data(), now);
   if (left)
-    error->all(
-        FLERR,
-        "fix {} mdanim/liquid: {} of {} cells of liquid find no room beside the solids in {}; use less liquid or a larger "
-        "basin",
-        id, left, units, fill_id.empty() ? "the basin" : "the region to fill");
+    error->all(FLERR,
+               "fix {} mdanim/liquid: {} of {} cells of liquid find no room beside the solids in {}; use less liquid or a larger "
+               "basin",
+               id, left, units, fill_id.empty() ? "the basin" : "the region to fill");
   poured = true;
   raise_surface(false);
 }
@@ -472,10 +437,8 @@ void FixMdanimLiquid::smooth()
 {
   const Cells &cells = automaton->cells;
   top = cells.nz;
-  while (top > 0 &&
-         std::all_of(&cells.content[cells.at(-1, -1, top - 1)],
-                     &cells.content[cells.at(-1, -1, top - 1)] + cells.layer,
-                     [](std::uint8_t q) { return q == 0; }))
+  while (top > 0 && std::all_of(&cells.content[cells.at(-1, -1, top - 1)],
+                                &cells.content[cells.at(-1, -1, top - 1)] + cells.layer, [](std::uint8_t q) { return q == 0; }))
     --top;
   // A column is parted where what ends its liquid never moves: each side of a wall has a level of its own.
   for (int y = 0; y < cells.ny; ++y)
@@ -487,7 +450,8 @@ void FixMdanimLiquid::smooth()
       while (z >= 0 && !cells.content[cells.at(x, y, z)]) --z;
       if (z < 0)    // dry: what stands on the floor or hangs above it
         while (++z < cells.nz && cells.open[cells.at(x, y, z)]) {}
-      else if (z + 1 < cells.nz && !cells.open[cells.at(x, y, z + 1)]) ++z;    // what shuts the liquid in
+      else if (z + 1 < cells.nz && !cells.open[cells.at(x, y, z + 1)])
+        ++z;    // what shuts the liquid in
       else
         while (z >= 0 && cells.open[cells.at(x, y, z)]) --z;    // what a film lies on
       blocked[column] = z >= 0 && z < cells.nz && cells.still[cells.at(x, y, z)];
@@ -537,8 +501,10 @@ bool FixMdanimLiquid::find_out_whether_due()
     if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &fastest, 1, MPI_DOUBLE, MPI_MAX, world);
   }
   if (!calm) waited += every;
-  if (fastest >= 0.0) travel += std::sqrt(fastest) * every * update->dt / shortest;
-  else if (moving_solid) return true;    // the last one has just left
+  if (fastest >= 0.0)
+    travel += std::sqrt(fastest) * every * update->dt / shortest;
+  else if (moving_solid)
+    return true;    // the last one has just left
   if (travel >= stride) return true;
   return !calm && waited * update->dt >= period * std::sqrt(shortest / g);
 }
@@ -563,7 +529,7 @@ void FixMdanimLiquid::update_liquid()
   travel = 0.0;
   waited = 0;
   if (low.z + top * cell.z <= watched_top) return;
-  watch(neighbor->skin);    // who went one way since lists were made may go as far the other way
+  watch(neighbor->skin);                                // who went one way since lists were made may go as far the other way
   lowest = -std::numeric_limits<double>::infinity();    // then, that is not known
 }
 
@@ -585,8 +551,7 @@ void FixMdanimLiquid::flow(long changed)
     for (int k = 0; k < most; ++k) automaton->sweep(now * MOST_SWEEPS + k);
     swept += most;
     levelled = model == Model::SURFACE && (wave || changed);
-    if (levelled && leveller.move(automaton->cells, seed, now, wave ? LEVEL_RATE * crossed : 0.0, changed))
-      automaton->poured();
+    if (levelled && leveller.move(automaton->cells, seed, now, wave ? LEVEL_RATE * crossed : 0.0, changed)) automaton->poured();
     if (wave) crossed = 0.0;
   }
   if (changed || most || levelled) raise_surface(levelled);
@@ -597,7 +562,8 @@ void FixMdanimLiquid::flow(long changed)
 void FixMdanimLiquid::setup_post_neighbor()
 {
   const long changed = count_still();
-  if (!poured) pour();
+  if (!poured)
+    pour();
   else if (changed) {    // somebody has moved what never moves, between two runs
     make_room();
     raise_surface(false);
@@ -618,8 +584,7 @@ void FixMdanimLiquid::watch(double margin)
 {
   watched.clear();
   watched_top = low.z + top * cell.z;
-  const double below =
-      watching ? watched_top + NEAR * cell.z + margin : std::numeric_limits<double>::infinity();
+  const double below = watching ? watched_top + NEAR * cell.z + margin : std::numeric_limits<double>::infinity();
   // The box holds all particles as they stood at the last rebuild: where nobody was near, and all of it is above, nobody has
   // come.
   lowest = domain->boxlo[2];
@@ -655,7 +620,7 @@ void FixMdanimLiquid::post_force(int)
 bool FixMdanimLiquid::over_basin(const double *x) const
 {
   return x[0] >= low.x && x[0] <= low.x + automaton->cells.nx * cell.x && x[1] >= low.y &&
-      x[1] <= low.y + automaton->cells.ny * cell.y;
+         x[1] <= low.y + automaton->cells.ny * cell.y;
 }
 
 // Part of the volume around a particle that counts as immersed.
@@ -667,8 +632,8 @@ double FixMdanimLiquid::immersed(const Vec3 &place) const
     return immersed_part(at_point(eta.data(), blocked.data(), cells.nx, cells.ny, place.x, place.y), place.z);
   // The paper's own words: liquid in any of the cells around.
   if (!(place.z >= 0.0 && place.z < cells.nz)) return 0.0;
-  const int x = std::min(static_cast<int>(place.x), cells.nx - 1),
-            y = std::min(static_cast<int>(place.y), cells.ny - 1), z = static_cast<int>(place.z);
+  const int x = std::min(static_cast<int>(place.x), cells.nx - 1), y = std::min(static_cast<int>(place.y), cells.ny - 1),
+            z = static_cast<int>(place.z);
   for (int dz = -1; dz <= 1; ++dz)
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx)
@@ -696,11 +661,11 @@ void FixMdanimLiquid::couple()
     const double z = x[i][2];
     const double s = z >= above ? 0.0 : z <= below && over_basin(x[i]) ? 1.0 : immersed(in_cells(x[i]));
     const double own = volumes ? volumes[i] : volume.number;
-    const double own_lambda =
-        slows ? liquid_lambda(gammas ? gammas[i] : gamma.number, rho, own, s) / force->ftm2v : 0.0;
+    const double own_lambda = slows ? liquid_lambda(gammas ? gammas[i] : gamma.number, rho, own, s) / force->ftm2v : 0.0;
     if (lambda) lambda[i] = (base ? base[i] : 0.0) + own_lambda;
     Vec3 push;
-    if (faces_name.empty()) push.z = lift(rho, own, s, g);
+    if (faces_name.empty())
+      push.z = lift(rho, own, s, g);
     else
       for (int k = face_of_first[n]; k < face_of_first[n + 1]; ++k) push += faces[face_of[k]].push;
     if (s == 0.0 && dot(push, push) == 0.0) continue;
@@ -722,20 +687,18 @@ void FixMdanimLiquid::find_faces()
     for (int k = 0; k < faces_width && table[i][k]; k += 3) {
       tagint tag[4] = {atom->tag[i], table[i][k], table[i][k + 1], table[i][k + 2]};
       std::rotate(tag, std::min_element(tag, tag + 4), tag + 4);
-      const auto [place, is_new] =
-          known.try_emplace(static_cast<std::uint64_t>(tag[0]) << 32 | static_cast<std::uint32_t>(tag[2]),
-                            static_cast<int>(faces.size()));
+      const auto [place, is_new] = known.try_emplace(
+          static_cast<std::uint64_t>(tag[0]) << 32 | static_cast<std::uint32_t>(tag[2]), static_cast<int>(faces.size()));
       face_of.push_back(place->second);
       if (!is_new) continue;
       Face face;
       for (int n = 0; n < 4; ++n) {
         face.corner[n] = atom->map(tag[n]);
         if (face.corner[n] < 0)
-          error->one(
-              FLERR,
-              "fix {} mdanim/liquid: particle {}, a corner of a face of particle {}, is out of reach; raise comm_modify "
-              "cutoff",
-              id, tag[n], atom->tag[i]);
+          error->one(FLERR,
+                     "fix {} mdanim/liquid: particle {}, a corner of a face of particle {}, is out of reach; raise comm_modify "
+                     "cutoff",
+                     id, tag[n], atom->tag[i]);
       }
       faces.push_back(face);
     }
@@ -747,14 +710,11 @@ void FixMdanimLiquid::find_faces()
 Vec3 FixMdanimLiquid::pressure_on(const Face &face) const
 {
   const double *const *x = atom->x;
-  const Vec3 a = vec3(x[face.corner[0]]), b = vec3(x[face.corner[1]]), c = vec3(x[face.corner[2]]),
-             d = vec3(x[face.corner[3]]);
+  const Vec3 a = vec3(x[face.corner[0]]), b = vec3(x[face.corner[1]]), c = vec3(x[face.corner[2]]), d = vec3(x[face.corner[3]]);
   const Vec3 middle = 0.25 * ((a + c) + (b + d));
   if (!over_basin(&middle.x)) return {};
   const Vec3 place = in_cells(&middle.x);
-  const double depth =
-      at_point(eta.data(), blocked.data(), automaton->cells.nx, automaton->cells.ny, place.x, place.y) -
-      place.z;
+  const double depth = at_point(eta.data(), blocked.data(), automaton->cells.nx, automaton->cells.ny, place.x, place.y) - place.z;
   if (depth <= 0.0) return {};
   if (depth > SPLASH) {
     const Vec3 area = cross(c - a, d - b);
@@ -772,8 +732,7 @@ bool FixMdanimLiquid::looks_into_air(const Vec3 &middle, const Vec3 &normal) con
   const Cells &cells = automaton->cells;
   for (const double far : {0.75, 1.25, 1.75, 2.25}) {
     const Vec3 there = middle + (far * shortest) * normal, place = in_cells(&there.x);
-    if (!(place.x >= 0.0 && place.x < cells.nx && place.y >= 0.0 && place.y < cells.ny && place.z >= 0.0 &&
-          place.z < cells.nz))
+    if (!(place.x >= 0.0 && place.x < cells.nx && place.y >= 0.0 && place.y < cells.ny && place.z >= 0.0 && place.z < cells.nz))
       return false;
     const int x = static_cast<int>(place.x), y = static_cast<int>(place.y);
     int z = static_cast<int>(place.z);
@@ -824,8 +783,7 @@ void FixMdanimLiquid::concerned(std::vector<int> &particles) const
 bool FixMdanimLiquid::reads_all() { return due(); }
 
 // While the liquid is level and nobody is near it, until somebody comes.
-double FixMdanimLiquid::looks_ahead() const
-{ return watching && asleep() ? lowest - (watched_top + NEAR * cell.z) : 0.0; }
+double FixMdanimLiquid::looks_ahead() const { return watching && asleep() ? lowest - (watched_top + NEAR * cell.z) : 0.0; }
 
 // --- what it tells ---
 
@@ -842,16 +800,24 @@ double FixMdanimLiquid::compute_vector(int n)
 {
   double all = 0.0;
   switch (n) {
-  case 0: return static_cast<double>(automaton->total());
-  case 1: return static_cast<double>(units);
-  case 2:
-    for (const double h : eta) all += h;
-    return low.z + cell.z * all / columns();
-  case 3: return static_cast<double>(automaton->count_solid());
-  case 4: return static_cast<double>(swept);
-  case 5: return !(calm && nobody);
-  case 6: MPI_Allreduce(&lost, &all, 1, MPI_DOUBLE, MPI_SUM, world); return all;
-  default: break;
+    case 0:
+      return static_cast<double>(automaton->total());
+    case 1:
+      return static_cast<double>(units);
+    case 2:
+      for (const double h : eta) all += h;
+      return low.z + cell.z * all / columns();
+    case 3:
+      return static_cast<double>(automaton->count_solid());
+    case 4:
+      return static_cast<double>(swept);
+    case 5:
+      return !(calm && nobody);
+    case 6:
+      MPI_Allreduce(&lost, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+      return all;
+    default:
+      break;
   }
   double here[] = {automaton_seconds, occupancy_seconds, coupling_seconds,
                    automaton_seconds + occupancy_seconds + coupling_seconds};
@@ -865,10 +831,14 @@ double FixMdanimLiquid::compute_array(int row, int column)
 {
   const int nx = automaton->cells.nx;
   switch (column) {
-  case 0: return low.x + (row % nx + 0.5) * cell.x;
-  case 1: return low.y + (row / nx + 0.5) * cell.y;
-  case 2: return low.z + eta[row] * cell.z;
-  default: return low.z + height[row] * cell.z;
+    case 0:
+      return low.x + (row % nx + 0.5) * cell.x;
+    case 1:
+      return low.y + (row / nx + 0.5) * cell.y;
+    case 2:
+      return low.z + eta[row] * cell.z;
+    default:
+      return low.z + height[row] * cell.z;
   }
 }
 
@@ -921,8 +891,7 @@ void FixMdanimLiquid::contents(std::uint8_t *out) const
 double FixMdanimLiquid::memory_usage()
 {
   return 3.0 * automaton->cells.content.size() + solid.size() * (1.0 + 2.0 * sizeof(int)) +
-      columns() * (2.0 * sizeof(double) + 1.0) + watched.capacity() * sizeof(int) +
-      wet.capacity() * sizeof(Wet);
+         columns() * (2.0 * sizeof(double) + 1.0) + watched.capacity() * sizeof(int) + wet.capacity() * sizeof(Wet);
 }
 
 // --- state ---
@@ -939,8 +908,7 @@ struct StateHead {
 std::vector<std::uint8_t> FixMdanimLiquid::state()
 {
   const Cells &cells = automaton->cells;
-  StateHead head{STATE_VERSION, cells.nx, cells.ny, cells.nz, units, swept,
-                 waited,        calm,     travel,   crossed,  0.0,   0.0};
+  StateHead head{STATE_VERSION, cells.nx, cells.ny, cells.nz, units, swept, waited, calm, travel, crossed, 0.0, 0.0};
   MPI_Allreduce(&work, &head.work, 1, MPI_DOUBLE, MPI_SUM, world);
   MPI_Allreduce(&lost, &head.lost, 1, MPI_DOUBLE, MPI_SUM, world);
   const std::size_t heights = height.size() * sizeof(double);
@@ -963,22 +931,19 @@ std::string FixMdanimLiquid::set_state(const std::uint8_t *bytes, std::size_t si
   memcpy(&head, bytes, sizeof head);
   if (head.version != STATE_VERSION)
     return fmt::format("the liquid's state has version {}, {} is needed", head.version, STATE_VERSION);
-  if (head.nx != cells.nx || head.ny != cells.ny || head.nz != cells.nz ||
-      size != sizeof head + heights + solid.size())
-    return fmt::format("the liquid's state is of a grid of {} x {} x {} cells, this one has {} x {} x {}",
-                       head.nx, head.ny, head.nz, cells.nx, cells.ny, cells.nz);
+  if (head.nx != cells.nx || head.ny != cells.ny || head.nz != cells.nz || size != sizeof head + heights + solid.size())
+    return fmt::format("the liquid's state is of a grid of {} x {} x {} cells, this one has {} x {} x {}", head.nx, head.ny,
+                       head.nz, cells.nx, cells.ny, cells.nz);
   // A byte of the grid is what a cell holds, or a code.
   const std::uint8_t *content = bytes + sizeof head + heights;
   std::int64_t held = 0;
   for (std::size_t c = 0; c < solid.size(); ++c) {
     if (content[c] >= STILL_CODE) continue;
-    if (content[c] > Cells::FULLEST)
-      return fmt::format("the liquid's state is damaged: a cell holds {}", content[c]);
+    if (content[c] > Cells::FULLEST) return fmt::format("the liquid's state is damaged: a cell holds {}", content[c]);
     held += content[c];
   }
   if (held != head.units)
-    return fmt::format("the liquid's state is damaged: it holds {} units of liquid, not {}", held,
-                       head.units);
+    return fmt::format("the liquid's state is damaged: it holds {} units of liquid, not {}", held, head.units);
   units = head.units;
   swept = head.swept;
   waited = head.waited;

@@ -5,13 +5,13 @@
 #ifndef LMP_FIX_MDANIM_LIQUID_H
 #define LMP_FIX_MDANIM_LIQUID_H
 
-#include "liquid/automaton.h"
-#include "fix.h"
 #include "engine/guest.h"
+#include "fix.h"
+#include "laws/vec3.h"
+#include "liquid/automaton.h"
 #include "liquid/level.h"
 #include "liquid/occupancy.h"
 #include "styles/particle_value.h"
-#include "laws/vec3.h"
 
 #include <cstdint>
 #include <memory>
@@ -103,7 +103,7 @@ class FixMdanimLiquid : public Fix, public mdanim::Guest {
   double rho, g = -1.0, volume_asked = -1.0, level_asked = 0.0;
   bool has_level = false;
   Model model = Model::SURFACE;
-  int sweeps = 0;    // per update; 0 chooses by how far solids have travelled
+  int sweeps = 0;          // per update; 0 chooses by how far solids have travelled
   int every = 4;           // steps between looks whether an update is due:
   double stride = 0.25;    // that solids travel between updates, in cells
   double period = 0.06;    // between updates while the liquid is not level, in sqrt(cell/g)
@@ -125,13 +125,13 @@ class FixMdanimLiquid : public Fix, public mdanim::Guest {
 
   // state
   bool poured = false;
-  bool calm = false;                // all is level and no solid has moved since: nothing to do
-  double crossed = 0.0;             // by a shallow-water wave since liquid was last levelled, in cells
-  double travel = 0.0;              // of the fastest particle near the liquid since the last update, in cells
-  std::int64_t waited = 0;          // steps since the last update
-  std::int64_t swept = 0;           // sweeps so far
-  std::int64_t units = 0;           // cells of liquid at the start
-  double work = 0.0, lost = 0.0;    // on this rank
+  bool calm = false;                  // all is level and no solid has moved since: nothing to do
+  double crossed = 0.0;               // by a shallow-water wave since liquid was last levelled, in cells
+  double travel = 0.0;                // of the fastest particle near the liquid since the last update, in cells
+  std::int64_t waited = 0;            // steps since the last update
+  std::int64_t swept = 0;             // sweeps so far
+  std::int64_t units = 0;             // cells of liquid at the start
+  double work = 0.0, lost = 0.0;      // on this rank
   std::vector<double> height, eta;    // of the columns, in cells above the floor; see level.h, surface.h
 
   // what follows from it
@@ -146,7 +146,7 @@ class FixMdanimLiquid : public Fix, public mdanim::Guest {
   std::vector<Wet> wet;
   std::vector<Face> faces;                    // of the watched particles
   std::vector<int> face_of, face_of_first;    // those of watched[n]: face_of[face_of_first[n]] …
-  bigint asked = -1;    // step for which it is known
+  bigint asked = -1;                          // step for which it is known
   bool is_due = false;
   double last_power = 0.0, last_loss = 0.0;
   double automaton_seconds = 0.0, occupancy_seconds = 0.0, coupling_seconds = 0.0;

@@ -22,7 +22,7 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
-static constexpr double MOST = 65536.0;    // times half the skin that are looked ahead
+static constexpr double MOST = 65536.0;        // times half the skin that are looked ahead
 static constexpr double ANY_DEPTH = 1.0e20;    // as large as LAMMPS's INF
 
 // fix ID group mdanim/wall REGION k
@@ -43,18 +43,14 @@ FixMdanimWall::FixMdanimWall(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg,
   if (narg > 5) error->all(FLERR, 5, "fix mdanim/wall: region and k are all it takes, got also {}", arg[5]);
   region_id = arg[3];
   region = domain->get_region_by_id(region_id);
-  if (!region)
-    error->all(FLERR, 3, "fix mdanim/wall: there is no region {}; make it before this fix", arg[3]);
+  if (!region) error->all(FLERR, 3, "fix mdanim/wall: there is no region {}; make it before this fix", arg[3]);
   if (region->openflag)
-    error->all(
-        FLERR, 3,
-        "fix mdanim/wall: region {} has open faces, it has no inside; use INF for a face that shall not "
-        "be there",
-        arg[3]);
-  if (strcmp(region->style, "union") == 0 || strcmp(region->style, "intersect") == 0)
     error->all(FLERR, 3,
-               "fix mdanim/wall: region style {} cannot tell its nearest surface; use one fix per part",
-               region->style);
+               "fix mdanim/wall: region {} has open faces, it has no inside; use INF for a face that shall not "
+               "be there",
+               arg[3]);
+  if (strcmp(region->style, "union") == 0 || strcmp(region->style, "intersect") == 0)
+    error->all(FLERR, 3, "fix mdanim/wall: region style {} cannot tell its nearest surface; use one fix per part", region->style);
   for (const char *known : {"block", "cone", "cylinder", "ellipsoid", "plane", "prism", "sphere"})
     convex = convex || strcmp(region->style, known) == 0;
   stiffness = ParticleValue(lmp, "fix mdanim/wall: k", 4, arg[4]);
@@ -70,8 +66,7 @@ void FixMdanimWall::init()
   if (!region) error->all(FLERR, "fix {} mdanim/wall: region {} has been deleted", id, region_id);
   stiffness.init(lmp);
   // Lists are then rebuilt as soon as a particle has moved by half the skin.
-  watching =
-      !region->dynamic_check() && neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once;
+  watching = !region->dynamic_check() && neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once;
 }
 
 // Whether x lies outside the region's own side, and if so the vector to it from the nearest point of the
@@ -83,8 +78,7 @@ bool FixMdanimWall::behind(const Vec3 &x, Vec3 &d)
   region->interior = !region->interior;
   const int contacts = region->surface(x.x, x.y, x.z, ANY_DEPTH);
   region->interior = !region->interior;
-  if (contacts == 0)
-    return false;    // on the surface itself, or on an axis or centre, where no point is the nearest
+  if (contacts == 0) return false;    // on the surface itself, or on an axis or centre, where no point is the nearest
   const Region::Contact *nearest = region->contact;
   for (int n = 1; n < contacts; ++n)
     if (region->contact[n].r < nearest->r) nearest = &region->contact[n];

@@ -6,10 +6,10 @@
 #define LMP_FIX_MDANIM_WALL_H
 
 #include "engine/boxes.h"
-#include "fix.h"
 #include "engine/guest.h"
-#include "styles/particle_value.h"
+#include "fix.h"
 #include "laws/vec3.h"
+#include "styles/particle_value.h"
 
 #include <string>
 #include <vector>

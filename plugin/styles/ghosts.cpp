@@ -33,8 +33,8 @@ void Ghosts::survey(MPI_Comm world, const std::vector<Home> &home, const Blocks 
     want[next[home[g].rank]++] = home[g].index;
     of_rank(home[g].rank)->heard.push_back(blocks.ghost_places()[g]);
   }
-  MPI_Alltoallv(want.data(), asks.data(), ask_from.data(), MPI_INT,
-                wanted.data(), asked.data(), asked_from.data(), MPI_INT, world);
+  MPI_Alltoallv(want.data(), asks.data(), ask_from.data(), MPI_INT, wanted.data(), asked.data(), asked_from.data(), MPI_INT,
+                world);
   for (Rank &other : others)
     for (int k = asked_from[other.rank]; k < asked_from[other.rank + 1]; ++k) other.told.push_back(blocks.place_of(wanted[k]));
 }
@@ -63,7 +63,7 @@ std::size_t Ghosts::bytes() const
   std::size_t sum = 0;
   for (const Rank &other : others)
     sum += (other.told.capacity() + other.heard.capacity()) * sizeof(int) +
-        (other.out.capacity() + other.in.capacity()) * sizeof(double);
+           (other.out.capacity() + other.in.capacity()) * sizeof(double);
   return sum;
 }
 

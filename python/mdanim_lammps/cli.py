@@ -28,25 +28,41 @@ app = App(
     version_flags=["--version"],
 )
 
-Set = Annotated[tuple[str, ...],
-                Parameter(name="--set", help="Override a 'let': --set NAME=VALUE.", negative=(), consume_multiple=False)]
-Accuracy = Annotated[Literal["preview", "balanced", "reference"] | None,
-                     Parameter(help="Cells across the thinnest part: 2, 4, 8; time step 0.7, 0.5, 0.25 of the bound.")]
+Set = Annotated[
+    tuple[str, ...], Parameter(name="--set", help="Override a 'let': --set NAME=VALUE.", negative=(), consume_multiple=False)
+]
+Accuracy = Annotated[
+    Literal["preview", "balanced", "reference"] | None,
+    Parameter(help="Cells across the thinnest part: 2, 4, 8; time step 0.7, 0.5, 0.25 of the bound."),
+]
 Strict = Annotated[bool, Parameter(negative=(), help="Bare numbers need a unit.")]
 AllowUnstable = Annotated[bool, Parameter(negative=(), help="Insist on a time step above the certified bound.")]
 Quiet = Annotated[bool, Parameter(name=["-q", "--quiet"], negative=(), help="Print errors only.")]
 Verbose = Annotated[bool, Parameter(name=["-v", "--verbose"], negative=(), help="Print every effect with its reason.")]
 Out = Annotated[Path | None, Parameter(name=["-o", "--out"], help="Output folder; default SCENE.out beside the scene.")]
 Executors = Annotated[int, Parameter(name=["-n", "--executors"], help="Processes that simulate; one more supervises them.")]
-Control = Annotated[Literal["central", "peers"] | None,
-                    Parameter(help="Who assigns objects to executors: the supervisor, or each the same.")]
+Control = Annotated[
+    Literal["central", "peers"] | None, Parameter(help="Who assigns objects to executors: the supervisor, or each the same.")
+]
 Force = Annotated[bool, Parameter(negative=(), help="Overwrite an output folder of an earlier run.")]
 
 
 @app.default
-def run(scene: Path, /, *, executors: Executors = 1, out: Out = None, control: Control = None, accuracy: Accuracy = None,
-        set_: Set = (), force: Force = False, movie: bool = True, allow_unstable: AllowUnstable = False, quiet: Quiet = False,
-        verbose: Verbose = False) -> None:
+def run(
+    scene: Path,
+    /,
+    *,
+    executors: Executors = 1,
+    out: Out = None,
+    control: Control = None,
+    accuracy: Accuracy = None,
+    set_: Set = (),
+    force: Force = False,
+    movie: bool = True,
+    allow_unstable: AllowUnstable = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
     """Check, build and run a scene; leave a movie, a trajectory and a summary.
 
     Parameters
@@ -71,8 +87,17 @@ def run(scene: Path, /, *, executors: Executors = 1, out: Out = None, control: C
 
 
 @app.command
-def check(scene: Path, /, *, executors: Executors = 1, set_: Set = (), accuracy: Accuracy = None, strict: Strict = False,
-          allow_unstable: AllowUnstable = False, format: Literal["text", "json"] = "text") -> None:
+def check(
+    scene: Path,
+    /,
+    *,
+    executors: Executors = 1,
+    set_: Set = (),
+    accuracy: Accuracy = None,
+    strict: Strict = False,
+    allow_unstable: AllowUnstable = False,
+    format: Literal["text", "json"] = "text",
+) -> None:
     """Say what a scene calls for and certify its time step; nothing is run.
 
     Parameters
@@ -87,7 +112,15 @@ def check(scene: Path, /, *, executors: Executors = 1, set_: Set = (), accuracy:
     from .driver.forecast import forecast
     from .driver.prospect import prospect
     from .report import (
-        certificate_line, check_json, effect_line, forecast_line, output_line, prospect_lines, scene_lines, who_line)
+        certificate_line,
+        check_json,
+        effect_line,
+        forecast_line,
+        output_line,
+        prospect_lines,
+        scene_lines,
+        who_line,
+    )
 
     _check_executors(executors)
     record = _with_accuracy(_load(scene, set_, strict=strict), accuracy)
@@ -116,8 +149,18 @@ def check(scene: Path, /, *, executors: Executors = 1, set_: Set = (), accuracy:
 
 
 @app.command
-def build(scene: Path, /, *, out: Out = None, set_: Set = (), accuracy: Accuracy = None, force: Force = False,
-          allow_unstable: AllowUnstable = False, quiet: Quiet = False, verbose: Verbose = False) -> None:
+def build(
+    scene: Path,
+    /,
+    *,
+    out: Out = None,
+    set_: Set = (),
+    accuracy: Accuracy = None,
+    force: Force = False,
+    allow_unstable: AllowUnstable = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> None:
     """Write data.NAME and in.NAME only; 'lmp -in in.NAME' then runs without Python.
 
     Parameters
@@ -136,8 +179,16 @@ def build(scene: Path, /, *, out: Out = None, set_: Set = (), accuracy: Accuracy
 
 
 @app.command
-def resume(folder: Path, /, *, executors: Executors = 1, control: Control = None, movie: bool = True,
-           allow_unstable: AllowUnstable = False, quiet: Quiet = False) -> None:
+def resume(
+    folder: Path,
+    /,
+    *,
+    executors: Executors = 1,
+    control: Control = None,
+    movie: bool = True,
+    allow_unstable: AllowUnstable = False,
+    quiet: Quiet = False,
+) -> None:
     """Go on from the last checkpoint of an output folder, as if it had never stopped.
 
     Parameters
@@ -160,10 +211,17 @@ def resume(folder: Path, /, *, executors: Executors = 1, control: Control = None
 
 
 @app.command
-def render(folder: Path, /, *, size: tuple[int, int] | None = None, fps: float | None = None,
-           out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
-           frames: Annotated[bool, Parameter(negative=())] = False,
-           scene: Path | None = None, quiet: Quiet = False) -> None:
+def render(
+    folder: Path,
+    /,
+    *,
+    size: tuple[int, int] | None = None,
+    fps: float | None = None,
+    out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
+    frames: Annotated[bool, Parameter(negative=())] = False,
+    scene: Path | None = None,
+    quiet: Quiet = False,
+) -> None:
     """Draw the movie of an output folder again, with another size, rate or camera.
 
     Parameters
@@ -210,8 +268,10 @@ def timeline(folder: Path, /, *, out: Annotated[Path | None, Parameter(name=["-o
 
     scene = _stored_scene(folder)
     if not (folder / TIMELINE).exists():
-        raise RefusedError(f"{folder} was simulated by one process, so there is no {TIMELINE}; "
-                           "executors are asked for with -n: mdanim-lammps SCENE -n 2")
+        raise RefusedError(
+            f"{folder} was simulated by one process, so there is no {TIMELINE}; "
+            "executors are asked for with -n: mdanim-lammps SCENE -n 2"
+        )
     path = out or folder / "timeline.png"
     draw(Timeline.read(folder), path, scene.title or scene.name)
     print(f"picture  {path}")
@@ -237,8 +297,18 @@ def compare(a: Path, b: Path, /) -> None:
 
 
 @app.command
-def study(scene: Path, /, *, budget: str = "2 min", out: Out = None, ladders: Annotated[str, Parameter(name="--ladders")] = "",
-          set_: Set = (), accuracy: Accuracy = None, force: Force = False, quiet: Quiet = False) -> None:
+def study(
+    scene: Path,
+    /,
+    *,
+    budget: str = "2 min",
+    out: Out = None,
+    ladders: Annotated[str, Parameter(name="--ladders")] = "",
+    set_: Set = (),
+    accuracy: Accuracy = None,
+    force: Force = False,
+    quiet: Quiet = False,
+) -> None:
     """What accuracy costs in time: ladders of settings around the scene's own, measured, with a table, a plot and advice.
 
     Points that were measured before are not measured again: the same command goes on where it was stopped.
@@ -273,6 +343,7 @@ def study(scene: Path, /, *, budget: str = "2 min", out: Out = None, ladders: An
 
 
 # --- what the commands share ------------------------------------------------------------------------------------------
+
 
 def _load(path: Path, overrides: tuple[str, ...], *, strict: bool = False):
     from .scene.parse import load_scene
@@ -323,7 +394,7 @@ def _prepare_record(scene, *, allow_unstable: bool):
 def _lmp() -> str:
     """How a shell calls the LAMMPS that is installed beside this program: by its name where that finds this one."""
     beside, found = Path(sys.executable).parent / "lmp", shutil.which("lmp")
-    return "lmp" if not beside.exists() or found and beside.samefile(found) else shlex.quote(str(beside))
+    return "lmp" if not beside.exists() or (found and beside.samefile(found)) else shlex.quote(str(beside))
 
 
 def _check_executors(executors: int) -> None:
@@ -354,8 +425,13 @@ def _stored_scene(folder: Path):
     from .results.files import MARK, read_json
 
     if not (folder / MARK).is_file():
-        what = ("has no run in it" if folder.is_dir() else
-                "is a file, not the output folder of a run" if folder.exists() else "does not exist")
+        what = (
+            "has no run in it"
+            if folder.is_dir()
+            else "is a file, not the output folder of a run"
+            if folder.exists()
+            else "does not exist"
+        )
         raise OutputError(f"{folder} {what}; name the folder that a run has written, NAME.out beside NAME.txt or what -o said")
     manifest = read_json(folder / "manifest.json")
     scene = _load(folder / "scene.lock.txt", ())
@@ -421,8 +497,13 @@ def _render(folder: Path, scene, path: Path, *, quiet: bool, **options) -> None:
     start = time.perf_counter()
     try:
         with _bar("movie", quiet) as bar:
-            render_movie(folder, scene.render, path, **options, progress=lambda done, total: bar(
-                done, total, movie_line(done, total, time.perf_counter() - start)))
+            render_movie(
+                folder,
+                scene.render,
+                path,
+                **options,
+                progress=lambda done, total: bar(done, total, movie_line(done, total, time.perf_counter() - start)),
+            )
     except KeyboardInterrupt:
         print(f"the movie was interrupted, the run is complete; draw it with: mdanim-lammps render {folder}", file=sys.stderr)
         raise SystemExit(ExitCode.INTERRUPTED) from None
@@ -446,11 +527,13 @@ class _bar:
             return self._line
         narrow = console.width < 120  # what does not fit is cut off at the end, not the bar
         columns = [Column(no_wrap=True, min_width=width) for width in (8, 10 if narrow else 24, 4)]
-        self.progress = Progress(TextColumn(f"{self.name:<8}", table_column=columns[0]),
-                                 BarColumn(bar_width=10 if narrow else 24, table_column=columns[1]),
-                                 TaskProgressColumn(table_column=columns[2]),
-                                 TextColumn("{task.description}", table_column=Column(no_wrap=True, overflow="ellipsis")),
-                                 console=console)
+        self.progress = Progress(
+            TextColumn(f"{self.name:<8}", table_column=columns[0]),
+            BarColumn(bar_width=10 if narrow else 24, table_column=columns[1]),
+            TaskProgressColumn(table_column=columns[2]),
+            TextColumn("{task.description}", table_column=Column(no_wrap=True, overflow="ellipsis")),
+            console=console,
+        )
         self.progress.start()
         self.task = self.progress.add_task("", total=None)
         return lambda done, total, text: self.progress.update(self.task, completed=done, total=total, description=text)
@@ -497,8 +580,10 @@ def main(argv: list[str] | None = None) -> None:
         if debug:
             raise
         told = str(error)
-        print(told if told.startswith("error: ") or ": error: " in told.split("\n")[0] else f"mdanim-lammps: error: {told}",
-              file=sys.stderr)
+        print(
+            told if told.startswith("error: ") or ": error: " in told.split("\n")[0] else f"mdanim-lammps: error: {told}",
+            file=sys.stderr,
+        )
         raise SystemExit(error.exit_code) from None
     except KeyboardInterrupt:
         print("mdanim-lammps: interrupted", file=sys.stderr)

@@ -38,8 +38,12 @@ def scene_lines(ready: Prepared) -> list[str]:
     off = [f"{', '.join(names)} ({reason})" for reason, names in reasons.items()]
     file = ready.scene.path.name if ready.scene.path else ready.scene.name
     title = f"'{ready.scene.title}'  " if ready.scene.title else ""
-    return [f"scene    {file}  {title}{count(len(ready.system.names), 'object')} ({count(ready.system.particles, 'particle')})"
-            f"{_liquid(ready)}", *_listed("effects: ", on or ["none"]), *_listed("off: ", off)]
+    return [
+        f"scene    {file}  {title}{count(len(ready.system.names), 'object')} ({count(ready.system.particles, 'particle')})"
+        f"{_liquid(ready)}",
+        *_listed("effects: ", on or ["none"]),
+        *_listed("off: ", off),
+    ]
 
 
 def _listed(head: str, items: list[str]) -> list[str]:
@@ -67,9 +71,11 @@ def size_line(scene: Scene) -> str | None:
     plan = plan_spacing(scene)
     if plan.total < LARGE:
         return None
-    return (f"size     about {number(plan.total / 1e6, 2)} million particles, spacing {say(plan.h, 'm')} set by {plan.set_by}: "
-            f"{number(plan.memory * 1e-9, 2)} GB of {number(plan.available * 1e-9, 2)} GB free, "
-            f"about {_about(MODELLING * plan.total)} of modelling")
+    return (
+        f"size     about {number(plan.total / 1e6, 2)} million particles, spacing {say(plan.h, 'm')} set by {plan.set_by}: "
+        f"{number(plan.memory * 1e-9, 2)} GB of {number(plan.available * 1e-9, 2)} GB free, "
+        f"about {_about(MODELLING * plan.total)} of modelling"
+    )
 
 
 def _liquid(ready: Prepared) -> str:
@@ -109,8 +115,10 @@ def progress_line(p: Progress) -> str:
     each = p.seconds / max(1, p.step - p.first_step)
     left = each * (p.steps - p.step)
     liquid = "" if p.gained is None else f"liquid residual {p.gained}  "
-    return (f"t={p.time:.2f} s  step {p.step}/{p.steps}  energy residual {number(p.residual, 2)}  {liquid}"
-            f"{1e3 * each:.2f} ms/step  {left:.0f} s left")
+    return (
+        f"t={p.time:.2f} s  step {p.step}/{p.steps}  energy residual {number(p.residual, 2)}  {liquid}"
+        f"{1e3 * each:.2f} ms/step  {left:.0f} s left"
+    )
 
 
 def movie_line(done: int, total: int, seconds: float) -> str:
@@ -141,8 +149,11 @@ def prospect_lines(p: Prospect) -> list[str]:
     if p.faster > 0.9 * p.executors:
         return [f"{MARGIN}{when} of the film {faster}"]
     work = "all" if p.share > 0.995 else f"{100.0 * p.share:.0f} %"
-    what = f"one object is {work} of the work" if p.largest == 1 else (
-        f"{p.largest} of {p.objects} objects, {work} of the work, are near each other and run together")
+    what = (
+        f"one object is {work} of the work"
+        if p.largest == 1
+        else (f"{p.largest} of {p.objects} objects, {work} of the work, are near each other and run together")
+    )
     team = f", on {number(p.team, 2)} executors at once" if p.team > 1.0 else ""
     return [f"{MARGIN}{when} of the film {faster}:", f"{MARGIN}{what}{team}"]
 
@@ -150,10 +161,12 @@ def prospect_lines(p: Prospect) -> list[str]:
 def spread_line(timeline: Timeline, folder: Path) -> str:
     """One line: what a run on several executors did, and how to see it."""
     again = sum(timeline.retries)
-    return (f"spread   {count(timeline.executors, 'executor')}, {timeline.control}: "
-            f"{count(sum(timeline.moves), 'object')} moved, {count(again, 'window')} begun again, "
-            f"busy {100 * timeline.busy().mean():.0f} %   "
-            f"picture: mdanim-lammps timeline {folder}")
+    return (
+        f"spread   {count(timeline.executors, 'executor')}, {timeline.control}: "
+        f"{count(sum(timeline.moves), 'object')} moved, {count(again, 'window')} begun again, "
+        f"busy {100 * timeline.busy().mean():.0f} %   "
+        f"picture: mdanim-lammps timeline {folder}"
+    )
 
 
 def forecast_line(cost: Cost) -> str:
@@ -177,15 +190,17 @@ def check_json(ready: Prepared, forecast: Cost | None = None, prospect: Prospect
     and what executors will bring (driver/prospect.py)."""
     return {
         "scene": str(ready.scene.path) if ready.scene.path else ready.scene.name,
-        "objects": [{"name": m.name, "particles": len(m.position), "springs": len(m.spring), "cell": list(m.cell)}
-                    for m in ready.models],
-        "liquid": None if ready.plan.grid is None else {
-            "name": ready.scene.liquid.name, "cells": list(ready.plan.grid.shape), "cell": list(ready.plan.grid.cell)},
-        "effects": {v.name: {"on": v.on, "reason": v.reason, "place": str(v.span) if v.span else None}
-                    for v in ready.verdicts.values()},
+        "objects": [
+            {"name": m.name, "particles": len(m.position), "springs": len(m.spring), "cell": list(m.cell)} for m in ready.models
+        ],
+        "liquid": None
+        if ready.plan.grid is None
+        else {"name": ready.scene.liquid.name, "cells": list(ready.plan.grid.shape), "cell": list(ready.plan.grid.cell)},
+        "effects": {
+            v.name: {"on": v.on, "reason": v.reason, "place": str(v.span) if v.span else None} for v in ready.verdicts.values()
+        },
         "certificate": ready.certificate.to_json(),
         "cost": None if forecast is None else forecast.to_json(),
         "spread": None if prospect is None else asdict(prospect),
-        "warnings": [{"message": w.message, "hint": w.hint, "place": str(w.span) if w.span else None}
-                     for w in ready.warnings],
+        "warnings": [{"message": w.message, "hint": w.hint, "place": str(w.span) if w.span else None} for w in ready.warnings],
     }

@@ -33,12 +33,10 @@ if __name__ == "__main__":
     write_obj("two-parts.obj", points + more, faces + [tuple(i + 8 for i in f) for f in other])
     write_obj("fin.obj", [*points, (5, 5, 5)], [*faces, (0, 1, 8)])
     # Two blocks joined by a neck of 0.2 that runs beside the middle, where rows of coarse cells miss it.
-    outline = [(0, 0), (3, 0), (3, 1.6), (4.3, 1.6), (4.3, 0), (7.3, 0),
-               (7.3, 3), (4.3, 3), (4.3, 1.8), (3, 1.8), (3, 3), (0, 3)]
+    outline = [(0, 0), (3, 0), (3, 1.6), (4.3, 1.6), (4.3, 0), (7.3, 0), (7.3, 3), (4.3, 3), (4.3, 1.8), (3, 1.8), (3, 3), (0, 3)]
     n = len(outline)
     sides = [(k, (k + 1) % n, n + (k + 1) % n, n + k) for k in range(n)]
-    write_obj("dumbbell.obj", [(*p, z) for z in (0, 3) for p in outline],
-              [tuple(range(n))[::-1], tuple(range(n, 2 * n)), *sides])
+    write_obj("dumbbell.obj", [(*p, z) for z in (0, 3) for p in outline], [tuple(range(n))[::-1], tuple(range(n, 2 * n)), *sides])
     u = np.linspace(0, 2 * np.pi, 90, endpoint=False)
     x, y, z = np.sin(u) + 2 * np.sin(2 * u), np.cos(u) - 2 * np.cos(2 * u), -np.sin(3 * u)
     centre = np.stack([x, y, z], axis=1) * 20
@@ -50,6 +48,7 @@ if __name__ == "__main__":
     v = np.linspace(0, 2 * np.pi, 12, endpoint=False)
     tube = centre[:, None] + 8 * (np.cos(v)[:, None] * side[:, None] + np.sin(v)[:, None] * up[:, None])
     i, j = np.meshgrid(np.arange(90), np.arange(12), indexing="ij")
+
     def at(i, j):
         return (i % 90) * 12 + j % 12
 

@@ -10,9 +10,11 @@ import numpy as np
 import plugin_lab as lab
 import plugin_path
 
-EXACT = lab.join(lab.shaken(lab.block((10, 3, 2)), 0.03),
-                 lab.shaken(lab.block((3, 3, 2), (11.4, 0.6, 0.3), (-0.1, 0.0, 0.0)), 0.03, 2),
-                 lab.shaken(lab.block((2, 2, 2), (4.0, 4.4, 0.3), (0.0, -0.1, 0.0)), 0.03, 4))
+EXACT = lab.join(
+    lab.shaken(lab.block((10, 3, 2)), 0.03),
+    lab.shaken(lab.block((3, 3, 2), (11.4, 0.6, 0.3), (-0.1, 0.0, 0.0)), 0.03, 2),
+    lab.shaken(lab.block((2, 2, 2), (4.0, 4.4, 0.3), (0.0, -0.1, 0.0)), 0.03, 4),
+)
 BODIES = replace(EXACT, r0=EXACT.r0.round(3))
 """Molecule 1 is a beam that reaches over ranks, 2 and 3 are blocks that near its end and its side; springs of five types."""
 STEPS = 40
@@ -22,8 +24,12 @@ RUN, RUN_ON = f"run {STEPS}", f"run {STEPS} pre no"
 def twice(body: lab.Body, every: int, k: float, r0: float) -> lab.Body:
     """The same body with a second spring beside every n-th one, of another type."""
     more = body.bond[::every]
-    return replace(body, bond=np.concatenate([body.bond, more]), k=np.concatenate([body.k, np.full(len(more), k)]),
-                   r0=np.concatenate([body.r0, np.full(len(more), r0)]))
+    return replace(
+        body,
+        bond=np.concatenate([body.bond, more]),
+        k=np.concatenate([body.k, np.full(len(more), k)]),
+        r0=np.concatenate([body.r0, np.full(len(more), r0)]),
+    )
 
 
 DOUBLED = twice(twice(BODIES, 3, 0.07, 1.1), 5, 0.03, 0.9)
@@ -58,14 +64,32 @@ CASES = {
     "set bond": Case(("group g id 20:90", "set group g bond 1", RUN, RUN_ON)),
     # Every third particle of the beam is another object's, and then the beam is whole again.
     "set mol": Case(("group g id 1:130:3", "set group g mol 4", RUN, "set group g mol 1", RUN)),
-    "create_bonds": Case((f"create_bonds single/bond 1 {tag(1, (10, 1, 1))} {tag(2, (11.4, 1.2, 1))} special no",
-                          f"create_bonds single/bond 2 {tag(1, (4, 3, 1))} {tag(3, (4, 4.4, 1))}", RUN, RUN_ON)),
+    "create_bonds": Case(
+        (
+            f"create_bonds single/bond 1 {tag(1, (10, 1, 1))} {tag(2, (11.4, 1.2, 1))} special no",
+            f"create_bonds single/bond 2 {tag(1, (4, 3, 1))} {tag(3, (4, 4.4, 1))}",
+            RUN,
+            RUN_ON,
+        )
+    ),
     # Wants a pair style, and pairs with a spring left out of its lists.
-    "create_bonds many": Case(("pair_style zero 2.5", "pair_coeff * *", "special_bonds lj/coul 0 1 1", "group a molecule 1",
-                               "group b molecule 2 3", "create_bonds many a b 1 0.5 1.5", "pair_style none",
-                               "special_bonds lj/coul 1 1 1", RUN, RUN_ON)),
+    "create_bonds many": Case(
+        (
+            "pair_style zero 2.5",
+            "pair_coeff * *",
+            "special_bonds lj/coul 0 1 1",
+            "group a molecule 1",
+            "group b molecule 2 3",
+            "create_bonds many a b 1 0.5 1.5",
+            "pair_style none",
+            "special_bonds lj/coul 1 1 1",
+            RUN,
+            RUN_ON,
+        )
+    ),
     "create_bonds within": Case(
-        (f"create_bonds single/bond 1 {tag(2, (11.4, 0.6, 0.3))} {tag(2, (12.4, 1.6, 1.3))}", RUN, RUN_ON)),
+        (f"create_bonds single/bond 1 {tag(2, (11.4, 0.6, 0.3))} {tag(2, (12.4, 1.6, 1.3))}", RUN, RUN_ON)
+    ),
     "set mass": Case(("group g id 20:90", "set group g mass 1.7", RUN, RUN_ON)),
     "bond_coeff": Case(("bond_coeff 1 0.2 1.05", RUN, RUN_ON)),
     "second springs": Case((RUN,), DOUBLED),
@@ -92,10 +116,21 @@ def film(case: Case, style: str, folder: Path, comm=None) -> tuple[np.ndarray, n
     library.mdanim_passes.restype = ctypes.c_longlong
     passes, states = [0], []
     for command in [
-            *lab.prelude(), f"read_data {data} fix model NULL Model extra/bond/per/atom 8 extra/special/per/atom 60",
-            "mass * 1.0", *lab.springs(case.body), "group inner type 1", "group boundary type 2",
-            "fix pull all mdanim/gravity 0.001 -0.002 0.003", "fix contact all mdanim/barrier boundary inner 0.8 1.3",
-            "fix run all mdanim/leapfrog", "timestep 0.2", "thermo 1000", f"run_style {style}", RUN, *case.changes]:
+        *lab.prelude(),
+        f"read_data {data} fix model NULL Model extra/bond/per/atom 8 extra/special/per/atom 60",
+        "mass * 1.0",
+        *lab.springs(case.body),
+        "group inner type 1",
+        "group boundary type 2",
+        "fix pull all mdanim/gravity 0.001 -0.002 0.003",
+        "fix contact all mdanim/barrier boundary inner 0.8 1.3",
+        "fix run all mdanim/leapfrog",
+        "timestep 0.2",
+        "thermo 1000",
+        f"run_style {style}",
+        RUN,
+        *case.changes,
+    ]:
         lmp.command(command)
         if command.startswith("run "):
             passes.append(library.mdanim_passes(ctypes.c_void_p(getattr(lmp.lmp, "value", lmp.lmp))))

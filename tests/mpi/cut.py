@@ -5,11 +5,10 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from mpi4py import MPI
-
 from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.scene.parse import load_scene
+from mpi4py import MPI
 
 comm = MPI.COMM_WORLD
 plan = prepare(load_scene(Path(sys.argv[1]))).plan

@@ -5,7 +5,6 @@ import sys
 from pathlib import Path
 
 import numpy as np
-
 from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.instance import Instance, State
 from mdanim_lammps.scene.parse import load_scene
@@ -32,8 +31,11 @@ def seen(instance: Instance) -> dict[str, np.ndarray]:
     assert instance.total(len(instance.here("x"))) == plan.system.particles
     found["speed"] = instance.top_speeds()
     energies = [effect.energy(instance, plan.scene, plan.system) for effect in plan.effects]
-    return found | {"step": np.array(instance.step), "energies": np.array(energies),
-                    "depths": np.array([effect.penetration(instance, plan.system) for effect in plan.effects])}
+    return found | {
+        "step": np.array(instance.step),
+        "energies": np.array(energies),
+        "depths": np.array([effect.penetration(instance, plan.system) for effect in plan.effects]),
+    }
 
 
 def follow(path: Path, comm=None) -> dict[str, np.ndarray]:

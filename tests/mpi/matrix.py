@@ -10,8 +10,6 @@ import sys
 import time
 from pathlib import Path
 
-from mpi4py import MPI
-
 from mdanim_lammps.driver.executor import serve
 from mdanim_lammps.driver.planning import Settings
 from mdanim_lammps.driver.prepare import prepare
@@ -20,6 +18,7 @@ from mdanim_lammps.driver.supervisor import Distributed
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.timeline import Timeline
 from mdanim_lammps.scene.parse import load_scene
+from mpi4py import MPI
 
 
 def run(case: dict, ready, world) -> None:

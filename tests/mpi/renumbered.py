@@ -15,17 +15,29 @@ import plugin_path
 from mpi4py import MPI
 
 WORLD = MPI.COMM_WORLD
-BODY = lab.join(lab.shaken(lab.block((9, 3, 2), velocity=(0.9, 0.3, 0.0)), 0.05),
-                lab.block((2, 3, 3), (4.0, 6.0, 0.3), (-0.8, 0.0, 0.0)))
+BODY = lab.join(
+    lab.shaken(lab.block((9, 3, 2), velocity=(0.9, 0.3, 0.0)), 0.05), lab.block((2, 3, 3), (4.0, 6.0, 0.3), (-0.8, 0.0, 0.0))
+)
 
 
 def start(style: str, data: Path):
     """An instance at step 0."""
     lmp = plugin_path.lammps(comm=WORLD)
-    lmp.commands_list([
-        *lab.prelude(), f"read_data {data} fix model NULL Model", "mass * 1.0", *lab.springs(BODY),
-        "fix pull all mdanim/gravity 0.01 -0.02 0.03", "fix run all mdanim/leapfrog", "timestep 0.2",
-        "thermo_style custom step nbuild", "thermo 1000", f"run_style {style}", "run 0"])
+    lmp.commands_list(
+        [
+            *lab.prelude(),
+            f"read_data {data} fix model NULL Model",
+            "mass * 1.0",
+            *lab.springs(BODY),
+            "fix pull all mdanim/gravity 0.01 -0.02 0.03",
+            "fix run all mdanim/leapfrog",
+            "timestep 0.2",
+            "thermo_style custom step nbuild",
+            "thermo 1000",
+            f"run_style {style}",
+            "run 0",
+        ]
+    )
     return lmp
 
 

@@ -27,7 +27,9 @@ expect penetration.max = 0 +- 5 cm
 expect ball[5].position.z at 0.2 s = 0.5 +- 0.5 m
 """
 """Balls that fly about and meet others all the time."""
-MIXED = SHELF.replace("time 0.2 s  frames 50 fps", "time 0.12 s  frames 100 fps") + """
+MIXED = (
+    SHELF.replace("time 0.2 s  frames 50 fps", "time 0.12 s  frames 100 fps")
+    + """
 object shelf {
   shape box (40, 10, 5) cm
   position (-20, 40, 20) cm
@@ -52,10 +54,13 @@ object skimming {
   velocity (1, 0, -2) m/s
 }
 """
+)
 """Damped and dragged, thin, held at faces and as a whole, with one that lands on the rock."""
 PASSING = FLYING.split("expect")[0] + "effects { contact off }"
 """The same where nothing feels another: no island but of one."""
-RAFTS = SPLASH.replace("time 0.1 s", "time 0.24 s") + """
+RAFTS = (
+    SPLASH.replace("time 0.1 s", "time 0.24 s")
+    + """
 object buoy {
   shape box (10, 10, 7.5) cm
   position (-15, 18, 30) cm
@@ -69,8 +74,9 @@ object above {
   elasticity 100 kPa
 }
 """
+)
 """Two that fall into the liquid, one that lies in it, one that never comes near."""
-DAM = SPLASH[:SPLASH.index("object raft")] + "control { time 0.2 s  frames 50 fps  resolution 2.5 cm  seed 5 }"
+DAM = SPLASH[: SPLASH.index("object raft")] + "control { time 0.2 s  frames 50 fps  resolution 2.5 cm  seed 5 }"
 """Nothing moves but the liquid."""
 HEAVY = """
 gravity (0, 0, -9.81) m/s^2
@@ -100,7 +106,7 @@ object right { shape box (20, 20, 20) cm  position (18, 3, 0) cm   density 900  
 control { time 0.12 s  frames 200 fps  resolution 4 cm }
 """
 """Two that meet, together are too much for one executor, and part again."""
-ALONE = HEAVY[:HEAVY.index("object crumb")] + HEAVY[HEAVY.index("control"):]
+ALONE = HEAVY[: HEAVY.index("object crumb")] + HEAVY[HEAVY.index("control") :]
 """Fewer objects than executors."""
 RESTING = """
 gravity (0, 0, -9.81) m/s^2
@@ -108,8 +114,10 @@ object stone { shape box (10, 10, 10) cm  position (0, 0, 10) cm  density 2500  
 control { time 0.05 s  frames 100 fps  resolution 2.5 cm }
 """
 """Nothing moves at all."""
-HASTY = (FLYING.split("control")[0].replace("1 .. 4", "1 .. 2") +
-         "control { time 1.05 ms  frames 20000 fps  timestep 0.05 ms  resolution 5 cm }")
+HASTY = (
+    FLYING.split("control")[0].replace("1 .. 4", "1 .. 2")
+    + "control { time 1.05 ms  frames 20000 fps  timestep 0.05 ms  resolution 5 cm }"
+)
 """Frames of one step."""
 UNEVEN = FLYING.split("control")[0].replace("1 .. 4", "1 .. 3") + "control { time 0.107 s  frames 100 fps  resolution 5 cm }"
 """A last frame that is shorter than the others."""

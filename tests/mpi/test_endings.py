@@ -12,8 +12,6 @@ from pathlib import Path
 
 import plugin_path
 import pytest
-from mpi import scenes as films
-
 from mdanim_lammps.driver.launch import simulate_on
 from mdanim_lammps.driver.planning import Settings
 from mdanim_lammps.driver.prepare import prepare
@@ -23,6 +21,7 @@ from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.timeline import Timeline
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.parse import load_scene
+from mpi import scenes as films
 
 pytestmark = pytest.mark.mpi
 LONG = films.FLYING.split("expect")[0].replace("time 0.2 s", "time 30 s")
@@ -68,8 +67,13 @@ def command(*arguments: object) -> list[str]:
 def begun(place: Path, text: str, *arguments: object, frames: int = 3) -> subprocess.Popen:
     """A run from the command line that has got so far."""
     (place / "film.txt").write_text(text)
-    process = subprocess.Popen(command(place / "film.txt", "--no-movie", *arguments), env=environment(), text=True,
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    process = subprocess.Popen(
+        command(place / "film.txt", "--no-movie", *arguments),
+        env=environment(),
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
     ledger = place / "film.out" / "checkpoint"
     deadline = time.monotonic() + 30.0
     while not ledger.exists() and process.poll() is None and time.monotonic() < deadline:
@@ -92,8 +96,13 @@ def goes_on(place: Path, frame: int, *arguments: object) -> None:
     """Resume up to some frames later, and compare with the sequential film from the start."""
     folder, frame = place / "film.out", max(frame, 1)  # a film of one frame has no time
     for patience in (2.5, 6.0, 15.0):  # a busy machine may not have begun by then
-        process = subprocess.Popen(command("resume", folder, "--no-movie", *arguments), env=environment(), text=True,
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        process = subprocess.Popen(
+            command("resume", folder, "--no-movie", *arguments),
+            env=environment(),
+            text=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+        )
         time.sleep(patience)
         process.send_signal(signal.SIGINT)
         code, said = ended(process, 20.0)
@@ -108,8 +117,9 @@ def goes_on(place: Path, frame: int, *arguments: object) -> None:
     assert compare(place / "whole.out", folder).equal
 
 
-@pytest.mark.parametrize(("control", "victim"), [
-    ("central", 2), pytest.param("peers", 1, marks=pytest.mark.soak), ("central", 0)])
+@pytest.mark.parametrize(
+    ("control", "victim"), [("central", 2), pytest.param("peers", 1, marks=pytest.mark.soak), ("central", 0)]
+)
 def test_a_killed_rank_ends_the_run_within_seconds(place, control, victim):
     """One message, how to go on, and it does so; all other ranks end too."""
     process = begun(place, LONG, "-n", 2, "--control", control)
@@ -141,8 +151,13 @@ def test_ctrl_c_keeps_a_checkpoint(place, control):
 def test_ctrl_c_before_the_first_frame_is_not_forgotten(place):
     """Ask for an end while ranks are starting: the run takes it up as soon as it can."""
     (place / "film.txt").write_text(LONG)
-    process = subprocess.Popen(command(place / "film.txt", "--no-movie", "-n", 2), env=environment(), text=True,
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    process = subprocess.Popen(
+        command(place / "film.txt", "--no-movie", "-n", 2),
+        env=environment(),
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
     deadline = time.monotonic() + 20.0
     while not ranks_in(place) and time.monotonic() < deadline:
         time.sleep(0.01)
@@ -203,19 +218,36 @@ def readied(place: Path, text: str):
 def test_a_full_disk_ends_all_ranks(place, monkeypatch, control):
     """The error of the writer comes up here, whole."""
     ready, folder = readied(place, LONG)
-    faulty(place, monkeypatch, rank=0, module="results.trajectory", kind="TrajectoryWriter", method="write", time=3,
-           what="from mdanim_lammps.errors import OutputError; raise OutputError('no room: make room and resume')")
+    faulty(
+        place,
+        monkeypatch,
+        rank=0,
+        module="results.trajectory",
+        kind="TrajectoryWriter",
+        method="write",
+        time=3,
+        what="from mdanim_lammps.errors import OutputError; raise OutputError('no room: make room and resume')",
+    )
     with pytest.raises(OutputError, match="no room"):
         simulate_on(2, control, ready, folder)
 
 
-@pytest.mark.parametrize(("settings", "text"),
-                         [pytest.param({}, LONG, id="alone"), pytest.param({"least": 50}, films.HEAVY, id="in a team")])
+@pytest.mark.parametrize(
+    ("settings", "text"), [pytest.param({}, LONG, id="alone"), pytest.param({"least": 50}, films.HEAVY, id="in a team")]
+)
 def test_an_executor_that_raises_is_told(place, monkeypatch, capfd, settings, text):
     """Whatever it is, it comes up here, and others that wait for it in LAMMPS are ended."""
     ready, folder = readied(place, text)
-    faulty(place, monkeypatch, rank=2, module="driver.bundle", kind="Bundle", method="run", time=3,
-           what="raise ValueError('out of the blue')")
+    faulty(
+        place,
+        monkeypatch,
+        rank=2,
+        module="driver.bundle",
+        kind="Bundle",
+        method="run",
+        time=3,
+        what="raise ValueError('out of the blue')",
+    )
     begin = time.monotonic()
     with pytest.raises(ExecutorLost, match="executor 1: ValueError: out of the blue"):
         simulate_on(2, "peers", ready, folder, settings=Settings(**settings))
@@ -229,8 +261,16 @@ def test_a_planner_that_raises_is_told(place, monkeypatch, heard):
     ready, folder = readied(place, LONG)
     if not heard:
         monkeypatch.setenv("MDANIM_MPIEXEC", f"sh -c '{plugin_path.BIN / 'mpiexec'} \"$@\" 2>/dev/null' sh")
-    faulty(place, monkeypatch, rank=0, module="driver.planner", kind="Planner", method="decide", time=3,
-           what="raise ValueError('no plan')")
+    faulty(
+        place,
+        monkeypatch,
+        rank=0,
+        module="driver.planner",
+        kind="Planner",
+        method="decide",
+        time=3,
+        what="raise ValueError('no plan')",
+    )
     begin = time.monotonic()
     with pytest.raises(ExecutorLost, match="no plan"):
         simulate_on(2, "central", ready, folder)
@@ -240,8 +280,16 @@ def test_a_planner_that_raises_is_told(place, monkeypatch, heard):
 def test_a_rank_that_cannot_begin_is_told(place, monkeypatch):
     """Before the first frame too."""
     ready, folder = readied(place, LONG)
-    faulty(place, monkeypatch, rank=1, module="driver.executor", kind="Executor", method="_first_report", time=1,
-           what="raise MemoryError('too large')")
+    faulty(
+        place,
+        monkeypatch,
+        rank=1,
+        module="driver.executor",
+        kind="Executor",
+        method="_first_report",
+        time=1,
+        what="raise MemoryError('too large')",
+    )
     with pytest.raises(ExecutorLost, match="MemoryError: too large"):
         simulate_on(2, "central", ready, folder)
 

@@ -51,10 +51,7 @@ def broken(case: Case, found: dict[str, float]) -> list[str]:
 def block(name: str, size, position, young=1.0, density=1.0, more: str = "") -> str:
     """A cuboid; ``size`` in cells."""
     size, position = (", ".join(repr(float(a)) for a in v) for v in (size, position))
-    return (
-        f"object {name} {{ shape box ({size}) position ({position}) density {density!r} elasticity {young!r} Pa "
-        f"{more} }}\n"
-    )
+    return f"object {name} {{ shape box ({size}) position ({position}) density {density!r} elasticity {young!r} Pa {more} }}\n"
 
 
 def velocity(x=0.0, y=0.0, z=0.0) -> str:

@@ -27,15 +27,9 @@ def collide(text: str, long: bool) -> dict[str, float]:
         closing = t.velocity("a")[0] - t.velocity("b")[0]
         left, right = t.face("a", 0, 1), t.face("b", 0, -1)
         gaps = []
-        t.run_for(
-            (10 if long else 1) * (8.0 / closing + 25.0), 200, lambda: gaps.append(t.gap(left, right, 0))
-        )
+        t.run_for((10 if long else 1) * (8.0 / closing + 25.0), 200, lambda: gaps.append(t.gap(left, right, 0)))
         parting = t.velocity("b")[0] - t.velocity("a")[0]
-        return {
-            "energy drift": t.drift,
-            "overlap of the surfaces / h": -min(gaps),
-            "speed lost": 1.0 - parting / closing,
-        }
+        return {"energy drift": t.drift, "overlap of the surfaces / h": -min(gaps), "speed lost": 1.0 - parting / closing}
 
 
 def collision(name, why, drift, overlap, lost, **scene) -> Case:
@@ -60,28 +54,11 @@ CONTRASTS = [
         left=(1000.0, 1.0),
     ),
     collision(
-        "density 1:1000",
-        f"{BOUNCES}. The heavy one hardly notices",
-        1e-4,
-        0.5,
-        0.9,
-        speed=0.2,
-        cells=4,
-        left=(1.0, 1000.0),
+        "density 1:1000", f"{BOUNCES}. The heavy one hardly notices", 1e-4, 0.5, 0.9, speed=0.2, cells=4, left=(1.0, 1000.0)
     ),
+    collision("stiff and heavy, 1:1000 each", BOUNCES, 1e-4, 0.5, 0.9, speed=0.2, cells=4, left=(1000.0, 1000.0)),
     collision(
-        "stiff and heavy, 1:1000 each", BOUNCES, 1e-4, 0.5, 0.9, speed=0.2, cells=4, left=(1000.0, 1000.0)
-    ),
-    collision(
-        "stiff and light on soft and heavy",
-        BOUNCES,
-        1e-4,
-        0.5,
-        0.9,
-        speed=0.2,
-        cells=4,
-        left=(1000.0, 1.0),
-        right=(1.0, 1000.0),
+        "stiff and light on soft and heavy", BOUNCES, 1e-4, 0.5, 0.9, speed=0.2, cells=4, left=(1000.0, 1.0), right=(1.0, 1000.0)
     ),
 ]
 IMPACTS = [
@@ -246,13 +223,7 @@ TOWERS = [
         STANDS,
         "a tower must not creep. It needs air drag: lambda/m = 0.05 of sqrt(E/rho)/h here, 0.01 is the least",
     ),
-    Case(
-        "tower of 3, weak drag",
-        tower(load=0.002, drag=0.01),
-        stand,
-        STANDS,
-        "the least drag at which it stands",
-    ),
+    Case("tower of 3, weak drag", tower(load=0.002, drag=0.01), stand, STANDS, "the least drag at which it stands"),
     Case(
         "tower of 3, a quarter of a cell askew",
         tower(offset=0.25, cells=6),
@@ -312,13 +283,9 @@ def dropped(on: str):
         with Trial(text) as t:
             start, height = abs(t.velocity("b")[2]), []
             near = np.linalg.norm(t.system.position[:, :2], axis=1) < 1.5
-            upper, lower = (
-                np.flatnonzero(near & (t.system.object == t.system.names.index(n))) for n in ("b", on)
-            )
+            upper, lower = (np.flatnonzero(near & (t.system.object == t.system.names.index(n))) for n in ("b", on))
             t.run_for(
-                (10 if long else 1) * (6.0 / start + 40.0),
-                400 if long else 200,
-                lambda: height.append(t.gap(lower, upper, 2)),
+                (10 if long else 1) * (6.0 / start + 40.0), 400 if long else 200, lambda: height.append(t.gap(lower, upper, 2))
             )
             return {"energy drift": t.drift, "passed": min(height) < 0.0}
 
@@ -373,11 +340,7 @@ NEEDLES = struck("needle", (20, 1, 1), 3, (0.1, 0.8), "thin both ways: every par
 
 def crossed(speed: float) -> str:
     """Two free needles, one across the other, closing in."""
-    return (
-        block("a", (20, 1, 1), (0, 0, 0))
-        + block("b", (1, 20, 1), (0.3, 0, 2), more=velocity(z=-speed * C))
-        + CONTROL
-    )
+    return block("a", (20, 1, 1), (0, 0, 0)) + block("b", (1, 20, 1), (0.3, 0, 2), more=velocity(z=-speed * C)) + CONTROL
 
 
 CROSSED = Case(
@@ -404,11 +367,7 @@ def corner_on_corner(text: str, long: bool) -> dict[str, float]:
     with Trial(text) as t:
         start = t.velocity("b")[2]
         t.run_for((10 if long else 1) * (4.0 / abs(start) + 20.0), 200)
-        return {
-            "energy drift": t.drift,
-            "cells turned over": t.inverted(),
-            "not handed over": 1.0 - t.velocity("a")[2] / start,
-        }
+        return {"energy drift": t.drift, "cells turned over": t.inverted(), "not handed over": 1.0 - t.velocity("a")[2] / start}
 
 
 CORNERS = [

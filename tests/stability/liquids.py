@@ -18,9 +18,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import automaton_lab
 
 
-def pool(
-    density, z=16.0, level=12.0, top=20.0, speed=0.0, young=1000.0, g=0.01, turned=(0, 0, 0), drag=0.0
-) -> str:
+def pool(density, z=16.0, level=12.0, top=20.0, speed=0.0, young=1000.0, g=0.01, turned=(0, 0, 0), drag=0.0) -> str:
     """A cube of 5^3 cells over, or in, a pool of 16 x 16 cells; ``speed`` in its own wave speeds, downward; air drag lambda/m."""
     fast = speed * C * (young / density) ** 0.5
     return (
@@ -60,13 +58,7 @@ def floats(name, why="", time=3000.0, below=0.6, **scene) -> Case:
         name,
         pool(**scene),
         come_to_rest(time),
-        {
-            "immersed share": 0.02,
-            "cells of liquid": 0,
-            "speed left": 1e-3,
-            "cells turned over": 0,
-            "below the floor / h": below,
-        },
+        {"immersed share": 0.02, "cells of liquid": 0, "speed left": 1e-3, "cells turned over": 0, "below the floor / h": below},
         f"{why}Archimedes within 2 % of the side, what nodes can tell of a body of 5 cells; "
         "not a unit of liquid lost at any look",
     )
@@ -98,8 +90,10 @@ FLOATS = [
 
 def tub(amount: str, solid: str) -> str:
     """A basin of 10^3 cells."""
-    return (f"gravity (0, 0, -0.01)\nliquid water {{ basin from (0, 0, 0) m to (10, 10, 10) m density 1000 {amount} }}\n"
-            f"{solid}{CONTROL}")
+    return (
+        f"gravity (0, 0, -0.01)\nliquid water {{ basin from (0, 0, 0) m to (10, 10, 10) m density 1000 {amount} }}\n"
+        f"{solid}{CONTROL}"
+    )
 
 
 def standing(size=4, z=5.0) -> str:
@@ -143,11 +137,7 @@ FULL = [
         "liquid and what floats in it fill the basin to the cell",
     ),
     Case(
-        "one unit in a dry basin",
-        tub("volume 1", loose(3.0)),
-        keep(1),
-        KEPT,
-        "the cube lands on a floor with one cell of liquid",
+        "one unit in a dry basin", tub("volume 1", loose(3.0)), keep(1), KEPT, "the cube lands on a floor with one cell of liquid"
     ),
 ]
 
@@ -186,10 +176,7 @@ def moving_masks(text: str, long: bool) -> dict[str, float]:
                 continue
             a.displace(solid)
             a.sweep(2)
-            lost, wet = (
-                max(lost, abs(int(a.content.sum()) - units)),
-                wet + int((a.content[solid > 0] > 0).sum()),
-            )
+            lost, wet = (max(lost, abs(int(a.content.sum()) - units)), wet + int((a.content[solid > 0] > 0).sum()))
     return {"cells of liquid": lost, "solid cells with liquid": wet}
 
 

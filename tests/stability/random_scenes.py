@@ -81,8 +81,9 @@ def scenes(draw) -> Text:
     elif place == "walls":
         text += f"walls from {low} m to {high} m\n"
     elif place == "liquid":
-        text += (f"liquid water {{ basin from {low} m to {high} m density {draw(decades(2, 4))} "
-                 f"level {draw(st.integers(1, 6))} m }}\n")
+        text += (
+            f"liquid water {{ basin from {low} m to {high} m density {draw(decades(2, 4))} level {draw(st.integers(1, 6))} m }}\n"
+        )
     for k, (shape, young, density) in enumerate(bodies):
         x, y = (APART * (side - 0.5) for side in (k & 1, k >> 1 & 1))
         z = 7.0 * (place == "liquid") + draw(number(4.1, 6.0))
@@ -104,9 +105,7 @@ def control(step: float | None = None) -> str:
     return (
         "control { time 10^9 frames 0.000001 fps resolution 1 }\n"
         if step is None
-        else (
-            f"control {{ time {4 * STEPS * step!r} frames {1.0 / step!r} fps timestep {step!r} resolution 1 }}\n"
-        )
+        else (f"control {{ time {4 * STEPS * step!r} frames {1.0 / step!r} fps timestep {step!r} resolution 1 }}\n")
     )
 
 

@@ -72,11 +72,7 @@ DRAGGED = block("a", (5, 5, 5), (0, 0, 0), more=f"drag {0.5 * 125!r}") + CONTROL
 BACK = {"strain left": 1e-9, "elastic energy left": 1e-20, "cells turned over": 0}
 SQUASHED = [
     Case(
-        f"squeezed to {share:g}",
-        DRAGGED,
-        squash(share),
-        BACK,
-        "all shape comes back, right side out; down to 0.2 of the height",
+        f"squeezed to {share:g}", DRAGGED, squash(share), BACK, "all shape comes back, right side out; down to 0.2 of the height"
     )
     for share in (0.6, 0.4, 0.2)
 ]
@@ -110,12 +106,7 @@ BEAMS = [
         f"beam 100:1, {n} cell{'s'[: n > 1]} thick",
         f"gravity (0, 0, {-g!r})\n" + block("a", (100 * n, n, n), (0, 0, 0), more="hold face -x") + CONTROL,
         swing,
-        {
-            "energy drift": 1e-3,
-            "cells turned over": 0,
-            "stretch": 0.2,
-            "tip fell, short of 0.8 length by": 0.0,
-        },
+        {"energy drift": 1e-3, "cells turned over": 0, "stretch": 0.2, "tip fell, short of 0.8 length by": 0.0},
         "it folds down round its clamp, as far as it is long, with no more stretch than bending so far asks for; "
         "200 000 steps of lashing keep the energy to 1e-3",
     )
@@ -186,9 +177,7 @@ DRAGS = [
 def on_the_ground(load: float) -> str:
     """A cube laid on the ground; its weight presses its foot with ``load`` E."""
     return (
-        f"gravity (0, 0, {-load / 4!r})\nground z 0\n"
-        + block("a", (4, 4, 4), (0, 0, 2.01), more=f"drag {0.05 * 64!r}")
-        + CONTROL
+        f"gravity (0, 0, {-load / 4!r})\nground z 0\n" + block("a", (4, 4, 4), (0, 0, 2.01), more=f"drag {0.05 * 64!r}") + CONTROL
     )
 
 
@@ -196,11 +185,7 @@ def lie(text: str, long: bool) -> dict[str, float]:
     """Let it come to rest."""
     with Trial(text) as t:
         t.run(100_000 if long else 8_000)
-        return {
-            "speed left": np.abs(t.v).max(),
-            "below the ground / h": -t.x[:, 2].min(),
-            "cells turned over": t.inverted(),
-        }
+        return {"speed left": np.abs(t.v).max(), "below the ground / h": -t.x[:, 2].min(), "cells turned over": t.inverted()}
 
 
 WEIGHTS = [
@@ -335,8 +320,7 @@ def like_a_box(text: str, long: bool) -> dict[str, float]:
 
 SLIVER = Case(
     "mesh with slivers",
-    'object a { shape mesh "sliver.obj" position (0, 0, 0) density 1 elasticity 1 Pa spin (0, 0, 0.05) }\n'
-    + CONTROL,
+    'object a { shape mesh "sliver.obj" position (0, 0, 0) density 1 elasticity 1 Pa spin (0, 0, 0.05) }\n' + CONTROL,
     like_a_box,
     {"particles": 0, "time step": 1e-9, "positions / h": 1e-9, "energy drift": 1e-3},
     "a body is cut into cells, so triangles 1e-7 and 1e-12 high change nothing, least of all the time step",

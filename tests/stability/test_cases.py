@@ -37,9 +37,7 @@ def test_without_contact_the_limits_are_broken(case):
     assert broken(mute, mute.measure())
 
 
-@pytest.mark.parametrize(
-    ("value", "allowed"), [(1.0, True), (0.0, True), (-1.0, True), (1.1, False), (math.nan, False)]
-)
+@pytest.mark.parametrize(("value", "allowed"), [(1.0, True), (0.0, True), (-1.0, True), (1.1, False), (math.nan, False)])
 def test_a_limit_is_the_most_that_is_allowed(value, allowed):
     """At the limit is within it; no number at all is not."""
     case = Case("", "", lambda text, long: {"error": value}, {"error": 1.0}, "")

@@ -16,16 +16,7 @@ from mdanim_lammps.scene.parse import parse_scene
 
 UNITS, START, LEVEL = 0, 1, 2
 """Entries of the vector of fix mdanim/liquid."""
-CORNER = (
-    (0, 1, 3, 4),
-    (1, 2, 0, 5),
-    (2, 3, 1, 6),
-    (3, 0, 2, 7),
-    (4, 7, 5, 0),
-    (5, 4, 6, 1),
-    (6, 5, 7, 2),
-    (7, 6, 4, 3),
-)
+CORNER = ((0, 1, 3, 4), (1, 2, 0, 5), (2, 3, 1, 6), (3, 0, 2, 7), (4, 7, 5, 0), (5, 4, 6, 1), (6, 5, 7, 2), (7, 6, 4, 3))
 """Each corner of a VTK hexahedron and its three neighbours, right-handed."""
 
 
@@ -37,8 +28,9 @@ class Trial:
         self.system, self.timestep = self.ready.system, self.ready.certificate.timestep
         self.instance = Instance(self.ready.plan)
         effects = self.ready.plan.effects
-        self.ledger = Ledger(("kinetic", *dict.fromkeys(e.ledger for e in effects if e.ledger)),
-                             floor=rounding_energy(self.system))
+        self.ledger = Ledger(
+            ("kinetic", *dict.fromkeys(e.ledger for e in effects if e.ledger)), floor=rounding_energy(self.system)
+        )
         self.lost_cells = 0
         try:
             self.instance.setup()
@@ -119,11 +111,7 @@ class Trial:
         """
         m, dt, f = self.system.mass, self.timestep, self.instance.array("f")
         half = self.v - 0.5 * dt * f / m[:, None]
-        each = (
-            0.5 * m * (self.v**2).sum(1)
-            - dt / 12.0 * (half * (f - before)).sum(1)
-            - dt**2 / (24.0 * m) * (f**2).sum(1)
-        )
+        each = 0.5 * m * (self.v**2).sum(1) - dt / 12.0 * (half * (f - before)).sum(1) - dt**2 / (24.0 * m) * (f**2).sum(1)
         return float(each[~self.system.held].sum())
 
     def of(self, name: str) -> slice:
@@ -151,9 +139,7 @@ class Trial:
     def strain(self) -> float:
         """Largest relative change of length of a spring."""
         i, j = self.system.spring.T
-        return float(
-            np.abs(np.linalg.norm(self.x[i] - self.x[j], axis=1) / self.system.rest - 1.0).max(initial=0.0)
-        )
+        return float(np.abs(np.linalg.norm(self.x[i] - self.x[j], axis=1) / self.system.rest - 1.0).max(initial=0.0))
 
     def inverted(self) -> int:
         """Cells that have a corner turned inside out."""
@@ -168,9 +154,7 @@ class Trial:
         """Share of an object's cells below the mean surface, from 512 points a cell at random in equal strata."""
         k = self.of(name)
         cells = self.x[
-            self.system.hexahedron[
-                (self.system.hexahedron[:, 0] >= k.start) & (self.system.hexahedron[:, 0] < k.stop)
-            ]
+            self.system.hexahedron[(self.system.hexahedron[:, 0] >= k.start) & (self.system.hexahedron[:, 0] < k.stop)]
         ]
         level, stratum = self.instance.fix_value("liquid", LEVEL), (np.arange(8) + 0.5) / 8
         grid = np.stack(np.meshgrid(stratum, stratum, stratum, indexing="ij"), -1).reshape(-1, 3)

@@ -106,6 +106,7 @@ def displace(q, new, seed, when):
     q[new != 0] = 0
     k = key(seed, when, DISPLACEMENT)
     for (z, y, x), units in spilled:
+
         def room(cell):
             inside = all(0 <= c < n for c, n in zip(cell, q.shape))
             return inside and not new[cell] and q[cell] + units <= FULLEST

@@ -4,9 +4,7 @@
 import numpy as np
 
 
-def barrier_forces(
-    x, molecule, boundary, inner, stiffness, reach, thin=None, ratio=0.0, power=3, v=None, mass=None, damp=0.0
-):
+def barrier_forces(x, molecule, boundary, inner, stiffness, reach, thin=None, ratio=0.0, power=3, v=None, mass=None, damp=0.0):
     """Forces (N, 3), energy; ``boundary``, ``inner``, ``thin`` bool (N,); ``stiffness``, ``reach`` (N,)."""
     thin = np.zeros(len(x), bool) if thin is None else thin
     force, energy = np.zeros_like(x), 0.0
@@ -19,7 +17,7 @@ def barrier_forces(
                 if not (thin[i] or thin[j]):
                     continue
                 rc *= ratio
-            elif not (boundary[i] and inner[j] or inner[i] and boundary[j]):
+            elif not ((boundary[i] and inner[j]) or (inner[i] and boundary[j])):
                 continue
             r = np.linalg.norm(x[i] - x[j])
             if r >= rc:
@@ -41,10 +39,7 @@ def barrier_forces(
 def boxes(x, molecule):
     """Lower and upper corners of every object's box, eq. (3.14), each (M, 3)."""
     objects = np.unique(molecule)
-    return (
-        np.array([x[molecule == m].min(0) for m in objects]),
-        np.array([x[molecule == m].max(0) for m in objects]),
-    )
+    return (np.array([x[molecule == m].min(0) for m in objects]), np.array([x[molecule == m].max(0) for m in objects]))
 
 
 def meeting(low, high, gap):

@@ -6,8 +6,10 @@ from itertools import product
 
 def pairs(low, high, gap):
     """All (a, b), a < b, of boxes that meet, eq. (3.15)."""
+
     def meet(a, b):
         return all(low[a][k] - high[b][k] <= gap and low[b][k] - high[a][k] <= gap for k in range(3))
+
     return [(a, b) for a in range(len(low)) for b in range(a + 1, len(low)) if meet(a, b)]
 
 

@@ -3,7 +3,7 @@
 network, and the beam of the textbook."""
 
 from itertools import combinations, product
-from math import cosh, cos
+from math import cos, cosh
 
 import numpy as np
 
@@ -93,6 +93,7 @@ def stiffness_matrix(position, spring, k):
 
 # --- Timoshenko's cantilever, square cross section ----------------------------------------------------------
 
+
 def shear_coefficient(nu):
     """Cowper 1966, rectangle."""
     return 10 * (1 + nu) / (12 + 11 * nu)
@@ -115,12 +116,14 @@ def first_frequency(length, side, young, nu, density):
     def free_end(omega):
         # State (w, phi, M, Q): w' = phi + Q/kGA, phi' = M/EI,
         # M' = -Q - rho I omega^2 phi, Q' = -rho A omega^2 w.
-        a = np.array([
-            [0, 1, 0, 1 / shearing],
-            [0, 0, 1 / bending, 0],
-            [0, -density * inertia * omega**2, 0, -1],
-            [-density * area * omega**2, 0, 0, 0],
-        ])
+        a = np.array(
+            [
+                [0, 1, 0, 1 / shearing],
+                [0, 0, 1 / bending, 0],
+                [0, -density * inertia * omega**2, 0, -1],
+                [-density * area * omega**2, 0, 0, 0],
+            ]
+        )
         # M and Q at the free end must vanish for some M and Q at the clamp.
         return np.linalg.det(expm(a * length)[2:, 2:])
 

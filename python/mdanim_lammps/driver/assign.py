@@ -29,9 +29,19 @@ class Assignment:
     """Time that each of K executors will need [µs], int64, shape (K,)."""
 
 
-def assign(label: np.ndarray, cost: np.ndarray, owner: np.ndarray, executors: int, *, particles: np.ndarray | None = None,
-           pinned: np.ndarray | None = None, order: np.ndarray | None = None, teams: Sequence[Team] = (), gain: int = GAIN,
-           least: int = LEAST) -> Assignment:
+def assign(
+    label: np.ndarray,
+    cost: np.ndarray,
+    owner: np.ndarray,
+    executors: int,
+    *,
+    particles: np.ndarray | None = None,
+    pinned: np.ndarray | None = None,
+    order: np.ndarray | None = None,
+    teams: Sequence[Team] = (),
+    gain: int = GAIN,
+    least: int = LEAST,
+) -> Assignment:
     """Executors for all islands: 1. no island is split; 2. loads within a tenth of the mean, or of the largest island, where
     islands allow it; 3. what moves costs little, and nothing moves while loads are in balance.
 
@@ -109,6 +119,7 @@ def _homes(isle: np.ndarray, cost: np.ndarray, owner: np.ndarray, executors: int
 
 # --- balance ------------------------------------------------------------------------------------------------
 
+
 def _place(weight, home, fixed, teams, executors, rank, gain) -> tuple[np.ndarray, np.ndarray]:
     """Executors of islands, and all loads, with these teams; ``fixed`` islands (I,) stay at home."""
     place, fixed, base = home.copy(), fixed.copy(), total(home[fixed], weight[fixed], executors)
@@ -159,7 +170,7 @@ def _fitting(weight, home, room) -> np.ndarray:
     sort = np.lexsort((-weight, home))
     bound = np.searchsorted(home[sort], np.arange(len(room) + 1))
     for e, left in enumerate(room):
-        mine = sort[bound[e]:bound[e + 1]]
+        mine = sort[bound[e] : bound[e + 1]]
         size = -weight[mine]
         sum_before = np.concatenate([[0], np.cumsum(-size)])
         at = int(np.searchsorted(size, -left))

@@ -89,8 +89,10 @@ def calibration(tell: Callable[[str], None] = lambda line: None) -> Calibration:
         path.parent.mkdir(parents=True, exist_ok=True)
         write_json(path, holds_for() | {"rates": rates})
     except (OSError, OutputError) as error:
-        tell(f"the calibration cannot be kept, it holds for this time only: {error}; "
-             "set XDG_CACHE_HOME to a folder that can be written")
+        tell(
+            f"the calibration cannot be kept, it holds for this time only: {error}; "
+            "set XDG_CACHE_HOME to a folder that can be written"
+        )
         return Calibration(rates, stored=False)
     return Calibration(rates)
 
@@ -113,7 +115,7 @@ def processor() -> str:
 
 def lanes(damped: bool) -> int:
     """Numbers in a vector of the plugin, as best_width in plugin/engine/blocks.cpp chooses: wide ones where anything is damped."""
-    return 8 if damped and WIDE <= set(_cpuinfo("flags").split()) else 4
+    return 8 if damped and set(_cpuinfo("flags").split()) >= WIDE else 4
 
 
 @lru_cache
@@ -212,9 +214,9 @@ STEPS = 480
 def measure() -> dict[str, float]:
     """Run the small scenes and return the rates. Raises SetupError when LAMMPS or the plugin cannot be used."""
     start = time.process_time()
+    from ..engine.instance import Instance
     from ..engine.plugin import open_lammps
     from . import run  # noqa: F401  what a run loads
-    from ..engine.instance import Instance
 
     open_lammps()[0].close()
     rates = {"load": time.process_time() - start}
@@ -283,8 +285,15 @@ def _cube(Instance, n: int, **other: float) -> dict[str, float]:
     rest = found["whole"] - sum(found[k] for k in ("springs", *fixes))
     springs = ready.system.spring
     spring = found["springs"] * fullness(springs, lanes(ready.plan.damped)) / len(springs)
-    return {**found, "rest": rest, "particles": ready.system.particles, "spring": spring,
-            "model": modelled - start, "insert": inserted - modelled, "timestep": ready.certificate.timestep}
+    return {
+        **found,
+        "rest": rest,
+        "particles": ready.system.particles,
+        "spring": spring,
+        "model": modelled - start,
+        "insert": inserted - modelled,
+        "timestep": ready.certificate.timestep,
+    }
 
 
 def _pairs(Instance) -> float:
@@ -309,19 +318,22 @@ def _pool(Instance) -> dict[str, float]:
             instance.setup()
             before = [instance.fix_value("liquid", k) for k in (SWEPT, AUTOMATON, OCCUPANCY)]
             instance.run(STEPS)
-            swept, automaton, occupancy = (instance.fix_value("liquid", k) - b
-                                           for k, b in zip((SWEPT, AUTOMATON, OCCUPANCY), before))
+            swept, automaton, occupancy = (
+                instance.fix_value("liquid", k) - b for k, b in zip((SWEPT, AUTOMATON, OCCUPANCY), before)
+            )
             fixes = {fix: (lambda fix=fix: instance.fix_seconds(fix)) for fix in ("leapfrog", "gravity", "basin")}
             wet = {k: (lambda k=k: instance.fix_value("liquid", k)) for k in (AUTOMATON, OCCUPANCY, COUPLING)}
             step = _least(instance, {"springs": instance.bond_seconds, **fixes, **wet}, rounds=10)
         swept = max(1.0, swept)
-        found.append({
-            "lone leap-frog": step["leapfrog"] * (1.0 - SLOWING) / particles,
-            "lone particle": (2.0 * step["whole"] - sum(step.values())) / particles,
-            "coupling": step[COUPLING] / particles,
-            "cell": automaton / swept / ready.plan.grid.cells,
-            "solid": occupancy / (swept / SWEEPS_PER_UPDATE) / len(ready.system.hexahedron),
-        })
+        found.append(
+            {
+                "lone leap-frog": step["leapfrog"] * (1.0 - SLOWING) / particles,
+                "lone particle": (2.0 * step["whole"] - sum(step.values())) / particles,
+                "coupling": step[COUPLING] / particles,
+                "cell": automaton / swept / ready.plan.grid.cells,
+                "solid": occupancy / (swept / SWEEPS_PER_UPDATE) / len(ready.system.hexahedron),
+            }
+        )
     return {name: max(1e-11, min(each[name] for each in found)) for name in found[0]}
 
 

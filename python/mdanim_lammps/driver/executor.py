@@ -247,14 +247,14 @@ class Executor:
     @property
     def own(self) -> np.ndarray:
         """Objects that are its own and can move, ascending."""
-        mine = self.order.plan.owner[:self.objects] == self.me
-        return np.flatnonzero(mine & (self.order.plan.label[:self.objects] >= 0))
+        mine = self.order.plan.owner[: self.objects] == self.me
+        return np.flatnonzero(mine & (self.order.plan.label[: self.objects] >= 0))
 
     # --- what is told ---------------------------------------------------------------------------------------------
 
     def _first_report(self) -> Report:
         """Of all objects that can move, in equal shares: everybody knows where they begin."""
-        mine = np.flatnonzero(~self.system.still)[self.me::self.comm.size]
+        mine = np.flatnonzero(~self.system.still)[self.me :: self.comm.size]
         low, high = self.system.bounds(self.x)
         return Report(mine, low[mine], high[mine], self.system.top_speed(self.v)[mine], np.zeros(len(mine), np.int64))
 
@@ -271,8 +271,9 @@ class Executor:
             if bundle.key.liquid:
                 pool_cost = int(scale * len(bundle.key.team) * bundle.liquid_seconds)
         empty = (np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, np.int64))
-        return Report(*(np.concatenate(arrays) for arrays in zip(empty, *found)), pool_cost, tuple(escaped),
-                      self.order.plan.fingerprint())
+        return Report(
+            *(np.concatenate(arrays) for arrays in zip(empty, *found)), pool_cost, tuple(escaped), self.order.plan.fingerprint()
+        )
 
     def _commit(self) -> None:
         """Take the states of all instances, and what was lost and how deep something was meanwhile."""
@@ -306,9 +307,22 @@ class Executor:
     def _send(self, keep: bool) -> None:
         """The share of a frame."""
         places = self._held()
-        self.mail.send(SUPERVISOR, Tag.FRAME, Share(self.frame, self.own, places, *gathered(places, self.x, self.v),
-                                                    self.energies, self.deepest, self.pool, self.moves, self.retries,
-                                                    tuple(sorted(self.led))))
+        self.mail.send(
+            SUPERVISOR,
+            Tag.FRAME,
+            Share(
+                self.frame,
+                self.own,
+                places,
+                *gathered(places, self.x, self.v),
+                self.energies,
+                self.deepest,
+                self.pool,
+                self.moves,
+                self.retries,
+                tuple(sorted(self.led)),
+            ),
+        )
         self.moves, self.energies = 0, {}
         self.led.clear()
         if keep:
@@ -318,8 +332,9 @@ class Executor:
         """What a checkpoint needs besides."""
         places = self._held()
         has_pool = self.order.plan.owner[-1] == self.me and self.liquid is not None
-        self.mail.send(SUPERVISOR, Tag.KEPT, Kept(self.frame, places, *gathered(places, self.f),
-                                                  self.liquid if has_pool else None))
+        self.mail.send(
+            SUPERVISOR, Tag.KEPT, Kept(self.frame, places, *gathered(places, self.f), self.liquid if has_pool else None)
+        )
 
     def _held(self) -> list[slice]:
         """Particles that it has told at the last frame, where they are among all."""

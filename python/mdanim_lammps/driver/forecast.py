@@ -31,8 +31,14 @@ def forecast(ready: Prepared, rates: dict[str, float], *, setup: float | None = 
     """
     scene, system, c = ready.scene, ready.system, ready.certificate
     n, control = system.particles, scene.control
-    load = Load(scene, system, frozenset(e.name for e in ready.plan.effects), c.steps, rebuilds(ready),
-                fullness(system.spring, lanes(ready.plan.damped)))
+    load = Load(
+        scene,
+        system,
+        frozenset(e.name for e in ready.plan.effects),
+        c.steps,
+        rebuilds(ready),
+        fullness(system.spring, lanes(ready.plan.damped)),
+    )
     alone = load.mobile if "buoyancy" in load.on else 0
     effects = {}
     for effect in ready.plan.effects:
@@ -40,8 +46,11 @@ def forecast(ready: Prepared, rates: dict[str, float], *, setup: float | None = 
         effects[effect.name] = Part(effect.forecast(load, rates), str(span) if span else None)
     frames = 1 + len(c.lengths)
     size = trajectory_bytes(ready.models, frames, control.save, control.single, ready.plan.grid)
-    looked_at = sum(len(ready.models[system.names.index(name)].hexahedron)
-                    for name, quantity in recorded(scene.expects) if quantity == "immersed")
+    looked_at = sum(
+        len(ready.models[system.names.index(name)].hexahedron)
+        for name, quantity in recorded(scene.expects)
+        if quantity == "immersed"
+    )
     modelled = rates["model"] * n if setup is None else setup
     other = {
         LEAPFROG: c.steps * load.mobile * leapfrog_rate(load, rates),
@@ -65,8 +74,11 @@ def fastest(ready: Prepared) -> float:
     scene, system = ready.scene, ready.system
     on = {e.name for e in ready.plan.effects}
     velocity = np.array([s.velocity for s in scene.solids], float)
-    around = np.sqrt(np.maximum.reduceat(((system.velocity - velocity[system.object]) ** 2 * ~system.held[:, None]).sum(axis=1),
-                                         system.first[:-1]))
+    around = np.sqrt(
+        np.maximum.reduceat(
+            ((system.velocity - velocity[system.object]) ** 2 * ~system.held[:, None]).sum(axis=1), system.first[:-1]
+        )
+    )
     held = np.logical_or.reduceat(system.held, system.first[:-1])
     velocity[held] = 0.0
     g = np.array(scene.gravity) * ("gravity" in on)

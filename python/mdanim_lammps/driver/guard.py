@@ -24,8 +24,14 @@ RINGS = 10.0
 """Times that a wave crosses an object until cells that are inside out count as stuck: in a hard impact some at the surface are so
 for a moment, and come back."""
 FLOWN_APART = (
-    "lost its bond partner", "springs were given", "Bond atoms", "Lost atoms", "Non-numeric", "Out of range atoms",
-    "out of range")
+    "lost its bond partner",
+    "springs were given",
+    "Bond atoms",
+    "Lost atoms",
+    "Non-numeric",
+    "Out of range atoms",
+    "out of range",
+)
 """What LAMMPS says when particles are where they should not be."""
 
 
@@ -78,8 +84,9 @@ class Guard:
             self.since[:] = -1
         self._look_at_sides(step, reach)
         if self.contact and (pair := self.geometry.sunk(x)):
-            raise self.stopped(step, f"it is inside {system.names[pair[1]]}", pair[0], "closing speed", "time step", "amplitude",
-                               "thinnest part")
+            raise self.stopped(
+                step, f"it is inside {system.names[pair[1]]}", pair[0], "closing speed", "time step", "amplitude", "thinnest part"
+            )
 
     def _look_at_cells(self, step: int, inverted: np.ndarray) -> None:
         """Cells may be inside out for a moment only."""
@@ -92,10 +99,16 @@ class Guard:
         if len(stuck) and not self.ready.insist:
             count = np.bincount(stuck)
             m = int(count.argmax())
-            raise self.stopped(step,
-                               f"{count[m]} of its {np.diff(self.geometry.first_cell)[m]} cells have been inside out since step "
-                               f"{self.since[cells].min()}; springs cannot tell mirrored from right, so they would stay so", m,
-                               "amplitude", "load", "time step", "closing speed")
+            raise self.stopped(
+                step,
+                f"{count[m]} of its {np.diff(self.geometry.first_cell)[m]} cells have been inside out since step "
+                f"{self.since[cells].min()}; springs cannot tell mirrored from right, so they would stay so",
+                m,
+                "amplitude",
+                "load",
+                "time step",
+                "closing speed",
+            )
 
     def _look_at_sides(self, step: int, reach: np.ndarray) -> None:
         """An object has left when all of its box is beyond a plane, by more than a spacing;
@@ -107,16 +120,28 @@ class Guard:
         if gone.any():
             n = int(np.where(gone, beyond, -np.inf).argmax())
             m, side = n // len(self.sides), self.sides[n % len(self.sides)]
-            raise self.stopped(step,
-                               f"it has left {side.name}: all of it is beyond {'xyz'[side.axis]} = {say(side.at, 'm', 6)}, by "
-                               f"{say(float(beyond.flat[n]), 'm')}", m, "time step", "amplitude", "load")
+            raise self.stopped(
+                step,
+                f"it has left {side.name}: all of it is beyond {'xyz'[side.axis]} = {say(side.at, 'm', 6)}, by "
+                f"{say(float(beyond.flat[n]), 'm')}",
+                m,
+                "time step",
+                "amplitude",
+                "load",
+            )
 
     def energy(self, step: int, residual: float, v: np.ndarray) -> None:
         """Raise DivergedError when the energies do not add up any more. ``residual`` as in results/ledger.py."""
         if not abs(residual) <= self.limit:
-            raise self.stopped(step, f"the energies do not add up, residual {number(residual)}; its particles are the fastest",
-                               fastest(self.ready.system, v),
-                               "time step", "amplitude", "load", "closing speed")
+            raise self.stopped(
+                step,
+                f"the energies do not add up, residual {number(residual)}; its particles are the fastest",
+                fastest(self.ready.system, v),
+                "time step",
+                "amplitude",
+                "load",
+                "closing speed",
+            )
 
     def broke(self, step: int, error: DivergedError, solid: int | None) -> DivergedError:
         """The error for LAMMPS's own end of a run in the steps up to this one; ``solid`` is the `fastest`."""
@@ -132,13 +157,19 @@ class Guard:
         c = self.ready.certificate
         passed = {found.name: found for found in reversed(c.margins) if found.severity != "ok"}
         why = next((passed[name] for name in margins if name in passed), None)
-        cause, cure = (why.text, why.hint) if why else (
-            f"every limit of the certificate is kept (time step {c.fraction:.2f} of the bound), so it is probably hit or "
-            "squeezed harder than its lattice stands",
-            "try a lower speed, a stiffer object, a coarser resolution (edges, corners and tips of fine lattices "
-            "fold first) or a smaller timestep")
+        cause, cure = (
+            (why.text, why.hint)
+            if why
+            else (
+                f"every limit of the certificate is kept (time step {c.fraction:.2f} of the bound), so it is probably hit or "
+                "squeezed harder than its lattice stands",
+                "try a lower speed, a stiffer object, a coarser resolution (edges, corners and tips of fine lattices "
+                "fold first) or a smaller timestep",
+            )
+        )
         return DivergedError(
-            f"{self._when(step)}: {self.ready.system.names[m]}: {what}.\n  cause: {cause}\n  change: {cure}\n  {self._kept()}")
+            f"{self._when(step)}: {self.ready.system.names[m]}: {what}.\n  cause: {cause}\n  change: {cure}\n  {self._kept()}"
+        )
 
     def _when(self, step: int) -> str:
         return f"step {step}, t = {number(step * self.ready.certificate.timestep, 4)} s"
@@ -155,7 +186,9 @@ class Guard:
             scene.control.spans.get("accuracy"),
             f"the energy residual {number(residual)} is above {number(goal)}, "
             f"which 'accuracy {_accuracy(scene).value}' stands for",
-            "where it matters, write a smaller timestep or a higher accuracy", severity="warning")
+            "where it matters, write a smaller timestep or a higher accuracy",
+            severity="warning",
+        )
 
 
 def fastest(system: System, v: np.ndarray) -> int | None:
@@ -184,8 +217,9 @@ def _sides(scene: Scene, on: set[str]) -> list[_Side]:
     if "ground" in on:
         sides.append(_Side("the ground", 2, 1, scene.ground))
     if "walls" in on:
-        sides += [_Side("the walls", a, sign, at[a]) for sign, at in ((1, scene.walls.low), (-1, scene.walls.high))
-                  for a in range(3)]
+        sides += [
+            _Side("the walls", a, sign, at[a]) for sign, at in ((1, scene.walls.low), (-1, scene.walls.high)) for a in range(3)
+        ]
     if "basin" in on:
         liquid = scene.liquid
         sides.append(_Side("the basin", 2, 1, liquid.low[2]))

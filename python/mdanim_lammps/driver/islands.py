@@ -46,6 +46,7 @@ def boxes(low: np.ndarray, high: np.ndarray, d: np.ndarray) -> tuple[np.ndarray,
 
 # --- pairs --------------------------------------------------------------------------------------------------
 
+
 def pairs(low: np.ndarray, high: np.ndarray, gap: float) -> np.ndarray:
     """All pairs a < b of boxes that meet, eq. (3.15), when each is grown by half of ``gap`` [m]; sorted, int64, shape (P, 2).
 
@@ -150,6 +151,7 @@ def _meeting(one, two, a, b, gap) -> tuple[np.ndarray, np.ndarray]:
 
 
 # --- islands ------------------------------------------------------------------------------------------------
+
 
 def components(count: int, pairs: np.ndarray, still: np.ndarray) -> np.ndarray:
     """Island of every object, int64, shape (M,): numbered from 0 in the order of their smallest objects; -1 for what is still.

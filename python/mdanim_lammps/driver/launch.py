@@ -42,8 +42,17 @@ class Task:
     settings: Settings
 
 
-def simulate_on(executors: int, control: str, ready: Prepared, folder: Path, *, watch: Callable[[Progress], None] | None = None,
-                resume: Checkpoint | None = None, started: float | None = None, settings: Settings | None = None) -> Result:
+def simulate_on(
+    executors: int,
+    control: str,
+    ready: Prepared,
+    folder: Path,
+    *,
+    watch: Callable[[Progress], None] | None = None,
+    resume: Checkpoint | None = None,
+    started: float | None = None,
+    settings: Settings | None = None,
+) -> Result:
     """`run.simulate` on ``executors`` ranks and a supervising one; the same frames, to the last bit.
 
     ``control`` is ``central`` or ``peers``. Raises what `run.simulate` does, SetupError without mpiexec,
@@ -51,13 +60,19 @@ def simulate_on(executors: int, control: str, ready: Prepared, folder: Path, *, 
     """
     folder = folder.resolve()
     with tempfile.TemporaryDirectory(prefix=".ranks-", dir=folder) as exchange:
-        task = Task(ready, folder, control, resume, time.perf_counter() if started is None else started,
-                    settings or Settings())
+        task = Task(ready, folder, control, resume, time.perf_counter() if started is None else started, settings or Settings())
         (Path(exchange) / JOB).write_bytes(pickle.dumps(task, protocol=pickle.HIGHEST_PROTOCOL))
         command = [*launcher(), "-n", str(executors + 1), sys.executable, "-m", "mdanim_lammps.driver.ranks", exchange]
         # A session of its own: Ctrl-C is for this process, which asks the supervisor to stop after a frame.
-        ranks = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                 env=_environment(), start_new_session=True)
+        ranks = subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=_environment(),
+            start_new_session=True,
+        )
         said: list[str] = []
         hearing = threading.Thread(target=_hear, args=(ranks.stderr, said), daemon=True)
         hearing.start()
@@ -102,15 +117,16 @@ def _hear(stream, said: list[str]) -> None:
 
 def _environment() -> dict[str, str]:
     """That of this process, but with one thread for each rank's linear algebra."""
-    return os.environ | {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+    return os.environ | dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 def lost(code: int, said: list[str], folder: Path) -> ExecutorLost:
     """The one message for ranks that ended without a result."""
     words = [line.strip() for line in said if line.strip() and not set(line.strip()) <= {"="}]
     tracebacks = [line for line in words if "Error" in line]
-    why = next((line.lstrip("= ").rstrip() for line in words if "EXIT CODE" in line or "killed" in line.lower()),
-               f"exit code {code}")
+    why = next(
+        (line.lstrip("= ").rstrip() for line in words if "EXIT CODE" in line or "killed" in line.lower()), f"exit code {code}"
+    )
     if tracebacks:
         why = tracebacks[-1]
     kept = (folder / "checkpoint").exists()
@@ -126,7 +142,7 @@ class _Signals:
         self.old = {}
         self.asked = False
 
-    def __enter__(self) -> "_Signals":
+    def __enter__(self) -> _Signals:
         if threading.current_thread() is threading.main_thread():
             for number in (signal.SIGINT, signal.SIGTERM):
                 self.old[number] = signal.signal(number, self._stop)

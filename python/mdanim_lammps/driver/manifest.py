@@ -24,6 +24,13 @@ def manifest(scene: Scene, lock: str, argv: list[str]) -> dict:
             versions[package] = None
     digest = hashlib.sha256(lock.encode()).hexdigest()
     source = hashlib.sha256(scene.path.read_bytes()).hexdigest() if scene.path and scene.path.exists() else None
-    return {"program": PROGRAM, "version": __version__, "python": platform.python_version(), "packages": versions,
-            "argv": list(argv), "scene": str(scene.path) if scene.path else None, "seed": scene.control.seed,
-            "sha256": {"scene": source, "scene.lock.txt": digest}}
+    return {
+        "program": PROGRAM,
+        "version": __version__,
+        "python": platform.python_version(),
+        "packages": versions,
+        "argv": list(argv),
+        "scene": str(scene.path) if scene.path else None,
+        "seed": scene.control.seed,
+        "sha256": {"scene": source, "scene.lock.txt": digest},
+    }

@@ -243,7 +243,7 @@ class Mail:
         all_of_them = np.empty(size.sum(), np.uint8)
         self.wait(comm.Iallgatherv(mine, (all_of_them, size)).Test)
         ends = np.cumsum(size)
-        return [pickle.loads(all_of_them[end - n:end].data) for end, n in zip(ends, size)]
+        return [pickle.loads(all_of_them[end - n : end].data) for end, n in zip(ends, size)]
 
     def flush(self) -> None:
         """Wait until everything that was sent is on its way. Raises Aborted."""

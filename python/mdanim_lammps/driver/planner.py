@@ -45,7 +45,7 @@ class Planner:
         self.doublings = np.zeros(count, np.int64)
         self.plan: FramePlan | None = None
         # Of what is still no report will come.
-        self.low[:self.objects], self.high[:self.objects] = parts.whole.system.bounds(parts.whole.system.position)
+        self.low[: self.objects], self.high[: self.objects] = parts.whole.system.bounds(parts.whole.system.position)
 
     def decide(self, reports: Sequence[Report]) -> Order:
         """What to do after a window (or before the first), from the reports of all executors in their order.
@@ -72,7 +72,7 @@ class Planner:
 
     def _flown(self, m: int) -> Broken:
         """For an object that is out of range: the guard tells why."""
-        step = sum(self.lengths[:self.frame]) + self.done + self.steps
+        step = sum(self.lengths[: self.frame]) + self.done + self.steps
         return Broken(step, DivergedError("Out of range: it leaves every box that is reserved for it"), m)
 
     def _advance(self) -> None:

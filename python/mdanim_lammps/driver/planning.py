@@ -77,9 +77,24 @@ class FramePlan:
         return digest.hexdigest()
 
 
-def plan(low: np.ndarray, high: np.ndarray, d: np.ndarray, cost: np.ndarray, owner: np.ndarray, executors: int, *,
-         particles: np.ndarray, still: np.ndarray, gap: float, feels: np.ndarray | None = None, pinned: np.ndarray | None = None,
-         previous: FramePlan | None = None, gain: int = GAIN, least: int = LEAST, room: int = BUNDLE) -> FramePlan:
+def plan(
+    low: np.ndarray,
+    high: np.ndarray,
+    d: np.ndarray,
+    cost: np.ndarray,
+    owner: np.ndarray,
+    executors: int,
+    *,
+    particles: np.ndarray,
+    still: np.ndarray,
+    gap: float,
+    feels: np.ndarray | None = None,
+    pinned: np.ndarray | None = None,
+    previous: FramePlan | None = None,
+    gain: int = GAIN,
+    least: int = LEAST,
+    room: int = BUNDLE,
+) -> FramePlan:
     """The plan of a frame, from what all executors have reported. O(M log M + pairs that are near). Raises ValueError for boxes
     that are not finite or turned inside out, a cost below 0, an owner out of range.
 
@@ -102,8 +117,18 @@ def plan(low: np.ndarray, high: np.ndarray, d: np.ndarray, cost: np.ndarray, own
         met = met[feels[met].any(axis=1)]
     label = islands.components(len(low), met, still)
     order = z_order(low, high)
-    given = assign(label, cost, owner, executors, particles=particles, pinned=pinned, order=order, gain=gain, least=least,
-                   teams=previous.teams if previous else ())
+    given = assign(
+        label,
+        cost,
+        owner,
+        executors,
+        particles=particles,
+        pinned=pinned,
+        order=order,
+        gain=gain,
+        least=least,
+        teams=previous.teams if previous else (),
+    )
     bundle = bundles(label, given.owner, particles, given.teams, order=order, previous=previous, room=room)
     return FramePlan(given.owner, label, bundle, islands.guests(met, label, still), given.teams, given.load)
 
@@ -138,23 +163,42 @@ class Terms:
 
     def reach(self, speed: np.ndarray, steps: int, doublings: np.ndarray | int = 0) -> np.ndarray:
         """What boxes are widened by in a window of so many steps, eq. (6.17) [m], shape (M,), the pool's last."""
-        d = islands.reach(speed, steps * self.whole.certificate.timestep, float(np.linalg.norm(self.whole.scene.gravity)),
-                          MARGIN * self.whole.spacing, self.settings.safety)
+        d = islands.reach(
+            speed,
+            steps * self.whole.certificate.timestep,
+            float(np.linalg.norm(self.whole.scene.gravity)),
+            MARGIN * self.whole.spacing,
+            self.settings.safety,
+        )
         d = d * 2.0**doublings
         d[self.still] = 0.0
         if self.pool is not None:
             d[-1] = 0.0
         return d
 
-    def plan(self, low: np.ndarray, high: np.ndarray, d: np.ndarray, cost: np.ndarray,
-             previous: FramePlan | None = None) -> FramePlan:
+    def plan(
+        self, low: np.ndarray, high: np.ndarray, d: np.ndarray, cost: np.ndarray, previous: FramePlan | None = None
+    ) -> FramePlan:
         """`plan` for these objects, by the owners of the plan before."""
         owner = previous.owner if previous else np.full(self.count, -1, np.int64)
-        return plan(low, high, d, cost, owner, self.executors, particles=self.particles, still=self.still, gap=self.gap,
-                    feels=self.feels, previous=previous, least=self.settings.least)
+        return plan(
+            low,
+            high,
+            d,
+            cost,
+            owner,
+            self.executors,
+            particles=self.particles,
+            still=self.still,
+            gap=self.gap,
+            feels=self.feels,
+            previous=previous,
+            least=self.settings.least,
+        )
 
-    def longest_window(self, length: int, left: int, make: Callable[[int], tuple[FramePlan, np.ndarray]]
-                       ) -> tuple[int, FramePlan, np.ndarray]:
+    def longest_window(
+        self, length: int, left: int, make: Callable[[int], tuple[FramePlan, np.ndarray]]
+    ) -> tuple[int, FramePlan, np.ndarray]:
         """The longest window that leaves the loads in balance: in a shorter one boxes are widened by less, and fewer
         islands merge.
 
@@ -169,7 +213,12 @@ class Terms:
             if best is None or load < least:
                 best, least = (steps, found, d), load
             shorter = mean * (steps // 2) // length
-            if self.executors == 1 or steps == 1 or load <= BALANCED * mean and not found.teams or shorter < self.settings.worth:
+            if (
+                self.executors == 1
+                or steps == 1
+                or (load <= BALANCED * mean and not found.teams)
+                or shorter < self.settings.worth
+            ):
                 break
         return best
 
@@ -180,14 +229,27 @@ def z_order(low: np.ndarray, high: np.ndarray) -> np.ndarray:
     middle -= middle.min(axis=1)[:, None]
     across = float(middle.max()) or 1.0
     x = np.minimum(middle / across * 2.0**20, 2.0**20 - 1.0).astype(np.int64)
-    for shift, mask in ((32, 0x1F00000000FFFF), (16, 0x1F0000FF0000FF), (8, 0x100F00F00F00F00F), (4, 0x10C30C30C30C30C3),
-                        (2, 0x1249249249249249)):
+    for shift, mask in (
+        (32, 0x1F00000000FFFF),
+        (16, 0x1F0000FF0000FF),
+        (8, 0x100F00F00F00F00F),
+        (4, 0x10C30C30C30C30C3),
+        (2, 0x1249249249249249),
+    ):
         x = (x | x << shift) & mask
     return x[0] | x[1] << 1 | x[2] << 2
 
 
-def bundles(label: np.ndarray, owner: np.ndarray, particles: np.ndarray, teams: Sequence[Team] = (), *,
-            order: np.ndarray | None = None, previous: FramePlan | None = None, room: int = BUNDLE) -> np.ndarray:
+def bundles(
+    label: np.ndarray,
+    owner: np.ndarray,
+    particles: np.ndarray,
+    teams: Sequence[Team] = (),
+    *,
+    order: np.ndarray | None = None,
+    previous: FramePlan | None = None,
+    room: int = BUNDLE,
+) -> np.ndarray:
     """LAMMPS instances that executors run their islands in, int64, shape (M,), -1 for what is still; O(M log M).
 
     An island stays in its bundle if all of it was there and its executor is the same: who joins or leaves makes nobody else move.

@@ -49,12 +49,16 @@ def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[i
     above the bound.
     """
     if not scene.solids:
-        raise SceneError([Problem(
-            scene.liquid.spans.get("liquid") if scene.liquid else None,
-            "the scene has no object, and runs without one are not built yet",
-            "write one; one that never moves will do, e.g.  object stone { shape box (10, 10, 10) cm  position (0, 0, 0) m  "
-            "density 2000  elasticity 1 MPa  hold all }",
-        )])
+        raise SceneError(
+            [
+                Problem(
+                    scene.liquid.spans.get("liquid") if scene.liquid else None,
+                    "the scene has no object, and runs without one are not built yet",
+                    "write one; one that never moves will do, e.g.  object stone { shape box (10, 10, 10) cm  position (0, 0, 0) m  "
+                    "density 2000  elasticity 1 MPa  hold all }",
+                )
+            ]
+        )
     models = build_models(scene, progress=progress)
     problems = check_geometry(scene, models) + check_basin(scene, models)
     verdicts, warnings = decide(EFFECTS, scene)
@@ -73,7 +77,12 @@ def _unmeasurable(scene: Scene, verdicts: dict[str, Verdict]) -> list[Problem]:
     """A problem for every ``expect`` about a liquid that is switched off."""
     if verdicts["liquid"].on:
         return []
-    return [Problem(
-        e.span, f"{e.subject}.{e.quantity} needs the liquid, which is off ({verdicts['liquid'].reason})",
-        "take this expect out, or switch the liquid on",
-    ) for e in scene.expects if e.subject == "liquid" or e.quantity in IMMERSION]
+    return [
+        Problem(
+            e.span,
+            f"{e.subject}.{e.quantity} needs the liquid, which is off ({verdicts['liquid'].reason})",
+            "take this expect out, or switch the liquid on",
+        )
+        for e in scene.expects
+        if e.subject == "liquid" or e.quantity in IMMERSION
+    ]

@@ -61,11 +61,18 @@ def prospect(ready: Prepared, executors: int, settings: Settings = Settings()) -
     busiest = sum(int(best.load.max()) for best in found)
     work = len(found) * int(moments.cost[~moments.still].sum())
     largest, share, team = np.mean([_heaviest(best, moments) for best in found], axis=0).tolist()
-    return Prospect(executors, seconds, work / busiest if busiest else 1.0, int((~moments.still[:moments.objects]).sum()),
-                    round(largest), share, team)
+    return Prospect(
+        executors,
+        seconds,
+        work / busiest if busiest else 1.0,
+        int((~moments.still[: moments.objects]).sum()),
+        round(largest),
+        share,
+        team,
+    )
 
 
-def _heaviest(found: FramePlan, moments: "_Moments") -> tuple[int, float, int]:
+def _heaviest(found: FramePlan, moments: _Moments) -> tuple[int, float, int]:
     """Objects in the heaviest island, its part of the work, and who runs it together."""
     moving = found.label >= 0
     if not moving.any():
@@ -73,7 +80,7 @@ def _heaviest(found: FramePlan, moments: "_Moments") -> tuple[int, float, int]:
     work = np.bincount(found.label[moving], moments.cost[moving])
     i = int(work.argmax())
     team = next((len(t.members) for t in found.teams if t.island == i), 1)
-    return int((found.label[:moments.objects] == i).sum()), float(work[i] / work.sum()), team
+    return int((found.label[: moments.objects] == i).sum()), float(work[i] / work.sum()), team
 
 
 class _Moments:

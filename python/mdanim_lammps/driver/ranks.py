@@ -49,8 +49,14 @@ def _supervise(world, exchange: Path) -> None:
     source = Distributed(task.ready, world, task.control, task.settings)
     try:
         source.before = Timeline.left_in(task.folder) if task.resume else None
-        result = simulate(task.ready, task.folder, resume=task.resume, started=task.started, source=source,
-                          watch=lambda p: print(json.dumps(asdict(p)), flush=True))
+        result = simulate(
+            task.ready,
+            task.folder,
+            resume=task.resume,
+            started=task.started,
+            source=source,
+            watch=lambda p: print(json.dumps(asdict(p)), flush=True),
+        )
     except MdanimError as error:
         result = _told(error)
     except BaseException as error:  # executors would wait for ever

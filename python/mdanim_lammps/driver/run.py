@@ -87,8 +87,15 @@ def write_inputs(ready: Prepared, folder: Path) -> None:
     write_whole(folder / f"in.{plan.name}", input_script(plan))
 
 
-def simulate(ready: Prepared, folder: Path, *, watch: Callable[[Progress], None] | None = None, resume: Checkpoint | None = None,
-             started: float | None = None, source: Source | None = None) -> Result:
+def simulate(
+    ready: Prepared,
+    folder: Path,
+    *,
+    watch: Callable[[Progress], None] | None = None,
+    resume: Checkpoint | None = None,
+    started: float | None = None,
+    source: Source | None = None,
+) -> Result:
     """Run all frames (or go on from a checkpoint), leaving trajectory.h5, ledger.csv, checkpoint and summary.json in ``folder``.
 
     ``started`` is what ``time.perf_counter()`` gave when the work for this run began, so that loading and modelling are in its
@@ -127,12 +134,17 @@ class _Run:
         self.first_step = resume.step if resume else 0
         self.run_id = run_id(ready)
         if resume and resume.run != self.run_id:
-            raise OutputError(f"{folder / 'checkpoint'} is of another run: scene, time step or program have changed since; "
-                              "run the scene again with --force")
+            raise OutputError(
+                f"{folder / 'checkpoint'} is of another run: scene, time step or program have changed since; "
+                "run the scene again with --force"
+            )
         self.recorded = recorded(ready.scene.expects)
         self.grid = ready.plan.grid
-        self.ledger = Ledger(ledger_terms(self.effects), (*self.recorded.values(), *(("liquid_cells",) if self.grid else ())),
-                             rounding_energy(ready.system))
+        self.ledger = Ledger(
+            ledger_terms(self.effects),
+            (*self.recorded.values(), *(("liquid_cells",) if self.grid else ())),
+            rounding_energy(ready.system),
+        )
 
     # --- the order of things ----------------------------------------------------------------------------------------
 
@@ -160,8 +172,19 @@ class _Run:
                         self.guard.look(now.step, now.x, now.v)
                     with self._clock("output"):
                         row = self._record(out, now)
-                        watch(Progress(frame, len(lengths), now.step, c.steps, row["time"], row["residual"],
-                                       self.seconds["simulation"], self.first_step, self._gained()))
+                        watch(
+                            Progress(
+                                frame,
+                                len(lengths),
+                                now.step,
+                                c.steps,
+                                row["time"],
+                                row["residual"],
+                                self.seconds["simulation"],
+                                self.first_step,
+                                self._gained(),
+                            )
+                        )
                         if stop.is_set():
                             last = self.source.stop(frame)
                         if now.kept and (frame == last or time.perf_counter() - saved > CHECKPOINT_SECONDS):
@@ -171,8 +194,9 @@ class _Run:
                 self._close_ledger()
             if last < len(lengths):
                 insist = " --allow-unstable" if c.fraction > 1.0 else ""
-                raise Interrupted(f"interrupted at t = {number(row['time'], 4)} s; "
-                                  f"go on with: mdanim-lammps resume {self.folder}{insist}")
+                raise Interrupted(
+                    f"interrupted at t = {number(row['time'], 4)} s; go on with: mdanim-lammps resume {self.folder}{insist}"
+                )
             account = self.source.account()
             closing = time.perf_counter()
         self.seconds["output"] += time.perf_counter() - closing
@@ -185,15 +209,29 @@ class _Run:
             raise self.guard.broke(broken.step, broken.error, broken.solid) from broken
 
     def _finish(self, account: Account) -> Result:
-        with self._clock("output"):
-            with Trajectory(self.folder) as trajectory:
-                liquid = {} if self.grid is None else {
-                    "cells": self.ledger.array("liquid_cells"), "cell_volume": self.grid.cell_volume,
-                    "level": trajectory.liquid_levels}
-                outcomes = evaluate(self.ready.scene.expects, Measured(
-                    trajectory.names, trajectory.times, trajectory.centers, trajectory.center_velocities,
-                    self.ledger.array("residual"), self.penetration,
-                    {what: self.ledger.array(column) for what, column in self.recorded.items()}, **liquid))
+        with self._clock("output"), Trajectory(self.folder) as trajectory:
+            liquid = (
+                {}
+                if self.grid is None
+                else {
+                    "cells": self.ledger.array("liquid_cells"),
+                    "cell_volume": self.grid.cell_volume,
+                    "level": trajectory.liquid_levels,
+                }
+            )
+            outcomes = evaluate(
+                self.ready.scene.expects,
+                Measured(
+                    trajectory.names,
+                    trajectory.times,
+                    trajectory.centers,
+                    trajectory.center_velocities,
+                    self.ledger.array("residual"),
+                    self.penetration,
+                    {what: self.ledger.array(column) for what, column in self.recorded.items()},
+                    **liquid,
+                ),
+            )
         cost = self._cost(account)
         write_json(self.folder / "cost.json", cost.to_json())
         write_json(self.folder / "summary.json", self._summary(outcomes))
@@ -203,18 +241,37 @@ class _Run:
     def _summary(self, outcomes: list[Outcome]) -> dict:
         scene, c = self.ready.scene, self.certificate
         return {
-            "title": scene.title, "scene": scene.name, "done": True,
-            "objects": len(self.ready.system.names), "particles": self.ready.system.particles,
-            "springs": len(self.ready.system.spring), "time": c.steps * c.timestep, "timestep": c.timestep,
-            "steps": c.steps, "frames": len(self.ledger.rows),
+            "title": scene.title,
+            "scene": scene.name,
+            "done": True,
+            "objects": len(self.ready.system.names),
+            "particles": self.ready.system.particles,
+            "springs": len(self.ready.system.spring),
+            "time": c.steps * c.timestep,
+            "timestep": c.timestep,
+            "steps": c.steps,
+            "frames": len(self.ledger.rows),
             "effects": [e.name for e in self.effects],
-            "energy_residual": self.ledger.residual, "penetration": self.penetration, "inverted_cells": self.guard.most_inverted,
-            **({"liquid_cells": int(self.ledger.rows[-1]["liquid_cells"]), "liquid_residual": self._gained()}
-               if self.grid else {}),
+            "energy_residual": self.ledger.residual,
+            "penetration": self.penetration,
+            "inverted_cells": self.guard.most_inverted,
+            **(
+                {"liquid_cells": int(self.ledger.rows[-1]["liquid_cells"]), "liquid_residual": self._gained()}
+                if self.grid
+                else {}
+            ),
             "seconds": sum(self.seconds.values()),
-            "expect": [{"what": f"{o.expect.subject}.{o.expect.quantity}", "time": o.expect.time, "value": o.expect.value,
-                        "tolerance": o.expect.tolerance, "found": o.found if np.isfinite(o.found) else None, "met": o.met}
-                        for o in outcomes],
+            "expect": [
+                {
+                    "what": f"{o.expect.subject}.{o.expect.quantity}",
+                    "time": o.expect.time,
+                    "value": o.expect.value,
+                    "tolerance": o.expect.tolerance,
+                    "found": o.found if np.isfinite(o.found) else None,
+                    "met": o.met,
+                }
+                for o in outcomes
+            ],
         }
 
     # --- recording --------------------------------------------------------------------------------------------------
@@ -223,20 +280,31 @@ class _Run:
         path, c = self.folder / "trajectory.h5", self.certificate
         if self.resume:
             return TrajectoryWriter.append(path, self.ready.scene, self.ready.models, after_step=self.resume.step, grid=self.grid)
-        return TrajectoryWriter(path, self.ready.scene, self.ready.models, dt=c.timestep,
-                                steps_per_frame=c.steps_per_frame, scene_text=self.ready.lock, grid=self.grid)
+        return TrajectoryWriter(
+            path,
+            self.ready.scene,
+            self.ready.models,
+            dt=c.timestep,
+            steps_per_frame=c.steps_per_frame,
+            scene_text=self.ready.lock,
+            grid=self.grid,
+        )
 
     def _record(self, out: TrajectoryWriter, now: Frame) -> dict[str, float]:
         """Check the state, then append it to ledger and trajectory. Raises DivergedError before anything bad is written."""
         system, when, pool = self.ready.system, now.step * self.certificate.timestep, now.pool
-        extras = {column: record(quantity, system, self.ready.models[system.names.index(name)], now.x, pool and pool.heights[0])
-                  for (name, quantity), column in self.recorded.items()}
+        extras = {
+            column: record(quantity, system, self.ready.models[system.names.index(name)], now.x, pool and pool.heights[0])
+            for (name, quantity), column in self.recorded.items()
+        }
         if pool:
             extras["liquid_cells"] = pool.cells
             if pool.cells != pool.start:
-                raise DivergedError(f"step {now.step}, t = {number(when, 4)} s: {pool.cells} cells of liquid, "
-                                    f"{pool.start} at the start: this must "
-                                    f"never be, please report it. The last good frame is kept in {self.folder}")
+                raise DivergedError(
+                    f"step {now.step}, t = {number(when, 4)} s: {pool.cells} cells of liquid, "
+                    f"{pool.start} at the start: this must "
+                    f"never be, please report it. The last good frame is kept in {self.folder}"
+                )
         # Losses before a resume are carried over.
         row = self.ledger.weigh(when, {t: e + self.carried.get(t, 0.0) for t, e in now.energies.items()} | extras)
         self.guard.energy(now.step, row["residual"], now.v)
@@ -287,10 +355,17 @@ class _Run:
             spared = min(beside, other.get(name, 0.0))
             other[name], beside = other.get(name, 0.0) - spared, beside - spared
         return Cost(
-            wall=time.perf_counter() - self.started + other.get("before the resume", 0.0), steps=self.certificate.steps,
-            particles=self.ready.system.particles, effects=parts,
-            other={LEAPFROG: account.leapfrog, "rest of the step": max(0.0, self.seconds["simulation"] - known), **account.other,
-                   **other})
+            wall=time.perf_counter() - self.started + other.get("before the resume", 0.0),
+            steps=self.certificate.steps,
+            particles=self.ready.system.particles,
+            effects=parts,
+            other={
+                LEAPFROG: account.leapfrog,
+                "rest of the step": max(0.0, self.seconds["simulation"] - known),
+                **account.other,
+                **other,
+            },
+        )
 
 
 class _Clock:
@@ -314,7 +389,7 @@ class _Stop:
         self.asked = threading.Event()
         self.old = {}
 
-    def __enter__(self) -> "_Stop":
+    def __enter__(self) -> _Stop:
         self.file.unlink(missing_ok=True)  # of a run before this one
         if threading.current_thread() is threading.main_thread():
             for number in (signal.SIGINT, signal.SIGTERM):

@@ -102,7 +102,7 @@ class Sequential:
     def __init__(self, plan: Plan):
         self.plan = plan
 
-    def __enter__(self) -> "Sequential":
+    def __enter__(self) -> Sequential:
         self.instance = Instance(self.plan)
         return self
 
@@ -133,8 +133,9 @@ class Sequential:
 
     def _frame(self) -> Frame:
         instance = self.instance
-        return Frame(instance.step, instance.array("x"), instance.array("v"), energies(instance), penetration(instance),
-                     pool(instance))
+        return Frame(
+            instance.step, instance.array("x"), instance.array("v"), energies(instance), penetration(instance), pool(instance)
+        )
 
 
 def run_window(instance: Instance, steps: int) -> None:

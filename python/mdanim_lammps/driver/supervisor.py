@@ -59,14 +59,15 @@ class Distributed:
 
     # --- as a source of frames ------------------------------------------------------------------------------------
 
-    def __enter__(self) -> "Distributed":
+    def __enter__(self) -> Distributed:
         return self
 
     def begin(self, resume):
         system = self.ready.system
         self.step = resume.step if resume else 0
-        self.start = ((resume.x, resume.v, resume.f) if resume else
-                      (system.position, system.velocity, np.zeros_like(system.position)))
+        self.start = (
+            (resume.x, resume.v, resume.f) if resume else (system.position, system.velocity, np.zeros_like(system.position))
+        )
         self.granted = self.taken = self.resumed_at = resume.frame if resume else 0
         self.last: _Sheaf | None = None
         """That of the frame which was given out last."""
@@ -108,7 +109,7 @@ class Distributed:
     def __exit__(self, kind, *_) -> None:
         if not hasattr(self, "desk"):
             return
-        self.clean = kind is None or self.stopped and self.taken == self.granted
+        self.clean = kind is None or (self.stopped and self.taken == self.granted)
         if not self.clean:
             self.desk.send_all(Tag.ABORT, None)
         end = time.perf_counter() + PATIENCE
@@ -136,7 +137,7 @@ class Distributed:
         self.desk.send_all(Tag.GRANT, Grant(frame, keep))
         self.granted = frame
 
-    def _sheaf(self, frame: int) -> "_Sheaf":
+    def _sheaf(self, frame: int) -> _Sheaf:
         if frame not in self.sheaves:
             # What moves is overwritten in every frame, what does not is right in all of them.
             old = self.used.pop() if self.used else None
@@ -146,7 +147,7 @@ class Distributed:
     def _frame(self, frame: int, keep: bool) -> Frame:
         """Wait for all shares of a frame. Raises what an executor raised."""
         sheaf = self._sheaf(frame)
-        while len(sheaf.shares) < self.executors or keep and len(sheaf.kept) < self.executors:
+        while len(sheaf.shares) < self.executors or (keep and len(sheaf.kept) < self.executors):
             self._take()
         if self.last:
             self.used.append(self.last)
@@ -159,13 +160,25 @@ class Distributed:
                     self.losses[term] += e
                 else:
                     energies[term] += e
-        self.timeline.add(frame, [s.objects for s in shares], sum(s.moves for s in shares), max(s.retries for s in shares),
-                          [team for s in shares for team in s.teams])
+        self.timeline.add(
+            frame,
+            [s.objects for s in shares],
+            sum(s.moves for s in shares),
+            max(s.retries for s in shares),
+            [team for s in shares for team in s.teams],
+        )
         if keep:
             self.last_state = State(sheaf.x, sheaf.v, sheaf.f, sheaf.liquid)
         energies |= potentials(self.ready.plan, sheaf.x) | self.losses
-        return Frame(self.step, sheaf.x, sheaf.v, energies, max(s.penetration for s in shares),
-                     next((s.pool for s in shares if s.pool), None), keep)
+        return Frame(
+            self.step,
+            sheaf.x,
+            sheaf.v,
+            energies,
+            max(s.penetration for s in shares),
+            next((s.pool for s in shares if s.pool), None),
+            keep,
+        )
 
     def _take(self, patience: float | None = None) -> None:
         """Wait for one message and file it. Raises what an executor or the desk raised."""

@@ -64,8 +64,13 @@ def form(weight, particles, home, fixed, executors, previous, gain, least) -> tu
     shrink()
     while True:
         left = executors - sum(n for n in size.values() if n > 1)
-        short = [i for i in heavy if size[i] < most[i] and left >= (2 if size[i] == 1 else 1)
-                 and time_each(cost[i], size[i], gain) * executors * TENTH[1] > spent() * TENTH[0]]
+        short = [
+            i
+            for i in heavy
+            if size[i] < most[i]
+            and left >= (2 if size[i] == 1 else 1)
+            and time_each(cost[i], size[i], gain) * executors * TENTH[1] > spent() * TENTH[0]
+        ]
         if not short:
             break
         size[max(short, key=lambda i: (time_each(cost[i], size[i], gain), -i))] += 1
@@ -86,7 +91,7 @@ def form(weight, particles, home, fixed, executors, previous, gain, least) -> tu
         free.remove(leader)
         members[i] = [leader]
     for i in members:
-        ranked = sorted(free, key=lambda e: (e not in old[i], load[e], e))[:size[i] - 1]
+        ranked = sorted(free, key=lambda e: (e not in old[i], load[e], e))[: size[i] - 1]
         free.difference_update(ranked)
         members[i] += sorted(ranked)
     return tuple(Team(i, tuple(members[i])) for i in sorted(members) if len(members[i]) > 1)

@@ -11,7 +11,17 @@ from .liquid import Basin, Buoyancy, Liquid, LiquidDrag
 from .springs import Springs
 
 EFFECTS: tuple[Effect, ...] = (
-    Springs(), Damping(), Gravity(), Contact(), Ground(), Walls(), Basin(), AirDrag(), Liquid(), Buoyancy(), LiquidDrag(),
+    Springs(),
+    Damping(),
+    Gravity(),
+    Contact(),
+    Ground(),
+    Walls(),
+    Basin(),
+    AirDrag(),
+    Liquid(),
+    Buoyancy(),
+    LiquidDrag(),
 )
 
 __all__ = ["EFFECTS", "Effect", "Load", "Verdict", "decide"]

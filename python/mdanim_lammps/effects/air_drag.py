@@ -9,7 +9,6 @@ from ..scene.scene import Switch
 from .effect import Effect, Verdict
 from .springs import all_held
 
-
 LEAPFROG = "leap-frog"
 """Clock of the integrator; what effects take of it is not counted with the integrator's own time."""
 SLOWING = 0.3

@@ -22,10 +22,7 @@ class Boundary(Effect):
         raise NotImplementedError
 
     def commands(self, scene, system):
-        return [
-            f"region {self.fix} {self.region(scene)}",
-            f"fix {self.fix} mobile mdanim/wall {self.fix} d_stiffness",
-        ]
+        return [f"region {self.fix} {self.region(scene)}", f"fix {self.fix} mobile mdanim/wall {self.fix} d_stiffness"]
 
     def energy(self, instance, scene, system):
         return instance.fix_scalar(self.fix)
@@ -48,8 +45,9 @@ class Ground(Boundary):
     def called_for(self, scene):
         if scene.ground is None:
             return Verdict(self.name, False, "no ground in the scene")
-        return Verdict(self.name, True, f"ground at z = {say(scene.ground, 'm', 6)}{stiffness_told(scene)}",
-                       scene.spans.get("ground"))
+        return Verdict(
+            self.name, True, f"ground at z = {say(scene.ground, 'm', 6)}{stiffness_told(scene)}", scene.spans.get("ground")
+        )
 
     def region(self, scene):
         return f"plane 0 0 {scene.ground!r} 0 0 1"

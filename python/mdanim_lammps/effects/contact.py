@@ -57,10 +57,16 @@ class Contact(Effect):
             return Verdict(self.name, False, "every object is held")
         first, second, apart = closest(scene)
         if apart > 0.0:
-            return Verdict(self.name, False, f"no two objects can come within reach: nearest are {first.name} and {second.name}, "
-                           f"with {say(apart, 'm')} to spare", second.spans.get("object"))
-        return Verdict(self.name, True, f"{first.name} and {second.name} may meet{stiffness_told(scene)}",
-                       second.spans.get("object"))
+            return Verdict(
+                self.name,
+                False,
+                f"no two objects can come within reach: nearest are {first.name} and {second.name}, "
+                f"with {say(apart, 'm')} to spare",
+                second.spans.get("object"),
+            )
+        return Verdict(
+            self.name, True, f"{first.name} and {second.name} may meet{stiffness_told(scene)}", second.spans.get("object")
+        )
 
     def columns(self, scene, system):
         return {"stiffness": system.contact_stiffness, "reach": REACH * system.spacing[system.object]}

@@ -143,20 +143,24 @@ def decide(effects: tuple[Effect, ...], scene: Scene) -> tuple[dict[str, Verdict
         switch = scene.effects.get(effect.name, Switch.AUTO)
         span = scene.spans.get(f"effects.{effect.name}")
         if switch is Switch.OFF and own.on:
-            warnings.append(Problem(
-                span,
-                f"{effect.name} is switched off, but the scene calls for it ({own.reason})",
-                effect.lost,
-                severity="warning",
-            ))
+            warnings.append(
+                Problem(
+                    span,
+                    f"{effect.name} is switched off, but the scene calls for it ({own.reason})",
+                    effect.lost,
+                    severity="warning",
+                )
+            )
             own = Verdict(effect.name, False, f"switched off; {effect.lost}", span)
         elif switch is Switch.ON and not own.on:
-            warnings.append(Problem(
-                span,
-                f"{effect.name} cannot be switched on: {own.reason}",
-                "effects are called for by what stands in the scene",
-                severity="warning",
-            ))
+            warnings.append(
+                Problem(
+                    span,
+                    f"{effect.name} cannot be switched on: {own.reason}",
+                    "effects are called for by what stands in the scene",
+                    severity="warning",
+                )
+            )
         verdicts[effect.name] = own
     for effect in effects:
         missing = next((name for name in effect.needs if not verdicts[name].on), None)

@@ -7,7 +7,6 @@ import numpy as np
 
 from .effect import Effect, Verdict
 
-
 PULL = 0.07
 """Time of gravity over that of the leap-frog without drag, in a pass over blocks (plugin/styles/verlet_mdanim.cpp)."""
 

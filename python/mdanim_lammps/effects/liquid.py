@@ -15,7 +15,6 @@ from .boundaries import Boundary
 from .effect import Effect, Verdict
 from .springs import all_held
 
-
 EVERY = 4
 """Steps after which the fix looks whether cells are to be updated."""
 STRIDE = 0.25
@@ -98,7 +97,10 @@ class Liquid(Effect):
         liquid, grid = scene.liquid, system.grid
         fill = [f"region fill {_block(*liquid.fill)}"] if liquid.fill else []
         words = [
-            "fix liquid all mdanim/liquid liquid", repr(liquid.density), "grid", *map(str, grid.shape),
+            "fix liquid all mdanim/liquid liquid",
+            repr(liquid.density),
+            "grid",
+            *map(str, grid.shape),
             f"volume {liquid.volume!r}" if liquid.volume is not None else f"level {liquid.level!r}",
             *(["fill fill"] if fill else []),
             f"gravity {-scene.gravity[2]!r}",

@@ -8,7 +8,6 @@ import numpy as np
 from ..scene.scene import HoldAll
 from .effect import Effect, Verdict
 
-
 DASHPOTS = 0.44
 """Part of the time of damped springs that goes to their dashpots (bench/effects.py shares)."""
 
@@ -41,7 +40,7 @@ def fullness(spring: np.ndarray, lanes: int) -> float:
     if len(spring) > SAMPLE:
         each = SAMPLE // STRETCHES
         starts = np.linspace(0, len(spring) - each, STRETCHES).astype(np.int64)
-        spring = np.concatenate([spring[start:start + each] for start in starts])
+        spring = np.concatenate([spring[start : start + each] for start in starts])
     first, second = spring.T.astype(np.int64)
     block = first // lanes
     entry = np.sort(block * (1 + int(second.max())) + (second - first))

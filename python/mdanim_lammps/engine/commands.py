@@ -94,27 +94,29 @@ def input_script(plan: Plan) -> str:
         variable = [f"variable frame equal (step+{n})*(step+{n}<={end})+{end}*(step+{n}>{end}&&step<{end})+1e15*(step>={end})"]
         modify = ["dump_modify trajectory every v_frame first yes"]
     title = (plan.scene.title or plan.name).encode("ascii", "replace").decode()  # LAMMPS reads ASCII
-    return "\n".join([
-        f"# {title}",
-        f"# Written by mdanim-lammps; run it here with 'lmp -in in.{plan.name}' or 'mpiexec -n 4 lmp -in in.{plan.name}',",
-        "# with the lmp and the mpiexec of the environment that mdanim-lammps is installed in (.venv/bin): they know its styles.",
-        f"# Effects: {', '.join(e.name for e in plan.effects) or 'none'}.",
-        "",
-        *prelude(plan),
-        f"read_data data.{plan.name} fix model NULL Model",
-        "",
-        *physics(plan),
-        "",
-        "# Several ranks: cut space so that every rank has the same share; changes no bit of the result.",
-        *BALANCE,
-        "",
-        f"thermo {c.steps_per_frame}",
-        f"thermo_style custom step time ke pe{' ebond' if len(plan.bonds) else ''}{energy}",
-        "thermo_modify norm no flush yes",
-        *variable,
-        f"dump trajectory all custom {when} {plan.name}.lammpstrj id mol type x y z vx vy vz",
-        "dump_modify trajectory sort id format float %.17g",
-        *modify,
-        f"run {c.steps}",
-        "",
-    ])
+    return "\n".join(
+        [
+            f"# {title}",
+            f"# Written by mdanim-lammps; run it here with 'lmp -in in.{plan.name}' or 'mpiexec -n 4 lmp -in in.{plan.name}',",
+            "# with the lmp and the mpiexec of the environment that mdanim-lammps is installed in (.venv/bin): they know its styles.",
+            f"# Effects: {', '.join(e.name for e in plan.effects) or 'none'}.",
+            "",
+            *prelude(plan),
+            f"read_data data.{plan.name} fix model NULL Model",
+            "",
+            *physics(plan),
+            "",
+            "# Several ranks: cut space so that every rank has the same share; changes no bit of the result.",
+            *BALANCE,
+            "",
+            f"thermo {c.steps_per_frame}",
+            f"thermo_style custom step time ke pe{' ebond' if len(plan.bonds) else ''}{energy}",
+            "thermo_modify norm no flush yes",
+            *variable,
+            f"dump trajectory all custom {when} {plan.name}.lammpstrj id mol type x y z vx vy vz",
+            "dump_modify trajectory sort id format float %.17g",
+            *modify,
+            f"run {c.steps}",
+            "",
+        ]
+    )

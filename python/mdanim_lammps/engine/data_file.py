@@ -17,7 +17,7 @@ CHUNK = 1 << 16
 def rows(pattern: str, *columns: np.ndarray) -> Iterator[str]:
     """Lines of text from equally long columns; ``pattern`` formats one row, floats by ``%r`` so that no bit is lost."""
     for start in range(0, len(columns[0]), CHUNK):
-        block = [c[start:start + CHUNK].tolist() for c in columns]
+        block = [c[start : start + CHUNK].tolist() for c in columns]
         yield "".join(pattern % row for row in zip(*block))
 
 
@@ -37,8 +37,9 @@ def data_text(plan: Plan) -> Iterator[str]:
     yield from rows("%d %r %r %r\n", tag, *system.velocity.T)
     numbers = [column for table in plan.tables.values() for column in table.T]
     yield "\nModel # mass" + "".join(f" {name}" for name in (*plan.columns, *plan.tables)) + "\n\n"
-    yield from rows("%d %r" + " %r" * len(plan.columns) + " %d" * len(numbers) + "\n",
-                    tag, system.mass, *plan.columns.values(), *numbers)
+    yield from rows(
+        "%d %r" + " %r" * len(plan.columns) + " %d" * len(numbers) + "\n", tag, system.mass, *plan.columns.values(), *numbers
+    )
     if s:
         yield "\nBond Coeffs # mdanim/harmonic\n\n" + "\n".join(bond_coeffs(plan)) + "\n"
         yield "\nBonds\n\n"

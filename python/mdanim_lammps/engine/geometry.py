@@ -12,7 +12,6 @@ import numpy as np
 from ..model.system import System
 from .plugin import open_library
 
-
 NOT_FINITE, INVERTED = 1, 2
 """What a glance may find."""
 
@@ -20,8 +19,13 @@ NOT_FINITE, INVERTED = 1, 2
 class _Model(ctypes.Structure):
     """A system as the plugin takes it: Model in plugin/c_api/guard_c.cpp."""
 
-    _fields_ = [("count", ctypes.c_longlong), *((name, ctypes.c_void_p) for name in (
-        "first_particle", "boundary", "first_cell", "corner", "deep", "spacing", "mass", "still"))]
+    _fields_ = [
+        ("count", ctypes.c_longlong),
+        *(
+            (name, ctypes.c_void_p)
+            for name in ("first_particle", "boundary", "first_cell", "corner", "deep", "spacing", "mass", "still")
+        ),
+    ]
 
 
 @dataclass(frozen=True)
@@ -74,12 +78,19 @@ class Geometry:
     def _own(self) -> tuple[ctypes.CDLL, object, dict[str, np.ndarray], np.ndarray, int]:
         """The plugin, the system as it takes it, the arrays of that, and room for reaches with its address."""
         system = self.system
-        arrays = {name: np.ascontiguousarray(array, kind) for name, array, kind in (
-            ("first_particle", system.first, np.int64), ("boundary", system.boundary, np.uint8),
-            ("first_cell", self.first_cell, np.int64), ("corner", system.hexahedron, np.int32),
-            ("deep", ~system.boundary[system.hexahedron].any(1), np.uint8), ("spacing", np.cbrt(system.cell_volume), np.float64),
-            ("mass", system.mass, np.float64),
-            ("still", system.still, np.uint8))}
+        arrays = {
+            name: np.ascontiguousarray(array, kind)
+            for name, array, kind in (
+                ("first_particle", system.first, np.int64),
+                ("boundary", system.boundary, np.uint8),
+                ("first_cell", self.first_cell, np.int64),
+                ("corner", system.hexahedron, np.int32),
+                ("deep", ~system.boundary[system.hexahedron].any(1), np.uint8),
+                ("spacing", np.cbrt(system.cell_volume), np.float64),
+                ("mass", system.mass, np.float64),
+                ("still", system.still, np.uint8),
+            )
+        }
         model = _Model(len(system.names), **{name: _address(array) for name, array in arrays.items()})
         reach = np.empty((len(system.names), 6))
         return _library(), ctypes.pointer(model), arrays, reach, _address(reach)
@@ -91,10 +102,11 @@ def _library() -> ctypes.CDLL:
     library = open_library()
     number, array, model = ctypes.c_longlong, ctypes.c_void_p, ctypes.POINTER(_Model)
     for function, result, arguments in (
-            (library.mdanim_glance, ctypes.c_int, [model, array, array, array]),
-            (library.mdanim_not_finite, number, [number, array, array]),
-            (library.mdanim_inverted, number, [number, array, array, array]),
-            (library.mdanim_sunk, number, [model, array, array])):
+        (library.mdanim_glance, ctypes.c_int, [model, array, array, array]),
+        (library.mdanim_not_finite, number, [number, array, array]),
+        (library.mdanim_inverted, number, [number, array, array, array]),
+        (library.mdanim_sunk, number, [model, array, array]),
+    ):
         function.restype, function.argtypes = result, arguments
     return library
 

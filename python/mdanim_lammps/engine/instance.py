@@ -89,7 +89,7 @@ class Instance:
         if plan.system.particles >= MANY:
             self._lmp.lib.malloc_trim(ctypes.c_size_t(0))  # of the C library, among the symbols that come with LAMMPS
 
-    def __enter__(self) -> "Instance":
+    def __enter__(self) -> Instance:
         return self
 
     def __exit__(self, *_) -> None:
@@ -114,21 +114,28 @@ class Instance:
         ends = plan.ends() if self._comm and len(plan.bonds) else None
         room = f" extra/bond/per/atom {np.diff(ends.first).max()}" if ends else ""
         bounds = " ".join(f"{a!r} {b!r}" for a, b in zip(low, high))
-        lmp.commands_list([
-            *before,
-            columns,
-            f"region box block {bounds}",
-            f"create_box 8 box bond/types {self._types}{room}" if len(plan.bonds) else "create_box 8 box",
-        ])
+        lmp.commands_list(
+            [
+                *before,
+                columns,
+                f"region box block {bounds}",
+                f"create_box 8 box bond/types {self._types}{room}" if len(plan.bonds) else "create_box 8 box",
+            ]
+        )
         self._populate(ends, places)
         if self._comm:
             self._cut_space(plan.system.position)
             lmp.command(BALANCE[1])
         # The springs' energy is all that is asked for; while there is a compute of the pressure, their virial is worked
         # out with it.
-        lmp.commands_list([f"thermo {max(1, plan.certificate.steps_per_frame)}",
-                           f"thermo_style custom step{' ebond' if len(plan.bonds) else ''}",
-                           "thermo_modify norm no", "uncompute thermo_press"])
+        lmp.commands_list(
+            [
+                f"thermo {max(1, plan.certificate.steps_per_frame)}",
+                f"thermo_style custom step{' ebond' if len(plan.bonds) else ''}",
+                "thermo_modify norm no",
+                "uncompute thermo_press",
+            ]
+        )
 
     def _populate(self, ends: Ends | None, places: np.ndarray) -> None:
         """Particles at these places, and what acts on them, into a box that is empty."""
@@ -136,13 +143,18 @@ class Instance:
         self._insert(ends, places)
         if len(plan.bonds) and not ends:
             springs = [np.ascontiguousarray(a, np.int32) for a in (plan.bonds, plan.bond_kind)]
-            self._call(f"take {len(plan.bonds)} springs", self._library.mdanim_give_springs, ctypes.c_int(len(plan.bonds)),
-                       *map(_pointer, springs))
+            self._call(
+                f"take {len(plan.bonds)} springs",
+                self._library.mdanim_give_springs,
+                ctypes.c_int(len(plan.bonds)),
+                *map(_pointer, springs),
+            )
         if len(plan.bonds):
             *rows, last = bond_coeffs(plan)
             kind, rest = last.split(" ", 1)
-            self._lmp.commands_list([f"bond_coeff {row}"
-                                     for row in (*rows, f"{kind}*{self._types} {rest}")])  # LAMMPS wants all types set
+            self._lmp.commands_list(
+                [f"bond_coeff {row}" for row in (*rows, f"{kind}*{self._types} {rest}")]
+            )  # LAMMPS wants all types set
         self._lmp.commands_list(physics(plan))
 
     @property
@@ -164,8 +176,14 @@ class Instance:
         self.plan, self._prelude = plan, commands
         self._views.clear()
         try:
-            self._lmp.commands_list(["delete_atoms group all compress no", *reversed(undo),  # fixes go before their regions
-                                     *(c for c in commands if c.startswith(REPEATED)), "reset_timestep 0"])
+            self._lmp.commands_list(
+                [
+                    "delete_atoms group all compress no",
+                    *reversed(undo),  # fixes go before their regions
+                    *(c for c in commands if c.startswith(REPEATED)),
+                    "reset_timestep 0",
+                ]
+            )
             self._populate(None, plan.system.position)
         except Exception as error:
             raise SetupError(f"LAMMPS does not take these particles: {error}") from error
@@ -179,18 +197,37 @@ class Instance:
         properties = np.array([plan.columns[c] for c in names], dtype=np.float64).reshape(len(names), n)
         tag = np.arange(1, n + 1, dtype=np.int32)
         molecule = (system.object + 1).astype(np.int32)
-        arrays = [np.ascontiguousarray(a, t) for a, t in (
-            (tag, np.int32), (plan.kind, np.int32), (molecule, np.int32), (position, np.float64),
-            (system.velocity, np.float64), (system.mass, np.float64))]
+        arrays = [
+            np.ascontiguousarray(a, t)
+            for a, t in (
+                (tag, np.int32),
+                (plan.kind, np.int32),
+                (molecule, np.int32),
+                (position, np.float64),
+                (system.velocity, np.float64),
+                (system.mass, np.float64),
+            )
+        ]
         self._call(
-            f"insert {n} particles", self._library.mdanim_insert, ctypes.c_int(n),
+            f"insert {n} particles",
+            self._library.mdanim_insert,
+            ctypes.c_int(n),
             *(_pointer(a) for a in arrays),
-            ctypes.c_int(len(names)), (ctypes.c_char_p * max(1, len(names)))(*(c.encode() for c in names)),
-            _pointer(properties), *(map(_pointer, ends) if ends else [None] * 3),
+            ctypes.c_int(len(names)),
+            (ctypes.c_char_p * max(1, len(names)))(*(c.encode() for c in names)),
+            _pointer(properties),
+            *(map(_pointer, ends) if ends else [None] * 3),
         )
         for name, table in plan.tables.items():
-            self._call(f"set i2_{name}", self._library.mdanim_set_table, name.encode(), ctypes.c_int(table.shape[1]),
-                       ctypes.c_int(n), _pointer(tag), _pointer(np.ascontiguousarray(table, np.int32)))
+            self._call(
+                f"set i2_{name}",
+                self._library.mdanim_set_table,
+                name.encode(),
+                ctypes.c_int(table.shape[1]),
+                ctypes.c_int(n),
+                _pointer(tag),
+                _pointer(np.ascontiguousarray(table, np.int32)),
+            )
 
     def _box_to_cut(self, places: np.ndarray) -> np.ndarray:
         """Bounds of what is cut for ranks [m], shape (2, 3): LAMMPS cuts its box around all particles. Were it another when they
@@ -295,8 +332,13 @@ class Instance:
         self._command(f"reset_timestep {step}")
         if state.liquid is not None:
             blob = np.ascontiguousarray(state.liquid, np.uint8)
-            self._call("take up the liquid's state", self._library.mdanim_liquid_set_state, LIQUID, _pointer(blob),
-                       ctypes.c_longlong(len(blob)))
+            self._call(
+                "take up the liquid's state",
+                self._library.mdanim_liquid_set_state,
+                LIQUID,
+                _pointer(blob),
+                ctypes.c_longlong(len(blob)),
+            )
         if self._comm:
             # A particle may be far from the rank that holds it now, farther than LAMMPS's own exchange reaches.
             self._command("delete_atoms group all compress no")
@@ -473,4 +515,3 @@ def _shorter_along_rows(position: np.ndarray) -> np.ndarray:
 
 def _pointer(array: np.ndarray) -> ctypes.c_void_p:
     return array.ctypes.data_as(ctypes.c_void_p)
-

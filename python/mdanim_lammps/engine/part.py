@@ -38,8 +38,9 @@ class Parts:
         counted = np.arange(len(system.names) + 1)
         # First rows of each object; lists, for they are asked for one by one.
         self._particle: list[int] = system.first.tolist()
-        self._spring, self._bond, self._cell = (np.searchsorted(owner[array[:, 0]], counted).tolist()
-                                                for array in (system.spring, whole.bonds, system.hexahedron))
+        self._spring, self._bond, self._cell = (
+            np.searchsorted(owner[array[:, 0]], counted).tolist() for array in (system.spring, whole.bonds, system.hexahedron)
+        )
         self._ends: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
 
     @cached_property
@@ -73,13 +74,20 @@ class Parts:
         number = np.zeros(len(whole.coefficients) + 1, whole.bond_kind.dtype)
         number[used] = np.arange(1, len(used) + 1)
         return Part(
-            scene=whole.scene, system=system, certificate=whole.certificate, effects=effects,
+            scene=whole.scene,
+            system=system,
+            certificate=whole.certificate,
+            effects=effects,
             columns={name: take(column) for name, column in whole.columns.items() if name in wanted},
             tables={name: take.tags(table) for name, table in whole.tables.items() if name in wanted},
             bonds=system.spring if len(whole.bonds) else system.spring[:0],
-            bond_kind=number[_Taker(runs, self._bond)(whole.bond_kind)], coefficients=whole.coefficients[used - 1],
-            asked={e.name: whole.asked[e.name] for e in effects}, spacing=whole.spacing, exponential=whole.exponential,
-            objects=objects, make_ends=lambda: self._join_ends(objects, system.first, number),
+            bond_kind=number[_Taker(runs, self._bond)(whole.bond_kind)],
+            coefficients=whole.coefficients[used - 1],
+            asked={e.name: whole.asked[e.name] for e in effects},
+            spacing=whole.spacing,
+            exponential=whole.exponential,
+            objects=objects,
+            make_ends=lambda: self._join_ends(objects, system.first, number),
         )
 
     def _check(self, objects: tuple[int, ...], liquid: bool) -> None:
@@ -113,12 +121,21 @@ class Parts:
         return _Cut(
             names=lambda: tuple(s.names[m] for m in objects),
             first=lambda: np.concatenate([[0], np.cumsum(np.diff(s.first)[index])]).astype(np.int64),
-            position=lambda: particle(s.position), velocity=lambda: particle(s.velocity), mass=lambda: particle(s.mass),
-            share=lambda: particle(s.share), layer=lambda: particle(s.layer), held=lambda: particle(s.held),
-            spring=lambda: particle.renumber(s.spring, spring), spring_type=lambda: spring(s.spring_type),
-            constants=lambda: s.constants, drag=lambda: None if s.drag is None else particle(s.drag),
-            young=lambda: s.young[index], spacing=lambda: s.spacing[index], cell_volume=lambda: s.cell_volume[index],
-            per_mass=lambda: s.per_mass[index], hexahedron=lambda: particle.renumber(s.hexahedron, cell),
+            position=lambda: particle(s.position),
+            velocity=lambda: particle(s.velocity),
+            mass=lambda: particle(s.mass),
+            share=lambda: particle(s.share),
+            layer=lambda: particle(s.layer),
+            held=lambda: particle(s.held),
+            spring=lambda: particle.renumber(s.spring, spring),
+            spring_type=lambda: spring(s.spring_type),
+            constants=lambda: s.constants,
+            drag=lambda: None if s.drag is None else particle(s.drag),
+            young=lambda: s.young[index],
+            spacing=lambda: s.spacing[index],
+            cell_volume=lambda: s.cell_volume[index],
+            per_mass=lambda: s.per_mass[index],
+            hexahedron=lambda: particle.renumber(s.hexahedron, cell),
             grid=lambda: s.grid if liquid else None,
         )
 
@@ -184,15 +201,17 @@ class _Taker:
             return array[self.slices[0]]
         return np.concatenate([array[:0], *(array[s] for s in self.slices)])
 
-    def renumber(self, array: np.ndarray, rows: "_Taker") -> np.ndarray:
+    def renumber(self, array: np.ndarray, rows: _Taker) -> np.ndarray:
         """Rows of an array whose entries are row numbers of this taker's, numbered anew."""
         pieces = [array[s] - array.dtype.type(shift) if shift else array[s] for s, shift in zip(rows.slices, self.shifts)]
         return pieces[0] if len(pieces) == 1 else np.concatenate([array[:0], *pieces])
 
     def tags(self, table: np.ndarray) -> np.ndarray:
         """Rows of a table of tags (from 1, 0 for none), numbered anew."""
-        pieces = [np.where(table[s] > 0, table[s] - table.dtype.type(shift), 0) if shift else table[s]
-                  for s, shift in zip(self.slices, self.shifts)]
+        pieces = [
+            np.where(table[s] > 0, table[s] - table.dtype.type(shift), 0) if shift else table[s]
+            for s, shift in zip(self.slices, self.shifts)
+        ]
         return pieces[0] if len(pieces) == 1 else np.concatenate([table[:0], *pieces])
 
 

@@ -105,9 +105,17 @@ def make_plan(scene: Scene, system: System, verdicts: dict[str, Verdict], certif
     else:
         bonds, kind, coefficients = system.spring[:0], np.zeros(0, np.uint8), np.zeros((0, 3))
     return Plan(
-        scene=scene, system=system, certificate=certificate, effects=effects,
-        columns=columns, tables=tables, bonds=bonds, bond_kind=kind, coefficients=coefficients,
-        asked=asked, spacing=float(system.spacing.max()),
+        scene=scene,
+        system=system,
+        certificate=certificate,
+        effects=effects,
+        columns=columns,
+        tables=tables,
+        bonds=bonds,
+        bond_kind=kind,
+        coefficients=coefficients,
+        asked=asked,
+        spacing=float(system.spacing.max()),
         exponential=bool(strong_drag(scene, system, effects, certificate.timestep)),
     )
 

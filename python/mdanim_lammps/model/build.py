@@ -53,6 +53,7 @@ def build_models(scene: Scene, progress: Callable[[int, int], None] | None = Non
 
 # --- what equal objects share -------------------------------------------------------------------------------
 
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Body:
     """A lattice and its surface, body frame."""
@@ -88,9 +89,7 @@ def _make_body(shape: Shape, h: float) -> _Body:
     return _Body(lattice, surface)
 
 
-def _make_fabric(
-    lattice: Lattice, mass: float, elasticity: Young | SpringConstant, damping: float, rigid: bool
-) -> _Fabric:
+def _make_fabric(lattice: Lattice, mass: float, elasticity: Young | SpringConstant, damping: float, rigid: bool) -> _Fabric:
     """Masses in proportion to the filled cells around a particle; no springs in a body that is all held."""
     m = lattice.share * (mass / lattice.share.sum())
     m *= mass / m.sum()
@@ -116,6 +115,7 @@ def _freeze(*arrays: np.ndarray) -> None:
 
 # --- one object ---------------------------------------------------------------------------------------------
 
+
 def _make_model(solid: Solid, workshop: _Workshop) -> Model:
     body = workshop.body(solid.shape)
     lattice = body.lattice
@@ -126,11 +126,21 @@ def _make_model(solid: Solid, workshop: _Workshop) -> Model:
     velocity = solid.velocity + np.cross(solid.spin, arm)
     velocity[held] = 0.0
     return Model(
-        name=solid.name, position=arm + solid.position, velocity=velocity,
-        mass=fabric.mass, share=lattice.share, layer=lattice.layer, held=held,
-        spring=fabric.spring, spring_type=fabric.spring_type, constants=fabric.constants,
-        drag=fabric.mass * (solid.drag / mass) if solid.drag > 0 else None, young=fabric.young,
-        hexahedron=lattice.hexahedron, cell=tuple(lattice.cells.edge.tolist()), surface=body.surface,
+        name=solid.name,
+        position=arm + solid.position,
+        velocity=velocity,
+        mass=fabric.mass,
+        share=lattice.share,
+        layer=lattice.layer,
+        held=held,
+        spring=fabric.spring,
+        spring_type=fabric.spring_type,
+        constants=fabric.constants,
+        drag=fabric.mass * (solid.drag / mass) if solid.drag > 0 else None,
+        young=fabric.young,
+        hexahedron=lattice.hexahedron,
+        cell=tuple(lattice.cells.edge.tolist()),
+        surface=body.surface,
     )
 
 
@@ -190,8 +200,7 @@ def _missed(hold: HoldWithin, solid: Solid, lattice: Lattice) -> tuple[str, str]
     low, high = (", ".join(number(x, 4) for x in side) for side in (position.min(axis=0), position.max(axis=0)))
     return (
         "hold within this box catches no particle",
-        f"the object reaches from ({low}) to ({high}) m, "
-        f"its particles are {say(lattice.cells.edge.max(), 'm')} apart",
+        f"the object reaches from ({low}) to ({high}) m, its particles are {say(lattice.cells.edge.max(), 'm')} apart",
     )
 
 
@@ -209,6 +218,7 @@ def _too_thin(solid: Solid, h: float, error: TooThin) -> Problem:
             f"write resolution {say(trial, 'm')} in control, or make its thin parts thicker",
         )
     return Problem(
-        solid.spans.get("shape"), f"{solid.name}: {error}, neither at {say(h, 'm')} nor at {say(trial, 'm')}",
+        solid.spans.get("shape"),
+        f"{solid.name}: {error}, neither at {say(h, 'm')} nor at {say(trial, 'm')}",
         "make separate bodies, and parts that touch in a point, separate objects",
     )

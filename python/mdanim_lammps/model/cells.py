@@ -33,6 +33,7 @@ def end_share(filled: np.ndarray) -> float:
 
 # --- cuboids ------------------------------------------------------------------------------------------------
 
+
 def box_counts(size, spacing: float) -> tuple[int, int, int]:
     """Cells along each edge so that they are nearly cubes with edges near the spacing [m].
 
@@ -58,9 +59,7 @@ def box_counts(size, spacing: float) -> tuple[int, int, int]:
 def _trial_counts(size: np.ndarray, spacing: float, reach: float) -> np.ndarray:
     """Divisions worth a look, shape (n, 3): near the spacing, or fitting one side and in reach."""
     near = [
-        length / n
-        for length in size
-        for n in range(max(1, ceil(length / (spacing * reach))), int(length * reach / spacing) + 1)
+        length / n for length in size for n in range(max(1, ceil(length / (spacing * reach))), int(length * reach / spacing) + 1)
     ]
     cells = size / np.array([spacing, *near])[:, None]
     down, up = np.floor(cells + 1e-9), np.ceil(cells - 1e-9)
@@ -156,9 +155,7 @@ def _neighbours(filled: np.ndarray) -> np.ndarray:
     """Filled cells across the six faces of every cell, int, same shape."""
     padded = np.pad(filled, 1).astype(np.int8)
     inner = slice(1, -1)
-    return sum(
-        np.roll(padded, step, axis)[inner, inner, inner] for axis in range(3) for step in (-1, 1)
-    )
+    return sum(np.roll(padded, step, axis)[inner, inner, inner] for axis in range(3) for step in (-1, 1))
 
 
 def _in_one_piece(filled: np.ndarray) -> bool:

@@ -10,9 +10,7 @@ from . import shapes
 from .lattice import CORNERS, Lattice
 from .model import Surface
 
-FACES = np.array([
-    (0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7),
-])
+FACES = np.array([(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7)])
 """Corners of the faces -x, +x, -y, +y, -z, +z of a VTK hexahedron, counter-clockwise seen from outside."""
 
 

@@ -14,11 +14,23 @@ import numpy as np
 
 from .model import Layer
 
-OFFSETS = np.array([
-    (1, 0, 0),
-    (-1, 1, 0), (0, 1, 0), (1, 1, 0),
-    (-1, -1, 1), (0, -1, 1), (1, -1, 1), (-1, 0, 1), (0, 0, 1), (1, 0, 1), (-1, 1, 1), (0, 1, 1), (1, 1, 1),
-])
+OFFSETS = np.array(
+    [
+        (1, 0, 0),
+        (-1, 1, 0),
+        (0, 1, 0),
+        (1, 1, 0),
+        (-1, -1, 1),
+        (0, -1, 1),
+        (1, -1, 1),
+        (-1, 0, 1),
+        (0, 0, 1),
+        (1, 0, 1),
+        (-1, 1, 1),
+        (0, 1, 1),
+        (1, 1, 1),
+    ]
+)
 """Steps (x, y, z) from a particle to its neighbours of higher number: 3 edges, 6 face diagonals and 4 body diagonals.
 
 They stand in the order of the neighbours' numbers, so springs written particle by particle come out sorted.
@@ -36,9 +48,7 @@ EDGES = 3.0
 AXES = np.count_nonzero(OFFSETS, axis=1)
 """1 for an edge, 2 for a face diagonal, 3 for a body diagonal, shape (13,)."""
 
-CORNERS = np.array([
-    (0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1),
-])
+CORNERS = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)])
 """Corners (x, y, z) of a cell in the order of a VTK hexahedron."""
 
 
@@ -111,9 +121,15 @@ def make_lattice(cells: Cells) -> Lattice:
     moved = Cells(cells.filled, cells.low - centre, cells.high - centre)
     spring, kind, holders, braces = _springs(cells.filled, braced, number, present)
     return Lattice(
-        position=position - centre, share=share, layer=_layers(around).ravel()[present],
-        spring=spring, kind=kind, holders=holders, braced=braces,
-        hexahedron=_hexahedra(cells.filled, number), cells=moved,
+        position=position - centre,
+        share=share,
+        layer=_layers(around).ravel()[present],
+        spring=spring,
+        kind=kind,
+        holders=holders,
+        braced=braces,
+        hexahedron=_hexahedra(cells.filled, number),
+        cells=moved,
     )
 
 

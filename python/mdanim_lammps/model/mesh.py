@@ -176,6 +176,7 @@ def _thickness(points: np.ndarray, triangles: np.ndarray, volume: float) -> floa
 
 # --- inside or not ------------------------------------------------------------------------------------------
 
+
 def contains(mesh: Triangles, points: np.ndarray) -> np.ndarray:
     """Whether points [m], shape (N, 3), are inside, bool, shape (N,): an odd number of triangles is below."""
     points = np.asarray(points, float).reshape(-1, 3)
@@ -205,9 +206,7 @@ def depth(mesh: Triangles, points: np.ndarray) -> np.ndarray:
     return np.where(contains(mesh, points), 1.0, -1.0) * abs(np.asarray(cloud["implicit_distance"]))
 
 
-def _crossings(
-    mesh: Triangles, lines: np.ndarray, batch: int = 2_000_000
-) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+def _crossings(mesh: Triangles, lines: np.ndarray, batch: int = 2_000_000) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Where vertical lines at (x, y) [m], shape (L, 2), meet triangles: (line numbers, heights), in batches.
 
     A line through a common edge counts for exactly one of its two triangles: both ask on which side of the

@@ -99,24 +99,30 @@ def _outside(scene: Scene, bodies: _Bodies) -> list[Problem]:
         size = (bodies.high - bodies.low)[:, :2]
         for i, axis in zip(*np.nonzero((size > room + bodies.hair) & ~bodies.fixed[:, None])):
             solid, too_wide[i, axis] = scene.solids[i], True
-            problems.append(Problem(
-                solid.spans.get("shape") or _span(solid),
-                f"{solid.name} is {say(size[i, axis], 'm')} wide along {'xyz'[axis]}, {what} only {say(room[axis], 'm')}",
-                "make it smaller (is a unit missing?), or the room larger",
-            ))
+            problems.append(
+                Problem(
+                    solid.spans.get("shape") or _span(solid),
+                    f"{solid.name} is {say(size[i, axis], 'm')} wide along {'xyz'[axis]}, {what} only {say(room[axis], 'm')}",
+                    "make it smaller (is a unit missing?), or the room larger",
+                )
+            )
     for limit in _limits(scene):
         edge = bodies.low if limit.sign > 0 else bodies.high
         out = limit.sign * (limit.at - edge[:, limit.axis])
         for i in np.flatnonzero((out > bodies.hair) & ~bodies.fixed & ~too_wide[:, limit.axis]):
             solid = scene.solids[i]
-            problems.append(Problem(
-                _span(solid), f"{solid.name} is {say(out[i], 'm')} {limit.what}",
-                f"move it {_MOVES[limit.axis, limit.sign]} by {say(_enough(out[i]), 'm')}",
-            ))
+            problems.append(
+                Problem(
+                    _span(solid),
+                    f"{solid.name} is {say(out[i], 'm')} {limit.what}",
+                    f"move it {_MOVES[limit.axis, limit.sign]} by {say(_enough(out[i]), 'm')}",
+                )
+            )
     return problems
 
 
 # --- pairs --------------------------------------------------------------------------------------------------
+
 
 def _candidates(scene: Scene, bodies: _Bodies) -> tuple[np.ndarray, np.ndarray]:
     """Pairs i < j whose bounding boxes overlap and whose bounding balls do: sort and sweep along one axis."""
@@ -159,7 +165,8 @@ def _pair(scene: Scene, bodies: _Bodies, i: int, j: int) -> Problem | None:
         return None
     direction, step = _way_out(scene, bodies, i, j)
     return Problem(
-        _span(second), f"{second.name} starts inside {first.name}, about {say(deepest, 'm')} deep",
+        _span(second),
+        f"{second.name} starts inside {first.name}, about {say(deepest, 'm')} deep",
         f"move it {direction} by {say(_enough(step), 'm')}",
     )
 
@@ -183,8 +190,7 @@ def _way_out(scene: Scene, bodies: _Bodies, i: int, j: int) -> tuple[str, float]
         step = sign * (ahead[i, axis] - behind[j, axis])
         arrival = ahead[j, axis] + sign * step
         blocked = any(
-            limit.axis == axis and limit.sign == -sign and sign * (arrival - limit.at) > bodies.hair
-            for limit in limits
+            limit.axis == axis and limit.sign == -sign and sign * (arrival - limit.at) > bodies.hair for limit in limits
         )
         ways.append((blocked, step, name))
     _, step, name = min(ways)

@@ -52,12 +52,13 @@ def plan_spacing(scene: Scene) -> Spacing:
     problems = []
     for solid, t in zip(scene.solids, thin):
         if h > t * (1 + 1e-9):
-            problems.append(Problem(
-                _span(solid),
-                f"{solid.name}: thinner than the spacing allows, "
-                f"{say(t, 'm')} at its thinnest, spacing {say(h, 'm')}",
-                f"write resolution {say(t / 2, 'm')} in control, or make it thicker",
-            ))
+            problems.append(
+                Problem(
+                    _span(solid),
+                    f"{solid.name}: thinner than the spacing allows, {say(t, 'm')} at its thinnest, spacing {say(h, 'm')}",
+                    f"write resolution {say(t / 2, 'm')} in control, or make it thicker",
+                )
+            )
     if problems:
         raise SceneError(problems)
     particles = tuple(estimate_particles(solid.shape, h) for solid in scene.solids)
@@ -151,7 +152,8 @@ def _too_large(scene: Scene, plan: Spacing) -> Problem:
         return Problem(scene.control.spans.get("resolution"), found, f"try resolution {say(coarser, 'm')}")
     solid = next(s for s in scene.solids if s.name == plan.set_by)
     return Problem(
-        _span(solid), f"{solid.name} sets the spacing: {found}",
+        _span(solid),
+        f"{solid.name} sets the spacing: {found}",
         f"make it thicker, use fewer objects or a lower accuracy, or try resolution {say(coarser, 'm')}",
     )
 

@@ -75,6 +75,7 @@ def closest(scene: Scene) -> tuple[Solid, Solid, float]:
 
 # --- boxes --------------------------------------------------------------------------------------------------
 
+
 def sweeps(scene: Scene) -> Sweeps:
     """Where every solid can get to.
 
@@ -260,6 +261,7 @@ def _clamped(scene: Scene, bodies: _Bodies) -> np.ndarray:
 
 
 # --- pairs --------------------------------------------------------------------------------------------------
+
 
 def _overlaps(swept: Sweeps) -> Iterator[np.ndarray]:
     """Pairs of solids whose boxes overlap and of which one can move, in blocks of shape (P, 2): sort and sweep."""

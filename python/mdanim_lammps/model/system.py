@@ -96,7 +96,7 @@ class System(SpringTypes):
         """Particles of some solids, in their order; one stretch of those that are side by side:
         row by row copies take five times as long."""
         which = np.asarray(solids, np.int64)
-        return [places for places, in side_by_side(self.first[which + 1] - self.first[which], self.first[which])]
+        return [places for (places,) in side_by_side(self.first[which + 1] - self.first[which], self.first[which])]
 
     def bounds(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest components in each solid of a particle vector, shape (N, 3); each of shape (M, 3), same unit.
@@ -145,8 +145,9 @@ def assemble(models: Sequence[Model], scene: Scene) -> System:
         spring=join([m.spring + o if o else m.spring for m, o in zip(models, offsets)]),
         spring_type=join([m.spring_type if len(models) == 1 else merged[s:][m.spring_type - 1] for m, s in zip(models, start)]),
         constants=constants,
-        drag=None if all(m.drag is None for m in models) else join(
-            [np.zeros(len(m.position)) if m.drag is None else m.drag for m in models]),
+        drag=None
+        if all(m.drag is None for m in models)
+        else join([np.zeros(len(m.position)) if m.drag is None else m.drag for m in models]),
         young=np.array([m.young for m in models]),
         spacing=np.array([m.spacing for m in models]),
         cell_volume=np.array([np.prod(m.cell) for m in models]),
@@ -160,8 +161,10 @@ def assemble(models: Sequence[Model], scene: Scene) -> System:
 def as_parts(models: Sequence[Model], system: System) -> tuple[Model, ...]:
     """The models of which a system was assembled, with what no two of them share as views of its arrays: not kept twice."""
     own = ("position", "velocity", "held")
-    return tuple(replace(m, **{name: getattr(system, name)[a:b] for name in own})
-                 for m, a, b in zip(models, system.first, system.first[1:]))
+    return tuple(
+        replace(m, **{name: getattr(system, name)[a:b] for name in own})
+        for m, a, b in zip(models, system.first, system.first[1:])
+    )
 
 
 def side_by_side(size: np.ndarray, *begins: np.ndarray) -> list[tuple[slice, ...]]:

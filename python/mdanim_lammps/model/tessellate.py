@@ -16,11 +16,14 @@ def revolve(profile: np.ndarray, facets: int, closed: bool = False) -> tuple[np.
     """
     angle = 2 * pi * np.arange(facets) / facets
     rings = profile if closed else profile[1:-1]
-    points = np.stack([
-        np.outer(rings[:, 0], np.cos(angle)),
-        np.outer(rings[:, 0], np.sin(angle)),
-        np.broadcast_to(rings[:, 1:], (len(rings), facets)),
-    ], axis=-1).reshape(-1, 3)
+    points = np.stack(
+        [
+            np.outer(rings[:, 0], np.cos(angle)),
+            np.outer(rings[:, 0], np.sin(angle)),
+            np.broadcast_to(rings[:, 1:], (len(rings), facets)),
+        ],
+        axis=-1,
+    ).reshape(-1, 3)
     ring = np.arange(len(points), dtype=np.int32).reshape(len(rings), facets)
     lower, upper = (ring, np.roll(ring, -1, axis=0)) if closed else (ring[:-1], ring[1:])
     a, b = lower.ravel(), np.roll(lower, -1, axis=1).ravel()
@@ -61,8 +64,7 @@ def grid_box(size, step: float) -> tuple[np.ndarray, np.ndarray]:
             face[:, u] = np.repeat(np.linspace(low[u], -low[u], nu), nv)
             face[:, v] = np.tile(np.linspace(low[v], -low[v], nv), nu)
             outward = quads if side > 0 else quads[:, ::-1]
-            triangles.append(np.concatenate([outward[:, [0, 1, 2]], outward[:, [0, 2, 3]]])
-                             + sum(map(len, points)))
+            triangles.append(np.concatenate([outward[:, [0, 1, 2]], outward[:, [0, 2, 3]]]) + sum(map(len, points)))
             points.append(face)
     points, inverse = np.unique(np.concatenate(points), axis=0, return_inverse=True)
     return points, inverse.reshape(-1)[np.concatenate(triangles)].astype(np.int32)

@@ -74,9 +74,7 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
         np.minimum(below, np.minimum.reduceat(vertices, first) - centers[frame], out=below)
         np.maximum(above, np.maximum.reduceat(vertices, first) - centers[frame], out=above)
     # A stretch is one frame, unless that makes more boxes than are worth looking at.
-    stretches = np.array_split(
-        np.arange(len(centers)), min(len(centers), max(1, _BOXES // len(catalogue.names)))
-    )
+    stretches = np.array_split(np.arange(len(centers)), min(len(centers), max(1, _BOXES // len(catalogue.names))))
     low = np.array([centers[s].min(axis=0) + below for s in stretches])
     high = np.array([centers[s].max(axis=0) + above for s in stretches])
 
@@ -224,6 +222,4 @@ def _corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """The eight corners of each box, shape (8 n, 3)."""
     box = np.stack([low.reshape(-1, 3), high.reshape(-1, 3)])
     x, y, z = np.meshgrid([0, 1], [0, 1], [0, 1])
-    return np.stack([box[x.ravel(), :, 0], box[y.ravel(), :, 1], box[z.ravel(), :, 2]], axis=-1).reshape(
-        -1, 3
-    )
+    return np.stack([box[x.ravel(), :, 0], box[y.ravel(), :, 1], box[z.ravel(), :, 2]], axis=-1).reshape(-1, 3)

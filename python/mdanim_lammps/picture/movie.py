@@ -85,16 +85,7 @@ def render_movie(
     """
     if not isinstance(trajectory, Trajectory):
         with Trajectory(trajectory) as opened:
-            return render_movie(
-                opened,
-                render,
-                path,
-                size=size,
-                fps=fps,
-                processes=processes,
-                frames=frames,
-                progress=progress,
-            )
+            return render_movie(opened, render, path, size=size, fps=fps, processes=processes, frames=frames, progress=progress)
     width, height = size or render.size
     size = (width + width % 2, height + height % 2)
     shown, rate = movie_frames(trajectory, fps)
@@ -160,10 +151,7 @@ def _draw_apart(trajectory, render, size, shown: Sequence[int], processes: int) 
     action = action_of(trajectory)
     threads = max(1, _cores() // processes)
     # Software OpenGL would start as many threads per process as there are cores.
-    environment = os.environ | {
-        "LP_NUM_THREADS": str(threads),
-        "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
-    }
+    environment = os.environ | {"LP_NUM_THREADS": str(threads), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     workers = []
     try:
         for k in range(processes):
@@ -214,9 +202,7 @@ def _encoder(path: Path, size: tuple[int, int], rate: Fraction) -> Iterator[Call
         path.parent.mkdir(parents=True, exist_ok=True)
         log = part.open("wb")
     except OSError as error:
-        raise OutputError(
-            f"{path}: cannot be written: {error.strerror}; name another file or folder"
-        ) from None
+        raise OutputError(f"{path}: cannot be written: {error.strerror}; name another file or folder") from None
     log.close()
     ffmpeg = subprocess.Popen(
         [
@@ -297,9 +283,7 @@ def _ffmpeg() -> str:
 
         return get_ffmpeg_exe()
     except (ImportError, RuntimeError) as error:
-        raise SetupError(
-            f"no ffmpeg for the movie ({error}); pip install imageio-ffmpeg, or run with --no-movie"
-        ) from None
+        raise SetupError(f"no ffmpeg for the movie ({error}); pip install imageio-ffmpeg, or run with --no-movie") from None
 
 
 def _save_png(picture: np.ndarray, path: Path) -> None:
@@ -313,6 +297,4 @@ def _save_png(picture: np.ndarray, path: Path) -> None:
     except OSError as error:
         with suppress(OSError):
             part.unlink()
-        raise OutputError(
-            f"{path}: cannot be written: {error.strerror or error}; make room or name another file"
-        ) from None
+        raise OutputError(f"{path}: cannot be written: {error.strerror or error}; make room or name another file") from None

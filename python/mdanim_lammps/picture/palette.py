@@ -42,10 +42,7 @@ def object_colors(chosen: Sequence[str], still: np.ndarray) -> np.ndarray:
         still: objects that never move, bool, shape (O,).
     """
     free = np.cumsum(~np.asarray(still, dtype=bool)) - 1
-    names = [
-        color or (STILL if held else OBJECTS[index % len(OBJECTS)])
-        for color, held, index in zip(chosen, still, free)
-    ]
+    names = [color or (STILL if held else OBJECTS[index % len(OBJECTS)]) for color, held, index in zip(chosen, still, free)]
     return np.array([np.round(255 * rgb(name)) for name in names], dtype=np.uint8).reshape(-1, 3)
 
 

@@ -101,8 +101,8 @@ class Painter:
     # --- the stage -----------------------------------------------------------------------------------------
 
     def _build(self, render: Render) -> None:
-        import vtkmodules.vtkInteractionStyle  # noqa: F401  (VTK finds its renderer by these imports)
-        import vtkmodules.vtkRenderingFreeType  # noqa: F401
+        import vtkmodules.vtkInteractionStyle
+        import vtkmodules.vtkRenderingFreeType
         import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
         from vtkmodules.vtkRenderingCore import vtkRenderer
 
@@ -165,9 +165,7 @@ class Painter:
         uniforms.SetUniformf("gridSpacing", grid_spacing(size))
         uniforms.SetUniformf("pictureHeight", float(self.size[1]))
         uniforms.SetUniform3f("floorCentre", [centre[0], centre[1], reach])
-        uniforms.SetUniform3f(
-            "floorColor", list(np.minimum(1.0, low * 1.02) if not dark else low * 1.25 + 0.03)
-        )
+        uniforms.SetUniform3f("floorColor", list(np.minimum(1.0, low * 1.02) if not dark else low * 1.25 + 0.03))
         uniforms.SetUniform3f("gridColor", list(low * 0.72 if not dark else low + 0.22))
         uniforms.SetUniform3f("lowColor", list(low))
         uniforms.SetUniform3f("highColor", list(high))
@@ -302,10 +300,7 @@ def grid_spacing(size: float) -> float:
     """Distance of the floor's lines: 1, 2 or 5 times a power of ten, about a twelfth of the action [m]."""
     exponent = np.floor(np.log10(size / 12.0))
     fraction = size / 12.0 / 10.0**exponent
-    return float(
-        (1.0 if fraction < 1.5 else 2.0 if fraction < 3.5 else 5.0 if fraction < 7.5 else 10.0)
-        * 10.0**exponent
-    )
+    return float((1.0 if fraction < 1.5 else 2.0 if fraction < 3.5 else 5.0 if fraction < 7.5 else 10.0) * 10.0**exponent)
 
 
 def _window(renderer, size: tuple[int, int], samples: int):

@@ -109,8 +109,12 @@ def _tangents(vertices: np.ndarray, triangle: np.ndarray, at: np.ndarray) -> tup
     for basis in (u, np.cross(normal, u)):
         weight = np.einsum("ed,ed->e", d, basis[own])
         weight -= (np.bincount(own, weight * rise, len(at)) / rises)[own] * rise
-        made.append(csr_array((np.concatenate([weight, -weight]), (np.tile(own, 2), np.concatenate([head, tail]))),
-                              shape=(len(at), len(vertices))))
+        made.append(
+            csr_array(
+                (np.concatenate([weight, -weight]), (np.tile(own, 2), np.concatenate([head, tail]))),
+                shape=(len(at), len(vertices)),
+            )
+        )
     return tuple(made)
 
 
@@ -180,17 +184,13 @@ def _split_at_creases(vertices: np.ndarray, triangle: np.ndarray) -> np.ndarray:
     ends = np.stack([triangle.ravel()[tail], triangle.ravel()[head]], axis=1)
     order = np.lexsort((ends.max(axis=1), ends.min(axis=1)))
     here, there = order[:-1], order[1:]
-    shared = (ends[here].min(axis=1) == ends[there].min(axis=1)) & (
-        ends[here].max(axis=1) == ends[there].max(axis=1)
-    )
+    shared = (ends[here].min(axis=1) == ends[there].min(axis=1)) & (ends[here].max(axis=1) == ends[there].max(axis=1))
     here, there = here[shared], there[shared]
     smooth = np.einsum("td,td->t", normal[here // 3], normal[there // 3]) > np.cos(CREASE)
     here, there = here[smooth], there[smooth]
     # Neighbours run along their common edge in opposite directions; if they do not, vertices are matched.
     opposite = ends[here, 0] == ends[there, 1]
     a = np.concatenate([tail[here], head[here]])
-    b = np.concatenate(
-        [np.where(opposite, head[there], tail[there]), np.where(opposite, tail[there], head[there])]
-    )
+    b = np.concatenate([np.where(opposite, head[there], tail[there]), np.where(opposite, tail[there], head[there])])
     links = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(3 * count, 3 * count))
     return connected_components(links, directed=False)[1].reshape(-1, 3).astype(np.int32)

@@ -36,7 +36,7 @@ GROUPS = 40
 def executor_colors(executors: int) -> np.ndarray:
     """One for each, from 0 to 1, shape (K, 3)."""
     base = np.array([rgb(c) for c in EXECUTORS])
-    tint = [1.0 - 0.5**(turn) * (1.0 - base) for turn in range(-(-executors // len(EXECUTORS)))]
+    tint = [1.0 - 0.5 ** (turn) * (1.0 - base) for turn in range(-(-executors // len(EXECUTORS)))]
     return np.concatenate(tint)[:executors]
 
 
@@ -127,8 +127,10 @@ def _draw_doing(axes, timeline: Timeline, colors: np.ndarray, legend_at: float) 
     axes.imshow(bars(shares(timeline, columns), 24), extent=(0.0, end, count - 0.5, -0.5), aspect="auto", interpolation="nearest")
     axes.set_yticks(range(count), [f"{e}" for e in range(count)], fontsize=9)
     for label, color in zip(axes.get_yticklabels(), colors):
-        label.set(bbox={"facecolor": color, "edgecolor": "none", "pad": 2.0, "boxstyle": "round,pad=0.25"},
-                  color="white" if color @ [0.2126, 0.7152, 0.0722] < 0.5 else "black")
+        label.set(
+            bbox={"facecolor": color, "edgecolor": "none", "pad": 2.0, "boxstyle": "round,pad=0.25"},
+            color="white" if color @ [0.2126, 0.7152, 0.0722] < 0.5 else "black",
+        )
     axes.tick_params(axis="y", length=0, pad=7)
     axes.set_xlabel("wall time since all executors began [s]")
     axes.set_ylabel("executor", labelpad=8)
@@ -146,8 +148,16 @@ def _draw_doing(axes, timeline: Timeline, colors: np.ndarray, legend_at: float) 
     again = [ends[f] for f, n in zip(timeline.frames, timeline.retries) if n and f in ends]
     marks = axes.plot(again, np.full(len(again), -0.5), label=f"window begun again ({sum(timeline.retries)})", **AGAIN)
     legend = [*(Patch(color=DOING[k], label=k) for k in KINDS), *(marks if again else ())]
-    axes.legend(handles=legend, ncols=len(legend), loc="lower left", bbox_to_anchor=(0.0, legend_at), fontsize=9, frameon=False,
-                borderaxespad=0.0, borderpad=0.0)
+    axes.legend(
+        handles=legend,
+        ncols=len(legend),
+        loc="lower left",
+        bbox_to_anchor=(0.0, legend_at),
+        fontsize=9,
+        frameon=False,
+        borderaxespad=0.0,
+        borderpad=0.0,
+    )
 
 
 def _draw_moves(axes, timeline: Timeline) -> None:
@@ -183,8 +193,17 @@ def _draw_owners(axes, timeline: Timeline, colors: np.ndarray) -> None:
     legend = [Patch(color=c, label=str(e)) for e, c in enumerate(colors)]
     if (owner < 0).any():
         legend.append(Patch(color=NOBODY, label="none: never moves"))
-    axes.legend(handles=legend, title="executor", ncols=2 if len(legend) > 10 else 1, loc="upper left",
-                bbox_to_anchor=(1.005, 1.0), fontsize=8, title_fontsize=8, frameon=False, borderaxespad=0.0)
+    axes.legend(
+        handles=legend,
+        title="executor",
+        ncols=2 if len(legend) > 10 else 1,
+        loc="upper left",
+        bbox_to_anchor=(1.005, 1.0),
+        fontsize=8,
+        title_fontsize=8,
+        frameon=False,
+        borderaxespad=0.0,
+    )
 
 
 def _frame_range(timeline: Timeline) -> tuple[float, float]:

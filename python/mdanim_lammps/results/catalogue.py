@@ -120,9 +120,7 @@ def stored_particles(model: Model, save: Save) -> np.ndarray:
     return stored
 
 
-def catalogue_of(
-    scene: Scene, models: Sequence[Model], scene_text: str = "", grid: Grid | None = None
-) -> Catalogue:
+def catalogue_of(scene: Scene, models: Sequence[Model], scene_text: str = "", grid: Grid | None = None) -> Catalogue:
     """Collect what a trajectory of these models must know; objects in the order of ``models``.
 
     Args:
@@ -167,9 +165,7 @@ def pool_of(liquid: Liquid, grid: Grid) -> Pool:
     return Pool(liquid.name, grid.low, grid.high, grid.shape, liquid.density, liquid.color or "")
 
 
-def distinct_surfaces(
-    models: Sequence[Model], stored: Sequence[np.ndarray]
-) -> tuple[tuple[Surface, ...], np.ndarray]:
+def distinct_surfaces(models: Sequence[Model], stored: Sequence[np.ndarray]) -> tuple[tuple[Surface, ...], np.ndarray]:
     """The different surfaces among the models, in stored particles, and which of them each model wears."""
     kinds: dict[bytes, int] = {}
     surfaces: list[Surface] = []
@@ -196,9 +192,7 @@ def merge_surfaces(catalogue: Catalogue) -> Skin:
     carry = csr_array(
         (
             _joined([surface.weight.ravel() for surface in worn], np.float64),
-            _joined(
-                [surface.index.ravel() + first for surface, first in zip(worn, catalogue.first)], np.int64
-            ),
+            _joined([surface.index.ravel() + first for surface, first in zip(worn, catalogue.first)], np.int64),
             np.concatenate([[0], np.cumsum(corners)]),
         ),
         shape=shape,

@@ -38,25 +38,46 @@ class Checkpoint:
     def write(self, path: Path) -> None:
         """Write atomically: the last good checkpoint is never lost. Raises OutputError."""
         # Mostly equal cells: a hundredth is left of them; positions and forces would not shrink.
-        liquid = {} if self.liquid is None else {
-            "liquid": np.frombuffer(zlib.compress(self.liquid.tobytes(), 1), np.uint8)}
+        liquid = {} if self.liquid is None else {"liquid": np.frombuffer(zlib.compress(self.liquid.tobytes(), 1), np.uint8)}
 
         def save(part: Path) -> None:
             with open(part, "wb") as file:
-                np.savez(file, version=VERSION, run=self.run, step=self.step, frame=self.frame, x=self.x, v=self.v, f=self.f,
-                         keys=np.array(list(self.carried)), values=np.array(list(self.carried.values()), float), **liquid)
+                np.savez(
+                    file,
+                    version=VERSION,
+                    run=self.run,
+                    step=self.step,
+                    frame=self.frame,
+                    x=self.x,
+                    v=self.v,
+                    f=self.f,
+                    keys=np.array(list(self.carried)),
+                    values=np.array(list(self.carried.values()), float),
+                    **liquid,
+                )
+
         write_whole(path, save)
 
     @classmethod
-    def read(cls, path: Path) -> "Checkpoint":
+    def read(cls, path: Path) -> Checkpoint:
         """Read a checkpoint. Raises OutputError when it is missing, broken or of another version."""
         try:
             with np.load(path) as data:
                 if int(data["version"]) != VERSION:
-                    raise OutputError(f"{path} is of version {int(data['version'])}, this program writes {VERSION}; "
-                                      "run the scene again with --force")
+                    raise OutputError(
+                        f"{path} is of version {int(data['version'])}, this program writes {VERSION}; "
+                        "run the scene again with --force"
+                    )
                 liquid = np.frombuffer(zlib.decompress(data["liquid"]), np.uint8) if "liquid" in data else None
-                return cls(int(data["step"]), int(data["frame"]), data["x"], data["v"], data["f"],
-                           dict(zip(data["keys"].tolist(), data["values"].tolist())), str(data["run"]), liquid)
+                return cls(
+                    int(data["step"]),
+                    int(data["frame"]),
+                    data["x"],
+                    data["v"],
+                    data["f"],
+                    dict(zip(data["keys"].tolist(), data["values"].tolist())),
+                    str(data["run"]),
+                    liquid,
+                )
         except (OSError, ValueError, KeyError, EOFError, BadZipFile, zlib.error) as error:
             raise OutputError(f"{path} cannot be read ({error}): nothing to resume from") from error

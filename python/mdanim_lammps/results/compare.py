@@ -37,8 +37,10 @@ class Difference:
     def __str__(self) -> str:
         if self.equal:
             return f"equal    {self.frames} frames, every bit"
-        return (f"differ   first at frame {self.frame} (t = {number(self.time, 4)} s): {self.object} by "
-                f"{say(self.distance, 'm')}; largest in {self.frames} frames {say(self.largest, 'm')}")
+        return (
+            f"differ   first at frame {self.frame} (t = {number(self.time, 4)} s): {self.object} by "
+            f"{say(self.distance, 'm')}; largest in {self.frames} frames {say(self.largest, 'm')}"
+        )
 
 
 def compare(a: Path, b: Path) -> Difference:
@@ -49,8 +51,10 @@ def compare(a: Path, b: Path) -> Difference:
         if first.names != second.names or first.position(0).shape != second.position(0).shape:
             raise OutputError(f"{a} and {b} hold different objects or resolutions: there is nothing to compare")
         if len(first) != len(second) or not np.array_equal(first.times, second.times):
-            raise OutputError(f"{a} has {len(first)} frames and {b} {len(second)}, or their times differ: "
-                              "run both scenes with the same control block")
+            raise OutputError(
+                f"{a} has {len(first)} frames and {b} {len(second)}, or their times differ: "
+                "run both scenes with the same control block"
+            )
         if first.liquid != second.liquid:
             raise OutputError(f"{a} and {b} hold different liquids or basins: there is nothing to compare")
         found = None

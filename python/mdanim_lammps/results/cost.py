@@ -51,15 +51,23 @@ class Cost:
     def to_json(self) -> dict:
         """Plain data for cost.json."""
         return {
-            "wall": self.wall, "steps": self.steps, "particles": self.particles,
-            "effects": {name: {"seconds": part.seconds, "share": part.seconds / self.wall, "place": part.place,
-                               **({"clocks": dict(part.clocks)} if part.clocks else {})}
-                        for name, part in self.effects.items()},
+            "wall": self.wall,
+            "steps": self.steps,
+            "particles": self.particles,
+            "effects": {
+                name: {
+                    "seconds": part.seconds,
+                    "share": part.seconds / self.wall,
+                    "place": part.place,
+                    **({"clocks": dict(part.clocks)} if part.clocks else {}),
+                }
+                for name, part in self.effects.items()
+            },
             "other": dict(self.other),
         }
 
     @classmethod
-    def read(cls, path: Path) -> "Cost":
+    def read(cls, path: Path) -> Cost:
         """Read cost.json. Raises OutputError when it is missing or broken."""
         data = read_json(path)
         effects = {name: Part(part["seconds"], part["place"], part.get("clocks", {})) for name, part in data["effects"].items()}

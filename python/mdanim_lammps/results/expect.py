@@ -33,8 +33,10 @@ class Outcome:
         when = "" if e.time is None else f" at {number(e.time, 6)} s"
         verdict = "met" if self.met else "MISSED"
         place = f"{e.span}: " if e.span else ""
-        return (f"{place}expect {e.subject}.{e.quantity}{when} = {number(e.value, 6)} +- {number(e.tolerance, 6)}: "
-                f"found {number(self.found, 6)}, {verdict}")
+        return (
+            f"{place}expect {e.subject}.{e.quantity}{when} = {number(e.value, 6)} +- {number(e.tolerance, 6)}: "
+            f"found {number(self.found, 6)}, {verdict}"
+        )
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,7 @@ def record(quantity: str, system: System, model: Model, position: np.ndarray, he
         height: smooth height z of the liquid over each column [m], shape (ny, nx); None without liquid.
     """
     solid = system.names.index(model.name)
-    own = position[system.first[solid]:system.first[solid + 1]]
+    own = position[system.first[solid] : system.first[solid + 1]]
     match quantity:
         case "strain.max":
             return largest_strain(system, solid, position)
@@ -111,7 +113,7 @@ def immersed_share(corners: np.ndarray, grid: Grid, height: np.ndarray) -> float
     weight = np.concatenate([weight * (1 - w), weight * w])
     below = 0  # in pieces: 100 MB for a body of any size
     for start in range(0, len(corners), 4096):
-        point = np.einsum("kp,ckd->cpd", weight, corners[start:start + 4096]).reshape(-1, 3)
+        point = np.einsum("kp,ckd->cpd", weight, corners[start : start + 4096]).reshape(-1, 3)
         column = np.floor((point[:, :2] - grid.low[:2]) / grid.cell[:2]).astype(int)
         inside = ((column >= 0) & (column < grid.shape[:2])).all(axis=1)
         x, y = column[inside].T
@@ -144,7 +146,7 @@ def immersed_depth(points: np.ndarray, grid: Grid, height: np.ndarray) -> float:
 
 def largest_strain(system: System, solid: int, position: np.ndarray) -> float:
     """Largest |r/r0 - 1| of the springs of a solid [-], for particle positions [m], shape (N, 3)."""
-    low, high = np.searchsorted(system.spring[:, 0], system.first[solid:solid + 2])
+    low, high = np.searchsorted(system.spring[:, 0], system.first[solid : solid + 2])
     i, j = system.spring[low:high].T
     if not len(i):
         return 0.0
@@ -196,8 +198,13 @@ def _motion(m: Measured, solid: int, time: float | None) -> tuple[np.ndarray, np
     before = after - 1
     dt = m.times[after] - m.times[before]
     s = (time - m.times[before]) / dt
-    position = ((1 + 2 * s) * (1 - s) ** 2 * x[before] + s * (1 - s) ** 2 * dt * v[before]
-                + s * s * (3 - 2 * s) * x[after] + s * s * (s - 1) * dt * v[after])
-    velocity = (6 * s * (1 - s) * (x[after] - x[before]) / dt
-                + (1 - 4 * s + 3 * s * s) * v[before] + (3 * s * s - 2 * s) * v[after])
+    position = (
+        (1 + 2 * s) * (1 - s) ** 2 * x[before]
+        + s * (1 - s) ** 2 * dt * v[before]
+        + s * s * (3 - 2 * s) * x[after]
+        + s * s * (s - 1) * dt * v[after]
+    )
+    velocity = (
+        6 * s * (1 - s) * (x[after] - x[before]) / dt + (1 - 4 * s + 3 * s * s) * v[before] + (3 * s * s - 2 * s) * v[after]
+    )
     return position, velocity

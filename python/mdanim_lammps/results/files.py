@@ -38,8 +38,10 @@ def open_folder(folder: Path, *, force: bool) -> None:
             if not empty and not force:
                 raise OutputError(f"{folder} exists; overwrite it with --force, or write elsewhere with -o DIR")
             if not empty and not ours:
-                raise OutputError(f"{folder} holds files that are no results of mdanim-lammps; --force does not delete "
-                                  "them: name another folder with -o DIR")
+                raise OutputError(
+                    f"{folder} holds files that are no results of mdanim-lammps; --force does not delete "
+                    "them: name another folder with -o DIR"
+                )
             if not empty:
                 shutil.rmtree(folder)
         folder.mkdir(parents=True, exist_ok=True)

@@ -74,18 +74,17 @@ class Ledger:
         with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(self.columns)
-            writer.writerows(
-                [f"{r[c]:.0f}" if c in WHOLE else repr(r[c]) for c in self.columns] for r in self.rows)
+            writer.writerows([f"{r[c]:.0f}" if c in WHOLE else repr(r[c]) for c in self.columns] for r in self.rows)
 
     @classmethod
-    def read(cls, path: Path) -> "Ledger":
+    def read(cls, path: Path) -> Ledger:
         """Read a ledger.csv back. Raises OutputError."""
         try:
             with open(path, newline="", encoding="utf-8") as file:
                 reader = csv.DictReader(file)
                 columns = list(reader.fieldnames or ())
                 middle = columns.index("residual")
-                ledger = cls(tuple(columns[1:middle]), tuple(columns[middle + 1:]))
+                ledger = cls(tuple(columns[1:middle]), tuple(columns[middle + 1 :]))
                 for row in reader:
                     ledger.add(float(row["time"]), {c: float(row[c]) for c in columns})
         except (OSError, ValueError, KeyError, TypeError) as error:

@@ -47,8 +47,9 @@ class Timeline:
         self.cpu = self.cpu or [0.0] * self.executors
         self._now = np.full(len(self.names), -1)  # owners at the last frame
 
-    def add(self, frame: int, objects: Sequence[np.ndarray], moves: int, retries: int,
-            teams: Sequence[tuple[int, ...]] = ()) -> None:
+    def add(
+        self, frame: int, objects: Sequence[np.ndarray], moves: int, retries: int, teams: Sequence[tuple[int, ...]] = ()
+    ) -> None:
         """Take note of a frame; ``objects`` are those of each executor, in their order."""
         now = np.full(len(self.names), -1)
         for executor, mine in enumerate(objects):
@@ -60,7 +61,7 @@ class Timeline:
         self.retries.append(retries)
         self.teams += [(frame, team) for team in teams]
 
-    def after(self, before: "Timeline", frame: int) -> "Timeline":
+    def after(self, before: Timeline, frame: int) -> Timeline:
         """This log of a run that was resumed at a frame, with what the log before tells up to there.
 
         Times go on from the last of those that are kept. With other numbers of executors they are those of the larger one, and
@@ -74,11 +75,18 @@ class Timeline:
         executors = max(self.executors, before.executors)
         cpu = [sum(log.cpu[e] for log in (before, self) if e < log.executors) for e in range(executors)]
         return Timeline(
-            executors, self.control, self.names, frames, [*before.moves[:kept], *self.moves],
-            [*before.retries[:kept], *self.retries], teams=[*(team for team in before.teams if team[0] <= frame), *self.teams],
+            executors,
+            self.control,
+            self.names,
+            frames,
+            [*before.moves[:kept], *self.moves],
+            [*before.retries[:kept], *self.retries],
+            teams=[*(team for team in before.teams if team[0] <= frame), *self.teams],
             owners=[(frames[row], int(m), int(table[row, m])) for row, m in changed],
             spans=[*spans, *((*what, begin + begun, end + begun) for *what, begin, end in self.spans)],
-            cpu=cpu, supervisor_cpu=before.supervisor_cpu + self.supervisor_cpu)
+            cpu=cpu,
+            supervisor_cpu=before.supervisor_cpu + self.supervisor_cpu,
+        )
 
     def owner(self) -> np.ndarray:
         """Executor of every object at every frame, -1 for none, int64, shape (F, M)."""
@@ -119,12 +127,12 @@ class Timeline:
         write_json(folder / TIMELINE, asdict(self))
 
     @classmethod
-    def left_in(cls, folder: Path) -> "Timeline | None":
+    def left_in(cls, folder: Path) -> Timeline | None:
         """What a run has left in its folder, None where nothing is, as all of it was sequential. Raises OutputError."""
         return cls.read(folder) if (folder / TIMELINE).exists() else None
 
     @classmethod
-    def read(cls, folder: Path) -> "Timeline":
+    def read(cls, folder: Path) -> Timeline:
         """Read timeline.json of an output folder. Raises OutputError."""
         data = read_json(folder / TIMELINE)
         rows = {k: [tuple(row) for row in data[k]] for k in ("owners", "spans")}

@@ -39,11 +39,7 @@ _CLOSING_BYTES = 1 << 18
 
 
 def trajectory_bytes(
-    models: Sequence[Model],
-    frames: int,
-    save: Save = Save.ALL,
-    single: bool = False,
-    grid: Grid | None = None,
+    models: Sequence[Model], frames: int, save: Save = Save.ALL, single: bool = False, grid: Grid | None = None
 ) -> int:
     """Size of the trajectory file [bytes] before anything is run, rather too large than too small.
 
@@ -99,12 +95,7 @@ class TrajectoryWriter:
 
     @classmethod
     def append(
-        cls,
-        path: str | Path,
-        scene: Scene,
-        models: Sequence[Model],
-        after_step: int,
-        grid: Grid | None = None,
+        cls, path: str | Path, scene: Scene, models: Sequence[Model], after_step: int, grid: Grid | None = None
     ) -> TrajectoryWriter:
         """Go on with the trajectory of a run that ended early; frames after ``after_step`` are dropped.
 
@@ -168,18 +159,14 @@ class TrajectoryWriter:
         """
         for name, array in (("position", position), ("velocity", velocity)):
             if np.shape(array) != (self.catalogue.total, 3):
-                raise ValueError(
-                    f"{name} must have shape ({self.catalogue.total}, 3), found {np.shape(array)}"
-                )
+                raise ValueError(f"{name} must have shape ({self.catalogue.total}, 3), found {np.shape(array)}")
         pool = self.catalogue.liquid
         wanted = [pool.shape[1::-1]] * 2 if pool else []
         found = [np.shape(height) for height in liquid or ()]
         if found != wanted:
             raise ValueError(f"liquid must be heights of shapes {wanted}, found {found}")
         if step <= self._last_step:
-            raise ValueError(
-                f"step must be larger than that of the frame before ({self._last_step}), found {step}"
-            )
+            raise ValueError(f"step must be larger than that of the frame before ({self._last_step}), found {step}")
         rows = {
             "position": position[self._stored],
             "velocity": velocity[self._stored],
@@ -234,9 +221,7 @@ class TrajectoryWriter:
     def __exit__(self, kind, value, traceback) -> None:
         self.close(finished=kind is None)
 
-    def _start(
-        self, path: Path, catalogue: Catalogue, dt: float, steps_per_frame: int, suffix: str = ".part"
-    ):
+    def _start(self, path: Path, catalogue: Catalogue, dt: float, steps_per_frame: int, suffix: str = ".part"):
         import h5py
 
         self.path = path
@@ -250,9 +235,7 @@ class TrajectoryWriter:
             self._file = h5py.File(self._partial, "w", libver=_LIBVER)
             try:
                 text = len(catalogue.scene_text) + sum(map(len, catalogue.names))
-                self._claim(
-                    _fixed_bytes(len(catalogue.id), len(catalogue.bond), catalogue.surfaces) + 8 * text
-                )
+                self._claim(_fixed_bytes(len(catalogue.id), len(catalogue.bond), catalogue.surfaces) + 8 * text)
                 self._step, self._time, self._values = _create(self._file, catalogue, dt, steps_per_frame)
                 self._file.swmr_mode = True
                 self._file.flush()
@@ -304,9 +287,7 @@ class Trajectory:
             step, time = particles["position/step"][:], particles["position/time"][:]
         except (KeyError, OSError) as error:
             self._file.close()
-            raise OutputError(
-                f"{self.path}: not a trajectory of mdanim-lammps, or damaged ({error})"
-            ) from None
+            raise OutputError(f"{self.path}: not a trajectory of mdanim-lammps, or damaged ({error})") from None
         count = min(len(step), len(time), *(len(value) for value in values.values()))
         self.steps: np.ndarray = step[:count]
         """Time step of each frame, shape (F,)."""
@@ -500,9 +481,7 @@ def _create(file: h5py.File, catalogue: Catalogue, dt: float, steps_per_frame: i
     box.attrs["dimension"] = 3
     box.attrs["boundary"] = np.array(["none"] * 3, dtype="S4")
     step = file.create_dataset("particles/all/position/step", (0,), np.int64, maxshape=(None,), chunks=(256,))
-    time = file.create_dataset(
-        "particles/all/position/time", (0,), np.float64, maxshape=(None,), chunks=(256,)
-    )
+    time = file.create_dataset("particles/all/position/time", (0,), np.float64, maxshape=(None,), chunks=(256,))
     time.attrs["unit"] = "s"
 
     real = np.float32 if catalogue.single else np.float64
@@ -547,9 +526,7 @@ def _create(file: h5py.File, catalogue: Catalogue, dt: float, steps_per_frame: i
     particles["species"] = catalogue.layer.astype(np.int8)
     particles["object"] = catalogue.object_of
     particles["held"] = catalogue.held.astype(np.uint8)
-    bonds = file.create_group("connectivity").create_dataset(
-        "bonds", data=catalogue.bond, **_packed(catalogue.bond)
-    )
+    bonds = file.create_group("connectivity").create_dataset("bonds", data=catalogue.bond, **_packed(catalogue.bond))
     bonds.attrs["particles_group"] = particles.ref
 
     _write_catalogue(file.create_group("parameters/mdanim"), catalogue, dt, steps_per_frame)
@@ -594,8 +571,7 @@ def _write_catalogue(group: h5py.Group, catalogue: Catalogue, dt: float, steps_p
     surfaces["shape"] = np.array(shapes, dtype=np.int64).reshape(-1, 3)
     for name in ("triangle", "index", "weight"):
         flat = np.concatenate(
-            [np.zeros(0, np.int32 if name != "weight" else np.float64)]
-            + [getattr(s, name).ravel() for s in catalogue.surfaces]
+            [np.zeros(0, np.int32 if name != "weight" else np.float64)] + [getattr(s, name).ravel() for s in catalogue.surfaces]
         )
         surfaces.create_dataset(name, data=flat, **_packed(flat))
 
@@ -709,8 +685,6 @@ def _disk(path: Path) -> Iterator[None]:
     except (OSError, RuntimeError) as error:
         reason = os.strerror(error.errno) if getattr(error, "errno", None) else str(error)
         cure = "check the folder's permissions and the disk, then `resume`"
-        if getattr(error, "errno", None) in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG) or "space" in str(
-            error
-        ):
+        if getattr(error, "errno", None) in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG) or "space" in str(error):
             cure = "make room (or `control { save boundary single }`, which needs far less), then `resume`"
         raise OutputError(f"{path}: cannot be written: {reason}; {cure}") from error

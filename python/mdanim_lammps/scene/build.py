@@ -26,6 +26,7 @@ def build(out: Filled, problems: Problems, name: str, source: Source) -> records
     """The scene, or None where errors make it impossible."""
     return Builder(out, problems, Span(source.name, 1, 1)).scene(name, source.path)
 
+
 MOST_SWEEPS = 4096
 """Most sweeps of the automaton per update that fix mdanim/liquid takes."""
 
@@ -42,9 +43,7 @@ class Builder:
         self.top = top
         """The beginning of the scene, for problems of the scene as a whole."""
 
-    def problem(
-        self, span: Span | None, message: str, hint: str = "", severity: str = "error", key=None
-    ) -> None:
+    def problem(self, span: Span | None, message: str, hint: str = "", severity: str = "error", key=None) -> None:
         self.problems.add(span, message, hint, severity, key)
 
     def blocks(self, kind: str) -> list[Filled]:
@@ -117,9 +116,7 @@ class Builder:
                 )
             elif block.block == "object" and block.name in GLOBALS:
                 self.problem(
-                    self.head(block),
-                    f"an object cannot be called {block.name}: expect uses this word",
-                    "take another name",
+                    self.head(block), f"an object cannot be called {block.name}: expect uses this word", "take another name"
                 )
             first.setdefault(block.name, block)
 
@@ -145,12 +142,7 @@ class Builder:
         if g[0] != 0.0 or g[1] != 0.0 or g[2] >= 0.0:
             span = given.span(0) if given else self.head(liquids[0])
             found = f"found {units.show(g)} m/s^2" if given else "the scene has no gravity"
-            self.problem(
-                span,
-                f"a liquid needs gravity along -z, {found}",
-                "e.g. gravity (0, 0, -9.81) m/s^2",
-                key="gravity",
-            )
+            self.problem(span, f"a liquid needs gravity along -z, {found}", "e.g. gravity (0, 0, -9.81) m/s^2", key="gravity")
 
     def inside_walls(self, solids: list[records.Solid], walls: records.Walls | None) -> None:
         """An object's centre must lie between the walls; how far it reaches is checked with its model."""
@@ -173,23 +165,16 @@ class Builder:
         for word, keyword in KEYWORDS[block.block].items():
             key = ("missing", id(block.group), keyword.one_of or word)
             if keyword.needed and word not in block.settings and not block.excused(word):
-                self.problem(
-                    self.head(block), f"{title} has no {word}{block.where}", example(keyword), key=key
-                )
+                self.problem(self.head(block), f"{title} has no {word}{block.where}", example(keyword), key=key)
                 good = False
             if keyword.one_of and keyword.one_of[0] == word:
                 given = [w for w in keyword.one_of if w in block.settings]
                 if not given and not block.excused(*keyword.one_of):
                     this = " or ".join(keyword.one_of)
-                    self.problem(
-                        self.head(block), f"{title} has no {this}{block.where}", example(keyword), key=key
-                    )
+                    self.problem(self.head(block), f"{title} has no {this}{block.where}", example(keyword), key=key)
                     good = False
                 elif len(given) > 1:
-                    second = max(
-                        (block.first(w) for w in given),
-                        key=lambda s: (s.entry.token.line, s.entry.token.column),
-                    )
+                    second = max((block.first(w) for w in given), key=lambda s: (s.entry.token.line, s.entry.token.column))
                     first = next(block.first(w) for w in given if block.first(w) is not second)
                     self.problem(
                         second.span(),
@@ -249,8 +234,7 @@ class Builder:
         if kind == "torus" and v[1] >= v[0]:
             self.problem(
                 s.span(1),
-                "the tube of a torus is thinner than the ring: r < R, "
-                f"found r = {say(v[1], 'm', 6)}, R = {say(v[0], 'm', 6)}",
+                f"the tube of a torus is thinner than the ring: r < R, found r = {say(v[1], 'm', 6)}, R = {say(v[0], 'm', 6)}",
                 "write torus R r, the radius of the centre line first",
             )
             return None
@@ -260,11 +244,7 @@ class Builder:
                 self.problem(s.span(0), f"a mesh is an STL, OBJ or PLY file, found '{v[0]}'")
                 return None
             if not path.is_file():
-                self.problem(
-                    s.span(0),
-                    f"the mesh file '{v[0]}' is not there: {path}",
-                    "its name is relative to this scene file",
-                )
+                self.problem(s.span(0), f"the mesh file '{v[0]}' is not there: {path}", "its name is relative to this scene file")
                 return None
             return records.Mesh(path, 1.0 if v[1] is None else v[1])
         make = {
@@ -289,9 +269,7 @@ class Builder:
             length = math.hypot(*axis)
             if not 1e-150 < length < 1e150:
                 self.problem(
-                    s.span(0),
-                    f"the axis of a rotation needs a direction, found {units.show(axis)}",
-                    "e.g. axis (0, 0, 1)",
+                    s.span(0), f"the axis of a rotation needs a direction, found {units.show(axis)}", "e.g. axis (0, 0, 1)"
                 )
                 return None
             return rotation_about(tuple(c / length for c in axis), angle)
@@ -339,7 +317,8 @@ class Builder:
         sweeps = block.value("sweeps")
         if sweeps is not None and sweeps > MOST_SWEEPS:
             self.problem(
-                block.first("sweeps").span(0), f"{sweeps:.0f} sweeps per update are more than {MOST_SWEEPS}",
+                block.first("sweeps").span(0),
+                f"{sweeps:.0f} sweeps per update are more than {MOST_SWEEPS}",
                 "write sweeps auto, which takes 8 for each cell that the fastest solid travels",
             )
         model = records.LiquidModel(block.value("model", "surface"))
@@ -380,10 +359,7 @@ class Builder:
         if not found:
             if not self.out.excused("control"):
                 self.problem(
-                    self.top,
-                    "the scene has no control block: how long is it?",
-                    "write control { time 3 s }",
-                    key="control",
+                    self.top, "the scene has no control block: how long is it?", "write control { time 3 s }", key="control"
                 )
             return None
         block = found[0]
@@ -476,15 +452,10 @@ class Builder:
         last = -math.inf
         for s, camera in zip(block.settings["camera"], cameras):
             if camera.time is None:
-                self.problem(
-                    s.span(),
-                    "several cameras make a path, and this one has no time",
-                    "write camera 2 s from ...",
-                )
+                self.problem(s.span(), "several cameras make a path, and this one has no time", "write camera 2 s from ...")
             elif camera.time <= last:
                 self.problem(
-                    s.span(0),
-                    f"the times of the cameras must rise, found {number(camera.time, 6)} s after {number(last, 6)} s",
+                    s.span(0), f"the times of the cameras must rise, found {number(camera.time, 6)} s after {number(last, 6)} s"
                 )
             else:
                 last = camera.time
@@ -499,9 +470,7 @@ class Builder:
         return False
 
     def expects(self, control: records.Control | None) -> tuple[records.Expect, ...]:
-        return tuple(
-            e for s in self.out.settings.get("expect", ()) if (e := self.expect(s, control)) is not None
-        )
+        return tuple(e for s in self.out.settings.get("expect", ()) if (e := self.expect(s, control)) is not None)
 
     def expect(self, s: Setting, control: records.Control | None) -> records.Expect | None:
         """One self-check, with the unit of its quantity."""
@@ -512,24 +481,14 @@ class Builder:
             return None
         if (kind, quantity) not in QUANTITIES:
             self.problem(
-                s.span(0),
-                f"{quantity} is no quantity of {subject} that expect can check",
-                did_you_mean(quantity, known),
+                s.span(0), f"{quantity} is no quantity of {subject} that expect can check", did_you_mean(quantity, known)
             )
             return None
-        if (
-            (kind == "liquid" or quantity in IMMERSION)
-            and not self.blocks("liquid")
-            and not self.out.excused("liquid")
-        ):
+        if (kind == "liquid" or quantity in IMMERSION) and not self.blocks("liquid") and not self.out.excused("liquid"):
             self.problem(s.span(0), f"{subject}.{quantity} needs a liquid, and the scene has none")
-        if time is not None and (time < 0.0 or control is not None and time > control.time * (1.0 + 1e-9)):
+        if time is not None and (time < 0.0 or (control is not None and time > control.time * (1.0 + 1e-9))):
             end = f", which ends at {number(control.time, 6)} s" if control else ""
-            self.problem(
-                s.span(1),
-                f"{number(time, 6)} s lies outside the run{end}",
-                "an earlier time, or a longer control time",
-            )
+            self.problem(s.span(1), f"{number(time, 6)} s lies outside the run{end}", "an earlier time, or a longer control time")
         dim = units.unit(QUANTITIES[kind, quantity][0]).dim
         numbers = []
         for n, (x, what) in enumerate(((value, "the value"), (tolerance, "the tolerance")), 2):
@@ -539,11 +498,8 @@ class Builder:
             if units.dimension(x) not in (dim, units.NONE):
                 self.problem(
                     s.span(n),
-                    f"{subject}.{quantity} is {units.describe(dim)}, found {units.show(x)}, "
-                    f"{units.describe(units.dimension(x))}",
-                    f"units that fit: {' '.join(units.units_of(dim))}"
-                    if dim != units.NONE
-                    else "leave out the unit",
+                    f"{subject}.{quantity} is {units.describe(dim)}, found {units.show(x)}, {units.describe(units.dimension(x))}",
+                    f"units that fit: {' '.join(units.units_of(dim))}" if dim != units.NONE else "leave out the unit",
                 )
                 return None
             if not math.isfinite(units.magnitude(x)):
@@ -556,9 +512,7 @@ class Builder:
     def known_subject(self, subject: str, quantity: str, span: Span) -> bool:
         """An object; or a word for the whole scene, mistyped."""
         if any(subject == b.name for b in self.blocks("liquid")):
-            self.problem(
-                span, f"the liquid is called liquid in expect, found {subject}", f"write liquid.{quantity}"
-            )
+            self.problem(span, f"the liquid is called liquid in expect, found {subject}", f"write liquid.{quantity}")
             return False
         names = [b.name for b in self.blocks("object")]
         if subject in names:

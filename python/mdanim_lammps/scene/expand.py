@@ -197,11 +197,7 @@ class Expander:
                     env.values.setdefault(s.name, SPOILED)
             elif s.token in env.values:
                 first = own.get(str(s.token))
-                place = (
-                    f"first given at {first.source.span(first.token)}"
-                    if first
-                    else "it is known outside already"
-                )
+                place = f"first given at {first.source.span(first.token)}" if first else "it is known outside already"
                 self.problems.add(s.source.span(s.token), f"'{s.token}' is given twice", place)
             else:
                 own[str(s.token)] = s
@@ -242,10 +238,7 @@ class Expander:
     def _same_kind(self, name: str, source: Source, node, value, original) -> None:
         one, other = _kinds(value), _kinds(original)
         if len(one) != len(other):
-            raise Fault(
-                node.first,
-                f"{name} is {units.show(original)} in the scene, and a value of that kind is needed",
-            )
+            raise Fault(node.first, f"{name} is {units.show(original)} in the scene, and a value of that kind is needed")
         for a, b in zip(one, other):
             if a != b and a != units.NONE and b != units.NONE:
                 raise Fault(
@@ -269,9 +262,7 @@ class Expander:
         for node in (s.low, s.high):
             v = node.run(env)
             if type(v) is not float or v != v or abs(v) > 1e15 or v != int(v):
-                raise Fault(
-                    node.first, f"repeat counts in whole numbers, found {units.show(v)}", last=node.last
-                )
+                raise Fault(node.first, f"repeat counts in whole numbers, found {units.show(v)}", last=node.last)
             found.append(int(v))
         return found[0], found[1]
 
@@ -279,9 +270,7 @@ class Expander:
         """Run the body once for every index."""
         name = str(s.variable)
         if name in env.values:
-            self.problems.add(
-                s.source.span(s.variable), f"'{name}' is given twice", "take another name for this repeat"
-            )
+            self.problems.add(s.source.span(s.variable), f"'{name}' is given twice", "take another name for this repeat")
             return
         try:
             low, high = self.bounds(s, env)
@@ -301,8 +290,7 @@ class Expander:
             if self.rounds > MOST_ROUNDS or self.objects > MOST_OBJECTS:
                 self.problems.add(
                     s.source.span(s.token, s.variable),
-                    "this scene repeats without measure: more than "
-                    f"{MOST_OBJECTS} objects or {MOST_ROUNDS} rounds",
+                    f"this scene repeats without measure: more than {MOST_OBJECTS} objects or {MOST_ROUNDS} rounds",
                     "repeat less often",
                     key="objects",
                 )
@@ -329,9 +317,7 @@ class Expander:
             return str(name.token)
         v = name.index.run(env)
         if type(v) is not float or v != v or abs(v) > 1e15 or abs(v - round(v)) > 1e-9:
-            raise Fault(
-                name.index.first, f"an index is a whole number, found {units.show(v)}", last=name.index.last
-            )
+            raise Fault(name.index.first, f"an index is a whole number, found {units.show(v)}", last=name.index.last)
         return f"{name.token}[{round(v)}]"
 
     # -- settings
@@ -422,17 +408,12 @@ class Expander:
             x = x.value
         elif self.strict and dim != units.NONE:
             raise Fault(
-                first,
-                f"{what} has no unit: {number(x, 6)}",
-                f"write {number(x, 6)} {units.symbol(dim)} (strict mode)",
-                last,
+                first, f"{what} has no unit: {number(x, 6)}", f"write {number(x, 6)} {units.symbol(dim)} (strict mode)", last
             )
         if x - x != 0.0:
             raise Fault(first, f"{what} is not a finite number", "a calculation in it overflows", last)
         if rule is not Rule.ANY and not rule.holds(x):
-            raise Fault(
-                first, f"{what} must be {rule.value}, found {_found(s, v, units.quantity(x, dim))}", last=last
-            )
+            raise Fault(first, f"{what} must be {rule.value}, found {_found(s, v, units.quantity(x, dim))}", last=last)
         return x
 
     def _color(self, s: Entry, v: Value, x: str) -> str:
@@ -444,9 +425,7 @@ class Expander:
     def _half_units(self, s: Entry, raw: list) -> None:
         """``cylinder 10 20 cm`` is 10 m by 20 cm: hardly what was meant."""
         measured = [
-            (v, x)
-            for v, x in zip(s.values, raw)
-            if v is not None and v.slot.unit not in ("1", "?") and not isinstance(x, str)
+            (v, x) for v, x in zip(s.values, raw) if v is not None and v.slot.unit not in ("1", "?") and not isinstance(x, str)
         ]
         bare = [v for v, x in measured if _bare(x)]
         if bare and len(bare) < len(measured):
@@ -482,13 +461,7 @@ def _found(s: Entry, v: Value, x) -> str:
     if v.node.constant and v.slot.length == 1:
         return units.show(x)
     text = s.source.excerpt(v.first, v.last)
-    return (
-        text
-        if v.node.constant
-        else f"{text} = {units.show(x)}"
-        if v.slot.length == 1
-        else f"{units.show(x)} in {text}"
-    )
+    return text if v.node.constant else f"{text} = {units.show(x)}" if v.slot.length == 1 else f"{units.show(x)} in {text}"
 
 
 def _unit_hint(dim: units.Dim, found: units.Dim) -> str:

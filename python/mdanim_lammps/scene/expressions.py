@@ -57,7 +57,7 @@ class Rand(Token):
 class Node:
     """A compiled expression."""
 
-    __slots__ = ("run", "constant", "depth", "first", "last", "terms")
+    __slots__ = ("constant", "depth", "first", "last", "run", "terms")
 
     def __init__(self, run, parts, first, last, constant=True):
         self.run = run
@@ -106,15 +106,8 @@ _BINARY = {
 
 def combine(env: Env, token: Token, x, y):
     """x + y, or x - y; strict mode wants both with units or both without."""
-    if (
-        env.strict
-        and not isinstance(x, tuple)
-        and not isinstance(y, tuple)
-        and (type(x) is float) != (type(y) is float)
-    ):
-        raise Fault(
-            token, "a bare number meets a quantity, and strict mode wants units", "write both with units"
-        )
+    if env.strict and not isinstance(x, tuple) and not isinstance(y, tuple) and (type(x) is float) != (type(y) is float):
+        raise Fault(token, "a bare number meets a quantity, and strict mode wants units", "write both with units")
     return guarded(token, units.subtract if token.type == "MINUS" else units.add, x, y)
 
 
@@ -218,9 +211,7 @@ class Compiler(Transformer):
 
         def run(env):
             if env.seed is None:
-                raise Fault(
-                    token, "the seed cannot be random", "give it as a whole number, e.g. seed 7", last=last
-                )
+                raise Fault(token, "the seed cannot be random", "give it as a whole number, e.g. seed 7", last=last)
             u = random_unit(env.seed, site, env.loops)
             a, b = low(env), high(env)
             return guarded(token, lambda: units.add(a, units.multiply(units.subtract(b, a), u)))
@@ -262,9 +253,7 @@ class Compiler(Transformer):
                 values = [node.run(env) for _, node in terms]
                 bare = [_bare(v) for v in values]
                 if any(bare) and not all(bare):
-                    values = [
-                        guarded(last, units.with_unit, v, unit) if b else v for v, b in zip(values, bare)
-                    ]
+                    values = [guarded(last, units.with_unit, v, unit) if b else v for v, b in zip(values, bare)]
                     total = values[0]
                     for (token, _), v in zip(terms[1:], values[1:]):
                         total = combine(env, token, total, v)
@@ -296,20 +285,12 @@ def _unknown(token: Token, env: Env) -> Fault:
     if env.incomplete:
         return Silent(token, "")
     if name in env.later:
-        return Fault(
-            token, f"'{name}' is used before its let", f"it stands at line {env.later[name]}; move it up"
-        )
+        return Fault(token, f"'{name}' is used before its let", f"it stands at line {env.later[name]}; move it up")
     if name in units.UNITS:
-        return Fault(
-            token, f"'{name}' is a unit, and a number is needed here", f"write a number before it: 1 {name}"
-        )
+        return Fault(token, f"'{name}' is a unit, and a number is needed here", f"write a number before it: 1 {name}")
     names = [n for n in env.values if n.isidentifier()]
     hint = did_you_mean(name, names) if names else ""
-    return Fault(
-        token,
-        f"'{name}' has no value",
-        hint if "did you" in hint else f"give it one before: let {name} = ...",
-    )
+    return Fault(token, f"'{name}' has no value", hint if "did you" in hint else f"give it one before: let {name} = ...")
 
 
 @lru_cache(maxsize=1)

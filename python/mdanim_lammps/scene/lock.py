@@ -147,12 +147,7 @@ def _solid(s: Solid) -> list[str]:
     settings = [
         ("shape", _shape(s.shape)),
         ("position", f"{_vector(s.position)} m"),
-        (
-            "orientation",
-            f"matrix {' '.join(map(_vector, s.rotation))}"
-            if turned
-            else KEYWORDS["object"]["orientation"].default,
-        ),
+        ("orientation", f"matrix {' '.join(map(_vector, s.rotation))}" if turned else KEYWORDS["object"]["orientation"].default),
         ("mass", f"{s.mass!r} kg") if s.mass is not None else ("density", f"{s.density!r} kg/m^3"),
         ("elasticity", f"{s.elasticity.modulus!r} Pa" if young else f"spring {s.elasticity.k!r} N/m"),
         ("damping", repr(s.damping)),

@@ -97,9 +97,7 @@ def language_page() -> str:
         parts += [f"\n## {block.name}\n\n", f"```\n{_head(block)} {{ ... }}\n```\n\n{block.about}\n\n"]
         parts.append(_table(KEYWORDS[block.name].values()))
     parts += ["\n## What `expect` can check\n\n", "| quantity | unit | meaning |\n|---|---|---|\n"]
-    parts += [
-        f"| `{k}.{q}` | {u if u != '1' else '-'} | {about} |\n" for (k, q), (u, about) in QUANTITIES.items()
-    ]
+    parts += [f"| `{k}.{q}` | {u if u != '1' else '-'} | {about} |\n" for (k, q), (u, about) in QUANTITIES.items()]
     parts.append(_END)
     return "".join(parts)
 

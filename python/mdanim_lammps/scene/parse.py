@@ -45,18 +45,14 @@ def parse_scene(
 
     Raises SceneError with every problem of the text; ``name`` stands in for the file name.
     """
-    return _scene(
-        Source(name, text, folder=Path(folder) if folder is not None else None), name, overrides, strict
-    )
+    return _scene(Source(name, text, folder=Path(folder) if folder is not None else None), name, overrides, strict)
 
 
 def _scene(source: Source, name: str, overrides: Overrides | None, strict: bool) -> Scene:
     problems = Problems()
     problems.begin(source)
     if not source.text.strip():
-        raise SceneError(
-            [Problem(None, f"{source.name} is empty", "a scene has at least an object and a control block")]
-        )
+        raise SceneError([Problem(None, f"{source.name} is empty", "a scene has at least an object and a control block")])
     body, shared = parse(source, problems)
     out = Expander(shared, overrides, strict).scene(body)
     scene = build(out, problems, name, source) if out is not None else None

@@ -79,7 +79,7 @@ class Reader:
             inside = bool(brackets)
             if kind == "NEWLINE" and inside:
                 n = self.ahead(1)
-                if n.type == "NAME" and wanted != "value" and after != "comma" or n.type in ("RBRACE", "END"):
+                if (n.type == "NAME" and wanted != "value" and after != "comma") or n.type in ("RBRACE", "END"):
                     break
                 self.at += 1
                 continue
@@ -96,9 +96,7 @@ class Reader:
                 elif kind == "LPAR":
                     brackets.append(t)
                     if len(brackets) > DEEPEST_BRACKET:
-                        raise Fault(
-                            t, f"more than {DEEPEST_BRACKET} brackets are open here", "split this with let"
-                        )
+                        raise Fault(t, f"more than {DEEPEST_BRACKET} brackets are open here", "split this with let")
                     push(t)
                 elif kind in ("PLUS", "MINUS"):
                     push(t)
@@ -113,21 +111,13 @@ class Reader:
                     break
             elif kind == "NUMBER":
                 fraction = t == "1" and self.ahead(1).type == "SLASH" and self.ahead(2).type == "NAME"
-                if (
-                    fraction
-                    and after != "unit"
-                    and not (more and not inside and str(self.ahead(2)) not in units.UNITS)
-                ):
+                if fraction and after != "unit" and not (more and not inside and str(self.ahead(2)) not in units.UNITS):
                     push(t, "ONE")
                     after = "unit"
                 elif not inside and (more or after == "bracket" or ".." in stops):
                     break
                 else:
-                    hint = (
-                        f"write {slot.text}, with commas"
-                        if "," in slot.text
-                        else "an operator or a comma is missing"
-                    )
+                    hint = f"write {slot.text}, with commas" if "," in slot.text else "an operator or a comma is missing"
                     raise Fault(t, f"'{t}' follows another value", hint)
             elif kind == "LPAR":
                 if after == "name":
@@ -189,9 +179,7 @@ class Reader:
         if after == "unit":
             if known:
                 raise Fault(
-                    t,
-                    f"the unit '{t}' follows another unit",
-                    f"write a product of units with *: {self.tokens[self.at - 1]}*{t}",
+                    t, f"the unit '{t}' follows another unit", f"write a product of units with *: {self.tokens[self.at - 1]}*{t}"
                 )
             if not inside:
                 return False
@@ -209,7 +197,7 @@ class Reader:
     def _unit_part(self, operator: Token, push) -> None:
         """The unit after * or / of a unit."""
         t = self.peek
-        if t.type != "NAME" or str(t) not in units.UNITS and not (t == "h" and operator.type == "SLASH"):
+        if t.type != "NAME" or (str(t) not in units.UNITS and not (t == "h" and operator.type == "SLASH")):
             if t.type == "NAME":
                 raise Fault(t, f"'{t}' is not a unit", units.suggest_unit(str(t)))
             raise Fault(
@@ -238,7 +226,6 @@ class Reader:
             hint = ODD.get(str(t), "") or "add a )"
             raise Fault(
                 brackets[-1],
-                f"this ( is not closed: found {found(t)}"
-                + (f" at line {t.line}" if t.line != brackets[-1].line else ""),
+                f"this ( is not closed: found {found(t)}" + (f" at line {t.line}" if t.line != brackets[-1].line else ""),
                 hint,
             )

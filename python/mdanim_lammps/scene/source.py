@@ -74,9 +74,7 @@ def read_text(path: Path) -> str:
         return data.decode("utf-8")
     except UnicodeDecodeError as e:
         line = data.count(b"\n", 0, e.start) + 1
-        raise ValueError(
-            f"is not UTF-8 text (byte 0x{data[e.start]:02x} in line {line}); save it as UTF-8"
-        ) from None
+        raise ValueError(f"is not UTF-8 text (byte 0x{data[e.start]:02x} in line {line}); save it as UTF-8") from None
 
 
 class Problems:

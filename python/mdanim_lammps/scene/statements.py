@@ -90,11 +90,7 @@ class Parser(Reader):
             if t.type == "END":
                 if opened is not None:
                     self.problem(
-                        Fault(
-                            opened,
-                            f"{title}, opened at line {opened.line}, is never closed",
-                            "add a } where it ends",
-                        )
+                        Fault(opened, f"{title}, opened at line {opened.line}, is never closed", "add a } where it ends")
                     )
                 return result
             if t.type == "RBRACE":
@@ -112,9 +108,7 @@ class Parser(Reader):
                 word, name = self.tokens[start], self.tokens[min(start + 1, len(self.tokens) - 1)]
                 self.skip_statement(start, block)
                 known = [*KEYWORDS[block], *BLOCKS, *STATEMENTS]
-                result.append(
-                    Broken(nearest(str(word), known) or str(word), str(name) if word == "let" else "")
-                )
+                result.append(Broken(nearest(str(word), known) or str(word), str(name) if word == "let" else ""))
             except Unclosed as trouble:
                 self.at = start
                 if opened is None:
@@ -150,12 +144,7 @@ class Parser(Reader):
                 depth += (t.type == "LPAR") - (t.type == "RPAR")
                 if t.type == "NEWLINE":
                     n = self.peek
-                    if (
-                        depth <= 0
-                        or n.type in ("RBRACE", "NEWLINE", "END")
-                        or str(n) in KEYWORDS[block]
-                        or str(n) in BLOCKS
-                    ):
+                    if depth <= 0 or n.type in ("RBRACE", "NEWLINE", "END") or str(n) in KEYWORDS[block] or str(n) in BLOCKS:
                         break
         self.at = max(self.at, start + 1)
 
@@ -173,24 +162,11 @@ class Parser(Reader):
         if last is first:
             return first
         text = self.source.text[first.start_pos : last.end_pos]
-        return Token(
-            "NAME",
-            text,
-            first.start_pos,
-            first.line,
-            first.column,
-            last.end_line,
-            last.end_column,
-            last.end_pos,
-        )
+        return Token("NAME", text, first.start_pos, first.line, first.column, last.end_line, last.end_column, last.end_pos)
 
     def opens_block(self) -> bool:
         """Whether the next tokens look like the head of a block."""
-        return (
-            self.peek.type == "LBRACE"
-            or self.peek.type == "NAME"
-            and self.ahead(1).type in ("LBRACE", "LSQB")
-        )
+        return self.peek.type == "LBRACE" or (self.peek.type == "NAME" and self.ahead(1).type in ("LBRACE", "LSQB"))
 
     def statement(self, block: str, opened: Token | None, repeats: int) -> list:
         t = self.peek
@@ -224,9 +200,7 @@ class Parser(Reader):
         if homes and not guess:
             place = " or ".join(f"{b} {{ }}" if b else "the outermost level" for b in homes)
             inside = f"inside {block} {{ }}" if block else "outside of all blocks"
-            raise Fault(
-                word, f"'{word}' cannot stand {inside}", f"it belongs {'in' if homes[0] else 'on'} {place}"
-            )
+            raise Fault(word, f"'{word}' cannot stand {inside}", f"it belongs {'in' if homes[0] else 'on'} {place}")
         kind = f"a setting of {block}" if block else "a word of the scene language"
         owner = next((k for k in KEYWORDS[block].values() if word in literals(k.form)), None)
         hint = did_you_mean(str(word), here)
@@ -253,9 +227,7 @@ class Parser(Reader):
             self.take()
             return
         missing = Fault(
-            self.tokens[at],
-            f"a {{ is missing after {after}, found {found(self.tokens[at])}",
-            "a block stands in braces",
+            self.tokens[at], f"a {{ is missing after {after}, found {found(self.tokens[at])}", "a block stands in braces"
         )
         if str(self.peek) not in settings:
             self.at = at
@@ -264,26 +236,16 @@ class Parser(Reader):
 
     def group(self, word: Token, block: str, repeats: int) -> Group:
         if repeats and block != "object":
-            raise Fault(
-                word, f"{block} cannot stand in a repeat", "only objects, expect lines and lets are repeated"
-            )
+            raise Fault(word, f"{block} cannot stand in a repeat", "only objects, expect lines and lets are repeated")
         name = None
         if BLOCKS[block].head:
             if self.peek.type != "NAME":
-                raise Fault(
-                    self.peek,
-                    f"a name is missing after {block}, found {found(self.peek)}",
-                    f"e.g. {block} ball {{",
-                )
+                raise Fault(self.peek, f"a name is missing after {block}, found {found(self.peek)}", f"e.g. {block} ball {{")
             name = self.name()
             if name.index is not None and block != "object":
-                raise Fault(
-                    name.token, f"only objects have an index, found {block} {name.token}[...]", last=name.last
-                )
+                raise Fault(name.token, f"only objects have an index, found {block} {name.token}[...]", last=name.last)
         elif self.peek.type == "NAME":
-            raise Fault(
-                self.peek, f"{block} has no name, found {found(self.peek)}", f"write {block} {{ ... }}"
-            )
+            raise Fault(self.peek, f"{block} has no name, found {found(self.peek)}", f"write {block} {{ ... }}")
         title = f"{block} {name.token}" if name else block
         self.brace(title, KEYWORDS[block])
         return Group(self.source, word, block, name, self.body(block, word, 0, title))
@@ -297,9 +259,7 @@ class Parser(Reader):
         index = self.expression(Slot("number", "index"), frozenset())
         last = self.peek
         if last.type != "RSQB":
-            raise Fault(
-                last, f"a ] is missing after the index of {token}, found {found(last)}", f"write {token}[1]"
-            )
+            raise Fault(last, f"a ] is missing after the index of {token}, found {found(last)}", f"write {token}[1]")
         self.take()
         return Name(token, last, index)
 
@@ -318,11 +278,7 @@ class Parser(Reader):
         name = self.new_name("let")
         self.shared.lets.setdefault(str(name), name.line)
         if self.peek.type != "EQUAL":
-            raise Fault(
-                self.peek,
-                f"an = is missing after let {name}, found {found(self.peek)}",
-                f"write let {name} = 3",
-            )
+            raise Fault(self.peek, f"an = is missing after let {name}, found {found(self.peek)}", f"write let {name} = 3")
         self.take()
         node = self.expression(Slot("let", str(name)), frozenset())
         self.end_of_statement("let", ())
@@ -370,9 +326,7 @@ class Parser(Reader):
             text = read_text(path)
         except (ValueError, OSError) as e:
             reason = e.strerror if isinstance(e, OSError) else str(e)
-            raise Fault(
-                t, f"cannot include {t}: {path} {reason}", "the name is relative to this file"
-            ) from None
+            raise Fault(t, f"cannot include {t}: {path} {reason}", "the name is relative to this file") from None
         shown = str(Path(self.source.name).parent / file)
         inner = Source(shown, text, path, (*self.source.included_from, self.source.span(word, t)))
         parser = Parser(inner, self.shared, self.chain)
@@ -425,14 +379,12 @@ class Parser(Reader):
             t = self.peek
             if isinstance(part, Literal):
                 if part.text != t and not (part.text == "+-" and t.type == "PLUS_MINUS"):
-                    raise Fault(
-                        t, f"'{part.text}' is missing in {keyword.name}, found {found(t)}", example(keyword)
-                    )
+                    raise Fault(t, f"'{part.text}' is missing in {keyword.name}, found {found(t)}", example(keyword))
                 words.append(str(self.take()))
             elif isinstance(part, Optional):
                 first = part.parts[0]
                 if isinstance(first, Literal):
-                    present = first.text == t or first.text == "+-" and t.type == "PLUS_MINUS"
+                    present = first.text == t or (first.text == "+-" and t.type == "PLUS_MINUS")
                 else:
                     following = parts[n + 1].text if n + 1 < len(parts) else None
                     present = t.type not in ("NEWLINE", "END", "RBRACE") and t != following
@@ -459,11 +411,7 @@ class Parser(Reader):
                 self.take()
                 return Value(slot, t, t, text=str(t)[1:-1])
             if t.type != "NAME":
-                raise Fault(
-                    t,
-                    f"{keyword.name} needs a colour, found {found(t)}",
-                    'write a name such as red, or "#rrggbb"',
-                )
+                raise Fault(t, f"{keyword.name} needs a colour, found {found(t)}", 'write a name such as red, or "#rrggbb"')
             self.take()
             return Value(slot, t, t, text=str(t))
         if slot.kind == "check":
@@ -492,10 +440,7 @@ class Parser(Reader):
             text += str(last)
         if text not in slot.choices:
             raise Fault(
-                first,
-                f"'{text.strip()}' is not one of the choices of {keyword.name}",
-                did_you_mean(text, slot.choices),
-                last,
+                first, f"'{text.strip()}' is not one of the choices of {keyword.name}", did_you_mean(text, slot.choices), last
             )
         return Value(slot, first, last, text=text)
 
@@ -511,17 +456,10 @@ class Parser(Reader):
         while self.peek.type == "DOT":
             self.take()
             if self.peek.type != "NAME":
-                raise Fault(
-                    self.peek, f"the quantity is missing after {name.token}., found {found(self.peek)}"
-                )
+                raise Fault(self.peek, f"the quantity is missing after {name.token}., found {found(self.peek)}")
             words.append(self.take())
         if not words:
-            raise Fault(
-                name.token,
-                f"expect {name.token} names no quantity",
-                f"e.g. {name.token}.position.z",
-                name.last,
-            )
+            raise Fault(name.token, f"expect {name.token} names no quantity", f"e.g. {name.token}.position.z", name.last)
         return Value(slot, name.token, words[-1], text=".".join(words), name=name)
 
     def end_of_statement(self, what: str, settings) -> None:

@@ -71,7 +71,7 @@ class Entry:
     @property
     def constant(self) -> bool:
         """Whether no variable is looked at."""
-        return all(v is None or (v.node is None or v.node.constant) and v.name is None for v in self.values)
+        return all(v is None or ((v.node is None or v.node.constant) and v.name is None) for v in self.values)
 
 
 @dataclass(slots=True, eq=False)

@@ -69,9 +69,7 @@ def _number(text: str) -> float:
 
 UNITS: dict[str, Unit] = {
     name: Unit(name, _number(over), _number(under), _dim(dim))
-    for name, over, under, dim in (
-        row.split() for line in _TABLE.split("\n") if line for row in line.split("|")
-    )
+    for name, over, under, dim in (row.split() for line in _TABLE.split("\n") if line for row in line.split("|"))
 }
 """Every unit that may stand alone."""
 
@@ -212,8 +210,7 @@ def _same(x: Scalar, y: Scalar, doing: str) -> Dim:
     a, b = dimension(x), dimension(y)
     if a != b and a != NONE and b != NONE:
         raise DimensionError(
-            f"cannot {doing} {describe(a)} and {describe(b)} ({show(x)}, {show(y)})",
-            "both need the same kind of unit",
+            f"cannot {doing} {describe(a)} and {describe(b)} ({show(x)}, {show(y)})", "both need the same kind of unit"
         )
     return a if a != NONE else b
 
@@ -229,9 +226,7 @@ def _pairwise(function, x: object, y: object):
             raise DimensionError(f"these vectors have {len(x)} and {len(y)} numbers")
         return tuple(map(function, x, y))
     if isinstance(x, tuple) or isinstance(y, tuple):
-        raise DimensionError(
-            "a vector and a number cannot be added", "write the number as a vector (x, y, z)"
-        )
+        raise DimensionError("a vector and a number cannot be added", "write the number as a vector (x, y, z)")
     return function(x, y)
 
 
@@ -289,9 +284,7 @@ def with_unit(x, u: Unit):
     if isinstance(x, tuple):
         return tuple(with_unit(c, u) for c in x)
     if isinstance(x, Quantity):
-        raise DimensionError(
-            f"the value has a unit already: it is {describe(x.dim)}, {show(x)}", f"leave out '{u.text}'"
-        )
+        raise DimensionError(f"the value has a unit already: it is {describe(x.dim)}, {show(x)}", f"leave out '{u.text}'")
     return quantity(x * u.over / u.under, u.dim)
 
 

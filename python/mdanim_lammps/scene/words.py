@@ -201,31 +201,20 @@ WORDS = (
             "`look NAME` follows an object. Absent: chosen so that everything is seen.", many=True),
 )  # fmt: skip
 
-KEYWORDS: dict[str, dict[str, Keyword]] = {
-    block: {w.name: w for w in WORDS if w.block == block} for block in ("", *BLOCKS)
-}
+KEYWORDS: dict[str, dict[str, Keyword]] = {block: {w.name: w for w in WORDS if w.block == block} for block in ("", *BLOCKS)}
 """Keywords by block and name."""
 
 STATEMENTS = {
-    "let": (
-        "let name = expression",
-        "Gives a number, a quantity or a vector a name. `--set name=value` overrides it.",
-    ),
+    "let": ("let name = expression", "Gives a number, a quantity or a vector a name. `--set name=value` overrides it."),
     "repeat": ("repeat i in a .. b { ... }", "Repeats what is in the braces for i = a, a + 1, ... b; nests."),
-    "include": (
-        'include "file"',
-        "Reads another file in this place; its name is relative to the including file.",
-    ),
+    "include": ('include "file"', "Reads another file in this place; its name is relative to the including file."),
 }
 """Statements that are not settings: how they are written, what they do."""
 
 QUANTITIES = {
     **{
         ("NAME", f"{what}.{axis}"): (u, f"{about}, {axis}")
-        for what, u, about in (
-            ("position", "m", "centre of mass"),
-            ("velocity", "m/s", "velocity of the centre of mass"),
-        )
+        for what, u, about in (("position", "m", "centre of mass"), ("velocity", "m/s", "velocity of the centre of mass"))
         for axis in "xyz"
     },
     ("NAME", "draft"): ("m", "immersed depth of an object, from the surface to its lowest point; needs a liquid"),

@@ -30,7 +30,7 @@ class Value:
     middle: float
     spread: float
 
-    def below(self, other: "Value") -> bool:
+    def below(self, other: Value) -> bool:
         """Whether it is smaller by more than both spreads leave open: what differs less is not ranked."""
         return self.middle + 0.5 * self.spread < other.middle - 0.5 * other.spread
 
@@ -76,9 +76,17 @@ class Analysis:
         return bool(found and found.order is None and self.growth and self.growth.parted is not None)
 
 
-def analyse(points: Mapping[str, Point], ladders: Sequence[Ladder], own: Setting, times: np.ndarray,
-            expects: Sequence[Expect], names: Sequence[str], sharpness: float = SHARP, *,
-            touching: bool = False) -> Analysis:
+def analyse(
+    points: Mapping[str, Point],
+    ladders: Sequence[Ladder],
+    own: Setting,
+    times: np.ndarray,
+    expects: Sequence[Expect],
+    names: Sequence[str],
+    sharpness: float = SHARP,
+    *,
+    touching: bool = False,
+) -> Analysis:
     """Rate every point that has run.
 
     Each ladder has a limit of its own. The best estimate of the motion is the scene's own run with the corrections of all
@@ -106,11 +114,15 @@ def analyse(points: Mapping[str, Point], ladders: Sequence[Ladder], own: Setting
     doubt = math.sqrt(sum(c.doubt**2 for c in found.values()))
     errors = {key: [math.hypot(distance(t, best) / scale, doubt) if scale else 0.0 for t in p.tracks] for key, p in run.items()}
     wobble = max(ALIKE, _usual(errors.values(), 0.0))  # not 0 only where repeats have another seed, that is with a liquid
-    rated = {key: Rated(p, _duration(p.seconds, noise), _value(errors[key], wobble), _closed(p, expects, truths))
-             for key, p in run.items()}
+    rated = {
+        key: Rated(p, _duration(p.seconds, noise), _value(errors[key], wobble), _closed(p, expects, truths))
+        for key, p in run.items()
+    }
     front = pareto({key: (r.seconds, r.error) for key, r in rated.items()})
-    rated = {key: Rated(r.point, r.seconds, r.error, r.closed, key in front)
-             for key, r in sorted(rated.items(), key=lambda item: item[1].seconds.middle)}
+    rated = {
+        key: Rated(r.point, r.seconds, r.error, r.closed, key in front)
+        for key, r in sorted(rated.items(), key=lambda item: item[1].seconds.middle)
+    }
     return Analysis(own, scale, rated, found, measured, until, touching, parting)
 
 
@@ -131,8 +143,9 @@ def _value(seen: Sequence[float], usual: float) -> Value:
     return Value(middle, max(max(seen) - min(seen), usual * middle))
 
 
-def sharp(expects: Sequence[Expect], names: Sequence[str], track: np.ndarray, times: np.ndarray,
-          sharpness: float = SHARP) -> dict[int, float]:
+def sharp(
+    expects: Sequence[Expect], names: Sequence[str], track: np.ndarray, times: np.ndarray, sharpness: float = SHARP
+) -> dict[int, float]:
     """The ``expect`` lines that state a truth to measure errors by: index to what the error is relative to, in SI.
 
     That is the extent of the object's own motion for positions, that of the run or that of the truth, whichever goes farther; its
@@ -167,6 +180,7 @@ def _closed(point: Point, expects: Sequence[Expect], truths: Mapping[int, float]
 
 def pareto(values: Mapping[str, tuple[Value, Value]]) -> set[str]:
     """Keys that no other beats: one beats another by being clearly less in one thing and not clearly more in the other."""
+
     def beats(a: tuple[Value, Value], b: tuple[Value, Value]) -> bool:
         return any(a[i].below(b[i]) and not b[1 - i].below(a[1 - i]) for i in (0, 1))
 
@@ -175,6 +189,7 @@ def pareto(values: Mapping[str, tuple[Value, Value]]) -> set[str]:
 
 # --- advice -----------------------------------------------------------------------------------------------------------
 
+
 def advice(a: Analysis) -> str:
     """One plain sentence."""
     own = a.rated[a.own.key]
@@ -182,24 +197,29 @@ def advice(a: Analysis) -> str:
         return "Nothing moves in this scene: every setting gives the same, take the cheapest."
     if a.chaotic:
         fold = f"grow e-fold every {number(a.growth.folding, 2)} s and " if math.isfinite(a.growth.folding) else ""
-        return (f"This scene forgets how it began: differences between runs {fold}exceed 1 % of the motion from "
-                f"t = {number(a.growth.parted)} s on whatever the setting, so no setting follows it to the end; choose by looks, "
-                f"by the energy drift and by time.")
+        return (
+            f"This scene forgets how it began: differences between runs {fold}exceed 1 % of the motion from "
+            f"t = {number(a.growth.parted)} s on whatever the setting, so no setting follows it to the end; choose by looks, "
+            f"by the energy drift and by time."
+        )
     same = [r for r in a.rated.values() if not own.error.below(r.error)]  # no worse, as far as can be told
     cheapest = min(same, key=lambda r: r.seconds.middle)
     better = [r for r in a.rated.values() if r.error.below(own.error) and r.error.middle <= 0.6 * own.error.middle]
     says = f"The scene's own setting ({a.own}) is {_percent(own.error.middle)} off and takes {_seconds(own.seconds.middle)}"
     if own.error.middle < 1e-6:
         says += ": no setting makes a difference that could be seen"
-    elif (cause := _cause(a)):
+    elif cause := _cause(a):
         says += f", most of the error from the {cause}" + lost(a, cause, ", which has")
     if cheapest.seconds.below(own.seconds):
-        says += (f"; {cheapest.point.setting} is as good in "
-                 f"{_percent(cheapest.seconds.middle / own.seconds.middle, 2)} of the time")
+        says += (
+            f"; {cheapest.point.setting} is as good in {_percent(cheapest.seconds.middle / own.seconds.middle, 2)} of the time"
+        )
     if better and own.error.middle >= 1e-6:
         next_ = min(better, key=lambda r: r.seconds.middle)
-        says += (f"; {next_.point.setting} brings {_percent(next_.error.middle)} for "
-                 f"{number(next_.seconds.middle / own.seconds.middle, 2)} times the time")
+        says += (
+            f"; {next_.point.setting} brings {_percent(next_.error.middle)} for "
+            f"{number(next_.seconds.middle / own.seconds.middle, 2)} times the time"
+        )
     return says + "."
 
 

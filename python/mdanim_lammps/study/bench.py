@@ -108,6 +108,7 @@ class Bench:
             self.store.fail(setting, problem)
             return self.store.points[setting.key]
         except (Interrupted, KeyboardInterrupt) as error:
-            raise Interrupted(f"interrupted; {len(self.store.points)} points are kept in {self.store.folder}, "
-                              "the same command goes on") from error
+            raise Interrupted(
+                f"interrupted; {len(self.store.points)} points are kept in {self.store.folder}, the same command goes on"
+            ) from error
         return self.store.add(sample)

@@ -111,8 +111,9 @@ def converge(steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float)
     return Convergence(limit, tuple(map(float, errors)), found, used=len(tracks) - 1 - first)
 
 
-def order_until(times: np.ndarray, steps: Sequence[float], tracks: Sequence[np.ndarray],
-                scale: float) -> tuple[float, float] | None:
+def order_until(
+    times: np.ndarray, steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float
+) -> tuple[float, float] | None:
     """Up to when a ladder without an order has one [s], and that order; None where it has none from the start.
 
     What happens then depends on more than the step: which particles meet in a blow changes with every spacing. Times are tried

@@ -57,8 +57,15 @@ class TooLong(Exception):
         self.seconds = seconds
 
 
-def measure(scene: Scene, setting: Setting, folder: Path, *, limit: float = float("inf"), repeat: int = 0,
-            watch: Callable[[Progress], None] | None = None) -> Sample:
+def measure(
+    scene: Scene,
+    setting: Setting,
+    folder: Path,
+    *,
+    limit: float = float("inf"),
+    repeat: int = 0,
+    watch: Callable[[Progress], None] | None = None,
+) -> Sample:
     """Run a scene with a setting in a temporary folder inside ``folder``.
 
     Raises TooLong when the run turns out to need more than ``limit`` seconds of wall time in all, and SceneError,
@@ -86,5 +93,16 @@ def measure(scene: Scene, setting: Setting, folder: Path, *, limit: float = floa
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
     c = ready.certificate
-    return Sample(setting, c.timestep, c.steps, ready.system.particles, last[0].seconds, time.perf_counter() - start,
-                  result.ledger.residual, penetration, tuple(float(o.found) for o in result.outcomes), times, center)
+    return Sample(
+        setting,
+        c.timestep,
+        c.steps,
+        ready.system.particles,
+        last[0].seconds,
+        time.perf_counter() - start,
+        result.ledger.residual,
+        penetration,
+        tuple(float(o.found) for o in result.outcomes),
+        times,
+        center,
+    )

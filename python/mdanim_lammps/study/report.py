@@ -8,8 +8,8 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..scene.wording import number, say
 from ..results.files import write_whole
+from ..scene.wording import number, say
 from .analysis import Rated, lost
 from .error import ROUND_OFF, distance
 from .store import Store
@@ -25,20 +25,42 @@ COLORS = {"time step": "#1f77b4", "resolution": "#d62728", "sweeps": "#2ca02c", 
 def write_report(study: Study, store: Store, budget: float) -> None:
     """Write study.json, study.csv and study.png. Raises OutputError."""
     a = study.analysis
-    store.write({
-        "scene": study.scene.name, "budget": budget, "own": a.own.key, "extent": a.scale, "chaotic": a.chaotic,
-        "advice": study.advice, "left_out": study.left_out,
-        "growth": a.growth and {"folding": _finite(a.growth.folding), "parted": a.growth.parted},
-        "ladders": {name: {
-            "points": [s.key for s in a.measured[name]], "errors": [_finite(e) for e in c.errors],
-            "order": c.order, "used": c.used, "why": c.why, "until": a.until.get(name),
-        } for name, c in a.ladders.items()},
-        "points": {key: {
-            "seconds": r.seconds.middle, "seconds_spread": r.seconds.spread, "error": r.error.middle,
-            "error_spread": r.error.spread, "expect_error": r.closed, "energy_drift": max(r.point.drift),
-            "penetration": max(r.point.penetration), "pareto": r.front,
-        } for key, r in a.rated.items()},
-    })
+    store.write(
+        {
+            "scene": study.scene.name,
+            "budget": budget,
+            "own": a.own.key,
+            "extent": a.scale,
+            "chaotic": a.chaotic,
+            "advice": study.advice,
+            "left_out": study.left_out,
+            "growth": a.growth and {"folding": _finite(a.growth.folding), "parted": a.growth.parted},
+            "ladders": {
+                name: {
+                    "points": [s.key for s in a.measured[name]],
+                    "errors": [_finite(e) for e in c.errors],
+                    "order": c.order,
+                    "used": c.used,
+                    "why": c.why,
+                    "until": a.until.get(name),
+                }
+                for name, c in a.ladders.items()
+            },
+            "points": {
+                key: {
+                    "seconds": r.seconds.middle,
+                    "seconds_spread": r.seconds.spread,
+                    "error": r.error.middle,
+                    "error_spread": r.error.spread,
+                    "expect_error": r.closed,
+                    "energy_drift": max(r.point.drift),
+                    "penetration": max(r.point.penetration),
+                    "pareto": r.front,
+                }
+                for key, r in a.rated.items()
+            },
+        }
+    )
     write_whole(store.folder / "study.csv", lambda part: _write_csv(study, part))
     write_whole(store.folder / "study.png", lambda part: draw(study, part))
 
@@ -50,15 +72,52 @@ def _finite(x: float) -> float | None:
 def _write_csv(study: Study, path: Path) -> None:
     with open(path, "w", newline="", encoding="utf-8") as file:
         out = csv.writer(file)
-        out.writerow(["setting", "ladders", "cells", "fraction", "sweeps", "contact", "timestep", "particles", "steps", "runs",
-                      "seconds", "seconds_spread", "error", "error_spread", "expect_error", "energy_drift", "penetration",
-                      "pareto"])
+        out.writerow(
+            [
+                "setting",
+                "ladders",
+                "cells",
+                "fraction",
+                "sweeps",
+                "contact",
+                "timestep",
+                "particles",
+                "steps",
+                "runs",
+                "seconds",
+                "seconds_spread",
+                "error",
+                "error_spread",
+                "expect_error",
+                "energy_drift",
+                "penetration",
+                "pareto",
+            ]
+        )
         for key, r in study.analysis.rated.items():
             s, p = r.point.setting, r.point
-            out.writerow([key, " + ".join(_where(study, r)), s.cells, s.fraction, "auto" if s.sweeps is None else s.sweeps,
-                          s.contact, p.timestep, p.particles, p.steps, len(p.seconds), r.seconds.middle, r.seconds.spread,
-                          r.error.middle,
-                          r.error.spread, "" if r.closed is None else r.closed, max(p.drift), max(p.penetration), int(r.front)])
+            out.writerow(
+                [
+                    key,
+                    " + ".join(_where(study, r)),
+                    s.cells,
+                    s.fraction,
+                    "auto" if s.sweeps is None else s.sweeps,
+                    s.contact,
+                    p.timestep,
+                    p.particles,
+                    p.steps,
+                    len(p.seconds),
+                    r.seconds.middle,
+                    r.seconds.spread,
+                    r.error.middle,
+                    r.error.spread,
+                    "" if r.closed is None else r.closed,
+                    max(p.drift),
+                    max(p.penetration),
+                    int(r.front),
+                ]
+            )
 
 
 def _where(study: Study, r: Rated) -> list[str]:
@@ -76,21 +135,37 @@ def table(study: Study) -> Table:
     swept = any(r.point.setting.sweeps is not None for r in a.rated.values())
     touched = any(r.point.setting.contact != 1.0 for r in a.rated.values())
     out = Table(box=SIMPLE_HEAD, pad_edge=False)
-    for name in ("", "cells", "step/bound", *(["sweeps"] if swept else []), *(["contact"] if touched else []), "particles",
-                 "seconds", "error",
-                 *(["off expect"] if closed else []), "energy drift", *(["sunk in"] if touched else []), "ladder"):
+    for name in (
+        "",
+        "cells",
+        "step/bound",
+        *(["sweeps"] if swept else []),
+        *(["contact"] if touched else []),
+        "particles",
+        "seconds",
+        "error",
+        *(["off expect"] if closed else []),
+        "energy drift",
+        *(["sunk in"] if touched else []),
+        "ladder",
+    ):
         out.add_column(name, justify="left" if name in ("", "ladder") else "right")
     for r in a.rated.values():
         s = r.point.setting
         out.add_row(
-            "*" if r.front else "", f"{s.cells:g}", f"{s.fraction:.2f}" if s.fraction else "auto",
+            "*" if r.front else "",
+            f"{s.cells:g}",
+            f"{s.fraction:.2f}" if s.fraction else "auto",
             *(["auto" if s.sweeps is None else str(s.sweeps)] if swept else []),
-            *([f"{s.contact:g}"] if touched else []), f"{r.point.particles}",
+            *([f"{s.contact:g}"] if touched else []),
+            f"{r.point.particles}",
             _spread(r.seconds.middle, r.seconds.spread, len(r.point.seconds)),
             f"{number(100 * r.error.middle)} %",
-            *([_off(r.closed)] if closed else []), number(max(r.point.drift), 2),
+            *([_off(r.closed)] if closed else []),
+            number(max(r.point.drift), 2),
             *([say(max(r.point.penetration), "m")] if touched else []),
-            " + ".join(_where(study, r)) + (", own" if s == a.own else ""))
+            " + ".join(_where(study, r)) + (", own" if s == a.own else ""),
+        )
     return out
 
 
@@ -108,17 +183,24 @@ def order_lines(study: Study) -> list[str]:
     lines = []
     for name, c in study.analysis.ladders.items():
         own = distance(study.analysis.rated[study.analysis.own.key].point.tracks[0], c.limit) / (study.analysis.scale or 1.0)
-        what = (f"order {c.order:.2f} from {c.used} runs and their limit" if c.order is not None else
-                f"no order: {c.why}{lost(study.analysis, name, '; it has')}")
+        what = (
+            f"order {c.order:.2f} from {c.used} runs and their limit"
+            if c.order is not None
+            else f"no order: {c.why}{lost(study.analysis, name, '; it has')}"
+        )
         off = f"; the scene's own setting is {number(100 * own, 2)} % off its limit" if own else ""
         if c.doubt:
-            off += ("; the limit is the finest run, taken to be as far off as it is from the run before it, "
-                    f"{number(100 * c.doubt, 2)} %")
+            off += (
+                "; the limit is the finest run, taken to be as far off as it is from the run before it, "
+                f"{number(100 * c.doubt, 2)} %"
+            )
         lines.append(f"{name}: {what}{off}")
     g = study.analysis.growth
     if study.analysis.chaotic and math.isfinite(g.folding):
-        lines.append(f"runs part: differences grow e-fold every {number(g.folding, 2)} s, "
-                     f"beyond 1 % of the motion from t = {number(g.parted)} s on")
+        lines.append(
+            f"runs part: differences grow e-fold every {number(g.folding, 2)} s, "
+            f"beyond 1 % of the motion from t = {number(g.parted)} s on"
+        )
     return lines + [f"{name}: left out, {why}" for name, why in study.left_out.items()]
 
 
@@ -130,8 +212,13 @@ def draw(study: Study, path: Path) -> None:
     a = study.analysis
     figure = Figure(figsize=(7.0, 4.6), layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.add_subplot(xscale="log", yscale="log", xlabel="wall time of simulation [s]",
-                              ylabel="error relative to the motion [%]", title=f"{study.scene.name}: what accuracy costs")
+    axes = figure.add_subplot(
+        xscale="log",
+        yscale="log",
+        xlabel="wall time of simulation [s]",
+        ylabel="error relative to the motion [%]",
+        title=f"{study.scene.name}: what accuracy costs",
+    )
     least = 0.5 * min((r.error.middle for r in a.rated.values() if r.error.middle > 0.0), default=1e-12)
     place = {key: (r.seconds.middle, 100 * max(r.error.middle, least)) for key, r in a.rated.items()}
     for name, settings in a.measured.items():
@@ -139,10 +226,20 @@ def draw(study: Study, path: Path) -> None:
         label = name + (f" (order {order:.1f})" if order is not None else "")
         axes.plot(*zip(*(place[s.key] for s in settings)), "o-", color=COLORS[name], label=label, markersize=5)
         for s in settings:
-            text = {"time step": f"{s.fraction:.2g}", "resolution": f"{s.cells:g}", "sweeps": f"{s.sweeps}",
-                    "contact": f"{s.contact:g}"}[name]
-            axes.annotate(text, place[s.key], xytext=(5, -11 if name == "resolution" else 5),
-                          textcoords="offset points", fontsize=8, color=COLORS[name])
+            text = {
+                "time step": f"{s.fraction:.2g}",
+                "resolution": f"{s.cells:g}",
+                "sweeps": f"{s.sweeps}",
+                "contact": f"{s.contact:g}",
+            }[name]
+            axes.annotate(
+                text,
+                place[s.key],
+                xytext=(5, -11 if name == "resolution" else 5),
+                textcoords="offset points",
+                fontsize=8,
+                color=COLORS[name],
+            )
     for key, r in a.rated.items():
         axes.errorbar(*place[key], xerr=r.seconds.spread / 2, yerr=50 * r.error.spread, fmt="none", ecolor="gray", zorder=0)
     front = [place[key] for key, r in a.rated.items() if r.front]

@@ -90,8 +90,13 @@ def with_setting(scene: Scene, setting: Setting, *, repeat: int = 0) -> Scene:
 
     Raises SceneError where an object is thinner than the spacing.
     """
-    control = replace(scene.control, resolution=thinnest(scene) / setting.cells, timestep=None,
-                      seed=scene.control.seed + repeat, contact_stiffness=setting.contact)
+    control = replace(
+        scene.control,
+        resolution=thinnest(scene) / setting.cells,
+        timestep=None,
+        seed=scene.control.seed + repeat,
+        contact_stiffness=setting.contact,
+    )
     scene = replace(scene, control=control)
     if setting.sweeps is not None:
         scene = replace(scene, liquid=replace(scene.liquid, sweeps=setting.sweeps))
@@ -141,8 +146,15 @@ def scene_hash(scene: Scene) -> str:
     Accuracy, time step, resolution, sweeps, contact stiffness, what is saved and how pictures look are left out; the program's
     version, what counts as the thinnest part, and what stands in mesh files count.
     """
-    control = replace(scene.control, accuracy=Accuracy.BALANCED, timestep=None, resolution=None, contact_stiffness=1.0,
-                      save=Save.ALL, single=False)
+    control = replace(
+        scene.control,
+        accuracy=Accuracy.BALANCED,
+        timestep=None,
+        resolution=None,
+        contact_stiffness=1.0,
+        save=Save.ALL,
+        single=False,
+    )
     liquid = scene.liquid and replace(scene.liquid, sweeps=None)
     bare = replace(scene, name="scene", title="", control=control, liquid=liquid, render=Render())
     digest = hashlib.sha256(f"{__version__}\n{thinnest(scene)!r}\n{lock_text(bare)}".encode())

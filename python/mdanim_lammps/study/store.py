@@ -85,14 +85,24 @@ class Store:
 
     def _read(self, data: dict) -> None:
         if data.get("hash") != self.digest:
-            raise OutputError(f"{self.folder} is the study of another scene, or the scene has changed since; "
-                              "begin anew with --force, or name another folder with -o DIR")
+            raise OutputError(
+                f"{self.folder} is the study of another scene, or the scene has changed since; "
+                "begin anew with --force, or name another folder with -o DIR"
+            )
         for entry in data["points"]:
             values = entry["runs"]
-            point = Point(Setting(**entry["setting"]), entry["timestep"] or math.nan, entry["steps"], entry["particles"],
-                          values["seconds"], values["wall"], values["drift"], values["penetration"],
-                          [tuple(math.nan if x is None else x for x in f) for f in values["found"]],
-                          problem=entry["problem"])
+            point = Point(
+                Setting(**entry["setting"]),
+                entry["timestep"] or math.nan,
+                entry["steps"],
+                entry["particles"],
+                values["seconds"],
+                values["wall"],
+                values["drift"],
+                values["penetration"],
+                [tuple(math.nan if x is None else x for x in f) for f in values["found"]],
+                problem=entry["problem"],
+            )
             point.tracks = [self._load(point, k) for k in range(len(point.seconds))]
             self.points[point.setting.key] = point
         if (times := self.folder / "tracks" / "times.npy").exists():
@@ -141,13 +151,19 @@ class Store:
         self.report = report if report is not None else self.report
         extra = self.report.get("points", {})
         points = [self._entry(p) | extra.get(key, {}) for key, p in self.points.items()]
-        write_json(self.folder / FILE, {"hash": self.digest, **{k: v for k, v in self.report.items() if k != "points"},
-                                        "points": points})
+        write_json(
+            self.folder / FILE, {"hash": self.digest, **{k: v for k, v in self.report.items() if k != "points"}, "points": points}
+        )
 
     @staticmethod
     def _entry(p: Point) -> dict:
         found = [[x if math.isfinite(x) else None for x in f] for f in p.found]
-        return {"key": p.setting.key, "setting": asdict(p.setting), "timestep": p.timestep if p.steps else None,
-                "steps": p.steps, "particles": p.particles, "problem": p.problem,
-                "runs": {"seconds": p.seconds, "wall": p.wall, "drift": p.drift, "penetration": p.penetration,
-                         "found": found}}
+        return {
+            "key": p.setting.key,
+            "setting": asdict(p.setting),
+            "timestep": p.timestep if p.steps else None,
+            "steps": p.steps,
+            "particles": p.particles,
+            "problem": p.problem,
+            "runs": {"seconds": p.seconds, "wall": p.wall, "drift": p.drift, "penetration": p.penetration, "found": found},
+        }

@@ -37,8 +37,15 @@ class Study:
         return advice(self.analysis)
 
 
-def run_study(scene: Scene, folder: Path, *, budget: float = BUDGET, only: Sequence[str] = (), force: bool = False,
-              watch: Callable[[str], None] = lambda line: None) -> Study:
+def run_study(
+    scene: Scene,
+    folder: Path,
+    *,
+    budget: float = BUDGET,
+    only: Sequence[str] = (),
+    force: bool = False,
+    watch: Callable[[str], None] = lambda line: None,
+) -> Study:
     """Measure ladders around a scene's own setting for ``budget`` seconds of wall time; leaves study.json, .csv and .png.
 
     Points that ``folder`` holds already are not measured again; every new one is stored as soon as it is there.
@@ -78,8 +85,15 @@ def run_study(scene: Scene, folder: Path, *, budget: float = BUDGET, only: Seque
         raise RefusedError(f"the scene's own setting ({own}) {left[str(own)]}; give it more with --budget")
     if not point.tracks:
         raise DivergedError(f"the scene's own setting ({own}) cannot be measured: {point.problem}")
-    analysis = analyse(store.points, found, own, store.times, scene.expects, ready.system.names,
-                       touching=any(ready.verdicts[name].on for name in TOUCHING))
+    analysis = analyse(
+        store.points,
+        found,
+        own,
+        store.times,
+        scene.expects,
+        ready.system.names,
+        touching=any(ready.verdicts[name].on for name in TOUCHING),
+    )
     study = Study(scene, folder, store.points, tuple(found), analysis, left)
     write_report(study, store, budget)
     return study

@@ -60,8 +60,9 @@ class Choice:
         return max(self.reached, self.closed or 0.0) <= self.error
 
     def __str__(self) -> str:
-        got = f"estimated {number(100 * self.reached, 2)} %" + ("" if (self.closed or 0.0) < ROUND_OFF
-                                                                else f", closed form {number(100 * self.closed, 2)} %")
+        got = f"estimated {number(100 * self.reached, 2)} %" + (
+            "" if (self.closed or 0.0) < ROUND_OFF else f", closed form {number(100 * self.closed, 2)} %"
+        )
         step = f", time step {say(self.timestep, 's')}" if self.timestep else ""
         return f"{self.cells:g} cells across{step} ({got})"
 
@@ -99,8 +100,14 @@ def store_choice(scene: Scene, choice: Choice) -> None:
 def with_choice(scene: Scene, choice: Choice) -> Scene:
     """The scene with the setting of a choice; what the scene itself says about resolution and time step stays."""
     c = scene.control
-    return replace(scene, control=replace(c, resolution=c.resolution if c.resolution is not None else choice.resolution,
-                                          timestep=c.timestep if c.timestep is not None else choice.timestep))
+    return replace(
+        scene,
+        control=replace(
+            c,
+            resolution=c.resolution if c.resolution is not None else choice.resolution,
+            timestep=c.timestep if c.timestep is not None else choice.timestep,
+        ),
+    )
 
 
 def _digest(scene: Scene) -> str:
@@ -109,8 +116,9 @@ def _digest(scene: Scene) -> str:
     return f"{scene_hash(scene)} {c.resolution!r} {c.timestep!r} {c.contact_stiffness!r}"
 
 
-def find_choice(scene: Scene, *, budget: float = BUDGET, store: Store | None = None,
-                watch: Callable[[str], None] = lambda line: None) -> Choice:
+def find_choice(
+    scene: Scene, *, budget: float = BUDGET, store: Store | None = None, watch: Callable[[str], None] = lambda line: None
+) -> Choice:
     """Measure until a setting meets the target of ``accuracy error p %``, or the budget is spent.
 
     The resolution is refined from 2 cells on; each next number of cells follows from the order seen so far. The time step is
@@ -142,8 +150,14 @@ class Settled:
     """That the target is not met, or has not been looked for yet."""
 
 
-def settle(scene: Scene, *, make: bool, budget: float = BUDGET, study: Path | None = None,
-           watch: Callable[[str], None] = lambda line: None) -> Settled:
+def settle(
+    scene: Scene,
+    *,
+    make: bool,
+    budget: float = BUDGET,
+    study: Path | None = None,
+    watch: Callable[[str], None] = lambda line: None,
+) -> Settled:
     """Turn ``accuracy error p %`` into a setting: the one stored beside the scene, or, with ``make``, one found now.
 
     Without either the scene stays as it is, and counts as ``balanced``. ``study`` is the folder of a study whose points are
@@ -157,15 +171,30 @@ def settle(scene: Scene, *, make: bool, budget: float = BUDGET, study: Path | No
     if choice is None:
         if not make:
             told = f"accuracy {what}: no setting is known yet; 'run' looks for one first, for {budget:.0f} s at most"
-            return Settled(scene, told, Problem(span, f"the setting for {what} is not known yet; 'balanced' is shown",
-                                                f"mdanim-lammps study {scene.path or scene.name}", severity="warning"))
+            return Settled(
+                scene,
+                told,
+                Problem(
+                    span,
+                    f"the setting for {what} is not known yet; 'balanced' is shown",
+                    f"mdanim-lammps study {scene.path or scene.name}",
+                    severity="warning",
+                ),
+            )
         known = study and (study / FILE).exists() and read_json(study / FILE).get("hash") == scene_hash(scene)
         choice = find_choice(scene, budget=budget, store=Store(study, scene_hash(scene)) if known else None, watch=watch)
         store_choice(scene, choice)
         source = f"found now, kept in {path.name}" if path else "found now"
-    warning = None if choice.met else Problem(
-        span, f"{what} is not reached: the best that was found in the time given is {choice}",
-        "give it more time with 'mdanim-lammps study SCENE --budget \"10 min\"', or ask for less", severity="warning")
+    warning = (
+        None
+        if choice.met
+        else Problem(
+            span,
+            f"{what} is not reached: the best that was found in the time given is {choice}",
+            "give it more time with 'mdanim-lammps study SCENE --budget \"10 min\"', or ask for less",
+            severity="warning",
+        )
+    )
     return Settled(with_choice(scene, choice), f"accuracy {what}: {choice}, {source}", warning)
 
 
@@ -192,9 +221,16 @@ class _Search:
         # By particle-steps: the seconds of short runs differ by less than they vary.
         best = min(meeting, key=lambda s: a.rated[s.key].point.work) if meeting else min(done, key=lambda s: self._error(a, s))
         point = a.rated[best.key].point
-        return Choice(self.target, best.cells, best.fraction, thinnest(self.scene) / best.cells,
-                      point.timestep if best.fraction else None, a.rated[best.key].error.middle + self._from_step(best),
-                      a.rated[best.key].closed, a.rated[best.key].seconds.middle)
+        return Choice(
+            self.target,
+            best.cells,
+            best.fraction,
+            thinnest(self.scene) / best.cells,
+            point.timestep if best.fraction else None,
+            a.rated[best.key].error.middle + self._from_step(best),
+            a.rated[best.key].closed,
+            a.rated[best.key].seconds.middle,
+        )
 
     def _first(self) -> list[Setting]:
         """The settings that are measured in any case."""
@@ -268,8 +304,15 @@ class _Search:
 
     def _analyse(self, done: list[Setting]) -> Analysis:
         settings = tuple(sorted(done, key=self._value))
-        return analyse({s.key: self.store.points[s.key] for s in done}, [Ladder(self.name, settings)], settings[-1],
-                       self.store.times, self.scene.expects, self.ready.system.names, sharpness=self.target)
+        return analyse(
+            {s.key: self.store.points[s.key] for s in done},
+            [Ladder(self.name, settings)],
+            settings[-1],
+            self.store.times,
+            self.scene.expects,
+            self.ready.system.names,
+            sharpness=self.target,
+        )
 
     def _run(self, setting: Setting) -> bool:
         """Measure a setting that is not measured yet; whether it is there now."""
@@ -278,8 +321,9 @@ class _Search:
             return True
         expected = self.bench.predict(setting)
         if expected is not None and expected > self.bench.left:
-            self.bench.watch(f"{setting} would take about {say(expected, 's', 2)}, "
-                             f"more than the {max(0.0, self.bench.left):.0f} s left")
+            self.bench.watch(
+                f"{setting} would take about {say(expected, 's', 2)}, more than the {max(0.0, self.bench.left):.0f} s left"
+            )
             return False
         try:
             return bool(self.bench.measure(setting, limit=max(self.bench.left, 1.0)).tracks)
