@@ -151,7 +151,7 @@ def test_lists_of_two_steps_of_one_number_are_not_taken_for_each_other(tmp_path)
 def test_what_changes_between_runs_is_seen(tmp_path, name, ranks):
     """Take out, add and alter springs, objects and masses between runs: the bits of run_style verlet on one rank after each run.
 
-    Passes keep blocks of objects whose particles are the same, lineup.h; most steps of each run are taken by them.
+    Passes keep blocks of objects whose particles are the same, tag_order.h; most steps of each run are taken by them.
     """
     case = CASES[name]
     alone, _ = film_changed(case, "verlet", tmp_path)

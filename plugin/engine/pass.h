@@ -5,7 +5,7 @@
 #ifndef MDANIM_PASS_H
 #define MDANIM_PASS_H
 
-#include "engine/touch.h"
+#include "engine/pair_filter.h"
 
 namespace mdanim {
 
@@ -24,19 +24,18 @@ struct Block {
   bool damped;       // some of its particles have dashpots
   bool bound;        // some have springs
   unsigned end;
-  int brought;        // first of its rows of Pass::brought; negative for none
-  unsigned motion;    // row of Pass::motion
-  int object;         // molecule - 1
+  int external_force;    // first of its rows of Pass::external_force; negative for none
+  unsigned motion;       // row of Pass::motion
+  int object;            // molecule - 1
 };
 
 enum class Friction { NONE, IMPLICIT, EXPONENTIAL };
 
 // A row of Pass::motion, one number for each lane.
-enum Motion { MASS, KICK, DT, OTHERS, COUNTS, STAY, SHARE, PUSH, WEIGHT, PHI, MOTIONS };
-// MASS what gravity pulls at; KICK dt/2m; DT the time step, 0 for what does not move; OTHERS 1 where a lane is not the block's
-// own; COUNTS 1 for a particle of this rank.
-// With friction also, see leapfrog.h: STAY 1 - phi or e; SHARE 1 / (1 + phi); PUSH g dt/2m; WEIGHT m/2, 0 where there is none;
-// PHI.
+enum Motion { MASS, KICK, DT, FOREIGN_LANE, OWNED_LANE, STAY, SHARE, PUSH, WEIGHT, PHI, MOTIONS };
+// MASS what gravity pulls at; KICK dt/2m; DT the time step, 0 for what does not move; FOREIGN_LANE 1 where a lane is not the
+// block's own; OWNED_LANE 1 for a particle of this rank. With friction also, see leapfrog.h: STAY 1 - phi or e; SHARE 1 / (1 +
+// phi); PUSH g dt/2m; WEIGHT m/2, 0 where there is none; PHI.
 
 // A row of Pass::trace: a box, see boxes.h, and the largest v^2 with its sign changed.
 enum Trace { FASTEST = 6, TRACE };
@@ -60,9 +59,9 @@ struct Pass {
   // With dashpots: their part of f; their forces of the last step, F^{n-1} -> F^n, and the velocities that those of this step
   // have seen, v^{n-3/2} -> v^{n-1/2}. Of what is held back F^n stays in `part`, and the other two as they are.
   double *part[3], *last[3], *seen[3];
-  double gravity[3];        // [velocity/time]
-  const double *brought;    // rows of forces from elsewhere, (3, lanes) each, to be added after gravity:
-  int bringers;             // so many in a row for a block that has any
+  double gravity[3];               // [velocity/time]
+  const double *external_force;    // rows of forces from elsewhere, (3, lanes) each, to be added after gravity:
+  int force_providers;             // so many in a row for a block that has any
   Friction friction;
   double *total;    // (N, 3): sum of all forces on the particles of blocks that are held back
   double *trace;    // rows of TRACE, one of each object: to be grown; null for none
@@ -81,7 +80,7 @@ struct Width {
   int lanes;
   void (*pass)(Pass &);
   bool (*runs_here)();
-  const Touch *touch;
+  const PairFilter *pair_filter;
 };
 
 void pass_common(Pass &);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The pass over all blocks (pass.h), for vectors of LANES doubles; compiled once for each kind of processor (pass_*.cpp).
 //
-// Springs are evaluated once. Blocks come in ascending order and in each of them offsets in descending order, so that whoever
+// Springs are evaluated once. SimdBlocks come in ascending order and in each of them offsets in descending order, so that whoever
 // receives does so from its lower partners in ascending order, and a block's own sum takes its upper ones in descending order:
 // the order of bond_mdanim_harmonic.cpp, hence its bits. Lanes without a spring have push = pull = 0 and add nothing: F = 0, and
 // a sum that starts at +0 is never -0. Positions of a block can move on at once, for all that is still to come reads its own and
@@ -99,7 +99,7 @@ template <bool DAMPED> MDANIM_INLINE void feel(const Pass &pass, const Block &bl
     const int j = i + entry[e].offset;
     const double *const own = law + static_cast<unsigned long>(entry[e].law) * (LAW * LANES);
     Vector dx = x - load(X + j), dy = y - load(Y + j), dz = z - load(Z + j);
-    const Vector square = ((dx * dx + dy * dy) + dz * dz) + NOTHING;
+    const Vector square = ((dx * dx + dy * dy) + dz * dz) + R2_FLOOR;
     const Vector factor = load(own) / root(square) - load(own + LANES);
     Vector slowing[3];
     if (DAMPED) {
@@ -127,7 +127,7 @@ template <bool DAMPED> MDANIM_INLINE void feel(const Pass &pass, const Block &bl
     store(FZ + j, load(FZ + j) - dz);
   }
   const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
-  const Vector mass = load(motion + MASS * LANES), others = load(motion + OTHERS * LANES);
+  const Vector mass = load(motion + MASS * LANES), others = load(motion + FOREIGN_LANE * LANES);
   const Vector upper[3] = {upper_x, upper_y, upper_z};
 #pragma GCC unroll 3
   for (int d = 0; d < 3; ++d) {
@@ -142,11 +142,11 @@ template <bool DAMPED> MDANIM_INLINE void feel(const Pass &pass, const Block &bl
   }
 }
 
-// Then what others have brought. Not inlined: most blocks have none, and the springs need all registers.
-__attribute__((noinline)) void add_brought(const Pass &pass, const Block &block, double *total)
+// Forces of participants. Not inlined: most blocks have none, and the springs need all registers.
+__attribute__((noinline)) void add_external_force(const Pass &pass, const Block &block, double *total)
 {
-  const double *row = pass.brought + static_cast<long>(block.brought) * (3 * LANES);
-  for (int n = 0; n < pass.bringers; ++n, row += 3 * LANES)
+  const double *row = pass.external_force + static_cast<long>(block.external_force) * (3 * LANES);
+  for (int n = 0; n < pass.force_providers; ++n, row += 3 * LANES)
     for (int d = 0; d < 3 * LANES; d += LANES) store(total + d, load(total + d) + load(row + d));
 }
 
@@ -154,7 +154,7 @@ __attribute__((noinline)) void add_brought(const Pass &pass, const Block &block,
 MDANIM_INLINE void account(const Pass &pass, const Block &block, const double *motion, const double *part, const Vector *first,
                            const Vector *last, DashpotSums &sums)
 {
-  const Vector others = load(motion + OTHERS * LANES), counts = load(motion + COUNTS * LANES);
+  const Vector others = load(motion + FOREIGN_LANE * LANES), counts = load(motion + OWNED_LANE * LANES);
   Vector work{}, bend{}, ahead{};
   for (int d = 0; d < 3; ++d) {
     double *const f = pass.last[d] + block.start, *const v = pass.seen[d] + block.start;
@@ -235,7 +235,7 @@ MDANIM_INLINE void move(const Pass &pass, const Block &block, const double *tota
   if (TRACED) {
     if (block.object != tally.object) tally.turn_to(block.object, pass);
     if (block.lanes < LANES) {    // lanes of others go where the first one is, and rest
-      const Vector others = load(motion + OTHERS * LANES);
+      const Vector others = load(motion + FOREIGN_LANE * LANES);
       for (int d = 0; d < 3; ++d) place[d] = others > 0.0 ? Vector{} + place[d][0] : place[d];
       square = others > 0.0 ? Vector{} : square;
     }
@@ -258,7 +258,7 @@ template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_INLINE void go(Pas
       feel<true>(pass, pass.block[n], e, total[n & 1]);
     else
       feel<false>(pass, pass.block[n], e, total[n & 1]);
-    if (__builtin_expect(pass.block[n].brought >= 0, 0)) add_brought(pass, pass.block[n], total[n & 1]);
+    if (__builtin_expect(pass.block[n].external_force >= 0, 0)) add_external_force(pass, pass.block[n], total[n & 1]);
     if (n) move<FRICTION, TRACED, DAMPED>(pass, pass.block[n - 1], total[~n & 1], tally);
   }
   if (pass.blocks) move<FRICTION, TRACED, DAMPED>(pass, pass.block[pass.blocks - 1], total[~pass.blocks & 1], tally);

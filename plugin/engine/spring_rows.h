@@ -59,7 +59,7 @@ class SpringRows {
 // Rows to partners of a higher tag alone, so each spring once, of particles in the order of tags; and the law of each type.
 struct HalfBonds {
   const SpringRows *rows;
-  const Law *law;
+  const SpringCoeffs *law;
 };
 
 }    // namespace mdanim

@@ -207,7 +207,7 @@ void BondMdanimHarmonic::look_up(int i, bool halves, Row &row) const
 void BondMdanimHarmonic::look_up_coefficients()
 {
   coefficients_may_differ = false;
-  std::vector<Law> now;
+  std::vector<SpringCoeffs> now;
   for (const Spring &s : spring) now.emplace_back(s);
   if (!(now == law)) made = ++versions;
   law = std::move(now);
@@ -275,7 +275,7 @@ void BondMdanimHarmonic::take_apart(int begin, int end, int n)
       stretch.x[at] = d.x;
       stretch.y[at] = d.y;
       stretch.z[at] = d.z;
-      const Law &own = law[link.type];
+      const SpringCoeffs &own = law[link.type];
       stretch.push[at] = own.push;
       stretch.pull[at] = own.pull;
       ++at;
@@ -413,7 +413,7 @@ void BondMdanimHarmonic::tally()
       if (upper_only) eatom[j] += 0.5 * e;
     }
     if (!vflag_either) return;
-    const Law &own = law[type];
+    const SpringCoeffs &own = law[type];
     double factor = force_factor(own.push, own.pull, r2);
     if (own.c > 0.0) factor += drag(own.c, d, vec3(atom->v[i]) - vec3(atom->v[j]));
     const double w[6] = {d.x * d.x * factor, d.y * d.y * factor, d.z * d.z * factor,
@@ -435,7 +435,7 @@ double BondMdanimHarmonic::equilibrium_distance(int type) { return spring[type].
 // Energy and -dU/dr / r of one bond, without its dashpot.
 double BondMdanimHarmonic::single(int type, double rsq, int, int, double &fforce)
 {
-  const Law own(spring[type]);
+  const SpringCoeffs own(spring[type]);
   fforce = force_factor(own.push, own.pull, rsq);
   return mdanim::energy(spring[type], std::sqrt(rsq));
 }
@@ -475,7 +475,7 @@ double BondMdanimHarmonic::memory_usage()
 {
   const auto ints = source.tag.capacity() + source.count.capacity();
   return Bond::memory_usage() + rows.bytes() + loss.bytes() + ints * sizeof(int) + received.force.capacity() * sizeof(Vec3) +
-         law.capacity() * sizeof(Law) + (5.0 * stretch.x.capacity() + 2.0 * stretch.K.capacity()) * sizeof(double);
+         law.capacity() * sizeof(SpringCoeffs) + (5.0 * stretch.x.capacity() + 2.0 * stretch.K.capacity()) * sizeof(double);
 }
 
 // For objects.cpp: "seconds" and "lost" of this rank.

@@ -6,8 +6,8 @@
 #define LMP_BOND_MDANIM_HARMONIC_H
 
 #include "bond.h"
-#include "engine/blocks.h"
 #include "engine/loss.h"
+#include "engine/simd_blocks.h"
 #include "laws/spring.h"
 #include "laws/vec3.h"
 
@@ -38,7 +38,7 @@ class BondMdanimHarmonic : public Bond {
   // For run_style verlet/mdanim, which computes most forces itself: the springs, each once. False where that is not how they are
   // summed.
   bool halves(mdanim::HalfBonds &half) const;
-  const std::vector<mdanim::Law> &laws() const { return law; }    // by bond type
+  const std::vector<mdanim::SpringCoeffs> &laws() const { return law; }    // by bond type
   [[noreturn]] void lost_partner(int i, int partner) const;       // the error that particle i, or nobody, has this one, a tag
   mdanim::Loss *account() { return damped ? &loss : nullptr; }    // of dashpots, all ranks or none
   bigint version() const { return made; }                         // another number for other springs
@@ -54,7 +54,7 @@ class BondMdanimHarmonic : public Bond {
   // The bonds of a few rows, one array per quantity, for the vector units.
   struct Stretch {
     std::vector<double> x, y, z;       // r_ij, then F_i
-    std::vector<double> push, pull;    // see Law
+    std::vector<double> push, pull;    // see SpringCoeffs
     std::vector<double> K, r0;         // of energies, see Spring
   };
   // Forces that particles have received from lower partners so far, for sum_halves(): those from the row in hand to its
@@ -84,16 +84,16 @@ class BondMdanimHarmonic : public Bond {
   template <class Visit> void each_spring(Visit visit) const;    // visit(i, j, type, r_ij)
   void tally();
 
-  std::vector<mdanim::Spring> spring;      // by bond type
-  std::vector<mdanim::Law> law;            // the same
-  bool damped = false;                     // some spring has a dashpot
-  bool coefficients_may_differ = false;    // since their laws were made
-  bool bonds_are_swapped = false;          // some fix changes partners during a run
-  mdanim::SpringRows rows;                 // of local particles, to local ones and ghosts
-  bool upper_only = false;                 // only partners of a higher tag, see sum_halves()
-  bool given = false;                      // by take(), not by the particles
-  bigint made = 0;                         // version
-  bigint made_after = -1;                  // build of lists
+  std::vector<mdanim::Spring> spring;       // by bond type
+  std::vector<mdanim::SpringCoeffs> law;    // the same
+  bool damped = false;                      // some spring has a dashpot
+  bool coefficients_may_differ = false;     // since their laws were made
+  bool bonds_are_swapped = false;           // some fix changes partners during a run
+  mdanim::SpringRows rows;                  // of local particles, to local ones and ghosts
+  bool upper_only = false;                  // only partners of a higher tag, see sum_halves()
+  bool given = false;                       // by take(), not by the particles
+  bigint made = 0;                          // version
+  bigint made_after = -1;                   // build of lists
   Source source;
   Stretch stretch;
   Ring received;

@@ -5,7 +5,7 @@
 
 #include "styles/fix_mdanim_barrier.h"
 
-#include "engine/blocks.h"
+#include "engine/simd_blocks.h"
 #include "engine/stopwatch.h"
 #include "laws/barrier.h"
 
@@ -44,7 +44,7 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
   extlist = extensive;
   global_freq = 1;
   comm_forward = 4;
-  touch = best_width(false)->touch;
+  filter = best_width(false)->pair_filter;
 
   if (narg < 7) utils::missing_cmd_args(FLERR, "fix mdanim/barrier", error);
   boundary_bit = group_bit(3, arg[3]);
@@ -186,7 +186,7 @@ bool FixMdanimBarrier::moves(int i) const { return i < atom->nlocal && atom->mas
 struct FixMdanimBarrier::Search {
   // Particles of one object, copied one after the other.
   struct Side {
-    Places place;
+    Positions place;
     std::vector<int> rank;    // in `near`
 
     int size() const { return static_cast<int>(rank.size()); }
@@ -304,7 +304,7 @@ struct FixMdanimBarrier::Search {
   {
     const Vec3 at = seekers.place[s];
     const double of_seeker[] = {at.x, at.y, at.z};
-    const int many = fix.touch->within(side.place.all().data(), from, to, of_seeker, range * range, close.data());
+    const int many = fix.filter->within(side.place.all().data(), from, to, of_seeker, range * range, close.data());
     for (int m = 0; m < many; ++m) {
       const Vec3 d = at - side.place[close[m]];
       consider(seekers.rank[s], side.rank[close[m]], dot(d, d), thin_too);
@@ -419,26 +419,26 @@ void FixMdanimBarrier::post_force(int)
     for (size_t n = 0; n < particle.size(); ++n) here.put(n, atom->x[particle[n]]);
   }
   on.assign(3 * particle.size(), 0.0);
-  push<true>(here, Sums(on.data(), slot.data(), 1));
+  push<true>(here, ForceSums(on.data(), slot.data(), 1));
   const Lap lap(seconds);
   for (size_t n = 0; n < particle.size(); ++n) add_to(atom->f[particle[n]], vec3(&on[slot[n]]));
 }
 
 // Puts the pairs in touch into touching_pair; returns how many.
-int FixMdanimBarrier::find_touching(const Places &place)
+int FixMdanimBarrier::find_touching(const Positions &place)
 {
   lanes.resize(strip.size() + 1);
   touching_pair.resize(law.size() + STRIP);
   const auto all = place.all();
-  return touch->in_reach({all.data(), strip.data(), static_cast<int>(strip.size()), reach2.data(), lanes.data()},
-                         touching_pair.data());
+  return filter->in_reach({all.data(), strip.data(), static_cast<int>(strip.size()), reach2.data(), lanes.data()},
+                          touching_pair.data());
 }
 
 // Between outputs, where nobody reads the energy.
-void FixMdanimBarrier::forces(const Places &place, const Sums &total) { push<false>(place, total); }
+void FixMdanimBarrier::add_forces(const Positions &place, const ForceSums &total) { push<false>(place, total); }
 
 // On the particles that have candidates; nothing on those that are not moved. TELLS: of energy and pairs in touch, too.
-template <bool TELLS> void FixMdanimBarrier::push(const Places &place, const Sums &total)
+template <bool TELLS> void FixMdanimBarrier::push(const Positions &place, const ForceSums &total)
 {
   if (TELLS) energy = touching = 0.0;
   if (strip.empty() && loss.idle()) {
@@ -482,7 +482,7 @@ template <bool TELLS> void FixMdanimBarrier::push(const Places &place, const Sum
 }
 
 // Together with run_style verlet/mdanim, which leaves ghosts out.
-void FixMdanimBarrier::concerned(std::vector<int> &particles) const
+void FixMdanimBarrier::append_required_atoms(std::vector<int> &particles) const
 { particles.insert(particles.end(), particle.begin(), particle.end()); }
 
 // --- output ---
@@ -522,6 +522,7 @@ double FixMdanimBarrier::compute_vector(int n)
 double FixMdanimBarrier::memory_usage()
 {
   return own.capacity() * sizeof(Own) + strip.capacity() * sizeof(Strip) + reach2.bytes() + law.capacity() * sizeof(Law) +
-         lanes.capacity() * sizeof(Lanes) + (particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) +
-         here.bytes() + on.capacity() * sizeof(double) + slot.capacity() * sizeof(long) + loss.bytes();
+         lanes.capacity() * sizeof(StripMask) +
+         (particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) + here.bytes() +
+         on.capacity() * sizeof(double) + slot.capacity() * sizeof(long) + loss.bytes();
 }

@@ -5,8 +5,8 @@
 #define LMP_FIX_MDANIM_BARRIER_H
 
 #include "engine/boxes.h"
-#include "engine/guest.h"
 #include "engine/loss.h"
+#include "engine/pass_participant.h"
 #include "fix.h"
 #include "laws/vec3.h"
 #include "styles/particle_value.h"
@@ -15,7 +15,7 @@
 
 namespace LAMMPS_NS {
 
-class FixMdanimBarrier : public Fix, public mdanim::Guest {
+class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
  public:
   FixMdanimBarrier(class LAMMPS *, int, char **);
 
@@ -30,13 +30,13 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
-  void concerned(std::vector<int> &particles) const override;
-  bool places_suffice() const override { return damping == 0.0; }
-  void forces(const mdanim::Places &place, const mdanim::Sums &force) override;
-  void use(const mdanim::Touch &of_processor) override { touch = &of_processor; }
-  bool reads_all() override { return damping > 0.0 && !loss.idle(); }
-  double looks_ahead() const override { return clear; }
-  bool minds_drift() const override { return false; }
+  void append_required_atoms(std::vector<int> &particles) const override;
+  bool depends_on_positions_only() const override { return damping == 0.0; }
+  void add_forces(const mdanim::Positions &place, const mdanim::ForceSums &force) override;
+  void set_pair_filter(const mdanim::PairFilter &of_processor) override { filter = &of_processor; }
+  bool needs_all_atoms() override { return damping > 0.0 && !loss.idle(); }
+  double safe_displacement() const override { return clear; }
+  bool sees_absolute_position() const override { return false; }
 
  private:
   // What a particle brings into a pair. Of ghosts it is asked from their owners at every rebuild.
@@ -56,8 +56,8 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
   double survey(std::vector<mdanim::Box> &boxes);
   void find_candidates();
   void add_candidate(int low, int high, const Law &known);
-  template <bool TELLS> void push(const mdanim::Places &place, const mdanim::Sums &total);
-  int find_touching(const mdanim::Places &place);
+  template <bool TELLS> void push(const mdanim::Positions &place, const mdanim::ForceSums &total);
+  int find_touching(const mdanim::Positions &place);
   struct Search;
   bool moves(int i) const;
   double sum(double here);
@@ -70,19 +70,19 @@ class FixMdanimBarrier : public Fix, public mdanim::Guest {
   std::vector<Own> own;    // local and ghost particles
 
   // Candidates, numbered ascending by the lower tag and then by the higher one, so that who goes through them adds up the forces
-  // on every particle in ascending order of its partners' tags. There are numbers in between that are no pairs (touch.h).
+  // on every particle in ascending order of its partners' tags. There are numbers in between that are no pairs (pair_filter.h).
   std::vector<mdanim::Strip> strip;
-  mdanim::Doubles reach2;              // squares of the reach of pairs, 0 for what is none
-  std::vector<Law> law;                // and what else is known of them
-  int last_high = 0;                   // the higher one of the last pair
-  std::vector<int> particle;           // that have candidates, local or ghost: first boundary, then barrier,
-                                       // each ascending by tag
-  std::vector<int> unmoved;            // those of them, as places in it, that this rank adds no forces to
-  const mdanim::Touch *touch;          // who looks for those in touch
-  std::vector<mdanim::Lanes> lanes;    // where there are some in this step
-  std::vector<int> touching_pair;      // in this step
+  mdanim::Doubles reach2;                  // squares of the reach of pairs, 0 for what is none
+  std::vector<Law> law;                    // and what else is known of them
+  int last_high = 0;                       // the higher one of the last pair
+  std::vector<int> particle;               // that have candidates, local or ghost: first boundary, then barrier,
+                                           // each ascending by tag
+  std::vector<int> unmoved;                // those of them, as places in it, that this rank adds no forces to
+  const mdanim::PairFilter *filter;        // who looks for those in touch
+  std::vector<mdanim::StripMask> lanes;    // where there are some in this step
+  std::vector<int> touching_pair;          // in this step
   // In a step without passes: positions of these particles, forces on them, and where in `on` those of each begin.
-  mdanim::Places here;
+  mdanim::Positions here;
   std::vector<double> on;
   std::vector<long> slot;
 

@@ -4,8 +4,8 @@
 #ifndef LMP_FIX_MDANIM_LEAPFROG_H
 #define LMP_FIX_MDANIM_LEAPFROG_H
 
-#include "engine/blocks.h"
 #include "engine/boxes.h"
+#include "engine/simd_blocks.h"
 #include "fix.h"
 #include "styles/ghosts.h"
 #include "styles/particle_value.h"

@@ -773,17 +773,17 @@ void FixMdanimLiquid::end_of_step()
 // --- together with run_style verlet/mdanim ---
 
 // Faces push at the corners that ask for them and are read at all four, which are of one object and mostly all watched.
-void FixMdanimLiquid::concerned(std::vector<int> &particles) const
+void FixMdanimLiquid::append_required_atoms(std::vector<int> &particles) const
 {
   particles.insert(particles.end(), watched.begin(), watched.end());
   for (const Face &face : faces) particles.insert(particles.end(), face.corner, face.corner + 4);
 }
 
 // An update of the liquid looks for all bodies.
-bool FixMdanimLiquid::reads_all() { return due(); }
+bool FixMdanimLiquid::needs_all_atoms() { return due(); }
 
 // While the liquid is level and nobody is near it, until somebody comes.
-double FixMdanimLiquid::looks_ahead() const { return watching && asleep() ? lowest - (watched_top + NEAR * cell.z) : 0.0; }
+double FixMdanimLiquid::safe_displacement() const { return watching && asleep() ? lowest - (watched_top + NEAR * cell.z) : 0.0; }
 
 // --- what it tells ---
 

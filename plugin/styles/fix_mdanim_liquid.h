@@ -5,7 +5,7 @@
 #ifndef LMP_FIX_MDANIM_LIQUID_H
 #define LMP_FIX_MDANIM_LIQUID_H
 
-#include "engine/guest.h"
+#include "engine/pass_participant.h"
 #include "fix.h"
 #include "laws/vec3.h"
 #include "liquid/automaton.h"
@@ -20,7 +20,7 @@
 
 namespace LAMMPS_NS {
 
-class FixMdanimLiquid : public Fix, public mdanim::Guest {
+class FixMdanimLiquid : public Fix, public mdanim::PassParticipant {
  public:
   FixMdanimLiquid(class LAMMPS *, int, char **);
 
@@ -36,9 +36,9 @@ class FixMdanimLiquid : public Fix, public mdanim::Guest {
   double compute_array(int, int) override;
   double memory_usage() override;
   int modify_param(int, char **) override;
-  void concerned(std::vector<int> &particles) const override;
-  bool reads_all() override;
-  double looks_ahead() const override;
+  void append_required_atoms(std::vector<int> &particles) const override;
+  bool needs_all_atoms() override;
+  double safe_displacement() const override;
   void write_restart(FILE *) override;
   void restart(char *) override;
 

@@ -151,7 +151,7 @@ void FixMdanimWall::post_force(int)
 }
 
 // On those that are watched.
-void FixMdanimWall::forces(const Places &place, const Sums &force)
+void FixMdanimWall::add_forces(const Positions &place, const ForceSums &force)
 {
   begin_sums();
   if (watched.empty()) return;
@@ -168,7 +168,7 @@ void FixMdanimWall::begin_sums()
   on_wall = Vec3();
 }
 
-void FixMdanimWall::concerned(std::vector<int> &particles) const
+void FixMdanimWall::append_required_atoms(std::vector<int> &particles) const
 { particles.insert(particles.end(), watched.begin(), watched.end()); }
 
 // The force on a particle.

@@ -6,7 +6,7 @@
 #define LMP_FIX_MDANIM_WALL_H
 
 #include "engine/boxes.h"
-#include "engine/guest.h"
+#include "engine/pass_participant.h"
 #include "fix.h"
 #include "laws/vec3.h"
 #include "styles/particle_value.h"
@@ -16,7 +16,7 @@
 
 namespace LAMMPS_NS {
 
-class FixMdanimWall : public Fix, public mdanim::Guest {
+class FixMdanimWall : public Fix, public mdanim::PassParticipant {
  public:
   FixMdanimWall(class LAMMPS *, int, char **);
 
@@ -29,11 +29,11 @@ class FixMdanimWall : public Fix, public mdanim::Guest {
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
-  void concerned(std::vector<int> &particles) const override;
-  bool places_suffice() const override { return watching; }
-  void forces(const mdanim::Places &place, const mdanim::Sums &force) override;
-  bool reads_all() override { return !watching; }
-  double looks_ahead() const override { return clear; }
+  void append_required_atoms(std::vector<int> &particles) const override;
+  bool depends_on_positions_only() const override { return watching; }
+  void add_forces(const mdanim::Positions &place, const mdanim::ForceSums &force) override;
+  bool needs_all_atoms() override { return !watching; }
+  double safe_displacement() const override { return clear; }
 
  private:
   bool behind(const mdanim::Vec3 &x, mdanim::Vec3 &d);

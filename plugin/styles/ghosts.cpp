@@ -9,7 +9,7 @@
 
 namespace mdanim {
 
-void Ghosts::survey(MPI_Comm world, const std::vector<Home> &home, const Blocks &blocks)
+void Ghosts::survey(MPI_Comm world, const std::vector<Home> &home, const SimdBlocks &blocks)
 {
   int ranks = 0;
   MPI_Comm_size(world, &ranks);
@@ -39,7 +39,7 @@ void Ghosts::survey(MPI_Comm world, const std::vector<Home> &home, const Blocks 
     for (int k = asked_from[other.rank]; k < asked_from[other.rank + 1]; ++k) other.told.push_back(blocks.place_of(wanted[k]));
 }
 
-void Ghosts::meet(MPI_Comm world, Blocks &blocks, bool velocities)
+void Ghosts::meet(MPI_Comm world, SimdBlocks &blocks, bool velocities)
 {
   const std::size_t numbers = velocities ? 6 : 3;
   requests.clear();

@@ -5,7 +5,7 @@
 #ifndef MDANIM_GHOSTS_H
 #define MDANIM_GHOSTS_H
 
-#include "engine/blocks.h"
+#include "engine/simd_blocks.h"
 
 #include <mpi.h>
 #include <vector>
@@ -21,9 +21,9 @@ class Ghosts {
  public:
   // All ranks together, whenever their blocks have been laid out: where this rank's ghosts are at home, in the order of
   // blocks.ghost_places().
-  void survey(MPI_Comm world, const std::vector<Home> &home, const Blocks &blocks);
+  void survey(MPI_Comm world, const std::vector<Home> &home, const SimdBlocks &blocks);
   // All ranks together: ghosts take the places, and with `velocities` the velocities, that they have at home.
-  void meet(MPI_Comm world, Blocks &blocks, bool velocities);
+  void meet(MPI_Comm world, SimdBlocks &blocks, bool velocities);
   std::size_t bytes() const;
 
  private:

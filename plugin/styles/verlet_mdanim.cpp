@@ -133,10 +133,11 @@ bool VerletMdanim::find_players()
     } else if (auto *found = dynamic_cast<FixMdanimGravity *>(fix)) {
       if (gravity || !early.empty() || !late.empty()) return false;    // its force is added right after the springs'
       gravity = found;
-    } else if (auto *guest = dynamic_cast<Guest *>(fix)) {
-      guest->use(*width->touch);
+    } else if (auto *participant = dynamic_cast<PassParticipant *>(fix)) {
+      participant->set_pair_filter(*width->pair_filter);
       // Whoever comes after a late one is late himself: forces are added in the order of fixes.
-      (guest->places_suffice() && late.empty() ? early : late).push_back({fix, guest, (mask & FixConst::END_OF_STEP) != 0});
+      (participant->depends_on_positions_only() && late.empty() ? early : late)
+          .push_back({fix, participant, (mask & FixConst::END_OF_STEP) != 0});
     } else if (mask & ACTS)
       return false;
     else if (mask & FixConst::POST_NEIGHBOR)
@@ -149,7 +150,7 @@ bool VerletMdanim::find_players()
   return leapfrog && !(lists_matter && !neighbor->dist_check);    // without that check LAMMPS does not keep where particles stood
 }
 
-// Blocks for the springs as they are now.
+// SimdBlocks for the springs as they are now.
 bool VerletMdanim::cut()
 {
   if (comm->nprocs > 1) return cut_for_ranks();
@@ -195,13 +196,13 @@ bool VerletMdanim::cut_line(std::vector<Home> &home)
     if (i >= atom->nlocal) home.push_back(known[i].home);
   if (cut_for < 0 || laws != bond->laws() || blocks.laws_pile_up()) {
     blocks.start(*width);
-    for (Lineup::Piece &piece : line.pieces()) piece.is_cut = false;
+    for (TagOrder::Piece &piece : line.pieces()) piece.is_cut = false;
     laws = bond->laws();
     cut_for = 0;
   }
   if (line.changed() || !blocks.ready()) {
     std::vector<const Cut *> cuts;
-    for (Lineup::Piece &piece : line.pieces()) {
+    for (TagOrder::Piece &piece : line.pieces()) {
       if (!piece.is_cut) piece.cut = blocks.cut({&piece.rows, bond->laws().data()}, piece.object.data());
       piece.is_cut = true;
       cuts.push_back(&piece.cut);
@@ -284,7 +285,7 @@ int VerletMdanim::take_steps(int step, int most)
     if (comm->nprocs > 1 && !ghosts_are_met) meet_ghosts();
     ghosts_are_met = false;
     bool see_all = false;
-    for (const Player &p : late) see_all = p.guest->reads_all() || see_all;
+    for (const Player &p : late) see_all = p.participant->needs_all_atoms() || see_all;
     if (see_all) blocks.hold_back(wanted, true);
     one_pass(see_all);
     ++taken;
@@ -326,10 +327,10 @@ void VerletMdanim::tell_limits()
   limit = limit_but_for_drift = half;
   if (strangers_have_lists) return;
   double far = std::numeric_limits<double>::max(), far_but_for_drift = far;
-  for (const auto *guests : {&early, &late})
-    for (const Player &p : *guests) {
-      double &of_guest = p.guest->minds_drift() ? far : far_but_for_drift;
-      of_guest = std::min(of_guest, p.guest->looks_ahead());
+  for (const auto *participants : {&early, &late})
+    for (const Player &p : *participants) {
+      double &of_participant = p.participant->sees_absolute_position() ? far : far_but_for_drift;
+      of_participant = std::min(of_participant, p.participant->safe_displacement());
     }
   if (comm->nprocs > 1) {
     double least[] = {far, far_but_for_drift, 1.0, 1.0, 1.0};
@@ -443,11 +444,11 @@ bool VerletMdanim::look_again()
   return true;
 }
 
-// Other ranks see where this one's particles are, and this one theirs. Guests look for them in the arrays of LAMMPS.
+// Other ranks see where this one's particles are, and this one theirs. Participants look for them in the arrays of LAMMPS.
 void VerletMdanim::meet_ghosts()
 {
   timer->stamp(Timer::BOND);
-  if (guests_look) {
+  if (participants_look) {
     blocks.give_out_places(sent, atom->x, comm->ghost_velocity ? atom->v : nullptr);
     comm->forward_comm();
     blocks.take_in_ghosts(atom->x, atom->v);
@@ -473,11 +474,11 @@ void VerletMdanim::prepare_passes()
     if (blocks.damped()) blocks.take_in_dashpots(account->latest(), account->latest_seen());
   }
   std::vector<std::vector<int>> of_early(early.size());
-  for (std::size_t n = 0; n < early.size(); ++n) early[n].guest->concerned(of_early[n]);
+  for (std::size_t n = 0; n < early.size(); ++n) early[n].participant->append_required_atoms(of_early[n]);
   blocks.expect(of_early);
-  guests_look =
+  participants_look =
       !late.empty() || std::any_of(of_early.begin(), of_early.end(), [](const auto &particles) { return !particles.empty(); });
-  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &guests_look, 1, MPI_INT, MPI_MAX, world);
+  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &participants_look, 1, MPI_INT, MPI_MAX, world);
   blocks.fill(pass, atom->f);
   pass.gravity[0] = pass.gravity[1] = pass.gravity[2] = 0.0;
   if (gravity) {
@@ -491,14 +492,14 @@ void VerletMdanim::prepare_passes()
 void VerletMdanim::hold_back()
 {
   wanted.clear();
-  for (const Player &p : late) p.guest->concerned(wanted);
+  for (const Player &p : late) p.participant->append_required_atoms(wanted);
   blocks.hold_back(wanted, false);
   pass.friction = blocks.friction_acts() ? leapfrog->friction() : Friction::NONE;    // without any it is the same, and faster
 }
 
-void VerletMdanim::one_pass(bool guests_see_all)
+void VerletMdanim::one_pass(bool participants_see_all)
 {
-  early_guests_turn();
+  early_participants_turn();
   double all = 0.0;
   pass.bends = leapfrog->tells_of(update->ntimestep + 1);
   pass.looks = leapfrog->looks();
@@ -512,24 +513,24 @@ void VerletMdanim::one_pass(bool guests_see_all)
   if (gravity) gravity->took(pulling);
   bond->took(all - moving - pulling);
   if (!late.empty()) {
-    late_guests_turn();
-    if (guests_see_all) hold_back();    // they may have other concerns now
+    late_participants_turn();
+    if (participants_see_all) hold_back();    // they may have other concerns now
   }
   if (Loss *account = bond->account()) account->passed(pass.dashpots, update->dt);
 }
 
 // Forces that the pass is to add.
-void VerletMdanim::early_guests_turn()
+void VerletMdanim::early_participants_turn()
 {
-  blocks.clear_brought();
+  blocks.clear_external_force();
   for (std::size_t n = 0; n < early.size(); ++n) {
     blocks.tell_places(n, atom->x, places);
-    early[n].guest->forces(places, blocks.brought_by(n));
+    early[n].participant->add_forces(places, blocks.external_force_of(n));
   }
 }
 
 // Forces of the other fixes, and the motion of those that were held back for them.
-void VerletMdanim::late_guests_turn()
+void VerletMdanim::late_participants_turn()
 {
   const std::vector<int> &waiting = blocks.held_back();
   moved_alone += static_cast<long long>(waiting.size());

@@ -5,10 +5,10 @@
 #ifndef LMP_VERLET_MDANIM_H
 #define LMP_VERLET_MDANIM_H
 
-#include "engine/blocks.h"
 #include "engine/boxes.h"
-#include "engine/guest.h"
-#include "engine/lineup.h"
+#include "engine/pass_participant.h"
+#include "engine/simd_blocks.h"
+#include "engine/tag_order.h"
 #include "styles/ghosts.h"
 #include "styles/verlet.h"
 
@@ -49,26 +49,26 @@ class VerletMdanim : public Verlet {
   void leave_blocks();
   void give_out_account();
   void hold_back();
-  void one_pass(bool guests_see_all);
-  void early_guests_turn();
-  void late_guests_turn();
+  void one_pass(bool participants_see_all);
+  void early_participants_turn();
+  void late_participants_turn();
 
   void begin_step();
   void finish_step();
   bool rebuild_lists();
 
   const mdanim::Width *told = nullptr, *width = nullptr;    // in the input script; what blocks are cut for
-  mdanim::Blocks blocks;
+  mdanim::SimdBlocks blocks;
   mdanim::Pass pass = {};
   bigint cut_for = -1;        // version of the springs
   std::vector<int> object;    // and molecule of each particle
   bool worth_it = false;
-  mdanim::Lineup line;              // with other ranks: what is cut,
-  std::vector<mdanim::Law> laws;    // for these
-  mdanim::Ghosts ghosts;            // and whom they tell of it
-  int guests_look = 0;              // whether guests of any rank are concerned with particles
-  std::vector<int> sent;            // own particles that other ranks have as ghosts
-  bigint decided_for = -1;          // build of lists after which all ranks agreed on worth_it
+  mdanim::TagOrder line;                     // with other ranks: what is cut,
+  std::vector<mdanim::SpringCoeffs> laws;    // for these
+  mdanim::Ghosts ghosts;                     // and whom they tell of it
+  int participants_look = 0;                 // whether participants of any rank are concerned with particles
+  std::vector<int> sent;                     // own particles that other ranks have as ghosts
+  bigint decided_for = -1;                   // build of lists after which all ranks agreed on worth_it
   long long passed = 0, moved_alone = 0;
 
   // found before every run
@@ -77,10 +77,10 @@ class VerletMdanim : public Verlet {
   class FixMdanimGravity *gravity = nullptr;
   struct Player {
     class Fix *fix;
-    mdanim::Guest *guest;
+    mdanim::PassParticipant *participant;
     bool acts_at_end;
   };
-  std::vector<Player> early, late;    // guests whose forces are asked for before a pass, and those who come after it
+  std::vector<Player> early, late;    // participants whose forces are asked for before a pass, and those who come after it
 
   bool lists_matter = false;
   bool strangers_have_lists = false;
@@ -94,8 +94,8 @@ class VerletMdanim : public Verlet {
   int local_then = -1, ghosts_then = 0;    // particles at the end of the last run, negative after a setup
   double narrowest[3] = {};                // share of the box that a rank has along each axis, the least of all
   bigint made_for = -1;                    // build of lists that the blocks' motion was told after
-  mdanim::Places places;                   // of the particles of an early guest
-  std::vector<int> wanted;                 // particles that late guests are concerned with
+  mdanim::Positions places;                // of the particles of an early participant
+  std::vector<int> wanted;                 // particles that late participants are concerned with
 };
 
 }    // namespace LAMMPS_NS

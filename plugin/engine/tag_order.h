@@ -2,10 +2,10 @@
 // Particles of a rank and those of others that they have springs to, in tag order, each spring once: what is cut into blocks
 // where a rank does not have all particles in that order itself.
 
-#ifndef MDANIM_LINEUP_H
-#define MDANIM_LINEUP_H
+#ifndef MDANIM_TAG_ORDER_H
+#define MDANIM_TAG_ORDER_H
 
-#include "engine/blocks.h"
+#include "engine/simd_blocks.h"
 
 #include <functional>
 #include <unordered_map>
@@ -24,7 +24,7 @@ struct Bonded {
   std::function<void(int i, int tag)> lost;    // that is an error; i negative where nobody has a bond to it any more
 };
 
-class Lineup {
+class TagOrder {
  public:
   // Particles that stand side by side: those of one object, and all partners of its own ones. Objects whose own particles are the
   // same as before keep theirs, with the cut.
@@ -38,7 +38,7 @@ class Lineup {
   };
 
   void take(const Bonded &known);
-  void forget() { *this = Lineup(); }
+  void forget() { *this = TagOrder(); }
 
   std::vector<Piece> &pieces() { return all; }
   bool changed() const { return differs; }    // by the last take(): pieces, or their order

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Particles in blocks for the vector units, and their state in arrays of their own (pass.h).
 
-#ifndef MDANIM_BLOCKS_H
-#define MDANIM_BLOCKS_H
+#ifndef MDANIM_SIMD_BLOCKS_H
+#define MDANIM_SIMD_BLOCKS_H
 
-#include "engine/guest.h"
 #include "engine/pass.h"
-#include "engine/places.h"
+#include "engine/pass_participant.h"
+#include "engine/positions.h"
 #include "engine/spring_rows.h"
 #include "laws/vec3.h"
 
@@ -39,7 +39,7 @@ struct Mover {
   double mass, kick, dt, phi;    // see Motion
 };
 
-// Blocks of some particles that no spring leads out of; starts count from the first of them, ends from the first entry.
+// SimdBlocks of some particles that no spring leads out of; starts count from the first of them, ends from the first entry.
 struct Cut {
   std::vector<Block> block;
   std::vector<Entry> entry;
@@ -49,13 +49,13 @@ struct Cut {
   std::size_t bytes() const { return block.capacity() * sizeof(Block) + entry.capacity() * sizeof(Entry); }
 };
 
-class Blocks {
+class SimdBlocks {
  public:
   // Forget all cuts: from now on they are for this width.
   void start(const Width &width);
   // Cut particles into blocks so that the fewest vectors of forces are to be computed. A block is of one object.
   Cut cut(const HalfBonds &bonds, const int *object);
-  // Blocks of all cuts, one after the other. Returns whether that is worth it: the springs of neighbours in the arrays must
+  // SimdBlocks of all cuts, one after the other. Returns whether that is worth it: the springs of neighbours in the arrays must
   // mostly lead equally far, as they do in lattices that are numbered row by row.
   bool put_together(const std::vector<const Cut *> &cuts);
   bool laws_pile_up() const;    // so many are those of cuts that are gone that all cuts had better be made anew
@@ -71,9 +71,9 @@ class Blocks {
   void expect(const std::vector<std::vector<int>> &particles);
   // Of those of number n, in the same order: positions, those of ghosts from x; and where forces on them are added up, all of
   // which is to be cleared before every pass.
-  void tell_places(std::size_t n, const double *const *x, Places &place) const;
-  void clear_brought();
-  Sums brought_by(std::size_t n) { return {brought.data(), bringers[n].slot.data(), lanes}; }
+  void tell_places(std::size_t n, const double *const *x, Positions &place) const;
+  void clear_external_force();
+  ForceSums external_force_of(std::size_t n) { return {external_force.data(), force_providers[n].slot.data(), lanes}; }
 
   // Every block with one of these particles is held back, no other; ghosts among them are left out.
   void hold_back(const std::vector<int> &particles, bool everything);
@@ -124,13 +124,13 @@ class Blocks {
   struct Ghost {
     int particle, to;    // `particle` in LAMMPS's order
   };
-  struct Bringer {
+  struct ForceProvider {
     std::vector<int> particle;    // in our order, any one for a ghost
     std::vector<Ghost> ghosts;
-    std::vector<long> slot;    // of each particle's force in `brought`; of ghosts all the same one, in a row of no block
+    std::vector<long> slot;    // of each particle's force in `external_force`; of ghosts all the same one, in a row of no block
   };
-  std::vector<Bringer> bringers;
-  Doubles brought;                     // see Pass
+  std::vector<ForceProvider> force_providers;
+  Doubles external_force;              // see Pass
   std::vector<int> index, place;       // of a particle in LAMMPS's arrays, and back; `index` empty where the orders are the same
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
   std::vector<double> total;           // see Pass, in our order
@@ -142,7 +142,7 @@ class Blocks {
   double *part[3] = {}, *last[3] = {}, *seen[3] = {};    // where damped
 };
 
-template <class Tell> void Blocks::set_motion(Friction friction, Tell mover)
+template <class Tell> void SimdBlocks::set_motion(Friction friction, Tell mover)
 {
   std::vector<double> row(MOTIONS * lanes);
   std::vector<bool> slow(particles), moves(particles);    // by the first particle of a block
@@ -154,8 +154,8 @@ template <class Tell> void Blocks::set_motion(Friction friction, Tell mover)
       if (of_lane.phi != 0.0) slow[block.start] = true;
       if (of_lane.dt != 0.0) moves[block.start] = true;
       set_row(of_lane, friction, lane, row.data());
-      row[OTHERS * lanes + lane] = lane < block.lanes ? 0.0 : 1.0;
-      row[COUNTS * lanes + lane] = i < 0 || is_ghost(i) ? 0.0 : 1.0;
+      row[FOREIGN_LANE * lanes + lane] = lane < block.lanes ? 0.0 : 1.0;
+      row[OWNED_LANE * lanes + lane] = i < 0 || is_ghost(i) ? 0.0 : 1.0;
     }
     block.motion = motions.find_or_add(row.data());
   }

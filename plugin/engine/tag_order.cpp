@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Particles and springs brought into tag order.
+// Particles and springs put into tag order.
 
-#include "engine/lineup.h"
+#include "engine/tag_order.h"
 
 #include <algorithm>
 
 namespace mdanim {
 
-void Lineup::take(const Bonded &known)
+void TagOrder::take(const Bonded &known)
 {
   const int *const tag = known.tag;
   const auto [lowest, highest] = std::minmax_element(tag, tag + known.own);
@@ -39,7 +39,7 @@ void Lineup::take(const Bonded &known)
     }
 }
 
-void Lineup::tell_who_lost(const Bonded &known, int partner)
+void TagOrder::tell_who_lost(const Bonded &known, int partner)
 {
   for (int i = 0; i < known.own; ++i)
     if (std::find(known.partner[i], known.partner[i] + known.bonds[i], partner) != known.partner[i] + known.bonds[i])
@@ -48,7 +48,7 @@ void Lineup::tell_who_lost(const Bonded &known, int partner)
 }
 
 // Whether there is a piece for each object; none of an object's particles is among another's.
-bool Lineup::take_by_objects(const Bonded &known, const std::vector<Run> &runs)
+bool TagOrder::take_by_objects(const Bonded &known, const std::vector<Run> &runs)
 {
   std::unordered_map<int, Piece *> before;    // by object
   for (Piece &piece : all)
@@ -81,7 +81,7 @@ bool Lineup::take_by_objects(const Bonded &known, const std::vector<Run> &runs)
 
 // A spring belongs to its lower end, which may be another rank's. From the highest own particle down all partners come
 // descending.
-Lineup::Piece Lineup::made(const Bonded &known, const Run &run) const
+TagOrder::Piece TagOrder::made(const Bonded &known, const Run &run) const
 {
   int lowest = known.tag[ordered[run.begin]], highest = known.tag[ordered[run.end - 1]];
   const auto each_bond = [&](auto visit) {    // visit(n, i, tag of the partner, type)
@@ -131,7 +131,7 @@ Lineup::Piece Lineup::made(const Bonded &known, const Run &run) const
   return piece;
 }
 
-std::size_t Lineup::bytes() const
+std::size_t TagOrder::bytes() const
 {
   std::size_t sum = (index.capacity() + ordered.capacity()) * sizeof(int);
   for (const Piece &piece : all)

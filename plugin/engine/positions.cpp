@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Room for doubles.
 
-#include "engine/places.h"
+#include "engine/positions.h"
 
 #include <algorithm>
 #include <cstdint>

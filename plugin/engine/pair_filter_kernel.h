@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Who is near whom, four others at a time (touch.h); compiled once for each kind of processor (touch_*.cpp).
+// Who is near whom, four others at a time (pair_filter.h); compiled once for each kind of processor (pair_filter_*.cpp).
 
 #define LANES 4
 
-#include "engine/touch.h"
+#include "engine/pair_filter.h"
 #include "engine/vectors.h"
 
 namespace mdanim {
@@ -46,7 +46,7 @@ MDANIM_INLINE Vector square(Vector x, Vector y, Vector z, const double *const *p
 int in_reach(const Candidates &all, int *found)
 {
   const double *const place[] = {all.place[0], all.place[1], all.place[2]};
-  Lanes *const lanes = all.lanes;
+  StripMask *const lanes = all.lanes;
   const int strips = all.strips;
   int some = 0;
   for (int n = 0; n < strips; ++n) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Who is near whom: what the vector code (touch_kernel.h) is given. Plain data alone, for the reason told in pass.h.
+// Who is near whom: what the vector code (pair_filter_kernel.h) is given. Plain data alone, for the reason told in pass.h.
 
-#ifndef MDANIM_TOUCH_H
-#define MDANIM_TOUCH_H
+#ifndef MDANIM_PAIR_FILTER_H
+#define MDANIM_PAIR_FILTER_H
 
 namespace mdanim {
 
@@ -13,8 +13,8 @@ struct Strip {
   int one, first;
 };
 
-// Lanes of a strip, one bit for each.
-struct Lanes {
+// Which others of a strip are near, one bit for each.
+struct StripMask {
   int strip, bits;
 };
 
@@ -23,18 +23,18 @@ struct Candidates {
   const Strip *strip;
   int strips;
   const double *reach2;    // square of the reach of every pair, 0 where there is none
-  Lanes *lanes;            // room for a strip more than there are
+  StripMask *lanes;        // room for a strip more than there are
 };
 
 // For one kind of processor; the same answers from each.
-struct Touch {
+struct PairFilter {
   // Numbers of the pairs in reach, ascending; returns how many. There must be room for all pairs and STRIP more.
   int (*in_reach)(const Candidates &, int *pair);
   // Those of places `from` to `to` - 1 that are less than sqrt(range2) away from `at`, ascending; the same.
   int (*within)(const double *const *place, int from, int to, const double *at, double range2, int *found);
 };
 
-extern const Touch touch_common, touch_avx2;
+extern const PairFilter pair_filter_common, pair_filter_avx2;
 
 }    // namespace mdanim
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Doubles for the vector units, and places of particles made of them.
 
-#ifndef MDANIM_PLACES_H
-#define MDANIM_PLACES_H
+#ifndef MDANIM_POSITIONS_H
+#define MDANIM_POSITIONS_H
 
 #include "laws/vec3.h"
 
@@ -33,7 +33,7 @@ class Doubles {
 };
 
 // All x, all y, all z.
-struct Places {
+struct Positions {
   Doubles along[3];
 
   void make_room(std::size_t n)    // what is in it is lost

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Cutting particles into blocks, and moving them in and out.
 
-#include "engine/blocks.h"
+#include "engine/simd_blocks.h"
 
 #include "engine/hash.h"
 #include "laws/leapfrog.h"
@@ -51,7 +51,7 @@ unsigned Catalogue::find_or_add(const double *row)
 // --- cutting ---
 
 // How many particles the best cut takes into the block that ends before particle i; index 1 … N.
-std::vector<int> Blocks::lengths(const HalfBonds &bonds, const int *object) const
+std::vector<int> SimdBlocks::lengths(const HalfBonds &bonds, const int *object) const
 {
   const SpringRows &rows = *bonds.rows;
   const int particles = rows.size();
@@ -82,7 +82,7 @@ std::vector<int> Blocks::lengths(const HalfBonds &bonds, const int *object) cons
   return best;
 }
 
-void Blocks::start(const Width &width)
+void SimdBlocks::start(const Width &width)
 {
   lanes = width.lanes;
   laws.start(2 * lanes);
@@ -91,7 +91,7 @@ void Blocks::start(const Width &width)
   forget();
 }
 
-Cut Blocks::cut(const HalfBonds &bonds, const int *object)
+Cut SimdBlocks::cut(const HalfBonds &bonds, const int *object)
 {
   const SpringRows &rows = *bonds.rows;
   Cut cut;
@@ -126,7 +126,7 @@ Cut Blocks::cut(const HalfBonds &bonds, const int *object)
       for (int lane = 0; lane < block.lanes; ++lane) {
         auto &[link, last] = left[lane];
         if (link == last || link->offset != offset) continue;
-        const Law &own = bonds.law[link++->type];    // a second spring between the same two is another entry
+        const SpringCoeffs &own = bonds.law[link++->type];    // a second spring between the same two is another entry
         law[lane] = own.push;
         law[lanes + lane] = own.pull;
         if (block.damped) law[2 * lanes + lane] = own.c;
@@ -139,7 +139,7 @@ Cut Blocks::cut(const HalfBonds &bonds, const int *object)
   return cut;
 }
 
-bool Blocks::put_together(const std::vector<const Cut *> &cuts)
+bool SimdBlocks::put_together(const std::vector<const Cut *> &cuts)
 {
   all.clear();
   entries.clear();
@@ -176,13 +176,13 @@ bool Blocks::put_together(const std::vector<const Cut *> &cuts)
   return true;
 }
 
-bool Blocks::laws_pile_up() const
+bool SimdBlocks::laws_pile_up() const
 {
   constexpr unsigned MANY = 4;    // times as many as usual
   return laws.size() + damped_laws.size() > MANY * (usual_laws + 64);
 }
 
-void Blocks::lie_at(const std::vector<int> &places, int own)
+void SimdBlocks::lie_at(const std::vector<int> &places, int own)
 {
   index = places;
   owned = own;
@@ -199,7 +199,7 @@ void Blocks::lie_at(const std::vector<int> &places, int own)
 
 // --- motion ---
 
-void Blocks::set_row(const Mover &mover, Friction friction, int lane, double *row) const
+void SimdBlocks::set_row(const Mover &mover, Friction friction, int lane, double *row) const
 {
   const auto at = [&](Motion what) -> double & { return row[what * lanes + lane]; };
   at(MASS) = mover.pulled;
@@ -219,8 +219,8 @@ void Blocks::set_row(const Mover &mover, Friction friction, int lane, double *ro
   }
 }
 
-// Blocks in which nothing moves or is pulled come behind all others, where passes do not get to.
-void Blocks::set_apart(const std::vector<bool> &moves)
+// SimdBlocks in which nothing moves or is pulled come behind all others, where passes do not get to.
+void SimdBlocks::set_apart(const std::vector<bool> &moves)
 {
   const auto order = [](const Block &a, const Block &b) { return a.start < b.start; };
   if (!std::is_sorted(all.begin(), all.end(), order)) std::sort(all.begin(), all.end(), order);
@@ -230,49 +230,49 @@ void Blocks::set_apart(const std::vector<bool> &moves)
   for (std::size_t n = 0; n < all.size(); ++n) std::fill_n(&home[all[n].start], all[n].lanes, static_cast<int>(n));
 }
 
-// Blocks with a particle of anybody have a row for everybody.
-void Blocks::expect(const std::vector<std::vector<int>> &particles_of)
+// SimdBlocks with a particle of anybody have a row for everybody.
+void SimdBlocks::expect(const std::vector<std::vector<int>> &particles_of)
 {
   const int many = static_cast<int>(particles_of.size());
-  for (Block &block : all) block.brought = -1;
-  bringers.assign(many, {});
+  for (Block &block : all) block.external_force = -1;
+  force_providers.assign(many, {});
   int rows = 1;    // the first is for forces on ghosts
   for (int n = 0; n < many; ++n)
     for (const int i : particles_of[n]) {
-      Bringer &bringer = bringers[n];
-      const int to = static_cast<int>(bringer.slot.size());
+      ForceProvider &provider = force_providers[n];
+      const int to = static_cast<int>(provider.slot.size());
       if (is_ghost(i)) {
-        bringer.ghosts.push_back({i, to});
-        bringer.particle.push_back(0);
-        bringer.slot.push_back(0);
+        provider.ghosts.push_back({i, to});
+        provider.particle.push_back(0);
+        provider.slot.push_back(0);
         continue;
       }
-      bringer.particle.push_back(ours(i));
+      provider.particle.push_back(ours(i));
       Block &block = all[home[ours(i)]];
-      if (block.brought < 0) {
-        block.brought = rows;
+      if (block.external_force < 0) {
+        block.external_force = rows;
         rows += many;
       }
-      const long row = block.brought + n;
-      bringer.slot.push_back(row * 3 * lanes + ours(i) - block.start);
+      const long row = block.external_force + n;
+      provider.slot.push_back(row * 3 * lanes + ours(i) - block.start);
     }
-  brought.assign(static_cast<std::size_t>(rows) * 3 * lanes);
+  external_force.assign(static_cast<std::size_t>(rows) * 3 * lanes);
 }
 
-void Blocks::tell_places(std::size_t n, const double *const *of_ghosts, Places &to) const
+void SimdBlocks::tell_places(std::size_t n, const double *const *of_ghosts, Positions &to) const
 {
-  const std::vector<int> &particle = bringers[n].particle;
+  const std::vector<int> &particle = force_providers[n].particle;
   to.make_room(particle.size());
   for (int d = 0; d < 3; ++d) {
     double *next = to.along[d].data();
     for (const int i : particle) *next++ = x[d][i];
   }
-  for (const auto &[i, place] : bringers[n].ghosts) to.put(place, of_ghosts[i]);
+  for (const auto &[i, place] : force_providers[n].ghosts) to.put(place, of_ghosts[i]);
 }
 
-void Blocks::clear_brought() { std::fill_n(brought.data(), brought.size(), 0.0); }
+void SimdBlocks::clear_external_force() { std::fill_n(external_force.data(), external_force.size(), 0.0); }
 
-void Blocks::hold_back(const std::vector<int> &wanted, bool everything)
+void SimdBlocks::hold_back(const std::vector<int> &wanted, bool everything)
 {
   for (Block &block : all) block.held_back = everything;
   for (const int i : wanted)
@@ -287,14 +287,14 @@ void Blocks::hold_back(const std::vector<int> &wanted, bool everything)
     for (const int i : outside) waiting.push_back(index[i]);
 }
 
-bool Blocks::friction_acts() const
+bool SimdBlocks::friction_acts() const
 {
   for (std::size_t b = 0; b < all.size(); ++b)
     if (slowed[b] && !all[b].held_back) return true;
   return false;
 }
 
-void Blocks::take_in(const double *const *from_x, const double *const *from_v)
+void SimdBlocks::take_in(const double *const *from_x, const double *const *from_v)
 {
   for (int d = 0; d < 3; ++d) {
     double *to_x = x[d], *to_v = v[d];
@@ -308,7 +308,7 @@ void Blocks::take_in(const double *const *from_x, const double *const *from_v)
   }
 }
 
-void Blocks::give_out(double *const *to_x, double *const *to_v) const
+void SimdBlocks::give_out(double *const *to_x, double *const *to_v) const
 {
   const auto give = [this](const double *const *from, double *const *to) {
     for (int i = 0; i < particles; ++i)
@@ -319,7 +319,7 @@ void Blocks::give_out(double *const *to_x, double *const *to_v) const
   if (to_v) give(v, to_v);
 }
 
-void Blocks::take_in_held_back(const double *const *from_x, const double *const *from_v)
+void SimdBlocks::take_in_held_back(const double *const *from_x, const double *const *from_v)
 {
   for (const int i : outside)
     for (int d = 0; d < 3; ++d) {
@@ -328,7 +328,7 @@ void Blocks::take_in_held_back(const double *const *from_x, const double *const 
     }
 }
 
-void Blocks::give_out_held_back(double *const *to_x, double *const *to_v) const
+void SimdBlocks::give_out_held_back(double *const *to_x, double *const *to_v) const
 {
   for (const int i : outside)
     for (int d = 0; d < 3; ++d) {
@@ -337,7 +337,7 @@ void Blocks::give_out_held_back(double *const *to_x, double *const *to_v) const
     }
 }
 
-void Blocks::take_in_dashpots(const std::vector<Vec3> &from_force, const std::vector<Vec3> &from_seen)
+void SimdBlocks::take_in_dashpots(const std::vector<Vec3> &from_force, const std::vector<Vec3> &from_seen)
 {
   const auto put = [](const Vec3 &from, double *const *to, int i) { to[0][i] = from.x, to[1][i] = from.y, to[2][i] = from.z; };
   for (int i = 0; i < particles; ++i) {
@@ -348,7 +348,7 @@ void Blocks::take_in_dashpots(const std::vector<Vec3> &from_force, const std::ve
   }
 }
 
-void Blocks::give_out_dashpots(std::vector<Vec3> &to_force, std::vector<Vec3> &to_seen) const
+void SimdBlocks::give_out_dashpots(std::vector<Vec3> &to_force, std::vector<Vec3> &to_seen) const
 {
   for (int i = 0; i < particles; ++i) {
     const int to = at(i);
@@ -358,7 +358,7 @@ void Blocks::give_out_dashpots(std::vector<Vec3> &to_force, std::vector<Vec3> &t
   }
 }
 
-void Blocks::count_held_back(const double *const *from_v, DashpotSums &sums)
+void SimdBlocks::count_held_back(const double *const *from_v, DashpotSums &sums)
 {
   for (const int i : outside) {
     if (!all[home[i]].damped) continue;
@@ -380,7 +380,7 @@ void Blocks::count_held_back(const double *const *from_v, DashpotSums &sums)
   }
 }
 
-void Blocks::give_out_places(const std::vector<int> &these, double *const *to_x, double *const *to_v) const
+void SimdBlocks::give_out_places(const std::vector<int> &these, double *const *to_x, double *const *to_v) const
 {
   for (const int to : these)
     for (int d = 0; d < 3; ++d) {
@@ -389,7 +389,7 @@ void Blocks::give_out_places(const std::vector<int> &these, double *const *to_x,
     }
 }
 
-void Blocks::take_in_ghosts(const double *const *from_x, const double *const *from_v)
+void SimdBlocks::take_in_ghosts(const double *const *from_x, const double *const *from_v)
 {
   for (const int i : ghosts)
     for (int d = 0; d < 3; ++d) {
@@ -398,7 +398,7 @@ void Blocks::take_in_ghosts(const double *const *from_x, const double *const *fr
     }
 }
 
-void Blocks::pack(const std::vector<int> &these, bool velocities, double *to) const
+void SimdBlocks::pack(const std::vector<int> &these, bool velocities, double *to) const
 {
   for (const int i : these) {
     for (int d = 0; d < 3; ++d) *to++ = x[d][i];
@@ -406,7 +406,7 @@ void Blocks::pack(const std::vector<int> &these, bool velocities, double *to) co
   }
 }
 
-void Blocks::unpack(const std::vector<int> &these, bool velocities, const double *from)
+void SimdBlocks::unpack(const std::vector<int> &these, bool velocities, const double *from)
 {
   for (const int i : these) {
     for (int d = 0; d < 3; ++d) x[d][i] = *from++;
@@ -415,13 +415,13 @@ void Blocks::unpack(const std::vector<int> &these, bool velocities, const double
   }
 }
 
-void Blocks::give_out_forces(double *const *f) const
+void SimdBlocks::give_out_forces(double *const *f) const
 {
   if (index.empty()) return;    // the pass has written them there itself
   for (const int i : outside) std::copy_n(&total[3 * static_cast<std::size_t>(i)], 3, f[index[i]]);
 }
 
-void Blocks::fill(Pass &pass, double *const *forces)
+void SimdBlocks::fill(Pass &pass, double *const *forces)
 {
   pass.block = all.data();
   pass.blocks = active;
@@ -429,8 +429,8 @@ void Blocks::fill(Pass &pass, double *const *forces)
   pass.law = laws.data();
   pass.damped_law = damped() ? damped_laws.data() : nullptr;
   pass.motion = motions.data();
-  pass.brought = brought.data();
-  pass.bringers = static_cast<int>(bringers.size());
+  pass.external_force = external_force.data();
+  pass.force_providers = static_cast<int>(force_providers.size());
   for (int d = 0; d < 3; ++d) {
     pass.x[d] = x[d];
     pass.v[d] = v[d];
@@ -442,12 +442,12 @@ void Blocks::fill(Pass &pass, double *const *forces)
   pass.total = index.empty() ? forces[0] : total.data();
 }
 
-std::size_t Blocks::bytes() const
+std::size_t SimdBlocks::bytes() const
 {
-  std::size_t of_bringers = brought.bytes();
-  for (const Bringer &b : bringers)
-    of_bringers += b.particle.capacity() * sizeof(int) + b.ghosts.capacity() * sizeof(Ghost) + b.slot.capacity() * sizeof(long);
-  return of_bringers + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + damped_laws.bytes() +
+  std::size_t of_providers = external_force.bytes();
+  for (const ForceProvider &b : force_providers)
+    of_providers += b.particle.capacity() * sizeof(int) + b.ghosts.capacity() * sizeof(Ghost) + b.slot.capacity() * sizeof(long);
+  return of_providers + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + damped_laws.bytes() +
          motions.bytes() + memory.bytes() +
          (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
              sizeof(int) +
@@ -466,10 +466,10 @@ static bool has_avx512()
 
 static constexpr Width WIDTHS[] = {
 #if defined(__x86_64__)
-    {"avx512", 8, pass_avx512, has_avx512, &touch_avx2},
-    {"avx2", 4, pass_avx2, has_avx2, &touch_avx2},
+    {"avx512", 8, pass_avx512, has_avx512, &pair_filter_avx2},
+    {"avx2", 4, pass_avx2, has_avx2, &pair_filter_avx2},
 #endif
-    {"common", 4, pass_common, always, &touch_common},
+    {"common", 4, pass_common, always, &pair_filter_common},
 };
 
 // The divider gives as many numbers a cycle to wide vectors as to narrow ones, and of wide ones more lanes are idle. Dashpots are
