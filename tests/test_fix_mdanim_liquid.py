@@ -2,6 +2,9 @@
 """fix mdanim/liquid: lift, drag, displacement and bookkeeping against closed forms, sleep, state, what it refuses."""
 
 import ctypes
+import os
+import subprocess
+import sys
 from itertools import product
 
 import numpy as np
@@ -31,19 +34,26 @@ def handle(lmp):
     return ctypes.c_void_p(ctypes.cast(lmp.lmp, ctypes.c_void_p).value)
 
 
+def call(name, lmp, *arguments) -> None:
+    """Call one of the plugin's functions on the liquid; RuntimeError with its message."""
+    error = ctypes.create_string_buffer(200)
+    if getattr(library(), f"mdanim_{name}")(handle(lmp), b"water", *arguments, error, 200):
+        raise RuntimeError(error.value.decode())
+
+
 def cells(lmp, shape=(16, 20, 20)) -> np.ndarray:
     """Content of every cell, 255 where solid, shape (nz, ny, nx)."""
     out = np.empty(shape, np.uint8)
-    assert library().mdanim_liquid_cells(handle(lmp), b"water", out.ctypes.data_as(ctypes.c_void_p)) == 0
+    call("liquid_cells", lmp, out.ctypes.data_as(ctypes.c_void_p))
     return out
 
 
 def state(lmp) -> np.ndarray:
     """The fix's state as bytes."""
-    lib = library()
-    lib.mdanim_liquid_state_size.restype = ctypes.c_longlong
-    out = np.empty(lib.mdanim_liquid_state_size(handle(lmp), b"water"), np.uint8)
-    assert lib.mdanim_liquid_get_state(handle(lmp), b"water", out.ctypes.data_as(ctypes.c_void_p)) == 0
+    size = ctypes.c_longlong()
+    call("liquid_state_size", lmp, ctypes.byref(size))
+    out = np.empty(size.value, np.uint8)
+    call("liquid_get_state", lmp, out.ctypes.data_as(ctypes.c_void_p))
     return out
 
 
@@ -208,7 +218,7 @@ def test_still_walls_part_the_surface(tmp_path):
     )  # fmt: skip
     smooth, raw = np.empty((20, 20)), np.empty((20, 20))
     pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in (smooth, raw)]
-    assert library().mdanim_liquid_heights(handle(lmp), b"water", *pointers) == 0
+    call("liquid_heights", lmp, *pointers)
     assert np.array_equal(smooth[:, :9], np.full((20, 9), 8.0))
     assert np.array_equal(smooth[:, 11:], np.zeros((20, 9)))
     assert np.isnan(raw[:, 9:11]).all() and not np.isnan(raw[:, :9]).any()
@@ -436,6 +446,45 @@ def test_a_damaged_state_is_refused(tmp_path):
     lmp.close()
 
 
+OUT_OF_MEMORY = """
+import ctypes, resource, sys
+import numpy as np, plugin_lab as lab, state_lab
+from pathlib import Path
+from test_fix_mdanim_liquid import BASIN, call, one
+
+pool = "fix water all mdanim/liquid basin 1.0 grid 2000 2000 4 level 10 gravity 0.01"
+lmp = lab.load(one(5.0), Path(sys.argv[1]), [*BASIN, pool, "fix move all mdanim/leapfrog", "run 0"])
+smooth, raw = np.empty((2, 2000, 2000))
+size = ctypes.c_longlong()
+pages = int(Path("/proc/self/statm").read_text().split()[0])
+now = pages * resource.getpagesize() + 2**20
+resource.setrlimit(resource.RLIMIT_AS, (now, now))
+for ask in (
+    lambda: call("liquid_heights", lmp, *(a.ctypes.data_as(ctypes.c_void_p) for a in (smooth, raw))),
+    lambda: call("liquid_state_size", lmp, ctypes.byref(size)),
+    lambda: state_lab.pack(lmp, "water"),
+):
+    try:
+        ask()
+        print("done")
+    except RuntimeError as error:
+        print(error)
+"""
+
+
+def test_out_of_memory_is_told(tmp_path):
+    """In a process that may take no more memory each function returns with a message, and the process goes on."""
+    paths = {"PYTHONPATH": os.pathsep.join(sys.path), "LAMMPS_PLUGIN_PATH": folder()}
+    done = subprocess.run(
+        [sys.executable, "-c", OUT_OF_MEMORY, str(tmp_path)],
+        env={**os.environ, **paths},
+        capture_output=True,
+        text=True,
+        timeout=100,
+    )
+    assert (done.returncode, done.stdout.split("\n")) == (0, ["out of memory"] * 3 + [""]), done.stderr
+
+
 def test_a_still_body_that_was_moved_is_marked_anew(tmp_path):
     """Between two runs somebody shifts a wall: its cells follow at the setup, and no liquid is lost."""
     wall = lab.block((2, 4, 14), (-5.0, -2.0, 0.0))
@@ -469,13 +518,16 @@ def test_a_lid_from_wall_to_wall_still_floats(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "command, message",
+    ("command", "message"),
     [
         ("fix w all mdanim/liquid nowhere 1 grid 4 4 4 level 2 gravity 1", "there is no region nowhere"),
         ("fix w all mdanim/liquid ball 1 grid 4 4 4 level 2 gravity 1", "style block"),
         ("fix w all mdanim/liquid basin -1 grid 4 4 4 level 2 gravity 1", "density must be > 0, got -1"),
         ("fix w all mdanim/liquid basin 1 grid 4 0 4 level 2 gravity 1", "grid must be >= 1 along every axis, got 0"),
         ("fix w all mdanim/liquid basin 1 grid 4000 4000 4000 level 2 gravity 1", "too large"),
+        # Few enough cells, but too many bytes of state, or too many places with the rim of the grid.
+        ("fix w all mdanim/liquid basin 1 grid 20000 20000 1 level 2 gravity 1", "too large: 1.2e.09 cells .* 3.6e.09 bytes"),
+        ("fix w all mdanim/liquid basin 1 grid 1 1 1000000000 level 2 gravity 1", "too large: 1.2e.10 cells"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 gravity 1", "either volume V or level Z"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 volume 3 gravity 1", "not both"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2", "gravity G is missing"),
@@ -499,7 +551,7 @@ def test_refuses_with_a_cure(tmp_path, command, message):
 
 
 @pytest.mark.parametrize(
-    "keywords, message",
+    ("keywords", "message"),
     [
         ("buoyancy 1 drag 0.1", "drag needs lambda"),
         ("buoyancy 1 lambda d_lambda", "there is no drag"),

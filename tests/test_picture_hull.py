@@ -14,7 +14,7 @@ from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.scene import Camera, Render
 from picture_samples import box, column_centres, flat, pool_scene, raw_of, wet_frames, write
-from test_fix_mdanim_liquid import handle, library
+from test_fix_mdanim_liquid import call
 from test_picture_liquid import SIZE, dry, spot
 
 # --- what the fix tells -----------------------------------------------------------------------------------
@@ -24,7 +24,7 @@ def heights(lmp, shape):
     """Smooth and raw heights of the columns, each of shape (ny, nx)."""
     smooth, raw = np.empty(shape), np.empty(shape)
     pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in (smooth, raw)]
-    assert library().mdanim_liquid_heights(handle(lmp), b"water", *pointers) == 0
+    call("liquid_heights", lmp, *pointers)
     return smooth, raw
 
 

@@ -20,6 +20,7 @@
 #include "utils.h"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -72,14 +73,20 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   if (strcmp(arg[5], "grid") != 0)
     error->all(FLERR, 5, "fix mdanim/liquid: expected grid NX NY NZ after the density, got {}", arg[5]);
   int n[3];
-  double bytes = 1.0;
   for (int d = 0; d < 3; ++d) {
     n[d] = utils::inumeric(FLERR, arg[6 + d], false, lmp);
     if (n[d] < 1) error->all(FLERR, 6 + d, "fix mdanim/liquid: grid must be >= 1 along every axis, got {}", arg[6 + d]);
-    bytes *= n[d];
   }
-  if (bytes > 1.5e9)    // the state, of a byte a cell and 8 a column, must fit into a restart file's int
-    error->all(FLERR, 6, "fix mdanim/liquid: a grid of {:.3g} cells is too large; use fewer, larger cells", bytes);
+  // The automaton numbers cells and its rim around them by 32 bits; the state, of a byte a cell and 8 a column, goes into a
+  // restart file, whose parts LAMMPS counts by an int.
+  const double cells = 1.0 * n[0] * n[1] * n[2], columns_bytes = 8.0 * n[0] * n[1];
+  const double with_rim = (n[0] + 3.0) * (n[1] + 2.0) * (n[2] + 2.0), state_bytes = cells + columns_bytes + 1024.0;
+  if (std::max(with_rim, state_bytes) > INT_MAX)
+    error->all(
+        FLERR, 6,
+        "fix mdanim/liquid: a grid of {} x {} x {} cells is too large: {:.3g} cells with the rim around them and {:.3g} bytes "
+        "of state, {} of each is the limit; use fewer, larger cells",
+        n[0], n[1], n[2], with_rim, state_bytes, INT_MAX);
 
   bool has_volume = false;
   Vertical vertical = Vertical::LOWER;
@@ -143,7 +150,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
     moving_count = std::make_unique<Occupancy>(n[0], n[1], n[2]);
     solid.assign(still_count->count.size(), 0);
   } catch (const std::bad_alloc &) {
-    error->one(FLERR, "fix mdanim/liquid: no memory for a grid of {:.3g} cells; use fewer, larger cells", bytes);
+    error->one(FLERR, "fix mdanim/liquid: no memory for a grid of {:.3g} cells; use fewer, larger cells", cells);
   }
   height.assign(columns(), 0.0);
   eta.assign(columns(), 0.0);
@@ -905,7 +912,7 @@ struct StateHead {
 };
 }    // namespace
 
-std::vector<std::uint8_t> FixMdanimLiquid::state()
+std::vector<std::uint8_t> FixMdanimLiquid::state() const
 {
   const Cells &cells = automaton->cells;
   StateHead head{STATE_VERSION, cells.nx, cells.ny, cells.nz, units, swept, waited, calm, travel, crossed, 0.0, 0.0};
@@ -977,19 +984,18 @@ std::string FixMdanimLiquid::set_state(const std::uint8_t *bytes, std::size_t si
   return "";
 }
 
-void FixMdanimLiquid::write_restart(FILE *fp)
+StateRecords FixMdanimLiquid::pack() const { return {{StateKey{}, state()}}; }
+
+void FixMdanimLiquid::unpack(const StateRecords &records)
 {
-  const std::vector<std::uint8_t> bytes = state();
-  if (comm->me != 0) return;
-  const int size = static_cast<int>(bytes.size());
-  fwrite(&size, sizeof size, 1, fp);
-  fwrite(bytes.data(), 1, bytes.size(), fp);
+  if (records.size() != 1 || records.begin()->first.a != 0)
+    throw std::runtime_error(fmt::format("the liquid's state is one record (0, 0), there are {} records", records.size()));
+  const Bytes &record = records.begin()->second;
+  const std::string why = set_state(record.data(), record.size());
+  if (!why.empty()) throw std::runtime_error(why);
 }
 
-void FixMdanimLiquid::restart(char *buffer)
-{
-  // LAMMPS hands over no size; the grid says it, and a state of another grid is found out by its head.
-  const auto *bytes = reinterpret_cast<const std::uint8_t *>(buffer);
-  const std::string why = set_state(bytes, sizeof(StateHead) + height.size() * sizeof(double) + solid.size());
-  if (!why.empty()) error->all(FLERR, "fix {} mdanim/liquid: {}", id, why);
-}
+void FixMdanimLiquid::write_restart(FILE *file)
+{ mdanim::write_restart(*this, lmp, fmt::format("fix {} mdanim/liquid", id), file); }
+
+void FixMdanimLiquid::restart(char *buffer) { mdanim::read_restart(*this, lmp, fmt::format("fix {} mdanim/liquid", id), buffer); }

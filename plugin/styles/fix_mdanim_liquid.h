@@ -12,6 +12,7 @@
 #include "liquid/level.h"
 #include "liquid/occupancy.h"
 #include "styles/particle_value.h"
+#include "styles/stateful.h"
 
 #include <cstdint>
 #include <memory>
@@ -20,7 +21,7 @@
 
 namespace LAMMPS_NS {
 
-class FixMdanimLiquid : public Fix, public mdanim::PassParticipant {
+class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdanim::Stateful {
  public:
   FixMdanimLiquid(class LAMMPS *, int, char **);
 
@@ -41,13 +42,16 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant {
   double safe_displacement() const override;
   void write_restart(FILE *) override;
   void restart(char *) override;
+  // One record, of the whole: the bytes of state().
+  mdanim::StateRecords pack() const override;
+  void unpack(const mdanim::StateRecords &records) override;
 
-  // For objects.cpp. Heights are z of every column, x fastest: the surface that solids feel, and the topmost
+  // For liquid_c.cpp. Heights are z of every column, x fastest: the surface that solids feel, and the topmost
   // liquid (NaN where a column tells none, minus infinity where a hull keeps it dry).
   int columns() const { return automaton->cells.nx * automaton->cells.ny; }
   void surface(double *smooth, double *raw) const;
   // Everything that later steps depend on, except positions and velocities; all ranks call it together.
-  std::vector<std::uint8_t> state();
+  std::vector<std::uint8_t> state() const;
   // Empty when the state was taken up, else why it cannot be.
   std::string set_state(const std::uint8_t *bytes, std::size_t size);
   // Content of each cell, 255 where it is solid; x fastest, then y.

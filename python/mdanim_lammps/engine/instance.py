@@ -443,22 +443,22 @@ class Instance:
         """
         nx, ny, _ = self._grid().shape
         smooth, raw = np.empty((ny, nx)), np.empty((ny, nx))
-        self._library.mdanim_liquid_heights(self._handle, LIQUID, _pointer(smooth), _pointer(raw))
+        self._call("tell the surface", self._library.mdanim_liquid_heights, LIQUID, _pointer(smooth), _pointer(raw))
         return smooth, raw
 
     def liquid_cells(self) -> np.ndarray:
         """Content of every cell, 255 where it is solid; uint8, shape (nz, ny, nx). Raises SetupError without a liquid."""
         cells = np.empty(self._grid().shape[::-1], np.uint8)
-        self._library.mdanim_liquid_cells(self._handle, LIQUID, _pointer(cells))
+        self._call("tell cells", self._library.mdanim_liquid_cells, LIQUID, _pointer(cells))
         return cells
 
     def liquid_state(self) -> np.ndarray:
         """All that the liquid's later steps depend on, for a State; uint8, shape (B,). Raises SetupError without a liquid."""
         self._grid()
-        size = self._library.mdanim_liquid_state_size
-        size.restype = ctypes.c_longlong
-        state = np.empty(size(self._handle, LIQUID), np.uint8)
-        self._library.mdanim_liquid_get_state(self._handle, LIQUID, _pointer(state))
+        size = ctypes.c_longlong()
+        self._call("tell the liquid's state", self._library.mdanim_liquid_state_size, LIQUID, ctypes.byref(size))
+        state = np.empty(size.value, np.uint8)
+        self._call("tell the liquid's state", self._library.mdanim_liquid_get_state, LIQUID, _pointer(state))
         return state
 
     def _grid(self) -> Grid:

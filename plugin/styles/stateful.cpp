@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Records from and to arrays, restart files, and rows of particles that are spread over ranks.
+
+#include "styles/stateful.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fmt/format.h"
+#include "lammps.h"
+
+#include <algorithm>
+#include <climits>
+#include <cstring>
+#include <numeric>
+#include <stdexcept>
+
+using namespace LAMMPS_NS;
+
+namespace mdanim {
+
+namespace {
+
+template <class... Words> [[noreturn]] void fail(const char *text, Words &&...words)
+{ throw std::runtime_error(fmt::format(fmt::runtime(text), std::forward<Words>(words)...)); }
+
+constexpr std::int64_t RESTART_VERSION = 1;
+
+struct RestartHead {
+  std::int64_t version, records, bytes;
+};
+
+// What all ranks have of something, one rank after the other.
+template <class T> std::vector<T> gather(const LAMMPS *lmp, const std::vector<T> &here)
+{
+  const int ranks = lmp->comm->nprocs;
+  const double most = [&] {
+    double all = 0.0, own = static_cast<double>(here.size() * sizeof(T));
+    MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
+    return all;
+  }();
+  if (most > INT_MAX) fail("a state of {:.3g} bytes is too large to be gathered from ranks", most);
+  const int size = static_cast<int>(here.size() * sizeof(T));
+  std::vector<int> sizes(ranks), starts(ranks);
+  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, lmp->world);
+  std::exclusive_scan(sizes.begin(), sizes.end(), starts.begin(), 0);
+  std::vector<T> all((starts.back() + sizes.back()) / sizeof(T));
+  MPI_Allgatherv(here.data(), size, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE, lmp->world);
+  return all;
+}
+
+template <class T> void append(Bytes &bytes, const T &value)
+{
+  const auto *from = reinterpret_cast<const std::uint8_t *>(&value);
+  bytes.insert(bytes.end(), from, from + sizeof value);
+}
+
+template <class T> T read(const std::uint8_t *&from)
+{
+  T value;
+  std::memcpy(&value, from, sizeof value);
+  from += sizeof value;
+  return value;
+}
+
+}    // namespace
+
+// --- arrays ---
+
+std::int64_t bytes_of(const StateRecords &records)
+{
+  std::int64_t bytes = 0;
+  for (const auto &[key, record] : records) bytes += static_cast<std::int64_t>(record.size());
+  return bytes;
+}
+
+void flatten(const StateRecords &records, std::int32_t *key, std::int64_t *first, std::uint8_t *data)
+{
+  *first = 0;
+  for (const auto &[objects, record] : records) {
+    *key++ = objects.a;
+    *key++ = objects.b;
+    std::copy(record.begin(), record.end(), data + *first);
+    first[1] = first[0] + static_cast<std::int64_t>(record.size());
+    ++first;
+  }
+}
+
+StateRecords unflatten(const FlatState &flat)
+{
+  StateRecords records;
+  if (flat.records < 0 || flat.first[0] != 0) fail("the first of {} records does not begin at 0", flat.records);
+  for (std::int64_t n = 0; n < flat.records; ++n) {
+    const StateKey key{flat.key[2 * n], flat.key[2 * n + 1]};
+    if (key.a < 0 || key.b < 0 || (key.b && (key.a == 0 || key.a >= key.b)))
+      fail("({}, {}) are no two objects; a key is (a, b) with 0 < a < b, (a, 0) or (0, 0)", key.a, key.b);
+    if (n && !(records.rbegin()->first < key))
+      fail("records must be sorted by their keys and differ; ({}, {}) comes after ({}, {})", key.a, key.b,
+           records.rbegin()->first.a, records.rbegin()->first.b);
+    if (flat.first[n + 1] < flat.first[n]) fail("record ({}, {}) ends before it begins", key.a, key.b);
+    records.emplace_hint(records.end(), key, Bytes(flat.data + flat.first[n], flat.data + flat.first[n + 1]));
+  }
+  return records;
+}
+
+// --- restart files ---
+
+void write_restart(const Stateful &state, LAMMPS *lmp, const std::string &fix, FILE *file)
+{
+  try {
+    const StateRecords records = state.pack();
+    if (lmp->comm->me != 0) return;
+    const RestartHead head{RESTART_VERSION, static_cast<std::int64_t>(records.size()), bytes_of(records)};
+    std::vector<std::int32_t> key(2 * records.size());
+    std::vector<std::int64_t> first(records.size() + 1);
+    Bytes data(head.bytes);
+    flatten(records, key.data(), first.data(), data.data());
+    const std::size_t size = sizeof head + 4 * key.size() + 8 * first.size() + data.size();
+    if (size > INT_MAX) fail("its state of {:.3g} bytes does not fit into a restart file", static_cast<double>(size));
+    const int words = static_cast<int>(size);
+    fwrite(&words, sizeof words, 1, file);
+    fwrite(&head, sizeof head, 1, file);
+    fwrite(first.data(), sizeof first[0], first.size(), file);
+    fwrite(key.data(), sizeof key[0], key.size(), file);
+    fwrite(data.data(), 1, data.size(), file);
+  } catch (const std::exception &problem) {
+    lmp->error->one(FLERR, "{}: {}", fix, problem.what());
+  }
+}
+
+void read_restart(Stateful &state, LAMMPS *lmp, const std::string &fix, const char *buffer)
+{
+  try {
+    // LAMMPS hands over no size, so that the head is believed once its version is right.
+    const auto *from = reinterpret_cast<const std::uint8_t *>(buffer);
+    const auto head = read<RestartHead>(from);
+    if (head.version != RESTART_VERSION)
+      fail("its state in the restart file has version {}, {} is needed; write the file with this version of the plugin",
+           head.version, RESTART_VERSION);
+    // What LAMMPS hands over is not aligned.
+    std::vector<std::int64_t> first(head.records + 1);
+    std::vector<std::int32_t> key(2 * head.records);
+    std::memcpy(first.data(), from, 8 * first.size());
+    std::memcpy(key.data(), from + 8 * first.size(), 4 * key.size());
+    state.unpack(unflatten({head.records, key.data(), first.data(), from + 8 * first.size() + 4 * key.size()}));
+  } catch (const std::exception &problem) {
+    lmp->error->all(FLERR, "{}: {}", fix, problem.what());
+  }
+}
+
+// --- rows of particles ---
+
+ParticleRows::ParticleRows(LAMMPS *lmp, std::int64_t version, int width) : lmp(lmp), version(version), width(width)
+{
+  const Atom &atom = *lmp->atom;
+  if (!atom.molecule) fail("objects are told apart by molecule IDs, and there are none; use 'atom_style bond'");
+  const auto merge = [](std::vector<Object> &all) {
+    std::sort(all.begin(), all.end(), [](const Object &p, const Object &q) { return p.id < q.id; });
+    std::size_t kept = 0;
+    for (const Object &next : all)
+      if (kept && all[kept - 1].id == next.id) {
+        all[kept - 1].lowest = std::min(all[kept - 1].lowest, next.lowest);
+        all[kept - 1].highest = std::max(all[kept - 1].highest, next.highest);
+      } else
+        all[kept++] = next;
+    all.resize(kept);
+  };
+  std::vector<Object> here;
+  for (int i = 0; i < atom.nlocal; ++i) {
+    const int id = atom.molecule[i];
+    local.emplace(atom.tag[i], i);    // LAMMPS's own map may be of the time before particles came to this rank
+    if (here.empty() || here.back().id != id) here.push_back({id, atom.tag[i], atom.tag[i]});
+    here.back().lowest = std::min(here.back().lowest, atom.tag[i]);
+    here.back().highest = std::max(here.back().highest, atom.tag[i]);
+  }
+  merge(here);
+  objects = gather(lmp, here);
+  merge(objects);
+}
+
+const ParticleRows::Object &ParticleRows::object(int id) const
+{
+  const auto found =
+      std::lower_bound(objects.begin(), objects.end(), id, [](const Object &object, int wanted) { return object.id < wanted; });
+  if (id < 1 || found == objects.end() || found->id != id) fail("there is no object {} (molecule ID)", id);
+  return *found;
+}
+
+void ParticleRows::add(StateKey of, tagint tag, tagint other, const void *from)
+{
+  rows.push_back({of, tag - object(of.a).lowest, of.b ? other - object(of.b).lowest : -1});
+  const auto *bytes = static_cast<const std::uint8_t *>(from);
+  values.insert(values.end(), bytes, bytes + width);
+}
+
+void ParticleRows::pack(StateRecords &into) const
+{
+  const std::vector<Row> all = gather(lmp, rows);
+  const Bytes all_values = gather(lmp, values);
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) { return all[p] < all[q]; });
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    const Row &row = all[order[n]];
+    if (n && !(all[order[n - 1]] < row))
+      fail("particle {} of object {} (and {} of {}) has its state twice", row.tag, row.objects.a, row.other, row.objects.b);
+    Bytes &record = into[row.objects];
+    if (record.empty()) append(record, version);
+    append(record, row.tag);
+    if (row.objects.b) append(record, row.other);
+    const auto from = all_values.begin() + static_cast<std::ptrdiff_t>(order[n] * width);
+    record.insert(record.end(), from, from + static_cast<std::ptrdiff_t>(width));
+  }
+}
+
+void ParticleRows::unpack(const StateRecords &records, const Visit &visit) const
+{
+  const auto every_row = [&](auto &&take) {
+    for (const auto &[key, record] : records) {
+      if (key.a == 0) continue;
+      const std::size_t size = (key.b ? 8 : 4) + width;
+      if (record.size() < sizeof version || (record.size() - sizeof version) % size)
+        fail("the record of objects ({}, {}) has {} bytes, not {} and a multiple of {}", key.a, key.b, record.size(),
+             sizeof version, size);
+      const std::uint8_t *from = record.data(), *const end = from + record.size();
+      const auto found = read<std::int64_t>(from);
+      if (found != version) fail("the record of objects ({}, {}) has version {}, {} is needed", key.a, key.b, found, version);
+      const Object &first = object(key.a), &second = key.b ? object(key.b) : first;
+      for (; from < end; from += width) {
+        const auto tag = first.lowest + read<std::int32_t>(from);
+        const auto other = key.b ? second.lowest + read<std::int32_t>(from) : 0;
+        if (tag < first.lowest || tag > first.highest || (key.b && (other < second.lowest || other > second.highest)))
+          fail("the record of objects ({}, {}) is of a particle that is in none of them", key.a, key.b);
+        take(key, tag, other, from);
+      }
+    }
+  };
+  bigint here[2] = {0, 0}, all[2];    // rows of particles that are on this rank; all rows
+  every_row([&](StateKey, tagint tag, tagint, const std::uint8_t *) {
+    here[0] += static_cast<bigint>(local.count(tag));
+    ++here[1];
+  });
+  MPI_Allreduce(&here[0], &all[0], 1, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
+  if (all[0] != here[1]) fail("{} rows are of {} particles that there are", here[1], all[0]);
+  every_row([&](StateKey key, tagint tag, tagint other, const std::uint8_t *from) {
+    const auto found = local.find(tag);
+    if (found != local.end()) visit(key, found->second, other, from);
+  });
+}
+
+}    // namespace mdanim

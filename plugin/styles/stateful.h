@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// State of a fix besides positions, velocities and forces: as records that checkpoints, other instances and restart files hold
+// alike.
+
+#ifndef MDANIM_STATEFUL_H
+#define MDANIM_STATEFUL_H
+
+#include "lmptype.h"
+
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <unordered_map>
+#include <vector>
+
+namespace LAMMPS_NS {
+class LAMMPS;
+}
+
+namespace mdanim {
+
+using Bytes = std::vector<std::uint8_t>;
+
+// The objects (molecule IDs) that a record is of: two of them, a < b; one, (a, 0); or (0, 0) for what is of the whole, as the
+// liquid.
+struct StateKey {
+  int a = 0, b = 0;
+  bool operator<(const StateKey &other) const { return std::tie(a, b) < std::tie(other.a, other.b); }
+};
+
+// Records by ascending keys. The same state gives the same bytes on any number of ranks; they depend neither on how particles are
+// numbered nor on which other objects there are. Each begins with a version of the fix's own.
+using StateRecords = std::map<StateKey, Bytes>;
+
+// A fix with such a state. All ranks call all functions together.
+class Stateful {
+ public:
+  // All records, on every rank.
+  virtual StateRecords pack() const = 0;
+  // Makes this the state; every rank gives the same. All particles are there, and the setup of a run comes after. An object or
+  // pair without a record is as at the beginning. Throws std::runtime_error on all ranks when records are not this fix's or are
+  // of particles that there are not; then nothing has changed.
+  virtual void unpack(const StateRecords &records) = 0;
+
+  std::optional<StateRecords> packed;    // for state_c.cpp, from one call to the next
+
+ protected:
+  ~Stateful() = default;
+};
+
+// Records as three arrays: keys (R, 2), where the bytes of each begin (R + 1), bytes.
+struct FlatState {
+  std::int64_t records;
+  const std::int32_t *key;
+  const std::int64_t *first;
+  const std::uint8_t *data;
+};
+
+std::int64_t bytes_of(const StateRecords &records);
+void flatten(const StateRecords &records, std::int32_t *key, std::int64_t *first, std::uint8_t *data);
+// Throws std::runtime_error when keys are not sorted, twice the same or no keys, or when `first` does not ascend from 0.
+StateRecords unflatten(const FlatState &flat);
+
+// For Fix::write_restart and Fix::restart: LAMMPS's restart files hold the same bytes. `fix` begins messages.
+void write_restart(const Stateful &state, LAMMPS_NS::LAMMPS *lmp, const std::string &fix, FILE *file);
+void read_restart(Stateful &state, LAMMPS_NS::LAMMPS *lmp, const std::string &fix, const char *buffer);
+
+// What a fix keeps of one particle, or of one and a particle of another object, as a row of a record. Tags count from the lowest
+// of their object.
+class ParticleRows {
+ public:
+  // All rows have `width` bytes besides.
+  ParticleRows(LAMMPS_NS::LAMMPS *lmp, std::int64_t version, int width);
+
+  // A row of a local particle; `values` are `width` bytes. For one of two particles the object of the first is the lower one.
+  void add(int object, LAMMPS_NS::tagint tag, const void *values) { add({object, 0}, tag, 0, values); }
+  void add(StateKey objects, LAMMPS_NS::tagint tag, LAMMPS_NS::tagint other, const void *values);
+  // Adds records of all rows of all ranks: rows sorted by tags. Throws std::runtime_error when one is there twice.
+  void pack(StateRecords &into) const;
+
+  // visit(objects, i, other tag or 0, values) for every row whose first particle is i, a local one. Records of the key (0, 0) are
+  // passed over. Throws std::runtime_error, before any visit and on all ranks, when a record is of another version or width, or
+  // is of a particle that there is not.
+  using Visit = std::function<void(StateKey, int, LAMMPS_NS::tagint, const std::uint8_t *)>;
+  void unpack(const StateRecords &records, const Visit &visit) const;
+
+ private:
+  struct Row {
+    StateKey objects;
+    std::int32_t tag, other;    // from the lowest of the object; -1 for no other
+    bool operator<(const Row &that) const { return std::tie(objects, tag, other) < std::tie(that.objects, that.tag, that.other); }
+  };
+  struct Object {
+    int id;
+    LAMMPS_NS::tagint lowest, highest;    // tags
+  };
+  const Object &object(int id) const;
+
+  LAMMPS_NS::LAMMPS *lmp;
+  std::int64_t version;
+  std::size_t width;
+  std::vector<Object> objects;    // of all ranks, by ascending IDs
+  std::unordered_map<LAMMPS_NS::tagint, int> local;
+  std::vector<Row> rows;
+  Bytes values;
+};
+
+}    // namespace mdanim
+
+#endif
