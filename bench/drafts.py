@@ -35,8 +35,8 @@ class Pool:
     """A cube over a pool, in LAMMPS; a context manager."""
 
     def __init__(self, fast=0.0, drag=None, model="surface", **lets):
-        from mdanim_lammps.driver.prepare import prepare
         from mdanim_lammps.engine.instance import Instance
+        from mdanim_lammps.run.prepare import prepare
         from mdanim_lammps.scene.parse import load_scene
         from mdanim_lammps.scene.scene import LiquidModel
 

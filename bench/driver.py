@@ -32,7 +32,7 @@ control { time 0.25 s  frames 100 fps  resolution 3 cm }
 FIRST = 10
 """Frames that are not counted."""
 PARTS = {
-    "executor": (
+    "runtime.executor": (
         "Executor",
         {
             "_transfer": "hand on",
@@ -43,11 +43,11 @@ PARTS = {
             "_send": "send frame",
         },
     ),
-    "bundle": ("Bundle", {"__init__": "build instances", "start": "put states", "run": "LAMMPS", "extent": "boxes"}),
-    "planner": ("Planner", {"decide": "plan"}),
-    "messages": ("Mail", {"exchange": "exchange"}),
-    "control": ("Central", {"decide": "wait for orders"}),
-    "supervisor": ("Distributed", {"_frame": "put together", "_take": "take a message"}),
+    "runtime.bundle": ("Bundle", {"__init__": "build instances", "start": "put states", "run": "LAMMPS", "extent": "boxes"}),
+    "plan.planner": ("Planner", {"decide": "plan"}),
+    "runtime.messages": ("Mail", {"exchange": "exchange"}),
+    "runtime.control": ("Central", {"decide": "wait for orders"}),
+    "runtime.supervisor": ("Distributed", {"_frame": "put together", "_take": "take a message"}),
 }
 """Class and methods of every module of the driver, with what they are called below. Some hold others."""
 
@@ -56,11 +56,11 @@ def ranks(folder: Path, control: str) -> None:
     """What every rank does: run, and write what its methods took, frame by frame."""
     import importlib
 
-    from mdanim_lammps.driver import executor
-    from mdanim_lammps.driver.planning import Settings
-    from mdanim_lammps.driver.prepare import prepare
-    from mdanim_lammps.driver.run import simulate
-    from mdanim_lammps.driver.supervisor import Distributed
+    from mdanim_lammps.parallel.plan.frame_plan import Settings
+    from mdanim_lammps.parallel.runtime import executor
+    from mdanim_lammps.parallel.runtime.supervisor import Distributed
+    from mdanim_lammps.run.loop import simulate
+    from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import load_scene
     from mpi4py import MPI
 
@@ -79,7 +79,7 @@ def ranks(folder: Path, control: str) -> None:
         return call
 
     for module, (kind, methods) in PARTS.items():
-        owner = getattr(importlib.import_module(f"mdanim_lammps.driver.{module}"), kind)
+        owner = getattr(importlib.import_module(f"mdanim_lammps.parallel.{module}"), kind)
         for method, name in methods.items():
             setattr(owner, method, timed(getattr(owner, method), name))
     executor.wanted_bundles = timed(executor.wanted_bundles, "wanted bundles")

@@ -78,8 +78,8 @@ class Runner:
     """A live scene that runs in rounds."""
 
     def __init__(self, text: str):
-        from mdanim_lammps.driver.prepare import prepare
         from mdanim_lammps.engine.instance import Instance
+        from mdanim_lammps.run.prepare import prepare
         from mdanim_lammps.scene.parse import parse_scene
 
         self.ready = prepare(parse_scene(text))
@@ -124,7 +124,7 @@ def measure(texts: dict[str, str], rounds: int, of=statistics.median) -> dict[st
 
 def added(rounds: int) -> None:
     """One scene, effects added one by one, at the time step that all of them together need."""
-    from mdanim_lammps.driver.prepare import prepare
+    from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import parse_scene
 
     ready = prepare(parse_scene(POND.format(timestep="", off="")))
@@ -181,10 +181,10 @@ def shares(rounds: int) -> None:
 
 def forecasts(_: int) -> None:
     """Expected and measured cost of all scenes; measured in processor time, which others on the machine do not stretch."""
-    from mdanim_lammps.driver.calibration import calibration
-    from mdanim_lammps.driver.forecast import forecast
-    from mdanim_lammps.driver.prepare import prepare
-    from mdanim_lammps.driver.run import simulate
+    from mdanim_lammps.cost.calibration import calibration
+    from mdanim_lammps.cost.forecast import forecast
+    from mdanim_lammps.run.loop import simulate
+    from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import load_scene
 
     rates = calibration(print).rates

@@ -11,9 +11,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-from mdanim_lammps.driver.prepare import prepare
-from mdanim_lammps.driver.run import simulate
 from mdanim_lammps.errors import DivergedError
+from mdanim_lammps.run.loop import simulate
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
 H, C, MOST = 0.03, math.sqrt(1.2 * 360e3 / 1000), 30

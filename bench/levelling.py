@@ -55,8 +55,8 @@ def sweeps(width: int) -> float:
 
 def seconds(scene: str) -> float:
     """Time until the liquid sleeps: level, nothing near."""
-    from mdanim_lammps.driver.prepare import prepare
     from mdanim_lammps.engine.instance import Instance
+    from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import parse_scene
 
     ready = prepare(parse_scene(scene))

@@ -33,8 +33,8 @@ PARTS = {"automaton": 7, "occupancy": 8, "coupling": 9, "liquid": 10}
 
 def measure(what: str, warm: int, steps: int, **scene) -> None:
     """Run one case and print it."""
-    from mdanim_lammps.driver.prepare import prepare
     from mdanim_lammps.engine.instance import Instance
+    from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import parse_scene
 
     ready = prepare(parse_scene(SCENE.format(**scene)))

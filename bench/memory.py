@@ -30,8 +30,8 @@ def resident() -> int:
 
 def child(n: int) -> dict:
     """In a process of its own."""
-    from mdanim_lammps.driver.prepare import prepare
     from mdanim_lammps.engine.instance import Instance
+    from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import parse_scene
 
     with Instance(prepare(parse_scene(SCENE.format(n=3))).plan) as small:  # all libraries are loaded by now

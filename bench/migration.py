@@ -44,9 +44,9 @@ class Mover:
     """One size of object, on either side."""
 
     def __init__(self, n: int, comm):
-        from mdanim_lammps.driver.prepare import prepare
         from mdanim_lammps.engine.instance import Instance
         from mdanim_lammps.engine.part import Parts
+        from mdanim_lammps.run.prepare import prepare
         from mdanim_lammps.scene.parse import parse_scene
 
         self.comm = comm

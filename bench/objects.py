@@ -14,8 +14,8 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
 def main(side: int = 100) -> None:
     """Measure and print."""
-    from mdanim_lammps.driver.prepare import prepare
     from mdanim_lammps.engine.instance import Instance
+    from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import parse_scene
     from test_many import TEXT
 

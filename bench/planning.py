@@ -9,8 +9,9 @@ import sys
 import time
 
 import numpy as np
-from mdanim_lammps.driver import islands, planning
-from mdanim_lammps.driver.assign import assign
+from mdanim_lammps.parallel.plan import frame_plan as planning
+from mdanim_lammps.parallel.plan import islands
+from mdanim_lammps.parallel.plan.assign import assign
 
 EXECUTORS = 8
 

@@ -33,8 +33,8 @@ class Blocks:
     """Two blocks in LAMMPS, pressed, and the state that rounds start from."""
 
     def __init__(self, cells: int, away: float = 0.0):
-        from mdanim_lammps.driver.prepare import prepare
         from mdanim_lammps.engine.instance import Instance
+        from mdanim_lammps.run.prepare import prepare
         from mdanim_lammps.scene.parse import parse_scene
 
         ready = prepare(parse_scene(SCENE.format(n=cells, x=0.5 * cells + 0.5, v=SPEED, drift=DRIFT)))

@@ -73,7 +73,7 @@ COLORS = {"central": "#0072b2", "peers": "#d55e00"}
 
 def load(name: str, frames: int):
     """The scene, cut to so many frames, ready to run."""
-    from mdanim_lammps.driver.prepare import prepare
+    from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import parse_scene
 
     scene = parse_scene(SCENES[name])
@@ -88,10 +88,10 @@ def measure(ready, executors: int, control: str) -> dict:
 
 def _measure(ready, executors: int, control: str) -> dict:
     """``executors`` 0: the program in one process, whose clock stands while it writes."""
-    from mdanim_lammps.driver.launch import simulate_on
-    from mdanim_lammps.driver.run import simulate
-    from mdanim_lammps.driver.source import Sequential
+    from mdanim_lammps.parallel.runtime.launch import simulate_on
     from mdanim_lammps.results.timeline import Timeline
+    from mdanim_lammps.run.frame_source import Sequential
+    from mdanim_lammps.run.loop import simulate
 
     class Clocked(Sequential):
         """Sums the processor time of what an executor would do."""
@@ -290,7 +290,7 @@ def model(options) -> None:
 
 def fit(data: dict) -> dict:
     """Costs per unit, out of the runs where they show, else measured now."""
-    from mdanim_lammps.driver.messages import Order
+    from mdanim_lammps.parallel.plan.orders import Order
 
     hail, crowd = (data["runs"][name] for name in ("hail", "crowd"))
     known = data["known"]
@@ -333,7 +333,7 @@ MOVES = 0.004
 
 def _plan(objects: int, executors: int):
     """The second plan of a crowd, one object in a volume of 30 of them, after all have gone on a little; and its seconds."""
-    from mdanim_lammps.driver import planning
+    from mdanim_lammps.parallel.plan import frame_plan as planning
 
     rng = np.random.default_rng(objects)
     low = rng.uniform(0.0, (30.0 * objects) ** (1.0 / 3.0), (objects, 3))

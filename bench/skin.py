@@ -9,9 +9,9 @@ import sys
 import time
 from pathlib import Path
 
-from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine import commands
 from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 from timing import interleaved, markdown
 

@@ -13,9 +13,9 @@ import sys
 import time
 
 import numpy as np
-from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.commands import physics
 from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
 SCENE = """

@@ -107,7 +107,7 @@ def runs_here(width: str) -> bool:
 
 def measure(text: str, rounds: int) -> dict:
     """Particles, springs and nanoseconds per particle-step of every contender in every round."""
-    from mdanim_lammps.driver.prepare import prepare
+    from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import parse_scene
 
     plan = prepare(parse_scene(HEAD + text)).plan

@@ -17,8 +17,8 @@ from timing import markdown
 
 def frames_of(scene: Path, frames: int) -> None:
     """On every rank: run, and print what rank 0 knows of all, as JSON."""
-    from mdanim_lammps.driver.prepare import prepare
     from mdanim_lammps.engine.instance import Instance
+    from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import load_scene
     from mpi4py import MPI
 

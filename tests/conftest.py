@@ -26,7 +26,7 @@ def prepared(tmp_path):
     """Make a prepared scene from text."""
 
     def make(text: str, name: str = "small"):
-        from mdanim_lammps.driver.prepare import prepare
+        from mdanim_lammps.run.prepare import prepare
         from mdanim_lammps.scene.parse import load_scene
 
         path = tmp_path / f"{name}.txt"

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mdanim_lammps.driver.assign import assign
-from mdanim_lammps.driver.teams import Team
+from mdanim_lammps.parallel.plan.assign import assign
+from mdanim_lammps.parallel.plan.teams import Team
 from twin import islands as twin
 
 

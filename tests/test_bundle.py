@@ -2,9 +2,9 @@
 """Which LAMMPS instances a plan wants of an executor."""
 
 import numpy as np
-from mdanim_lammps.driver.bundle import wanted_bundles
-from mdanim_lammps.driver.planning import FramePlan
-from mdanim_lammps.driver.teams import Team
+from mdanim_lammps.parallel.plan.frame_plan import FramePlan
+from mdanim_lammps.parallel.plan.teams import Team
+from mdanim_lammps.parallel.runtime.bundle import wanted_bundles
 
 OWNER = np.array([0, 0, 1, -1, 0, 2, 1])
 LABEL = np.array([0, 1, 2, -1, 0, 3, 4])

@@ -9,11 +9,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from mdanim_lammps.certificate import fit_steps, margin_lines
-from mdanim_lammps.driver.run import simulate
 from mdanim_lammps.effects import EFFECTS
 from mdanim_lammps.effects.contact import plane_stiffness
 from mdanim_lammps.engine.commands import physics
 from mdanim_lammps.errors import DivergedError, RefusedError, SceneError
+from mdanim_lammps.run.loop import simulate
 from twin.lattice import CORNER
 
 BOX = """
@@ -365,7 +365,7 @@ def test_every_object_has_its_own_bound(prepared):
 @pytest.mark.parametrize(("fraction", "severity"), [(0.65, "ok"), (0.75, "warning"), (0.999, "warning"), (1.01, "refused")])
 def test_a_step_near_the_bound_is_told(prepared, fraction, severity, tmp_path):
     """Warn above 0.7 of the bound, where large motion may blow up; above the bound the user has insisted."""
-    from mdanim_lammps.driver.prepare import prepare
+    from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import load_scene
 
     bound = prepared(box()).certificate.bound

@@ -197,7 +197,7 @@ def test_a_large_scene_is_told_before_modelling(prepared, monkeypatch, capsys):
     ready = prepared(GOOD)
     assert report.size_line(ready.scene) is None
     monkeypatch.setattr(report, "LARGE", 20)
-    monkeypatch.setattr("mdanim_lammps.driver.prepare.build_models", lambda *_, **__: pytest.fail("modelled"))
+    monkeypatch.setattr("mdanim_lammps.run.prepare.build_models", lambda *_, **__: pytest.fail("modelled"))
     with pytest.raises(pytest.fail.Exception):
         cli._prepare_record(ready.scene, allow_unstable=False)
     line = capsys.readouterr().err

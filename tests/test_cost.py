@@ -8,15 +8,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from mdanim_lammps.driver import calibration as calibrating
-from mdanim_lammps.driver.calibration import RATES, calibration, stored_at
-from mdanim_lammps.driver.forecast import fastest, forecast, rebuilds
-from mdanim_lammps.driver.run import simulate
-from mdanim_lammps.driver.source import Account, add_clocks
+from mdanim_lammps.cost import calibration as calibrating
+from mdanim_lammps.cost.calibration import RATES, calibration, stored_at
+from mdanim_lammps.cost.forecast import fastest, forecast, rebuilds
 from mdanim_lammps.effects import EFFECTS, springs
 from mdanim_lammps.effects.springs import fullness
 from mdanim_lammps.report import check_json, cost_line, forecast_line
 from mdanim_lammps.results.cost import Cost, Part
+from mdanim_lammps.run.frame_source import Account, add_clocks
+from mdanim_lammps.run.loop import simulate
 
 POND = """gravity (0, 0, -9.81) m/s^2
 walls from (-1, -1, 0) m to (1, 1, 3) m
@@ -53,7 +53,7 @@ RATE = dict.fromkeys(RATES, 1.0)
 def pond(tmp_path_factory):
     """A scene with every effect, and the result of its run:
     so long that a few milliseconds that others take are no share of it."""
-    from mdanim_lammps.driver.prepare import prepare
+    from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import load_scene
 
     folder = tmp_path_factory.mktemp("pond")

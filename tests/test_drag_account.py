@@ -2,8 +2,8 @@
 """Energies of scenes with drag close to third order in the time step, whether drag slows a flight or a vibration."""
 
 import pytest
-from mdanim_lammps.driver.prepare import prepare
-from mdanim_lammps.driver.run import simulate
+from mdanim_lammps.run.loop import simulate
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
 BLOCKS = """

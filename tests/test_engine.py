@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import plugin_path
 import pytest
-from mdanim_lammps.driver.prepare import Prepared
 from mdanim_lammps.engine.commands import harmonic_coeff, input_script
 from mdanim_lammps.engine.data_file import data_text, write_data
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.plan import both_ends
 from mdanim_lammps.errors import SetupError
+from mdanim_lammps.run.prepare import Prepared
 from twin import world
 
 MEETING = """

@@ -7,14 +7,14 @@ import re
 import numpy as np
 import pytest
 from mdanim_lammps import Trajectory
-from mdanim_lammps.driver.guard import CLASSES, GENEROUS, LEAST, Guard, energy_class, fastest
-from mdanim_lammps.driver.prepare import prepare
-from mdanim_lammps.driver.run import simulate, write_inputs
 from mdanim_lammps.engine.geometry import INVERTED, NOT_FINITE, Geometry
 from mdanim_lammps.engine.plugin import open_lammps
 from mdanim_lammps.errors import DivergedError, ExitCode
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.ledger import Ledger
+from mdanim_lammps.run.guard import CLASSES, GENEROUS, LEAST, Guard, energy_class, fastest
+from mdanim_lammps.run.loop import simulate, write_inputs
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 from mdanim_lammps.scene.scene import Accuracy
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mdanim_lammps.driver import islands
+from mdanim_lammps.parallel.plan import islands
 from twin import islands as twin
 
 

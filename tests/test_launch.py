@@ -8,8 +8,8 @@ import sys
 
 import pytest
 from mdanim_lammps import Scene
-from mdanim_lammps.driver import launch
 from mdanim_lammps.errors import ExitCode, SetupError, UsageError
+from mdanim_lammps.parallel.runtime import launch
 from test_run import FALL
 
 OBITUARY = """\

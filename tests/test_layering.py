@@ -19,7 +19,9 @@ ROOMS = [
     "certificate",
     "engine",
     "results",
-    "driver",
+    "run",
+    "parallel",
+    "cost",
     "study",
     "picture",
     "report",
@@ -65,9 +67,22 @@ def test_imports_point_up_the_list(path):
     assert imported_rooms(path) <= set(ROOMS[: ROOMS.index(own) + 1])
 
 
+PLAN = ROOT / "parallel" / "plan"
+
+
+@pytest.mark.parametrize("path", sorted(PLAN.glob("*.py")), ids=lambda p: p.name)
+def test_the_planner_knows_no_messages(path):
+    """The pure part of the distribution uses neither MPI nor the part that runs processes."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
+        if isinstance(node, ast.ImportFrom):
+            names = [f"{node.module or ''}.{a.name}" for a in node.names]
+        assert not [n for n in names if {"mpi4py", "runtime"} & set(n.split("."))], f"line {node.lineno}"
+
+
 def test_the_check_sees_imports():
     """Find the rooms that a file with every kind of import uses."""
-    assert {"errors", "scene", "model"} <= imported_rooms(ROOT / "driver" / "prepare.py")
+    assert {"errors", "scene", "model"} <= imported_rooms(ROOT / "run" / "prepare.py")
 
 
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda p: f"{p.parent.name}/{p.name}")

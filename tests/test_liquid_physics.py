@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 
 CUBE = Path(__file__).parent.parent / "scenes" / "lab" / "cube.txt"

@@ -2,8 +2,8 @@
 """Ten thousand objects of 27 particles: built, certified and run without a step that looks at all pairs."""
 
 import numpy as np
-from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
 TEXT = """

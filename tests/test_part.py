@@ -5,8 +5,6 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
-from mdanim_lammps.driver.energy import energies, stored
-from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.data_file import data_text
 from mdanim_lammps.engine.instance import Instance, State
 from mdanim_lammps.engine.part import Parts
@@ -14,6 +12,8 @@ from mdanim_lammps.engine.plan import both_ends, make_plan
 from mdanim_lammps.errors import SetupError
 from mdanim_lammps.model.system import System
 from mdanim_lammps.results.ledger import LOSS
+from mdanim_lammps.run.energy import energies, stored
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 
 SHELF = """

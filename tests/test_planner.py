@@ -3,13 +3,13 @@
 
 import numpy as np
 import pytest
-from mdanim_lammps.driver import planner as module
-from mdanim_lammps.driver.messages import Report
-from mdanim_lammps.driver.planner import Planner
-from mdanim_lammps.driver.planning import Settings
-from mdanim_lammps.driver.source import Broken
 from mdanim_lammps.engine.part import Parts
 from mdanim_lammps.errors import DivergedError
+from mdanim_lammps.parallel.plan import planner as module
+from mdanim_lammps.parallel.plan.frame_plan import Settings
+from mdanim_lammps.parallel.plan.planner import Planner
+from mdanim_lammps.parallel.plan.orders import Report
+from mdanim_lammps.run.frame_source import Broken
 from test_part import POND
 
 ROW = """

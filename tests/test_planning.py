@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mdanim_lammps.driver import islands, planning
-from mdanim_lammps.driver.planning import FramePlan, z_order
-from mdanim_lammps.driver.teams import Team
+from mdanim_lammps.parallel.plan import frame_plan as planning
+from mdanim_lammps.parallel.plan import islands
+from mdanim_lammps.parallel.plan.frame_plan import FramePlan, z_order
+from mdanim_lammps.parallel.plan.teams import Team
 
 BUNDLE = 4000
 plan, bundles = (partial(make, room=BUNDLE) for make in (planning.plan, planning.bundles))
@@ -291,7 +292,7 @@ def test_no_loop_over_objects():
         def trace(frame, event, _):
             nonlocal ran
             ran += event == "line"
-            return trace if os.sep + "driver" + os.sep in frame.f_code.co_filename else None
+            return trace if os.path.join("parallel", "plan") in frame.f_code.co_filename else None
 
         at = scene(count, heavy=0.0)
         old = sys.gettrace()

@@ -6,12 +6,12 @@ import sys
 
 import numpy as np
 import pytest
-from mdanim_lammps.driver.planner import Planner
-from mdanim_lammps.driver.planning import Settings
-from mdanim_lammps.driver.prepare import prepare
-from mdanim_lammps.driver.prospect import Prospect, _Flight, _Moments, prospect
+from mdanim_lammps.cost.speedup_forecast import Prospect, _Flight, _Moments, prospect
 from mdanim_lammps.engine.part import Parts
+from mdanim_lammps.parallel.plan.frame_plan import Settings
+from mdanim_lammps.parallel.plan.planner import Planner
 from mdanim_lammps.report import prospect_lines
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 from mpi.scenes import HEAVY, POOL
 from test_planner import ROW, report
@@ -124,5 +124,5 @@ def test_a_run_and_a_check_tell_it(tmp_path):
     assert told in words("check", "apart.txt", "-n", "2") and told not in words("check", "apart.txt")
     assert '"faster"' in words("check", "apart.txt", "-n", "2", "--format", "json")
     assert told in words("apart.txt", "-n", "2", "--no-movie") and told not in words("apart.txt", "--no-movie", "--force")
-    code = "import sys, mdanim_lammps.driver.prospect; print('mpi4py.MPI' in sys.modules, 'lammps' in sys.modules)"
+    code = "import sys, mdanim_lammps.cost.speedup_forecast; print('mpi4py.MPI' in sys.modules, 'lammps' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "False False\n"

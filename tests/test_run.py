@@ -12,11 +12,11 @@ import time
 import numpy as np
 import pytest
 from mdanim_lammps import Scene, Trajectory
-from mdanim_lammps.driver.run import Interrupted, simulate, write_inputs
 from mdanim_lammps.errors import DivergedError, OutputError
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.ledger import Ledger
+from mdanim_lammps.run.loop import Interrupted, simulate, write_inputs
 
 FALL = """
 gravity (0, 0, -9.81) m/s^2
@@ -194,7 +194,7 @@ def test_killed_run_keeps_its_frames(tmp_path):
 def test_a_run_that_blows_up_keeps_the_last_good_frame(tmp_path):
     """Insist on a step far above the bound: stop with the object, the cause and what to change, and keep the good frames."""
     (tmp_path / "bad.txt").write_text(FALL.replace("time 0.3 s", "time 3 s\n timestep 4 ms"))
-    from mdanim_lammps.driver.prepare import prepare
+    from mdanim_lammps.run.prepare import prepare
 
     ready = prepare(Scene.load(tmp_path / "bad.txt").record, allow_unstable=True)
     out = tmp_path / "bad.out"

@@ -12,10 +12,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from mdanim_lammps import Scene
-from mdanim_lammps.driver.prepare import prepare
-from mdanim_lammps.driver.run import Interrupted
 from mdanim_lammps.errors import DivergedError, OutputError, RefusedError, UsageError
 from mdanim_lammps.model import lattice
+from mdanim_lammps.run.loop import Interrupted
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.scene.scene import Accuracy
 from mdanim_lammps.study import bench

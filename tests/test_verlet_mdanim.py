@@ -9,8 +9,8 @@ import numpy as np
 import plugin_lab as lab
 import plugin_path
 import pytest
-from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
 WIDTHS = ("common", "avx2", "avx512")

@@ -31,8 +31,8 @@ AUTO = 0.5
 def main() -> None:
     """Measure one scene."""
     from mdanim_lammps import __version__
-    from mdanim_lammps.driver.prepare import prepare
     from mdanim_lammps.engine.instance import Instance
+    from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import parse_scene
 
     scene, case = words()

@@ -12,14 +12,14 @@ from functools import cached_property
 from pathlib import Path
 
 from .certificate import Certificate
-from .driver.launch import simulate_on
-from .driver.manifest import manifest
-from .driver.prepare import Prepared, prepare
-from .driver.run import Result, simulate, write_inputs
 from .effects import Verdict
 from .errors import UsageError
+from .parallel.runtime.launch import simulate_on
 from .results.checkpoint import Checkpoint
 from .results.files import MARK, open_folder, write_json
+from .run.loop import Result, simulate, write_inputs
+from .run.manifest import manifest
+from .run.prepare import Prepared, prepare
 from .scene.parse import load_scene
 from .scene.scene import Scene as SceneRecord
 from .study.bench import BUDGET
@@ -147,7 +147,7 @@ def run_frames(
 ) -> Result:
     """Simulate in this process, or on executors of their own when there is more than one or a ``control`` is named.
 
-    ``options`` are those of `driver.run.simulate`. Raises what that does, and UsageError for less than one executor.
+    ``options`` are those of `run.loop.simulate`. Raises what that does, and UsageError for less than one executor.
     """
     if executors < 1:
         raise UsageError(f"{executors} executors: at least one is needed")

@@ -73,7 +73,7 @@ def run(
         Make movie.mp4 at the end.
     """
     from .api import open_run
-    from .driver.prospect import prospect
+    from .cost.speedup_forecast import prospect
     from .report import prospect_lines
 
     _check_executors(executors)
@@ -108,9 +108,9 @@ def check(
         Text for people, JSON for programs.
     """
     from .certificate import margin_lines
-    from .driver.calibration import calibration
-    from .driver.forecast import forecast
-    from .driver.prospect import prospect
+    from .cost.calibration import calibration
+    from .cost.forecast import forecast
+    from .cost.speedup_forecast import prospect
     from .report import (
         certificate_line,
         check_json,
@@ -383,8 +383,8 @@ def _settle(scene, *, make: bool, quiet: bool = False, out: Path | None = None):
 
 
 def _prepare_record(scene, *, allow_unstable: bool):
-    from .driver.prepare import prepare
     from .report import size_line
+    from .run.prepare import prepare
 
     if line := size_line(scene):
         print(line, file=sys.stderr, flush=True)

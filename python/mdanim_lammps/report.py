@@ -6,14 +6,14 @@ from __future__ import annotations
 from dataclasses import asdict
 from pathlib import Path
 
-from .driver.prepare import Prepared
-from .driver.prospect import Prospect
-from .driver.run import Progress, Result
+from .cost.speedup_forecast import Prospect
 from .effects import Verdict
 from .model import plan_spacing
 from .results.cost import Cost
 from .results.timeline import Timeline
 from .results.trajectory import trajectory_bytes
+from .run.loop import Progress, Result
+from .run.prepare import Prepared
 from .scene.scene import Scene
 from .scene.wording import number, say, whole
 
@@ -186,8 +186,8 @@ def _about(seconds: float) -> str:
 
 
 def check_json(ready: Prepared, forecast: Cost | None = None, prospect: Prospect | None = None) -> dict:
-    """What ``check --format json`` prints; with the expected cost (driver/forecast.py),
-    and what executors will bring (driver/prospect.py)."""
+    """What ``check --format json`` prints; with the expected cost (cost/forecast.py),
+    and what executors will bring (cost/speedup_forecast.py)."""
     return {
         "scene": str(ready.scene.path) if ready.scene.path else ready.scene.name,
         "objects": [

@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 from mpi4py import MPI
 

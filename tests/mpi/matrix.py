@@ -10,13 +10,13 @@ import sys
 import time
 from pathlib import Path
 
-from mdanim_lammps.driver.executor import serve
-from mdanim_lammps.driver.planning import Settings
-from mdanim_lammps.driver.prepare import prepare
-from mdanim_lammps.driver.run import Interrupted, simulate
-from mdanim_lammps.driver.supervisor import Distributed
+from mdanim_lammps.parallel.plan.frame_plan import Settings
+from mdanim_lammps.parallel.runtime.executor import serve
+from mdanim_lammps.parallel.runtime.supervisor import Distributed
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.timeline import Timeline
+from mdanim_lammps.run.loop import Interrupted, simulate
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 from mpi4py import MPI
 

@@ -262,9 +262,9 @@ def test_lammps_alone_runs_the_same_film(scene):
     """The written input under ``lmp`` ends with the bits of the distributed run."""
     path = scene(films.MIXED.replace("frames 100 fps", "frames 25 fps"))
     found = ways(path, matrix((2,), ["central"]))
-    from mdanim_lammps.driver.prepare import prepare
-    from mdanim_lammps.driver.run import write_inputs
     from mdanim_lammps.results.trajectory import Trajectory
+    from mdanim_lammps.run.loop import write_inputs
+    from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import load_scene
 
     ready = prepare(load_scene(path))

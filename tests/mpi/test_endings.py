@@ -12,14 +12,14 @@ from pathlib import Path
 
 import plugin_path
 import pytest
-from mdanim_lammps.driver.launch import simulate_on
-from mdanim_lammps.driver.planning import Settings
-from mdanim_lammps.driver.prepare import prepare
-from mdanim_lammps.driver.run import write_inputs
 from mdanim_lammps.errors import ExecutorLost, OutputError
+from mdanim_lammps.parallel.plan.frame_plan import Settings
+from mdanim_lammps.parallel.runtime.launch import simulate_on
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.timeline import Timeline
 from mdanim_lammps.results.trajectory import Trajectory
+from mdanim_lammps.run.loop import write_inputs
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 from mpi import scenes as films
 
@@ -48,7 +48,7 @@ def ranks_in(folder: Path) -> dict[int, int]:
             if not process.name.isdigit():
                 continue
             command = (process / "cmdline").read_text()
-            if str(folder) in command and "driver.ranks" in command:
+            if str(folder) in command and "parallel.runtime.ranks" in command:
                 rank = re.search(r"PMI_RANK=(\d+)", (process / "environ").read_text())
                 found[int(process.name)] = int(rank[1]) if rank else -1
         except OSError:  # it has ended meanwhile
@@ -242,7 +242,7 @@ def test_an_executor_that_raises_is_told(place, monkeypatch, capfd, settings, te
         place,
         monkeypatch,
         rank=2,
-        module="driver.bundle",
+        module="parallel.runtime.bundle",
         kind="Bundle",
         method="run",
         time=3,
@@ -265,7 +265,7 @@ def test_a_planner_that_raises_is_told(place, monkeypatch, heard):
         place,
         monkeypatch,
         rank=0,
-        module="driver.planner",
+        module="parallel.plan.planner",
         kind="Planner",
         method="decide",
         time=3,
@@ -284,7 +284,7 @@ def test_a_rank_that_cannot_begin_is_told(place, monkeypatch):
         place,
         monkeypatch,
         rank=1,
-        module="driver.executor",
+        module="parallel.runtime.executor",
         kind="Executor",
         method="_first_report",
         time=1,

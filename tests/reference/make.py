@@ -15,8 +15,8 @@ HERE = Path(__file__).parent
 
 def film(path: Path) -> np.ndarray:
     """Positions [m] and velocities [m/s] of every frame of a scene, shape (F, 2, N, 3)."""
-    from mdanim_lammps.driver.prepare import prepare
     from mdanim_lammps.engine.instance import Instance
+    from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import load_scene
 
     ready = prepare(load_scene(path))

@@ -17,7 +17,7 @@ from trial import Trial
 
 STEPS = 2000
 BROKEN = 0.5
-"""Energy residual of a scene that has blown up: where driver/guard.py stops a preview."""
+"""Energy residual of a scene that has blown up: where run/guard.py stops a preview."""
 MOST = 0.05
 """Energy residual that a random scene may have at the certified step, a tenth of that: bodies that hit walls at half of
 the wave speed and fold up reach 0.03."""

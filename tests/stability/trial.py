@@ -7,11 +7,11 @@ import math
 from pathlib import Path
 
 import numpy as np
-from mdanim_lammps.driver.energy import rounding_energy
-from mdanim_lammps.driver.prepare import prepare
 from mdanim_lammps.engine.instance import Instance, State
 from mdanim_lammps.errors import DivergedError
 from mdanim_lammps.results.ledger import Ledger
+from mdanim_lammps.run.energy import rounding_energy
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
 UNITS, START, LEVEL = 0, 1, 2

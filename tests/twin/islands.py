@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Naive twins of driver/islands.py and driver/assign.py: one pair, one object, one placement at a time."""
+"""Naive twins of parallel/plan/islands.py and parallel/plan/assign.py: one pair, one object, one placement at a time."""
 
 from itertools import product
 

@@ -120,7 +120,7 @@ class Effect:
 
     def forecast(self, load: Load, rate: Mapping[str, float]) -> float:
         """Seconds that it will take; ``rate`` holds what this machine needs for one of each kind of work
-        (driver/calibration.py)."""
+        (cost/calibration.py)."""
         return 0.0
 
     def penetration(self, instance, system: System) -> float:

@@ -7,9 +7,9 @@ import math
 import time
 from collections.abc import Callable, Sequence
 
-from ..driver.prepare import Prepared
-from ..driver.run import Interrupted
 from ..errors import DivergedError, RefusedError, SceneError
+from ..run.loop import Interrupted
+from ..run.prepare import Prepared
 from ..scene.scene import Scene
 from ..scene.wording import say
 from .measure import Sample, TooLong, measure

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ..driver.prepare import prepare
-from ..driver.run import Progress, simulate
 from ..results.files import read_json
 from ..results.trajectory import Trajectory
+from ..run.loop import Progress, simulate
+from ..run.prepare import prepare
 from ..scene.scene import Scene
 from ..scene.wording import say
 from .setting import Setting, frames_only, with_setting

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 
 from .. import __version__
 from ..certificate import fit_steps
-from ..driver.prepare import Prepared, prepare
 from ..model.spacing import choose_spacing
+from ..run.prepare import Prepared, prepare
 from ..scene.build import SOFTEST, STIFFEST
 from ..scene.lock import lock_text
 from ..scene.scene import Accuracy, Mesh, Render, Save, Scene

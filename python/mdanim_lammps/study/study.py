@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..driver.prepare import prepare
 from ..errors import DivergedError, RefusedError, UsageError
+from ..run.prepare import prepare
 from ..scene.scene import Scene
 from .analysis import Analysis, advice, analyse
 from .bench import BUDGET, Bench

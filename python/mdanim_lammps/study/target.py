@@ -9,9 +9,9 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
-from ..driver.prepare import prepare
 from ..errors import DivergedError, OutputError, Problem
 from ..results.files import read_json, write_json
+from ..run.prepare import prepare
 from ..scene.scene import Accuracy, Scene
 from ..scene.wording import number, say
 from .analysis import Analysis, analyse

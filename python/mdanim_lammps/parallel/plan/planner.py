@@ -9,12 +9,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..engine.part import Parts
-from ..errors import DivergedError
+from ...engine.part import Parts
+from ...errors import DivergedError
+from ...run.frame_source import Broken
 from . import islands
-from .messages import Job, Order, Report
-from .planning import FramePlan, Settings, Terms
-from .source import Broken
+from .frame_plan import FramePlan, Settings, Terms
+from .orders import Order, Report
 
 FORGET = 0.25
 """Weight of the latest measurement in the cost of an object."""
@@ -110,8 +110,3 @@ class Planner:
     def _order(self, steps: int, plan: FramePlan, d: np.ndarray, commit: bool) -> Order:
         self.plan, self.steps = plan, steps
         return Order(plan, *islands.boxes(self.low, self.high, d), steps, commit)
-
-
-def planner_of(job: Job, parts: Parts, executors: int) -> Planner:
-    """The planner with which a job begins, or goes on."""
-    return Planner(parts, executors, job.lengths, job.settings, job.resume.frame if job.resume else 0)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..engine.part import Parts
+from ...engine.part import Parts
 from . import islands
 from .assign import assign, firsts, total
 from .teams import GAIN, LEAST, Team

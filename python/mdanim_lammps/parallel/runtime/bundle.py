@@ -10,14 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from ..engine.instance import State
-from ..engine.part import Parts
-from ..engine.spares import Spares
-from ..model.system import side_by_side
-from .energy import losses
+from ...engine.instance import State
+from ...engine.part import Parts
+from ...engine.spares import Spares
+from ...model.system import side_by_side
+from ...run.energy import losses
+from ...run.frame_source import run_window
+from ..plan.frame_plan import FramePlan
 from .messages import gathered, scatter
-from .planning import FramePlan
-from .source import run_window
 
 WORTH = 0.5
 """Least share of an instance's particles that it is kept for; the others are those of objects that it has laid aside."""

@@ -13,15 +13,16 @@ from contextlib import contextmanager
 import numpy as np
 from mpi4py import MPI
 
-from ..engine.instance import State
-from ..engine.part import Parts
-from ..engine.spares import Spares
-from ..errors import MdanimError
+from ...engine.instance import State
+from ...engine.part import Parts
+from ...engine.spares import Spares
+from ...errors import MdanimError
+from ...run.energy import stored
+from ...run.frame_source import Account, Broken, add_clocks, penetration, pool
+from ..plan.orders import Order, Report
 from .bundle import Bundle, Wanted, wanted_bundles
 from .control import Control, make_control
-from .energy import stored
-from .messages import SUPERVISOR, Aborted, Ended, Failure, Job, Kept, Mail, Moved, Order, Report, Share, Tag, gathered, scatter
-from .source import Account, Broken, add_clocks, penetration, pool
+from .messages import SUPERVISOR, Aborted, Ended, Failure, Job, Kept, Mail, Moved, Share, Tag, gathered, scatter
 
 
 def serve(world: MPI.Comm) -> bool:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What every MPI rank of a distributed run executes: ``mpiexec -n K+1 python -m mdanim_lammps.driver.ranks FOLDER``.
+"""What every MPI rank of a distributed run executes: ``mpiexec -n K+1 python -m mdanim_lammps.parallel.runtime.ranks FOLDER``.
 
-Rank 0 is the supervisor: it takes the job that driver/launch.py has left in the folder and leaves the result there; progress goes
+Rank 0 is the supervisor: it takes the job that parallel/runtime/launch.py has left in the folder and leaves the result there; progress goes
 to its standard output, a line of JSON for every frame. All others are executors.
 """
 
@@ -15,7 +15,7 @@ import traceback
 from dataclasses import asdict
 from pathlib import Path
 
-from ..errors import MdanimError, OutputError
+from ...errors import MdanimError, OutputError
 from .launch import JOB, RESULT, Task, lost
 
 FAREWELL = 60.0
@@ -41,8 +41,8 @@ def main() -> None:
 def _supervise(world, exchange: Path) -> None:
     from mpi4py import MPI
 
-    from ..results.timeline import Timeline
-    from .run import Result, simulate
+    from ...results.timeline import Timeline
+    from ...run.loop import Result, simulate
     from .supervisor import Distributed
 
     task: Task = pickle.loads((exchange / JOB).read_bytes())

@@ -26,9 +26,9 @@ from ..results.ledger import LOSS, Ledger
 from ..results.trajectory import Trajectory, TrajectoryWriter
 from ..scene.wording import number
 from .energy import ledger_terms, rounding_energy
+from .frame_source import Account, Broken, Frame, Sequential, Source
 from .guard import Guard
 from .prepare import Prepared
-from .source import Account, Broken, Frame, Sequential, Source
 
 CHECKPOINT_SECONDS = 10.0
 """Wall time between checkpoints: a killed run loses at most this much, and a fast one does not write all the time."""

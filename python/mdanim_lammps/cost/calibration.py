@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What this machine needs for one of each kind of work: measured once in a few small runs, and stored for all later scenes.
 
-``python -m mdanim_lammps.driver.calibration`` measures and prints. That is done in a process of its own, because loading LAMMPS
+``python -m mdanim_lammps.cost.calibration`` measures and prints. That is done in a process of its own, because loading LAMMPS
 takes its time only once in a process.
 """
 
@@ -216,7 +216,7 @@ def measure() -> dict[str, float]:
     start = time.process_time()
     from ..engine.instance import Instance
     from ..engine.plugin import open_lammps
-    from . import run  # noqa: F401  what a run loads
+    from ..run import loop as run  # noqa: F401  what a run loads
 
     open_lammps()[0].close()
     rates = {"load": time.process_time() - start}
@@ -242,8 +242,8 @@ def measure() -> dict[str, float]:
 
 
 def _prepare(text: str):
+    from ..run.prepare import prepare
     from ..scene.parse import parse_scene
-    from .prepare import prepare
 
     return prepare(parse_scene(text))
 
@@ -355,7 +355,7 @@ def _frames() -> tuple[float, float]:
 
 def _run(ready, frames: int) -> float:
     """Seconds of a run of so many frames, of one step each."""
-    from .run import simulate
+    from ..run.loop import simulate
 
     ready = replace(ready, certificate=replace(ready.certificate, steps_per_frame=1, frames=frames))
     with tempfile.TemporaryDirectory() as folder:

@@ -19,11 +19,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import ExecutorLost, SetupError
-from ..results.checkpoint import Checkpoint
-from .planning import Settings
-from .prepare import Prepared
-from .run import STOP, Progress, Result
+from ...errors import ExecutorLost, SetupError
+from ...results.checkpoint import Checkpoint
+from ...run.loop import STOP, Progress, Result
+from ...run.prepare import Prepared
+from ..plan.frame_plan import Settings
 
 MPIEXEC = "MDANIM_MPIEXEC"
 """Environment variable with the command that starts ranks, up to ``-n``: ``mpiexec -f hosts`` on a cluster, ``srun``."""
@@ -62,7 +62,7 @@ def simulate_on(
     with tempfile.TemporaryDirectory(prefix=".ranks-", dir=folder) as exchange:
         task = Task(ready, folder, control, resume, time.perf_counter() if started is None else started, settings or Settings())
         (Path(exchange) / JOB).write_bytes(pickle.dumps(task, protocol=pickle.HIGHEST_PROTOCOL))
-        command = [*launcher(), "-n", str(executors + 1), sys.executable, "-m", "mdanim_lammps.driver.ranks", exchange]
+        command = [*launcher(), "-n", str(executors + 1), sys.executable, "-m", "mdanim_lammps.parallel.runtime.ranks", exchange]
         # A session of its own: Ctrl-C is for this process, which asks the supervisor to stop after a frame.
         ranks = subprocess.Popen(
             command,

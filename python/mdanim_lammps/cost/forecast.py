@@ -13,8 +13,8 @@ from ..model.basin import liquid_level
 from ..results.cost import Cost, Part
 from ..results.expect import recorded
 from ..results.trajectory import trajectory_bytes
+from ..run.prepare import Prepared
 from .calibration import lanes
-from .prepare import Prepared
 
 RINGING = 2.5
 """Mean speed of the fastest particle over the speed of an impact, where nothing damps what the impact sets off."""
@@ -25,7 +25,7 @@ WET = 0.12
 
 
 def forecast(ready: Prepared, rates: dict[str, float], *, setup: float | None = None) -> Cost:
-    """The expected cost of a run; ``rates`` as in driver/calibration.py.
+    """The expected cost of a run; ``rates`` as in cost/calibration.py.
 
     ``setup`` is what loading and modelling have taken already [s]; None estimates that too.
     """

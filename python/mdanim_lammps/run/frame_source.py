@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Where the frames of a run come from: one instance in this process, or executors on many (driver/supervisor.py)."""
+"""Where the frames of a run come from: one instance in this process, or executors on many (parallel/runtime/supervisor.py)."""
 
 from __future__ import annotations
 

@@ -14,8 +14,8 @@ import numpy as np
 
 from ..engine.part import Parts
 from ..model.basin import liquid_level
-from .planning import FramePlan, Settings, Terms
-from .prepare import Prepared
+from ..parallel.plan.frame_plan import FramePlan, Settings, Terms
+from ..run.prepare import Prepared
 
 AHEAD = 1.0
 """Seconds of the film that are looked at: beyond, what has met decides."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The supervisor: starts the executors, puts their shares of frames together, and under central control decides for them.
 
-It is the source of a run's frames (driver/source.py); what becomes of them is the same as in the sequential program.
+It is the source of a run's frames (run/frame_source.py); what becomes of them is the same as in the sequential program.
 """
 
 from __future__ import annotations
@@ -14,18 +14,20 @@ from dataclasses import dataclass, field
 import numpy as np
 from mpi4py import MPI
 
-from .. import errors
-from ..engine.instance import State
-from ..engine.part import Parts
-from ..errors import DivergedError
-from ..results.ledger import LOSS
-from ..results.timeline import Timeline
-from .energy import ledger_terms, potentials
-from .messages import LONG_NAP, NAP, SUPERVISOR, Ended, Failure, Grant, Job, Kept, Mail, Report, Share, Tag, scatter
-from .planner import Planner, planner_of
-from .planning import Settings
-from .prepare import Prepared
-from .source import Account, Broken, Frame
+from ... import errors
+from ...engine.instance import State
+from ...engine.part import Parts
+from ...errors import DivergedError
+from ...results.ledger import LOSS
+from ...results.timeline import Timeline
+from ...run.energy import ledger_terms, potentials
+from ...run.frame_source import Account, Broken, Frame
+from ...run.prepare import Prepared
+from ..plan.frame_plan import Settings
+from ..plan.orders import Report
+from ..plan.planner import Planner
+from .control import planner_of
+from .messages import LONG_NAP, NAP, SUPERVISOR, Ended, Failure, Grant, Job, Kept, Mail, Share, Tag, scatter
 
 CREDIT = 2
 """Frames that executors may be ahead of what has been taken."""

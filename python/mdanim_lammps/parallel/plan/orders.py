@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What a planner is told after a window, and what it answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .frame_plan import FramePlan
+
+
+@dataclass(frozen=True)
+class Report:
+    """What an executor tells of its objects at the end of a window."""
+
+    objects: np.ndarray
+    """Whole numbers, int64, shape (m,)."""
+    low: np.ndarray
+    """Corners of their boxes, eq. (3.14) [m], shape (m, 3)."""
+    high: np.ndarray
+    speed: np.ndarray
+    """Of the fastest particle of each [m/s], shape (m,)."""
+    cost: np.ndarray
+    """Processor time for a frame of each [us], int64, shape (m,)."""
+    pool_cost: int | None = None
+    """The same of the liquid, from the executor that has it."""
+    escaped: tuple[int, ...] = ()
+    """Objects that have left their reserved boxes: the window must be done again."""
+    fingerprint: str = ""
+    """Of the plan that was followed: all must have followed the same."""
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is to be done next."""
+
+    plan: FramePlan
+    low: np.ndarray
+    """Corners of the boxes that are reserved for objects, eq. (6.17), the pool's last [m], shape (M, 3)."""
+    high: np.ndarray
+    steps: int
+    """Of the window that is to come."""
+    commit: bool
+    """Whether the window is done; if not it starts again, from its beginning, with these wider boxes."""
