@@ -168,6 +168,15 @@ def test_compare_and_render_use_an_output_folder(scene):
         ),
         pytest.param(["cube.txt", "--set", "nonsense"], 2, ["NAME=VALUE"], id="set without value"),
         pytest.param(["wrong.txt", "--no-movie"], 6, ["MISSED"], id="missed expectation"),
+        pytest.param(["cube.txt", "-o", "."], 7, ["-o .: the output folder is the current folder", "cube.out"], id="here"),
+        pytest.param(["cube.txt", "-o", ""], 7, ["the output folder is the current folder"], id="no name"),
+        pytest.param(["build", "cube.txt", "-o", ".."], 7, ["-o ..: the output folder holds the current folder"], id="above"),
+        pytest.param(["cube.txt", "-o", "/"], 7, ["-o /: the output folder holds the current folder"], id="everything"),
+        pytest.param(["study", "cube.txt", "-o", "/"], 7, ["-o /: the output folder holds"], id="study of everything"),
+        pytest.param(["sub/deep.txt", "-o", "sub"], 7, ["-o sub: the output folder holds the scene"], id="over the scene"),
+        pytest.param(["movie.txt"], 7, ['movie "/etc/x.mp4"', "lies outside of the output folder"], id="a movie elsewhere"),
+        pytest.param(["avi.txt"], 7, ['movie "x.avi"', "written as .mp4"], id="another kind of movie"),
+        pytest.param(["run", "bad.txt"], 3, ["bad.txt:7:14: error"], id="run as a word"),
     ],
 )
 def test_exit_codes(scene, arguments, code, words):
@@ -183,11 +192,82 @@ def test_exit_codes(scene, arguments, code, words):
     scene(GOOD + water + "effects { liquid off }\nexpect liquid.level = 0.5 m +- 1 cm\n", "dry.txt")
     scene(GOOD.replace("time 0.1 s", "time 0.1 s\n  timestep 1 s"), "fast.txt")
     scene(GOOD + "expect cube.position.z at 0.1 s = 9 m +- 1 m\n", "wrong.txt")
+    (directory / "sub").mkdir()
+    scene(GOOD, "sub/deep.txt")
+    scene(GOOD + 'render { movie "/etc/x.mp4" }\n', "movie.txt")
+    scene(GOOD + 'render { movie "x.avi" }\n', "avi.txt")
     done = run(*arguments, cwd=directory)
     assert done.returncode == code, done.stdout + done.stderr
     assert "Traceback" not in done.stderr
     for word in words:
         assert word in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "words"),
+    [
+        pytest.param(["-o", "nowhere/x.mp4"], 7, "there is no folder nowhere; make it first", id="no folder"),
+        pytest.param(["-o", "x.xyz"], 2, "written as .mp4; give it a name such as x.mp4", id="no movie's name"),
+        pytest.param(["-o", "cube.txt"], 2, "written as .mp4", id="the scene"),
+        pytest.param(["--scene", "look.txt"], 2, "looks at 'kube'", id="a camera without its object"),
+        pytest.param(["--fps", "0.0004", "-o", "slow.mp4"], 0, "", id="a slow movie"),
+    ],
+)
+def test_render_refuses(drawn, options, code, words):
+    """Render refuses names that are no movie's, folders that are not there, cameras that look at nothing."""
+    before = {p.name for p in drawn.iterdir()}
+    (drawn / "look.txt").write_text(GOOD + "object kube { shape sphere 1 m position (9, 9, 9) m mass 1 kg elasticity 1 MPa }\n"
+                                    "render { camera from (1, 1, 1) m look kube }\n")  # fmt: skip
+    done = run("render", "cube.out", *options, "--size", 160, 90, "-q", cwd=drawn)
+    assert done.returncode == code, done.stderr
+    assert words in done.stderr and "Traceback" not in done.stderr
+    assert {p.name for p in drawn.iterdir()} - before - {"look.txt"} == ({"slow.mp4"} if code == 0 else set())
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory):
+    """A folder with a scene and its output."""
+    folder = tmp_path_factory.mktemp("drawn")
+    (folder / "cube.txt").write_text(GOOD)
+    assert run("cube.txt", "--no-movie", "-q", cwd=folder).returncode == 0
+    return folder
+
+
+def test_a_stopped_run_says_how_to_draw_it(scene, monkeypatch, capsys):
+    """A run that the guard has stopped ends with the command that draws its frames, and that command draws them."""
+    from mdanim_lammps import cli
+    from mdanim_lammps.run.guard import Guard
+    from mdanim_lammps.errors import DivergedError
+
+    def look(self, step, *_):
+        if step > 50:
+            raise DivergedError("cube has blown up")
+
+    path = scene()
+    monkeypatch.setattr(Guard, "look", look)
+    with pytest.raises(SystemExit) as end:
+        cli.main([str(path)])
+    assert end.value.code == 6
+    message = capsys.readouterr().err
+    command = message.split("draw what was kept with: mdanim-lammps ")[1].splitlines()[0]
+    assert run(*command.split(), "--size", 160, 90).returncode == 0
+    assert (path.parent / "cube.out" / "movie.mp4").stat().st_size > 1000
+
+
+def test_a_movie_cannot_leave_the_folder_by_a_link(scene, tmp_path):
+    """Refuse a movie whose folder inside the output folder is a link to elsewhere."""
+    from mdanim_lammps.api import movie_file
+    from mdanim_lammps.errors import OutputError
+    from mdanim_lammps.scene.parse import load_scene
+
+    record = load_scene(scene(GOOD + 'render { movie "sub/x.mp4" }\n'))
+    folder, elsewhere = tmp_path / "x.out", tmp_path / "elsewhere"
+    folder.mkdir()
+    elsewhere.mkdir()
+    assert movie_file(folder, record) == folder / "sub" / "x.mp4"
+    (folder / "sub").symlink_to(elsewhere)
+    with pytest.raises(OutputError, match="lies outside of the output folder"):
+        movie_file(folder, record)
 
 
 def test_a_large_scene_is_told_before_modelling(prepared, monkeypatch, capsys):

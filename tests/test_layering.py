@@ -26,6 +26,7 @@ ROOMS = [
     "picture",
     "report",
     "api",
+    "terminal",
     "cli",
     "__main__",
 ]

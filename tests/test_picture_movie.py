@@ -3,16 +3,20 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from mdanim_lammps.errors import OutputError, SetupError
+from mdanim_lammps.errors import OutputError, SetupError, UsageError
 from mdanim_lammps.picture import movie
 from mdanim_lammps.picture.movie import movie_frames, render_movie, render_still
 from mdanim_lammps.results.trajectory import Trajectory, TrajectoryWriter
-from mdanim_lammps.scene.scene import Render
+from mdanim_lammps.scene.scene import Camera, Render
 from picture_samples import falling, slab_scene, write
 
 SMALL = Render(size=(160, 90))
@@ -47,7 +51,7 @@ def test_movie_shows_every_frame_in_turn(short, tmp_path, processes):
         tmp_path / "movie.mp4",
         processes=processes,
         frames=tmp_path / "frames",
-        progress=lambda done, total: seen.append((done, total)),
+        on_progress=lambda done, total: seen.append((done, total)),
     )
     pictures, fps = read_movie(path, (160, 90))
     assert len(pictures) == 6 and fps == 10
@@ -110,7 +114,7 @@ def test_unfinished_movie_leaves_nothing(short, tmp_path):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        render_movie(short, SMALL, tmp_path / "movie.mp4", processes=2, progress=interrupt)
+        render_movie(short, SMALL, tmp_path / "movie.mp4", processes=2, on_progress=interrupt)
     assert sorted(os.listdir(tmp_path)) == ["movie.mp4", "run"]
     assert (tmp_path / "movie.mp4").read_text() == "older"
 
@@ -144,11 +148,42 @@ def test_failing_encoder_is_named(short, tmp_path, monkeypatch):
         render_movie(short, SMALL, tmp_path / "movie.mp4")
 
 
-def test_failing_process_is_named(short, tmp_path, monkeypatch):
-    """What a drawing process dies of is told in one line."""
-    monkeypatch.setattr(movie.pickle, "dumps", lambda task: b"not a task")
-    with pytest.raises(SetupError, match="process that draws pictures failed: .*UnpicklingError"):
-        render_movie(short, SMALL, tmp_path / "movie.mp4", processes=2)
+def test_killed_process_is_named(short, tmp_path):
+    """A process that draws and is killed ends the movie with an error, and nothing is left of it."""
+
+    def kill(done, total):
+        for child in multiprocessing.active_children():
+            os.kill(child.pid, signal.SIGKILL)
+
+    with pytest.raises(SetupError, match="a process that draws pictures was killed.*render again"):
+        render_movie(short, SMALL, tmp_path / "movie.mp4", processes=2, fps=1000.0, on_progress=kill)
+    assert sorted(os.listdir(tmp_path)) == ["run"]
+
+
+def test_a_failing_painter_is_named(short, tmp_path, monkeypatch):
+    """What a process that draws fails of is told as one process tells it."""
+    with pytest.raises(UsageError, match="looks at 'nobody'"):
+        render_movie(short, Render(camera=(Camera((0, 0, 1), "nobody"),), size=(160, 90)), tmp_path / "movie.mp4", processes=2)
+
+
+def test_a_script_without_a_guard_may_draw(short, tmp_path):
+    """Processes that draw do not run the user's script again, which would simulate again."""
+    script = tmp_path / "draw.py"
+    script.write_text(
+        "print('begun', flush=True)\n"
+        "from mdanim_lammps.picture.movie import render_movie\n"
+        "from mdanim_lammps.scene.scene import Render\n"
+        f"render_movie({str(tmp_path / 'run')!r}, Render(size=(160, 90)), {str(tmp_path / 'movie.mp4')!r}, processes=2)\n"
+    )
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=100)
+    assert (done.returncode, done.stdout) == (0, "begun\n"), done.stderr
+    assert (tmp_path / "movie.mp4").exists()
+
+
+@pytest.mark.parametrize("fps", [0.0004, 1e-5, 29.97, 30.0])
+def test_slow_movies_have_a_rate(fps):
+    """No rate is rounded to 0, nor by more than a thousandth."""
+    assert float(movie._rate(fps)) == pytest.approx(fps, rel=1e-3)
 
 
 def test_no_frames_no_movie(tmp_path):

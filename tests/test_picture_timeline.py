@@ -154,3 +154,9 @@ def test_the_command_line_tells_and_draws(tmp_path):
     refused = run("timeline", "cube.out", cwd=tmp_path)
     assert refused.returncode == 4 and "by one process" in refused.stderr and "-n" in refused.stderr
     assert run("timeline", "nowhere", cwd=tmp_path).returncode == 7
+
+
+def test_a_title_is_no_formula(tmp_path):
+    """Signs that mark formulas for matplotlib stand in a title as they are, also where no formula could be read."""
+    draw(log(), tmp_path / "a.png", "costs $3 and \\frac{$")
+    assert (tmp_path / "a.png").stat().st_size > 1000

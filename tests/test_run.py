@@ -256,7 +256,7 @@ def test_a_file_named_stop_stops_the_run(tmp_path):
             (folder / "stop").touch()
 
     with pytest.raises(Interrupted, match="resume"):
-        Scene.load(tmp_path / "fall.txt").run(folder, watch=watch)
+        Scene.load(tmp_path / "fall.txt").run(folder, on_progress=watch)
     assert Checkpoint.read(folder / "checkpoint").frame == 2
     assert not (folder / "stop").exists()
 
@@ -270,7 +270,7 @@ def test_interrupt_during_an_impact_resumes_bit_for_bit(tmp_path):
     frame = int(np.argmax(whole.ledger.array("contact")))
     assert whole.ledger.rows[frame]["contact"] > 0 and whole.ledger.rows[frame]["damping_loss"] > 0
     with pytest.raises(Interrupted, match="mdanim-lammps resume"):
-        scene.run(tmp_path / "cut.out", watch=stop_at(frame))
+        scene.run(tmp_path / "cut.out", on_progress=stop_at(frame))
     checkpoint = Checkpoint.read(tmp_path / "cut.out" / "checkpoint")
     assert checkpoint.frame == frame, "the frame at which it was stopped is the one that is kept"
     resumed = simulate(scene.prepared, tmp_path / "cut.out", resume=checkpoint)
@@ -414,7 +414,7 @@ def test_interrupt_in_a_liquid_resumes_bit_for_bit(splash, tmp_path, frame):
     """Stop while the liquid moves; the resumed film, heights included, is that of the run that never stopped."""
     scene = Scene.load(splash.folder.parent / "splash.txt")
     with pytest.raises(Interrupted):
-        scene.run(tmp_path / "cut.out", watch=stop_at(frame))
+        scene.run(tmp_path / "cut.out", on_progress=stop_at(frame))
     checkpoint = Checkpoint.read(tmp_path / "cut.out" / "checkpoint")
     assert checkpoint.frame == frame and checkpoint.liquid is not None
     resumed = simulate(scene.prepared, tmp_path / "cut.out", resume=checkpoint)

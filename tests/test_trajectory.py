@@ -77,6 +77,16 @@ def test_object_is_its_own_particles(slab, tmp_path):
             np.testing.assert_allclose(track.velocity[i], velocity[first], rtol=0, atol=1e-12)
 
 
+def test_a_mistyped_object_is_suggested(slab, tmp_path):
+    """A name that no object has is a KeyError with the nearest name."""
+    scene, models, frames = slab
+    with (
+        Trajectory(write(tmp_path / "trajectory.h5", scene, models, frames)) as t,
+        pytest.raises(KeyError, match=r"no object is called 'bal'; did you mean 'ball'"),
+    ):
+        t.objects["bal"]
+
+
 def test_boundary_only_keeps_surface_and_centre(tmp_path):
     """With ``save boundary`` the surface and the centre of mass are those of the whole object."""
     scene, models = slab_scene()

@@ -6,18 +6,19 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 
 from .certificate import Certificate
 from .effects import Verdict
-from .errors import UsageError
+from .errors import OutputError, UsageError
 from .parallel.runtime.launch import simulate_on
 from .results.checkpoint import Checkpoint
-from .results.files import MARK, open_folder, write_json
-from .run.loop import Result, simulate, write_inputs
+from .results.files import MARK, open_folder, read_json, write_json
+from .run.loop import Progress, Result, simulate, write_inputs
 from .run.manifest import manifest
 from .run.prepare import Prepared, prepare
 from .scene.parse import load_scene
@@ -70,19 +71,19 @@ class Scene:
         control: str | None = None,
         force: bool = False,
         movie: bool = False,
-        watch=None,
+        on_progress: Callable[[Progress], None] | None = None,
     ) -> Result:
         """Simulate into ``folder`` (default: ``NAME.out`` beside the scene); returns ledger, outcomes and cost.
 
         On several ``executors``, ``control`` is ``central`` (the default) or ``peers``: the frames are the same to the last bit.
-        ``watch`` is called with a Progress after every frame. A scene with ``accuracy error p %`` and no setting stored beside
-        it is studied first, for two minutes at most. Raises SceneError, RefusedError, DivergedError, OutputError.
+        ``on_progress`` is called with a Progress after every frame. A scene with ``accuracy error p %`` and no setting stored
+        beside it is studied first, for two minutes at most. Raises SceneError, RefusedError, DivergedError, OutputError.
         """
         started = time.perf_counter()
-        settled = settle(self.record, make=True, study=(Path(folder) if folder else default_folder(self.record)) / STUDY)
+        settled = settle(self.record, make=True, study=output_folder(self.record, folder) / STUDY)
         ready = self.prepared if settled.scene is self.record else prepare(settled.scene)
         folder = open_run(ready, folder, force=force)
-        result = run_frames(ready, folder, executors=executors, control=control, watch=watch, started=started)
+        result = run_frames(ready, folder, executors=executors, control=control, watch=on_progress, started=started)
         if movie:
             from .picture.movie import render_movie
 
@@ -96,16 +97,35 @@ class Scene:
         budget: float = BUDGET,
         ladders: Sequence[str] = (),
         force: bool = False,
-        watch=lambda line: None,
+        on_progress: Callable[[str], None] = lambda line: None,
     ) -> Study:
         """Measure what accuracy costs in time (docs/accuracy.md), for ``budget`` seconds of wall time.
 
         Points are kept in ``folder``/study (default folder: ``NAME.out`` beside the scene) as soon as they are measured, and
-        not measured again. ``ladders`` names some of "time step", "resolution", "sweeps"; ``force`` throws away the study of
-        another scene; ``watch`` is told what goes on, line by line. Raises SceneError, RefusedError, DivergedError, OutputError.
+        not measured again. ``ladders`` names some of "time step", "resolution", "sweeps", "contact"; ``force`` throws away
+        the study of another scene; ``on_progress`` is called with a line of text for each piece of work. Raises SceneError,
+        RefusedError, DivergedError, OutputError.
         """
-        folder = Path(folder) if folder is not None else default_folder(self.record)
-        return run_study(self.record, folder / STUDY, budget=budget, only=ladders, force=force, watch=watch)
+        study = output_folder(self.record, folder) / STUDY
+        return run_study(self.record, study, budget=budget, only=ladders, force=force, watch=on_progress)
+
+
+def output_folder(record: SceneRecord, out: str | Path | None = None) -> Path:
+    """The output folder of a run (None: the default one), refused where ``--force`` would delete what is no result.
+
+    Raises OutputError for the current folder, for one that holds it, and for one that holds the scene.
+    """
+    if out is None:
+        return default_folder(record)
+    folder, here = Path(out).resolve(), Path.cwd().resolve()
+    if here.is_relative_to(folder):
+        what = "is the current folder" if here == folder else "holds the current folder"
+        raise OutputError(
+            f"-o {out}: the output folder {what}, and --force would delete it; name one inside, e.g. -o {record.name}.out"
+        )
+    if record.path and record.path.resolve().is_relative_to(folder):
+        raise OutputError(f"-o {out}: the output folder holds the scene, and --force would delete it; name another folder")
+    return folder if ".." in Path(out).parts else Path(out)
 
 
 def default_folder(record: SceneRecord) -> Path:
@@ -115,7 +135,8 @@ def default_folder(record: SceneRecord) -> Path:
 
 def open_run(ready: Prepared, folder: str | Path | None, *, force: bool) -> Path:
     """Make the output folder (None: the default one) with all that is known before the run. Raises OutputError."""
-    folder = Path(folder) if folder is not None else default_folder(ready.scene)
+    folder = output_folder(ready.scene, folder)
+    movie_file(folder, ready.scene)
     with _study_aside(folder):
         open_folder(folder, force=force)
     write_json(folder / MARK, manifest(ready.scene, ready.lock, sys.argv))
@@ -138,8 +159,35 @@ def _study_aside(folder: Path) -> Iterator[None]:
 
 
 def movie_file(folder: Path, record: SceneRecord) -> Path:
-    """Where the movie goes: ``render { movie "NAME" }``, taken from the output folder, or movie.mp4."""
-    return folder / (record.render.movie or "movie.mp4")
+    """Where the movie goes: ``render { movie "NAME" }``, taken from the output folder, or movie.mp4.
+
+    Raises OutputError for a file outside of the output folder, also where a link leads outside, and for one that is no .mp4.
+    """
+    name = record.render.movie or "movie.mp4"
+    path = folder / name
+    if Path(name).is_absolute() or ".." in Path(name).parts or not path.resolve().is_relative_to(folder.resolve()):
+        raise OutputError(
+            f'render {{ movie "{name}" }}: lies outside of the output folder {folder}; write a name such as movie.mp4'
+        )
+    if path.suffix.lower() != ".mp4":
+        raise OutputError(f'render {{ movie "{name}" }}: a movie is written as .mp4; write a name such as movie.mp4')
+    return path
+
+
+def stored_scene(folder: Path) -> SceneRecord:
+    """The scene of an output folder, under its own name. Raises OutputError, SceneError."""
+    if not (folder / MARK).is_file():
+        what = (
+            "has no run in it"
+            if folder.is_dir()
+            else "is a file, not the output folder of a run"
+            if folder.exists()
+            else "does not exist"
+        )
+        raise OutputError(f"{folder} {what}; name the folder that a run has written, NAME.out beside NAME.txt or what -o said")
+    stored = read_json(folder / MARK)
+    scene = load_scene(folder / "scene.lock.txt")
+    return replace(scene, name=Path(stored["scene"]).stem if stored.get("scene") else folder.stem)
 
 
 def run_frames(

@@ -10,22 +10,25 @@ import shlex
 import shutil
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Literal
 
 from cyclopts import App, CycloptsError, Parameter
 
 from . import __version__
-from .errors import ExitCode, MdanimError, OutputError, RefusedError, UsageError
+from .errors import DivergedError, ExitCode, OutputError, RefusedError, UsageError
+from .terminal import PROGRAM, documented_exit, open_streams, progress_bar, stop_on_sigterm
 
 STARTED = time.perf_counter()
 """When this process began to work: reading and modelling are part of what a run costs."""
 
 app = App(
-    name="mdanim-lammps",
+    name=PROGRAM,
     help="Physically simulated animation of elastic objects, on top of LAMMPS.",
     version=__version__,
     version_flags=["--version"],
+    suppress_keyboard_interrupt=False,
 )
 
 Set = Annotated[
@@ -47,6 +50,7 @@ Control = Annotated[
 Force = Annotated[bool, Parameter(negative=(), help="Overwrite an output folder of an earlier run.")]
 
 
+@app.command(name="run")
 @app.default
 def run(
     scene: Path,
@@ -72,12 +76,14 @@ def run(
     movie
         Make movie.mp4 at the end.
     """
-    from .api import open_run
+    from .api import open_run, output_folder
     from .cost.speedup_forecast import prospect
     from .report import prospect_lines
 
     _check_executors(executors)
-    record = _settle(_with_accuracy(_load(scene, set_), accuracy), make=True, quiet=quiet, out=out)
+    record = _with_accuracy(_load(scene, set_), accuracy)
+    out = output_folder(record, out)
+    record = _settle(record, make=True, quiet=quiet, out=out)
     ready = _prepare_record(record, allow_unstable=allow_unstable)
     _announce(ready, quiet, verbose, executors, control)
     if executors > 1 and not quiet:
@@ -107,20 +113,10 @@ def check(
     format
         Text for people, JSON for programs.
     """
-    from .certificate import margin_lines
     from .cost.calibration import calibration
     from .cost.forecast import forecast
     from .cost.speedup_forecast import prospect
-    from .report import (
-        certificate_line,
-        check_json,
-        effect_line,
-        forecast_line,
-        output_line,
-        prospect_lines,
-        scene_lines,
-        who_line,
-    )
+    from .report import check_json, check_lines
 
     _check_executors(executors)
     record = _with_accuracy(_load(scene, set_, strict=strict), accuracy)
@@ -130,22 +126,10 @@ def check(
     cost = forecast(ready, rates, setup=setup)
     spread = prospect(ready, executors) if executors > 1 else None
     if format == "json":
-        print(json.dumps(check_json(ready, cost, spread), indent=1, ensure_ascii=False))
+        print(json.dumps(check_json(ready, cost, spread), indent=1))
         return
     _warn(ready)
-    print("\n".join(scene_lines(ready)))
-    print(certificate_line(ready))
-    print("limits")
-    for line in margin_lines(ready.certificate):
-        print(line)
-    print(output_line(ready))
-    print(forecast_line(cost))
-    if spread is not None:
-        print(who_line(executors, None))
-        print("\n".join(prospect_lines(spread)))
-    print("effects")
-    for verdict in ready.verdicts.values():
-        print(effect_line(verdict))
+    print("\n".join(check_lines(ready, cost, spread)))
 
 
 @app.command
@@ -168,9 +152,11 @@ def build(
     scene
         The scene file.
     """
-    from .api import open_run
+    from .api import open_run, output_folder
 
-    record = _settle(_with_accuracy(_load(scene, set_), accuracy), make=True, quiet=quiet, out=out)
+    record = _with_accuracy(_load(scene, set_), accuracy)
+    out = output_folder(record, out)
+    record = _settle(record, make=True, quiet=quiet, out=out)
     ready = _prepare_record(record, allow_unstable=allow_unstable)
     _announce(ready, quiet, verbose)
     folder = open_run(ready, out, force=force)
@@ -198,10 +184,11 @@ def resume(
     movie
         Make movie.mp4 at the end.
     """
+    from .api import stored_scene
     from .results.checkpoint import Checkpoint
 
     _check_executors(executors)
-    scene = _stored_scene(folder)
+    scene = stored_scene(folder)
     if (folder / "summary.json").exists():
         raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
     checkpoint = Checkpoint.read(folder / "checkpoint")
@@ -243,10 +230,11 @@ def render(
         raise UsageError(f"--size {size[0]} {size[1]}: width and height must lie between 2 and 8192, e.g. --size 1280 720")
     if fps is not None and not 0.0 < fps <= 1000.0:
         raise UsageError(f"--fps {fps:g}: must be above 0 and at most 1000, e.g. --fps 30")
-    record = _stored_scene(folder) if scene is None else _load(scene, ())
-    from .api import movie_file
+    from .api import movie_file, stored_scene
 
-    path = out or movie_file(folder, record)
+    stored = stored_scene(folder)
+    record = stored if scene is None else _load(scene, ())
+    path = movie_file(folder, record) if out is None else _picture_file(out, ".mp4")
     _render(folder, record, path, quiet=quiet, size=size, fps=fps, frames=folder / "frames" if frames else None)
     if not quiet:
         print(f"movie    {path}" + (f"   pictures in {folder / 'frames'}" if frames else ""))
@@ -263,16 +251,17 @@ def timeline(folder: Path, /, *, out: Annotated[Path | None, Parameter(name=["-o
     out
         The picture's file; default timeline.png in the folder.
     """
+    from .api import stored_scene
     from .picture.timeline import draw
     from .results.timeline import TIMELINE, Timeline
 
-    scene = _stored_scene(folder)
+    scene = stored_scene(folder)
     if not (folder / TIMELINE).exists():
         raise RefusedError(
             f"{folder} was simulated by one process, so there is no {TIMELINE}; "
             "executors are asked for with -n: mdanim-lammps SCENE -n 2"
         )
-    path = out or folder / "timeline.png"
+    path = folder / "timeline.png" if out is None else _picture_file(out, ".png")
     draw(Timeline.read(folder), path, scene.title or scene.name)
     print(f"picture  {path}")
 
@@ -320,17 +309,18 @@ def study(
     budget
         Wall time, e.g. "30 s" or "2 min".
     ladders
-        Only these, e.g. "time step, resolution"; known are time step, resolution, sweeps.
+        Only these, e.g. "time step, resolution"; known are time step, resolution, sweeps, contact.
     """
-    from .api import STUDY, default_folder
+    from .api import STUDY, output_folder
     from .study.report import order_lines, table
     from .study.study import run_study
 
     seconds = _seconds("--budget", budget)
     record = _with_accuracy(_load(scene, set_), accuracy)
     only = [name.strip() for name in ladders.split(",") if name.strip()]
-    told = (lambda line: None) if quiet else (lambda line: print(f"study    {line}", file=sys.stderr, flush=True))
-    done = run_study(record, (out or default_folder(record)) / STUDY, budget=seconds, only=only, force=force, watch=told)
+    done = run_study(
+        record, output_folder(record, out) / STUDY, budget=seconds, only=only, force=force, watch=_lines("study", quiet)
+    )
     if quiet:
         return
     from rich.console import Console
@@ -373,13 +363,18 @@ def _settle(scene, *, make: bool, quiet: bool = False, out: Path | None = None):
     from .api import STUDY, default_folder
     from .study.target import settle
 
-    told = (lambda line: None) if quiet else (lambda line: print(f"accuracy {line}", file=sys.stderr, flush=True))
-    settled = settle(scene, make=make, study=(out or default_folder(scene)) / STUDY, watch=told)
+    study = (out or default_folder(scene)) / STUDY
+    settled = settle(scene, make=make, study=study, watch=_lines("accuracy", quiet))
     if settled.warning:
         print(settled.warning, file=sys.stderr)
     if settled.line and not quiet:
         print(settled.line)
     return settled.scene
+
+
+def _lines(name: str, quiet: bool) -> Callable[[str], None]:
+    """A function that prints a line of progress on stderr."""
+    return lambda line: None if quiet else print(f"{name:<8} {line}", file=sys.stderr, flush=True)
 
 
 def _prepare_record(scene, *, allow_unstable: bool):
@@ -418,24 +413,13 @@ def _seconds(option: str, text: str) -> float:
     return seconds
 
 
-def _stored_scene(folder: Path):
-    """The scene of an output folder, under its own name."""
-    from dataclasses import replace
-
-    from .results.files import MARK, read_json
-
-    if not (folder / MARK).is_file():
-        what = (
-            "has no run in it"
-            if folder.is_dir()
-            else "is a file, not the output folder of a run"
-            if folder.exists()
-            else "does not exist"
-        )
-        raise OutputError(f"{folder} {what}; name the folder that a run has written, NAME.out beside NAME.txt or what -o said")
-    manifest = read_json(folder / "manifest.json")
-    scene = _load(folder / "scene.lock.txt", ())
-    return replace(scene, name=Path(manifest["scene"]).stem if manifest.get("scene") else folder.stem)
+def _picture_file(path: Path, suffix: str) -> Path:
+    """The file that -o names for a movie or a picture. Raises UsageError."""
+    if path.suffix.lower() != suffix:
+        raise UsageError(f"-o {path}: this file is written as {suffix}; give it a name such as {path.stem or 'movie'}{suffix}")
+    if not path.parent.is_dir():
+        raise OutputError(f"-o {path}: there is no folder {path.parent}; make it first, or name another")
+    return path
 
 
 def _warn(ready) -> None:
@@ -466,8 +450,14 @@ def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, **opt
     from .results.timeline import Timeline
     from .scene.wording import number
 
-    with _bar("run", quiet) as bar:
-        result = run_frames(ready, folder, started=STARTED, watch=lambda p: bar(p.frame, p.frames, progress_line(p)), **options)
+    file = movie_file(folder, ready.scene)
+    try:
+        with progress_bar("run", quiet=quiet) as bar:
+            result = run_frames(
+                ready, folder, started=STARTED, watch=lambda p: bar(p.frame, p.frames, progress_line(p)), **options
+            )
+    except DivergedError as error:
+        raise DivergedError(f"{error}\n  draw what was kept with: {PROGRAM} render {shlex.quote(str(folder))}") from error
     # Before the movie: what was found must not depend on whether pictures can be made here.
     if not quiet:
         print(cost_line(result, ready.certificate.steps * ready.certificate.timestep))
@@ -482,7 +472,6 @@ def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, **opt
     for outcome in result.missed:
         print(outcome, file=sys.stderr)
     if movie:
-        file = movie_file(folder, ready.scene)
         _render(folder, ready.scene, file, quiet=quiet)
     if not quiet:
         print(f"movie    {file}" if movie else f"output   {folder}")
@@ -496,55 +485,17 @@ def _render(folder: Path, scene, path: Path, *, quiet: bool, **options) -> None:
 
     start = time.perf_counter()
     try:
-        with _bar("movie", quiet) as bar:
+        with progress_bar("movie", quiet=quiet) as bar:
             render_movie(
                 folder,
                 scene.render,
                 path,
                 **options,
-                progress=lambda done, total: bar(done, total, movie_line(done, total, time.perf_counter() - start)),
+                on_progress=lambda done, total: bar(done, total, movie_line(done, total, time.perf_counter() - start)),
             )
     except KeyboardInterrupt:
         print(f"the movie was interrupted, the run is complete; draw it with: mdanim-lammps render {folder}", file=sys.stderr)
         raise SystemExit(ExitCode.INTERRUPTED) from None
-
-
-class _bar:
-    """A progress bar on stderr: moving on a terminal, a line now and then elsewhere."""
-
-    def __init__(self, name: str, quiet: bool):
-        self.name, self.quiet = name, quiet
-
-    def __enter__(self):
-        if self.quiet:
-            return lambda done, total, text: None
-        from rich.console import Console
-        from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
-        from rich.table import Column
-
-        console = Console(stderr=True)
-        if not console.is_terminal:
-            return self._line
-        narrow = console.width < 120  # what does not fit is cut off at the end, not the bar
-        columns = [Column(no_wrap=True, min_width=width) for width in (8, 10 if narrow else 24, 4)]
-        self.progress = Progress(
-            TextColumn(f"{self.name:<8}", table_column=columns[0]),
-            BarColumn(bar_width=10 if narrow else 24, table_column=columns[1]),
-            TaskProgressColumn(table_column=columns[2]),
-            TextColumn("{task.description}", table_column=Column(no_wrap=True, overflow="ellipsis")),
-            console=console,
-        )
-        self.progress.start()
-        self.task = self.progress.add_task("", total=None)
-        return lambda done, total, text: self.progress.update(self.task, completed=done, total=total, description=text)
-
-    def __exit__(self, *_):
-        if hasattr(self, "progress"):
-            self.progress.stop()
-
-    def _line(self, done: int, total: int, text: str) -> None:
-        if done * 10 // total != (done - 1) * 10 // total:
-            print(f"{self.name:<8} {100 * done // total:3d}%  {text}", file=sys.stderr, flush=True)
 
 
 def _suggest(arguments: list[str]) -> str | None:
@@ -562,36 +513,18 @@ def _suggest(arguments: list[str]) -> str | None:
 
 def main(argv: list[str] | None = None) -> None:
     """Run the command line and exit with one of the documented codes."""
+    open_streams()
+    stop_on_sigterm()
     arguments = list(sys.argv[1:] if argv is None else argv)
     debug = "--debug" in arguments
     arguments = [a for a in arguments if a != "--debug"]
-    if (message := _suggest(arguments)) is not None:
-        print(f"mdanim-lammps: error: {message}", file=sys.stderr)
-        raise SystemExit(ExitCode.USAGE)
-    if not arguments:
-        app.help_print([])
-        raise SystemExit(ExitCode.USAGE)
-    try:
-        app(arguments, exit_on_error=False, print_error=False)
-    except CycloptsError as error:
-        print(f"mdanim-lammps: error: {' '.join(str(error).split())}; see 'mdanim-lammps --help'", file=sys.stderr)
-        raise SystemExit(ExitCode.USAGE) from None
-    except MdanimError as error:
-        if debug:
-            raise
-        told = str(error)
-        print(
-            told if told.startswith("error: ") or ": error: " in told.split("\n")[0] else f"mdanim-lammps: error: {told}",
-            file=sys.stderr,
-        )
-        raise SystemExit(error.exit_code) from None
-    except KeyboardInterrupt:
-        print("mdanim-lammps: interrupted", file=sys.stderr)
-        raise SystemExit(ExitCode.INTERRUPTED) from None
-    except BrokenPipeError:
-        raise SystemExit(ExitCode.DONE) from None
-    except OSError as error:
-        if debug:
-            raise
-        print(f"mdanim-lammps: error: {error}", file=sys.stderr)
-        raise SystemExit(ExitCode.IO) from None
+    with documented_exit(debug=debug):
+        if (message := _suggest(arguments)) is not None:
+            raise UsageError(message)
+        if not arguments:
+            app.help_print([])
+            raise SystemExit(ExitCode.USAGE)
+        try:
+            app(arguments, exit_on_error=False, print_error=False)
+        except CycloptsError as error:
+            raise UsageError(f"{' '.join(str(error).split())}; see '{PROGRAM} --help'") from None

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from pathlib import Path
 
+from .certificate import margin_lines
 from .cost.speedup_forecast import Prospect
 from .effects import Verdict
 from .model import plan_spacing
@@ -178,11 +179,25 @@ def forecast_line(cost: Cost) -> str:
 
 def _about(seconds: float) -> str:
     """A time in one digit, two where the first is a 1: no forecast is better than that."""
-    for unit, size in (("h", 3600.0), ("min", 60.0), ("s", 1.0), ("ms", 1e-3)):
-        if seconds >= size:
-            break
+    units = (("h", 3600.0), ("min", 60.0), ("s", 1.0), ("ms", 1e-3))
+    unit, size = next((u for u in units if seconds >= u[1]), units[-1])
     digits = 2 if f"{seconds / size:e}".startswith("1") else 1
     return f"{float(f'{seconds / size:.{digits}g}'):g} {unit}"
+
+
+def check_lines(ready: Prepared, forecast: Cost, prospect: Prospect | None = None) -> list[str]:
+    """What ``check`` prints: scene, certificate, limits, output, cost, what executors will bring, and every effect."""
+    return [
+        *scene_lines(ready),
+        certificate_line(ready),
+        "limits",
+        *margin_lines(ready.certificate),
+        output_line(ready),
+        forecast_line(forecast),
+        *([] if prospect is None else [who_line(prospect.executors, None), *prospect_lines(prospect)]),
+        "effects",
+        *map(effect_line, ready.verdicts.values()),
+    ]
 
 
 def check_json(ready: Prepared, forecast: Cost | None = None, prospect: Prospect | None = None) -> dict:

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..errors import UsageError
 from ..results.trajectory import Trajectory
 from ..scene.scene import Camera
+from ..scene.words import did_you_mean
 
 FIELD_OF_VIEW = 30.0
 """Vertical angle of view [degrees]."""
@@ -166,6 +168,9 @@ class CameraPath:
     Args:
         cameras: at least one; without a time: 0 s.
         trajectory: for the centres of objects that are followed.
+
+    Raises:
+        UsageError: a camera looks at an object that the trajectory does not hold.
     """
 
     def __init__(self, cameras: Sequence[Camera], trajectory: Trajectory):
@@ -175,6 +180,12 @@ class CameraPath:
         self._up = np.array([camera.up for camera in order], dtype=float)
         self._look = [camera.look for camera in order]
         self._trajectory = trajectory
+        for look in self._look:
+            if isinstance(look, str) and look not in trajectory.names:
+                hint = did_you_mean(look, trajectory.names)
+                raise UsageError(
+                    f"a camera looks at '{look}', which {trajectory.path} does not hold; {hint or 'name an object of the run'}"
+                )
 
     def at(self, time: float) -> View:
         """The view at a simulated time [s]."""

@@ -4,21 +4,38 @@
 from __future__ import annotations
 
 import os
-import pickle
-import subprocess
+import signal
 import sys
 import tempfile
+import threading
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack, closing, contextmanager
 from fractions import Fraction
+from multiprocessing import get_context, parent_process
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 
-from ..errors import MdanimError, OutputError, SetupError
+from ..errors import OutputError, SetupError
+from ..results.files import disk_errors, write_whole
 from ..results.trajectory import Trajectory
 from ..scene.scene import Render
 
+CODING = {
+    "codec": "libx264",
+    "quality": None,  # -crf says it
+    "macro_block_size": 1,  # no other size than asked for
+    "ffmpeg_log_level": "error",
+    "output_params": [
+        *("-vf", "scale=out_color_matrix=bt709:out_range=tv", "-preset", "veryfast", "-crf", "17"),
+        *("-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-movflags", "+faststart"),
+    ],
+}
+"""H.264 that browsers and slides play."""
 FRAMES_PER_PROCESS = 40
 """A process takes about two seconds to start; with fewer frames than this it does not pay."""
 
@@ -65,7 +82,7 @@ def render_movie(
     fps: float | None = None,
     processes: int | None = None,
     frames: str | Path | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    on_progress: Callable[[int, int], None] | None = None,
 ) -> Path:
     """Draw all frames as an H.264 movie (mp4, yuv420p) that runs at the speed of the simulated time.
 
@@ -77,27 +94,29 @@ def render_movie(
         fps: pictures per second, instead of the trajectory's; the nearest frames are shown.
         processes: how many draw at the same time; None takes as many as pay on this host.
         frames: a folder; also write every picture there, as ``frame-00000.png`` and so on.
-        progress: called with (pictures done, pictures in all) after each.
+        on_progress: called with (pictures done, pictures in all) after each.
 
     Raises:
-        SetupError: this host cannot draw off screen, or has no ffmpeg.
+        SetupError: this host cannot draw off screen, has no ffmpeg, or a process that draws was killed.
         OutputError: no frames, or the movie cannot be written.
     """
     if not isinstance(trajectory, Trajectory):
         with Trajectory(trajectory) as opened:
-            return render_movie(opened, render, path, size=size, fps=fps, processes=processes, frames=frames, progress=progress)
+            return render_movie(
+                opened, render, path, size=size, fps=fps, processes=processes, frames=frames, on_progress=on_progress
+            )
     width, height = size or render.size
     size = (width + width % 2, height + height % 2)
     shown, rate = movie_frames(trajectory, fps)
     processes = processes or max(1, min(_cores(), len(shown) // FRAMES_PER_PROCESS))
     pictures = _draw_here if processes == 1 else _draw_apart
-    with _encoder(Path(path), size, rate) as encode:
+    with _encoder(Path(path), size, rate, len(shown)) as encode:
         for done, picture in enumerate(pictures(trajectory, render, size, shown, processes), start=1):
             encode(picture)
             if frames is not None:
                 _save_png(picture, Path(frames) / f"frame-{done - 1:05d}.png")
-            if progress is not None:
-                progress(done, len(shown))
+            if on_progress is not None:
+                on_progress(done, len(shown))
     return Path(path)
 
 
@@ -130,7 +149,8 @@ def _cores() -> int:
 
 
 def _rate(fps: float) -> Fraction:
-    return Fraction(fps).limit_denominator(1001)
+    """A rate that movies can have; slow ones have the denominators that they need."""
+    return Fraction(fps).limit_denominator(max(1001, round(1000.0 / fps)))
 
 
 # --- drawing ----------------------------------------------------------------------------------------------
@@ -145,156 +165,127 @@ def _draw_here(trajectory, render, size, shown: Sequence[int], _processes) -> It
 
 
 def _draw_apart(trajectory, render, size, shown: Sequence[int], processes: int) -> Iterator[np.ndarray]:
-    """Every process draws each n-th picture; read in turn they come in order, and nobody runs far ahead."""
+    """Pictures in order, drawn by several processes that are a few pictures ahead."""
     from .camera import action_of
 
-    action = action_of(trajectory)
-    threads = max(1, _cores() // processes)
-    # Software OpenGL would start as many threads per process as there are cores.
-    environment = os.environ | {"LP_NUM_THREADS": str(threads), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    workers = []
+    task = (trajectory.path.absolute(), render, size, action_of(trajectory), max(1, _cores() // processes))
+    ahead: deque = deque()
+    # Spawned: a forked process cannot use the OpenGL of its parent.
+    with ProcessPoolExecutor(processes, get_context("spawn"), _begin_worker, task) as pool:
+        try:
+            for index in shown:
+                with _no_main():
+                    ahead.append(pool.submit(_draw_in_worker, int(index)))
+                if len(ahead) > 2 * processes:
+                    yield ahead.popleft().result()
+            while ahead:
+                yield ahead.popleft().result()
+        except BrokenProcessPool:
+            raise SetupError(
+                "a process that draws pictures was killed, perhaps because memory ran out; what it printed stands above. "
+                "The frames are kept: render again, perhaps with a smaller --size"
+            ) from None
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def _no_main() -> Iterator[None]:
+    """Hide the main module from new processes: each would run the user's script again, with all that the script simulates."""
+    main, sys.modules["__main__"] = sys.modules["__main__"], ModuleType("__main__")
     try:
-        for k in range(processes):
-            worker = subprocess.Popen(
-                [sys.executable, "-m", "mdanim_lammps.picture.worker"],
-                env=environment,
-                # A file, not a pipe: nobody reads it before the end.
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=(said := tempfile.TemporaryFile()),
-            )
-            worker.said = said
-            workers.append(worker)
-            task = (trajectory.path.absolute(), render, size, action, [int(i) for i in shown[k::processes]])
-            worker.stdin.write(pickle.dumps(task))
-            worker.stdin.close()
-        width, height = size
-        for turn in range(len(shown)):
-            worker = workers[turn % processes]
-            data = worker.stdout.read(width * height * 3)
-            if len(data) < width * height * 3:
-                raise _worker_error(worker)
-            yield np.frombuffer(data, dtype=np.uint8).reshape(height, width, 3)
+        yield
     finally:
-        for worker in workers:
-            worker.kill()
-            worker.wait()
-            worker.stdout.close()
-            worker.said.close()
+        sys.modules["__main__"] = main
 
 
-def _worker_error(worker: subprocess.Popen) -> MdanimError:
-    code = worker.wait()
-    worker.said.seek(0)
-    said = worker.said.read().decode(errors="replace").strip().splitlines()
-    reason = said[-1] if said else f"it ended with code {code}"
-    return SetupError(f"a process that draws pictures failed: {reason}; `render --processes 1` shows more")
+_worker: dict = {}
+"""Of a process that draws: its task, and the painter once there is one."""
+
+
+def _begin_worker(*task) -> None:
+    # Ctrl-C reaches the whole group of processes; the parent ends this one.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # A parent that is killed leaves no process behind.
+    threading.Thread(target=lambda: (parent_process().join(), os._exit(1)), daemon=True).start()
+    _worker["task"] = task
+
+
+def _draw_in_worker(frame: int) -> np.ndarray:
+    if "painter" not in _worker:
+        path, render, size, action, threads = _worker["task"]
+        # Software OpenGL starts as many threads per process as there are cores.
+        os.environ["LP_NUM_THREADS"] = str(threads)
+        from .render import Painter
+
+        _worker["painter"] = Painter(Trajectory(path), render, size=size, action=action)
+    return _worker["painter"].frame(frame)
 
 
 # --- writing ----------------------------------------------------------------------------------------------
 
 
 @contextmanager
-def _encoder(path: Path, size: tuple[int, int], rate: Fraction) -> Iterator[Callable[[np.ndarray], None]]:
-    """Pipe pictures to ffmpeg; the movie gets its name at the end, an error leaves nothing behind."""
-    part = path.with_name(path.name + ".part")
+def _encoder(path: Path, size: tuple[int, int], rate: Fraction, pictures: int) -> Iterator[Callable[[np.ndarray], None]]:
+    """Send pictures to ffmpeg; the movie gets its name at the end, an error leaves nothing behind."""
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        log = part.open("wb")
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror}; name another file or folder") from None
-    log.close()
-    ffmpeg = subprocess.Popen(
-        [
-            _ffmpeg(),
-            "-loglevel",
-            "error",
-            "-y",
-            "-f",
-            "rawvideo",
-            "-pix_fmt",
-            "rgb24",
-            "-s",
-            f"{size[0]}x{size[1]}",
-            "-r",
-            str(rate),
-            "-i",
-            "-",
-            "-an",
-            "-vf",
-            "scale=out_color_matrix=bt709:out_range=tv",
-            "-c:v",
-            "libx264",
-            "-preset",
-            "veryfast",
-            "-crf",
-            "17",
-            "-pix_fmt",
-            "yuv420p",
-            "-colorspace",
-            "bt709",
-            "-color_primaries",
-            "bt709",
-            "-color_trc",
-            "bt709",
-            "-movflags",
-            "+faststart",
-            "-f",
-            "mp4",
-            str(part),
-        ],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-    )
+        import imageio_ffmpeg
 
-    def failed() -> OutputError:
-        said = ffmpeg.stderr.read().decode(errors="replace").strip().splitlines()
-        return OutputError(
-            f"{path}: the movie cannot be written: {said[-1] if said else 'ffmpeg stopped'}; "
-            "make room or name another file, then `render` again"
-        )
-
-    def encode(picture: np.ndarray) -> None:
-        try:
-            ffmpeg.stdin.write(picture)
-        except OSError:
-            raise failed() from None
-
-    try:
-        yield encode
-        try:
-            ffmpeg.stdin.close()
-        except OSError:
-            raise failed() from None
-        if ffmpeg.wait():
-            raise failed()
-        os.replace(part, path)
-    finally:
-        ffmpeg.kill()
-        ffmpeg.wait()
-        ffmpeg.stderr.close()
-        part.unlink(missing_ok=True)
-
-
-def _ffmpeg() -> str:
-    try:
-        from imageio_ffmpeg import get_ffmpeg_exe
-
-        return get_ffmpeg_exe()
+        imageio_ffmpeg.get_ffmpeg_exe()
     except (ImportError, RuntimeError) as error:
         raise SetupError(f"no ffmpeg for the movie ({error}); pip install imageio-ffmpeg, or run with --no-movie") from None
+    with ExitStack() as stack:
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            part = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix=".movie-", dir=path.parent))) / "movie.mp4"
+        except OSError as error:
+            raise OutputError(f"{path}: cannot be written: {error.strerror}; name another file or folder") from None
+        said = stack.enter_context(tempfile.TemporaryFile())
+        writer = stack.enter_context(closing(imageio_ffmpeg.write_frames(part, size, fps=rate, **CODING)))
+
+        def failed() -> OutputError:
+            said.seek(0)
+            words = said.read().decode(errors="replace").strip().splitlines()
+            return OutputError(
+                f"{path}: the movie cannot be written: {words[-1] if words else 'ffmpeg stopped'}; "
+                "make room or name another file, then `render` again"
+            )
+
+        def encode(picture: np.ndarray) -> None:
+            try:
+                writer.send(picture)
+            except OSError:
+                raise failed() from None
+
+        with _stderr_into(said.fileno()):
+            writer.send(None)
+        yield encode
+        writer.close()
+        try:
+            # ffmpeg's exit code cannot be had: a movie that is not whole cannot be read, or is too short.
+            if imageio_ffmpeg.count_frames_and_secs(part)[0] != pictures:
+                raise failed()
+            os.replace(part, path)
+        except (OSError, RuntimeError):
+            raise failed() from None
+
+
+@contextmanager
+def _stderr_into(file: int) -> Iterator[None]:
+    """Give processes that are started meanwhile a file in place of stderr."""
+    sys.stderr.flush()
+    kept = os.dup(2)
+    os.dup2(file, 2)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
 
 
 def _save_png(picture: np.ndarray, path: Path) -> None:
     from PIL import Image
 
-    part = path.with_name(path.name + ".part")
-    try:
+    with disk_errors(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-        Image.fromarray(picture).save(part, format="png", compress_level=4)
-        os.replace(part, path)
-    except OSError as error:
-        with suppress(OSError):
-            part.unlink()
-        raise OutputError(f"{path}: cannot be written: {error.strerror or error}; make room or name another file") from None
+    write_whole(path, lambda part: Image.fromarray(picture).save(part, format="png", compress_level=4))

@@ -114,7 +114,7 @@ def draw(timeline: Timeline, path: Path, title: str = "") -> None:
     _draw_owners(panel(0.5, owning), timeline, colors)
     _draw_moves(panel(0.6 + owning, moving), timeline)
     _draw_doing(panel(1.25 + owning + moving, doing), timeline, colors, 1.0 + 0.42 / doing)
-    figure.text(left / width, 1.0 - 0.15 / height, fontsize=12, va="top", s=headline(timeline, title))
+    figure.text(left / width, 1.0 - 0.15 / height, fontsize=12, va="top", s=headline(timeline, title), parse_math=False)
     write_whole(path, lambda part: figure.savefig(part, dpi=130, format="png", metadata={"Software": None}))
 
 

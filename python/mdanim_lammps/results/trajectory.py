@@ -17,6 +17,7 @@ from ..errors import OutputError
 from ..model.basin import Grid
 from ..model.model import Model, Surface
 from ..scene.scene import Save, Scene
+from ..scene.words import did_you_mean
 from .catalogue import Catalogue, Pool, catalogue_of, distinct_surfaces, stored_particles
 
 if TYPE_CHECKING:
@@ -305,8 +306,8 @@ class Trajectory:
 
     @cached_property
     def objects(self) -> Mapping[str, ObjectTrack]:
-        """The objects by name."""
-        return {name: ObjectTrack(self, index) for index, name in enumerate(self.names)}
+        """The objects by name; a KeyError for another name suggests one."""
+        return _Tracks((name, ObjectTrack(self, index)) for index, name in enumerate(self.names))
 
     def position(self, frame: int) -> np.ndarray:
         """Positions of all stored particles [m], shape (N, 3)."""
@@ -413,6 +414,13 @@ class Trajectory:
         if not -len(self) <= frame < len(self):
             raise IndexError(f"frame {frame} of a trajectory with {len(self)} frames")
         return range(len(self))[frame]
+
+
+class _Tracks(dict):
+    """Objects by name."""
+
+    def __missing__(self, name):
+        raise KeyError(f"no object is called {name!r}; {did_you_mean(str(name), self) or 'see Trajectory.names'}")
 
 
 class ObjectTrack:

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The terminal: the standard streams, a progress bar, and how a command ends."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from .errors import ExitCode, MdanimError
+
+PROGRAM = "mdanim-lammps"
+
+
+def open_streams() -> None:
+    """Make stdin, stdout and stderr usable, whatever this process was started with.
+
+    A closed stream (``>&-``) becomes /dev/null: otherwise the next file that is opened gets its number, and what LAMMPS or MPI
+    print goes into that file. Characters that the encoding of a stream lacks are printed as escapes.
+    """
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # the lowest free number, which is this one
+        if getattr(sys, name) is None:
+            setattr(sys, name, os.fdopen(number, "w" if number else "r", encoding="utf-8", closefd=False))
+        if number and hasattr(getattr(sys, name), "reconfigure"):
+            getattr(sys, name).reconfigure(errors="backslashreplace")
+
+
+def stop_on_sigterm() -> None:
+    """Let SIGTERM end the program as Ctrl-C does, with a message; a run has handlers of its own while it simulates."""
+    if threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
+
+
+def stdout_is_closed() -> bool:
+    """Whether stdout is a pipe that nothing reads any more, as of ``mdanim-lammps check SCENE | head -1``."""
+    try:
+        poll = select.poll()
+        poll.register(sys.stdout.fileno(), 0)
+        return any(events & select.POLLERR for _, events in poll.poll(0))
+    except (OSError, ValueError):
+        return False
+
+
+def error_line(error: object) -> str:
+    """An error as it is printed: with the name of the program, unless it begins with a place in a scene."""
+    text = str(error)
+    placed = text.startswith("error: ") or ": error: " in text.split("\n")[0]
+    return text if placed else f"{PROGRAM}: error: {text}"
+
+
+@contextmanager
+def documented_exit(*, debug: bool) -> Iterator[None]:
+    """End the program with one message and a documented exit code for whatever is raised inside.
+
+    ``debug`` lets errors through, for their traceback. Raises SystemExit.
+    """
+    try:
+        yield
+        sys.stdout.flush()
+    except MdanimError as error:
+        if debug:
+            raise
+        print(error_line(error), file=sys.stderr)
+        raise SystemExit(error.exit_code) from None
+    except KeyboardInterrupt:
+        print(f"{PROGRAM}: interrupted", file=sys.stderr)
+        raise SystemExit(ExitCode.INTERRUPTED) from None
+    except OSError as error:
+        if isinstance(error, BrokenPipeError) and stdout_is_closed():
+            # What is left in the buffer of stdout must not fail a second time when Python ends.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            raise SystemExit(ExitCode.DONE) from None
+        if debug:
+            raise
+        print(error_line(error), file=sys.stderr)
+        raise SystemExit(ExitCode.IO) from None
+
+
+@contextmanager
+def progress_bar(name: str, *, quiet: bool) -> Iterator[Callable[[int, int, str], None]]:
+    """A progress bar on stderr: moving on a terminal, a line for each tenth elsewhere.
+
+    Gives a function of (pieces done, pieces in all, text).
+    """
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+    from rich.table import Column
+
+    console = Console(stderr=True)
+
+    def line(done: int, total: int, text: str) -> None:
+        if not quiet and done * 10 // total != (done - 1) * 10 // total:
+            print(f"{name:<8} {100 * done // total:3d}%  {text}", file=sys.stderr, flush=True)
+
+    if quiet or not console.is_terminal:
+        yield line
+        return
+    bar = 10 if console.width < 120 else 24  # the text is cut off where it does not fit, not the bar
+    columns = [Column(no_wrap=True, min_width=width) for width in (8, bar, 4)]
+    with Progress(
+        TextColumn(f"{name:<8}", table_column=columns[0]),
+        BarColumn(bar_width=bar, table_column=columns[1]),
+        TaskProgressColumn(table_column=columns[2]),
+        TextColumn("{task.description}", table_column=Column(no_wrap=True, overflow="ellipsis")),
+        console=console,
+    ) as progress:
+        task = progress.add_task("", total=None)
+        yield lambda done, total, text: progress.update(task, completed=done, total=total, description=text)
