@@ -27,9 +27,11 @@ demo: setup
 	$(BIN)/mdanim-lammps scenes/beam.txt --force
 
 test: setup
+	$(BIN)/python tests/plugin_library.py
 	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 soak: setup
+	$(BIN)/python tests/plugin_library.py
 	$(BIN)/python -m pytest -n 2 -m soak tests/stability tests/test_ranks.py tests/mpi
 
 bench: setup

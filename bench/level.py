@@ -2,7 +2,7 @@
 """Cost of the level rule and of the surface: ``python bench/level.py [cells] [rounds]``.
 
 A basin of cells^3 cells, half full, with a body of a third of its width afloat; calls in interleaved rounds,
-medians in milliseconds. MDANIM_LEVEL_LIBRARY as in tests/level_lab.py.
+medians in milliseconds.
 """
 
 import statistics

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The plugin's automaton on its own, for tests and benchmarks. Arrays of cells are uint8 (nz, ny, nx)."""
+"""The automaton on its own, for tests and benchmarks. Arrays of cells are uint8 (nz, ny, nx)."""
 
 from __future__ import annotations
 
 import ctypes
-import os
-from functools import cache
 
 import numpy as np
-from mdanim_lammps.engine.plugin import open_lammps
+from plugin_library import library
 
 FULLEST = 250
 """Most units that a cell may hold (plugin/liquid/cells.h)."""
@@ -17,31 +15,20 @@ CELLS = np.ctypeslib.ndpointer(np.uint8, flags="C_CONTIGUOUS")
 INT, LONG, SEED = ctypes.c_int, ctypes.c_long, ctypes.c_uint64
 HANDLE, TEXT = ctypes.c_void_p, ctypes.c_char_p
 FUNCTIONS = {
-    "new": (HANDLE, [INT, INT, INT, SEED, INT]),
+    "new": (HANDLE, [INT, INT, INT, SEED, INT, TEXT, INT]),
     "free": (None, [HANDLE]),
     "use": (TEXT, [HANDLE, INT]),
     "sweep": (None, [HANDLE, SEED, INT]),
     "plain_sweep": (None, [HANDLE, SEED]),
     "at_rest": (INT, [HANDLE]),
     "displace": (LONG, [HANDLE, CELLS, SEED, TEXT, INT]),
-    "fill": (LONG, [HANDLE, LONG, HANDLE, SEED]),
+    "fill": (LONG, [HANDLE, LONG, HANDLE, SEED, TEXT, INT]),
     "total": (LONG, [HANDLE]),
     "count_solid": (LONG, [HANDLE]),
     "get": (None, [HANDLE, CELLS]),
     "set": (None, [HANDLE, CELLS]),
     "solid": (None, [HANDLE, CELLS]),
 }
-
-
-@cache
-def library() -> ctypes.CDLL:
-    """The plugin, or what MDANIM_AUTOMATON_LIBRARY names: plugin/automaton*.cpp alone need no LAMMPS."""
-    named = os.environ.get("MDANIM_AUTOMATON_LIBRARY")
-    if named:
-        return ctypes.CDLL(named)
-    lmp, plugin = open_lammps()
-    lmp.close()
-    return plugin
 
 
 def function(name: str):
@@ -57,11 +44,15 @@ class Automaton:
     def __init__(self, shape, seed=1, vertical="lower"):
         self.shape = tuple(shape)
         nz, ny, nx = self.shape
-        self.handle = function("new")(nx, ny, nz, seed, vertical == "any")
+        error = ctypes.create_string_buffer(500)
+        self.handle = function("new")(nx, ny, nz, seed, vertical == "any", error, len(error))
+        if not self.handle:
+            raise MemoryError(error.value.decode())
         self.now = 0
 
     def __del__(self):
-        function("free")(self.handle)
+        if self.handle:
+            function("free")(self.handle)
 
     def use(self, instruction_set: int) -> str | None:
         """Choose kernels by number; their name, or None where this processor lacks them."""
@@ -90,7 +81,12 @@ class Automaton:
         """Pour units from the lowest layer up; how many found no room."""
         if within is not None:
             within = np.ascontiguousarray(within, np.uint8).reshape(self.shape)
-        return function("fill")(self.handle, units, None if within is None else within.ctypes.data, self.now)
+        error = ctypes.create_string_buffer(500)
+        where = None if within is None else within.ctypes.data
+        left = function("fill")(self.handle, units, where, self.now, error, len(error))
+        if left < 0:
+            raise MemoryError(error.value.decode())
+        return left
 
     @property
     def content(self) -> np.ndarray:

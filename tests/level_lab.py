@@ -1,33 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The level rule and the surface filter of the built plugin, from Python.
-
-The environment variable MDANIM_LEVEL_LIBRARY names another library: plugin/{bodies,level,surface,level_c}.cpp
-alone need no LAMMPS.
-"""
+"""The level rule and the surface filter, from Python."""
 
 from __future__ import annotations
 
 import ctypes
-import os
 from functools import cache
 
 import numpy as np
+from plugin_library import library
 
 BYTES = np.ctypeslib.ndpointer(np.uint8, flags="C_CONTIGUOUS")
 DOUBLES = np.ctypeslib.ndpointer(np.float64, flags="C_CONTIGUOUS")
 
 
 @cache
-def library() -> ctypes.CDLL:
-    """The library with its functions declared."""
-    named = os.environ.get("MDANIM_LEVEL_LIBRARY")
-    if named:
-        found = ctypes.CDLL(named)
-    else:
-        from mdanim_lammps.engine.plugin import open_lammps
-
-        lmp, found = open_lammps()  # the plugin loads only where LAMMPS is
-        lmp.close()
+def functions() -> ctypes.CDLL:
+    """The test library with the functions declared."""
+    found = library()
     handle, i, word = ctypes.c_void_p, ctypes.c_int, ctypes.c_uint64
     for name, result, *arguments in (
         ("level_new", handle, i, i, i),
@@ -48,32 +37,32 @@ class Pool:
 
     def __init__(self, content, solid):
         self.shape = np.shape(content)
-        self.handle = library().mdanim_level_new(*self.shape[::-1])
+        self.handle = functions().mdanim_level_new(*self.shape[::-1])
         self.set(content, solid)
 
     def __del__(self):
-        library().mdanim_level_delete(self.handle)
+        functions().mdanim_level_delete(self.handle)
 
     def set(self, content, solid) -> None:
         """Write all cells."""
-        as_bytes = lambda a: np.ascontiguousarray(a, np.uint8)
-        library().mdanim_level_set(self.handle, as_bytes(content), as_bytes(solid))
+        content, solid = (np.ascontiguousarray(a, np.uint8) for a in (content, solid))
+        functions().mdanim_level_set(self.handle, content, solid)
 
     @property
     def content(self) -> np.ndarray:
         """Units per cell (nz, ny, nx)."""
         cells = np.empty(self.shape, np.uint8)
-        library().mdanim_level_get(self.handle, cells)
+        functions().mdanim_level_get(self.handle, cells)
         return cells
 
     def move(self, seed=1, when=0, rate=0.25, at_least=0) -> int:
         """One call of the rule; units moved."""
-        return library().mdanim_level_move(self.handle, seed, when, rate, at_least)
+        return functions().mdanim_level_move(self.handle, seed, when, rate, at_least)
 
     def heights(self, just_moved=False) -> tuple[np.ndarray, bool]:
         """Heights (ny, nx) in cells, and whether all is level."""
         height = np.empty(self.shape[1:])
-        return height, bool(library().mdanim_level_heights(self.handle, height, just_moved))
+        return height, bool(functions().mdanim_level_heights(self.handle, height, just_moved))
 
 
 def smooth(height, blocked=None) -> np.ndarray:
@@ -81,5 +70,5 @@ def smooth(height, blocked=None) -> np.ndarray:
     height = np.ascontiguousarray(height, float)
     blocked = np.zeros(height.shape, np.uint8) if blocked is None else np.ascontiguousarray(blocked, np.uint8)
     result = np.empty_like(height)
-    library().mdanim_smooth_surface(*height.shape[::-1], height, blocked, result)
+    functions().mdanim_smooth_surface(*height.shape[::-1], height, blocked, result)
     return result

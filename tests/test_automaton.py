@@ -283,3 +283,9 @@ def test_filling_is_exact(shape):
         rest = a.fill(units)
         assert rest == twin.fill(q, solid, units, np.ones(shape), n, 1)
         assert (a.content == q).all() and a.total == units // 2 - left + units - rest
+
+
+def test_a_grid_without_memory_is_told():
+    """An absurd size raises an error with its reason instead of ending the process."""
+    with pytest.raises(MemoryError, match="out of memory"):
+        lab.Automaton((2**20, 2**20, 2**20))

@@ -4,9 +4,9 @@
 #include "liquid/automaton.h"
 
 #include "liquid/automaton_kernels.h"
+#include "liquid/automaton_rules.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <numeric>
@@ -16,45 +16,6 @@
 namespace mdanim {
 
 namespace {
-
-constexpr int LAYERS_PER_WORD = 16;    // of 32 bits, two for each layer
-
-// From which corner of its 2x2 block each corner takes its content; in ring order (0,0) (1,0) (1,1) (0,1).
-using Sources = std::array<std::uint8_t, 4>;
-
-// The horizontal rule for a block: `open` has a bit for each open corner, `draw` is 0 … 3. Permutes open
-// cells only, and which permutation depends on no content: so every arrangement stays as likely as any other.
-Sources horizontal_rule(int open, int draw)
-{
-  int ring[4], n = 0;
-  for (int corner = 0; corner < 4; ++corner)
-    if (open >> corner & 1) ring[n++] = corner;
-  Sources from = {0, 1, 2, 3};
-  const auto swap = [&](int a, int b) { std::swap(from[a], from[b]); };
-  if (n == 2) {
-    if (draw >= 2 && (ring[1] - ring[0]) % 2) swap(ring[0], ring[1]);
-  } else if (n > 2) {
-    if (draw == 1 && n == 4) {
-      swap(0, 2);
-      swap(1, 3);
-    } else if (draw == 1) {
-      const int solid = 6 - ring[0] - ring[1] - ring[2];
-      swap((solid + 1) % 4, (solid + 3) % 4);
-    } else if (draw >= 2) {
-      const int step = draw == 2 ? 1 : n - 1;
-      for (int k = 0; k < n; ++k) from[ring[(k + step) % n]] = ring[k];
-    }
-  }
-  return from;
-}
-
-// The vertical rule, eq. (4.16), for a cell and the one above it: how many units come down (-1, 0 or 1).
-int vertical_rule(int lower, int upper, Vertical vertical)
-{
-  if (upper > 0 && lower == 0) return 1;
-  if (lower > 1 && upper < (vertical == Vertical::LOWER ? lower : Cells::FULLEST)) return -1;
-  return 0;
-}
 
 std::array<std::array<Sources, 4>, 16> all_sources()
 {
@@ -67,18 +28,6 @@ std::array<std::array<Sources, 4>, 16> all_sources()
 constexpr int SIDES[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
 
 const auto SOURCES = all_sources();
-
-// Move the contents of the block whose first corner is *a.
-void permute_block(std::uint8_t *a, int row, const Sources &from)
-{
-  const std::uint8_t was[4] = {a[0], a[1], a[row + 1], a[row]};
-  a[0] = was[from[0]];
-  a[1] = was[from[1]];
-  a[row + 1] = was[from[2]];
-  a[row] = was[from[3]];
-}
-
-int open_corners(const std::uint8_t *a, int row) { return (a[0] & 1) | (a[1] & 2) | (a[row + 1] & 4) | (a[row] & 8); }
 
 // Whether a block has solid corners and can change all the same, by its open ones.
 std::array<bool, 16> all_broken()
@@ -178,15 +127,6 @@ bool Automaton::exchanges(int z) const
   return lower & MORE || (lower & ZERO && upper & (ONE | MORE));
 }
 
-bool Automaton::at_rest()
-{
-  for (int z = 0; z < cells.nz; ++z) {
-    if (!layers[z].known) look(z);
-    if (mixes(z) || (z > 0 && exchanges(z - 1))) return false;
-  }
-  return true;
-}
-
 // ---- a sweep ----
 
 std::uint32_t Automaton::Blocks::word(int block, int z) const
@@ -237,37 +177,6 @@ void Automaton::sweep(std::uint64_t when)
     horizontal(odd, z + 1);
     vertical_pair(z - 1);
   }
-}
-
-void Automaton::plain_sweep(std::uint64_t when)
-{
-  const auto permute = [&](const Blocks &blocks, Phase phase) {
-    const std::uint64_t key = draw_key(seed, when, phase);
-    for (int z = 0; z < cells.nz; ++z)
-      for (int by = 0; by < blocks.ny; ++by)
-        for (int bx = 0; bx < blocks.nx; ++bx) {
-          const std::size_t place = cells.at(blocks.first + 2 * bx, blocks.first + 2 * by, z);
-          const std::uint32_t word = draw32(key, blocks.word(blocks.block(bx, by), z));
-          const int draw = word >> 2 * (z % LAYERS_PER_WORD) & 3;
-          permute_block(&cells.content[place], cells.row, horizontal_rule(open_corners(&cells.open[place], cells.row), draw));
-        }
-  };
-  const auto exchange = [&](int first) {
-    for (int z = first; z + 1 < cells.nz; z += 2)
-      for (int y = 0; y < cells.ny; ++y)
-        for (int x = 0; x < cells.nx; ++x) {
-          const std::size_t lower = cells.at(x, y, z), upper = cells.at(x, y, z + 1);
-          if (!cells.open[lower] || !cells.open[upper]) continue;
-          const int down = vertical_rule(cells.content[lower], cells.content[upper], vertical);
-          cells.content[lower] += down;
-          cells.content[upper] -= down;
-        }
-  };
-  permute(even, Phase::EVEN_BLOCKS);
-  exchange(0);
-  permute(odd, Phase::ODD_BLOCKS);
-  exchange(1);
-  poured();
 }
 
 // ---- displacement and filling ----

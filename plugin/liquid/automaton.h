@@ -28,10 +28,6 @@ class Automaton {
   // One sweep: horizontal (even), vertical (a), horizontal (odd), vertical (b). `when` keys its random
   // numbers. Layers that no rule can change are passed over.
   void sweep(std::uint64_t when);
-  // The same cells, written as the rules read: slow, to check the other against.
-  void plain_sweep(std::uint64_t when);
-  // Whether a sweep is known to change nothing. False may also be said of a grid that happens to rest.
-  bool at_rest();
 
   // Make exactly these cells solid: 0 open, 1 solid, 2 solid and still; nx*ny*nz values, x fastest. The
   // liquid of a newly solid cell goes, whole, to a random open face neighbour with room for it, else to a
@@ -55,6 +51,8 @@ class Automaton {
   const char *use_instruction_set(int number);
 
  private:
+  friend struct AutomatonProbe;    // of the tests
+
   // What is known of a layer: a horizontal step cannot change it, so it lasts until liquid comes or goes.
   struct Layer {
     std::uint8_t holds;    // of its open cells; more than is true does no harm but costs time

@@ -154,41 +154,31 @@ ParticleRows::ParticleRows(LAMMPS *lmp, std::int64_t version, int width) : lmp(l
 {
   const Atom &atom = *lmp->atom;
   if (!atom.molecule) fail("objects are told apart by molecule IDs, and there are none; use 'atom_style bond'");
-  const auto merge = [](std::vector<Object> &all) {
-    std::sort(all.begin(), all.end(), [](const Object &p, const Object &q) { return p.id < q.id; });
-    std::size_t kept = 0;
-    for (const Object &next : all)
-      if (kept && all[kept - 1].id == next.id) {
-        all[kept - 1].lowest = std::min(all[kept - 1].lowest, next.lowest);
-        all[kept - 1].highest = std::max(all[kept - 1].highest, next.highest);
-      } else
-        all[kept++] = next;
-    all.resize(kept);
-  };
   std::vector<Object> here;
   for (int i = 0; i < atom.nlocal; ++i) {
-    const int id = atom.molecule[i];
-    local.emplace(atom.tag[i], i);    // LAMMPS's own map may be of the time before particles came to this rank
-    if (here.empty() || here.back().id != id) here.push_back({id, atom.tag[i], atom.tag[i]});
+    local.emplace(atom.tag[i], i);
+    if (here.empty() || here.back().id != atom.molecule[i]) here.push_back({static_cast<int>(atom.molecule[i]), atom.tag[i]});
     here.back().lowest = std::min(here.back().lowest, atom.tag[i]);
-    here.back().highest = std::max(here.back().highest, atom.tag[i]);
   }
-  merge(here);
   objects = gather(lmp, here);
-  merge(objects);
+  std::sort(objects.begin(), objects.end(),
+            [](const Object &p, const Object &q) { return std::tie(p.id, p.lowest) < std::tie(q.id, q.lowest); });
+  const auto last = std::unique(objects.begin(), objects.end(), [](const Object &p, const Object &q) { return p.id == q.id; });
+  objects.erase(last, objects.end());
 }
 
-const ParticleRows::Object &ParticleRows::object(int id) const
+tagint ParticleRows::lowest_tag(int id) const
 {
   const auto found =
       std::lower_bound(objects.begin(), objects.end(), id, [](const Object &object, int wanted) { return object.id < wanted; });
-  if (id < 1 || found == objects.end() || found->id != id) fail("there is no object {} (molecule ID)", id);
-  return *found;
+  if (found == objects.end() || found->id != id) fail("there is no object {} (molecule ID)", id);
+  return found->lowest;
 }
 
-void ParticleRows::add(StateKey of, tagint tag, tagint other, const void *from)
+void ParticleRows::add(int i, const void *from)
 {
-  rows.push_back({of, tag - object(of.a).lowest, of.b ? other - object(of.b).lowest : -1});
+  const int object = static_cast<int>(lmp->atom->molecule[i]);
+  rows.push_back({object, static_cast<std::int32_t>(lmp->atom->tag[i] - lowest_tag(object))});
   const auto *bytes = static_cast<const std::uint8_t *>(from);
   values.insert(values.end(), bytes, bytes + width);
 }
@@ -202,12 +192,10 @@ void ParticleRows::pack(StateRecords &into) const
   std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) { return all[p] < all[q]; });
   for (std::size_t n = 0; n < order.size(); ++n) {
     const Row &row = all[order[n]];
-    if (n && !(all[order[n - 1]] < row))
-      fail("particle {} of object {} (and {} of {}) has its state twice", row.tag, row.objects.a, row.other, row.objects.b);
-    Bytes &record = into[row.objects];
+    if (n && !(all[order[n - 1]] < row)) fail("particle {} of object {} has its state twice", row.tag, row.object);
+    Bytes &record = into[{row.object, 0}];
     if (record.empty()) append(record, version);
     append(record, row.tag);
-    if (row.objects.b) append(record, row.other);
     const auto from = all_values.begin() + static_cast<std::ptrdiff_t>(order[n] * width);
     record.insert(record.end(), from, from + static_cast<std::ptrdiff_t>(width));
   }
@@ -217,34 +205,30 @@ void ParticleRows::unpack(const StateRecords &records, const Visit &visit) const
 {
   const auto every_row = [&](auto &&take) {
     for (const auto &[key, record] : records) {
-      if (key.a == 0) continue;
-      const std::size_t size = (key.b ? 8 : 4) + width;
+      if (key.a == 0 || key.b != 0) continue;
+      const std::size_t size = sizeof(std::int32_t) + width;
       if (record.size() < sizeof version || (record.size() - sizeof version) % size)
-        fail("the record of objects ({}, {}) has {} bytes, not {} and a multiple of {}", key.a, key.b, record.size(),
-             sizeof version, size);
+        fail("the record of object {} has {} bytes, not {} and a multiple of {}", key.a, record.size(), sizeof version, size);
       const std::uint8_t *from = record.data(), *const end = from + record.size();
       const auto found = read<std::int64_t>(from);
-      if (found != version) fail("the record of objects ({}, {}) has version {}, {} is needed", key.a, key.b, found, version);
-      const Object &first = object(key.a), &second = key.b ? object(key.b) : first;
+      if (found != version) fail("the record of object {} has version {}, {} is needed", key.a, found, version);
+      const tagint lowest = lowest_tag(key.a);
       for (; from < end; from += width) {
-        const auto tag = first.lowest + read<std::int32_t>(from);
-        const auto other = key.b ? second.lowest + read<std::int32_t>(from) : 0;
-        if (tag < first.lowest || tag > first.highest || (key.b && (other < second.lowest || other > second.highest)))
-          fail("the record of objects ({}, {}) is of a particle that is in none of them", key.a, key.b);
-        take(key, tag, other, from);
+        const auto here = local.find(lowest + read<std::int32_t>(from));
+        const bool is_local = here != local.end() && lmp->atom->molecule[here->second] == key.a;
+        take(is_local ? here->second : -1, from);
       }
     }
   };
-  bigint here[2] = {0, 0}, all[2];    // rows of particles that are on this rank; all rows
-  every_row([&](StateKey, tagint tag, tagint, const std::uint8_t *) {
-    here[0] += static_cast<bigint>(local.count(tag));
-    ++here[1];
+  bigint here = 0, rows_given = 0, all = 0;
+  every_row([&](int i, const std::uint8_t *) {
+    here += i >= 0;
+    ++rows_given;
   });
-  MPI_Allreduce(&here[0], &all[0], 1, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
-  if (all[0] != here[1]) fail("{} rows are of {} particles that there are", here[1], all[0]);
-  every_row([&](StateKey key, tagint tag, tagint other, const std::uint8_t *from) {
-    const auto found = local.find(tag);
-    if (found != local.end()) visit(key, found->second, other, from);
+  MPI_Allreduce(&here, &all, 1, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
+  if (all != rows_given) fail("of {} particles in the state {} are there", rows_given, all);
+  every_row([&](int i, const std::uint8_t *from) {
+    if (i >= 0) visit(i, from);
   });
 }
 

@@ -69,42 +69,40 @@ StateRecords unflatten(const FlatState &flat);
 void write_restart(const Stateful &state, LAMMPS_NS::LAMMPS *lmp, const std::string &fix, FILE *file);
 void read_restart(Stateful &state, LAMMPS_NS::LAMMPS *lmp, const std::string &fix, const char *buffer);
 
-// What a fix keeps of one particle, or of one and a particle of another object, as a row of a record. Tags count from the lowest
-// of their object.
+// What a fix keeps of particles, as records of their objects, (a, 0): a row for each particle, its tag counted from the lowest of
+// the object and values of a fixed size.
 class ParticleRows {
  public:
-  // All rows have `width` bytes besides.
+  // All ranks make it together. All rows have `width` bytes of values.
   ParticleRows(LAMMPS_NS::LAMMPS *lmp, std::int64_t version, int width);
 
-  // A row of a local particle; `values` are `width` bytes. For one of two particles the object of the first is the lower one.
-  void add(int object, LAMMPS_NS::tagint tag, const void *values) { add({object, 0}, tag, 0, values); }
-  void add(StateKey objects, LAMMPS_NS::tagint tag, LAMMPS_NS::tagint other, const void *values);
-  // Adds records of all rows of all ranks: rows sorted by tags. Throws std::runtime_error when one is there twice.
+  // A row of the local particle i, whose object is 1 or more; `from` are `width` bytes.
+  void add(int i, const void *from);
+  // Adds records of all rows of all ranks: rows sorted by tags. Throws std::runtime_error on all ranks when one is there twice.
   void pack(StateRecords &into) const;
 
-  // visit(objects, i, other tag or 0, values) for every row whose first particle is i, a local one. Records of the key (0, 0) are
-  // passed over. Throws std::runtime_error, before any visit and on all ranks, when a record is of another version or width, or
-  // is of a particle that there is not.
-  using Visit = std::function<void(StateKey, int, LAMMPS_NS::tagint, const std::uint8_t *)>;
+  // visit(i, values) for every row of a local particle i. Passes over records of other keys. Throws std::runtime_error on all
+  // ranks, before any visit, when a record is of another version or width, or of particles that there are not.
+  using Visit = std::function<void(int, const std::uint8_t *)>;
   void unpack(const StateRecords &records, const Visit &visit) const;
 
  private:
   struct Row {
-    StateKey objects;
-    std::int32_t tag, other;    // from the lowest of the object; -1 for no other
-    bool operator<(const Row &that) const { return std::tie(objects, tag, other) < std::tie(that.objects, that.tag, that.other); }
+    int object;
+    std::int32_t tag;    // from the lowest of the object
+    bool operator<(const Row &other) const { return std::tie(object, tag) < std::tie(other.object, other.tag); }
   };
   struct Object {
     int id;
-    LAMMPS_NS::tagint lowest, highest;    // tags
+    LAMMPS_NS::tagint lowest;    // tag
   };
-  const Object &object(int id) const;
+  LAMMPS_NS::tagint lowest_tag(int object) const;
 
   LAMMPS_NS::LAMMPS *lmp;
   std::int64_t version;
   std::size_t width;
-  std::vector<Object> objects;    // of all ranks, by ascending IDs
-  std::unordered_map<LAMMPS_NS::tagint, int> local;
+  std::vector<Object> objects;                         // of all ranks, by ascending IDs
+  std::unordered_map<LAMMPS_NS::tagint, int> local;    // particles by tags; LAMMPS's own map may be older than they are here
   std::vector<Row> rows;
   Bytes values;
 };
