@@ -243,6 +243,41 @@ def test_single_restart_and_data_file_keep_the_coefficients(tmp_path):
             assert np.abs(again - force).max() < 1e-14
 
 
+@pytest.mark.parametrize("style", ["verlet", "verlet/mdanim"])
+def test_new_coefficients_act_without_a_setup(tmp_path, style):
+    """Alter a spring after a run and go on with 'pre no': from the next force on it is the new spring that pulls."""
+    pair = lab.join(*(lab.particles([[1.5 * k, 0.0, 0.0]], molecule=[1]) for k in range(2)))
+    pair = replace(pair, bond=np.array([[0, 1]]), k=np.array([2.0]), r0=np.ones(1), molecule=np.ones(2, int))
+    commands = ["fix run all mdanim/leapfrog", "timestep 1e-6", f"run_style {style}", "run 3"]
+    lmp = lab.load(pair, tmp_path, [*commands, "bond_coeff 1 100.0 1.0", "run 5 pre no"])
+    assert lab.by_tag(lmp, "f")[0, 0] == pytest.approx(100.0, rel=1e-6)
+    lmp.close()
+    lmp = lab.load(pair, tmp_path, [*commands, "bond_coeff 1 1.0 1.0 0.2"])
+    with pytest.raises(Exception, match=r"dashpots .* leave out 'pre no' of this run"):
+        lmp.command("run 5 pre no")
+    lmp.close()
+
+
+def test_a_restart_of_another_version_is_refused(tmp_path):
+    """Alter the version of the record of coefficients in a restart file, and leave it out as files before had none."""
+    import plugin_path
+
+    lmp = lab.load(BODY, tmp_path, ["fix run all mdanim/leapfrog", "run 0", f"write_restart {tmp_path}/r"])
+    lmp.close()
+    table, _ = lab.bond_types(BODY)
+    file, coefficients = (tmp_path / "r").read_bytes(), np.array([0.5 * table[0, 0], table[0, 1], 0.0]).tobytes()
+    at = file.index(coefficients)
+    assert file[at - 4 : at] == np.int32(1).tobytes()
+    for changed, version in ((file[: at - 4] + np.int32(7).tobytes() + file[at:], "7"), (file[: at - 4] + file[at:], "-?[0-9]+")):
+        (tmp_path / "r").write_bytes(changed)
+        other = plugin_path.lammps()
+        for command in ["atom_modify map array sort 0 0", "newton off"]:
+            other.command(command)
+        with pytest.raises(Exception, match=f"record of coefficients has version {version}, 1 is needed; write the restart"):
+            other.command(f"read_restart {tmp_path}/r")
+        other.close()
+
+
 @pytest.mark.parametrize(
     ("commands", "options", "message"),
     [

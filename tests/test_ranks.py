@@ -20,6 +20,8 @@ RENUMBERED = Path(__file__).parent / "mpi" / "renumbered.py"
 FOLLOW = Path(__file__).parent / "mpi" / "follow.py"
 CUT = Path(__file__).parent / "mpi" / "cut.py"
 CHANGED = Path(__file__).parent / "mpi" / "changed.py"
+CORNER = Path(__file__).parent / "mpi" / "corner.py"
+WIDTHS = Path(__file__).parent / "mpi" / "widths.py"
 CYCLES = Path(__file__).parent / "mpi" / "cycles.py"
 NEARER = MEETING.replace("44) cm", "42.6) cm").replace("-4, 5) cm", "-4, 3.5) cm")
 SCENES = {
@@ -37,13 +39,13 @@ ACCOUNTS = np.s_[80:96]
 """Bytes of a liquid's state that only tell energies, StateHead in fix_mdanim_liquid.cpp."""
 
 
-def on_ranks(program: Path, ranks: int, *arguments: object) -> str:
+def on_ranks(program: Path, ranks: int, *arguments: object, timeout: float = 900.0) -> str:
     """What a Python program prints on so many ranks; ``-m mpi4py`` ends all of them when one raises."""
     done = subprocess.run(
         [plugin_path.BIN / "mpiexec", "-n", str(ranks), sys.executable, "-m", "mpi4py", program, *map(str, arguments)],
         capture_output=True,
         text=True,
-        timeout=900,
+        timeout=timeout,
         env={**plugin_path.environment(), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
     )
     assert done.returncode == 0, done.stdout + done.stderr
@@ -162,6 +164,25 @@ def test_what_changes_between_runs_is_seen(tmp_path, name, ranks):
         assert (np.asarray(passes) > 0.9 * STEPS).all()
         assert [np.array_equal(*pair) for pair in zip(states, alone, strict=True)] == [True] * len(alone)
     assert np.array_equal(found["plain"], alone)
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("ranks", [2, 3])
+def test_a_rank_without_particles_does_not_end_passes(tmp_path, ranks):
+    """Put all objects in a corner of a box that is shared evenly: all steps but the last by passes, and the bits of verlet."""
+    on_ranks(CORNER, ranks, tmp_path, tmp_path / "found.npz")
+    found = np.load(tmp_path / "found.npz")
+    assert found["own"].min() == 0
+    assert (found["passes"] == 99).all()
+    assert np.array_equal(found["ours"], found["plain"])
+
+
+@pytest.mark.mpi
+def test_a_width_that_one_rank_does_not_have_is_refused_on_all():
+    """Refuse together: a rank that went on would wait for the others for ever."""
+    raised = on_ranks(WIDTHS, 2, timeout=60.0).splitlines()
+    assert len(raised) == 2
+    assert all("the processor of some rank does not have it" in line for line in raised)
 
 
 @pytest.mark.mpi

@@ -336,6 +336,40 @@ def test_lists_are_made_when_lammps_is_told_to(tmp_path, often, wall, least):
     assert none == 0 and taken >= least
 
 
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("c", [None, 0.05], ids=["springs", "dashpots"])
+def test_an_object_that_overflows_leaves_others_alone(tmp_path, width, c):
+    """Give the first of two objects springs too stiff for the time step, until it overflows: the second moves as by verlet.
+
+    So it does when the run goes on from there.
+    """
+    if not supported(width):
+        pytest.skip("this processor does not have it")
+    commands = [*MOVE, "neigh_modify once yes"]
+    second, whole = BODY.molecule == 2, len(BODY.x)
+    stiff = replace(BODY, k=np.where(second[BODY.bond[:, 0]], BODY.k, 1e4 * BODY.k))
+    for runs in (["run 30"], ["run 400", "run 5 pre no"]):
+        found, taken = lab_state(stiff, tmp_path, [*commands, f"run_style verlet/mdanim width {width}", *runs], c=c)
+        plain, _ = lab_state(stiff, tmp_path, [*commands, "run_style verlet", *runs], c=c)
+        x, v, f = (found[k * whole : (k + 1) * whole] for k in range(3))
+        assert taken > 20
+        assert np.isfinite([x[second], v[second], f[second]]).all()
+        if len(runs) > 1:
+            assert not np.isfinite(v[~second]).all()
+        kept = np.tile(second, 3)
+        assert np.array_equal(found[kept], plain[kept])
+
+
+def test_a_periodic_box_gets_the_plain_step(tmp_path):
+    """Let a body cross the edge of a periodic box on one rank: no passes, and the bits of run_style verlet."""
+    fast = lab.shaken(lab.block((4, 3, 2), (0.0, 0.0, 0.0), (0.3, 0.02, 0.01)), 0.03)
+    commands = ["change_box all boundary p p p x final -6 12 y final -9 9 z final -9 9", MOVE[1], MOVE[2]]
+    found, none = lab_state(fast, tmp_path, [*commands, "run_style verlet/mdanim", "run 200"])
+    plain, _ = lab_state(fast, tmp_path, [*commands, "run_style verlet", "run 200"])
+    assert none == 0
+    assert np.array_equal(found, plain)
+
+
 def test_only_the_group_is_pushed(tmp_path):
     """Let contact push one of two bodies alone, the first: the other one flies on as if nobody was there."""
     pair = lab.join(lab.block((4, 3, 3)), lab.block((3, 4, 3), (4.8, 0.0, 0.0), (-0.2, 0.0, 0.0)))

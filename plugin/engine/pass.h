@@ -69,6 +69,7 @@ struct Pass {
   bool bends;       // `bend` is asked for
 
   double fastest;                   // largest v^2 of what has moved
+  double squares;                   // sum of v^2, with lanes of others: finite where all of them are
   double final_loss, first_loss;    // to friction in either half step
   DashpotSums dashpots;             // but for what is held back
   double bend;                      // dt v^{n+1/2} . F^n of what has moved

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The pass over all blocks (pass.h), for vectors of LANES doubles; compiled once for each kind of processor (pass_*.cpp).
 //
-// Springs are evaluated once. SimdBlocks come in ascending order and in each of them offsets in descending order, so that whoever
+// Springs are evaluated once. Blocks come in ascending order and in each of them offsets in descending order, so that whoever
 // receives does so from its lower partners in ascending order, and a block's own sum takes its upper ones in descending order:
 // the order of bond_mdanim_harmonic.cpp, hence its bits. Lanes without a spring have push = pull = 0 and add nothing: F = 0, and
 // a sum that starts at +0 is never -0. Positions of a block can move on at once, for all that is still to come reads its own and
@@ -58,7 +58,7 @@ struct Bounds {
 
 // What a pass tells at its end.
 struct Tally {
-  Vector fastest{};
+  Vector fastest{}, squares{};
   double final_loss = 0.0, first_loss = 0.0, bend = 0.0;
   DashpotSums dashpots = {0.0, 0.0, 0.0};
   Bounds box;
@@ -210,6 +210,7 @@ MDANIM_INLINE void move(const Pass &pass, const Block &block, const double *tota
     store(pass.x[d] + i, place[d]);
     square += last[d] * last[d];
   }
+  tally.squares += square;
   if (pass.bends) {
     double bend[LANES];
     store(bend, dt * dot(last, f));
@@ -264,9 +265,11 @@ template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_INLINE void go(Pas
   if (pass.blocks) move<FRICTION, TRACED, DAMPED>(pass, pass.block[pass.blocks - 1], total[~pass.blocks & 1], tally);
 
   if (TRACED) tally.turn_to(-1, pass);
-  pass.fastest = 0.0;
-  for (int lane = 0; lane < LANES; ++lane)
+  pass.fastest = pass.squares = 0.0;
+  for (int lane = 0; lane < LANES; ++lane) {
     if (tally.fastest[lane] > pass.fastest) pass.fastest = tally.fastest[lane];
+    pass.squares += tally.squares[lane];
+  }
   pass.final_loss = tally.final_loss;
   pass.first_loss = tally.first_loss;
   pass.bend = tally.bend;

@@ -88,7 +88,7 @@ void SimdBlocks::start(const Width &width)
   laws.start(2 * lanes);
   damped_laws.start(3 * lanes);
   usual_laws = 0;
-  forget();
+  put_together({});
 }
 
 Cut SimdBlocks::cut(const HalfBonds &bonds, const int *object)
@@ -139,13 +139,15 @@ Cut SimdBlocks::cut(const HalfBonds &bonds, const int *object)
   return cut;
 }
 
-bool SimdBlocks::put_together(const std::vector<const Cut *> &cuts)
+bool LaneUse::worth_it() const { return lanes > 0.0 && springs >= WORTH_IT * lanes; }
+
+LaneUse SimdBlocks::put_together(const std::vector<const Cut *> &cuts)
 {
   all.clear();
   entries.clear();
-  particles = 0;
+  has_room = false;
+  particles = farthest = 0;
   std::size_t springs = 0;
-  int farthest = 0;
   for (const Cut *cut : cuts) {
     const unsigned first = static_cast<unsigned>(entries.size());
     for (Block block : cut->block) {
@@ -159,10 +161,13 @@ bool SimdBlocks::put_together(const std::vector<const Cut *> &cuts)
     farthest = std::max(farthest, cut->farthest);
   }
   if (!usual_laws) usual_laws = laws.size() + damped_laws.size();
-  if (entries.empty() || springs < WORTH_IT * entries.size() * lanes) {
-    forget();
-    return false;
-  }
+  return {static_cast<double>(springs), static_cast<double>(entries.size() * lanes)};
+}
+
+void SimdBlocks::make_room()
+{
+  if (has_room) return;
+  has_room = true;
   const std::size_t room = (particles + farthest + 2 * lanes) / 512 * 512 + 512 + STAGGER;    // whole pages and a bit
   const int kinds = damped() ? 6 : 3;
   memory.assign(3 * kinds * room);
@@ -171,9 +176,14 @@ bool SimdBlocks::put_together(const std::vector<const Cut *> &cuts)
   for (int kind = 0; kind < kinds; ++kind)
     for (int d = 0; d < 3; ++d, place += room) arrays[kind][d] = place;
   outside.clear();
+}
+
+void SimdBlocks::lay_out()
+{
+  make_room();
+  reordered = false;
   index.clear();
   ghosts.clear();
-  return true;
 }
 
 bool SimdBlocks::laws_pile_up() const
@@ -182,8 +192,10 @@ bool SimdBlocks::laws_pile_up() const
   return laws.size() + damped_laws.size() > MANY * (usual_laws + 64);
 }
 
-void SimdBlocks::lie_at(const std::vector<int> &places, int own)
+void SimdBlocks::lay_out_at(const std::vector<int> &places, int own)
 {
+  make_room();
+  reordered = true;
   index = places;
   owned = own;
   place.assign(own, -1);
@@ -219,7 +231,7 @@ void SimdBlocks::set_row(const Mover &mover, Friction friction, int lane, double
   }
 }
 
-// SimdBlocks in which nothing moves or is pulled come behind all others, where passes do not get to.
+// Blocks in which nothing moves or is pulled come behind all others, where passes do not get to.
 void SimdBlocks::set_apart(const std::vector<bool> &moves)
 {
   const auto order = [](const Block &a, const Block &b) { return a.start < b.start; };
@@ -230,7 +242,7 @@ void SimdBlocks::set_apart(const std::vector<bool> &moves)
   for (std::size_t n = 0; n < all.size(); ++n) std::fill_n(&home[all[n].start], all[n].lanes, static_cast<int>(n));
 }
 
-// SimdBlocks with a particle of anybody have a row for everybody.
+// Blocks with a particle of anybody have a row for everybody.
 void SimdBlocks::expect(const std::vector<std::vector<int>> &particles_of)
 {
   const int many = static_cast<int>(particles_of.size());
@@ -283,7 +295,7 @@ void SimdBlocks::hold_back(const std::vector<int> &wanted, bool everything)
       for (int lane = 0; lane < block.lanes; ++lane)
         if (!is_ghost(at(block.start + lane))) outside.push_back(block.start + lane);
   waiting.clear();
-  if (!index.empty())
+  if (reordered)
     for (const int i : outside) waiting.push_back(index[i]);
 }
 
@@ -417,7 +429,7 @@ void SimdBlocks::unpack(const std::vector<int> &these, bool velocities, const do
 
 void SimdBlocks::give_out_forces(double *const *f) const
 {
-  if (index.empty()) return;    // the pass has written them there itself
+  if (!reordered) return;    // the pass has written them there itself
   for (const int i : outside) std::copy_n(&total[3 * static_cast<std::size_t>(i)], 3, f[index[i]]);
 }
 
@@ -439,7 +451,7 @@ void SimdBlocks::fill(Pass &pass, double *const *forces)
     pass.last[d] = last[d];
     pass.seen[d] = seen[d];
   }
-  pass.total = index.empty() ? forces[0] : total.data();
+  pass.total = reordered ? total.data() : forces[0];
 }
 
 std::size_t SimdBlocks::bytes() const

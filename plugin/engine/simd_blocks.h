@@ -39,7 +39,7 @@ struct Mover {
   double mass, kick, dt, phi;    // see Motion
 };
 
-// SimdBlocks of some particles that no spring leads out of; starts count from the first of them, ends from the first entry.
+// Blocks of some particles that no spring leads out of; starts count from the first of them, ends from the first entry.
 struct Cut {
   std::vector<Block> block;
   std::vector<Entry> entry;
@@ -49,21 +49,29 @@ struct Cut {
   std::size_t bytes() const { return block.capacity() * sizeof(Block) + entry.capacity() * sizeof(Entry); }
 };
 
+// How many of the lanes that passes compute have springs.
+struct LaneUse {
+  double springs = 0.0, lanes = 0.0;
+
+  // Whether enough have: the springs of neighbours in the arrays must mostly lead equally far, as they do in lattices that are
+  // numbered row by row.
+  bool worth_it() const;
+};
+
 class SimdBlocks {
  public:
   // Forget all cuts: from now on they are for this width.
   void start(const Width &width);
   // Cut particles into blocks so that the fewest vectors of forces are to be computed. A block is of one object.
   Cut cut(const HalfBonds &bonds, const int *object);
-  // SimdBlocks of all cuts, one after the other. Returns whether that is worth it: the springs of neighbours in the arrays must
-  // mostly lead equally far, as they do in lattices that are numbered row by row.
-  bool put_together(const std::vector<const Cut *> &cuts);
+  // Blocks of all cuts, one after the other; there may be none. They are to be laid out before anything else.
+  LaneUse put_together(const std::vector<const Cut *> &cuts);
   bool laws_pile_up() const;    // so many are those of cuts that are gone that all cuts had better be made anew
-  void forget() { all.clear(); }
+  // Room for their particles, which are in the same order in the arrays of LAMMPS.
+  void lay_out();
   // Where particles are in the arrays of LAMMPS, if not in the same order: those from `own` on are ghosts, which others move.
   // After this everybody else's numbers are LAMMPS's: those of mover(), expect(), hold_back(), held_back().
-  void lie_at(const std::vector<int> &places, int own);
-  bool ready() const { return !all.empty(); }
+  void lay_out_at(const std::vector<int> &places, int own);
   bool damped() const { return !damped_laws.empty(); }    // some block is
 
   template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
@@ -77,8 +85,8 @@ class SimdBlocks {
 
   // Every block with one of these particles is held back, no other; ghosts among them are left out.
   void hold_back(const std::vector<int> &particles, bool everything);
-  bool friction_acts() const;                                                                // on a block that is not held back
-  const std::vector<int> &held_back() const { return index.empty() ? outside : waiting; }    // all particles of such blocks
+  bool friction_acts() const;                                                            // on a block that is not held back
+  const std::vector<int> &held_back() const { return reordered ? waiting : outside; }    // all particles of such blocks
 
   void take_in(const double *const *x, const double *const *v);
   void give_out(double *const *x, double *const *v) const;    // null for what nobody wants
@@ -108,13 +116,15 @@ class SimdBlocks {
 
  private:
   std::vector<int> lengths(const HalfBonds &bonds, const int *object) const;
-  int at(int i) const { return index.empty() ? i : index[i]; }
-  int ours(int i) const { return index.empty() ? i : place[i]; }    // the way back
-  bool is_ghost(int place) const { return !index.empty() && place >= owned; }
+  int at(int i) const { return reordered ? index[i] : i; }
+  int ours(int i) const { return reordered ? place[i] : i; }    // the way back
+  bool is_ghost(int place) const { return reordered && place >= owned; }
+  void make_room();
   void set_row(const Mover &mover, Friction friction, int lane, double *row) const;
   void set_apart(const std::vector<bool> &moves);    // by the first particle of a block: whether any of it moves
 
-  int particles = 0, lanes = 0;
+  int particles = 0, lanes = 0, farthest = 0;
+  bool has_room = false, reordered = false;    // by lay_out_at()
   std::vector<Block> all;
   int active = 0;    // so many of them, the first ones, have something to do in a pass
   std::vector<Entry> entries;
@@ -131,14 +141,14 @@ class SimdBlocks {
   };
   std::vector<ForceProvider> force_providers;
   Doubles external_force;              // see Pass
-  std::vector<int> index, place;       // of a particle in LAMMPS's arrays, and back; `index` empty where the orders are the same
+  std::vector<int> index, place;       // of a particle in LAMMPS's arrays, and back
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
   std::vector<double> total;           // see Pass, in our order
   int owned = 0;                       // in LAMMPS's arrays, ghosts come after them
   Catalogue laws, damped_laws, motions;
   unsigned usual_laws = 0;    // how many there were when cuts were put together first after start()
   Doubles memory;             // of the arrays
-  double *x[3], *v[3], *f[3];
+  double *x[3] = {}, *v[3] = {}, *f[3] = {};
   double *part[3] = {}, *last[3] = {}, *seen[3] = {};    // where damped
 };
 

@@ -29,6 +29,7 @@ using namespace mdanim;
 
 // Rows are worked off in stretches that stay in the first-level cache.
 static constexpr int STRETCH = 512;
+static constexpr int RESTART_VERSION = 1;
 
 static bigint versions = 0;    // of the springs of all instances
 
@@ -68,6 +69,7 @@ void BondMdanimHarmonic::coeff(int narg, char **arg)
     spring[type] = s;
     setflag[type] = 1;
   }
+  coefficients_may_differ = true;
 }
 
 void BondMdanimHarmonic::init_style()
@@ -77,7 +79,7 @@ void BondMdanimHarmonic::init_style()
                       "'newton on off') before the box is made");
   if (atom->map_style == Atom::MAP_NONE)
     error->all(FLERR, "bond_style mdanim/harmonic: needs an atom map; put 'atom_modify map array' before the box is made");
-  damped = std::any_of(spring.begin(), spring.end(), [](const Spring &s) { return s.c > 0.0; });
+  damped = has_dashpots();
   const bool ghosts = comm->nprocs > 1 || domain->xperiodic || domain->yperiodic || domain->zperiodic;
   if (damped && ghosts && !comm->ghost_velocity)
     error->all(FLERR, "bond_style mdanim/harmonic: a dashpot (c > 0) needs the velocities of particles of other ranks; "
@@ -203,14 +205,26 @@ void BondMdanimHarmonic::look_up(int i, bool halves, Row &row) const
   }
 }
 
-// Laws of all types; another version where one differs from before.
-void BondMdanimHarmonic::look_up_coefficients()
+bool BondMdanimHarmonic::has_dashpots() const
 {
+  return std::any_of(spring.begin(), spring.end(), [](const Spring &s) { return s.c > 0.0; });
+}
+
+// Coefficients of all types; another version where one differs from before. Without init_style() dashpots cannot begin: nothing
+// has checked that ghosts have velocities, and their account has no forces to start from.
+bool BondMdanimHarmonic::refresh_coefficients()
+{
+  if (!coefficients_may_differ) return false;
+  if (!damped && has_dashpots())
+    error->all(FLERR, "bond_style mdanim/harmonic: bond_coeff has given dashpots (c > 0) to springs that had none since the last "
+                      "run; leave out 'pre no' of this run");
   coefficients_may_differ = false;
   std::vector<SpringCoeffs> now;
   for (const Spring &s : spring) now.emplace_back(s);
-  if (!(now == law)) made = ++versions;
+  if (now == law) return false;
+  made = ++versions;
   law = std::move(now);
+  return true;
 }
 
 // With particles in tag order and all partners here, the lower partners of a row come before it.
@@ -362,7 +376,7 @@ void BondMdanimHarmonic::compute(int eflag, int vflag)
   made_after = neighbor->ncalls;
   const bool remade = other_lists && source_changed();
   if (remade) make_rows();
-  if (coefficients_may_differ) look_up_coefficients();
+  refresh_coefficients();
 
   const int nlocal = atom->nlocal;
   std::vector<Vec3> *on = nullptr;
@@ -451,12 +465,21 @@ void BondMdanimHarmonic::refuse_if_given()
 void BondMdanimHarmonic::write_restart(FILE *fp)
 {
   refuse_if_given();
+  fwrite(&RESTART_VERSION, sizeof RESTART_VERSION, 1, fp);
   fwrite(&spring[1], sizeof(Spring), atom->nbondtypes, fp);
 }
 
 void BondMdanimHarmonic::read_restart(FILE *fp)
 {
   allocate();
+  int version = 0;
+  if (comm->me == 0) utils::sfread(FLERR, &version, sizeof version, 1, fp, nullptr, error);
+  MPI_Bcast(&version, 1, MPI_INT, 0, world);
+  if (version != RESTART_VERSION)
+    error->all(FLERR,
+               "bond_style mdanim/harmonic: the record of coefficients has version {}, {} is needed; write the restart file "
+               "anew with this version of the plugin",
+               version, RESTART_VERSION);
   if (comm->me == 0) utils::sfread(FLERR, &spring[1], sizeof(Spring), atom->nbondtypes, fp, nullptr, error);
   MPI_Bcast(&spring[1], atom->nbondtypes * static_cast<int>(sizeof(Spring)), MPI_BYTE, 0, world);
   std::fill(setflag + 1, setflag + atom->nbondtypes + 1, 1);

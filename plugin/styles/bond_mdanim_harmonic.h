@@ -42,6 +42,7 @@ class BondMdanimHarmonic : public Bond {
   [[noreturn]] void lost_partner(int i, int partner) const;       // the error that particle i, or nobody, has this one, a tag
   mdanim::Loss *account() { return damped ? &loss : nullptr; }    // of dashpots, all ranks or none
   bigint version() const { return made; }                         // another number for other springs
+  bool refresh_coefficients();    // those of bond_coeff since the last run take effect; whether some differ from before
   void took(double more) { seconds += more; }
 
  private:
@@ -74,7 +75,7 @@ class BondMdanimHarmonic : public Bond {
   void adopt(mdanim::SpringRows &&made_rows, bool halves);
   void look_up(int i, bool halves, Row &row) const;
   bool has_changed(int i, Row &scratch) const;
-  void look_up_coefficients();
+  bool has_dashpots() const;
   bool halves_suffice() const;
   void take_apart(int begin, int end, int n);
   void energies(int begin, int end, int n);

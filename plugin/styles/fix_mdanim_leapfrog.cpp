@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -265,24 +266,23 @@ Mover FixMdanimLeapfrog::mover(int i)
   return {0.0, mass, kick, update->dt, phi};
 }
 
-void FixMdanimLeapfrog::survey_ghosts(std::vector<int> &those_sent, std::vector<Known> &of_all)
+std::vector<FixMdanimLeapfrog::Known> FixMdanimLeapfrog::survey_ghosts(std::vector<int> &those_sent)
 {
-  sent = &those_sent;
-  known = &of_all;
-  sent->clear();
-  known->resize(atom->nlocal + atom->nghost);
-  for (int i = 0; i < atom->nlocal; ++i) (*known)[i] = {atom->molecule_flag ? atom->molecule[i] : 1, {comm->me, i}};
+  sent.clear();
+  known.resize(atom->nlocal + atom->nghost);
+  for (int i = 0; i < atom->nlocal; ++i) known[i] = {atom->molecule_flag ? atom->molecule[i] : 1, {comm->me, i}};
   comm->forward_comm(this);
-  std::sort(sent->begin(), sent->end());
-  sent->erase(std::unique(sent->begin(), sent->end()), sent->end());
+  std::sort(sent.begin(), sent.end());
+  those_sent.assign(sent.begin(), std::unique(sent.begin(), sent.end()));
+  return std::exchange(known, {});
 }
 
 int FixMdanimLeapfrog::pack_forward_comm(int n, int *list, double *buf, int, int *)
 {
   int m = 0;
   for (int k = 0; k < n; ++k) {
-    if (list[k] < atom->nlocal) sent->push_back(list[k]);    // others pass ghosts on
-    const Known &one = (*known)[list[k]];
+    if (list[k] < atom->nlocal) sent.push_back(list[k]);    // others pass ghosts on
+    const Known &one = known[list[k]];
     buf[m++] = static_cast<double>(one.object);
     buf[m++] = static_cast<double>(one.home.rank);
     buf[m++] = static_cast<double>(one.home.index);
@@ -293,7 +293,7 @@ int FixMdanimLeapfrog::pack_forward_comm(int n, int *list, double *buf, int, int
 void FixMdanimLeapfrog::unpack_forward_comm(int n, int first, double *buf)
 {
   for (int i = first; i < first + n; ++i, buf += 3)
-    (*known)[i] = {static_cast<int>(buf[0]), {static_cast<int>(buf[1]), static_cast<int>(buf[2])}};
+    known[i] = {static_cast<int>(buf[0]), {static_cast<int>(buf[1]), static_cast<int>(buf[2])}};
 }
 
 void FixMdanimLeapfrog::finish_step(const std::vector<int> &particles)

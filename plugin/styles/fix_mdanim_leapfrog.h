@@ -49,7 +49,7 @@ class FixMdanimLeapfrog : public Fix {
     int object;
     mdanim::Home home;
   };
-  void survey_ghosts(std::vector<int> &sent, std::vector<Known> &known);
+  std::vector<Known> survey_ghosts(std::vector<int> &sent);
   mdanim::Friction friction() const;
   mdanim::Mover mover(int i);
   double *trace_rows() { return trace.empty() ? nullptr : trace.front().box.bound; }
@@ -81,8 +81,8 @@ class FixMdanimLeapfrog : public Fix {
   double largest_phi = 0.0;    // seen on this rank in this run
   double seconds = 0.0;
   const std::vector<int> *only = nullptr;    // particles to move now; null for all
-  std::vector<int> *sent = nullptr;          // while ghosts are surveyed
-  std::vector<Known> *known = nullptr;
+  std::vector<int> sent;                     // while ghosts are surveyed
+  std::vector<Known> known;
   struct Way {
     mdanim::Box box;
     double fastest = 0.0;    // largest v^2, with its sign changed, of passes that may not have looked

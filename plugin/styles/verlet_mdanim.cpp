@@ -50,6 +50,8 @@ static constexpr int ACTS = FixConst::INITIAL_INTEGRATE | FixConst::POST_INTEGRA
                             FixConst::POST_FORCE | FixConst::FINAL_INTEGRATE | FixConst::END_OF_STEP;
 // Lists are made at once, not looked at again in a few steps, when less than this part of the way is left.
 static constexpr double SOON = 0.2;
+// Sum of the squares of velocities above which passes are left to the plain step, and the way that stands for that.
+static constexpr double LARGEST_SQUARE = 1e200, OVERFLOW = std::numeric_limits<double>::infinity();
 
 // run_style verlet/mdanim [width common|avx2|avx512]
 VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, arg)
@@ -58,7 +60,13 @@ VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, a
   if (strcmp(arg[0], "width") != 0) error->all(FLERR, "run_style verlet/mdanim: unknown keyword {}; it knows width", arg[0]);
   if (narg != 2) error->all(FLERR, "run_style verlet/mdanim: width takes one word, common, avx2 or avx512");
   told = width_of(arg[1]);
-  if (!told) error->all(FLERR, "run_style verlet/mdanim: width {} is unknown or this processor does not have it", arg[1]);
+  int here = told != nullptr, everywhere = 0;    // hosts may have different processors
+  MPI_Allreduce(&here, &everywhere, 1, MPI_INT, MPI_MIN, world);
+  if (!everywhere)
+    error->all(
+        FLERR,
+        "run_style verlet/mdanim: width {} is unknown or {} does not have it; leave width out, and every rank takes its best",
+        arg[1], comm->nprocs > 1 ? "the processor of some rank" : "this processor");
 }
 
 double VerletMdanim::memory_usage()
@@ -121,6 +129,7 @@ bool VerletMdanim::find_players()
   if (!bond || domain->triclinic || domain->dimension != 3) return false;
   if ((force->pair && force->pair->compute_flag) || force->angle || force->dihedral || force->improper || force->kspace)
     return false;
+  if (bond->refresh_coefficients()) decided_for = -1;
   const Width *now = told ? told : best_width(bond->account() != nullptr);
   if (now != width) cut_for = decided_for = -1;
   width = now;
@@ -144,8 +153,8 @@ bool VerletMdanim::find_players()
       strangers_have_lists = true;
   }
   const bool periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
-  if (comm->nprocs > 1 && (periodic || neighbor->build_once)) return false;
-  // With several ranks nobody may go beyond the neighbours of his own unseen.
+  // Blocks do not know of images, and with several ranks no particle may go beyond the neighbours of its own unseen.
+  if (periodic || (comm->nprocs > 1 && neighbor->build_once)) return false;
   lists_matter = !neighbor->build_once && (modify->n_post_neighbor || modify->n_pre_neighbor || comm->nprocs > 1);
   return leapfrog && !(lists_matter && !neighbor->dist_check);    // without that check LAMMPS does not keep where particles stood
 }
@@ -164,30 +173,32 @@ bool VerletMdanim::cut()
     if (atom->molecule_flag) std::copy_n(atom->molecule, atom->nlocal, object.begin());
     blocks.start(*width);
     const Cut whole = blocks.cut(half, object.data());
-    worth_it = blocks.put_together({&whole});
+    worth_it = blocks.put_together({&whole}).worth_it();
+    if (worth_it) blocks.lay_out();
     cut_for = bond->version();
     made_for = -1;
   }
   return worth_it;
 }
 
-// The same, once after every rebuild, if all ranks can.
+// The same, once after every rebuild. All ranks or none: some have few particles, or none, and count for as little.
 bool VerletMdanim::cut_for_ranks()
 {
   if (decided_for == neighbor->ncalls) return worth_it;
   decided_for = neighbor->ncalls;
   std::vector<Home> home;
-  int here = cut_line(home), all = 0;
-  MPI_Allreduce(&here, &all, 1, MPI_INT, MPI_MIN, world);
-  if (all) ghosts.survey(world, home, blocks);
-  return worth_it = all;
+  const LaneUse here = cut_line(home);
+  double all[] = {here.springs, here.lanes};
+  MPI_Allreduce(MPI_IN_PLACE, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  worth_it = LaneUse{all[0], all[1]}.worth_it();
+  if (worth_it) ghosts.survey(world, home, blocks);
+  return worth_it;
 }
 
-// Whether this rank's particles and their ghosts are in blocks. Tells where the ghosts are at home.
-bool VerletMdanim::cut_line(std::vector<Home> &home)
+// This rank's particles and their ghosts into blocks. Tells where the ghosts are at home.
+LaneUse VerletMdanim::cut_line(std::vector<Home> &home)
 {
-  std::vector<FixMdanimLeapfrog::Known> known;
-  leapfrog->survey_ghosts(sent, known);
+  const std::vector<FixMdanimLeapfrog::Known> known = leapfrog->survey_ghosts(sent);
   object.clear();
   for (const auto &one : known) object.push_back(one.object);
   line.take({atom->nlocal, atom->tag, object.data(), atom->num_bond, atom->bond_type, atom->bond_atom,
@@ -199,19 +210,19 @@ bool VerletMdanim::cut_line(std::vector<Home> &home)
     for (TagOrder::Piece &piece : line.pieces()) piece.is_cut = false;
     laws = bond->laws();
     cut_for = 0;
+    line_use = {};
   }
-  if (line.changed() || !blocks.ready()) {
+  if (line.changed() || line_use.lanes == 0.0) {
     std::vector<const Cut *> cuts;
     for (TagOrder::Piece &piece : line.pieces()) {
       if (!piece.is_cut) piece.cut = blocks.cut({&piece.rows, bond->laws().data()}, piece.object.data());
       piece.is_cut = true;
       cuts.push_back(&piece.cut);
     }
-    blocks.put_together(cuts);
+    line_use = blocks.put_together(cuts);
   }
-  if (!blocks.ready()) return false;
-  blocks.lie_at(line.places(), atom->nlocal);
-  return true;
+  blocks.lay_out_at(line.places(), atom->nlocal);
+  return line_use;
 }
 
 // --- the run ---
@@ -230,13 +241,14 @@ void VerletMdanim::run(int n)
 void VerletMdanim::run_passes(int n)
 {
   made_for = -1;
+  overflowed = false;
   for (int i = 0; i < n; ++i) {
     if (timer->check_timeout(i)) {
       update->nsteps = i;
       break;
     }
     begin_step();
-    if (cut()) i += take_steps(i, n - 1 - i);
+    if (!overflowed && cut()) i += take_steps(i, n - 1 - i);
     finish_step();
   }
 }
@@ -267,11 +279,15 @@ int VerletMdanim::take_steps(int step, int most)
 {
   const bigint stop = std::min(next_stop(), update->ntimestep + most);
   if (update->ntimestep >= stop) return 0;
+  const double overflow = overflows() ? OVERFLOW : 0.0;
   if (lists_matter) {
     tell_limits();
     left = way_left();
-    if (!lists_last(0.0)) return 0;
+    if (!lists_last(overflow)) return 0;
     if (whole_way_for != neighbor->ncalls) way_begins();
+  } else if (overflow > 0.0) {
+    overflowed = true;
+    return 0;
   }
 
   timer->stamp();
@@ -293,8 +309,10 @@ int VerletMdanim::take_steps(int step, int most)
     ++update->ntimestep;
     ++neighbor->ago;
     if (timer->check_timeout(step + taken)) break;
-    if (!lists_matter || lists_last(update->dt * std::sqrt(pass.fastest))) continue;
-    if (update->ntimestep >= stop) break;
+    const bool in_range = pass.squares < LARGEST_SQUARE;
+    if (lists_matter ? lists_last(in_range ? update->dt * std::sqrt(pass.fastest) : OVERFLOW) : in_range) continue;
+    overflowed = overflowed || !in_range;
+    if (overflowed || update->ntimestep >= stop) break;
     stand = look_again();
     if (!stand) break;
   }
@@ -302,6 +320,16 @@ int VerletMdanim::take_steps(int step, int most)
   timer->stamp(Timer::BOND);
   ev_set(update->ntimestep);
   return taken;
+}
+
+// Whether a position or a velocity here is so large, or no number, that a lane without a spring, which is multiplied by zero,
+// would not stay zero in a pass: the particles of another object may be in that lane. The plain step has no such lanes.
+bool VerletMdanim::overflows() const
+{
+  double squares = 0.0;
+  for (int i = 0; i < atom->nlocal; ++i)
+    squares += dot(vec3(atom->x[i]), vec3(atom->x[i])) + dot(vec3(atom->v[i]), vec3(atom->v[i]));
+  return !(squares < LARGEST_SQUARE);
 }
 
 // Positions and velocities out of the blocks.
@@ -395,7 +423,7 @@ bool VerletMdanim::follows(int d, int side) const
   return domain->boundary[d][side] == SHRINK;
 }
 
-// Whether no particle of any rank can have gone so far, going `more` farther.
+// Whether no particle of any rank can have gone so far, going `more` farther. OVERFLOW on one rank is heard by all.
 bool VerletMdanim::lists_last(double more)
 {
   left -= more;
@@ -404,6 +432,7 @@ bool VerletMdanim::lists_last(double more)
     MPI_Iallreduce(MPI_IN_PLACE, &left, 1, MPI_DOUBLE, MPI_MIN, world, &request);
     wait_for(1, &request);
   }
+  overflowed = overflowed || left == -OVERFLOW;
   return left > 0.0;
 }
 
@@ -546,7 +575,11 @@ void VerletMdanim::late_participants_turn()
   leapfrog->begin_step(waiting);
   if (blocks.damped()) blocks.count_held_back(atom->v, pass.dashpots);
   blocks.take_in_held_back(atom->x, atom->v);
-  for (const int i : waiting) pass.fastest = std::max(pass.fastest, dot(vec3(atom->v[i]), vec3(atom->v[i])));
+  for (const int i : waiting) {
+    const double square = dot(vec3(atom->v[i]), vec3(atom->v[i]));
+    pass.fastest = std::max(pass.fastest, square);
+    pass.squares += square;
+  }
 }
 
 // --- a step of run_style verlet, in two parts ---

@@ -30,7 +30,8 @@ class VerletMdanim : public Verlet {
   bool find_players();
   bool cut();
   bool cut_for_ranks();
-  bool cut_line(std::vector<mdanim::Home> &home);
+  mdanim::LaneUse cut_line(std::vector<mdanim::Home> &home);
+  bool overflows() const;
   void meet_ghosts();
   int take_steps(int step, int most);
   bigint next_stop() const;
@@ -63,6 +64,8 @@ class VerletMdanim : public Verlet {
   bigint cut_for = -1;        // version of the springs
   std::vector<int> object;    // and molecule of each particle
   bool worth_it = false;
+  bool overflowed = false;                   // in this run, on some rank
+  mdanim::LaneUse line_use;                  // of this rank
   mdanim::TagOrder line;                     // with other ranks: what is cut,
   std::vector<mdanim::SpringCoeffs> laws;    // for these
   mdanim::Ghosts ghosts;                     // and whom they tell of it

@@ -3,6 +3,7 @@
 
 import ctypes
 import sys
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -107,36 +108,53 @@ def film(case: Case, style: str, folder: Path, comm=None) -> tuple[np.ndarray, n
     from mpi4py import MPI
 
     comm = comm or MPI.COMM_SELF
+    passes, states = [0], []
+    with instance(case.body, folder, comm) as lmp:
+        for command in [
+            "fix pull all mdanim/gravity 0.001 -0.002 0.003",
+            "fix contact all mdanim/barrier boundary inner 0.8 1.3",
+            "fix run all mdanim/leapfrog",
+            "timestep 0.2",
+            "thermo 1000",
+            f"run_style {style}",
+            RUN,
+            *case.changes,
+        ]:
+            lmp.command(command)
+            if command.startswith("run "):
+                passes.append(passes_of(lmp))
+                states.append(state(lmp, len(case.body.x), comm))
+    return np.array(states), np.diff(passes)
+
+
+@contextmanager
+def instance(body: lab.Body, folder: Path, comm, before=(), after=()):
+    """A LAMMPS instance with this body on all ranks of a communicator; more commands before its box is made and after that."""
     data = folder / "data.test"
     if comm.rank == 0:
-        lab.write_data(case.body, data)
+        lab.write_data(body, data)
     comm.Barrier()
     lmp = plugin_path.lammps(comm=comm)
-    library = ctypes.CDLL(plugin_path.folder() + "/mdanimplugin.so")
-    library.mdanim_passes.restype = ctypes.c_longlong
-    passes, states = [0], []
     for command in [
         *lab.prelude(),
+        *before,
         f"read_data {data} fix model NULL Model extra/bond/per/atom 8 extra/special/per/atom 60",
         "mass * 1.0",
-        *lab.springs(case.body),
+        *lab.springs(body),
         "group inner type 1",
         "group boundary type 2",
-        "fix pull all mdanim/gravity 0.001 -0.002 0.003",
-        "fix contact all mdanim/barrier boundary inner 0.8 1.3",
-        "fix run all mdanim/leapfrog",
-        "timestep 0.2",
-        "thermo 1000",
-        f"run_style {style}",
-        RUN,
-        *case.changes,
+        *after,
     ]:
         lmp.command(command)
-        if command.startswith("run "):
-            passes.append(library.mdanim_passes(ctypes.c_void_p(getattr(lmp.lmp, "value", lmp.lmp))))
-            states.append(state(lmp, len(case.body.x), comm))
+    yield lmp
     lmp.close()
-    return np.array(states), np.diff(passes)
+
+
+def passes_of(lmp) -> int:
+    """How many steps this rank has taken by passes."""
+    library = ctypes.CDLL(plugin_path.folder() + "/mdanimplugin.so")
+    library.mdanim_passes.restype = ctypes.c_longlong
+    return library.mdanim_passes(ctypes.c_void_p(getattr(lmp.lmp, "value", lmp.lmp)))
 
 
 def state(lmp, count: int, comm) -> np.ndarray:
