@@ -22,7 +22,7 @@ AHEAD = 1.0
 MOMENTS = 12
 """Moments within them."""
 STEP = 0.025
-"""Microseconds of a particle-step with all that is in it, of crowds (docs/architecture.md):
+"""Microseconds of a particle-step with all that is in it, of crowds (docs/beyond-one-host.md):
 it decides how short windows may be."""
 FLIGHT = 0.005
 """Step of the flights [s]."""

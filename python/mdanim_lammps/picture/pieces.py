@@ -23,7 +23,7 @@ class MovingMesh:
         normals.SetNumberOfTuples(vertices)
         self.data = vtkPolyData()
         self.data.SetPoints(points)
-        self.data.SetPolys(_cells(triangle))
+        self.data.SetPolys(cells(triangle))
         self.data.GetPointData().SetNormals(normals)
         self._points, self._normals = vtk_to_numpy(points.GetData()), vtk_to_numpy(normals)
 
@@ -174,7 +174,8 @@ def box_edges(low, high, grey: float, opacity: float = 0.45, width: float = 1.5)
     return actor
 
 
-def _cells(triangle: np.ndarray):
+def cells(triangle: np.ndarray):
+    """Triangles, shape (T, 3), as ``vtkCellArray``."""
     from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 

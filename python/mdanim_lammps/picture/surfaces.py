@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..results.catalogue import Catalogue
+from .pieces import cells
 
-CREASE = np.radians(45.0)
-"""Faces that meet at a larger angle keep a crisp edge: below the 90 degrees of a box or a cylinder's rim,
+CREASE = 45.0
+"""Faces that meet at a larger angle [degrees] keep a crisp edge: below the 90 degrees of a box or a cylinder's rim,
 above the facets of a round shape."""
 
 ROUNDNESS = 0.15
@@ -172,25 +173,19 @@ def _area_vectors(vertices: np.ndarray, triangle: np.ndarray) -> np.ndarray:
 
 def _split_at_creases(vertices: np.ndarray, triangle: np.ndarray) -> np.ndarray:
     """Renumber vertices so that triangles share one only where no crease parts them, int32, shape (T, 3)."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
+    from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+    from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
-    count = len(triangle)
-    normal = _area_vectors(vertices, triangle)
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), np.finfo(float).tiny)
-    # Directed edge k of a triangle runs from its corner k to its corner k + 1.
-    tail = np.arange(3 * count)
-    head = 3 * (tail // 3) + (tail + 1) % 3
-    ends = np.stack([triangle.ravel()[tail], triangle.ravel()[head]], axis=1)
-    order = np.lexsort((ends.max(axis=1), ends.min(axis=1)))
-    here, there = order[:-1], order[1:]
-    shared = (ends[here].min(axis=1) == ends[there].min(axis=1)) & (ends[here].max(axis=1) == ends[there].max(axis=1))
-    here, there = here[shared], there[shared]
-    smooth = np.einsum("td,td->t", normal[here // 3], normal[there // 3]) > np.cos(CREASE)
-    here, there = here[smooth], there[smooth]
-    # Neighbours run along their common edge in opposite directions; if they do not, vertices are matched.
-    opposite = ends[here, 0] == ends[there, 1]
-    a = np.concatenate([tail[here], head[here]])
-    b = np.concatenate([np.where(opposite, head[there], tail[there]), np.where(opposite, tail[there], head[there])])
-    links = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(3 * count, 3 * count))
-    return connected_components(links, directed=False)[1].reshape(-1, 3).astype(np.int32)
+    if not len(triangle):
+        return np.zeros((0, 3), dtype=np.int32)
+    points, mesh, splitter = vtkPoints(), vtkPolyData(), vtkPolyDataNormals()
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(vertices, dtype=np.float64), deep=1))
+    mesh.SetPoints(points)
+    mesh.SetPolys(cells(triangle))
+    splitter.SetInputData(mesh)
+    splitter.SetFeatureAngle(CREASE)
+    splitter.ConsistencyOff()
+    splitter.Update()
+    return vtk_to_numpy(splitter.GetOutput().GetPolys().GetConnectivityArray()).reshape(-1, 3).astype(np.int32)

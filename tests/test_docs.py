@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The pages of the docs: links lead somewhere, every page is found from the index."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
+LINK = re.compile(r"(?<!`)\[[^\]`]*(?:`[^`]*`[^\]`]*)*\]\(([^)\s]+)\)")
+
+
+def text_of(page: Path) -> str:
+    """A page without its code blocks."""
+    return re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.S | re.M)
+
+
+def links(page: Path) -> list[str]:
+    """Addresses of a page that lead to files of the repository."""
+    return [address for address in LINK.findall(text_of(page)) if "://" not in address]
+
+
+def anchors(page: Path) -> set[str]:
+    """Anchors of a page's headings, as GitHub makes them."""
+    heads = re.findall(r"^#+ +(.*)$", text_of(page), flags=re.M)
+    return {re.sub(r"[^\w\- ]", "", head.replace("`", "").lower()).replace(" ", "-") for head in heads}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_links_lead_somewhere(page):
+    """Every link of a page names a file of the repository, and a heading that is there."""
+    for address in links(page):
+        name, _, anchor = address.partition("#")
+        target = (page.parent / name).resolve() if name else page
+        assert target.is_relative_to(ROOT) and target.exists(), address
+        assert not anchor or anchor in anchors(target), f"{address}: headings are {sorted(anchors(target))}"
+
+
+def test_every_page_is_found():
+    """Every page of the docs can be reached from docs/index.md by links."""
+    index = ROOT / "docs" / "index.md"
+    found, waiting = {index}, [index]
+    while waiting:
+        page = waiting.pop()
+        for address in links(page):
+            target = (page.parent / address.partition("#")[0]).resolve()
+            if target.suffix == ".md" and target not in found:
+                found.add(target)
+                waiting.append(target)
+    assert {p for p in PAGES if p.is_relative_to(ROOT / "docs")} <= found
+
+
+def test_the_check_sees_links_and_anchors():
+    """Find links beside code, and anchors of headings with signs."""
+    assert "quickstart.md" in links(ROOT / "docs" / "index.md")
+    assert "on-several-executors" in anchors(ROOT / "docs" / "command-line.md")
