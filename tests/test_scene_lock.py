@@ -8,10 +8,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mdanim_lammps.scene import scene as records
+from mdanim_lammps.scene.keywords import BLOCKS, GLOBALS, IMMERSION, KEYWORDS, QUANTITIES, STATEMENTS
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.scene.rotation import departure, rotation_about, rotation_euler
-from mdanim_lammps.scene.words import BLOCKS, GLOBALS, IMMERSION, KEYWORDS, QUANTITIES, STATEMENTS
 
 SCENES = Path(__file__).parent.parent / "scenes"
 
@@ -34,7 +34,9 @@ def test_scene_of_the_house(name):
 numbers = st.floats(-1e6, 1e6)
 positive = st.floats(1e-9, 1e9)
 vectors = st.tuples(numbers, numbers, numbers)
-sizes = st.tuples(positive, positive, positive)
+lengths = st.floats(0.01, 1e9)  # positions up to 1e6 m are then exact enough
+sizes = st.tuples(lengths, lengths, lengths)
+movies = st.from_regex(r"[^\s/\"\x00-\x1f]{1,20}", fullmatch=True).filter(str.isprintable).map(lambda name: f"{name}.mp4")
 colors = st.none() | st.from_regex(r"#[0-9a-f]{6}", fullmatch=True)
 texts = st.text(st.characters(blacklist_characters='"\n\r\ufeff\0', blacklist_categories=("Cs",)), max_size=20)
 words = st.from_regex(r"[a-zA-Z_][a-zA-Z0-9_]{0,8}", fullmatch=True)
@@ -62,11 +64,11 @@ def rotations(draw):
 
 shapes = st.one_of(
     st.builds(records.Box, sizes),
-    st.builds(records.Sphere, positive),
+    st.builds(records.Sphere, lengths),
     st.builds(records.Ellipsoid, sizes),
-    st.builds(records.Cylinder, positive, positive),
-    st.builds(records.Cone, positive, positive),
-    st.builds(lambda r, t: records.Torus(r, r * t), positive, st.floats(0.1, 0.9)),
+    st.builds(records.Cylinder, lengths, lengths),
+    st.builds(records.Cone, lengths, lengths),
+    st.builds(lambda r, t: records.Torus(r, r * t), lengths, st.floats(0.1, 0.9)),
 )
 holds = st.one_of(
     st.builds(records.HoldAll),
@@ -161,7 +163,7 @@ def scenes(draw):
         effects=draw(st.dictionaries(st.sampled_from(sorted(KEYWORDS["effects"])), st.sampled_from(records.Switch), max_size=3)),
         render=records.Render(
             size=draw(st.tuples(*[st.integers(1, 4000)] * 2)),
-            movie=draw(st.none() | texts),
+            movie=draw(st.none() | movies),
             background=draw(colors),
             camera=cameras,
             liquid=draw(st.sampled_from(["smooth", "cells"])),

@@ -21,6 +21,7 @@ from .results.files import MARK, open_folder, read_json, write_json
 from .run.loop import Progress, Result, simulate, write_inputs
 from .run.manifest import manifest
 from .run.prepare import Prepared, prepare
+from .scene.meshes import mesh_files
 from .scene.parse import load_scene
 from .scene.scene import Scene as SceneRecord
 from .study.bench import BUDGET
@@ -137,6 +138,8 @@ def open_run(ready: Prepared, folder: str | Path | None, *, force: bool) -> Path
     """Make the output folder (None: the default one) with all that is known before the run. Raises OutputError."""
     folder = output_folder(ready.scene, folder)
     movie_file(folder, ready.scene)
+    if force and (own := [p.name for p in mesh_files(ready.scene) if p.resolve().is_relative_to(folder.resolve())]):
+        raise OutputError(f"{folder} holds the mesh {own[0]} of this scene and cannot be emptied; write elsewhere with -o DIR")
     with _study_aside(folder):
         open_folder(folder, force=force)
     write_json(folder / MARK, manifest(ready.scene, ready.lock, sys.argv))

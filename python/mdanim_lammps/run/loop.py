@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import hashlib
+import shutil
 import signal
 import threading
 import time
@@ -21,9 +22,10 @@ from ..errors import DivergedError, ExitCode, MdanimError, OutputError, Problem
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, Part
 from ..results.expect import Measured, Outcome, evaluate, record, recorded
-from ..results.files import write_json, write_whole
+from ..results.files import disk_errors, write_json, write_whole
 from ..results.ledger import LOSS, Ledger
 from ..results.trajectory import Trajectory, TrajectoryWriter
+from ..scene.meshes import mesh_files
 from ..scene.wording import number
 from .energy import ledger_terms, rounding_energy
 from .frame_source import Account, Broken, Frame, Sequential, Source
@@ -79,8 +81,12 @@ class Interrupted(MdanimError):
 
 
 def write_inputs(ready: Prepared, folder: Path) -> None:
-    """Write scene.lock.txt, certificate.json, ``data.NAME`` and ``in.NAME``. Raises OutputError."""
+    """Write scene.lock.txt, copies of its meshes, certificate.json, ``data.NAME`` and ``in.NAME``. Raises OutputError."""
     plan = ready.plan
+    for path, name in mesh_files(ready.scene).items():
+        with disk_errors(folder / name):
+            (folder / name).parent.mkdir(exist_ok=True)
+        write_whole(folder / name, lambda part, path=path: shutil.copyfile(path, part))
     write_whole(folder / "scene.lock.txt", ready.lock)
     write_json(folder / "certificate.json", ready.certificate.to_json())
     write_whole(folder / f"data.{plan.name}", lambda part: write_data(plan, part))

@@ -18,8 +18,9 @@ from ..model.model import Model
 from ..model.overlap import check_geometry
 from ..model.system import System, as_parts, assemble
 from ..scene.lock import lock_text
+from ..scene.meshes import mesh_files
 from ..scene.scene import Scene
-from ..scene.words import IMMERSION
+from ..scene.keywords import IMMERSION
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ class Prepared:
     @cached_property
     def lock(self) -> str:
         """The text of scene.lock.txt: what the run is made from."""
-        return lock_text(self.scene)
+        return lock_text(self.scene, mesh_files(self.scene))
 
 
 def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[int, int], None] | None = None) -> Prepared:

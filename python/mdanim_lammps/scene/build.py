@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
@@ -12,27 +13,17 @@ from ..errors import Span
 from . import scene as records
 from . import units
 from .expand import Filled, Setting
+from .keywords import BLOCKS, GLOBALS, IMMERSION, KEYWORDS, QUANTITIES, did_you_mean, example
+from .limits import FARTHEST, MOST_BYTES_OF_MESH, MOST_FRAMES
 from .rotation import IDENTITY, departure, rotation_about, rotation_euler
 from .scene import Vector
-from .source import Problems, Source
-from .wording import number, say
-from .words import BLOCKS, GLOBALS, IMMERSION, KEYWORDS, QUANTITIES, did_you_mean, example
-
-LARGEST_PICTURE = 16384
-"""Pixels along one side."""
+from .source import Problems, Source, ordinary
+from .wording import number, say, whole
 
 
 def build(out: Filled, problems: Problems, name: str, source: Source) -> records.Scene | None:
     """The scene, or None where errors make it impossible."""
     return Builder(out, problems, Span(source.name, 1, 1)).scene(name, source.path)
-
-
-MOST_SWEEPS = 4096
-"""Most sweeps of the automaton per update that fix mdanim/liquid takes."""
-
-SOFTEST, STIFFEST = 0.1, 100.0
-"""Least and largest ``contact-stiffness``: softer, objects are passed through before they are crushed; stiffer,
-only time is lost."""
 
 
 class Builder:
@@ -42,12 +33,17 @@ class Builder:
         self.out, self.problems = out, problems
         self.top = top
         """The beginning of the scene, for problems of the scene as a whole."""
+        self.by_kind: dict[str, list[Filled]] = {}
+        for block in out.blocks:
+            self.by_kind.setdefault(block.block, []).append(block)
+        self.names = dict.fromkeys(b.name for b in self.blocks("object"))
+        """Names of all objects, in the order of the scene."""
 
     def problem(self, span: Span | None, message: str, hint: str = "", severity: str = "error", key=None) -> None:
         self.problems.add(span, message, hint, severity, key)
 
     def blocks(self, kind: str) -> list[Filled]:
-        return [b for b in self.out.blocks if b.block == kind]
+        return self.by_kind.get(kind, [])
 
     def scene(self, name: str, path: Path | None) -> records.Scene | None:
         """All records; None after an error."""
@@ -219,6 +215,7 @@ class Builder:
         if rotation is None or shape is None:
             return None
         words, value = block.first("elasticity").entry.words, block.value
+        self.near_enough(block, shape)
         elastic = records.SpringConstant(value("elasticity")) if words else records.Young(value("elasticity"))
         still = (0.0, 0.0, 0.0)
         return records.Solid(
@@ -239,12 +236,18 @@ class Builder:
             )
             return None
         if kind == "mesh":
-            path = (s.entry.source.folder / v[0]).resolve()
+            path = Path(os.path.abspath(s.entry.source.folder / v[0]))
             if path.suffix.lower() not in (".stl", ".obj", ".ply"):
                 self.problem(s.span(0), f"a mesh is an STL, OBJ or PLY file, found '{v[0]}'")
                 return None
-            if not path.is_file():
+            if not os.path.exists(path):
                 self.problem(s.span(0), f"the mesh file '{v[0]}' is not there: {path}", "its name is relative to this scene file")
+                return None
+            if not ordinary(path):
+                self.problem(s.span(0), f"the mesh file '{v[0]}' is not an ordinary file", "copy the mesh beside the scene")
+                return None
+            if path.stat().st_size > MOST_BYTES_OF_MESH:
+                self.problem(s.span(0), f"the mesh file '{v[0]}' is larger than {MOST_BYTES_OF_MESH >> 20} MB", "fewer triangles")
                 return None
             return records.Mesh(path, 1.0 if v[1] is None else v[1])
         make = {
@@ -256,6 +259,20 @@ class Builder:
             "torus": records.Torus,
         }[kind]
         return make(*v)
+
+    def near_enough(self, block: Filled, shape: records.Shape) -> None:
+        """An object so far out that its particles differ by rounding alone is refused; a mesh is not known here."""
+        if isinstance(shape, records.Mesh):
+            return
+        lengths = [x for v in block.first("shape").values for x in (v if isinstance(v, tuple) else (v,))]
+        position = block.value("position")
+        if max(map(abs, position)) > FARTHEST * min(lengths):
+            self.problem(
+                block.first("position").span(0),
+                f"{block.name} is too far from the origin for its size: {units.show(position)} m with a length of "
+                f"{say(min(lengths), 'm', 6)}",
+                f"at most {number(FARTHEST)} times its smallest length",
+            )
 
     def rotation(self, block: Filled) -> tuple[Vector, Vector, Vector] | None:
         s = block.first("orientation")
@@ -315,12 +332,6 @@ class Builder:
                 "the level is a height, not a depth",
             )
         sweeps = block.value("sweeps")
-        if sweeps is not None and sweeps > MOST_SWEEPS:
-            self.problem(
-                block.first("sweeps").span(0),
-                f"{sweeps:.0f} sweeps per update are more than {MOST_SWEEPS}",
-                "write sweeps auto, which takes 8 for each cell that the fastest solid travels",
-            )
         model = records.LiquidModel(block.value("model", "surface"))
         if model is records.LiquidModel.PAPER:
             self.problem(
@@ -368,17 +379,18 @@ class Builder:
         value = block.value
         save = block.first("save")
         contact = value("contact-stiffness", 1.0)
-        if not SOFTEST <= contact <= STIFFEST:
-            self.problem(
-                block.first("contact-stiffness").span(0),
-                f"contact-stiffness goes from {SOFTEST:g} to {STIFFEST:g}, found {number(contact, 6)}",
-                "1 is as stiff as the material itself; 4 halves how deep objects sink in, for a shorter time step",
-            )
         if value("frames", 30.0) * value("time") < 1.0:
             self.problem(
                 block.first("time").span(0),
                 f"in {number(value('time'), 6)} s there is not one frame of 1/{number(value('frames', 30.0), 6)} s",
                 "a longer time, or more frames per second",
+            )
+        if value("frames", 30.0) * value("time") > MOST_FRAMES:
+            self.problem(
+                block.first("time").span(0),
+                f"{number(value('time'), 6)} s have {number(value('frames', 30.0) * value('time'))} frames of "
+                f"1/{number(value('frames', 30.0), 6)} s; the most is {whole(MOST_FRAMES)}",
+                "a shorter time, or fewer frames per second",
             )
         return records.Control(
             time=value("time"), frames=value("frames", 30.0),
@@ -420,20 +432,31 @@ class Builder:
             return records.Render()
         block = found[0]
         size = block.first("size")
-        if size and max(size.values[0]) > LARGEST_PICTURE:
-            self.problem(
-                size.span(0),
-                f"a picture of {units.show(size.values[0])} pixels is too large",
-                f"the most is {LARGEST_PICTURE} along a side",
-            )
         cameras = tuple(self.camera(s, control) for s in block.settings.get("camera", ()))
         if len(cameras) > 1:
             self.camera_path(block, cameras)
         return records.Render(
-            size=tuple(map(int, size.values[0])) if size else (1280, 720), movie=block.value("movie"),
+            size=tuple(map(int, size.values[0])) if size else (1280, 720), movie=self.movie(block.first("movie")),
             background=block.value("background"), camera=cameras, liquid=block.value("liquid", "smooth"),
             spans=self.spans(block),
         )  # fmt: skip
+
+    def movie(self, s: Setting | None) -> str | None:
+        """The name of the movie: a file below the output folder, and none of the run's own."""
+        if s is None:
+            return None
+        name = s.values[0]
+        cause = ""
+        if not name.isprintable():
+            cause = "holds characters that cannot be printed"
+        elif Path(name).is_absolute() or ".." in Path(name).parts:
+            cause = "leads out of the output folder"
+        elif Path(name).suffix.lower() != ".mp4" or max(map(len, map(os.fsencode, Path(name).parts))) > 255:
+            cause = "is not the name of an MP4 file"
+        if cause:
+            shown = "".join(c if c.isprintable() else "?" for c in name)
+            self.problem(s.span(0), f"the name of the movie {cause}: '{shown}'", 'write a name inside it, e.g. movie "ball.mp4"')
+        return name
 
     def camera(self, s: Setting, control: records.Control | None) -> records.Camera:
         time, eye, look, up = s.values
@@ -462,11 +485,10 @@ class Builder:
 
     def known_object(self, name: str, span: Span) -> bool:
         """Whether an object has this name; tells it if not."""
-        names = [b.name for b in self.blocks("object")]
-        if name in names or self.out.excused("object"):
-            return name in names
-        hint = did_you_mean(name, names[:2000])
-        self.problem(span, f"no object is called {name}", hint if names else "the scene has no object")
+        if name in self.names or self.out.excused("object"):
+            return name in self.names
+        hint = did_you_mean(name, list(self.names)[:2000])
+        self.problem(span, f"no object is called {name}", hint if self.names else "the scene has no object")
         return False
 
     def expects(self, control: records.Control | None) -> tuple[records.Expect, ...]:
@@ -514,10 +536,9 @@ class Builder:
         if any(subject == b.name for b in self.blocks("liquid")):
             self.problem(span, f"the liquid is called liquid in expect, found {subject}", f"write liquid.{quantity}")
             return False
-        names = [b.name for b in self.blocks("object")]
-        if subject in names:
+        if subject in self.names:
             return True
         if not self.out.excused("object"):
-            hint = did_you_mean(subject, [*names[:2000], *GLOBALS])
+            hint = did_you_mean(subject, [*list(self.names)[:2000], *GLOBALS])
             self.problem(span, f"no object is called {subject}", hint)
         return False

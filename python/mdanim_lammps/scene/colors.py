@@ -7,7 +7,7 @@ import re
 
 from PIL import ImageColor
 
-from .words import did_you_mean
+from .keywords import did_you_mean
 
 
 def color(text: str) -> str:

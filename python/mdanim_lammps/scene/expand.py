@@ -10,15 +10,12 @@ from dataclasses import dataclass, field
 from . import units
 from .colors import color
 from .expressions import SPOILED, Env
+from .keywords import Rule, did_you_mean, example
+from .limits import LIMITS, MOST_OBJECTS, MOST_ROUNDS
 from .source import Fault, Problems, Source
 from .statements import Shared, parse_override
 from .tree import Broken, Entry, Group, Let, Name, Repeat, Value
 from .wording import estimate, number, whole
-from .words import Rule, did_you_mean, example
-
-MOST_OBJECTS = 10**6
-MOST_ROUNDS = 2 * 10**6
-"""Rounds of all repeats together; only a scene of empty repeats comes near."""
 
 
 @dataclass(slots=True, eq=False)
@@ -414,6 +411,15 @@ class Expander:
             raise Fault(first, f"{what} is not a finite number", "a calculation in it overflows", last)
         if rule is not Rule.ANY and not rule.holds(x):
             raise Fault(first, f"{what} must be {rule.value}, found {_found(s, v, units.quantity(x, dim))}", last=last)
+        limit = s.keyword.limit or LIMITS[v.slot.unit]
+        least = limit.least if rule is Rule.POSITIVE else -limit.most
+        if not least <= x <= limit.most:
+            size = "small" if x < least else "large"
+            least, most = (units.show(units.quantity(b, dim)) for b in (limit.least, limit.most))
+            goes = f"goes from {least} to {most}" if rule is Rule.POSITIVE else f"goes up to {most}"
+            raise Fault(
+                first, f"{what} is too {size}: it {goes}, found {units.show(units.quantity(x, dim))}", limit.way_out, last
+            )
         return x
 
     def _color(self, s: Entry, v: Value, x: str) -> str:

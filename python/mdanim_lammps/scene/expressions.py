@@ -12,12 +12,10 @@ from importlib import resources
 from lark import Lark, Token, Transformer, v_args
 
 from . import units
+from .keywords import did_you_mean
+from .limits import DEEPEST_EXPRESSION
 from .source import Fault, Silent
 from .units import DimensionError, Quantity
-from .words import did_you_mean
-
-DEEPEST = 150
-"""Steps of one expression that may hang on each other; keeps Python's stack out of reach."""
 
 RESERVED = frozenset({*units.FUNCTIONS, "rand", "pi", "mod", "let", "repeat", "include", "in"})
 """Names that no ``let`` may take."""
@@ -66,8 +64,8 @@ class Node:
         self.first, self.last = first, last
         self.constant = constant and all(p.constant for p in parts)
         self.depth = 1 + max((p.depth for p in parts), default=0)
-        if self.depth > DEEPEST:
-            raise Fault(first, f"this expression has more than {DEEPEST} nested steps", "split it with let")
+        if self.depth > DEEPEST_EXPRESSION:
+            raise Fault(first, f"this expression has more than {DEEPEST_EXPRESSION} nested steps", "split it with let")
 
 
 def guarded(token: Token, function, *values):

@@ -89,3 +89,16 @@ def literals(form: str) -> frozenset[str]:
                 yield from words(p.parts)
 
     return frozenset(w for a in alternatives(form) for w in words(a))
+
+
+def slots(form: str) -> tuple[Slot, ...]:
+    """Every slot of a form."""
+
+    def found(parts):
+        for p in parts:
+            if isinstance(p, Slot):
+                yield p
+            elif isinstance(p, Optional):
+                yield from found(p.parts)
+
+    return tuple(s for a in alternatives(form) for s in found(a))

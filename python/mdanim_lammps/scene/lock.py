@@ -3,16 +3,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from decimal import Decimal
+from pathlib import Path
 
 from . import scene as records
+from .keywords import GLOBALS, KEYWORDS, QUANTITIES
 from .rotation import IDENTITY
 from .scene import Scene, Solid, Vector
-from .words import GLOBALS, KEYWORDS, QUANTITIES
+
+LOCK = "scene.lock.txt"
 
 
-def lock_text(scene: Scene) -> str:
+def lock_text(scene: Scene, meshes: Mapping[Path, str] | None = None) -> str:
     """The scene as a text in SI units whose floats are exact: ``parse_scene(lock_text(s), s.name) == s``.
+
+    ``meshes`` are the names of mesh files in the output folder; without it their paths are absolute.
 
     Raises ValueError for a text that the language cannot hold (one with a quote or a line break in it).
     """
@@ -34,7 +40,7 @@ def lock_text(scene: Scene) -> str:
         blocks.append(["# effects: all auto"])
     if scene.liquid is not None:
         blocks.append(_liquid(scene.liquid))
-    blocks += map(_solid, scene.solids)
+    blocks += (_solid(s, meshes or {}) for s in scene.solids)
     if scene.expects:
         blocks.append(list(map(_expect, scene.expects)))
     for block in blocks:
@@ -114,7 +120,7 @@ def _liquid(q: records.Liquid) -> list[str]:
     return _block(f"liquid {q.name}", settings)
 
 
-def _shape(s: records.Shape) -> str:
+def _shape(s: records.Shape, meshes: Mapping[Path, str]) -> str:
     match s:
         case records.Box():
             return f"box {_vector(s.size)} m"
@@ -129,7 +135,7 @@ def _shape(s: records.Shape) -> str:
         case records.Torus():
             return f"torus {s.major!r} m {s.minor!r} m"
         case records.Mesh():
-            return f"mesh {_text(str(s.path))} scale {s.scale!r}"
+            return f"mesh {_text(meshes.get(s.path, str(s.path)))} scale {s.scale!r}"
 
 
 def _hold(h: records.Hold) -> list[str]:
@@ -141,11 +147,11 @@ def _hold(h: records.Hold) -> list[str]:
     return [f"faces {low[1]}" if other else f"face {low}"]
 
 
-def _solid(s: Solid) -> list[str]:
+def _solid(s: Solid, meshes: Mapping[Path, str]) -> list[str]:
     turned = s.rotation != IDENTITY
     young = isinstance(s.elasticity, records.Young)
     settings = [
-        ("shape", _shape(s.shape)),
+        ("shape", _shape(s.shape, meshes)),
         ("position", f"{_vector(s.position)} m"),
         ("orientation", f"matrix {' '.join(map(_vector, s.rotation))}" if turned else KEYWORDS["object"]["orientation"].default),
         ("mass", f"{s.mass!r} kg") if s.mass is not None else ("density", f"{s.density!r} kg/m^3"),

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""docs/language.md, written from the keyword table (``python -m mdanim_lammps.scene.words``)."""
+"""docs/language.md, written from the keyword table (``python -m mdanim_lammps.scene.keywords``)."""
 
 from __future__ import annotations
 
 from . import units
-from .words import BLOCKS, KEYWORDS, QUANTITIES, Block, Keyword, Rule, syntax, units_shown
+from .keywords import BLOCKS, KEYWORDS, QUANTITIES, Block, Keyword, Rule, syntax, units_shown
 
 _TOP = """\
 # The scene language
 
-<!-- Written by `python -m mdanim_lammps.scene.words` from the keyword table: change that, not this page. -->
+<!-- Written by `python -m mdanim_lammps.scene.keywords` from the keyword table: change that, not this page. -->
 
 A scene is one UTF-8 text file. Here is a whole one:
 

@@ -7,11 +7,13 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..errors import Problem, SceneError
+from ..errors import Problem, SceneError, Span
 from .build import build
 from .expand import Expander
+from .limits import MOST_BYTES, MOST_BYTES_OF_LOCK
+from .lock import LOCK
 from .scene import Scene
-from .source import Problems, Source, read_text
+from .source import Problems, Source, UnreadableFile, read_text
 from .statements import parse
 
 Overrides = Mapping[str, str | float]
@@ -26,12 +28,12 @@ def load_scene(path: str | os.PathLike, overrides: Overrides | None = None, stri
     shown = os.fspath(path)
     try:
         file = Path(shown).absolute()
-        text = read_text(file)
-    except ValueError as e:
-        raise SceneError([Problem(None, f"{shown} {e}")]) from None
+        text = read_text(file, MOST_BYTES_OF_LOCK if file.name == LOCK else MOST_BYTES, shown)
+    except UnreadableFile as e:
+        raise SceneError([Problem(e.span, f"{shown} {e}")]) from None
     except OSError as e:
         raise SceneError([Problem(None, f"{shown} cannot be read: {e.strerror}")]) from None
-    return _scene(Source(shown, text, file.resolve()), Path(shown).stem, overrides, strict)
+    return _scene(Source(shown, text, Path(os.path.realpath(file))), Path(shown).stem, overrides, strict)
 
 
 def parse_scene(
@@ -52,7 +54,8 @@ def _scene(source: Source, name: str, overrides: Overrides | None, strict: bool)
     problems = Problems()
     problems.begin(source)
     if not source.text.strip():
-        raise SceneError([Problem(None, f"{source.name} is empty", "a scene has at least an object and a control block")])
+        place = Span(source.name, 1, 1)
+        raise SceneError([Problem(place, f"{source.name} is empty", "a scene has at least an object and a control block")])
     body, shared = parse(source, problems)
     out = Expander(shared, overrides, strict).scene(body)
     scene = build(out, problems, name, source) if out is not None else None

@@ -11,9 +11,8 @@ from lark.exceptions import UnexpectedInput
 from . import units
 from .expressions import Node, Rand, compile_value, language
 from .forms import Slot
+from .limits import DEEPEST_BRACKET
 from .source import Fault, Source
-
-DEEPEST_BRACKET = 60
 
 
 def found(t: Token) -> str:

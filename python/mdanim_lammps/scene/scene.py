@@ -87,7 +87,7 @@ Shape = Box | Sphere | Ellipsoid | Cylinder | Cone | Torus | Mesh
 
 
 class Side(Enum):
-    """Which face of the body-frame bounding box ``hold face`` names; ``X`` stands for both faces across x."""
+    """A face of the bounding box of an object in its own frame."""
 
     MINUS_X, PLUS_X, MINUS_Y, PLUS_Y, MINUS_Z, PLUS_Z = "-x", "+x", "-y", "+y", "-z", "+z"
 

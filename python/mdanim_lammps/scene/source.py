@@ -3,15 +3,12 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import Problem, SceneError, Span
-
-LARGEST_FILE = 64 * 2**20
-
-MOST_PROBLEMS = 50
-"""More than these help nobody; the rest is counted."""
+from .limits import MOST_PROBLEMS
 
 
 class Fault(Exception):
@@ -57,24 +54,56 @@ class Source:
         return self.text[first.start_pos : last.end_pos].replace("\n", " ")
 
 
-def read_text(path: Path) -> str:
-    """Read a UTF-8 text file; raises ValueError with a message for people, or OSError."""
-    if path.is_dir():
-        raise ValueError("is a folder, not a scene file")
-    if not path.is_file():
-        raise ValueError("is not there" if not path.exists() else "is not an ordinary file")
-    if path.stat().st_size > LARGEST_FILE:
-        raise ValueError(f"is larger than {LARGEST_FILE >> 20} MB: this is hardly a scene")
-    data = path.read_bytes()
+class UnreadableFile(ValueError):
+    """A file that holds no scene; ``span`` is the place in it, where there is one."""
+
+    def __init__(self, message: str, span: Span | None = None):
+        super().__init__(message)
+        self.span = span
+
+
+def read_text(path: Path, most: int, shown: str = "") -> str:
+    """Read a UTF-8 text file of at most ``most`` bytes; ``shown`` is its name in messages.
+
+    Anything that is no file on a disk is refused before it is opened: pipes, devices, what the kernel shows below /proc and /sys.
+    Raises UnreadableFile, or OSError.
+    """
+    if os.path.isdir(path):
+        raise UnreadableFile("is a folder, not a scene file")
+    if not os.path.exists(path):
+        raise UnreadableFile("is not there")
+    if not ordinary(path):
+        raise UnreadableFile("is not an ordinary file")
+    with open(path, "rb") as file:
+        size = os.fstat(file.fileno()).st_size
+        if size > most:
+            raise UnreadableFile(f"is larger than {most >> 20} MB: this is hardly a scene")
+        data = file.read(size)
+    shown = shown or str(path)
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise ValueError("is UTF-16 text; save it as UTF-8")
-    if b"\0" in data:
-        raise ValueError("is a binary file, not a text")
+        raise UnreadableFile("is UTF-16 text; save it as UTF-8", Span(shown, 1, 1))
+    if (at := data.find(b"\0")) >= 0:
+        raise UnreadableFile("is a binary file, not a text", _place(shown, data, at))
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError as e:
-        line = data.count(b"\n", 0, e.start) + 1
-        raise ValueError(f"is not UTF-8 text (byte 0x{data[e.start]:02x} in line {line}); save it as UTF-8") from None
+        place = _place(shown, data, e.start)
+        found = f"byte 0x{data[e.start]:02x} in line {place.line}"
+        raise UnreadableFile(f"is not UTF-8 text ({found}); save it as UTF-8", place) from None
+
+
+def ordinary(path: Path) -> bool:
+    """Whether a path leads, through any links, to a file on a disk."""
+    target = Path(os.path.realpath(path))
+    return target.is_file() and not any(target.is_relative_to(folder) for folder in ("/proc", "/sys"))
+
+
+def _place(shown: str, data: bytes, at: int) -> Span:
+    """The place of a byte; bytes that are no text are shown as one sign each."""
+    start = data.rfind(b"\n", 0, at) + 1
+    line = data[start : at + 100].split(b"\n")[0].decode("utf-8", "replace")
+    column = len(data[start:at].decode("utf-8", "replace")) + 1
+    return Span(shown, data.count(b"\n", 0, at) + 1, column, 1, line)
 
 
 class Problems:
@@ -120,5 +149,5 @@ class Problems:
         problems = self.ordered()
         if len(problems) > MOST_PROBLEMS:
             more = len(problems) - MOST_PROBLEMS
-            problems = problems[:MOST_PROBLEMS] + [Problem(None, f"{more} more problems", "mend these first")]
+            problems = problems[:MOST_PROBLEMS] + [Problem(None, f"{more} more problems", "fix these first")]
         raise SceneError(problems)

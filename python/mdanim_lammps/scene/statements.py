@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""From text to statements: walks the blocks, reads settings as words.py says, goes on after a bad line."""
+"""From text to statements: walks the blocks, reads settings as keywords.py says, goes on after a bad line."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import count
@@ -12,14 +13,11 @@ from lark import Token
 
 from .expressions import RESERVED, Node
 from .forms import Literal, Optional, Slot, alternatives, literals
+from .keywords import BLOCKS, GLOBALS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, SYNONYMS, Keyword, did_you_mean, example, nearest
+from .limits import DEEPEST_INCLUDE, DEEPEST_REPEAT, MOST_BYTES, MOST_FILES
 from .reader import ODD, Reader, found
-from .source import Fault, Problems, Source, read_text
+from .source import Fault, Problems, Source, UnreadableFile, read_text
 from .tree import Broken, Entry, Group, Let, Name, Repeat, Value
-from .words import BLOCKS, GLOBALS, KEYWORDS, STATEMENTS, Keyword, did_you_mean, example, nearest
-
-DEEPEST_REPEAT = 16
-DEEPEST_INCLUDE = 16
-MOST_FILES = 1000
 
 
 class Unclosed(Exception):
@@ -40,6 +38,8 @@ class Shared:
     names: set[str] = field(default_factory=set)
     """Names given by let or repeat so far."""
     files: int = 0
+    bytes: int = 0
+    """Of all files that were included."""
     incomplete: bool = False
     """A file or a repeat could not be read, so that names may be missing that are not to blame."""
 
@@ -106,7 +106,7 @@ class Parser(Reader):
                 self.problem(fault)
                 self.shared.incomplete |= self.tokens[start] in ("include", "repeat")
                 word, name = self.tokens[start], self.tokens[min(start + 1, len(self.tokens) - 1)]
-                self.skip_statement(start, block)
+                self.skip_statement(start, block, fault.token)
                 known = [*KEYWORDS[block], *BLOCKS, *STATEMENTS]
                 result.append(Broken(nearest(str(word), known) or str(word), str(name) if word == "let" else ""))
             except Unclosed as trouble:
@@ -123,11 +123,16 @@ class Parser(Reader):
                 )
                 return result
 
-    def skip_statement(self, start: int, block: str) -> None:
-        """Go on after a bad statement: behind its line, or behind the block that it opens."""
+    def skip_statement(self, start: int, block: str, bad: Token | None = None) -> None:
+        """Go on after a bad statement: behind its line, behind the block that it opens, or at the next setting after ``bad``."""
         self.at = start
         depth = braces = 0
+        passed = False
         while True:
+            t = self.peek
+            if block and passed and depth <= 0 and not braces and str(t) in KEYWORDS[block] and t not in self.names:
+                break
+            passed |= t is bad
             t = self.take()
             if t.type == "END":
                 break
@@ -201,6 +206,8 @@ class Parser(Reader):
             place = " or ".join(f"{b} {{ }}" if b else "the outermost level" for b in homes)
             inside = f"inside {block} {{ }}" if block else "outside of all blocks"
             raise Fault(word, f"'{word}' cannot stand {inside}", f"it belongs {'in' if homes[0] else 'on'} {place}")
+        if str(word) in NOT_SUPPORTED:
+            raise Fault(word, f"{word} is not supported yet", NOT_SUPPORTED[str(word)])
         kind = f"a setting of {block}" if block else "a word of the scene language"
         owner = next((k for k in KEYWORDS[block].values() if word in literals(k.form)), None)
         hint = did_you_mean(str(word), here)
@@ -258,6 +265,9 @@ class Parser(Reader):
         self.take()
         index = self.expression(Slot("number", "index"), frozenset())
         last = self.peek
+        if last.type == "COMMA":
+            hint = f"make one number of them, e.g. {token}[100*i + j]"
+            raise Fault(last, f"{token}[...] has one index, found {found(last)}", hint)
         if last.type != "RSQB":
             raise Fault(last, f"a ] is missing after the index of {token}, found {found(last)}", f"write {token}[1]")
         self.take()
@@ -312,7 +322,7 @@ class Parser(Reader):
         t = self.text("include", 'e.g. include "rubber.txt"')
         self.end_of_statement("include", ())
         file = str(t)[1:-1]
-        path = (self.source.folder / file).resolve() if "\0" not in file else Path()
+        path = Path(os.path.realpath(self.source.folder / file)) if "\0" not in file else Path()
         if path in self.chain:
             loop = [p.name for p in self.chain[self.chain.index(path) :]] + [path.name]
             raise Fault(t, f"this include goes round in a circle: {' -> '.join(loop)}", "remove one of them")
@@ -323,7 +333,11 @@ class Parser(Reader):
         if self.shared.files > MOST_FILES:
             raise Fault(t, f"more than {MOST_FILES} files are included")
         try:
-            text = read_text(path)
+            text = read_text(path, MOST_BYTES - self.shared.bytes)
+            self.shared.bytes += len(text)
+        except UnreadableFile as e:
+            where = f" (at {e.span.line}:{e.span.column})" if e.span else ""
+            raise Fault(t, f"cannot include {t}: {path} {e}{where}", "the name is relative to this file") from None
         except (ValueError, OSError) as e:
             reason = e.strerror if isinstance(e, OSError) else str(e)
             raise Fault(t, f"cannot include {t}: {path} {reason}", "the name is relative to this file") from None
@@ -363,6 +377,8 @@ class Parser(Reader):
             if t.type in ("NEWLINE", "END", "RBRACE"):
                 self._missing(word, t, keyword)
             hint = did_you_mean(str(t), starts) if len(starts) > 1 or mistyped else example(keyword)
+            if SYNONYMS.get(str(t)) in starts:
+                hint = f"did you mean '{SYNONYMS[str(t)]}'?"
             raise Fault(t, f"{keyword.name} cannot be followed by {found(t)}", hint)
         return free[0]
 

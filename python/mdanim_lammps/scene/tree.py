@@ -9,8 +9,8 @@ from lark import Token
 
 from .expressions import Node
 from .forms import Slot
+from .keywords import Keyword
 from .source import Source
-from .words import Keyword
 
 
 @dataclass(slots=True, eq=False)

@@ -230,6 +230,17 @@ def _pairwise(function, x: object, y: object):
     return function(x, y)
 
 
+LARGEST_POWER = 100
+"""No quantity has a unit to a higher power; chains of products would make exponents of any length."""
+
+
+def _compound(value: float, dim: Dim) -> Scalar:
+    """The result of a product or a power."""
+    if any(abs(e) > LARGEST_POWER for e in dim):
+        raise DimensionError(f"the unit of this value has a power above {LARGEST_POWER}")
+    return quantity(value, dim)
+
+
 def add(x, y):
     """x + y of two numbers or two vectors."""
     return _pairwise(lambda a, b: quantity(magnitude(a) + magnitude(b), _same(a, b, "add")), x, y)
@@ -245,7 +256,7 @@ def multiply(x, y):
     if isinstance(x, tuple) != isinstance(y, tuple):
         return tuple(multiply(a, y) for a in x) if isinstance(x, tuple) else tuple(multiply(x, b) for b in y)
     _scalars(x, y)
-    return quantity(magnitude(x) * magnitude(y), tuple(a + b for a, b in zip(dimension(x), dimension(y))))
+    return _compound(magnitude(x) * magnitude(y), tuple(a + b for a, b in zip(dimension(x), dimension(y))))
 
 
 def divide(x, y):
@@ -253,7 +264,7 @@ def divide(x, y):
     if isinstance(x, tuple):
         return tuple(divide(a, y) for a in x)
     _scalars(x, y)
-    return quantity(magnitude(x) / magnitude(y), tuple(a - b for a, b in zip(dimension(x), dimension(y))))
+    return _compound(magnitude(x) / magnitude(y), tuple(a - b for a, b in zip(dimension(x), dimension(y))))
 
 
 def modulo(x, y):
@@ -271,7 +282,12 @@ def power(x, y):
     if isinstance(result, complex):
         raise DimensionError(f"({show(x)}) ^ ({show(y)}) is not a real number")
     exponent = Fraction(magnitude(y)).limit_denominator(12)
-    return quantity(result, tuple(e * exponent for e in dimension(x)))
+    if dimension(x) != NONE and abs(exponent - Fraction(magnitude(y))) > 1e-12:
+        raise DimensionError(
+            f"{describe(dimension(x))} cannot be raised to the power {show(y)}",
+            "the exponent of a quantity is a whole number or a fraction such as 1/2 or 2/3",
+        )
+    return _compound(result, tuple(e * exponent for e in dimension(x)))
 
 
 def negate(x):

@@ -11,9 +11,10 @@ from .. import __version__
 from ..certificate import fit_steps
 from ..model.spacing import choose_spacing
 from ..run.prepare import Prepared, prepare
-from ..scene.build import SOFTEST, STIFFEST
+from ..scene.limits import CONTACT_STIFFNESS
 from ..scene.lock import lock_text
-from ..scene.scene import Accuracy, Mesh, Render, Save, Scene
+from ..scene.meshes import mesh_files
+from ..scene.scene import Accuracy, Render, Save, Scene
 
 LADDERS = ("time step", "resolution", "sweeps", "contact")
 LARGEST = 0.9
@@ -133,7 +134,9 @@ def ladders(scene: Scene, ready: Prepared, own: Setting) -> tuple[list[Ladder], 
     else:
         left["sweeps"] = "no liquid"
     if any(ready.verdicts[name].on for name in TOUCHING):
-        factors = (x for k in (-2, -1, 0, 1, 2, 3) if SOFTEST <= (x := own.contact * 2.0**k) <= STIFFEST)
+        factors = (
+            x for k in (-2, -1, 0, 1, 2, 3) if CONTACT_STIFFNESS.least <= (x := own.contact * 2.0**k) <= CONTACT_STIFFNESS.most
+        )
         out.append(Ladder("contact", tuple(replace(own, contact=x) for x in factors)))
     else:
         left["contact"] = f"nothing touches: {ready.verdicts['contact'].reason}, and there is neither ground nor walls"
@@ -157,8 +160,5 @@ def scene_hash(scene: Scene) -> str:
     )
     liquid = scene.liquid and replace(scene.liquid, sweeps=None)
     bare = replace(scene, name="scene", title="", control=control, liquid=liquid, render=Render())
-    digest = hashlib.sha256(f"{__version__}\n{thinnest(scene)!r}\n{lock_text(bare)}".encode())
-    for solid in scene.solids:
-        if isinstance(solid.shape, Mesh):
-            digest.update(solid.shape.path.read_bytes())
+    digest = hashlib.sha256(f"{__version__}\n{thinnest(scene)!r}\n{lock_text(bare, mesh_files(bare))}".encode())
     return digest.hexdigest()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The words of the scene language: one table that parser, checks, messages, `explain` and docs read.
 
-``python -m mdanim_lammps.scene.words`` prints docs/language.md.
+``python -m mdanim_lammps.scene.keywords`` prints docs/language.md.
 """
 
 from __future__ import annotations
@@ -10,6 +10,8 @@ import re
 from dataclasses import dataclass
 from difflib import get_close_matches
 from enum import Enum
+
+from .limits import CONTACT_STIFFNESS, DAMPING, PIXELS, SWEEPS, Limit
 
 
 class Rule(Enum):
@@ -53,6 +55,8 @@ class Keyword:
     """May be given several times."""
     one_of: tuple[str, ...] = ()
     """Exactly one of these is given."""
+    limit: Limit | None = None
+    """Holds for every number of the setting; None is the limit of its unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +115,7 @@ WORDS = (
             "Young's modulus; or the paper's one k for every spring, Wcislo 1999, eq. (3.6).",
             Rule.POSITIVE, needed=True),
     Keyword("object", "damping", "<zeta>", "0.05",
-            "Internal damping, as a fraction of critical damping in each spring.", Rule.NOT_NEGATIVE, "0"),
+            "Internal damping, as a fraction of critical damping in each spring.", Rule.NOT_NEGATIVE, "0", limit=DAMPING),
     Keyword("object", "velocity", "<(vx, vy, vz):m/s>", "(0, 0, -1) m/s",
             "Velocity at the start.", default="(0, 0, 0) m/s"),
     Keyword("object", "spin", "<(wx, wy, wz):rad/s>", "(0, 0, 2) rad/s",
@@ -145,7 +149,8 @@ WORDS = (
             "liquid's pressure on every outer face, so that an open hull floats by the air in it. `paper`: the literal "
             "rules of the paper, with a warning: not Archimedes, objects denser than about 0.4 of the liquid sink.",
             default="surface"),
-    Keyword("liquid", "sweeps", "auto | <n>", "4", "Sweeps of the automaton per update.", Rule.COUNT, "auto"),
+    Keyword("liquid", "sweeps", "auto | <n>", "4", "Sweeps of the automaton per update.", Rule.COUNT, "auto",
+            limit=SWEEPS),
     Keyword("liquid", "color", "<color>", "deepskyblue",
             'Colour in pictures: a CSS name or "#rrggbb". Absent: chosen automatically.'),
 
@@ -180,16 +185,17 @@ WORDS = (
             "How finely objects are resolved, or the error that is aimed at.", default="balanced"),
     Keyword("control", "contact-stiffness", "<factor>", "4",
             "What objects, ground and walls push back with, over E h, the stiffness of the material behind a surface; from "
-            "0.1 to 100. Stiffer, objects sink less into each other, and time steps get shorter.", Rule.POSITIVE, "1"),
+            "0.1 to 100. Stiffer, objects sink less into each other, and time steps get shorter.", Rule.POSITIVE, "1",
+            limit=CONTACT_STIFFNESS),
     Keyword("control", "seed", "<n>", "7", "Seed of `rand` and of the liquid.", Rule.WHOLE, "1"),
     Keyword("control", "save", "<all|boundary> [<single|double>]", "boundary single",
             "Which particles the trajectory holds, and its precision; the size is told before the run.",
             default="all double"),
 
     Keyword("render", "size", "<(w, h)>", "(1920, 1080)",
-            "Width and height of the pictures in pixels.", Rule.COUNT, "(1280, 720)"),
+            "Width and height of the pictures in pixels.", Rule.COUNT, "(1280, 720)", limit=PIXELS),
     Keyword("render", "movie", '<"file.mp4">', '"ball.mp4"',
-            "Name of the movie. Absent: `movie.mp4` in the output folder."),
+            "Name of the movie inside the output folder. Absent: `movie.mp4`."),
     Keyword("render", "background", "<color>", "white",
             'Background: a CSS name or "#rrggbb". Absent: chosen automatically.'),
     Keyword("render", "liquid", "<smooth|cells>", "cells",
@@ -210,6 +216,42 @@ STATEMENTS = {
     "include": ('include "file"', "Reads another file in this place; its name is relative to the including file."),
 }
 """Statements that are not settings: how they are written, what they do."""
+
+NOT_SUPPORTED = {
+    "friction": "objects slide freely, see docs/physics-contact.md",
+    "restitution": "how high objects bounce follows from elasticity and damping: set damping",
+    "rope": "a thin cylinder with hold comes near it",
+    "cloth": "a thin box comes near it",
+    "joint": "objects that touch are not tied to each other",
+    "hinge": "objects that touch are not tied to each other",
+    "glue": "objects that touch are not tied to each other",
+    "motor": "give the object a spin at the start",
+    "force": "give the object a velocity at the start, or set gravity",
+    "torque": "give the object a spin at the start",
+    "wind": "air is at rest; an object feels it by its drag",
+    "plasticity": "solids are elastic",
+    "fracture": "solids do not break",
+    "temperature": "there is no heat in the model",
+    "viscosity": "set drag in the liquid block",
+    "rigid": "give the object a high elasticity, or write hold all",
+    "static": "write hold all: no particle of the object moves",
+    "fixed": "write hold all: no particle of the object moves",
+}
+"""Words that people look for, which the language does not have, and what to write instead."""
+
+SYNONYMS = {
+    word: shape
+    for shape, words in (
+        ("sphere", "ball globe"),
+        ("box", "cube cuboid brick block plate"),
+        ("cylinder", "rod disk disc tube"),
+        ("torus", "ring donut"),
+        ("cone", "pyramid"),
+        ("mesh", "stl obj ply file"),
+    )
+    for word in words.split()
+}
+"""Other words for shapes."""
 
 QUANTITIES = {
     **{

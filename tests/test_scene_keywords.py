@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.scene.forms import alternatives
+from mdanim_lammps.scene.keywords import BLOCKS, GLOBALS, KEYWORDS, QUANTITIES, WORDS, Rule, explain, syntax
 from mdanim_lammps.scene.page import language_page
 from mdanim_lammps.scene.parse import parse_scene
-from mdanim_lammps.scene.words import BLOCKS, GLOBALS, KEYWORDS, QUANTITIES, WORDS, Rule, explain, syntax
 
 PAGE = Path(__file__).parent.parent / "docs" / "language.md"
 
@@ -33,7 +33,7 @@ def scene(block: str, **settings: str):
 
 
 def test_page_is_up_to_date():
-    """The committed page is what ``python -m mdanim_lammps.scene.words`` writes."""
+    """The committed page is what ``python -m mdanim_lammps.scene.keywords`` writes."""
     assert PAGE.read_text(encoding="utf-8") == language_page()
 
 

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What a scene may ask for: one named limit each, in one table, checked before the first step (docs/security.md)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+# --- the text ---------------------------------------------------------------------------------------------
+
+MOST_BYTES = 64 * 2**20
+"""Bytes of a scene file, and of all its includes together."""
+MOST_BYTES_OF_LOCK = 2**30
+"""Bytes of a scene.lock.txt, which this program wrote: enough for MOST_OBJECTS."""
+MOST_BYTES_OF_MESH = 2**30
+"""Bytes of a mesh file."""
+MOST_FILES = 1000
+"""Includes of one scene."""
+DEEPEST_INCLUDE = 16
+DEEPEST_REPEAT = 16
+DEEPEST_BRACKET = 60
+DEEPEST_EXPRESSION = 150
+"""Steps of an expression that depend on each other."""
+MOST_OBJECTS = 10**6
+MOST_ROUNDS = 2 * 10**6
+"""Rounds of all repeats together."""
+MOST_PROBLEMS = 50
+"""Problems that are shown; the rest is counted."""
+
+# --- values -----------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """The values that a number of a scene may have."""
+
+    what: str
+    most: float
+    """Largest magnitude, SI."""
+    least: float = 0.0
+    """Smallest value, SI, where a value must be positive."""
+    way_out: str = "check the unit and the power of ten"
+
+
+LIMITS = {
+    "m": Limit("a length", 1e9, 1e-9),
+    "s": Limit("a time", 1e9, 1e-15),
+    "kg": Limit("a mass", 1e18, 1e-18),
+    "m/s": Limit("a speed", 1e9),
+    "m/s^2": Limit("an acceleration", 1e9),
+    "kg/m^3": Limit("a density", 1e9, 1e-9),
+    "Pa": Limit("a pressure", 1e15, 1e-9),
+    "N/m": Limit("a spring constant", 1e15, 1e-9),
+    "N*s/m": Limit("a drag coefficient", 1e15),
+    "m^3": Limit("a volume", 1e27, 1e-27),
+    "rad": Limit("an angle", 1e6),
+    "rad/s": Limit("an angular speed", 1e9),
+    "1/s": Limit("a rate", 1e9, 1e-9),
+    "1": Limit("a plain number", 2.0**53, 1e-9),
+}
+"""By SI unit: what any value of that unit may be."""
+
+DAMPING = Limit("damping", 100.0, way_out="1 is critical damping: nothing vibrates any more")
+CONTACT_STIFFNESS = Limit(
+    "contact-stiffness",
+    100.0,
+    0.1,
+    "1 is as stiff as the material itself; 4 halves how deep objects sink in, for a shorter time step",
+)
+"""Softer, objects pass through each other before they are crushed; stiffer, only time is lost."""
+SWEEPS = Limit("sweeps", 4096, way_out="write sweeps auto, which takes 8 for each cell that the fastest solid travels")
+"""What fix mdanim/liquid takes."""
+PIXELS = Limit("the size of a picture", 16384, way_out="the most is 16384 along a side")
+MOST_FRAMES = 10**7
+"""Frames of a run."""
+FARTHEST = 1e9
+"""Distance from the origin over the smallest length of an object; beyond it, rounding of positions looks like strain."""
