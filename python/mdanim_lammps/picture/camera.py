@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import UsageError
 from ..results.trajectory import Trajectory
 from ..scene.scene import Camera
-from ..scene.words import did_you_mean
+from ..scene.keywords import did_you_mean
 
 FIELD_OF_VIEW = 30.0
 """Vertical angle of view [degrees]."""

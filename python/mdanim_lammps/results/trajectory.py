@@ -17,7 +17,7 @@ from ..errors import OutputError
 from ..model.basin import Grid
 from ..model.model import Model, Surface
 from ..scene.scene import Save, Scene
-from ..scene.words import did_you_mean
+from ..scene.keywords import did_you_mean
 from .catalogue import Catalogue, Pool, catalogue_of, distinct_surfaces, stored_particles
 
 if TYPE_CHECKING:
