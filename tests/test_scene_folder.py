@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 from mdanim_lammps.api import Scene
-from mdanim_lammps.driver.prepare import prepare
-from mdanim_lammps.driver.run import Interrupted
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.run.loop import Interrupted
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.scene.meshes import mesh_files
 from mdanim_lammps.scene.parse import load_scene
@@ -38,7 +38,7 @@ def test_run_is_used_without_its_meshes(place, tmp_path):
     """Run, remove the meshes, move the folder: it is drawn, resumed and shown all the same."""
     out = place / "two.out"
     with pytest.raises(Interrupted):
-        Scene.load(place / "two.txt").run(out, watch=lambda progress: (out / "stop").touch())
+        Scene.load(place / "two.txt").run(out, on_progress=lambda progress: (out / "stop").touch())
     (place / "my mesh.OBJ").unlink()
     (place / "same.obj").unlink()
     out = shutil.move(out, tmp_path / "elsewhere")
@@ -70,9 +70,10 @@ def test_lock_of_the_copy_is_the_same(place, tmp_path):
 
 
 def test_a_folder_is_not_emptied_of_its_own_scene(place):
-    """--force refuses to delete the meshes that the scene is about to read."""
+    """--force refuses to delete a mesh that the scene is about to read."""
     Scene.load(place / "two.txt").run(place / "two.out")
     mesh = next((place / "two.out" / "meshes").iterdir())
+    (place / "three.txt").write_text(SCENE.replace("same.obj", f"two.out/meshes/{mesh.name}"))
     with pytest.raises(OutputError, match="holds the mesh"):
-        Scene.load(place / "two.out" / "scene.lock.txt").run(place / "two.out", force=True)
+        Scene.load(place / "three.txt").run(place / "two.out", force=True)
     assert mesh.is_file()

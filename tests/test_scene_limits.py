@@ -88,11 +88,11 @@ def test_object_too_far_out_for_its_size():
 
 
 @pytest.mark.parametrize(("name", "cause"), [
-    ("/tmp/a.mp4", "leads out of the output folder"), ("../a.mp4", "leads out of the output folder"),
-    ("a/../../b.mp4", "leads out of the output folder"), ("a/..", "leads out"), ("..", "leads out"),
-    ("a\x07b.mp4", "cannot be printed"), ("a\x1b[2Jb.mp4", "cannot be printed"), ("", "is not the name of an MP4"),
-    ("trajectory.h5", "is not the name of an MP4"), ("scene.lock.txt", "is not the name of an MP4"),
-    (".mp4", "is not the name of an MP4"), ("a" * 300 + ".mp4", "is not the name of an MP4"), ("/", "leads out"),
+    ("/tmp/a.mp4", "lies outside of the output folder"), ("../a.mp4", "lies outside of the output folder"),
+    ("a/../../b.mp4", "lies outside of the output folder"), ("a/..", "lies outside"), ("..", "lies outside"),
+    ("a\x07b.mp4", "cannot be printed"), ("a\x1b[2Jb.mp4", "cannot be printed"), ("", "is written as .mp4"),
+    ("trajectory.h5", "is written as .mp4"), ("scene.lock.txt", "is written as .mp4"),
+    (".mp4", "is written as .mp4"), ("a" * 300 + ".mp4", "is written as .mp4"), ("/", "lies outside"),
 ])  # fmt: skip
 def test_movie_stays_in_the_output_folder(name, cause):
     """A scene cannot name a file outside of the output folder, nor one of the run's own."""

@@ -448,14 +448,14 @@ class Builder:
         name = s.values[0]
         cause = ""
         if not name.isprintable():
-            cause = "holds characters that cannot be printed"
+            cause = "the name of a movie holds no characters that cannot be printed"
         elif Path(name).is_absolute() or ".." in Path(name).parts:
-            cause = "leads out of the output folder"
+            cause = "the movie lies outside of the output folder"
         elif Path(name).suffix.lower() != ".mp4" or max(map(len, map(os.fsencode, Path(name).parts))) > 255:
-            cause = "is not the name of an MP4 file"
+            cause = "a movie is written as .mp4"
         if cause:
             shown = "".join(c if c.isprintable() else "?" for c in name)
-            self.problem(s.span(0), f"the name of the movie {cause}: '{shown}'", 'write a name inside it, e.g. movie "ball.mp4"')
+            self.problem(s.span(0), f"{cause}: '{shown}'", 'write a name inside it, e.g. movie "ball.mp4"')
         return name
 
     def camera(self, s: Setting, control: records.Control | None) -> records.Camera:
