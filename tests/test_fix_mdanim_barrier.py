@@ -311,3 +311,69 @@ def test_settings_that_lose_contacts_are_refused(tmp_path, command, cure):
     with pytest.raises(Exception) as caught:
         lab.load(body, tmp_path, [command, *commands]).close()
     assert cure in str(caught.value)
+
+
+APART = lab.join(lab.block((2, 2, 2), velocity=(0.5, 0.0, 0.0)), lab.block((2, 2, 2), (4.5, 0.2, 0.1), (-0.5, 0.0, 0.0)))
+MEET = [f"fix contact all mdanim/barrier boundary inner 1.0 {RC}", "fix run all mdanim/leapfrog", "timestep 0.1", "run 60"]
+
+
+def test_without_a_skin_objects_apart_come_together(tmp_path):
+    """Give the bits of a run with a skin: nothing is looked ahead, and no loop waits for it."""
+    found = [lab.in_child(APART, tmp_path, MEET, skin=skin) for skin in (0.4, 0.0)]
+    assert found[0] == found[1]
+    lmp = lab.load(APART, tmp_path, MEET)
+    assert lmp.extract_fix("contact", 0, 1, 3) < 0.9, "they must touch"
+    lmp.close()
+
+
+def test_without_skin_and_reach_nothing_touches(tmp_path):
+    """Many particles where boxes meet, and none within reach: cells have no width."""
+    random = np.random.default_rng(2)
+    x = random.uniform(0.0, 4.0, (400, 3))
+    body = lab.particles(x, molecule=np.arange(400) % 2 + 1, boundary=random.random(400) < 0.5)
+    commands = ["fix contact all mdanim/barrier boundary inner 1.0 0.0", "fix run all mdanim/leapfrog", "run 0"]
+    for line in lab.in_child(body, tmp_path, commands, skin=0.0).splitlines()[1:]:
+        assert [float(word) for word in line.split()[7:]] == [0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize("molecule", [-1000000, 0, 7])
+def test_particles_outside_the_groups_may_have_any_molecule_id(tmp_path, molecule):
+    """Leave the forces of two that touch as they are, with a third between them that belongs to neither group."""
+    body = lab.particles([[0.0, 0, 0], [0.8, 0, 0], [0.4, 0, 0]], molecule=[1, 2, molecule], boundary=[True, False, False])
+    commands = [
+        "group skin id 1",
+        "group core id 2",
+        f"fix contact all mdanim/barrier skin core 1.5 {RC}",
+        "fix run all mdanim/leapfrog",
+        "run 0",
+    ]
+    lines = lab.in_child(body, tmp_path, commands).splitlines()[1:]
+    f = np.array([[float(word) for word in line.split()[7:]] for line in lines])
+    assert f[1] == pytest.approx([1.5 * 1.6 / 4, 0.0, 0.0], rel=1e-14)
+    assert np.array_equal(f[0], -f[1]) and not f[2].any()
+
+
+def test_molecule_ids_may_have_gaps(tmp_path):
+    """The largest number is as good as the next one: bits, and what is counted, are those of objects 1, 2, 3 and so on."""
+    sparse = np.array([1, 2, 3, 700, 8000, 9000000, 2, 2, 2, 2, 2, 2]).cumsum()
+    sparse[-1] = 2**31 - 1
+    found = []
+    for molecule in (CLOUD.molecule, sparse[CLOUD.molecule - 1]):
+        body = replace(CLOUD, molecule=molecule)
+        lmp = lab.load(
+            body,
+            tmp_path,
+            [f"fix contact all mdanim/barrier boundary inner 1.0 {RC}", "fix run all mdanim/leapfrog", "timestep 0.02", "run 50"],
+        )
+        found.append([*lab.by_tag(lmp, "x").ravel(), *(lmp.extract_fix("contact", 0, 1, n) for n in range(4))])
+        lmp.close()
+    assert found[0][-4] > 5
+    assert found[0] == found[1]
+
+
+@pytest.mark.mpi
+def test_molecule_ids_may_have_gaps_on_several_ranks(tmp_path):
+    """Each rank has objects that others do not have."""
+    body = replace(APART, molecule=np.where(APART.molecule == 1, 3, 2**31 - 1))
+    commands = ["comm_style tiled", "balance 1.0 rcb", *MEET]
+    assert lab.in_child(body, tmp_path, commands, ranks=2) == lab.in_child(APART, tmp_path, MEET)

@@ -216,3 +216,20 @@ def test_a_deleted_region_is_noticed(tmp_path):
                 "run 0",
             ],
         )
+
+
+def test_without_a_skin_a_block_bounces_as_with_one(tmp_path):
+    """Give the bits of a run with a skin: nothing is looked ahead, and no loop waits for it."""
+    body = lab.block((2, 2, 2), (0.0, 0.0, 0.5), (0.1, 0.0, -0.5))
+    commands = [
+        "region r plane 0 0 0 0 0 1",
+        "fix w all mdanim/wall r 1.0",
+        "fix run all mdanim/leapfrog",
+        "timestep 0.1",
+        "run 60",
+    ]
+    found = [lab.in_child(body, tmp_path, commands, skin=skin) for skin in (0.4, 0.0)]
+    assert found[0] == found[1]
+    lmp = lab.load(body, tmp_path, commands)
+    assert lmp.extract_fix("w", 0, 1, 4) > 0.1, "it must touch"
+    lmp.close()

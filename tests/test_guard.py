@@ -5,6 +5,7 @@ import json
 import re
 
 import numpy as np
+import plugin_path
 import pytest
 from mdanim_lammps import Trajectory
 from mdanim_lammps.engine.geometry import INVERTED, NOT_FINITE, Geometry
@@ -280,3 +281,29 @@ def test_the_command_line_ends_with_six(tmp_path, capsys):
     error = capsys.readouterr().err
     assert caught.value.code == 6
     assert "mdanim-lammps: error: step" in error and "change: write elasticity" in error and "Traceback" not in error
+
+
+OVERFLOW = """
+import sys
+from pathlib import Path
+import numpy as np
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.engine.geometry import Geometry
+from mdanim_lammps.scene.parse import load_scene
+system = prepare(load_scene(Path(sys.argv[1])), allow_unstable=True).plan.system
+x = system.position.copy()
+for m in range(2):  # both in one place
+    x[system.object == m] -= x[system.object == m].mean(0)
+print(Geometry(system).sunk(np.ascontiguousarray(x / np.abs(x).max() * float(sys.argv[2]))))
+"""
+
+
+@pytest.mark.parametrize("size", [1e300, 1.7e308])
+def test_objects_of_any_size_are_looked_at(tmp_path, size):
+    """Come to an end also where the extent of what is looked at exceeds every number."""
+    side = "shape box (10, 10, 10) cm density 1000 elasticity 2 kPa"
+    text = f"object a {{ {side} position (0, 0, 0) }}\nobject b {{ {side} position (15, 0, 0) cm }}\ncontrol {{ time 1 s resolution 2.5 cm }}"
+    (tmp_path / "two.txt").write_text(text)
+    done = plugin_path.python(OVERFLOW, tmp_path / "two.txt", size, timeout=60.0)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() in ("None", "(0, 1)")

@@ -2,7 +2,9 @@
 """Loading the plugin: into its own LAMMPS version, and not into another."""
 
 import ctypes
+import os
 import shutil
+import subprocess
 from pathlib import Path
 
 import plugin_path
@@ -46,10 +48,52 @@ def test_loading_twice_is_harmless(tmp_path):
 
 def test_the_shared_object_needs_neither_liblammps_nor_libmpi():
     """Both are loaded by whoever loads the plugin; a second copy of either would be fatal."""
-    import subprocess
-
     if shutil.which("readelf") is None:
         pytest.skip("no readelf (binutils)")
     needed = subprocess.run(["readelf", "-d", str(FILE)], capture_output=True, text=True, check=True).stdout
     assert "NEEDED" in needed
     assert "lammps" not in needed.lower().replace("mdanim_lammps", "") and "libmpi" not in needed
+
+
+# What a host tells of itself, told differently: the plugin asks through these functions of the LAMMPS library.
+HOSTS = {
+    "another tagint": (
+        "int lammps_extract_setting(void *, const char *what) { return what[0] == 't' ? 8 : what[0] == 'b' ? 8 : 4; }",
+        "was built for tagint of 4 bytes and is not loaded into a LAMMPS that has 8",
+    ),
+    "no MPI": ("int lammps_config_has_mpi_support() { return 0; }", "needs a LAMMPS with MPI and is not loaded into one without"),
+    "another MPI": (
+        "int lammps_get_mpi_comm(void *) { return 3; }",
+        "was built for MPICH and is not loaded into a LAMMPS with MPICH Version",
+    ),
+    "another layout": (
+        "void *lammps_extract_global(void *, const char *) { return 0; }",
+        "was built for another update of LAMMPS version 20250722, whose classes have another layout",
+    ),
+}
+
+
+@pytest.mark.parametrize("host", HOSTS)
+def test_another_binary_interface_of_the_same_version_is_refused(tmp_path, host):
+    """Load no style into a build of the right date that differs in what styles rely on, and say in what."""
+    code, message = HOSTS[host]
+    (tmp_path / "host.cpp").write_text(f'extern "C" {{ {code} }}\n')
+    compiler = os.environ.get("CXX", "c++")
+    subprocess.run([compiler, "-shared", "-fPIC", "-o", tmp_path / "host.so", tmp_path / "host.cpp"], check=True)
+    (tmp_path / "in.info").write_text("info styles fix\nprint 'alive'\n")
+    preload = os.environ.get("LD_PRELOAD"), str(tmp_path / "host.so")  # a sanitizer is to come first
+    done = plugin_path.bare_lmp(tmp_path / "in.info", FILE.parent, LD_PRELOAD=":".join(filter(None, preload)))
+    assert done.returncode == 0 and "alive" in done.stdout, done.stderr
+    assert "mdanim/leapfrog" not in done.stdout
+    assert message in done.stderr
+
+
+def test_lammps_hears_what_its_styles_were_built_for(tmp_path):
+    """Give LAMMPS the date of the headers, not its own back: it compares the two, and tells where they differ."""
+    image = FILE.read_bytes()
+    date = b"22 Jul 2025\0"
+    assert image.count(date) == 1
+    (tmp_path / "mdanimplugin.so").write_bytes(image.replace(date, b"21 Jul 2025\0"))
+    (tmp_path / "in.load").write_text(f"plugin load {tmp_path / 'mdanimplugin.so'}\n")
+    done = plugin_path.bare_lmp(tmp_path / "in.load", tmp_path / "no plugins")
+    assert "compiled for LAMMPS version 21 Jul 2025, loaded into LAMMPS version 22 Jul 2025" in done.stdout

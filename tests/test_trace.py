@@ -2,6 +2,7 @@
 """Where objects have been in the steps of a run, against a look at every step."""
 
 import numpy as np
+import plugin_path
 import pytest
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SetupError
@@ -128,3 +129,29 @@ def test_objects_must_be_numbered_from_one(prepared):
         instance._lmp.command("set atom 1 mol 4")
         with pytest.raises(SetupError, match="molecule IDs go from 1 to 4, they must be within 1 and the 3 objects"):
             instance.start_trace()
+
+
+RENUMBERED = """
+import sys
+from pathlib import Path
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.scene.parse import load_scene
+with Instance(prepare(load_scene(Path(sys.argv[1]))).plan) as instance:
+    instance.setup()
+    instance.start_trace()
+    instance._lmp.command(f"set atom 1 mol {sys.argv[2]}")
+    try:
+        instance.run(10)
+    except Exception as error:
+        print(error)
+"""
+
+
+@pytest.mark.parametrize("molecule", [0, 4, 4000000])
+def test_molecule_ids_that_change_during_a_trace_stop_the_run(tmp_path, molecule):
+    """Name the particle and its molecule ID, for which there is no box, instead of writing beyond all boxes."""
+    (tmp_path / "small.txt").write_text(SCENE)
+    done = plugin_path.python(RENUMBERED, tmp_path / "small.txt", molecule)
+    assert done.returncode == 0, done.stderr
+    assert f"particle 1 has molecule ID {molecule}, but objects 1 to 3 are traced" in done.stdout

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // What the driver looks at in every frame, as plain C functions over arrays in the order of tags: whether numbers are finite,
-// where objects are, whether cells are turned inside out, whether objects are inside each other. No exception leaves them.
+// where objects are, whether cells are turned inside out, whether objects are inside each other.
 
 #include "c_api/abi.h"
+#include "c_api/guarded.h"
 #include "engine/boxes.h"
 #include "laws/vec3.h"
 
@@ -10,7 +11,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <new>
 #include <utility>
 #include <vector>
 
@@ -126,10 +126,30 @@ bool centre_inside(const Objects &o, int a, int b, const Box &both)
   return both.contains(&centre.x) && holds(o, b, centre) && holds(o, a, centre);
 }
 
+// Of all pairs of objects the one with the most points of one in the other; how many they are.
+long long deepest_pair(const Objects &o, int *pair)
+{
+  std::vector<Box> boxes;
+  for (int m = 0; m < o.count; ++m) boxes.push_back(box_of(o, m));
+  long long most = 0;
+  for (const auto &[a, b] : meeting_pairs(boxes, 0.0)) {
+    if (o.still[a] && o.still[b]) continue;
+    const Box both = intersection(boxes[a], boxes[b]);
+    for (const auto &[in, out] : {std::pair{a, b}, std::pair{b, a}}) {
+      const long long found = sunk(o, in, out, both) + centre_inside(o, in, out, both);
+      if (found <= most) continue;
+      most = found;
+      pair[0] = in;
+      pair[1] = out;
+    }
+  }
+  return most;
+}
+
 }    // namespace
 
 // Number of the first particle whose position or velocity is not finite, -1 where all are; x, v (n, 3).
-MDANIM_EXPORT long long mdanim_not_finite(long long n, const double *x, const double *v)
+MDANIM_EXPORT long long mdanim_not_finite(long long n, const double *x, const double *v) noexcept
 {
   // Infinities and NaN have all bits of the exponent set: one more carries into the bit of the sign. Without branches this runs
   // at the speed of memory.
@@ -149,7 +169,7 @@ MDANIM_EXPORT long long mdanim_not_finite(long long n, const double *x, const do
 
 // Whether each cell is turned inside out: the volume spanned by the mean of its edges along each axis is not positive. corner (n,
 // 8) in VTK order, inverted (n). Returns how many are.
-MDANIM_EXPORT long long mdanim_inverted(long long n, const int *corner, const double *x, unsigned char *inverted)
+MDANIM_EXPORT long long mdanim_inverted(long long n, const int *corner, const double *x, unsigned char *inverted) noexcept
 {
   long long count = 0;
   for (long long c = 0; c < n; ++c) {
@@ -161,7 +181,7 @@ MDANIM_EXPORT long long mdanim_inverted(long long n, const int *corner, const do
 
 // One look at objects whose x and v are (N, 3). Returns 1 when some number is not finite, 2 when some cell is inside out, else 0;
 // and, but for 1, how far each object reaches along x, y, z, -x, -y, -z: reach (M, 6), the corners of eq. (3.14).
-MDANIM_EXPORT int mdanim_glance(const Model *model, const double *x, const double *v, double *reach)
+MDANIM_EXPORT int mdanim_glance(const Model *model, const double *x, const double *v, double *reach) noexcept
 {
   const Objects o{*model, x};
   const long long n = o.first_particle[o.count], cells = o.first_cell[o.count];
@@ -184,24 +204,5 @@ MDANIM_EXPORT int mdanim_glance(const Model *model, const double *x, const doubl
 // with each other.
 MDANIM_EXPORT long long mdanim_sunk(const Model *model, const double *x, int *pair)
 {
-  try {
-    const Objects o{*model, x};
-    std::vector<Box> boxes;
-    for (int m = 0; m < o.count; ++m) boxes.push_back(box_of(o, m));
-    long long most = 0;
-    for (const auto &[a, b] : meeting_pairs(boxes, 0.0)) {
-      if (o.still[a] && o.still[b]) continue;
-      const Box both = intersection(boxes[a], boxes[b]);
-      for (const auto &[in, out] : {std::pair{a, b}, std::pair{b, a}}) {
-        const long long found = sunk(o, in, out, both) + centre_inside(o, in, out, both);
-        if (found <= most) continue;
-        most = found;
-        pair[0] = in;
-        pair[1] = out;
-      }
-    }
-    return most;
-  } catch (const std::bad_alloc &) {
-    return -1;
-  }
+  return guarded(-1LL, [=] { return deepest_pair({*model, x}, pair); });
 }

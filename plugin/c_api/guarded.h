@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The border to C: what is thrown inside becomes a return value and a message.
+// The border between C++ and ctypes: C cannot pass an exception on, so no exception leaves a function of c_api.
 
 #ifndef MDANIM_GUARDED_H
 #define MDANIM_GUARDED_H
@@ -10,20 +10,30 @@
 
 namespace mdanim {
 
-// Calls f. Returns 0, or 1 with the reason in `error`.
-template <class F> int guarded(char *error, int error_size, F &&f)
+// Does the work. Returns 0, or 1 with the text of the exception that ended it in `error`, which has room for `error_size` bytes.
+template <class Work> int guarded(char *error, int error_size, Work work) noexcept
 {
   try {
-    f();
+    work();
     return 0;
   } catch (const std::bad_alloc &) {
     std::snprintf(error, error_size, "out of memory");
-  } catch (const std::exception &problem) {
-    std::snprintf(error, error_size, "%s", problem.what());
+  } catch (const std::exception &e) {
+    std::snprintf(error, error_size, "%s", e.what());
   } catch (...) {
     std::snprintf(error, error_size, "unknown error");
   }
   return 1;
+}
+
+// Returns what the work returns, or `failed` if an exception ends it: for functions without room for a message.
+template <class Value, class Work> Value guarded(Value failed, Work work) noexcept
+{
+  try {
+    return work();
+  } catch (...) {
+    return failed;
+  }
 }
 
 }    // namespace mdanim

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Where LAMMPS enters: one row per style, registered only in the LAMMPS version whose headers we were
-// compiled with.
+// The entry point for LAMMPS: one row per style, registered only in a LAMMPS that has the binary interface of the headers that
+// this file was compiled with.
 
 #include "c_api/abi.h"
 #include "styles/bond_mdanim_harmonic.h"
@@ -11,10 +11,19 @@
 #include "styles/fix_mdanim_wall.h"
 #include "styles/verlet_mdanim.h"
 
-#include "comm.h"
+#include "atom.h"
+#include "domain.h"
+#include "fmt/format.h"
+#include "force.h"
 #include "lammps.h"
 #include "library.h"
-#include "utils.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <iterator>
+#include <string>
+#include <utility>
 
 using namespace LAMMPS_NS;
 using mdanim::PluginRecord;
@@ -28,45 +37,93 @@ void *make_run(void *lmp, int narg, char **arg) { return new VerletMdanim(static
 template <class Style> void *make_fix(void *lmp, int narg, char **arg)
 { return new Style(static_cast<LAMMPS *>(lmp), narg, arg); }
 
+PluginRecord record(const char *kind, const char *name, const char *info)
+{ return {MDANIM_LAMMPS_DATE, kind, name, info, "mdanim-lammps", {}, nullptr}; }
+
 PluginRecord bond(const char *name, const char *info, void *(*creator)(void *) )
 {
-  PluginRecord row{nullptr, "bond", name, info, "mdanim-lammps", {}, nullptr};
+  PluginRecord row = record("bond", name, info);
   row.creator.without_arguments = creator;
   return row;
 }
 
 PluginRecord fix(const char *name, const char *info, void *(*creator)(void *, int, char **) )
 {
-  PluginRecord row{nullptr, "fix", name, info, "mdanim-lammps", {}, nullptr};
+  PluginRecord row = record("fix", name, info);
   row.creator.with_arguments = creator;
   return row;
 }
 
 PluginRecord run(const char *name, const char *info, void *(*creator)(void *, int, char **) )
 {
-  PluginRecord row{nullptr, "run", name, info, "mdanim-lammps", {}, nullptr};
+  PluginRecord row = record("run", name, info);
   row.creator.with_arguments = creator;
   return row;
 }
 
 }    // namespace
 
-MDANIM_EXPORT int mdanim_abi() { return mdanim::ABI; }
+MDANIM_EXPORT int mdanim_abi() noexcept { return mdanim::ABI; }
 
 // The LAMMPS version whose headers we were compiled with, as lammps_version() counts.
 extern "C" __attribute__((visibility("default"))) int mdanim_built_for;
 int mdanim_built_for = MDANIM_LAMMPS_VERSION;
 
-// A C++ class of another LAMMPS version may have another layout, and LAMMPS itself loads such a plugin
-// without complaint.
-MDANIM_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *register_style)
+namespace {
+
+// The first line of what the MPI library in this process says of itself.
+std::string name_of_mpi()
 {
-  const int found = lammps_version(lmp);
-  if (found != mdanim_built_for) {
-    fprintf(stderr,
-            "mdanimplugin.so was built for LAMMPS version %d and is not loaded into version %d: "
-            "reinstall mdanim-lammps beside this LAMMPS\n",
-            mdanim_built_for, found);
+  char text[MPI_MAX_LIBRARY_VERSION_STRING] = "";
+  int length = 0;
+  MPI_Get_library_version(text, &length);
+  const std::string all(text, length);
+  return all.substr(0, all.find('\n'));
+}
+
+// Whether members that the library interface tells the addresses of are where our headers have them: builds of one date may
+// differ by updates and patches.
+bool layout_is_ours(LAMMPS *lmp)
+{
+  const std::pair<const char *, const void *> known[] = {
+      {"ntimestep", &lmp->update->ntimestep}, {"dt", &lmp->update->dt},       {"boxlo", lmp->domain->boxlo},
+      {"boxhi", lmp->domain->boxhi},          {"sublo", lmp->domain->sublo},  {"natoms", &lmp->atom->natoms},
+      {"nlocal", &lmp->atom->nlocal},         {"nghost", &lmp->atom->nghost}, {"ftm2v", &lmp->force->ftm2v},
+      {"mvv2e", &lmp->force->mvv2e},          {"q_flag", &lmp->atom->q_flag},
+  };
+  return std::all_of(std::begin(known), std::end(known),
+                     [lmp](const auto &member) { return lammps_extract_global(lmp, member.first) == member.second; });
+}
+
+// Why the styles cannot work in this LAMMPS; empty if they can. A C++ class of another LAMMPS may have another layout, and LAMMPS
+// itself loads such a plugin without complaint. What a test reads is checked by those before it.
+std::string why_not(LAMMPS *lmp)
+{
+  if (const int found = lammps_version(lmp); found != mdanim_built_for)
+    return fmt::format("was built for LAMMPS version {} and is not loaded into version {}", mdanim_built_for, found);
+  const std::pair<const char *, int> sizes[] = {
+      {"bigint", sizeof(bigint)}, {"tagint", sizeof(tagint)}, {"imageint", sizeof(imageint)}};
+  for (const auto &[type, size] : sizes)
+    if (const int found = lammps_extract_setting(lmp, type); found != size)
+      return fmt::format("was built for {} of {} bytes and is not loaded into a LAMMPS that has {} (another of SMALLSMALL, "
+                         "SMALLBIG and BIGBIG)",
+                         type, size, found);
+  if (!lammps_config_has_mpi_support()) return "needs a LAMMPS with MPI and is not loaded into one without";
+  if (!layout_is_ours(lmp))
+    return fmt::format("was built for another update of LAMMPS version {}, whose classes have another layout", mdanim_built_for);
+  // Handles of MPICH, and of all that share its binary interface, are whole numbers, the same in C and in Fortran.
+  if (lammps_get_mpi_comm(lmp) != static_cast<int>(lmp->world))
+    return fmt::format("was built for MPICH and is not loaded into a LAMMPS with {}", name_of_mpi());
+  return "";
+}
+
+}    // namespace
+
+MDANIM_EXPORT void lammpsplugin_init(void *handle_of_lammps, void *handle, void *register_style) noexcept
+{
+  auto *const lmp = static_cast<LAMMPS *>(handle_of_lammps);
+  if (const std::string why = why_not(lmp); !why.empty()) {
+    fprintf(stderr, "mdanimplugin.so %s: reinstall mdanim-lammps beside this LAMMPS\n", why.c_str());
     return;
   }
 
@@ -76,11 +133,10 @@ MDANIM_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *register_sty
       fix("mdanim/gravity", "m g on every particle", &make_fix<FixMdanimGravity>),
       fix("mdanim/barrier", "contact of objects", &make_fix<FixMdanimBarrier>),
       fix("mdanim/liquid", "liquid that solids float and sink in", &make_fix<FixMdanimLiquid>),
-      fix("mdanim/wall", "walls that stand any impact", &make_fix<FixMdanimWall>),
+      fix("mdanim/wall", "walls that withstand any impact", &make_fix<FixMdanimWall>),
       run("verlet/mdanim", "verlet with springs, gravity and leap-frog in one pass", &make_run),
   };
   for (PluginRecord &style : styles) {
-    style.version = static_cast<LAMMPS *>(lmp)->version;
     style.handle = handle;
     reinterpret_cast<mdanim::Register>(register_style)(&style, lmp);
   }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Plain C functions for ctypes: where objects have been in the steps of a run, and how fast they are. All ranks call them
-// together. No exception leaves them.
+// together.
 
 #include "c_api/abi.h"
+#include "c_api/guarded.h"
 #include "styles/fix_mdanim_leapfrog.h"
 
 #include "atom.h"
@@ -11,83 +12,56 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <exception>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 using namespace LAMMPS_NS;
+using mdanim::guarded;
+
+namespace {
 
 // The fix that moves all particles.
-static FixMdanimLeapfrog *leapfrog(void *handle)
+FixMdanimLeapfrog *leapfrog(void *handle)
 {
   const auto found = static_cast<LAMMPS *>(handle)->modify->get_fix_by_style("^mdanim/leapfrog$");
   if (found.size() != 1) throw std::runtime_error("one fix mdanim/leapfrog is needed, there are " + std::to_string(found.size()));
   return dynamic_cast<FixMdanimLeapfrog *>(found.front());
 }
 
-// Forget what was traced, take note of where objects 1 to `objects` (molecule IDs) are, and of where every step takes them from
-// now on. Returns 0, or 1 with a message in `error`.
-MDANIM_EXPORT int mdanim_trace_start(void *handle, int objects, char *error, int error_size)
+void start_trace(void *handle, int objects)
 {
-  try {
-    const std::string why = leapfrog(handle)->start_trace(objects);
-    if (why.empty()) return 0;
-    snprintf(error, error_size, "%s", why.c_str());
-  } catch (const std::exception &e) {
-    snprintf(error, error_size, "%s", e.what());
-  }
-  return 1;
+  const std::string why = leapfrog(handle)->start_trace(objects);
+  if (!why.empty()) throw std::runtime_error(why);
 }
 
-// Look at particles after every so many steps only; until the next mdanim_trace_start. Boxes are then wider, by the way of each
-// object's fastest particle in one step less. Returns 0, or 1 with a message in `error`.
-MDANIM_EXPORT int mdanim_trace_every(void *handle, int steps, char *error, int error_size)
+void look_every(void *handle, int steps)
 {
-  try {
-    if (steps < 1)
-      throw std::runtime_error("a trace looks after every 1 or more steps, " + std::to_string(steps) + " are asked for");
-    leapfrog(handle)->look_every(steps);
-    return 0;
-  } catch (const std::exception &e) {
-    snprintf(error, error_size, "%s", e.what());
-  }
-  return 1;
+  if (steps < 1)
+    throw std::runtime_error("a trace looks after every 1 or more steps, " + std::to_string(steps) + " are asked for");
+  leapfrog(handle)->look_every(steps);
 }
 
-// Lowest and highest coordinates of the particles of each object since mdanim_trace_start; low, high (objects, 3). What is no
-// number is passed over. Returns 0, or 1 with a message in `error`.
-MDANIM_EXPORT int mdanim_trace(void *handle, int objects, double *low, double *high, char *error, int error_size)
+void trace(void *handle, int objects, double *low, double *high)
 {
-  try {
-    const FixMdanimLeapfrog *fix = leapfrog(handle);
-    if (fix->traced() != objects)
-      throw std::runtime_error(std::to_string(fix->traced()) + " objects are traced, " + std::to_string(objects) +
-                               " are asked for; call mdanim_trace_start before");
-    const std::vector<mdanim::Box> boxes = fix->traced_boxes();
-    for (int m = 0; m < objects; ++m)
-      for (int d = 0; d < 3; ++d) {
-        low[3 * m + d] = boxes[m].low(d);
-        high[3 * m + d] = boxes[m].high(d);
-      }
-    return 0;
-  } catch (const std::exception &e) {
-    snprintf(error, error_size, "%s", e.what());
-  }
-  return 1;
+  const FixMdanimLeapfrog *fix = leapfrog(handle);
+  if (fix->traced() != objects)
+    throw std::runtime_error(std::to_string(fix->traced()) + " objects are traced, " + std::to_string(objects) +
+                             " are asked for; call mdanim_trace_start before");
+  const std::vector<mdanim::Box> boxes = fix->traced_boxes();
+  for (int m = 0; m < objects; ++m)
+    for (int d = 0; d < 3; ++d) {
+      low[3 * m + d] = boxes[m].low(d);
+      high[3 * m + d] = boxes[m].high(d);
+    }
 }
 
-// Speed of the fastest particle of each object (molecule IDs 1 to `objects`) now; speed (objects). What is no number is passed
-// over. Returns 0, or 1 with a message in `error`.
-MDANIM_EXPORT int mdanim_top_speeds(void *handle, int objects, double *speed, char *error, int error_size)
+void top_speeds(void *handle, int objects, double *speed)
 {
   const auto lammps = static_cast<LAMMPS *>(handle);
   const Atom &atom = *lammps->atom;
-  if (!atom.molecule_flag) {
-    snprintf(error, error_size, "objects are told apart by molecule IDs, and there are none; use 'atom_style bond'");
-    return 1;
-  }
+  if (!atom.molecule_flag)
+    throw std::runtime_error("objects are told apart by molecule IDs, and there are none; use 'atom_style bond'");
   std::fill_n(speed, objects, 0.0);
   for (int i = 0; i < atom.nlocal; ++i) {
     const tagint object = atom.molecule[i];
@@ -97,5 +71,34 @@ MDANIM_EXPORT int mdanim_top_speeds(void *handle, int objects, double *speed, ch
   }
   MPI_Allreduce(MPI_IN_PLACE, speed, objects, MPI_DOUBLE, MPI_MAX, lammps->world);
   for (int m = 0; m < objects; ++m) speed[m] = std::sqrt(speed[m]);
-  return 0;
+}
+
+}    // namespace
+
+// Forget what was traced, take note of where objects 1 to `objects` (molecule IDs) are, and of where every step takes them from
+// now on. Returns 0, or 1 with a message in `error`.
+MDANIM_EXPORT int mdanim_trace_start(void *handle, int objects, char *error, int error_size)
+{
+  return guarded(error, error_size, [=] { start_trace(handle, objects); });
+}
+
+// Look at particles after every so many steps only; until the next mdanim_trace_start. Boxes are then wider, by the way of each
+// object's fastest particle in one step less. Returns 0, or 1 with a message in `error`.
+MDANIM_EXPORT int mdanim_trace_every(void *handle, int steps, char *error, int error_size)
+{
+  return guarded(error, error_size, [=] { look_every(handle, steps); });
+}
+
+// Lowest and highest coordinates of the particles of each object since mdanim_trace_start; low, high (objects, 3). Coordinates
+// that are NaN are passed over. Returns 0, or 1 with a message in `error`.
+MDANIM_EXPORT int mdanim_trace(void *handle, int objects, double *low, double *high, char *error, int error_size)
+{
+  return guarded(error, error_size, [=] { trace(handle, objects, low, high); });
+}
+
+// Speed of the fastest particle of each object (molecule IDs 1 to `objects`) now; speed (objects). Speeds that are NaN are passed
+// over. Returns 0, or 1 with a message in `error`.
+MDANIM_EXPORT int mdanim_top_speeds(void *handle, int objects, double *speed, char *error, int error_size)
+{
+  return guarded(error, error_size, [=] { top_speeds(handle, objects, speed); });
 }

@@ -13,14 +13,14 @@ static const VerletMdanim *run_of(void *handle)
 { return dynamic_cast<VerletMdanim *>(static_cast<LAMMPS *>(handle)->update->integrate); }
 
 // How many steps this rank has taken by a pass over its blocks; 0 with another run style.
-MDANIM_EXPORT long long mdanim_passes(void *handle)
+MDANIM_EXPORT long long mdanim_passes(void *handle) noexcept
 {
   const VerletMdanim *run = run_of(handle);
   return run ? run->passes() : 0;
 }
 
 // How many particles were held back in passes of this rank and moved one by one, all passes together.
-MDANIM_EXPORT long long mdanim_held_back(void *handle)
+MDANIM_EXPORT long long mdanim_held_back(void *handle) noexcept
 {
   const VerletMdanim *run = run_of(handle);
   return run ? run->held_back() : 0;

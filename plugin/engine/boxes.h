@@ -68,7 +68,8 @@ inline Box intersection(const Box &a, const Box &b)
 }
 
 // A grid of cubic cells over a set of points, sorted by cell. Cells are never smaller than asked, and never many more than
-// points. Slot k holds point order()[k]: who keeps a copy of the points by slots reads them in one stream.
+// points. Slot k holds point order()[k]: a copy of the points by slots is read
+// in one stream.
 class Grid {
  public:
   template <class Points> Grid(const Points &points, int n, double cell) : cell(cell), sorted(n)
@@ -76,12 +77,15 @@ class Grid {
     Box all;
     for (int i = 0; i < n; ++i) all.include(points(i));
     if (n == 0) return;
+    const double longest = all.edge();
+    const bool one = !(longest > 0.0 && longest < Box::FAR);    // all in one place, or so far apart that the extent overflows
+    this->cell = std::max(cell, longest / MOST);
     for (;;) {
       double cells = 1.0;
       for (int d = 0; d < 3; ++d) {
         origin[d] = all.low(d);
-        const double across = std::floor((all.high(d) - all.low(d)) / this->cell) + 1.0;
-        count[d] = static_cast<int>(std::min(across, 1e9));
+        const double across = one ? 1.0 : std::floor((all.high(d) - all.low(d)) / this->cell) + 1.0;
+        count[d] = static_cast<int>(across);
         cells *= across;
       }
       if (cells <= 4.0 * n + 64.0) break;
@@ -111,7 +115,7 @@ class Grid {
         visit(begin[index(a, b, low)], begin[index(a, b, high) + 1]);
   }
 
-  // Calls visit(k) for every one of these slots.
+  // Calls visit(k) for each of these slots.
   template <class Visit> void around(const double *x, Visit visit) const
   {
     ranges(x, [&](int from, int to) {
@@ -120,10 +124,12 @@ class Grid {
   }
 
  private:
+  static constexpr double MOST = 1e9;    // cells in a row; an int holds one more
+
   int place(const double *x, int d) const
   {
     const double p = (x[d] - origin[d]) / cell;
-    return static_cast<int>(std::min(std::max(p, 0.0), count[d] - 1.0));    // of what is not negative the cast takes the floor
+    return p > 0.0 ? static_cast<int>(std::min(p, count[d] - 1.0)) : 0;    // a cast rounds down what is not negative
   }
   size_t index(int a, int b, int c) const { return (static_cast<size_t>(a) * count[1] + b) * count[2] + c; }
 

@@ -501,7 +501,7 @@ double BondMdanimHarmonic::memory_usage()
          law.capacity() * sizeof(SpringCoeffs) + (5.0 * stretch.x.capacity() + 2.0 * stretch.K.capacity()) * sizeof(double);
 }
 
-// For objects.cpp: "seconds" and "lost" of this rank.
+// For atoms_c.cpp: "seconds" and "lost" of this rank.
 void *BondMdanimHarmonic::extract(const char *what, int &dim)
 {
   dim = 0;

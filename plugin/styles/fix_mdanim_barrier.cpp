@@ -22,12 +22,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
-static constexpr double MOST = 64.0;    // times the skin that are looked ahead where objects are apart
+static constexpr double MOST = 64.0;    // skins that are looked ahead where objects are apart
 
 // --- the command ---
 
@@ -132,8 +133,7 @@ void FixMdanimBarrier::collect_own()
   own.resize(atom->nlocal + atom->nghost);
   const double *k = stiffness.values(lmp), *rc = reach.values(lmp);
   for (int i = 0; i < atom->nlocal; ++i)
-    own[i] = {k ? k[i] : stiffness.number, rc ? rc[i] : reach.number, mass_of(atom->rmass, atom->mass, atom->type, i),
-              atom->molecule[i]};
+    own[i] = {k ? k[i] : stiffness.number, rc ? rc[i] : reach.number, mass_of(atom->rmass, atom->mass, atom->type, i), object[i]};
   comm->forward_comm(this);
 }
 
@@ -152,30 +152,53 @@ int FixMdanimBarrier::pack_forward_comm(int n, int *list, double *buf, int, int 
 
 void FixMdanimBarrier::unpack_forward_comm(int n, int start, double *buf)
 {
-  for (int i = start; i < start + n; ++i, buf += 4) own[i] = {buf[0], buf[1], buf[2], static_cast<tagint>(buf[3])};
+  for (int i = start; i < start + n; ++i, buf += 4) own[i] = {buf[0], buf[1], buf[2], static_cast<int>(buf[3])};
 }
 
-// The longest reach of any pair, and eq. (3.14) for every object, index = molecule ID; the same on all ranks.
+// Molecule IDs of the objects that have particles of the two groups, ascending; the same on all ranks.
+std::vector<tagint> FixMdanimBarrier::find_objects() const
+{
+  const auto make_unique = [](std::vector<tagint> &ids) {
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  };
+  std::vector<tagint> here;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (role(i) != NONE && (here.empty() || here.back() != atom->molecule[i])) here.push_back(atom->molecule[i]);
+  make_unique(here);
+  if (comm->nprocs == 1) return here;
+
+  const int size = static_cast<int>(here.size());
+  std::vector<int> sizes(comm->nprocs), begin(comm->nprocs + 1, 0);
+  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
+  std::partial_sum(sizes.begin(), sizes.end(), begin.begin() + 1);
+  std::vector<tagint> all(begin.back());
+  MPI_Allgatherv(here.data(), size, MPI_LMP_TAGINT, all.data(), sizes.data(), begin.data(), MPI_LMP_TAGINT, world);
+  make_unique(all);
+  return all;
+}
+
+// The longest reach of any pair, and eq. (3.14) for every object in ascending order of molecule IDs; the same on all ranks.
 double FixMdanimBarrier::survey(std::vector<Box> &boxes)
 {
+  const std::vector<tagint> ids = find_objects();
   const double *rc = reach.values(lmp);
-  const double *const *x = atom->x;
-  const tagint *object = atom->molecule;
   const int nlocal = atom->nlocal;
-  tagint largest_here = 0, largest = 0;
-  for (int i = 0; i < nlocal; ++i) largest_here = std::max(largest_here, object[i]);
-  MPI_Allreduce(&largest_here, &largest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-
   double reach_here = 0.0, longest = 0.0;
-  std::vector<Box> here(largest + 1);
+  std::vector<Box> here(ids.size());
+  object.assign(nlocal, NO_OBJECT);
+  int number = 0;
   for (int i = 0; i < nlocal; ++i) {
     if (role(i) == NONE) continue;
-    here[object[i]].include(x[i]);
+    const tagint id = atom->molecule[i];
+    if (ids[number] != id) number = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+    object[i] = number;
+    here[number].include(atom->x[i]);
     reach_here = std::max(reach_here, rc ? rc[i] : reach.number);
   }
   MPI_Allreduce(&reach_here, &longest, 1, MPI_DOUBLE, MPI_MAX, world);
   boxes.resize(here.size());
-  MPI_Allreduce(here.data(), boxes.data(), 6 * (largest + 1), MPI_DOUBLE, MPI_MIN, world);
+  MPI_Allreduce(here.data(), boxes.data(), 6 * static_cast<int>(here.size()), MPI_DOUBLE, MPI_MIN, world);
   return thin_bit ? std::max(1.0, thin_ratio) * longest : longest;
 }
 
@@ -225,9 +248,10 @@ struct FixMdanimBarrier::Search {
   {
     const double *const *x = fix.atom->x;
     const tagint *tag = fix.atom->tag;
-    for (int i = 0; i < fix.atom->nlocal + fix.atom->nghost; ++i)
-      if (zone[fix.own[i].object].contains(x[i]) && fix.role(i) != NONE)
-        near.push_back({i, fix.role(i), fix.moves(i), fix.own[i].reach});
+    for (int i = 0; i < fix.atom->nlocal + fix.atom->nghost; ++i) {
+      const Own &own = fix.own[i];
+      if (own.object != NO_OBJECT && zone[own.object].contains(x[i])) near.push_back({i, fix.role(i), fix.moves(i), own.reach});
+    }
     const auto by_tag = [tag](const Near &a, const Near &b) { return tag[a.particle] < tag[b.particle]; };
     if (!std::is_sorted(near.begin(), near.end(), by_tag)) std::sort(near.begin(), near.end(), by_tag);
 
@@ -241,10 +265,10 @@ struct FixMdanimBarrier::Search {
 
   // Boundary particles of `seeking` against guards of `guarding`, the particles that form the barrier; each within range of the
   // other object's box. Thin ones are both: a pair of them is found from one side, that with `thin_too`.
-  void search(tagint seeking, const Box &seeking_box, tagint guarding, const Box &guarding_box, bool thin_too)
+  void search(int seeking, const Box &seeking_box, int guarding, const Box &guarding_box, bool thin_too)
   {
     const double *const *x = fix.atom->x;
-    const auto pick = [&](Side &side, tagint object, int wanted, const Box &inside) {
+    const auto pick = [&](Side &side, int object, int wanted, const Box &inside) {
       side.clear(begin[object + 1] - begin[object]);
       for (int k = begin[object]; k < begin[object + 1]; ++k) {
         const int n = of_object[k];
@@ -345,7 +369,8 @@ void FixMdanimBarrier::find_candidates()
   meeting_objects = static_cast<bigint>(meeting.size());
   clear = 0.0;
   if (meeting.empty()) {
-    for (double more = neighbor->skin; more <= MOST * neighbor->skin; more *= 2.0) {
+    for (double skins = 1.0; skins <= MOST; skins *= 2.0) {
+      const double more = skins * neighbor->skin;
       if (!meeting_pairs(boxes, range + more).empty()) break;
       clear = 0.5 * (neighbor->skin + more);
     }
@@ -523,6 +548,6 @@ double FixMdanimBarrier::memory_usage()
 {
   return own.capacity() * sizeof(Own) + strip.capacity() * sizeof(Strip) + reach2.bytes() + law.capacity() * sizeof(Law) +
          lanes.capacity() * sizeof(StripMask) +
-         (particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) + here.bytes() +
+         (object.capacity() + particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) + here.bytes() +
          on.capacity() * sizeof(double) + slot.capacity() * sizeof(long) + loss.bytes();
 }

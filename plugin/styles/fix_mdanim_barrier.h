@@ -42,7 +42,7 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
   // What a particle brings into a pair. Of ghosts it is asked from their owners at every rebuild.
   struct Own {
     double stiffness, reach, mass;
-    tagint object;    // molecule ID
+    int object;    // its number in find_objects(), or NO_OBJECT
   };
   // What is known of a pair.
   struct Law {
@@ -52,8 +52,9 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
 
   int group_bit(int iarg, const char *word);
   int role(int i) const;
-  void collect_own();
+  std::vector<tagint> find_objects() const;
   double survey(std::vector<mdanim::Box> &boxes);
+  void collect_own();
   void find_candidates();
   void add_candidate(int low, int high, const Law &known);
   template <bool TELLS> void push(const mdanim::Positions &place, const mdanim::ForceSums &total);
@@ -67,7 +68,9 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
   int power = 3;
   mdanim::ParticleValue stiffness, reach;
 
-  std::vector<Own> own;    // local and ghost particles
+  static constexpr int NO_OBJECT = -1;    // of particles outside the two groups
+  std::vector<int> object;                // of local particles, see Own
+  std::vector<Own> own;                   // local and ghost particles
 
   // Candidates, numbered ascending by the lower tag and then by the higher one, so that who goes through them adds up the forces
   // on every particle in ascending order of its partners' tags. There are numbers in between that are no pairs (pair_filter.h).

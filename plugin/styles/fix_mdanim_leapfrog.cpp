@@ -182,6 +182,19 @@ void FixMdanimLeapfrog::drift()
   each([&](int i) { add_to(x[i], dt * vec3(v[i])); });
 }
 
+// Where the object of a particle has been. Its molecule ID may have changed since the trace was started.
+FixMdanimLeapfrog::Way &FixMdanimLeapfrog::way_of(int i)
+{
+  const tagint object = atom->molecule[i];
+  if (object < 1 || object > traced())
+    error->one(
+        FLERR,
+        "fix {} mdanim/leapfrog: particle {} has molecule ID {}, but objects 1 to {} are traced; molecule IDs must stay as "
+        "they were when the trace was started (mdanim_trace_start)",
+        id, atom->tag[i], object, traced());
+  return trace[object - 1];
+}
+
 // The same, and the box of each object grows to where its particles are now. Those of an object mostly stand side by side: their
 // box stays in registers until the object changes.
 void FixMdanimLeapfrog::drift_and_trace()
@@ -192,13 +205,14 @@ void FixMdanimLeapfrog::drift_and_trace()
   const double dt = update->dt;
   for (int i = 0; i < nlocal;) {
     const tagint object = molecule[i];
+    Way &way = way_of(i);
     Box box;
     for (; i < nlocal && molecule[i] == object; ++i) {
       if (!(mask[i] & groupbit)) continue;    // it never moves: its place is in the box since the start
       add_to(x[i], dt * vec3(v[i]));
       box.include(x[i]);
     }
-    trace[object - 1].box.unite(box);
+    way.box.unite(box);
   }
   not_seen = 0;
 }
@@ -221,7 +235,7 @@ std::string FixMdanimLeapfrog::start_trace(int objects)
     return fmt::format("molecule IDs go from {} to {}, they must be within 1 and the {} objects to trace", -bounds[1], bounds[0],
                        objects);
   trace.assign(objects, Way());
-  for (int i = 0; i < atom->nlocal; ++i) trace[atom->molecule[i] - 1].box.include(atom->x[i]);
+  for (int i = 0; i < atom->nlocal; ++i) way_of(i).box.include(atom->x[i]);
   look_after = 1;
   not_seen = 0;
   return "";
@@ -312,7 +326,7 @@ void FixMdanimLeapfrog::begin_step(const std::vector<int> &particles)
   only = nullptr;
   if (!trace.empty())
     for (const int i : particles)
-      if (atom->mask[i] & groupbit) trace[atom->molecule[i] - 1].box.include(atom->x[i]);
+      if (atom->mask[i] & groupbit) way_of(i).box.include(atom->x[i]);
 }
 
 void FixMdanimLeapfrog::moved(double final_loss, double first_loss, double bend, double more_seconds)

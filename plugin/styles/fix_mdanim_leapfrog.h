@@ -87,6 +87,7 @@ class FixMdanimLeapfrog : public Fix {
     mdanim::Box box;
     double fastest = 0.0;    // largest v^2, with its sign changed, of passes that may not have looked
   };
+  Way &way_of(int i);
   std::vector<Way> trace;    // of the particles of this rank; empty when off
   int look_after = 1;        // passes from one look to the next
   int not_seen = 0;          // passes since the last look

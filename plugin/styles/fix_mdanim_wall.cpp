@@ -117,7 +117,8 @@ void FixMdanimWall::post_neighbor()
   const double far = 0.5 * neighbor->skin;
   if (convex && region->interior) {
     const Box box = box_of_all();
-    for (double more = far; more <= MOST * far && (box.empty() || is_inside(box.grown(1.001 * more))); more *= 2.0) clear = more;
+    for (double times = 1.0; times <= MOST && (box.empty() || is_inside(box.grown(1.001 * times * far))); times *= 2.0)
+      clear = times * far;
     if (clear > 0.0) return;
   }
   for (int i = 0; i < atom->nlocal; ++i) {

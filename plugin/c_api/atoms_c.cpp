@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Plain C functions on a LAMMPS handle, for ctypes. No exception leaves them.
+// Plain C functions for ctypes: particles and springs of a LAMMPS instance.
 
 #include "c_api/abi.h"
+#include "c_api/guarded.h"
 #include "styles/bond_mdanim_harmonic.h"
 
 #include "atom.h"
@@ -12,14 +13,13 @@
 #include "library.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <exception>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 using namespace LAMMPS_NS;
+using mdanim::guarded;
 
 namespace {
 
@@ -169,16 +169,10 @@ MDANIM_EXPORT int mdanim_insert(void *handle, int n, const int *tag, const int *
                                 const double *property, const long long *bond_first, const int *bond_partner,
                                 const int *bond_type, char *error, int error_size)
 {
-  try {
+  return guarded(error, error_size, [&] {
     insert(static_cast<LAMMPS *>(handle), n, tag, type, molecule, x, v, rmass, properties, name, property,
            {bond_first, bond_partner, bond_type});
-    return 0;
-  } catch (const std::exception &e) {
-    snprintf(error, error_size, "%s", e.what());
-  } catch (...) {
-    snprintf(error, error_size, "unknown error");
-  }
-  return 1;
+  });
 }
 
 // Springs of all particles, for a process that is alone: bond_style mdanim/harmonic keeps them itself, and the particles' own
@@ -187,13 +181,7 @@ MDANIM_EXPORT int mdanim_insert(void *handle, int n, const int *tag, const int *
 // `error`.
 MDANIM_EXPORT int mdanim_give_springs(void *handle, int springs, const int *pair, const int *type, char *error, int error_size)
 {
-  try {
-    give_springs(static_cast<LAMMPS *>(handle), springs, pair, type);
-    return 0;
-  } catch (const std::exception &e) {
-    snprintf(error, error_size, "%s", e.what());
-  }
-  return 1;
+  return guarded(error, error_size, [&] { give_springs(static_cast<LAMMPS *>(handle), springs, pair, type); });
 }
 
 // Write whole numbers, shape (n, columns), into the property i2_NAME of the particles with these tags. Every rank calls it
@@ -201,17 +189,17 @@ MDANIM_EXPORT int mdanim_give_springs(void *handle, int springs, const int *pair
 MDANIM_EXPORT int mdanim_set_table(void *handle, const char *name, int columns, int n, const int *tag, const int *values,
                                    char *error, int error_size)
 {
-  try {
-    set_table(static_cast<LAMMPS *>(handle), name, columns, n, tag, values);
-    return 0;
-  } catch (const std::exception &e) {
-    snprintf(error, error_size, "%s", e.what());
-  }
-  return 1;
+  return guarded(error, error_size, [&] { set_table(static_cast<LAMMPS *>(handle), name, columns, n, tag, values); });
 }
 
 // Wall seconds that bond_style mdanim/harmonic has spent on this rank.
-MDANIM_EXPORT double mdanim_bond_seconds(void *handle) { return of_bonds(handle, "seconds"); }
+MDANIM_EXPORT double mdanim_bond_seconds(void *handle)
+{
+  return guarded(0.0, [=] { return of_bonds(handle, "seconds"); });
+}
 
 // Energy that its dashpots have taken on this rank.
-MDANIM_EXPORT double mdanim_bond_lost(void *handle) { return of_bonds(handle, "lost"); }
+MDANIM_EXPORT double mdanim_bond_lost(void *handle)
+{
+  return guarded(0.0, [=] { return of_bonds(handle, "lost"); });
+}
