@@ -52,7 +52,7 @@ def library() -> ctypes.CDLL:
 def _command() -> list[str]:
     """The compiler's command but for the output; the flags are those of the plugin."""
     headers = subprocess.run([sys.executable, str(PLUGIN / "headers.py")], capture_output=True, text=True, check=True).stdout
-    lammps, mpi, _ = headers.split(";")
+    lammps, mpi, *_ = headers.split(";")
     flags = (PLUGIN / "compile_flags.txt").read_text().split()
     folders = [f"-I{PLUGIN}", "-isystem", lammps, "-isystem", mpi]
     kind = ["-std=c++17", "-shared", "-fPIC", "-fvisibility=hidden", "-fvisibility-inlines-hidden"]
