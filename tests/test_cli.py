@@ -156,6 +156,7 @@ def test_compare_and_render_use_an_output_folder(scene):
         ),
         pytest.param(["fast.txt"], 4, ["certified bound", "cube", "timestep auto"], id="step above the bound"),
         pytest.param(["cube.txt", "-n", "0"], 2, ["-n 0", "at least one"], id="no executor"),
+        pytest.param(["cube.txt", "-n", "1.5"], 2, ["1.5 is no whole number"], id="part of an executor"),
         pytest.param(["study", "cube.txt", "--budget", "soon"], 2, ["--budget soon", "expected a time above 0"], id="study"),
         pytest.param(["render", "nowhere.out", "--size", "0", "0"], 2, ["between 2 and 8192"], id="no size"),
         pytest.param(["render", "nowhere.out", "--fps", "-3"], 2, ["--fps -3", "above 0"], id="no rate"),
@@ -279,7 +280,7 @@ def test_a_large_scene_is_told_before_modelling(prepared, monkeypatch, capsys):
     monkeypatch.setattr(report, "LARGE", 20)
     monkeypatch.setattr("mdanim_lammps.run.prepare.build_models", lambda *_, **__: pytest.fail("modelled"))
     with pytest.raises(pytest.fail.Exception):
-        cli._prepare_record(ready.scene, allow_unstable=False)
+        cli.prepare(ready.scene, allow_unstable=False)
     line = capsys.readouterr().err
     assert line.startswith("size     about 2.7e-5 million particles, spacing 5 cm set by resolution: ") and "of modelling" in line
 

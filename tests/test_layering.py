@@ -27,6 +27,7 @@ ROOMS = [
     "report",
     "api",
     "terminal",
+    "command_steps",
     "cli",
     "__main__",
 ]

@@ -82,7 +82,7 @@ def test_sigterm_is_told(scene):
     """SIGTERM before the run has begun ends with the code of Ctrl-C and a message."""
     code = (
         "import time\nfrom mdanim_lammps import cli\n"
-        "cli._load = lambda *a, **k: (print('ready', flush=True), time.sleep(60))\ncli.main(['check', 'x.txt'])"
+        "cli.load = lambda *a, **k: (print('ready', flush=True), time.sleep(60))\ncli.main(['check', 'x.txt'])"
     )
     process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout.readline() == "ready\n"

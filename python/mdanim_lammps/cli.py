@@ -7,21 +7,32 @@ import difflib
 import json
 import re
 import shlex
-import shutil
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Literal
 
 from cyclopts import App, CycloptsError, Parameter
 
 from . import __version__
-from .errors import DivergedError, ExitCode, OutputError, RefusedError, UsageError
-from .terminal import PROGRAM, documented_exit, open_streams, progress_bar, stop_on_sigterm
-
-STARTED = time.perf_counter()
-"""When this process began to work: reading and modelling are part of what a run costs."""
+from .command_steps import (
+    STARTED,
+    announce,
+    check_executors,
+    draw_movie,
+    lmp_command,
+    load,
+    picture_file,
+    prepare,
+    print_lines,
+    print_warnings,
+    seconds_of,
+    settle,
+    simulate_and_draw,
+    with_accuracy,
+)
+from .errors import ExitCode, RefusedError, UsageError
+from .terminal import PROGRAM, documented_exit, open_streams, stop_on_sigterm
 
 app = App(
     name=PROGRAM,
@@ -43,9 +54,21 @@ AllowUnstable = Annotated[bool, Parameter(negative=(), help="Insist on a time st
 Quiet = Annotated[bool, Parameter(name=["-q", "--quiet"], negative=(), help="Print errors only.")]
 Verbose = Annotated[bool, Parameter(name=["-v", "--verbose"], negative=(), help="Print every effect with its reason.")]
 Out = Annotated[Path | None, Parameter(name=["-o", "--out"], help="Output folder; default SCENE.out beside the scene.")]
-Executors = Annotated[int, Parameter(name=["-n", "--executors"], help="Processes that simulate; one more supervises them.")]
+
+
+def _whole_number(_, tokens) -> int:
+    """cyclopts would round a number with a point."""
+    if not re.fullmatch(r"[+-]?[0-9]+", tokens[0].value):
+        raise ValueError(f"{tokens[0].value} is no whole number")
+    return int(tokens[0].value)
+
+
+Executors = Annotated[
+    int, Parameter(name=["-n", "--executors"], converter=_whole_number, help="Processes that simulate; one more supervises them.")
+]
 Control = Annotated[
-    Literal["central", "peers"] | None, Parameter(help="Who assigns objects to executors: the supervisor, or each the same.")
+    Literal["central", "peers"] | None,
+    Parameter(help="What assigns objects to executors: the supervisor, or each executor alike."),
 ]
 Force = Annotated[bool, Parameter(negative=(), help="Overwrite an output folder of an earlier run.")]
 
@@ -80,16 +103,16 @@ def run(
     from .cost.speedup_forecast import prospect
     from .report import prospect_lines
 
-    _check_executors(executors)
-    record = _with_accuracy(_load(scene, set_), accuracy)
+    check_executors(executors)
+    record = with_accuracy(load(scene, set_), accuracy)
     out = output_folder(record, out)
-    record = _settle(record, make=True, quiet=quiet, out=out)
-    ready = _prepare_record(record, allow_unstable=allow_unstable)
-    _announce(ready, quiet, verbose, executors, control)
+    record = settle(record, make=True, quiet=quiet, out=out)
+    ready = prepare(record, allow_unstable=allow_unstable)
+    announce(ready, quiet, verbose, executors, control)
     if executors > 1 and not quiet:
         print("\n".join(prospect_lines(prospect(ready, executors))), flush=True)
     folder = open_run(ready, out, force=force)
-    _simulate_and_render(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control)
+    simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control)
 
 
 @app.command
@@ -118,9 +141,9 @@ def check(
     from .cost.speedup_forecast import prospect
     from .report import check_json, check_lines
 
-    _check_executors(executors)
-    record = _with_accuracy(_load(scene, set_, strict=strict), accuracy)
-    ready = _prepare_record(_settle(record, make=False, quiet=format == "json"), allow_unstable=allow_unstable)
+    check_executors(executors)
+    record = with_accuracy(load(scene, set_, strict=strict), accuracy)
+    ready = prepare(settle(record, make=False, quiet=format == "json"), allow_unstable=allow_unstable)
     setup = time.perf_counter() - STARTED
     rates = calibration(lambda line: print(line, file=sys.stderr, flush=True)).rates
     cost = forecast(ready, rates, setup=setup)
@@ -128,7 +151,7 @@ def check(
     if format == "json":
         print(json.dumps(check_json(ready, cost, spread), indent=1))
         return
-    _warn(ready)
+    print_warnings(ready)
     print("\n".join(check_lines(ready, cost, spread)))
 
 
@@ -154,14 +177,14 @@ def build(
     """
     from .api import open_run, output_folder
 
-    record = _with_accuracy(_load(scene, set_), accuracy)
+    record = with_accuracy(load(scene, set_), accuracy)
     out = output_folder(record, out)
-    record = _settle(record, make=True, quiet=quiet, out=out)
-    ready = _prepare_record(record, allow_unstable=allow_unstable)
-    _announce(ready, quiet, verbose)
+    record = settle(record, make=True, quiet=quiet, out=out)
+    ready = prepare(record, allow_unstable=allow_unstable)
+    announce(ready, quiet, verbose)
     folder = open_run(ready, out, force=force)
     if not quiet:
-        print(f"built    cd {shlex.quote(str(folder))} && {_lmp()} -in {shlex.quote(f'in.{ready.plan.name}')}")
+        print(f"built    cd {shlex.quote(str(folder))} && {lmp_command()} -in {shlex.quote(f'in.{ready.plan.name}')}")
 
 
 @app.command
@@ -187,14 +210,14 @@ def resume(
     from .api import stored_scene
     from .results.checkpoint import Checkpoint
 
-    _check_executors(executors)
+    check_executors(executors)
     scene = stored_scene(folder)
     if (folder / "summary.json").exists():
         raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
     checkpoint = Checkpoint.read(folder / "checkpoint")
-    ready = _prepare_record(scene, allow_unstable=allow_unstable)
-    _announce(ready, quiet, False, executors, control)
-    _simulate_and_render(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control, resume=checkpoint)
+    ready = prepare(scene, allow_unstable=allow_unstable)
+    announce(ready, quiet, False, executors, control)
+    simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control, resume=checkpoint)
 
 
 @app.command
@@ -233,9 +256,9 @@ def render(
     from .api import movie_file, stored_scene
 
     stored = stored_scene(folder)
-    record = stored if scene is None else _load(scene, ())
-    path = movie_file(folder, record) if out is None else _picture_file(out, ".mp4")
-    _render(folder, record, path, quiet=quiet, size=size, fps=fps, frames=folder / "frames" if frames else None)
+    record = stored if scene is None else load(scene, ())
+    path = movie_file(folder, record) if out is None else picture_file(out, ".mp4")
+    draw_movie(folder, record, path, quiet=quiet, size=size, fps=fps, frames=folder / "frames" if frames else None)
     if not quiet:
         print(f"movie    {path}" + (f"   pictures in {folder / 'frames'}" if frames else ""))
 
@@ -261,7 +284,7 @@ def timeline(folder: Path, /, *, out: Annotated[Path | None, Parameter(name=["-o
             f"{folder} was simulated by one process, so there is no {TIMELINE}; "
             "executors are asked for with -n: mdanim-lammps SCENE -n 2"
         )
-    path = folder / "timeline.png" if out is None else _picture_file(out, ".png")
+    path = folder / "timeline.png" if out is None else picture_file(out, ".png")
     draw(Timeline.read(folder), path, scene.title or scene.name)
     print(f"picture  {path}")
 
@@ -315,11 +338,11 @@ def study(
     from .study.report import order_lines, table
     from .study.study import run_study
 
-    seconds = _seconds("--budget", budget)
-    record = _with_accuracy(_load(scene, set_), accuracy)
+    seconds = seconds_of("--budget", budget)
+    record = with_accuracy(load(scene, set_), accuracy)
     only = [name.strip() for name in ladders.split(",") if name.strip()]
     done = run_study(
-        record, output_folder(record, out) / STUDY, budget=seconds, only=only, force=force, watch=_lines("study", quiet)
+        record, output_folder(record, out) / STUDY, budget=seconds, only=only, force=force, watch=print_lines("study", quiet)
     )
     if quiet:
         return
@@ -330,172 +353,6 @@ def study(
         print(line)
     print(f"advice   {done.advice}")
     print(f"output   {done.folder}/study.json, study.csv, study.png")
-
-
-# --- what the commands share ------------------------------------------------------------------------------------------
-
-
-def _load(path: Path, overrides: tuple[str, ...], *, strict: bool = False):
-    from .scene.parse import load_scene
-
-    pairs = {}
-    for text in overrides:
-        name, equals, value = text.partition("=")
-        if not equals or not name.strip():
-            raise UsageError(f"--set {text}: expected NAME=VALUE, e.g. --set rho=0.8")
-        pairs[name.strip()] = value.strip()
-    return load_scene(path, overrides=pairs, strict=strict)
-
-
-def _with_accuracy(scene, accuracy: str | None):
-    """The scene with a class of accuracy from the command line."""
-    from dataclasses import replace
-
-    from .scene.scene import Accuracy as AccuracyClass
-
-    if accuracy is None:
-        return scene
-    return replace(scene, control=replace(scene.control, accuracy=AccuracyClass(accuracy)))
-
-
-def _settle(scene, *, make: bool, quiet: bool = False, out: Path | None = None):
-    """The scene with a setting for its target error, and a line that says where it comes from."""
-    from .api import STUDY, default_folder
-    from .study.target import settle
-
-    study = (out or default_folder(scene)) / STUDY
-    settled = settle(scene, make=make, study=study, watch=_lines("accuracy", quiet))
-    if settled.warning:
-        print(settled.warning, file=sys.stderr)
-    if settled.line and not quiet:
-        print(settled.line)
-    return settled.scene
-
-
-def _lines(name: str, quiet: bool) -> Callable[[str], None]:
-    """A function that prints a line of progress on stderr."""
-    return lambda line: None if quiet else print(f"{name:<8} {line}", file=sys.stderr, flush=True)
-
-
-def _prepare_record(scene, *, allow_unstable: bool):
-    from .report import size_line
-    from .run.prepare import prepare
-
-    if line := size_line(scene):
-        print(line, file=sys.stderr, flush=True)
-    return prepare(scene, allow_unstable=allow_unstable)
-
-
-def _lmp() -> str:
-    """How a shell calls the LAMMPS that is installed beside this program: by its name where that finds this one."""
-    beside, found = Path(sys.executable).parent / "lmp", shutil.which("lmp")
-    return "lmp" if not beside.exists() or (found and beside.samefile(found)) else shlex.quote(str(beside))
-
-
-def _check_executors(executors: int) -> None:
-    if executors < 1:
-        raise UsageError(f"-n {executors}: at least one executor is needed")
-
-
-def _seconds(option: str, text: str) -> float:
-    """A duration such as "2 min" in seconds."""
-    from .scene.units import DimensionError, unit
-
-    match = re.fullmatch(r"\s*([0-9.]+(?:e[+-]?[0-9]+)?)\s*([a-z]+)\s*", text)
-    try:
-        u = unit(match[2])
-        seconds = float(match[1]) * u.over / u.under
-        good = u.dim == unit("s").dim and 0.0 < seconds < float("inf")
-    except (KeyError, TypeError, ValueError, DimensionError):
-        good = False
-    if not good:
-        raise UsageError(f'{option} {text}: expected a time above 0, e.g. {option} "30 s" or {option} "2 min"')
-    return seconds
-
-
-def _picture_file(path: Path, suffix: str) -> Path:
-    """The file that -o names for a movie or a picture. Raises UsageError."""
-    if path.suffix.lower() != suffix:
-        raise UsageError(f"-o {path}: this file is written as {suffix}; give it a name such as {path.stem or 'movie'}{suffix}")
-    if not path.parent.is_dir():
-        raise OutputError(f"-o {path}: there is no folder {path.parent}; make it first, or name another")
-    return path
-
-
-def _warn(ready) -> None:
-    for warning in ready.warnings:
-        print(warning, file=sys.stderr)
-
-
-def _announce(ready, quiet: bool, verbose: bool, executors: int = 1, control: str | None = None) -> None:
-    from .report import certificate_line, effect_line, output_line, scene_lines, who_line
-
-    _warn(ready)
-    if quiet:
-        return
-    print("\n".join(scene_lines(ready)))
-    if verbose:
-        for verdict in ready.verdicts.values():
-            print(effect_line(verdict))
-    print(certificate_line(ready))
-    print(output_line(ready))
-    if line := who_line(executors, control):
-        print(line)
-    sys.stdout.flush()
-
-
-def _simulate_and_render(ready, folder: Path, *, quiet: bool, movie: bool, **options) -> None:
-    from .api import movie_file, run_frames
-    from .report import cost_line, progress_line, spread_line
-    from .results.timeline import Timeline
-    from .scene.wording import number
-
-    file = movie_file(folder, ready.scene)
-    try:
-        with progress_bar("run", quiet=quiet) as bar:
-            result = run_frames(
-                ready, folder, started=STARTED, watch=lambda p: bar(p.frame, p.frames, progress_line(p)), **options
-            )
-    except DivergedError as error:
-        raise DivergedError(f"{error}\n  draw what was kept with: {PROGRAM} render {shlex.quote(str(folder))}") from error
-    # Before the movie: what was found must not depend on whether pictures can be made here.
-    if not quiet:
-        print(cost_line(result, ready.certificate.steps * ready.certificate.timestep))
-        if options["executors"] > 1 or options["control"]:
-            print(spread_line(Timeline.read(folder), folder))
-        print(f"ledger   energy residual {number(result.ledger.residual)}   {folder / 'ledger.csv'}")
-        for outcome in result.outcomes:
-            if outcome.met:
-                print(outcome)
-    for warning in result.warnings:
-        print(warning, file=sys.stderr)
-    for outcome in result.missed:
-        print(outcome, file=sys.stderr)
-    if movie:
-        _render(folder, ready.scene, file, quiet=quiet)
-    if not quiet:
-        print(f"movie    {file}" if movie else f"output   {folder}")
-    if result.missed:
-        raise SystemExit(ExitCode.DIVERGED)
-
-
-def _render(folder: Path, scene, path: Path, *, quiet: bool, **options) -> None:
-    from .picture.movie import render_movie
-    from .report import movie_line
-
-    start = time.perf_counter()
-    try:
-        with progress_bar("movie", quiet=quiet) as bar:
-            render_movie(
-                folder,
-                scene.render,
-                path,
-                **options,
-                on_progress=lambda done, total: bar(done, total, movie_line(done, total, time.perf_counter() - start)),
-            )
-    except KeyboardInterrupt:
-        print(f"the movie was interrupted, the run is complete; draw it with: mdanim-lammps render {folder}", file=sys.stderr)
-        raise SystemExit(ExitCode.INTERRUPTED) from None
 
 
 def _suggest(arguments: list[str]) -> str | None:

