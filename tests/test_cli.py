@@ -237,8 +237,8 @@ def drawn(tmp_path_factory):
 def test_a_stopped_run_says_how_to_draw_it(scene, monkeypatch, capsys):
     """A run that the guard has stopped ends with the command that draws its frames, and that command draws them."""
     from mdanim_lammps import cli
-    from mdanim_lammps.run.guard import Guard
     from mdanim_lammps.errors import DivergedError
+    from mdanim_lammps.run.guard import Guard
 
     def look(self, step, *_):
         if step > 50:
