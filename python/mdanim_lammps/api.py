@@ -14,7 +14,8 @@ from pathlib import Path
 
 from .certificate import Certificate
 from .effects import Verdict
-from .errors import OutputError, UsageError
+from .errors import OutputError
+from .parallel.limits import check_executors
 from .parallel.runtime.launch import simulate_on
 from .results.checkpoint import Checkpoint
 from .results.files import MARK, open_folder, read_json, write_json
@@ -198,10 +199,10 @@ def run_frames(
 ) -> Result:
     """Simulate in this process, or on executors of their own when there is more than one or a ``control`` is named.
 
-    ``options`` are those of `run.loop.simulate`. Raises what that does, and UsageError for less than one executor.
+    ``options`` are those of `run.loop.simulate`. Raises what that does, and UsageError for less than one executor or more than
+    this machine can hold.
     """
-    if executors < 1:
-        raise UsageError(f"{executors} executors: at least one is needed")
+    check_executors(executors, ready.system.particles)
     if executors == 1 and control is None:
         return simulate(ready, folder, resume=resume, **options)
     return simulate_on(executors, control or "central", ready, folder, resume=resume, **options)

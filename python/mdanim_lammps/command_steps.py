@@ -76,8 +76,10 @@ def lmp_command() -> str:
 
 
 def check_executors(executors: int) -> None:
-    if executors < 1:
-        raise UsageError(f"-n {executors}: at least one executor is needed")
+    """Raises UsageError for a number that cannot be, or that this machine cannot hold."""
+    from .parallel import limits
+
+    limits.check_executors(executors)
 
 
 def seconds_of(option: str, text: str) -> float:

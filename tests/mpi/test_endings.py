@@ -4,6 +4,7 @@
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -275,6 +276,67 @@ def test_a_planner_that_raises_is_told(place, monkeypatch, heard):
     with pytest.raises(ExecutorLost, match="no plan"):
         simulate_on(2, "central", ready, folder)
     assert time.monotonic() - begin < 15.0
+
+
+@pytest.mark.parametrize(
+    ("rank", "module", "kind", "method"),
+    [
+        (2, "runtime.bundle", "Bundle", "run"),
+        (2, "runtime.executor", "Executor", "__init__"),
+        (0, "runtime.supervisor", "Distributed", "_grant"),
+    ],
+)
+def test_a_fault_of_mpi_is_told(place, monkeypatch, rank, module, kind, method):
+    """An exception of MPI in one living rank ends all ranks as any other does: the others would wait for it for ever."""
+    ready, folder = readied(place, LONG)
+    what = "from mpi4py import MPI; raise MPI.Exception(MPI.ERR_TRUNCATE)"
+    faulty(place, monkeypatch, rank=rank, module=f"parallel.{module}", kind=kind, method=method, time=1, what=what)
+    begin = time.monotonic()
+    with pytest.raises(ExecutorLost, match="Message truncated"):
+        simulate_on(2, "central", ready, folder)
+    assert time.monotonic() - begin < 15.0
+
+
+@pytest.mark.parametrize("control", ["central", "peers"])
+def test_a_folder_that_is_deleted_ends_the_run(place, control):
+    """One message, within seconds."""
+    process = begun(place, LONG, "-n", 2, "--control", control)
+    shutil.rmtree(place / "film.out", ignore_errors=True)
+    shutil.rmtree(place / "film.out", ignore_errors=True)  # a rank may just have written
+    code, said = ended(process, 15.0)
+    assert code == 7 and said.count("error:") == 1 and "film.out" in said and "Traceback" not in said, said
+
+
+@pytest.mark.parametrize("arguments", [(), ("-n", 2)], ids=["alone", "executors"])
+def test_a_stop_file_that_is_there_early_is_honoured(place, arguments):
+    """Touched as soon as the folder is there, before the first frame, it stops the run."""
+    (place / "film.txt").write_text(LONG)
+    process = subprocess.Popen(
+        command(place / "film.txt", "--no-movie", *arguments),
+        env=environment(),
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    deadline = time.monotonic() + 20.0
+    while not (place / "film.out" / "scene.lock.txt").exists() and time.monotonic() < deadline:
+        time.sleep(0.001)
+    (place / "film.out" / "stop").touch()
+    code, said = ended(process, 20.0)
+    assert code == 130 and "mdanim-lammps resume" in said, said
+
+
+def test_a_killed_program_leaves_nothing_behind(place):
+    """Killed alone, its ranks end and clear the folder; killed with its ranks, the next run does."""
+    process = begun(place, LONG, "-n", 2)
+    process.kill()
+    process.wait()
+    deadline = time.monotonic() + 10.0
+    while (ranks_in(place) or list(place.rglob(".ranks-*"))) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not ranks_in(place) and not list(place.rglob(".ranks-*"))
+    (place / "film.out" / ".ranks-old").touch()
+    goes_on(place, 0, "-n", 2)
 
 
 def test_a_rank_that_cannot_begin_is_told(place, monkeypatch):

@@ -388,7 +388,8 @@ class _Clock:
 
 
 class _Stop:
-    """Whether to stop after the frame: Ctrl-C and SIGTERM ask for it, and a file ``stop`` in the run's folder."""
+    """Whether to stop after the frame: Ctrl-C and SIGTERM ask for it, and a file ``stop`` in the run's folder, also one that was
+    there before the first frame: it may have been made while the scene was read."""
 
     def __init__(self, folder: Path):
         self.file = folder / STOP
@@ -396,7 +397,6 @@ class _Stop:
         self.old = {}
 
     def __enter__(self) -> _Stop:
-        self.file.unlink(missing_ok=True)  # of a run before this one
         if threading.current_thread() is threading.main_thread():
             for number in (signal.SIGINT, signal.SIGTERM):
                 self.old[number] = signal.signal(number, lambda *_: self.asked.set())

@@ -24,11 +24,15 @@ from .bundle import Bundle, Wanted, wanted_bundles
 from .control import Control, make_control
 from .messages import SUPERVISOR, Aborted, Ended, Failure, Job, Kept, Mail, Moved, Share, Tag, gathered, scatter
 
+OBITUARY = 2.0
+"""Seconds within which mpiexec ends all ranks after one has died."""
+
 
 def serve(world: MPI.Comm) -> bool:
     """Be an executor until the supervisor says that it is enough; all ranks but the supervisor's call this together.
 
-    Returns whether that was the end of the run; if not, others may wait for this rank for ever, and all are to be aborted.
+    Returns whether that was the end of the run. If not, the supervisor has been told why; other ranks may wait for this one for
+    ever, and all are to be aborted.
     """
     mail = Mail(world)
     comm = world.Split(1, world.rank)
@@ -42,9 +46,9 @@ def serve(world: MPI.Comm) -> bool:
         last = Tag.FAILED, Failure("Broken", str(broken.error), broken.step, broken.solid)
     except MdanimError as error:
         last = Tag.FAILED, Failure(type(error).__name__, str(error))
-    except MPI.Exception:  # somebody has died, and mpiexec is about to end all of us: it has the better word
-        return False
-    except Exception as error:  # whatever it is, the others must hear of it
+    except Exception as error:  # whatever it is, the supervisor must be told
+        if isinstance(error, MPI.Exception):  # where another rank has died, mpiexec ends this one now, and tells the better cause
+            time.sleep(OBITUARY)
         traceback.print_exc()
         last = Tag.FAILED, Failure("ExecutorLost", f"executor {comm.rank}: {type(error).__name__}: {error}")
     mail.world.send(last[1], SUPERVISOR, last[0])

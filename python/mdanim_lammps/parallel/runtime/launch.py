@@ -7,27 +7,30 @@ import importlib
 import json
 import os
 import pickle
+import secrets
 import shlex
 import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...errors import ExecutorLost, SetupError
+from ...errors import ExecutorLost, OutputError, SetupError
 from ...results.checkpoint import Checkpoint
+from ...results.files import disk_errors
 from ...run.loop import STOP, Progress, Result
 from ...run.prepare import Prepared
+from ..limits import MPIEXEC
 from ..plan.frame_plan import Settings
 
-MPIEXEC = "MDANIM_MPIEXEC"
-"""Environment variable with the command that starts ranks, up to ``-n``: ``mpiexec -f hosts`` on a cluster, ``srun``."""
-JOB, RESULT = "job", "result"
+EXCHANGE = ".ranks-"
+"""What the names of the two files begin with, in the folder of the run, by which job and result are handed over. The supervisor
+deletes the first when it has read it, and leaves the second at its end."""
 
 
 @dataclass(frozen=True)
@@ -59,34 +62,33 @@ def simulate_on(
     ExecutorLost when a rank dies.
     """
     folder = folder.resolve()
-    with tempfile.TemporaryDirectory(prefix=".ranks-", dir=folder) as exchange:
-        task = Task(ready, folder, control, resume, time.perf_counter() if started is None else started, settings or Settings())
-        (Path(exchange) / JOB).write_bytes(pickle.dumps(task, protocol=pickle.HIGHEST_PROTOCOL))
-        command = [*launcher(), "-n", str(executors + 1), sys.executable, "-m", "mdanim_lammps.parallel.runtime.ranks", exchange]
-        # A session of its own: Ctrl-C is for this process, which asks the supervisor to stop after a frame.
-        ranks = subprocess.Popen(
-            command,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            env=_environment(),
-            start_new_session=True,
-        )
-        said: list[str] = []
-        hearing = threading.Thread(target=_hear, args=(ranks.stderr, said), daemon=True)
-        hearing.start()
-        with _Signals(ranks, folder) as signals:
+    for old in folder.glob(EXCHANGE + "*"):  # of a run that was killed together with the process that had started it
+        old.unlink(missing_ok=True)
+    job = folder / f"{EXCHANGE}{secrets.token_hex(4)}"
+    result = result_of(job)
+    task = Task(ready, folder, control, resume, time.perf_counter() if started is None else started, settings or Settings())
+    command = [*launcher(), "-n", str(executors + 1), sys.executable, "-m", "mdanim_lammps.parallel.runtime.ranks", str(job)]
+    said: list[str] = []
+    try:
+        with disk_errors(job):
+            job.write_bytes(pickle.dumps(task, protocol=pickle.HIGHEST_PROTOCOL))
+        with _Signals(folder) as signals:
+            ranks = signals.ranks = _started(command)
+            hearing = threading.Thread(target=_hear, args=(ranks.stderr, said), daemon=True)
+            hearing.start()
             for line in ranks.stdout:
-                signals.remind()
                 if watch and line.startswith("{"):
                     watch(Progress(**json.loads(line)))
             ranks.wait()
         hearing.join()
-        result = Path(exchange) / RESULT
+        if not folder.exists():
+            raise OutputError(f"{folder} was deleted while the run wrote to it; run the scene again")
         if not result.exists():
-            raise lost(ranks.returncode, said, folder)
+            raise lost(_cause(ranks.returncode, said), folder)
         found = pickle.loads(result.read_bytes())
+    finally:
+        for file in (job, result):
+            file.unlink(missing_ok=True)
     if isinstance(found, Result):
         return found
     kind, module, text = found
@@ -96,12 +98,32 @@ def simulate_on(
 def launcher() -> list[str]:
     """The command that starts ranks: of MDANIM_MPIEXEC, beside this Python, or on the path. Raises SetupError."""
     if os.environ.get(MPIEXEC):
-        return shlex.split(os.environ[MPIEXEC])
+        try:
+            return shlex.split(os.environ[MPIEXEC]) or [""]
+        except ValueError as error:
+            raise SetupError(f"{MPIEXEC}={os.environ[MPIEXEC]}: {error}; write it as a shell would take it") from error
     beside = Path(sys.executable).parent / "mpiexec"
     found = str(beside) if beside.exists() else shutil.which("mpiexec")
     if not found:
         raise SetupError(f"there is no mpiexec; it comes with 'pip install mpich', or name one in {MPIEXEC}")
     return [found]
+
+
+def _started(command: list[str]) -> subprocess.Popen:
+    """The process that starts all ranks, in a session of its own: Ctrl-C is for this process. Raises SetupError."""
+    try:
+        return subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=_environment(),
+            start_new_session=True,
+        )
+    except OSError as error:
+        named = f"{MPIEXEC}={os.environ[MPIEXEC]}" if os.environ.get(MPIEXEC) else command[0]
+        raise SetupError(f"{named}: {command[0] or 'an empty command'} cannot be started: {error.strerror}") from error
 
 
 def _hear(stream, said: list[str]) -> None:
@@ -120,15 +142,21 @@ def _environment() -> dict[str, str]:
     return os.environ | dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
-def lost(code: int, said: list[str], folder: Path) -> ExecutorLost:
-    """The one message for ranks that ended without a result."""
+def result_of(job: Path) -> Path:
+    """The file that the supervisor leaves for a job."""
+    return job.with_name(job.name + ".result")
+
+
+def _cause(code: int, said: list[str]) -> str:
+    """Why ranks have ended without a result, from mpiexec's exit code and what was said on stderr."""
     words = [line.strip() for line in said if line.strip() and not set(line.strip()) <= {"="}]
-    tracebacks = [line for line in words if "Error" in line]
-    why = next(
-        (line.lstrip("= ").rstrip() for line in words if "EXIT CODE" in line or "killed" in line.lower()), f"exit code {code}"
-    )
-    if tracebacks:
-        why = tracebacks[-1]
+    errors = [line for line in words if "Error" in line]
+    obituaries = [line.lstrip("= ").rstrip() for line in words if "EXIT CODE" in line or "killed" in line.lower()]
+    return (errors[-1:] or obituaries or [f"exit code {code}"])[0]
+
+
+def lost(why: str, folder: Path) -> ExecutorLost:
+    """The one message for ranks that ended without a result."""
     kept = (folder / "checkpoint").exists()
     go_on = f"go on with: mdanim-lammps resume {folder}" if kept else "nothing was kept yet; run it again"
     return ExecutorLost(f"an executor was lost ({why}); all others were stopped. {go_on}")
@@ -137,8 +165,10 @@ def lost(code: int, said: list[str], folder: Path) -> ExecutorLost:
 class _Signals:
     """The first Ctrl-C (or SIGTERM) asks for an end after the frame; the second one ends all ranks at once."""
 
-    def __init__(self, ranks: subprocess.Popen, folder: Path):
-        self.ranks, self.folder = ranks, folder
+    def __init__(self, folder: Path):
+        self.folder = folder
+        self.ranks: subprocess.Popen | None = None
+        """To be set once there are some."""
         self.old = {}
         self.asked = False
 
@@ -150,19 +180,18 @@ class _Signals:
 
     def _stop(self, *_) -> None:
         if self.asked:
-            os.killpg(self.ranks.pid, signal.SIGKILL)
+            self._end()
         self.asked = True
-        (self.folder / STOP).touch()
-
-    def remind(self) -> None:
-        """Ask again: a run that had not begun yet has taken the file for that of a run before it."""
-        if self.asked:
+        with suppress(OSError):  # the folder may have been deleted, which ends the run by itself
             (self.folder / STOP).touch()
+
+    def _end(self) -> None:
+        if self.ranks and self.ranks.poll() is None:
+            os.killpg(self.ranks.pid, signal.SIGKILL)
 
     def __exit__(self, *_) -> None:
         for number, handler in self.old.items():
             signal.signal(number, handler)
-        if self.ranks.poll() is None:
-            os.killpg(self.ranks.pid, signal.SIGKILL)
-        elif self.asked:
+        self._end()
+        if self.asked:
             (self.folder / STOP).unlink(missing_ok=True)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What every MPI rank of a distributed run executes: ``mpiexec -n K+1 python -m mdanim_lammps.parallel.runtime.ranks FOLDER``.
+"""What every MPI rank of a distributed run executes: ``mpiexec -n K+1 python -m mdanim_lammps.parallel.runtime.ranks JOB``.
 
-Rank 0 is the supervisor: it takes the job that parallel/runtime/launch.py has left in the folder and leaves the result there; progress goes
-to its standard output, a line of JSON for every frame. All others are executors.
+Rank 0 is the supervisor: it takes the job that launch.py has left in this file and leaves the result beside it; progress goes to
+its standard output, a line of JSON for every frame. All others are executors.
 """
 
 from __future__ import annotations
@@ -12,14 +12,15 @@ import pickle
 import sys
 import time
 import traceback
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 
 from ...errors import MdanimError, OutputError
-from .launch import JOB, RESULT, Task, lost
+from .launch import Task, lost, result_of
 
-FAREWELL = 60.0
-"""Seconds that an executor waits for its end."""
+FAREWELL = 30.0
+"""Seconds for which an executor that has failed waits for the supervisor to end all ranks, until it does so itself."""
 
 
 def main() -> None:
@@ -28,24 +29,36 @@ def main() -> None:
 
     from .messages import SUPERVISOR
 
-    world = MPI.COMM_WORLD
-    if world.rank != SUPERVISOR:
-        from .executor import serve
+    world, done = MPI.COMM_WORLD, False
+    try:
+        if world.rank == SUPERVISOR:
+            _supervise(world, Path(sys.argv[1]))
+            done = True
+        else:
+            from .executor import serve
 
-        if not serve(world):
-            time.sleep(FAREWELL)  # the supervisor is to tell what has happened before it ends all ranks, this one too
-        return
-    _supervise(world, Path(sys.argv[1]))
+            done = serve(world)
+            if not done:
+                time.sleep(FAREWELL)
+    except BaseException:
+        traceback.print_exc()
+        raise
+    finally:
+        if not done:  # MPI's own end would wait for all other ranks, which may wait for this one
+            sys.stderr.flush()
+            world.Abort(1)
 
 
-def _supervise(world, exchange: Path) -> None:
+def _supervise(world, job: Path) -> None:
     from mpi4py import MPI
 
     from ...results.timeline import Timeline
     from ...run.loop import Result, simulate
+    from .executor import OBITUARY
     from .supervisor import Distributed
 
-    task: Task = pickle.loads((exchange / JOB).read_bytes())
+    task: Task = pickle.loads(job.read_bytes())
+    job.unlink()
     source = Distributed(task.ready, world, task.control, task.settings)
     try:
         source.before = Timeline.left_in(task.folder) if task.resume else None
@@ -59,29 +72,30 @@ def _supervise(world, exchange: Path) -> None:
         )
     except MdanimError as error:
         result = _told(error)
-    except BaseException as error:  # executors would wait for ever
-        if not isinstance(error, MPI.Exception):  # else somebody has died, and mpiexec has the better word
-            traceback.print_exc()
-            # What stands on stderr may be lost: an abort ends those who pass it on too.
-            _leave(exchange, _told(lost(1, [f"{type(error).__name__}: {error}"], task.folder)))
-        sys.stderr.flush()
-        world.Abort(1)
+    except BaseException as error:
+        if isinstance(error, MPI.Exception):  # where another rank has died, mpiexec ends this one now, and tells the better cause
+            time.sleep(OBITUARY)
+        # What stands on stderr may be lost: an abort also ends the processes that pass it on.
+        _leave(job, _told(lost(f"{type(error).__name__}: {error}", task.folder)))
         raise
     try:
         if source.timeline.frames or not task.resume:  # else the log that is there stands
             source.timeline.write(task.folder)
     except OutputError as error:
         result = _told(error) if isinstance(result, Result) else result
-    _leave(exchange, result)
+    _leave(job, result)
     if not source.clean:
+        sys.stderr.flush()
         world.Abort(1)  # executors may wait for ever for what never comes
 
 
-def _leave(exchange: Path, result) -> None:
+def _leave(job: Path, result) -> None:
     """Let the process that has started all ranks find a result, whole."""
-    part = exchange / (RESULT + ".part")
-    part.write_bytes(pickle.dumps(result))
-    part.rename(exchange / RESULT)
+    found = result_of(job)
+    part = found.with_name(found.name + ".part")
+    with suppress(FileNotFoundError):  # the output folder has been deleted: that tells the process that waits for the result
+        part.write_bytes(pickle.dumps(result))
+        part.rename(found)
 
 
 def _told(error: MdanimError) -> tuple[str, str, str]:
