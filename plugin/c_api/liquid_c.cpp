@@ -27,13 +27,13 @@ static FixMdanimLiquid &liquid(void *handle, const char *fix)
 // it, minus infinity where one keeps the column dry below the surface, as a hull does its inside).
 MDANIM_EXPORT int mdanim_liquid_heights(void *handle, const char *fix, double *smooth, double *raw, char *error, int error_size)
 {
-  return guarded(error, error_size, [&] { liquid(handle, fix).surface(smooth, raw); });
+  return guarded(error, error_size, [&] { liquid(handle, fix).liquid().surface(smooth, raw); });
 }
 
 // Content of every cell (nz, ny, nx), 255 where it is solid.
 MDANIM_EXPORT int mdanim_liquid_cells(void *handle, const char *fix, unsigned char *cells, char *error, int error_size)
 {
-  return guarded(error, error_size, [&] { liquid(handle, fix).contents(cells); });
+  return guarded(error, error_size, [&] { liquid(handle, fix).liquid().contents(cells); });
 }
 
 // Bytes of the liquid's state. All ranks call it and the next two together.
@@ -54,8 +54,5 @@ MDANIM_EXPORT int mdanim_liquid_get_state(void *handle, const char *fix, unsigne
 MDANIM_EXPORT int mdanim_liquid_set_state(void *handle, const char *fix, const unsigned char *bytes, long long size, char *error,
                                           int error_size)
 {
-  return guarded(error, error_size, [&] {
-    const std::string why = liquid(handle, fix).set_state(bytes, size);
-    if (!why.empty()) throw std::runtime_error(why);
-  });
+  return guarded(error, error_size, [&] { liquid(handle, fix).set_state(bytes, size); });
 }

@@ -116,7 +116,7 @@ void Leveller::draw_lots(Item *from, Item *to, long count, std::uint64_t key)
 
 bool Leveller::heights(const Cells &cells, double *height, bool just_moved)
 {
-  constexpr double NOTHING = std::numeric_limits<double>::quiet_NaN();
+  constexpr double NO_HEIGHT = std::numeric_limits<double>::quiet_NaN();
   if (!(just_moved && unchanged)) {
     bodies.search(cells);
     joined = false;
@@ -138,13 +138,13 @@ bool Leveller::heights(const Cells &cells, double *height, bool just_moved)
       if (any == 0) continue;
       bodies.each_exposed(y, z, [&](int body, int word, Bodies::Word bits) {
         const Body &b = bodies.all[body];
-        double told = b.deep ? -(z + 1.0) : NOTHING;
+        double told = b.deep ? -(z + 1.0) : NO_HEIGHT;
         const double cover = b.full + b.part;
         if (b.deep && b.level() && cover > 0.0) told = b.highest + b.full / cover;
         each_bit(word, bits & open[word], [&](int x) { row[x] = told; });
       });
       for (int k = 0; k < words; ++k) {
-        each_bit(k, open[k] & wet[k] & ~above[k], [&](int x) { row[x] = NOTHING; });
+        each_bit(k, open[k] & wet[k] & ~above[k], [&](int x) { row[x] = NO_HEIGHT; });
         open[k] &= ~wet[k];
       }
     }

@@ -38,7 +38,7 @@ void Occupancy::add(const Vec3 &place, int weight)
   // Written so that a place that is no number is outside.
   if (!(place.x >= 0.0 && place.x < nx && place.y >= 0.0 && place.y < ny && place.z >= 0.0 && place.z < nz)) return;
   const int x = static_cast<int>(place.x), y = static_cast<int>(place.y), z = static_cast<int>(place.z);
-  count[(static_cast<std::size_t>(z) * ny + y) * nx + x] += weight;
+  count[number(x, y, z)] += weight;
   touched.take_in(x, y, z);
 }
 
@@ -68,10 +68,37 @@ void Occupancy::clear()
 {
   for (int z = touched.low[2]; z < touched.high[2]; ++z)
     for (int y = touched.low[1]; y < touched.high[1]; ++y) {
-      const auto first = count.begin() + (static_cast<std::ptrdiff_t>(z) * ny + y) * nx;
+      const auto first = count.begin() + static_cast<std::ptrdiff_t>(number(0, y, z));
       std::fill(first + touched.low[0], first + touched.high[0], 0);
     }
   touched = CellBox();
+}
+
+// Only the box that any rank has touched goes from rank to rank.
+void Occupancy::sum_over(const RankSums &ranks)
+{
+  if (ranks.alone()) return;
+  int bounds[6];
+  for (int d = 0; d < 3; ++d) {
+    bounds[d] = touched.low[d];
+    bounds[3 + d] = -touched.high[d];
+  }
+  ranks.lowest(bounds, 6);
+  for (int d = 0; d < 3; ++d) {
+    touched.low[d] = bounds[d];
+    touched.high[d] = -bounds[3 + d];
+  }
+  if (touched.empty()) return;
+  std::vector<int> part(touched.size());
+  const int width = touched.high[0] - touched.low[0];
+  const auto rows = [&](auto &&copy) {
+    int *packed = part.data();
+    for (int z = touched.low[2]; z < touched.high[2]; ++z)
+      for (int y = touched.low[1]; y < touched.high[1]; ++y, packed += width) copy(&count[number(touched.low[0], y, z)], packed);
+  };
+  rows([&](const int *grid, int *packed) { std::copy_n(grid, width, packed); });
+  ranks.add(part.data(), static_cast<int>(part.size()));
+  rows([&](int *grid, const int *packed) { std::copy_n(packed, width, grid); });
 }
 
 }    // namespace mdanim

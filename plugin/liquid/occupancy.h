@@ -6,6 +6,7 @@
 #define MDANIM_OCCUPANCY_H
 
 #include "laws/vec3.h"
+#include "liquid/rank_sums.h"
 
 #include <cstddef>
 #include <vector>
@@ -42,6 +43,10 @@ class Occupancy {
 
   // Forget all counts.
   void clear();
+  // The counts of all ranks together, on each of them.
+  void sum_over(const RankSums &ranks);
+
+  std::size_t number(int x, int y, int z) const { return (static_cast<std::size_t>(z) * ny + y) * nx + x; }
 
   int nx, ny, nz;
   std::vector<int> count;    // x fastest

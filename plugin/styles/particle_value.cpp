@@ -47,4 +47,45 @@ void ParticleValue::init(LAMMPS *lmp)
 
 const double *ParticleValue::values(LAMMPS *lmp) const { return constant() ? nullptr : lmp->atom->dvector[index]; }
 
+// --- tables and columns ---
+
+ParticleTable::ParticleTable(LAMMPS *lmp, const char *what, int iarg, const char *word)
+{
+  if (!utils::strmatch(word, "^i2_"))
+    lmp->error->all(FLERR, iarg, "{} must be a per-particle property i2_NAME, got {}", what, word);
+  name = word + 3;
+}
+
+int ParticleTable::width(LAMMPS *lmp) const
+{
+  int is_double = 0, columns = 0;
+  const int index = lmp->atom->find_custom(name.c_str(), is_double, columns);
+  return index < 0 || is_double ? 0 : columns;
+}
+
+int *const *ParticleTable::rows(LAMMPS *lmp) const
+{
+  int is_double = 0, columns = 0;
+  return lmp->atom->iarray[lmp->atom->find_custom(name.c_str(), is_double, columns)];
+}
+
+ParticleColumn::ParticleColumn(LAMMPS *lmp, const char *style, const char *keyword, int iarg, const char *word)
+    : style(style), keyword(keyword)
+{
+  if (!utils::strmatch(word, "^d_"))
+    lmp->error->all(FLERR, iarg, "{}: {} must be a per-particle property d_NAME, got {}", style, keyword, word);
+  name = word + 2;
+  values(lmp);
+}
+
+double *ParticleColumn::values(LAMMPS *lmp) const
+{
+  int is_double = 0, columns = 0;
+  const int index = lmp->atom->find_custom(name.c_str(), is_double, columns);
+  if (index < 0 || !is_double || columns)
+    lmp->error->all(FLERR, "{}: {} names d_{}, which is no per-particle property; make it with 'fix ID all property/atom d_{}'",
+                    style, keyword, name, name);
+  return lmp->atom->dvector[index];
+}
+
 }    // namespace mdanim

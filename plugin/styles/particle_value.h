@@ -30,6 +30,32 @@ class ParticleValue {
   int index = -1;
 };
 
+// A style's argument that is a table of whole numbers of each particle, i2_NAME, or none.
+class ParticleTable {
+ public:
+  ParticleTable() = default;
+  ParticleTable(LAMMPS_NS::LAMMPS *lmp, const char *what, int iarg, const char *word);
+
+  bool given() const { return !name.empty(); }
+  int width(LAMMPS_NS::LAMMPS *lmp) const;    // of its rows; 0 when there is no such table
+  int *const *rows(LAMMPS_NS::LAMMPS *lmp) const;
+  std::string name;    // without i2_
+};
+
+// A style's argument that is a custom property of each particle, d_NAME, which the style itself writes, or none.
+class ParticleColumn {
+ public:
+  ParticleColumn() = default;
+  // Raises a LAMMPS error when there is no such property, as values().
+  ParticleColumn(LAMMPS_NS::LAMMPS *lmp, const char *style, const char *keyword, int iarg, const char *word);
+
+  bool given() const { return !name.empty(); }
+  double *values(LAMMPS_NS::LAMMPS *lmp) const;    // of all local particles
+
+ private:
+  std::string style, keyword, name;
+};
+
 // Mass of a local particle: its own where particles have one, else that of its type.
 inline double mass_of(const double *rmass, const double *mass, const int *type, int i)
 { return rmass ? rmass[i] : mass[type[i]]; }

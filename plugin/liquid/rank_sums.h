@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Whole numbers put together over ranks, in whatever way these speak to each other.
+
+#ifndef MDANIM_RANK_SUMS_H
+#define MDANIM_RANK_SUMS_H
+
+namespace mdanim {
+
+// All ranks call together; of a process that is alone, this class itself, nothing changes. Whole numbers only: their sums do not
+// depend on the order of ranks.
+class RankSums {
+ public:
+  virtual ~RankSums() = default;
+  virtual bool alone() const { return true; }
+  virtual void add(int * /*values*/, int /*count*/) const {}
+  virtual void lowest(int * /*values*/, int /*count*/) const {}
+};
+
+}    // namespace mdanim
+
+#endif

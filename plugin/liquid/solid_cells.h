@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Which cells of a basin solids fill.
+
+#ifndef MDANIM_SOLID_CELLS_H
+#define MDANIM_SOLID_CELLS_H
+
+#include "liquid/occupancy.h"
+#include "liquid/rank_sums.h"
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace mdanim {
+
+// Cells at least half of which bodies fill, of all ranks together. Bodies that never move are counted apart, and seldom.
+class SolidCells {
+ public:
+  enum Code : std::uint8_t { OPEN = 0, MOVING = 1, STILL = 2 };    // as Automaton::displace takes them
+  // Adds this rank's bodies to the counts.
+  using Add = std::function<void(Occupancy &)>;
+
+  SolidCells(int nx, int ny, int nz);
+
+  // Marks what never moves; returns how many cells that changes.
+  long mark_still(const Add &add, const RankSums &ranks);
+  // Marks all else.
+  void mark_moving(const Add &add, const RankSums &ranks);
+  // Takes up codes of all cells, x fastest; what was counted is forgotten.
+  void assign(const std::vector<std::uint8_t> &codes);
+
+  const std::vector<std::uint8_t> &codes() const { return code; }
+  long moving() const { return moving_cells; }
+  double bytes() const { return static_cast<double>(code.size()) * (1.0 + 2.0 * sizeof(int)); }
+
+ private:
+  Occupancy still, mobile;
+  std::vector<std::uint8_t> code;
+  long moving_cells = 0;
+};
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Loops over particles and faces; the laws are in laws/buoyancy.h, the surface in liquid/basin.h.
+
+#include "styles/buoyancy.h"
+
+#include "engine/stopwatch.h"
+#include "laws/buoyancy.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fmt/format.h"
+#include "force.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <unordered_map>
+
+using namespace LAMMPS_NS;
+
+namespace mdanim {
+
+static constexpr double SPLASH = 1.5;    // cells below the surface within which an empty cell is taken for a ripple
+static constexpr const char *STYLE = "fix mdanim/liquid";
+
+// --- the command ---
+
+bool Buoyancy::keyword(int iarg, const char *word, const char *value)
+{
+  if (strcmp(word, "buoyancy") == 0) {
+    volume = ParticleValue(lmp, "fix mdanim/liquid: buoyancy", iarg + 1, value);
+    lifts = true;
+  } else if (strcmp(word, "drag") == 0) {
+    gamma = ParticleValue(lmp, "fix mdanim/liquid: drag", iarg + 1, value);
+    slows = true;
+  } else if (strcmp(word, "lambda") == 0) {
+    lambda_column = ParticleColumn(lmp, STYLE, word, iarg + 1, value);
+  } else if (strcmp(word, "base") == 0) {
+    base_column = ParticleColumn(lmp, STYLE, word, iarg + 1, value);
+  } else if (strcmp(word, "faces") == 0) {
+    faces_of = ParticleTable(lmp, "fix mdanim/liquid: faces", iarg + 1, value);
+  } else
+    return false;
+  return true;
+}
+
+void Buoyancy::init(const std::string &fix, Basin::Model model)
+{
+  if (slows && !lambda_column.given())
+    error->all(FLERR, "{}: drag needs lambda d_NAME, the property that fix mdanim/leapfrog reads", fix);
+  if (!slows && (lambda_column.given() || base_column.given()))
+    error->all(FLERR, "{}: lambda and base say where drag goes, but there is no drag; add one", fix);
+  if (slows && !lifts) error->all(FLERR, "{}: drag acts on the volume of particles, which buoyancy gives; add buoyancy", fix);
+  if (lifts) volume.init(lmp);
+  if (slows) gamma.init(lmp);
+  if (!faces_of.given()) return;
+  faces_width = faces_of.width(lmp);
+  if (faces_width == 0 || faces_width % 3)
+    error->all(
+        FLERR,
+        "{}: faces names i2_{}, which is no property of 3 integers a face; make it with 'fix ID all property/atom i2_{} 36'", fix,
+        faces_of.name, faces_of.name);
+  if (model == Basin::Model::PAPER) error->all(FLERR, "{}: model paper knows no pressure on faces; leave faces out", fix);
+}
+
+// --- what depends on lists ---
+
+void Buoyancy::clear_friction(int groupbit) const
+{
+  if (!slows) return;
+  double *const lambda = lambda_column.values(lmp);
+  const double *const base = base_column.given() ? base_column.values(lmp) : nullptr;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (atom->mask[i] & groupbit) lambda[i] = base ? base[i] : 0.0;
+}
+
+// Each face once, with its corners in an order that does not depend on the particle that names it.
+void Buoyancy::find_faces(const std::vector<int> &near, const std::string &fix)
+{
+  faces.clear();
+  face_of.clear();
+  face_of_first.assign(1, 0);
+  int *const *table = faces_of.rows(lmp);
+  std::unordered_map<std::uint64_t, int> known;    // by the tags across: no other face has both
+  for (const int i : near) {
+    for (int k = 0; k < faces_width && table[i][k]; k += 3) {
+      tagint tag[4] = {atom->tag[i], table[i][k], table[i][k + 1], table[i][k + 2]};
+      std::rotate(tag, std::min_element(tag, tag + 4), tag + 4);
+      const auto [place, is_new] = known.try_emplace(
+          static_cast<std::uint64_t>(tag[0]) << 32 | static_cast<std::uint32_t>(tag[2]), static_cast<int>(faces.size()));
+      face_of.push_back(place->second);
+      if (!is_new) continue;
+      Face face;
+      for (int n = 0; n < 4; ++n) {
+        face.corner[n] = atom->map(tag[n]);
+        if (face.corner[n] < 0)
+          error->one(FLERR, "{}: particle {}, a corner of a face of particle {}, is out of reach; raise comm_modify cutoff", fix,
+                     tag[n], atom->tag[i]);
+      }
+      faces.push_back(face);
+    }
+    face_of_first.push_back(static_cast<int>(face_of.size()));
+  }
+}
+
+// Faces push at the corners that ask for them and are read at all four, which are of one object and mostly all near the liquid.
+void Buoyancy::append_required_atoms(std::vector<int> &particles) const
+{
+  for (const Face &face : faces) particles.insert(particles.end(), face.corner, face.corner + 4);
+}
+
+// --- a step ---
+
+void Buoyancy::act(const Basin &basin, const std::vector<int> &near)
+{
+  wet.clear();
+  if (!lifts || near.empty()) return;
+  const Lap lap(seconds);
+  double *const *x = atom->x, *const *f = atom->f;
+  const double *volumes = volume.values(lmp), *gammas = slows ? gamma.values(lmp) : nullptr;
+  double *lambda = slows ? lambda_column.values(lmp) : nullptr;
+  const double *base = base_column.given() ? base_column.values(lmp) : nullptr;
+  for (Face &face : faces) face.push = pressure_on(face, basin);
+  const double floor = basin.shape.low.z, height = basin.shape.cell.z;
+  const double above = floor + (basin.top() + 1.0) * height;    // nothing is immersed from here up
+  // All is from here down, as far as the basin reaches; most particles of a large body need not look up the surface.
+  const bool deep = basin.model == Basin::Model::SURFACE && basin.lowest_surface() >= 1.0;
+  const double below = deep ? floor + (basin.lowest_surface() - 0.5) * height : -std::numeric_limits<double>::infinity();
+  for (std::size_t n = 0; n < near.size(); ++n) {
+    const int i = near[n];
+    const double z = x[i][2];
+    const double s = z >= above ? 0.0 : z <= below && basin.over_floor(x[i]) ? 1.0 : basin.immersed(basin.in_cells(x[i]));
+    const double own = volumes ? volumes[i] : volume.number;
+    const double own_lambda = slows ? liquid_lambda(gammas ? gammas[i] : gamma.number, rho, own, s) / force->ftm2v : 0.0;
+    if (lambda) lambda[i] = (base ? base[i] : 0.0) + own_lambda;
+    Vec3 push;
+    if (!pressed())
+      push.z = lift(rho, own, s, basin.g);
+    else
+      for (int k = face_of_first[n]; k < face_of_first[n + 1]; ++k) push += faces[face_of[k]].push;
+    if (s == 0.0 && dot(push, push) == 0.0) continue;
+    add_to(f[i], push);
+    wet.push_back({i, push, own_lambda});
+  }
+}
+
+// What hydrostatic pressure does to each corner of a face.
+Vec3 Buoyancy::pressure_on(const Face &face, const Basin &basin) const
+{
+  const double *const *x = atom->x;
+  const Vec3 a = vec3(x[face.corner[0]]), b = vec3(x[face.corner[1]]), c = vec3(x[face.corner[2]]), d = vec3(x[face.corner[3]]);
+  const Vec3 middle = 0.25 * ((a + c) + (b + d));
+  if (!basin.over_floor(&middle.x)) return {};
+  const Vec3 place = basin.in_cells(&middle.x);
+  const double depth = basin.surface_at(place) - place.z;
+  if (depth <= 0.0) return {};
+  if (depth > SPLASH) {
+    const Vec3 area = cross(c - a, d - b);
+    const double size = std::sqrt(dot(area, area));
+    if (size == 0.0 || basin.air_before(middle, (1.0 / size) * area)) return {};
+  }
+  return corner_push(rho * basin.g * depth * basin.shape.cell.z, a, b, c, d);
+}
+
+// --- the account ---
+
+// Power of the lift, and what drag takes, at the velocities of now.
+Basin::Energies Buoyancy::power() const
+{
+  Basin::Energies now;
+  for (const Wet &w : wet) {
+    const Vec3 v = vec3(atom->v[w.i]);
+    now.work += dot(w.push, v);
+    now.lost += w.lambda * dot(v, v);
+  }
+  return now;
+}
+
+// Velocities are those of whole steps here, eq. (3.10), which are the means of the half steps before and after: the trapezoidal
+// rule gives the work exactly.
+void Buoyancy::account()
+{
+  if (wet.empty() && last.work == 0.0 && last.lost == 0.0) return;
+  const Lap lap(seconds);
+  const Basin::Energies now = power();
+  sum.work += 0.5 * update->dt * (last.work + now.work);
+  sum.lost += 0.5 * update->dt * (last.lost + now.lost);
+  last = now;
+}
+
+Basin::Energies Buoyancy::energies() const
+{
+  Basin::Energies all;
+  MPI_Allreduce(&sum.work, &all.work, 1, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(&sum.lost, &all.lost, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+void Buoyancy::set_energies(const Basin::Energies &energies) { sum = comm->me == 0 ? energies : Basin::Energies{}; }
+
+}    // namespace mdanim

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// What the liquid of fix mdanim/liquid does to particles. Wcislo 1999, sec. 4.3.
+
+#ifndef MDANIM_STYLES_BUOYANCY_H
+#define MDANIM_STYLES_BUOYANCY_H
+
+#include "liquid/basin.h"
+#include "pointers.h"
+#include "styles/particle_value.h"
+
+#include <string>
+#include <vector>
+
+namespace mdanim {
+
+// Lift of particles by their volumes, or by the pressure on the outer faces of their lattices, and drag; and the account of both.
+// It is a part of fix mdanim/liquid: it acts on the particles that the fix has found near the liquid, and its account stands in
+// the liquid's state.
+class Buoyancy : protected LAMMPS_NS::Pointers {
+ public:
+  // `rho` is the liquid's density.
+  Buoyancy(LAMMPS_NS::LAMMPS *lmp, double rho) : Pointers(lmp), rho(rho) {}
+
+  // Takes a keyword of the command; false when it is none of buoyancy, drag, lambda, base and faces.
+  bool keyword(int iarg, const char *word, const char *value);
+  // Refuses keywords that do not fit together. `fix` begins messages.
+  void init(const std::string &fix, Basin::Model model);
+  bool pressed() const { return faces_of.given(); }
+
+  // New lists: leaves the particles of a group the friction that they have anyway; finds the faces of the particles near the
+  // liquid.
+  void clear_friction(int groupbit) const;
+  void find_faces(const std::vector<int> &near, const std::string &fix);
+  // Adds forces and sets friction.
+  void act(const Basin &basin, const std::vector<int> &near);
+  // The account begins at the velocities of now, and goes on by a step.
+  void begin_account() { last = power(); }
+  void account();
+  // Corners of faces, some perhaps twice.
+  void append_required_atoms(std::vector<int> &particles) const;
+
+  // Of all ranks; and all of it on the first one.
+  Basin::Energies energies() const;
+  void set_energies(const Basin::Energies &energies);
+  double bytes() const { return static_cast<double>(wet.capacity() * sizeof(Wet)); }
+  double seconds = 0.0;
+
+ private:
+  struct Wet {    // a particle that the liquid acts on in this step
+    int i;
+    Vec3 push;
+    double lambda;
+  };
+  struct Face {
+    int corner[4];    // counter-clockwise seen from outside
+    Vec3 push;        // on each corner, in this step
+  };
+
+  Vec3 pressure_on(const Face &face, const Basin &basin) const;
+  Basin::Energies power() const;
+
+  double rho;
+  bool lifts = false, slows = false;
+  ParticleValue volume, gamma;
+  ParticleColumn lambda_column, base_column;
+  ParticleTable faces_of;
+  int faces_width = 0;
+
+  std::vector<Wet> wet;
+  std::vector<Face> faces;                    // of the particles near the liquid
+  std::vector<int> face_of, face_of_first;    // those of the n-th: face_of[face_of_first[n]] …
+  Basin::Energies sum, last;                  // on this rank: energies; powers at the last step
+};
+
+}    // namespace mdanim
+
+#endif
