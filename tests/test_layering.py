@@ -2,6 +2,7 @@
 """One-way flow: a module imports only from rooms above its own."""
 
 import ast
+import re
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -101,3 +102,25 @@ def test_scripts_import_what_there_is(path):
 def test_there_are_scripts():
     """Benchmarks and the makers of pictures."""
     assert {p.name for p in SCRIPTS} >= {"accuracy.py", "scaling.py", "make.py"}
+
+
+PLUGIN = Path(__file__).parents[1] / "plugin"
+FOLDERS = ["laws", "engine", "liquid", "styles", "c_api"]
+WITH_LAMMPS = ("styles", "c_api")
+
+
+@pytest.mark.parametrize("path", sorted(PLUGIN.glob("*/*.[hc]*")), ids=lambda p: str(p.relative_to(PLUGIN)))
+def test_plugin_includes_point_up_the_list(path):
+    """A file of the plugin includes its own folder and those before it; LAMMPS and MPI are for the last two folders."""
+    allowed = FOLDERS[: FOLDERS.index(path.parent.name) + 1]
+    for quote, name in re.findall(r'^#include (["<])([^">]+)', path.read_text(encoding="utf-8"), re.MULTILINE):
+        folder, slash, _ = name.partition("/")
+        if quote == '"' and slash and folder in FOLDERS:
+            assert folder in allowed, name
+        elif path.parent.name not in WITH_LAMMPS:
+            assert quote == "<" and name not in ("mpi.h", "lammps.h"), name
+
+
+def test_the_plugin_has_its_folders():
+    """None is missing from the list, and each has files."""
+    assert {p.parent.name for p in PLUGIN.glob("*/*.h")} == set(FOLDERS)

@@ -112,7 +112,7 @@ object raft {
 control { time 0.1 s  frames 50 fps  resolution 2.5 cm  seed 5 }
 """
 ACCOUNTS = np.s_[80:96]
-"""Bytes of a liquid's state that only tell energies, StateHead in fix_mdanim_liquid.cpp."""
+"""Bytes of a liquid's state that only tell energies, StateHead in plugin/liquid/basin_state.cpp."""
 
 
 def particles(system, objects) -> np.ndarray:

@@ -36,7 +36,7 @@ MOVING = {
 }
 """Scenes whose steps are taken by passes."""
 ACCOUNTS = np.s_[80:96]
-"""Bytes of a liquid's state that only tell energies, StateHead in fix_mdanim_liquid.cpp."""
+"""Bytes of a liquid's state that only tell energies, StateHead in plugin/liquid/basin_state.cpp."""
 
 
 def on_ranks(program: Path, ranks: int, *arguments: object, timeout: float = 900.0) -> str:
