@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Who is near whom: what the vector code (pair_filter_kernel.h) is given. Plain data alone, for the reason told in pass.h.
+// Who is near whom: what the vector code (pair_filter_kernel.h) is given. Plain data alone, for the reason told in
+// kernels_of_set.cpp.
 
 #ifndef MDANIM_PAIR_FILTER_H
 #define MDANIM_PAIR_FILTER_H
@@ -33,8 +34,6 @@ struct PairFilter {
   // Those of places `from` to `to` - 1 that are less than sqrt(range2) away from `at`, ascending; the same.
   int (*within)(const double *const *place, int from, int to, const double *at, double range2, int *found);
 };
-
-extern const PairFilter pair_filter_common, pair_filter_avx2;
 
 }    // namespace mdanim
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// One step of all particles, block by block: what the vector code (pass_kernel.h) is given. Plain data alone: this header is also
-// compiled for processors that not everybody has, and nothing inline may come from there into the rest of the program.
+// One step of all particles, block by block: what the vector code (pass_kernel.h) is given. Plain data alone, for the reason told
+// in kernels_of_set.cpp.
 
 #ifndef MDANIM_PASS_H
 #define MDANIM_PASS_H
 
-#include "engine/pair_filter.h"
+#include "laws/dashpot_work.h"
 
 namespace mdanim {
 
@@ -32,20 +32,15 @@ struct Block {
 enum class Friction { NONE, IMPLICIT, EXPONENTIAL };
 
 // A row of Pass::motion, one number for each lane.
-enum Motion { MASS, KICK, DT, FOREIGN_LANE, OWNED_LANE, STAY, SHARE, PUSH, WEIGHT, PHI, MOTIONS };
+enum Motion { MASS, KICK, DT, FOREIGN_LANE, OWNED_LANE, STAY, SHARE, PUSH, BRAKED_MASS, PHI, MOTIONS };
 // MASS what gravity pulls at; KICK dt/2m; DT the time step, 0 for what does not move; FOREIGN_LANE 1 where a lane is not the
 // block's own; OWNED_LANE 1 for a particle of this rank. With friction also, see leapfrog.h: STAY 1 - phi or e; SHARE 1 / (1 +
-// phi); PUSH g dt/2m; WEIGHT m/2, 0 where there is none; PHI.
+// phi); PUSH g dt/2m; BRAKED_MASS m, 0 where there is none; PHI.
 
 // A row of Pass::trace: a box, see boxes.h, and the largest v^2 with its sign changed.
 enum Trace { FASTEST = 6, TRACE };
 
-// F is the force of dashpots, dv^n = v^{n+1/2} - v^{n-1/2}; loss.h tells what these sums over particles are for.
-struct DashpotSums {
-  double work;     // F^n . (v^{n-1/2} + v^{n+1/2})
-  double bend;     // F^n . dv^{n-1}
-  double ahead;    // F^{n-1} . dv^n
-};
+using DashpotSums = DashpotWork<double>;    // over particles
 
 struct Pass {
   const Block *block;
@@ -74,19 +69,6 @@ struct Pass {
   DashpotSums dashpots;             // but for what is held back
   double bend;                      // dt v^{n+1/2} . F^n of what has moved
 };
-
-// The same bits from each of them.
-struct Width {
-  const char *name;
-  int lanes;
-  void (*pass)(Pass &);
-  bool (*runs_here)();
-  const PairFilter *pair_filter;
-};
-
-void pass_common(Pass &);
-void pass_avx2(Pass &);
-void pass_avx512(Pass &);
 
 }    // namespace mdanim
 

@@ -1,52 +1,69 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The pass over all blocks (pass.h), for vectors of LANES doubles; compiled once for each kind of processor (pass_*.cpp).
+// The pass over all blocks (pass.h), for vectors of MDANIM_LANES doubles.
 //
-// Springs are evaluated once. Blocks come in ascending order and in each of them offsets in descending order, so that whoever
-// receives does so from its lower partners in ascending order, and a block's own sum takes its upper ones in descending order:
-// the order of bond_mdanim_harmonic.cpp, hence its bits. Lanes without a spring have push = pull = 0 and add nothing: F = 0, and
-// a sum that starts at +0 is never -0. Positions of a block can move on at once, for all that is still to come reads its own and
-// upper ones.
+// Springs are evaluated once. Blocks come in ascending order and in each of them offsets in descending order, so that a particle
+// receives from its lower partners in ascending order, and a block's own sum takes its upper ones in descending order: the order
+// of bond_mdanim_harmonic.cpp, hence its bits, as the laws are the same text. Lanes without a spring have push = pull = 0 and add
+// nothing as long as positions are finite: F = 0, and a sum that starts at +0 is never -0. Positions of a block can move on at
+// once, for all that is still to come reads its own and upper ones.
+
+#ifndef MDANIM_PASS_KERNEL_H
+#define MDANIM_PASS_KERNEL_H
 
 #include "engine/pass.h"
 #include "engine/vectors.h"
+#include "laws/leapfrog.h"
 #include "laws/spring.h"
 
 namespace mdanim {
 namespace {
 
-MDANIM_INLINE Vector largest(Vector a, Vector b) { return a > b ? a : b; }
+constexpr int LANES = MDANIM_LANES;
+typedef double Vector __attribute__((vector_size(8 * LANES)));
+using Vector3 = Vec<Vector>;
 
-MDANIM_INLINE Vector dot(const Vector *a, const Vector *b) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
+MDANIM_ALWAYS_INLINE Vector load(const double *from) { return load<Vector>(from); }
 
-// What friction takes in a half step from va to vb: `loss` in leapfrog.h; `lag` is h, w and their shares there, and phi 0 without
-// it.
-MDANIM_INLINE Vector loss(const Vector *va, const Vector *vb, const Vector *push, const Vector *lag, Vector phi, Vector weight)
+MDANIM_ALWAYS_INLINE Vector3 load(const double *const *from, long i) { return load<Vector>(from, i); }
+
+// Components of a block's own numbers, LANES of each.
+MDANIM_ALWAYS_INLINE Vector3 load_own(const double *from) { return {load(from), load(from + LANES), load(from + 2 * LANES)}; }
+
+MDANIM_ALWAYS_INLINE void store_own(double *to, const Vector3 &value)
 {
-  Vector sum[3], rest[3];
-  for (int d = 0; d < 3; ++d) {
-    sum[d] = va[d] + vb[d];
-    rest[d] = push[d] - (vb[d] - va[d]);
-  }
-  return weight * (dot(sum, rest) + 2.0 * (phi * dot(push, lag)));
+  store(to, value.x);
+  store(to + LANES, value.y);
+  store(to + 2 * LANES, value.z);
+}
+
+MDANIM_ALWAYS_INLINE Vector largest(Vector a, Vector b) { return a > b ? a : b; }
+
+// Adds lanes in the order of particles, whatever the width.
+MDANIM_ALWAYS_INLINE void add_lanes(double &sum, const Vector &lanes)
+{
+  double each[LANES];
+  store(each, lanes);
+  for (int lane = 0; lane < LANES; ++lane) sum += each[lane];
 }
 
 // Largest and smallest coordinates of one object, as they come.
 struct Bounds {
   Vector low[3], high[3];
 
-  MDANIM_INLINE void open()
+  MDANIM_ALWAYS_INLINE void open()
   {
     for (Vector &b : low) b = Vector{} + __DBL_MAX__;
     for (Vector &b : high) b = Vector{} - __DBL_MAX__;
   }
-  MDANIM_INLINE void include(const Vector *x)
+  MDANIM_ALWAYS_INLINE void include(const Vector3 &x)
   {
+    const Vector at[] = {x.x, x.y, x.z};
     for (int d = 0; d < 3; ++d) {
-      low[d] = x[d] < low[d] ? x[d] : low[d];
-      high[d] = x[d] > high[d] ? x[d] : high[d];
+      low[d] = at[d] < low[d] ? at[d] : low[d];
+      high[d] = at[d] > high[d] ? at[d] : high[d];
     }
   }
-  MDANIM_INLINE void close(double *box) const    // of boxes.h
+  MDANIM_ALWAYS_INLINE void close(double *box) const    // of boxes.h
   {
     for (int d = 0; d < 3; ++d)
       for (int lane = 0; lane < LANES; ++lane) {
@@ -65,7 +82,7 @@ struct Tally {
   Vector fastest_of_object{};
   int object = -1;    // whose box and speed these are
 
-  MDANIM_INLINE void turn_to(int next, const Pass &pass)
+  MDANIM_ALWAYS_INLINE void turn_to(int next, const Pass &pass)
   {
     if (object >= 0) {
       double *const row = pass.trace + TRACE * object;
@@ -82,63 +99,40 @@ struct Tally {
 
 // Springs of a block, each once, and the dashpots beside them; adds up what its own particles feel of them and of gravity, and
 // behind that what they feel of dashpots alone.
-template <bool DAMPED> MDANIM_INLINE void feel(const Pass &pass, const Block &block, unsigned &e, double *total)
+template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel(const Pass &pass, const Block &block, unsigned &e, double *total)
 {
-  constexpr int LAW = DAMPED ? 3 : 2;
-  double *const X = pass.x[0], *const Y = pass.x[1], *const Z = pass.x[2];
-  double *const FX = pass.f[0], *const FY = pass.f[1], *const FZ = pass.f[2];
+  constexpr int COEFFS = DAMPED ? 3 : 2;
+  double *const x[] = {pass.x[0], pass.x[1], pass.x[2]}, *const f[] = {pass.f[0], pass.f[1], pass.f[2]};
   const Entry *const entry = pass.entry;
-  const double *const law = DAMPED ? pass.damped_law : pass.law;
+  const double *const coeffs = DAMPED ? pass.damped_law : pass.law;
   const int i = block.start;
-  const Vector x = load(X + i), y = load(Y + i), z = load(Z + i);
-  Vector upper_x{}, upper_y{}, upper_z{};
-  Vector v[3], part[3] = {};
-  if (DAMPED)
-    for (int d = 0; d < 3; ++d) v[d] = load(pass.v[d] + i);
+  const Vector3 here = load(x, i);
+  Vector3 upper, v, part;
+  if (DAMPED) v = load(pass.v, i);
   for (; e < block.end; ++e) {
     const int j = i + entry[e].offset;
-    const double *const own = law + static_cast<unsigned long>(entry[e].law) * (LAW * LANES);
-    Vector dx = x - load(X + j), dy = y - load(Y + j), dz = z - load(Z + j);
-    const Vector square = ((dx * dx + dy * dy) + dz * dz) + R2_FLOOR;
-    const Vector factor = load(own) / root(square) - load(own + LANES);
-    Vector slowing[3];
+    const double *const own = coeffs + static_cast<unsigned long>(entry[e].law) * (COEFFS * LANES);
+    const Vector3 d = here - load(x, j);
+    const Vector square = floored_square(d);
+    Vector3 force = spring_factor(load(own), load(own + LANES), square) * d;
     if (DAMPED) {
-      const Vector vx = v[0] - load(pass.v[0] + j), vy = v[1] - load(pass.v[1] + j), vz = v[2] - load(pass.v[2] + j);
-      const Vector drag = -(load(own + 2 * LANES) * ((vx * dx + vy * dy) + vz * dz)) / square;
-      slowing[0] = drag * dx, slowing[1] = drag * dy, slowing[2] = drag * dz;
+      const Vector3 slowing = dashpot_factor(load(own + 2 * LANES), d, v - load(pass.v, j), square) * d;
+      force += slowing;
+      part += slowing;
+      store(pass.part, j, load(pass.part, j) - slowing);
     }
-    dx *= factor;
-    dy *= factor;
-    dz *= factor;
-    if (DAMPED) {
-      dx += slowing[0];
-      dy += slowing[1];
-      dz += slowing[2];
-      for (int d = 0; d < 3; ++d) {
-        part[d] += slowing[d];
-        store(pass.part[d] + j, load(pass.part[d] + j) - slowing[d]);
-      }
-    }
-    upper_x += dx;
-    upper_y += dy;
-    upper_z += dz;
-    store(FX + j, load(FX + j) - dx);
-    store(FY + j, load(FY + j) - dy);
-    store(FZ + j, load(FZ + j) - dz);
+    upper += force;
+    store(f, j, load(f, j) - force);
   }
   const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
   const Vector mass = load(motion + MASS * LANES), others = load(motion + FOREIGN_LANE * LANES);
-  const Vector upper[3] = {upper_x, upper_y, upper_z};
-#pragma GCC unroll 3
-  for (int d = 0; d < 3; ++d) {
-    const Vector received = load(pass.f[d] + i);
-    store(pass.f[d] + i, received * others);
-    store(total + d * LANES, (received + upper[d]) + mass * pass.gravity[d]);
-    if (DAMPED) {
-      const Vector slowed = load(pass.part[d] + i);
-      store(pass.part[d] + i, slowed * others);
-      store(total + (3 + d) * LANES, slowed + part[d]);
-    }
+  const Vector3 received = load(f, i), gravity{mass * pass.gravity[0], mass * pass.gravity[1], mass * pass.gravity[2]};
+  store(f, i, others * received);
+  store_own(total, (received + upper) + gravity);
+  if (DAMPED) {
+    const Vector3 slowed = load(pass.part, i);
+    store(pass.part, i, others * slowed);
+    store_own(total + 3 * LANES, slowed + part);
   }
 }
 
@@ -151,34 +145,35 @@ __attribute__((noinline)) void add_external_force(const Pass &pass, const Block 
 }
 
 // What dashpots do to the account of a block that has gone from `first` to `last`.
-MDANIM_INLINE void account(const Pass &pass, const Block &block, const double *motion, const double *part, const Vector *first,
-                           const Vector *last, DashpotSums &sums)
+MDANIM_ALWAYS_INLINE void account(const Pass &pass, const Block &block, const double *motion, const Vector3 &now,
+                                  const Vector3 &first, const Vector3 &last, DashpotSums &sums)
 {
   const Vector others = load(motion + FOREIGN_LANE * LANES), counts = load(motion + OWNED_LANE * LANES);
-  Vector work{}, bend{}, ahead{};
-  for (int d = 0; d < 3; ++d) {
-    double *const f = pass.last[d] + block.start, *const v = pass.seen[d] + block.start;
-    const Vector now = load(part + d * LANES), before = load(f), seen = load(v);
-    work += now * (first[d] + last[d]);
-    bend += now * (first[d] - seen);
-    ahead += before * (last[d] - first[d]);
-    store(f, others > 0.0 ? before : now);
-    store(v, others > 0.0 ? seen : first[d]);
-  }
-  double one[LANES], other[LANES], third[LANES];
-  store(one, counts * work);
-  store(other, counts * bend);
-  store(third, counts * ahead);
-  for (int lane = 0; lane < LANES; ++lane) {    // in the order of particles, whatever the width
-    sums.work += one[lane];
-    sums.bend += other[lane];
-    sums.ahead += third[lane];
-  }
+  const auto keep = [&](const Vector &theirs, const Vector &own) { return others > 0.0 ? theirs : own; };
+  const Vector3 before = load(pass.last, block.start), seen = load(pass.seen, block.start);
+  const DashpotWork<Vector> terms = dashpot_work(now, before, seen, first, last);
+  store(pass.last, block.start, Vector3{keep(before.x, now.x), keep(before.y, now.y), keep(before.z, now.z)});
+  store(pass.seen, block.start, Vector3{keep(seen.x, first.x), keep(seen.y, first.y), keep(seen.z, first.z)});
+  add_lanes(sums.work, counts * terms.work);
+  add_lanes(sums.bend, counts * terms.bend);
+  add_lanes(sums.ahead, counts * terms.ahead);
+}
+
+// The law of leapfrog.h that a row of Pass::motion tells.
+template <Friction FRICTION> MDANIM_ALWAYS_INLINE auto half_steps(const double *motion)
+{
+  if constexpr (FRICTION == Friction::IMPLICIT)
+    return Implicit<Vector>{load(motion + PHI * LANES), load(motion + KICK * LANES), load(motion + STAY * LANES),
+                            load(motion + SHARE * LANES)};
+  else if constexpr (FRICTION == Friction::EXPONENTIAL)
+    return Exponential<Vector>{load(motion + STAY * LANES), load(motion + PUSH * LANES), load(motion + KICK * LANES)};
+  else
+    return Frictionless<Vector>{load(motion + KICK * LANES)};
 }
 
 // The second half of a step and the first of the next.
 template <Friction FRICTION, bool TRACED, bool DAMPED>
-MDANIM_INLINE void move(const Pass &pass, const Block &block, const double *total, Tally &tally)
+MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const double *total, Tally &tally)
 {
   const int i = block.start;
   if (block.held_back) {
@@ -190,54 +185,28 @@ MDANIM_INLINE void move(const Pass &pass, const Block &block, const double *tota
     return;
   }
   const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
-  const Vector kick = load(motion + KICK * LANES), dt = load(motion + DT * LANES);
-  Vector f[3], first[3], middle[3], last[3], place[3], square{};
-#pragma GCC unroll 3
-  for (int d = 0; d < 3; ++d) {
-    f[d] = load(total + d * LANES);
-    const Vector push = FRICTION == Friction::EXPONENTIAL ? load(motion + PUSH * LANES) * f[d] : kick * f[d];
-    first[d] = load(pass.v[d] + i);
-    if (FRICTION == Friction::NONE) {
-      middle[d] = first[d] + push;
-      last[d] = middle[d] + push;
-    } else {
-      const Vector stay = load(motion + STAY * LANES);
-      middle[d] = FRICTION == Friction::IMPLICIT ? load(motion + SHARE * LANES) * (first[d] + push) : stay * first[d] + push;
-      last[d] = stay * middle[d] + push;
-    }
-    store(pass.v[d] + i, last[d]);
-    place[d] = load(pass.x[d] + i) + dt * last[d];
-    store(pass.x[d] + i, place[d]);
-    square += last[d] * last[d];
-  }
+  const Vector dt = load(motion + DT * LANES);
+  const auto law = half_steps<FRICTION>(motion);
+  const Vector3 f = load_own(total), first = load(pass.v, i);
+  const Vector3 middle = law.final_half(first, f), last = law.first_half(middle, f);
+  Vector3 place = load(pass.x, i) + dt * last;
+  store(pass.v, i, last);
+  store(pass.x, i, place);
+  Vector square = dot(last, last);
   tally.squares += square;
-  if (pass.bends) {
-    double bend[LANES];
-    store(bend, dt * dot(last, f));
-    for (int lane = 0; lane < LANES; ++lane) tally.bend += bend[lane];
-  }
-  if (DAMPED && block.damped) account(pass, block, motion, total + 3 * LANES, first, last, tally.dashpots);
-  if (FRICTION != Friction::NONE) {
-    const Vector weight = load(motion + WEIGHT * LANES), phi = load(motion + PHI * LANES);
-    Vector push[3], late[3], early[3];
-    for (int d = 0; d < 3; ++d) {
-      push[d] = kick * f[d];
-      late[d] = 0.5 * middle[d] - (2.0 / 3.0) * first[d];
-      early[d] = (2.0 / 3.0) * last[d] - 0.5 * middle[d];
-    }
-    double one[LANES], other[LANES];    // nothing in lanes of others
-    store(one, loss(first, middle, push, late, phi, weight));
-    store(other, loss(middle, last, push, early, phi, weight));
-    for (int lane = 0; lane < LANES; ++lane) {    // in the order of particles, as the leap-frog itself
-      tally.final_loss += one[lane];
-      tally.first_loss += other[lane];
-    }
+  if (pass.bends) add_lanes(tally.bend, dt * dot(last, f));
+  if (DAMPED && block.damped) account(pass, block, motion, load_own(total + 3 * LANES), first, last, tally.dashpots);
+  if constexpr (FRICTION != Friction::NONE) {    // 0 in lanes of others
+    const Vector mass = load(motion + BRAKED_MASS * LANES);
+    add_lanes(tally.final_loss, law.loss(first, middle, f, mass, false));
+    add_lanes(tally.first_loss, law.loss(middle, last, f, mass, true));
   }
   if (TRACED) {
     if (block.object != tally.object) tally.turn_to(block.object, pass);
     if (block.lanes < LANES) {    // lanes of others go where the first one is, and rest
       const Vector others = load(motion + FOREIGN_LANE * LANES);
-      for (int d = 0; d < 3; ++d) place[d] = others > 0.0 ? Vector{} + place[d][0] : place[d];
+      const auto at_first = [&](const Vector &a) { return others > 0.0 ? Vector{} + a[0] : a; };
+      place = {at_first(place.x), at_first(place.y), at_first(place.z)};
       square = others > 0.0 ? Vector{} : square;
     }
     if (pass.looks) tally.box.include(place);
@@ -248,7 +217,7 @@ MDANIM_INLINE void move(const Pass &pass, const Block &block, const double *tota
 }
 
 // A block moves while the next one's springs keep the divider busy: nothing then waits for its forces.
-template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_INLINE void go(Pass &pass)
+template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_ALWAYS_INLINE void go(Pass &pass)
 {
   double total[2][(DAMPED ? 6 : 3) * LANES];
   Tally tally;
@@ -276,7 +245,7 @@ template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_INLINE void go(Pas
   pass.dashpots = tally.dashpots;
 }
 
-template <Friction FRICTION, bool TRACED> MDANIM_INLINE void with_or_without_dashpots(Pass &pass)
+template <Friction FRICTION, bool TRACED> MDANIM_ALWAYS_INLINE void with_or_without_dashpots(Pass &pass)
 {
   if (pass.damped_law)
     go<FRICTION, TRACED, true>(pass);
@@ -284,7 +253,7 @@ template <Friction FRICTION, bool TRACED> MDANIM_INLINE void with_or_without_das
     go<FRICTION, TRACED, false>(pass);
 }
 
-template <Friction FRICTION> MDANIM_INLINE void with_or_without_trace(Pass &pass)
+template <Friction FRICTION> MDANIM_ALWAYS_INLINE void with_or_without_trace(Pass &pass)
 {
   if (pass.trace)
     with_or_without_dashpots<FRICTION, true>(pass);
@@ -292,7 +261,7 @@ template <Friction FRICTION> MDANIM_INLINE void with_or_without_trace(Pass &pass
     with_or_without_dashpots<FRICTION, false>(pass);
 }
 
-MDANIM_INLINE void whole_pass(Pass &pass)
+void whole_pass(Pass &pass)
 {
   switch (pass.friction) {
     case Friction::NONE:
@@ -309,3 +278,5 @@ MDANIM_INLINE void whole_pass(Pass &pass)
 
 }    // namespace
 }    // namespace mdanim
+
+#endif

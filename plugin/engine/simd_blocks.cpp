@@ -82,9 +82,9 @@ std::vector<int> SimdBlocks::lengths(const HalfBonds &bonds, const int *object) 
   return best;
 }
 
-void SimdBlocks::start(const Width &width)
+void SimdBlocks::start(int lanes_of_blocks)
 {
-  lanes = width.lanes;
+  lanes = lanes_of_blocks;
   laws.start(2 * lanes);
   damped_laws.start(3 * lanes);
   usual_laws = 0;
@@ -219,15 +219,16 @@ void SimdBlocks::set_row(const Mover &mover, Friction friction, int lane, double
   at(DT) = mover.dt;
   at(STAY) = at(SHARE) = 1.0;
   at(PUSH) = mover.kick;
-  at(WEIGHT) = mover.phi == 0.0 ? 0.0 : 0.5 * mover.mass;
+  at(BRAKED_MASS) = mover.phi == 0.0 ? 0.0 : mover.mass;
   if (friction == Friction::IMPLICIT) {
-    at(STAY) = 1.0 - mover.phi;
-    at(SHARE) = 1.0 / (1.0 + mover.phi);
-    at(PHI) = mover.phi;
+    const auto law = Implicit<double>::of(mover.phi, mover.kick);
+    at(STAY) = law.stay;
+    at(SHARE) = law.share;
+    at(PHI) = law.phi;
   } else if (friction == Friction::EXPONENTIAL) {
-    const Exponential exact(mover.phi, mover.kick);
-    at(STAY) = exact.e;
-    at(PUSH) = exact.g * exact.kick;
+    const auto law = Exponential<double>::of(mover.phi, mover.kick);
+    at(STAY) = law.e;
+    at(PUSH) = law.push;
   }
 }
 
@@ -374,21 +375,16 @@ void SimdBlocks::count_held_back(const double *const *from_v, DashpotSums &sums)
 {
   for (const int i : outside) {
     if (!all[home[i]].damped) continue;
-    const double *after = from_v[at(i)];
-    double work[3], bend[3], ahead[3];
+    const auto of = [i](const double *const *a) { return Vec3{a[0][i], a[1][i], a[2][i]}; };
+    const auto terms = dashpot_work(of(part), of(last), of(seen), of(v), vec3(from_v[at(i)]));
+    sums.work += terms.work;
+    sums.bend += terms.bend;
+    sums.ahead += terms.ahead;
     for (int d = 0; d < 3; ++d) {
-      const double now = part[d][i], before = v[d][i];
-      work[d] = now * (before + after[d]);
-      bend[d] = now * (before - seen[d][i]);
-      ahead[d] = last[d][i] * (after[d] - before);
-      last[d][i] = now;
-      seen[d][i] = before;
+      last[d][i] = part[d][i];
+      seen[d][i] = v[d][i];
       part[d][i] = 0.0;
     }
-    const auto sum = [](const double *a) { return (a[0] + a[1]) + a[2]; };
-    sums.work += sum(work);
-    sums.bend += sum(bend);
-    sums.ahead += sum(ahead);
   }
 }
 
@@ -464,40 +460,6 @@ std::size_t SimdBlocks::bytes() const
          (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
              sizeof(int) +
          total.capacity() * sizeof(double);
-}
-
-// --- widths ---
-
-static bool always() { return true; }
-
-#if defined(__x86_64__)
-static bool has_avx2() { return __builtin_cpu_supports("avx2"); }
-static bool has_avx512()
-{ return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"); }
-#endif
-
-static constexpr Width WIDTHS[] = {
-#if defined(__x86_64__)
-    {"avx512", 8, pass_avx512, has_avx512, &pair_filter_avx2},
-    {"avx2", 4, pass_avx2, has_avx2, &pair_filter_avx2},
-#endif
-    {"common", 4, pass_common, always, &pair_filter_common},
-};
-
-// The divider gives as many numbers a cycle to wide vectors as to narrow ones, and of wide ones more lanes are idle. Dashpots are
-// more to do besides.
-const Width *best_width(bool damped)
-{
-  constexpr int NARROW = 4;
-  return std::find_if(std::begin(WIDTHS), std::end(WIDTHS),
-                      [damped](const Width &w) { return w.runs_here() && (damped || w.lanes == NARROW); });
-}
-
-const Width *width_of(const char *name)
-{
-  const auto found =
-      std::find_if(std::begin(WIDTHS), std::end(WIDTHS), [name](const Width &w) { return std::strcmp(w.name, name) == 0; });
-  return found != std::end(WIDTHS) && found->runs_here() ? found : nullptr;
 }
 
 }    // namespace mdanim

@@ -60,8 +60,8 @@ struct LaneUse {
 
 class SimdBlocks {
  public:
-  // Forget all cuts: from now on they are for this width.
-  void start(const Width &width);
+  // Forget all cuts: from now on they are for blocks of so many lanes.
+  void start(int lanes);
   // Cut particles into blocks so that the fewest vectors of forces are to be computed. A block is of one object.
   Cut cut(const HalfBonds &bonds, const int *object);
   // Blocks of all cuts, one after the other; there may be none. They are to be laid out before anything else.
@@ -173,10 +173,6 @@ template <class Tell> void SimdBlocks::set_motion(Friction friction, Tell mover)
   slowed.clear();
   for (const Block &block : all) slowed.push_back(slow[block.start]);
 }
-
-// The processor's best for springs with or without dashpots, or that of a name; null when it is unknown or does not run here.
-const Width *best_width(bool damped);
-const Width *width_of(const char *name);
 
 }    // namespace mdanim
 

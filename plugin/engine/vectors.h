@@ -1,29 +1,33 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Vectors of LANES doubles, for code that is compiled once for each kind of processor: whoever includes this says how many lanes.
+// Vectors of doubles in memory, for the kernels (kernels_of_set.cpp).
 
 #ifndef MDANIM_VECTORS_H
 #define MDANIM_VECTORS_H
 
+#include "laws/vec3.h"
+
 namespace mdanim {
 namespace {
 
-#define MDANIM_INLINE inline __attribute__((always_inline))
-
-typedef double Vector __attribute__((vector_size(8 * LANES)));
-
-struct __attribute__((packed, may_alias)) Unaligned {
+template <class Vector> struct __attribute__((packed, may_alias)) Unaligned {
   Vector value;
 };
 
-MDANIM_INLINE Vector load(const double *from) { return reinterpret_cast<const Unaligned *>(from)->value; }
+template <class Vector> MDANIM_ALWAYS_INLINE Vector load(const double *from)
+{ return reinterpret_cast<const Unaligned<Vector> *>(from)->value; }
 
-MDANIM_INLINE void store(double *to, Vector value) { reinterpret_cast<Unaligned *>(to)->value = value; }
+template <class Vector> MDANIM_ALWAYS_INLINE void store(double *to, const Vector &value)
+{ reinterpret_cast<Unaligned<Vector> *>(to)->value = value; }
 
-MDANIM_INLINE Vector root(Vector a)
+// Arrays of all x, all y, all z, at place i.
+template <class Vector, class Array> MDANIM_ALWAYS_INLINE Vec<Vector> load(const Array *const *from, long i)
+{ return {load<Vector>(from[0] + i), load<Vector>(from[1] + i), load<Vector>(from[2] + i)}; }
+
+template <class Vector> MDANIM_ALWAYS_INLINE void store(double *const *to, long i, const Vec<Vector> &value)
 {
-  Vector r;
-  for (int lane = 0; lane < LANES; ++lane) r[lane] = __builtin_sqrt(a[lane]);
-  return r;
+  store(to[0] + i, value.x);
+  store(to[1] + i, value.y);
+  store(to[2] + i, value.z);
 }
 
 }    // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The two half steps of a velocity under force and friction.
+// The two half steps of a velocity under force and friction, for a double or all lanes of a vector unit at once (real.h).
 // Wcislo 1999, eq. (3.3), (3.10), (3.12), (3.13); symbols as there: phi = lambda dt / 2m.
 
 #ifndef MDANIM_LEAPFROG_H
@@ -12,30 +12,33 @@
 
 namespace mdanim {
 
+// Without friction: v <- v + k F in both halves, k = dt / 2m.
+template <class Real> struct Frictionless {
+  Real kick;    // dt / 2m [velocity/force]
+
+  MDANIM_ALWAYS_INLINE Vec<Real> first_half(const Vec<Real> &v, const Vec<Real> &f) const { return v + kick * f; }
+  MDANIM_ALWAYS_INLINE Vec<Real> final_half(const Vec<Real> &v, const Vec<Real> &f) const { return v + kick * f; }
+};
+
 // Friction taken implicitly. Wcislo 1999, eq. (3.12) in two halves that meet in v^n, which is (3.10):
 //   v^n       = (v^{n-1/2} + k F) / (1 + phi),   v^{n+1/2} = (1 - phi) v^n + k F,   k = dt / 2m
-struct Implicit {
-  double phi;     // [-], eq. (3.13)
-  double kick;    // dt / 2m [velocity/force]
-  Vec3 first_half(const Vec3 &v, const Vec3 &f) const
-  {
-    const double keep = 1.0 - phi;
-    return {keep * v.x + kick * f.x, keep * v.y + kick * f.y, keep * v.z + kick * f.z};
-  }
-  Vec3 final_half(const Vec3 &v, const Vec3 &f) const
-  {
-    const double share = 1.0 / (1.0 + phi);
-    return {share * (v.x + kick * f.x), share * (v.y + kick * f.y), share * (v.z + kick * f.z)};
-  }
+template <class Real> struct Implicit {
+  Real phi, kick;      // [-], eq. (3.13); dt / 2m [velocity/force]
+  Real stay, share;    // 1 - phi, 1 / (1 + phi)
+
+  static Implicit of(double phi, double kick) { return {phi, kick, 1.0 - phi, 1.0 / (1.0 + phi)}; }
+  MDANIM_ALWAYS_INLINE Vec<Real> first_half(const Vec<Real> &v, const Vec<Real> &f) const { return stay * v + kick * f; }
+  MDANIM_ALWAYS_INLINE Vec<Real> final_half(const Vec<Real> &v, const Vec<Real> &f) const { return share * (v + kick * f); }
+
   // Energy that friction takes in the half step from va to vb. The first term is the work of F less the gain in kinetic energy,
   //   m (va + vb)/2 . (k F - (vb - va)) +- m phi k F . (2/3 h - 1/2 w),
   //   w = v^n, h = v^{n+-1/2}, + in the first half, - in the final.
   // The second is what the energy of the smooth path through the positions, which leap-frog conserves (fix_mdanim_leapfrog.cpp),
   // loses more: dt^2/6 times lambda F . G / m^2, G = F - lambda v, in a step by Euler and Maclaurin, dt^2/24 lambda v . F / m at
   // either end. Without it a vibration of frequency w would seem to lose (w dt)^2/6 less than it does.
-  double loss(const Vec3 &va, const Vec3 &vb, const Vec3 &f, double mass, bool first) const
+  MDANIM_ALWAYS_INLINE Real loss(const Vec<Real> &va, const Vec<Real> &vb, const Vec<Real> &f, const Real &mass, bool first) const
   {
-    const Vec3 push = kick * f, lag = first ? (2.0 / 3.0) * vb - 0.5 * va : 0.5 * vb - (2.0 / 3.0) * va;
+    const Vec<Real> push = kick * f, lag = first ? (2.0 / 3.0) * vb - 0.5 * va : 0.5 * vb - (2.0 / 3.0) * va;
     return mass * (0.5 * dot(va + vb, push - (vb - va)) + phi * dot(push, lag));
   }
 };
@@ -72,17 +75,20 @@ inline void exponential_decay(double phi, double &e, double &g)
 
 // Friction exact for a force that is constant over the half step: v <- e v + (1-e)/phi k F, e = exp(-phi), in
 // both halves. Same terminal velocity as `Implicit`, no change of sign at phi > 1.
-struct Exponential {
-  double e, g, kick;
-  Exponential(double phi, double kick) : kick(kick) { exponential_decay(phi, e, g); }
-  Vec3 first_half(const Vec3 &v, const Vec3 &f) const
+template <class Real> struct Exponential {
+  Real e, push, kick;    // `push` is (1-e)/phi k
+
+  static Exponential of(double phi, double kick)
   {
-    const double push = g * kick;
-    return {e * v.x + push * f.x, e * v.y + push * f.y, e * v.z + push * f.z};
+    double e, g;
+    exponential_decay(phi, e, g);
+    return {e, g * kick, kick};
   }
-  Vec3 final_half(const Vec3 &v, const Vec3 &f) const { return first_half(v, f); }
+  MDANIM_ALWAYS_INLINE Vec<Real> first_half(const Vec<Real> &v, const Vec<Real> &f) const { return e * v + push * f; }
+  MDANIM_ALWAYS_INLINE Vec<Real> final_half(const Vec<Real> &v, const Vec<Real> &f) const { return e * v + push * f; }
+
   // The work of F less the gain in kinetic energy, (va + vb)/2 . (F dt/2 - m (vb - va)): right for the velocities at any phi.
-  double loss(const Vec3 &va, const Vec3 &vb, const Vec3 &f, double mass, bool) const
+  MDANIM_ALWAYS_INLINE Real loss(const Vec<Real> &va, const Vec<Real> &vb, const Vec<Real> &f, const Real &mass, bool) const
   { return 0.5 * mass * dot(va + vb, kick * f - (vb - va)); }
 };
 

@@ -33,7 +33,7 @@ static constexpr int RESTART_VERSION = 1;
 
 static bigint versions = 0;    // of the springs of all instances
 
-BondMdanimHarmonic::BondMdanimHarmonic(LAMMPS *lmp) : Bond(lmp) {}
+BondMdanimHarmonic::BondMdanimHarmonic(LAMMPS *lmp) : Bond(lmp), kernels(widest_kernels()) {}
 
 BondMdanimHarmonic::~BondMdanimHarmonic()
 {
@@ -249,31 +249,6 @@ bool BondMdanimHarmonic::halves(HalfBonds &half) const
 
 // --- forces ---
 
-// r_ij -> F_i of n springs. The clones differ in width only: + - * / sqrt round alike on all of them.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx512f", "avx2", "default")))
-#endif
-static void spring_forces(int n, const double *__restrict push, const double *__restrict pull, double *__restrict x,
-                          double *__restrict y, double *__restrict z)
-{
-  for (int b = 0; b < n; ++b) {
-    const double factor = force_factor(push[b], pull[b], (x[b] * x[b] + y[b] * y[b]) + z[b] * z[b]);
-    x[b] *= factor;
-    y[b] *= factor;
-    z[b] *= factor;
-  }
-}
-
-// r_ij -> energies of n springs, in the place of K.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx512f", "avx2", "default")))
-#endif
-static void spring_energies(int n, const double *__restrict x, const double *__restrict y, const double *__restrict z,
-                            const double *__restrict r0, double *__restrict K)
-{
-  for (int b = 0; b < n; ++b) K[b] = mdanim::energy({K[b], r0[b], 0.0}, std::sqrt((x[b] * x[b] + y[b] * y[b]) + z[b] * z[b]));
-}
-
 // The springs of rows [begin, end), `n` in all, into `stretch`.
 void BondMdanimHarmonic::take_apart(int begin, int end, int n)
 {
@@ -307,7 +282,7 @@ void BondMdanimHarmonic::energies(int begin, int end, int n)
       stretch.K[at] = spring[link.type].K;
       stretch.r0[at++] = spring[link.type].r0;
     }
-  spring_energies(n, stretch.x.data(), stretch.y.data(), stretch.z.data(), stretch.r0.data(), stretch.K.data());
+  kernels.spring_energies(n, stretch.x.data(), stretch.y.data(), stretch.z.data(), stretch.r0.data(), stretch.K.data());
   const double share = upper_only ? 1.0 : 0.5;
   for (int at = 0; at < n; ++at) energy += share * stretch.K[at];
 }
@@ -321,7 +296,7 @@ void BondMdanimHarmonic::dashpots(int begin, int end, std::vector<Vec3> &on)
       const double c = law[link.type].c;
       if (c == 0.0) continue;
       const Vec3 d = vec3(atom->x[i]) - vec3(atom->x[j]), v = vec3(atom->v[i]) - vec3(atom->v[j]);
-      const Vec3 push = drag(c, d, v) * d;
+      const Vec3 push = dashpot_factor(c, d, v, floored_square(d)) * d;
       stretch.x[own] += push.x;
       stretch.y[own] += push.y;
       stretch.z[own] += push.z;
@@ -393,7 +368,8 @@ void BondMdanimHarmonic::compute(int eflag, int vflag)
     }
     take_apart(begin, end, springs);
     if (eflag_global) energies(begin, end, springs);
-    spring_forces(springs, stretch.push.data(), stretch.pull.data(), stretch.x.data(), stretch.y.data(), stretch.z.data());
+    kernels.spring_forces(springs, stretch.push.data(), stretch.pull.data(), stretch.x.data(), stretch.y.data(),
+                          stretch.z.data());
     if (on) dashpots(begin, end, *on);
     if (upper_only)
       sum_halves(begin, end);
@@ -428,8 +404,9 @@ void BondMdanimHarmonic::tally()
     }
     if (!vflag_either) return;
     const SpringCoeffs &own = law[type];
-    double factor = force_factor(own.push, own.pull, r2);
-    if (own.c > 0.0) factor += drag(own.c, d, vec3(atom->v[i]) - vec3(atom->v[j]));
+    const double square = floored_square(d);
+    double factor = spring_factor(own.push, own.pull, square);
+    if (own.c > 0.0) factor += dashpot_factor(own.c, d, vec3(atom->v[i]) - vec3(atom->v[j]), square);
     const double w[6] = {d.x * d.x * factor, d.y * d.y * factor, d.z * d.z * factor,
                          d.x * d.y * factor, d.x * d.z * factor, d.y * d.z * factor};
     for (int k = 0; k < 6; ++k) sums[k] += share * w[k];
@@ -450,7 +427,7 @@ double BondMdanimHarmonic::equilibrium_distance(int type) { return spring[type].
 double BondMdanimHarmonic::single(int type, double rsq, int, int, double &fforce)
 {
   const SpringCoeffs own(spring[type]);
-  fforce = force_factor(own.push, own.pull, rsq);
+  fforce = spring_factor(own.push, own.pull, rsq + R2_FLOOR);
   return mdanim::energy(spring[type], std::sqrt(rsq));
 }
 

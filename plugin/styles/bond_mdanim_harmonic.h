@@ -6,6 +6,7 @@
 #define LMP_BOND_MDANIM_HARMONIC_H
 
 #include "bond.h"
+#include "engine/kernels.h"
 #include "engine/loss.h"
 #include "engine/simd_blocks.h"
 #include "laws/spring.h"
@@ -85,6 +86,7 @@ class BondMdanimHarmonic : public Bond {
   template <class Visit> void each_spring(Visit visit) const;    // visit(i, j, type, r_ij)
   void tally();
 
+  const mdanim::Kernels &kernels;
   std::vector<mdanim::Spring> spring;       // by bond type
   std::vector<mdanim::SpringCoeffs> law;    // the same
   bool damped = false;                      // some spring has a dashpot

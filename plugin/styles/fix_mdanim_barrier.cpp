@@ -5,7 +5,7 @@
 
 #include "styles/fix_mdanim_barrier.h"
 
-#include "engine/simd_blocks.h"
+#include "engine/kernels.h"
 #include "engine/stopwatch.h"
 #include "laws/barrier.h"
 
@@ -45,7 +45,7 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
   extlist = extensive;
   global_freq = 1;
   comm_forward = 4;
-  filter = best_width(false)->pair_filter;
+  filter = &best_kernels(false).pair_filter;
 
   if (narg < 7) utils::missing_cmd_args(FLERR, "fix mdanim/barrier", error);
   boundary_bit = group_bit(3, arg[3]);

@@ -125,9 +125,9 @@ template <class Half> void FixMdanimLeapfrog::half_step(Half half, bool first)
     const int *type = atom->type;
     each([&](int i) { add_to(v[i], half_dt / mass_of(rmass, mass, type, i) * vec3(f[i])); });
   } else if (exponential) {
-    half_step_with_drag<Exponential>(half, first);
+    half_step_with_drag<Exponential<double>>(half, first);
   } else {
-    half_step_with_drag<Implicit>(half, first);
+    half_step_with_drag<Implicit<double>>(half, first);
   }
 }
 
@@ -145,7 +145,7 @@ template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Ha
       return;
     }
     const Vec3 before = vec3(v[i]), push = vec3(f[i]);
-    const Drag drag{phi, kick};
+    const Drag drag = Drag::of(phi, kick);
     const Vec3 after = half(drag, before, push);
     v[i][0] = after.x;
     v[i][1] = after.y;

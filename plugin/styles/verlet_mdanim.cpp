@@ -59,7 +59,7 @@ VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : Verlet(lmp, 0, a
   if (narg == 0) return;
   if (strcmp(arg[0], "width") != 0) error->all(FLERR, "run_style verlet/mdanim: unknown keyword {}; it knows width", arg[0]);
   if (narg != 2) error->all(FLERR, "run_style verlet/mdanim: width takes one word, common, avx2 or avx512");
-  told = width_of(arg[1]);
+  told = kernels_named(arg[1]);
   int here = told != nullptr, everywhere = 0;    // hosts may have different processors
   MPI_Allreduce(&here, &everywhere, 1, MPI_INT, MPI_MIN, world);
   if (!everywhere)
@@ -130,9 +130,9 @@ bool VerletMdanim::find_players()
   if ((force->pair && force->pair->compute_flag) || force->angle || force->dihedral || force->improper || force->kspace)
     return false;
   if (bond->refresh_coefficients()) decided_for = -1;
-  const Width *now = told ? told : best_width(bond->account() != nullptr);
-  if (now != width) cut_for = decided_for = -1;
-  width = now;
+  const Kernels *now = told ? told : &best_kernels(bond->account() != nullptr);
+  if (now != kernels) cut_for = decided_for = -1;
+  kernels = now;
   for (int n = 0; n < modify->nfix; ++n) {
     Fix *fix = modify->fix[n];
     const int mask = modify->fmask[n];
@@ -143,7 +143,7 @@ bool VerletMdanim::find_players()
       if (gravity || !early.empty() || !late.empty()) return false;    // its force is added right after the springs'
       gravity = found;
     } else if (auto *participant = dynamic_cast<PassParticipant *>(fix)) {
-      participant->set_pair_filter(*width->pair_filter);
+      participant->set_pair_filter(kernels->pair_filter);
       // Whoever comes after a late one is late himself: forces are added in the order of fixes.
       (participant->depends_on_positions_only() && late.empty() ? early : late)
           .push_back({fix, participant, (mask & FixConst::END_OF_STEP) != 0});
@@ -171,7 +171,7 @@ bool VerletMdanim::cut()
   if (cut_for != bond->version() || other_objects) {
     object.assign(atom->nlocal, 1);
     if (atom->molecule_flag) std::copy_n(atom->molecule, atom->nlocal, object.begin());
-    blocks.start(*width);
+    blocks.start(kernels->lanes);
     const Cut whole = blocks.cut(half, object.data());
     worth_it = blocks.put_together({&whole}).worth_it();
     if (worth_it) blocks.lay_out();
@@ -206,7 +206,7 @@ LaneUse VerletMdanim::cut_line(std::vector<Home> &home)
   for (const int i : line.places())
     if (i >= atom->nlocal) home.push_back(known[i].home);
   if (cut_for < 0 || laws != bond->laws() || blocks.laws_pile_up()) {
-    blocks.start(*width);
+    blocks.start(kernels->lanes);
     for (TagOrder::Piece &piece : line.pieces()) piece.is_cut = false;
     laws = bond->laws();
     cut_for = 0;
@@ -534,7 +534,7 @@ void VerletMdanim::one_pass(bool participants_see_all)
   pass.looks = leapfrog->looks();
   {
     const Lap lap(all);
-    width->pass(pass);
+    kernels->pass(pass);
   }
   const double moving = (OF_LEAPFROG + (pass.friction == Friction::NONE ? 0.0 : OF_DRAG)) * all;
   const double pulling = gravity ? OF_GRAVITY * all : 0.0;

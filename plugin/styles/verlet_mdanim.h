@@ -6,6 +6,7 @@
 #define LMP_VERLET_MDANIM_H
 
 #include "engine/boxes.h"
+#include "engine/kernels.h"
 #include "engine/pass_participant.h"
 #include "engine/simd_blocks.h"
 #include "engine/tag_order.h"
@@ -58,7 +59,7 @@ class VerletMdanim : public Verlet {
   void finish_step();
   bool rebuild_lists();
 
-  const mdanim::Width *told = nullptr, *width = nullptr;    // in the input script; what blocks are cut for
+  const mdanim::Kernels *told = nullptr, *kernels = nullptr;    // in the input script; what blocks are cut for
   mdanim::SimdBlocks blocks;
   mdanim::Pass pass = {};
   bigint cut_for = -1;        // version of the springs

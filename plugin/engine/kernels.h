@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The vector code of the engine, once for each set of instructions, and which of them this processor runs.
+
+#ifndef MDANIM_KERNELS_H
+#define MDANIM_KERNELS_H
+
+#include "engine/pair_filter.h"
+#include "engine/pass.h"
+
+namespace mdanim {
+
+// One set of instructions: the same bits from each of them. CMake compiles kernels_of_set.cpp once for each; `runs_here` must be
+// true before anything else of it is called.
+struct Kernels {
+  const char *name;
+  int lanes;    // of a block
+  bool (*runs_here)();
+  void (*pass)(Pass &);
+  PairFilter pair_filter;
+  // r_ij -> F_i of n springs.
+  void (*spring_forces)(int n, const double *push, const double *pull, double *x, double *y, double *z);
+  // r_ij -> energies of n springs, in the place of K.
+  void (*spring_energies)(int n, const double *x, const double *y, const double *z, const double *r0, double *K);
+};
+
+// This processor's best: for passes over springs with or without dashpots, and of a name; null when that is unknown or does not
+// run here.
+const Kernels &best_kernels(bool damped);
+const Kernels *kernels_named(const char *name);
+// For loops that are no passes: of the widest vectors.
+const Kernels &widest_kernels();
+
+}    // namespace mdanim
+
+#endif

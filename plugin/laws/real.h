@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// What laws compute with: a double, or a vector of doubles, one for each lane of a vector unit. Laws are templates over this
+// `Real`, so plain styles and passes over blocks compute the same operations in the same order, hence the same bits.
+
+#ifndef MDANIM_REAL_H
+#define MDANIM_REAL_H
+
+#include <type_traits>
+
+namespace mdanim {
+
+// For all that is also compiled for processors that not every host has (engine/kernels_of_set.cpp): a copy out of line could be
+// linked into the rest of the program.
+#define MDANIM_ALWAYS_INLINE inline __attribute__((always_inline))
+
+template <class Real> MDANIM_ALWAYS_INLINE Real root(Real a)
+{
+  if constexpr (std::is_same_v<Real, double>) {
+    return __builtin_sqrt(a);
+  } else {
+    for (unsigned lane = 0; lane < sizeof(Real) / sizeof(double); ++lane) a[lane] = __builtin_sqrt(a[lane]);
+    return a;
+  }
+}
+
+}    // namespace mdanim
+
+#endif
