@@ -7,7 +7,7 @@ import numpy as np
 from mdanim_lammps.model.basin import plan_grid
 from mdanim_lammps.model.model import Layer, Model, Surface
 from mdanim_lammps.model.springs import types
-from mdanim_lammps.results.trajectory import TrajectoryWriter
+from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
 from mdanim_lammps.scene import scene as records
 
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -223,7 +223,8 @@ def raw_of(grid, smooth, models=()):
 
 def write(path, scene, models, frames, grid=None):
     """Write a whole trajectory; returns its path."""
-    with TrajectoryWriter(path, scene, models, dt=0.01, steps_per_frame=10, grid=grid) as out:
+    frames = list(frames)
+    with TrajectoryWriter(path, scene, models, frames=len(frames), dt=0.01, steps_per_frame=10, grid=grid) as out:
         for frame in frames:
             out.write(*frame)
     return path

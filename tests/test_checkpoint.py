@@ -12,7 +12,7 @@ from mdanim_lammps.results.checkpoint import Checkpoint
 
 def state(liquid=None):
     x, v, f = np.random.default_rng(1).normal(size=(3, 7, 3))
-    return Checkpoint(120, 12, x, v, f, {"drag_loss": 0.1, "seconds": 3.5}, "run", liquid)
+    return Checkpoint(120, 12, x, v, f, {"drag_loss": 0.1, "seconds": 3.5}, "run", liquid=liquid)
 
 
 @pytest.mark.parametrize("liquid", [None, np.repeat(np.arange(256, dtype=np.uint8), 400), np.zeros(0, np.uint8)])
@@ -43,14 +43,14 @@ def test_version_1_is_refused(tmp_path, monkeypatch):
     with monkeypatch.context() as patch:
         patch.setattr(checkpoint, "VERSION", 1)
         state().write(tmp_path / "checkpoint")
-    with pytest.raises(OutputError, match="is of version 1, this program writes 2; run the scene again with --force"):
+    with pytest.raises(OutputError, match="is of version 1, this program writes 3; run the scene again with --force"):
         Checkpoint.read(tmp_path / "checkpoint")
 
 
 def test_damaged_liquid_is_refused(tmp_path):
     """Bytes that do not unpack are named with the file."""
     with open(tmp_path / "checkpoint", "wb") as file:
-        fields = dict(version=2, run="r", step=1, frame=1, x=1, v=1, f=1, keys=[], values=[])
+        fields = dict(version=3, run="r", step=1, frame=1, ledger=0, x=1, v=1, f=1, keys=[], values=[])
         np.savez(file, **fields, liquid=np.ones(9, np.uint8))
     with pytest.raises(OutputError, match="checkpoint cannot be read"):
         Checkpoint.read(tmp_path / "checkpoint")

@@ -54,10 +54,10 @@ def test_wide_and_tall_scenes_fit(tmp_path, size):
     with moving(tmp_path, models, frames) as t:
         view = automatic_view(action_of(t), 16 / 9)
         for i in range(len(t)):
-            seen, depth = project(view, t.catalogue.skin.vertices(t.position(i)), 16 / 9)
+            seen, depth = project(view, t.metadata.skin.vertices(t.position(i)), 16 / 9)
             assert (depth > 0).all() and np.abs(seen).max() < 1.0
         largest = max(
-            np.ptp(project(view, t.catalogue.skin.vertices(t.position(i)), 16 / 9)[0], axis=0).max() for i in range(len(t))
+            np.ptp(project(view, t.metadata.skin.vertices(t.position(i)), 16 / 9)[0], axis=0).max() for i in range(len(t))
         )
         assert largest > 0.6  # of 2: the action fills the picture
 

@@ -15,7 +15,9 @@ import pytest
 from mdanim_lammps.errors import OutputError, SetupError, UsageError
 from mdanim_lammps.picture import movie
 from mdanim_lammps.picture.movie import movie_frames, render_movie, render_still
-from mdanim_lammps.results.trajectory import Trajectory, TrajectoryWriter
+from mdanim_lammps.results.trajectory import Trajectory
+from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
+from mdanim_lammps.scene.scene import Render
 from mdanim_lammps.scene.scene import Camera, Render
 from picture_samples import falling, slab_scene, write
 
@@ -189,6 +191,6 @@ def test_slow_movies_have_a_rate(fps):
 def test_no_frames_no_movie(tmp_path):
     """A run that ended before its first frame has nothing to show."""
     scene, models = slab_scene()
-    TrajectoryWriter(tmp_path / "trajectory.h5", scene, models, dt=0.01, steps_per_frame=10).close(finished=False)
+    TrajectoryWriter(tmp_path / "trajectory.h5", scene, models, frames=1, dt=0.01, steps_per_frame=10).close(finished=False)
     with pytest.raises(OutputError, match="holds no frame"):
         render_movie(tmp_path, SMALL, tmp_path / "movie.mp4")

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from mdanim_lammps.picture.surfaces import shaded_mesh
-from mdanim_lammps.results.catalogue import catalogue_of
+from mdanim_lammps.results.trajectory_metadata import metadata_of
 from mdanim_lammps.scene import scene as records
 from picture_samples import ball, box, slab_scene, solid
 
@@ -15,7 +15,7 @@ def prepared(*models, pixel=None):
     """Mesh and positions of models at rest; a pixel may cover ``pixel`` [m] of each."""
     scene = records.Scene("s", records.Control(1.0), solids=tuple(solid(m, (0, 0, 0)) for m in models))
     position = np.concatenate([m.position for m in models])
-    return shaded_mesh(catalogue_of(scene, models), position, pixel and np.full(len(models), pixel)), position
+    return shaded_mesh(metadata_of(scene, models), position, pixel and np.full(len(models), pixel)), position
 
 
 def test_box_keeps_its_edges():

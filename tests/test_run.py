@@ -220,6 +220,7 @@ def test_disk_full_is_told(fall, tmp_path):
         pytest.skip("no /dev/full here")
     from mdanim_lammps.results.files import disk_errors
 
+    (tmp_path / "checkpoint").touch()
     with pytest.raises(OutputError, match="make room and resume"), disk_errors(tmp_path / "x"):
         with open("/dev/full", "w") as file:
             file.write("x" * 100000)

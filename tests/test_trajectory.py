@@ -16,7 +16,10 @@ import pytest
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.model.basin import Grid
 from mdanim_lammps.model.model import Layer
-from mdanim_lammps.results.trajectory import Trajectory, TrajectoryWriter, part_of, trajectory_bytes
+from mdanim_lammps.results import trajectory_writer
+from mdanim_lammps.results.trajectory import Trajectory
+from mdanim_lammps.results.trajectory_file import datasets_of_frames, part_of, trajectory_bytes
+from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
 from mdanim_lammps.scene.scene import Save, Walls
 from picture_samples import ball, dam, falling, flat, pool_scene, raw_of, slab_scene, splash, wet_frames, write
 
@@ -48,17 +51,22 @@ def test_frames_come_back(slab, tmp_path, single):
 
 @pytest.mark.parametrize("single", [False, True])
 def test_rows_are_as_h5py_puts_them(slab, tmp_path, monkeypatch, single):
-    """The file is the same to the byte when h5py's own resize and assignment put the rows."""
+    """All tables are the same to the byte when h5py's own assignment puts the rows."""
     scene, models, frames = slab
     scene = stored(scene, single=single)
-    ours = write(tmp_path / "ours.h5", scene, models, frames).read_bytes()
+    ours = write(tmp_path / "ours.h5", scene, models, frames)
 
-    def h5py_puts(dataset, count, row):
-        dataset.resize(count + 1, axis=0)
-        dataset[count] = row
+    def h5py_puts(writer, name, frame, value):
+        rows = value.reshape(-1, *writer._tables[name].shape)
+        with h5py.File(writer._partial, "r+") as file:
+            datasets_of_frames(file)[name][frame : frame + len(rows)] = rows
 
-    monkeypatch.setattr("mdanim_lammps.results.trajectory._append", h5py_puts)
-    assert write(tmp_path / "h5py.h5", scene, models, frames).read_bytes() == ours
+    monkeypatch.setattr(TrajectoryWriter, "_put", h5py_puts)
+    theirs = write(tmp_path / "h5py.h5", scene, models, frames)
+    with h5py.File(ours) as a, h5py.File(theirs) as b:
+        tables = datasets_of_frames(a), datasets_of_frames(b)
+        assert len(tables[0]) == 7
+        assert [t[:].tobytes() for t in tables[0].values()] == [t[:].tobytes() for t in tables[1].values()]
 
 
 def test_object_is_its_own_particles(slab, tmp_path):
@@ -97,10 +105,10 @@ def test_boundary_only_keeps_surface_and_centre(tmp_path):
     part = Trajectory(write(tmp_path / "boundary.h5", stored(scene, save=Save.BOUNDARY), models, frames))
     with whole, part:
         assert len(part.position(0)) < 0.8 * len(whole.position(0))
-        assert part.catalogue.save is Save.BOUNDARY
+        assert part.metadata.save is Save.BOUNDARY
         boundary = np.concatenate([m.layer for m in models]) >= Layer.BOUNDARY
-        assert set(np.flatnonzero(boundary) + 1) <= set(part.catalogue.id)
-        np.testing.assert_array_equal(part.position(2), whole.position(2)[part.catalogue.id - 1])
+        assert set(np.flatnonzero(boundary) + 1) <= set(part.metadata.id)
+        np.testing.assert_array_equal(part.position(2), whole.position(2)[part.metadata.id - 1])
         np.testing.assert_array_equal(part.centers, whole.centers)
         np.testing.assert_allclose(part.surface(2).points, whole.surface(2).points, rtol=0, atol=1e-15)
 
@@ -114,10 +122,10 @@ def test_file_alone_is_enough(slab, tmp_path):
         solids=(replace(scene.solids[0], color="#102030"), *scene.solids[1:]),
     )
     text = 'title "A cube — and a ball"\n' * 3000
-    with TrajectoryWriter(tmp_path / "t.h5", scene, models, dt=0.01, steps_per_frame=10, scene_text=text) as out:
+    with TrajectoryWriter(tmp_path / "t.h5", scene, models, frames=1, dt=0.01, steps_per_frame=10, scene_text=text) as out:
         out.write(0, 0.0, *falling_frame(models))
     with Trajectory(tmp_path / "t.h5") as t:
-        c = t.catalogue
+        c = t.metadata
         assert (c.title, c.scene_text, c.ground, c.walls) == (scene.title, text, 0.0, ((-1, -2, 0), (1, 2, 3)))
         assert c.colors == ("#102030", "", "") and c.still.tolist() == [True, False, False]
         assert (t.dt, t.steps_per_frame) == (0.01, 10)
@@ -137,10 +145,10 @@ def test_equal_surfaces_are_stored_once(tmp_path):
     scene, _ = slab_scene()
     solids = tuple(replace(scene.solids[0], name=m.name) for m in models)
     path = tmp_path / "crowd.h5"
-    with TrajectoryWriter(path, replace(scene, solids=solids), models, dt=1.0, steps_per_frame=1) as out:
+    with TrajectoryWriter(path, replace(scene, solids=solids), models, frames=1, dt=1.0, steps_per_frame=1) as out:
         out.write(0, 0.0, np.concatenate([m.position for m in models]), np.concatenate([m.velocity for m in models]))
     with Trajectory(path) as t:
-        assert len(t.catalogue.surfaces) == 1
+        assert len(t.metadata.surfaces) == 1
         mesh = t.surface(0)
         expected = np.concatenate([m.surface.vertices(m.position) for m in models])
         np.testing.assert_allclose(mesh.points, expected, rtol=0, atol=1e-6)  # pyvista may keep float32
@@ -180,7 +188,7 @@ def test_name_appears_when_whole(slab, tmp_path):
     """Nothing is called ``trajectory.h5`` before it is finished; an unfinished one is still readable."""
     scene, models, frames = slab
     path = tmp_path / "trajectory.h5"
-    writer = TrajectoryWriter(path, scene, models, dt=0.01, steps_per_frame=10)
+    writer = TrajectoryWriter(path, scene, models, frames=FRAMES, dt=0.01, steps_per_frame=10)
     writer.write(*frames[0])
     writer.flush()
     writer.write(*frames[1])
@@ -192,17 +200,21 @@ def test_name_appears_when_whole(slab, tmp_path):
         assert len(ended) == 2
 
 
-def test_number_vouches_for_data(slab, tmp_path, monkeypatch):
-    """The data of a frame are handed to the disk before its number is."""
+def test_step_vouches_for_data(slab, tmp_path, monkeypatch):
+    """The data of a frame are on the disk before its step is written, and ``flush`` returns when the step is there too."""
     scene, models, frames = slab
-    with TrajectoryWriter(tmp_path / "t.h5", scene, models, dt=0.01, steps_per_frame=10) as writer:
-        numbered = []
-        real = writer._file.flush
-        monkeypatch.setattr(writer._file, "flush", lambda: (numbered.append(len(writer._step)), real()))
+    done = []
+    put, sync = TrajectoryWriter._put, os.fdatasync
+    monkeypatch.setattr(TrajectoryWriter, "_put", lambda self, name, *what: (done.append(name), put(self, name, *what)))
+    monkeypatch.setattr(trajectory_writer.os, "fdatasync", lambda file: (done.append("sync"), sync(file)))
+    with TrajectoryWriter(tmp_path / "t.h5", scene, models, frames=2, dt=0.01, steps_per_frame=10) as writer:
         writer.write(*frames[0])
         writer.write(*frames[1])
+        assert not {"step", "sync"} & set(done)
         writer.flush()
-        assert numbered == [0, 2]
+        assert done[-3:] == ["sync", "step", "sync"]
+        with Trajectory(tmp_path / "t.h5") as live:
+            assert len(live) == 2
 
 
 KILLED = """
@@ -210,9 +222,9 @@ import os, signal, sys
 from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 from picture_samples import falling, slab_scene
-from mdanim_lammps.results.trajectory import TrajectoryWriter
+from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
 scene, models = slab_scene()
-writer = TrajectoryWriter(Path(sys.argv[2]) / "trajectory.h5", scene, models, dt=0.01, steps_per_frame=10)
+writer = TrajectoryWriter(Path(sys.argv[2]) / "trajectory.h5", scene, models, frames=1000, dt=0.01, steps_per_frame=10)
 flushed = 0
 for i, frame in enumerate(falling(models, 1000)):
     writer.write(*frame)
@@ -250,7 +262,10 @@ def test_append_goes_on_after_a_kill(slab, tmp_path):
     """Resume from step 20 of a killed run: later frames are cut and written anew, and the end is whole."""
     scene, models, frames = slab
     path = tmp_path / "trajectory.h5"
-    code = KILLED.replace("1000", "5").replace("i % 3 == 2", "True") + "os.kill(os.getpid(), signal.SIGKILL)\n"
+    code = (
+        KILLED.replace("frames=1000", "frames=6").replace("models, 1000", "models, 5").replace("i % 3 == 2", "True")
+        + "os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
     died = subprocess.run([sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)], capture_output=True)
     assert died.returncode == -signal.SIGKILL
     with TrajectoryWriter.append(path, scene, models, after_step=20) as out:
@@ -288,16 +303,17 @@ def test_size_is_known_before(slab, tmp_path, save, single):
 def test_full_disk_is_an_output_error(slab, tmp_path):
     """A file that may not grow gives the cause and the way out, and what was flushed stays readable."""
     code = KILLED.replace(
-        "scene, models = slab_scene()",
-        "scene, models = slab_scene()\nimport resource\nresource.setrlimit(resource.RLIMIT_FSIZE, (800_000, 800_000))",
-    )
+        "flushed = 0",
+        "flushed = 0\nimport resource\nlast = writer._tables['center_of_mass_velocity']\n"
+        "limit = last.offset + 20 * last.stride\nresource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))",
+    ).replace("1000", "30")
     died = subprocess.run(
         [sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)], capture_output=True, text=True, timeout=60
     )
     assert died.returncode == 1
     assert "OutputError" in died.stderr and "File too large; make room" in died.stderr.replace("'", "")
     with Trajectory(tmp_path) as t:
-        assert len(t) == int(died.stdout.split()[-1]) > 0
+        assert len(t) == int(died.stdout.split()[-1]) == 18
 
 
 @pytest.mark.parametrize("make", [lambda p: None, lambda p: (p / "trajectory.h5").write_text("not HDF5")])
@@ -372,8 +388,8 @@ def test_files_of_version_1_are_read(slab, tmp_path):
     with Trajectory(path) as t:
         assert len(t) == 2 and t.liquid is None
     with h5py.File(path, "r+") as file:
-        file["parameters/mdanim"].attrs["format"] = 3
-    with pytest.raises(OutputError, match="format 3, newer than 2"):
+        file["parameters/mdanim"].attrs["format"] = 4
+    with pytest.raises(OutputError, match="format 4, newer than 3"):
         Trajectory(path)
 
 
@@ -381,7 +397,7 @@ def test_files_of_version_1_are_read(slab, tmp_path):
 def test_heights_must_fit_the_basin(tmp_path, heights):
     """Missing heights, one of two, and x for y are refused before anything is written."""
     scene, models, grid, frames = pool()
-    with TrajectoryWriter(tmp_path / "t.h5", scene, models, dt=0.01, steps_per_frame=10, grid=grid) as out:
+    with TrajectoryWriter(tmp_path / "t.h5", scene, models, frames=1, dt=0.01, steps_per_frame=10, grid=grid) as out:
         with pytest.raises(ValueError, match=r"shapes \[\(14, 20\), \(14, 20\)\]"):
             out.write(*frames[0][:4], heights)
         out.write(*frames[0])
@@ -405,9 +421,10 @@ def test_heights_survive_a_kill_and_a_resume(tmp_path):
     scene, models, grid, frames = pool()
     with Trajectory(tmp_path) as t:
         assert len(t) == 48
-    with TrajectoryWriter.append(tmp_path / "trajectory.h5", scene, models, after_step=20, grid=grid) as out:
-        step, time, x, v, heights = frames[0]
-        out.write(30, 0.3, x, v, heights)
+    out = TrajectoryWriter.append(tmp_path / "trajectory.h5", scene, models, after_step=20, grid=grid)
+    step, time, x, v, heights = frames[0]
+    out.write(30, 0.3, x, v, heights)
+    out.close(finished=False)
     with Trajectory(tmp_path) as t:
         assert t.steps.tolist() == [0, 10, 20, 30] and t.liquid.grid == grid
         for k in range(3):

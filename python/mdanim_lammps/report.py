@@ -12,7 +12,7 @@ from .effects import Verdict
 from .model import plan_spacing
 from .results.cost import Cost
 from .results.timeline import Timeline
-from .results.trajectory import trajectory_bytes
+from .results.trajectory_file import trajectory_bytes
 from .run.loop import Progress, Result
 from .run.prepare import Prepared
 from .scene.scene import Scene

@@ -223,7 +223,7 @@ def test_a_full_disk_ends_all_ranks(place, monkeypatch, control):
         place,
         monkeypatch,
         rank=0,
-        module="results.trajectory",
+        module="results.trajectory_writer",
         kind="TrajectoryWriter",
         method="write",
         time=3,

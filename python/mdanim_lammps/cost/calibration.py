@@ -339,7 +339,7 @@ def _pool(Instance) -> dict[str, float]:
 
 def _frames() -> tuple[float, float]:
     """Seconds of a frame and of a byte of it, from runs of two sizes that write more than they compute."""
-    from ..results.trajectory import trajectory_bytes
+    from ..results.trajectory_file import trajectory_bytes
 
     found = []
     for n in (SMALL, LARGE):

@@ -12,7 +12,7 @@ from ..engine.commands import SKIN
 from ..model.basin import liquid_level
 from ..results.cost import Cost, Part
 from ..results.expect import recorded
-from ..results.trajectory import trajectory_bytes
+from ..results.trajectory_file import trajectory_bytes
 from ..run.prepare import Prepared
 from .calibration import lanes
 

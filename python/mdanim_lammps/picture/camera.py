@@ -66,32 +66,32 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
     ground, from when it has fallen out of the scene; of a crowd the outermost twentieth on each side and what
     lies farther from the start than four times its size; of few objects what lies ten times farther still.
     """
-    catalogue, centers = trajectory.catalogue, trajectory.centers
+    metadata, centers = trajectory.metadata, trajectory.centers
     frames = np.unique(np.linspace(0, len(trajectory) - 1, samples).astype(int))
-    first = np.searchsorted(catalogue.skin.object_of_vertex, np.arange(len(catalogue.names)))
+    first = np.searchsorted(metadata.skin.object_of_vertex, np.arange(len(metadata.names)))
     below = np.zeros(centers.shape[1:])
     above = np.zeros(centers.shape[1:])
     for frame in frames:
-        vertices = catalogue.skin.vertices(trajectory.position(frame))
+        vertices = metadata.skin.vertices(trajectory.position(frame))
         np.minimum(below, np.minimum.reduceat(vertices, first) - centers[frame], out=below)
         np.maximum(above, np.maximum.reduceat(vertices, first) - centers[frame], out=above)
     # A stretch is one frame, unless that makes more boxes than are worth looking at.
-    stretches = np.array_split(np.arange(len(centers)), min(len(centers), max(1, _BOXES // len(catalogue.names))))
+    stretches = np.array_split(np.arange(len(centers)), min(len(centers), max(1, _BOXES // len(metadata.names))))
     low = np.array([centers[s].min(axis=0) + below for s in stretches])
     high = np.array([centers[s].max(axis=0) + above for s in stretches])
 
     start_low, start_high = (centers[0] + below).min(axis=0), (centers[0] + above).max(axis=0)
     size = max(float(np.linalg.norm(start_high - start_low)), np.finfo(float).tiny)
     gone = np.zeros(low.shape[:2], dtype=bool)
-    if catalogue.ground is None:
+    if metadata.ground is None:
         # Nothing falls out of a basin, which has a floor of its own.
-        bottom = min(start_low[2], catalogue.liquid.low[2]) if catalogue.liquid else start_low[2]
+        bottom = min(start_low[2], metadata.liquid.low[2]) if metadata.liquid else start_low[2]
         gone = np.maximum.accumulate(low[:, :, 2] < bottom - FALL * size, axis=0)
     lowest = np.where(gone[:, :, None], np.inf, low).min(axis=0)
     highest = np.where(gone[:, :, None], -np.inf, high).max(axis=0)
     # What has gone from the first stretch on has no bounds of its own.
     lowest, highest = np.minimum(lowest, start_high), np.maximum(highest, start_low)
-    outer = len(catalogue.names) // 20
+    outer = len(metadata.names) // 20
     shown_low = np.partition(lowest, outer, axis=0)[outer]
     shown_high = -np.partition(-highest, outer, axis=0)[outer]
     # One among many may fly off; where there are few, the picture follows far.
@@ -100,11 +100,11 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
         np.maximum(np.minimum(shown_low, start_low), start_low - far),
         np.minimum(np.maximum(shown_high, start_high), start_high + far),
     )
-    if catalogue.liquid is not None:
+    if metadata.liquid is not None:
         # The basin is seen whole, whatever happens in it.
-        bounds = np.minimum(bounds[0], catalogue.liquid.low), np.maximum(bounds[1], catalogue.liquid.high)
-    if catalogue.ground is not None:
-        bounds[0][2] = min(bounds[0][2], max(catalogue.ground, start_low[2] - FAR * size))
+        bounds = np.minimum(bounds[0], metadata.liquid.low), np.maximum(bounds[1], metadata.liquid.high)
+    if metadata.ground is not None:
+        bounds[0][2] = min(bounds[0][2], max(metadata.ground, start_low[2] - FAR * size))
     return Action(low, high, bounds, bool(gone.any()))
 
 

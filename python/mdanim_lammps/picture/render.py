@@ -51,11 +51,11 @@ class Painter:
         self.size = tuple(size or render.size)
         self.action = action or action_of(trajectory)
         self._path = CameraPath(render.camera, trajectory) if render.camera else None
-        walls, pool = trajectory.catalogue.walls, trajectory.liquid
+        walls, pool = trajectory.metadata.walls, trajectory.liquid
         basin = (pool.low, pool.high) if pool else None
         aspect = self.size[0] / self.size[1]
         self._still = None if self._path else automatic_view(self.action, aspect, walls, basin)
-        self._mesh = shaded_mesh(trajectory.catalogue, trajectory.position(0), self._pixel())
+        self._mesh = shaded_mesh(trajectory.metadata, trajectory.position(0), self._pixel())
         self._build(render)
 
     def _pixel(self) -> np.ndarray:
@@ -117,11 +117,11 @@ class Painter:
         camera = self._renderer.GetActiveCamera()
         camera.SetViewAngle(FIELD_OF_VIEW)
 
-        catalogue, dark = self.trajectory.catalogue, is_dark(low)
-        self._tank = Tank(self.trajectory, render.liquid, dark) if catalogue.liquid else None
+        metadata, dark = self.trajectory.metadata, is_dark(low)
+        self._tank = Tank(self.trajectory, render.liquid, dark) if metadata.liquid else None
         floor, (x, y, _), reach = self._floor_height(), self.action.centre, FLOOR * self.action.size
         self._surface = MovingMesh(self._mesh.carry.shape[0], self._mesh.triangle)
-        self._surface.paint(object_colors(catalogue.colors, catalogue.still)[self._mesh.object_of_vertex])
+        self._surface.paint(object_colors(metadata.colors, metadata.still)[self._mesh.object_of_vertex])
         self._actors = [lit_actor(self._surface.data, shading.FRAGMENT_SOLID, bool(self._tank))]
         # Objects are closed, so nobody sees their insides, and drawing them takes time.
         self._actors[0].GetProperty().BackfaceCullingOn()
@@ -132,8 +132,8 @@ class Painter:
             self._actors.append(self._make_floor(floor, low, high))
         for actor in self._actors:
             self._renderer.AddActor(actor)
-        if catalogue.walls is not None:
-            self._renderer.AddActor(box_edges(*catalogue.walls, 0.8 if dark else 0.35))
+        if metadata.walls is not None:
+            self._renderer.AddActor(box_edges(*metadata.walls, 0.8 if dark else 0.35))
         if self._tank:
             for actor in self._tank.actors:
                 self._renderer.AddActor(actor)
@@ -149,10 +149,10 @@ class Painter:
 
     def _floor_height(self) -> float | None:
         """The ground; without one the lowest point of the action, unless something falls through there."""
-        catalogue = self.trajectory.catalogue
-        if catalogue.ground is not None:
+        metadata = self.trajectory.metadata
+        if metadata.ground is not None:
             # A basin sunk into the ground would be hidden by it.
-            return min(catalogue.ground, catalogue.liquid.low[2] if catalogue.liquid else catalogue.ground)
+            return min(metadata.ground, metadata.liquid.low[2] if metadata.liquid else metadata.ground)
         return None if self.action.escaped else float(self.action.bounds[0][2])
 
     def _make_floor(self, height: float, low: np.ndarray, high: np.ndarray):
@@ -191,7 +191,7 @@ class Painter:
             self._renderer.AddViewProp(actor)
             return actor
 
-        text(self.trajectory.catalogue.title, (margin, margin), 0.032)
+        text(self.trajectory.metadata.title, (margin, margin), 0.032)
         self._stamp = text("", (self.size[0] - margin, margin), 0.028, right=True)
 
     # --- the shadow ----------------------------------------------------------------------------------------

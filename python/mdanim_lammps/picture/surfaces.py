@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..results.catalogue import Catalogue
+from ..results.trajectory_metadata import TrajectoryMetadata
 from .pieces import cells
 
 CREASE = 45.0
@@ -55,18 +55,18 @@ class ShadedMesh:
         return np.divide(normal, length, out=np.zeros_like(normal), where=length > 0.0)
 
 
-def shaded_mesh(catalogue: Catalogue, rest: np.ndarray, pixel: np.ndarray | None = None) -> ShadedMesh:
+def shaded_mesh(metadata: TrajectoryMetadata, rest: np.ndarray, pixel: np.ndarray | None = None) -> ShadedMesh:
     """Prepare the mesh; where creases run is decided once, on ``rest``, so that no edge flickers.
 
     Args:
-        catalogue: objects and their surfaces.
+        metadata: objects and their surfaces.
         rest: stored particle positions of undeformed objects, usually frame 0 [m], shape (N, 3).
         pixel: what a pixel covers of each object where it is seen nearest [m], shape (M,): round objects get no more triangles
             than show. None keeps all.
     """
     from scipy.sparse import csr_array
 
-    skin, triangle = catalogue.skin, catalogue.skin.triangle
+    skin, triangle = metadata.skin, metadata.skin.triangle
     vertices = skin.vertices(rest)
     corner = _split_at_creases(vertices, triangle)
     fewer = np.zeros(0, dtype=np.int64)

@@ -6,14 +6,13 @@ from __future__ import annotations
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 
 from ..errors import OutputError
 from .files import write_whole
 
-VERSION = 2
+VERSION = 3
 
 
 @dataclass(frozen=True)
@@ -32,12 +31,14 @@ class Checkpoint:
     """What had been summed up by then: energies lost, deepest penetration, seconds."""
     run: str = ""
     """Which run this is a state of: another scene or time step cannot go on from it."""
+    ledger: int = 0
+    """Checksum of the ledger's rows up to this frame (`Ledger.checksum`)."""
     liquid: np.ndarray | None = None
     """State of the liquid's fix, uint8 bytes, shape (S,); None without liquid."""
 
     def write(self, path: Path) -> None:
         """Write atomically: the last good checkpoint is never lost. Raises OutputError."""
-        # Mostly equal cells: a hundredth is left of them; positions and forces would not shrink.
+        # Cells are mostly equal and shrink to a hundredth; positions and forces would not shrink.
         liquid = {} if self.liquid is None else {"liquid": np.frombuffer(zlib.compress(self.liquid.tobytes(), 1), np.uint8)}
 
         def save(part: Path) -> None:
@@ -48,6 +49,7 @@ class Checkpoint:
                     run=self.run,
                     step=self.step,
                     frame=self.frame,
+                    ledger=self.ledger,
                     x=self.x,
                     v=self.v,
                     f=self.f,
@@ -77,7 +79,14 @@ class Checkpoint:
                     data["f"],
                     dict(zip(data["keys"].tolist(), data["values"].tolist())),
                     str(data["run"]),
+                    int(data["ledger"]),
                     liquid,
                 )
-        except (OSError, ValueError, KeyError, EOFError, BadZipFile, zlib.error) as error:
-            raise OutputError(f"{path} cannot be read ({error}): nothing to resume from") from error
+        except OutputError:
+            raise
+        # A zip file has checksums, but what is read before they are compared may be anything: sizes, methods, headers.
+        except Exception as error:
+            raise OutputError(
+                f"{path} cannot be read, it is missing or damaged ({error}): nothing to resume from; "
+                "run the scene again with --force"
+            ) from error

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The output folder: never overwritten unasked, and every file appears under its name only when whole."""
+"""The output folder: never overwritten unasked; every file appears under its name when it is whole and on the disk."""
 
 from __future__ import annotations
 
+import errno
 import json
 import os
+import secrets
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -13,19 +15,27 @@ from pathlib import Path
 from ..errors import OutputError
 
 MARK = "manifest.json"
+CHECKPOINT = "checkpoint"
+"""Name of the file from which a run is resumed."""
 PROGRAM = "mdanim-lammps"
 """Only a folder whose manifest says that this program made it is emptied by ``--force``."""
 
 
 @contextmanager
-def disk_errors(what: Path) -> Iterator[None]:
+def disk_errors(path: Path) -> Iterator[None]:
     """Turn OSError into OutputError that names the file and a way out."""
     try:
         yield
     except OSError as error:
-        full = error.errno == 28
-        cure = "make room and resume" if full else "check the folder and its permissions, or write elsewhere with -o DIR"
-        raise OutputError(f"{what}: cannot be written: {error.strerror or error}; {cure}") from error
+        raise OutputError(f"{path}: cannot be written: {error.strerror or error}; {_way_out(path, error)}") from error
+
+
+def _way_out(path: Path, error: OSError) -> str:
+    if error.errno not in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
+        return "check the folder and its permissions, or write elsewhere with -o DIR"
+    if (path.parent / CHECKPOINT).exists():
+        return "make room and resume"
+    return "make room and repeat the command, with --force if it made this folder"
 
 
 def open_folder(folder: Path, *, force: bool) -> None:
@@ -55,14 +65,57 @@ def _ours(folder: Path) -> bool:
 
 
 def write_whole(path: Path, write: Callable[[Path], None] | str) -> None:
-    """Write a file beside its final name and rename it when it is whole. Raises OutputError."""
-    part = path.with_name(path.name + ".part")
+    """Write a file beside its final name, sync it and rename it: the name always holds a whole file, also after a loss of power.
+
+    A failure leaves the former file and nothing else. Several writers of one name do not disturb each other: the last wins.
+
+    Args:
+        path: the final name.
+        write: the text, or a function that writes the file whose path it is given.
+
+    Raises:
+        OutputError: the file cannot be written, e.g. because the disk is full.
+    """
     with disk_errors(path):
-        if isinstance(write, str):
-            part.write_text(write, encoding="utf-8")
-        else:
-            write(part)
-        os.replace(part, path)
+        part = _new_part(path)
+        try:
+            if isinstance(write, str):
+                part.write_text(write, encoding="utf-8")
+            else:
+                write(part)
+            sync(part)
+            rename(part, path)
+        except BaseException:
+            part.unlink(missing_ok=True)
+            raise
+
+
+def _new_part(path: Path) -> Path:
+    """An empty file beside ``path`` with a name that no other writer has. Raises OSError."""
+    part = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+    os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+    return part
+
+
+def remove_parts(folder: Path) -> None:
+    """Remove what killed processes have left of files that were being written; only for a folder that no other process uses."""
+    for part in folder.glob(".*.????????.part"):
+        part.unlink(missing_ok=True)
+
+
+def sync(path: Path) -> None:
+    """Return when a file's contents, or a folder's names, are on the disk. Raises OSError."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def rename(source: Path, target: Path) -> None:
+    """Rename a file in its folder, replacing what has that name, and return when this is on the disk. Raises OSError."""
+    os.replace(source, target)
+    sync(target.parent)
 
 
 def write_json(path: Path, data: dict) -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -64,6 +65,11 @@ class Ledger:
     def residual(self) -> float:
         """Largest absolute residual so far [-]."""
         return max((abs(r["residual"]) for r in self.rows), default=0.0)
+
+    def checksum(self, rows: int) -> int:
+        """Checksum of the columns' names and the first rows, for a checkpoint."""
+        table = np.array([[row[column] for column in self.columns] for row in self.rows[:rows]])
+        return zlib.crc32(table, zlib.crc32(",".join(self.columns).encode()))
 
     def array(self, column: str) -> np.ndarray:
         """One column, shape (F,)."""

@@ -22,9 +22,10 @@ from ..errors import DivergedError, ExitCode, MdanimError, OutputError, Problem
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, Part
 from ..results.expect import Measured, Outcome, evaluate, record, recorded
-from ..results.files import disk_errors, write_json, write_whole
+from ..results.files import CHECKPOINT, disk_errors, remove_parts, write_json, write_whole
 from ..results.ledger import LOSS, Ledger
-from ..results.trajectory import Trajectory, TrajectoryWriter
+from ..results.trajectory import Trajectory
+from ..results.trajectory_writer import TrajectoryWriter
 from ..scene.meshes import mesh_files
 from ..scene.wording import number
 from .energy import ledger_terms, rounding_energy
@@ -141,9 +142,11 @@ class _Run:
         self.run_id = run_id(ready)
         if resume and resume.run != self.run_id:
             raise OutputError(
-                f"{folder / 'checkpoint'} is of another run: scene, time step or program have changed since; "
+                f"{folder / CHECKPOINT} is of another run: scene, time step or program have changed since; "
                 "run the scene again with --force"
             )
+        if resume:
+            remove_parts(folder)
         self.recorded = recorded(ready.scene.expects)
         self.grid = ready.plan.grid
         self.ledger = Ledger(
@@ -290,6 +293,7 @@ class _Run:
             path,
             self.ready.scene,
             self.ready.models,
+            frames=len(c.lengths) + 1,
             dt=c.timestep,
             steps_per_frame=c.steps_per_frame,
             scene_text=self.ready.lock,
@@ -332,11 +336,17 @@ class _Run:
         carried["penetration"] = self.penetration
         carried["seconds"] = sum(self.seconds.values())
         s = self.source.state()
-        Checkpoint(now.step, frame, s.x, s.v, s.f, carried, self.run_id, s.liquid).write(self.folder / "checkpoint")
+        rows = self.ledger.checksum(frame + 1)
+        Checkpoint(now.step, frame, s.x, s.v, s.f, carried, self.run_id, rows, s.liquid).write(self.folder / CHECKPOINT)
 
     def _reread_ledger(self, frame: int) -> None:
-        """Take the rows up to the checkpoint's frame."""
-        stored = Ledger.read(self.folder / "ledger.csv")
+        """Take the rows up to the checkpoint's frame. Raises OutputError when they are not those that were there then."""
+        path = self.folder / "ledger.csv"
+        stored = Ledger.read(path)
+        if stored.columns != self.ledger.columns or stored.checksum(frame + 1) != self.resume.ledger:
+            raise OutputError(
+                f"{path} is damaged: its first {frame + 1} rows are not those of the checkpoint; run the scene again with --force"
+            )
         for row in stored.rows[: frame + 1]:
             self.ledger.add(row["time"], row)
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-import os
 import shutil
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -12,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import OutputError
-from ..results.files import disk_errors, read_json, write_json
+from ..results.files import disk_errors, read_json, write_json, write_whole
 from .measure import Sample
 from .setting import Setting
 
@@ -141,10 +140,11 @@ class Store:
         self.write()
 
     def _save(self, name: str, array: np.ndarray) -> None:
-        path = self.folder / "tracks" / f"{name}.npy"
-        with disk_errors(path):
-            np.save(path.with_suffix(".part.npy"), array)
-            os.replace(path.with_suffix(".part.npy"), path)
+        def write(part: Path) -> None:
+            with part.open("wb") as file:
+                np.save(file, array)
+
+        write_whole(self.folder / "tracks" / f"{name}.npy", write)
 
     def write(self, report: dict | None = None) -> None:
         """Write study.json; ``report`` is what analysis adds to it: fields of its own, and ``"points"`` by key."""

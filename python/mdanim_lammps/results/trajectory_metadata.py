@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What never changes during a run: which particle belongs to which object, and what surfaces hang on."""
+"""What never changes during a run: which particle belongs to which object, and which surfaces the particles carry."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..scene.scene import Liquid, Save, Scene, Vector
 
 
 @dataclass(frozen=True, slots=True)
-class Pool:
+class LiquidMetadata:
     """The liquid, and the cells of the basin that holds it."""
 
     name: str
@@ -37,7 +37,7 @@ class Pool:
 
 
 @dataclass(frozen=True)
-class Catalogue:
+class TrajectoryMetadata:
     """Objects, particles and surfaces of one trajectory; O objects, N stored particles."""
 
     title: str
@@ -66,12 +66,12 @@ class Catalogue:
     surfaces: tuple[Surface, ...]
     """Different surfaces; ``index`` counts from an object's first stored particle."""
     surface_of: np.ndarray
-    """Which of ``surfaces`` each object wears, int64, shape (O,)."""
+    """Which of ``surfaces`` each object has, int64, shape (O,)."""
     ground: float | None = None
     """Height of the ground plane [m]."""
     walls: tuple[Vector, Vector] | None = None
     """Lower and upper corner of the box that objects never leave [m]."""
-    liquid: Pool | None = None
+    liquid: LiquidMetadata | None = None
     """None in a scene without liquid."""
     save: Save = Save.ALL
     single: bool = False
@@ -111,7 +111,7 @@ class Skin:
 def stored_particles(model: Model, save: Save) -> np.ndarray:
     """Particles of one object that the trajectory holds, bool, shape (N,).
 
-    With ``save boundary`` these are the boundary particles and whatever else the surface hangs on.
+    With ``save boundary`` these are the boundary particles and all others that carry the surface.
     """
     if save is Save.ALL:
         return np.ones(len(model.position), dtype=bool)
@@ -120,7 +120,7 @@ def stored_particles(model: Model, save: Save) -> np.ndarray:
     return stored
 
 
-def catalogue_of(scene: Scene, models: Sequence[Model], scene_text: str = "", grid: Grid | None = None) -> Catalogue:
+def metadata_of(scene: Scene, models: Sequence[Model], scene_text: str = "", grid: Grid | None = None) -> TrajectoryMetadata:
     """Collect what a trajectory of these models must know; objects in the order of ``models``.
 
     Args:
@@ -130,16 +130,16 @@ def catalogue_of(scene: Scene, models: Sequence[Model], scene_text: str = "", gr
         grid: cells of the scene's liquid; None where there is none, or where it is switched off.
     """
     solids = {solid.name: solid for solid in scene.solids}
-    worn = [solids[model.name] for model in models]
+    records = [solids[model.name] for model in models]
     stored = [stored_particles(model, scene.control.save) for model in models]
     offsets = np.cumsum([0] + [len(model.position) for model in models])
     surfaces, surface_of = distinct_surfaces(models, stored)
     bonds = [m.spring[kept[m.spring].all(axis=1)] + (o + 1) for m, kept, o in zip(models, stored, offsets)]
     everywhere = _joined(stored, bool)
-    return Catalogue(
+    return TrajectoryMetadata(
         title=scene.title,
         names=tuple(model.name for model in models),
-        colors=tuple(solid.color or "" for solid in worn),
+        colors=tuple(solid.color or "" for solid in records),
         still=np.array([bool(model.held.all()) for model in models], dtype=bool),
         object_mass=np.array([model.mass.sum() for model in models], dtype=np.float64),
         first=np.cumsum([0] + [int(kept.sum()) for kept in stored]),
@@ -153,53 +153,53 @@ def catalogue_of(scene: Scene, models: Sequence[Model], scene_text: str = "", gr
         surface_of=surface_of,
         ground=scene.ground,
         walls=(scene.walls.low, scene.walls.high) if scene.walls else None,
-        liquid=pool_of(scene.liquid, grid) if grid else None,
+        liquid=liquid_metadata(scene.liquid, grid) if grid else None,
         save=scene.control.save,
         single=scene.control.single,
         scene_text=scene_text,
     )
 
 
-def pool_of(liquid: Liquid, grid: Grid) -> Pool:
+def liquid_metadata(liquid: Liquid, grid: Grid) -> LiquidMetadata:
     """What a trajectory must know of a scene's liquid."""
-    return Pool(liquid.name, grid.low, grid.high, grid.shape, liquid.density, liquid.color or "")
+    return LiquidMetadata(liquid.name, grid.low, grid.high, grid.shape, liquid.density, liquid.color or "")
 
 
 def distinct_surfaces(models: Sequence[Model], stored: Sequence[np.ndarray]) -> tuple[tuple[Surface, ...], np.ndarray]:
-    """The different surfaces among the models, in stored particles, and which of them each model wears."""
+    """The different surfaces among the models, in stored particles, and which of them each model has."""
     kinds: dict[bytes, int] = {}
     surfaces: list[Surface] = []
-    worn = []
+    used = []
     for model, kept in zip(models, stored):
         surface = _within(model.surface, kept)
         kind = kinds.setdefault(_fingerprint(surface), len(surfaces))
         if kind == len(surfaces):
             surfaces.append(surface)
-        worn.append(kind)
-    return tuple(surfaces), np.array(worn, dtype=np.int64)
+        used.append(kind)
+    return tuple(surfaces), np.array(used, dtype=np.int64)
 
 
-def merge_surfaces(catalogue: Catalogue) -> Skin:
+def merge_surfaces(metadata: TrajectoryMetadata) -> Skin:
     """Put the surfaces of all objects into one mesh; done once, so that a frame is one matrix product."""
     from scipy.sparse import csr_array
 
-    worn = [catalogue.surfaces[kind] for kind in catalogue.surface_of]
-    vertices = np.array([len(surface.index) for surface in worn], dtype=np.int64)
-    triangles = np.array([len(surface.triangle) for surface in worn], dtype=np.int64)
-    corners = np.repeat([surface.index.shape[1] for surface in worn], vertices)
+    used = [metadata.surfaces[kind] for kind in metadata.surface_of]
+    vertices = np.array([len(surface.index) for surface in used], dtype=np.int64)
+    triangles = np.array([len(surface.triangle) for surface in used], dtype=np.int64)
+    corners = np.repeat([surface.index.shape[1] for surface in used], vertices)
     first_vertex = np.cumsum(vertices) - vertices
-    shape = (int(vertices.sum()), int(catalogue.first[-1]))
+    shape = (int(vertices.sum()), int(metadata.first[-1]))
     carry = csr_array(
         (
-            _joined([surface.weight.ravel() for surface in worn], np.float64),
-            _joined([surface.index.ravel() + first for surface, first in zip(worn, catalogue.first)], np.int64),
+            _joined([surface.weight.ravel() for surface in used], np.float64),
+            _joined([surface.index.ravel() + first for surface, first in zip(used, metadata.first)], np.int64),
             np.concatenate([[0], np.cumsum(corners)]),
         ),
         shape=shape,
     )
     carry.eliminate_zeros()
-    objects = np.arange(len(worn), dtype=np.int32)
-    triangle = [surface.triangle + first for surface, first in zip(worn, first_vertex)]
+    objects = np.arange(len(used), dtype=np.int32)
+    triangle = [surface.triangle + first for surface, first in zip(used, first_vertex)]
     return Skin(
         carry=carry,
         triangle=np.concatenate([np.zeros((0, 3), np.int32), *triangle]).astype(np.int32),

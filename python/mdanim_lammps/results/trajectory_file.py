@@ -1,0 +1,402 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The trajectory file: H5MD 1.1 in HDF5, with room for all frames from the start (docs/trajectory.md).
+
+HDF5 lays the file out once, before the first frame. Every quantity of the frames is one contiguous table, so the bytes of a
+frame have a place that is known: the writer puts them there without HDF5. A disk that is full or broken then meets plain
+writes, which fail with an error and nothing else, and a killed writer leaves a file that HDF5 opens.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import OutputError
+from ..model.basin import Grid
+from ..model.model import Model, Surface
+from ..scene.scene import Save
+from .files import disk_errors, sync
+from .trajectory_metadata import LiquidMetadata, TrajectoryMetadata, distinct_surfaces, stored_particles
+
+if TYPE_CHECKING:
+    import h5py
+
+FILE_NAME = "trajectory.h5"
+FORMAT = 3
+"""Version of ``/parameters/mdanim``; a reader refuses what is newer. Version 1 has no liquid, 2 no checksums."""
+
+LIQUID = ("liquid/height", "liquid/raw")
+"""Heights of a liquid: smooth, and of the topmost cells; below ``/observables``."""
+
+STEP, TIME, CHECKSUM = "step", "time", "checksum"
+_ROW = (STEP, TIME, CHECKSUM)
+"""Tables of what a frame has beside its quantities."""
+NOT_WRITTEN = -1
+"""Step of a frame that is still to come."""
+
+# The first HDF5 whose whole metadata have checksums.
+_LIBVER = ("v110", "v110")
+# HDF5 puts groups, attributes and indices into blocks of this size; one block holds all of a usual file.
+_METADATA_BYTES = 1 << 16
+_CHUNK_BYTES = 1 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class FrameTable:
+    """Where the file holds one quantity of all frames."""
+
+    offset: int
+    """Of frame 0 [bytes]."""
+    dtype: np.dtype
+    shape: tuple[int, ...]
+    """Of one frame."""
+    frames: int
+    """Frames that there is room for."""
+
+    @property
+    def stride(self) -> int:
+        """Bytes of one frame."""
+        return int(np.prod(self.shape, dtype=np.int64)) * self.dtype.itemsize
+
+
+def trajectory_bytes(
+    models: Sequence[Model], frames: int, save: Save = Save.ALL, single: bool = False, grid: Grid | None = None
+) -> int:
+    """Size of the trajectory file [bytes] before anything is run, rather too large than too small.
+
+    Args:
+        models: all objects.
+        frames: number of frames, the first included.
+        save: which particles are stored.
+        single: whether positions and velocities take 4 bytes a number instead of 8.
+        grid: cells of the liquid, if there is one.
+    """
+    stored = sum(int(stored_particles(model, save).sum()) for model in models)
+    per_frame = stored * 6 * (4 if single else 8) + len(models) * 6 * 8 + 16 + 4 * 7
+    if grid:
+        per_frame += 2 * 4 * grid.shape[0] * grid.shape[1]
+    surfaces = distinct_surfaces(models, [stored_particles(model, save) for model in models])[0]
+    springs = sum(len(model.spring) for model in models)
+    return frames * per_frame + _fixed_bytes(stored, springs, surfaces) + _METADATA_BYTES
+
+
+def part_of(path: str | Path) -> Path:
+    """Where a trajectory is while it is written."""
+    path = Path(path)
+    return path.with_name(path.name + ".part")
+
+
+def find_trajectory(path: Path) -> Path:
+    """The trajectory file of a folder, or of its own path, finished or not. Raises OutputError."""
+    file = path / FILE_NAME if path.is_dir() else path
+    for candidate in (file, part_of(file)):
+        if candidate.is_file():
+            return candidate
+    raise OutputError(f"{file}: no such trajectory; run the scene first, or name the folder that a run wrote")
+
+
+def open_trajectory(path: Path) -> h5py.File:
+    """Open a file for reading. Raises OutputError."""
+    import h5py
+
+    try:
+        return h5py.File(path, "r")
+    except (OSError, RuntimeError, ValueError) as error:
+        raise OutputError(f"{path}: cannot be read as HDF5, it is no trajectory or it is damaged ({error})") from None
+
+
+def create_trajectory(path: Path, metadata: TrajectoryMetadata, frames: int, dt: float, steps_per_frame: int) -> None:
+    """Make a file with room for ``frames`` frames, none of which is written yet; the room is taken frame by frame.
+
+    Raises:
+        OutputError: no room for what is not frames, or a size that the disk does not allow.
+    """
+    import h5py
+
+    with _hdf5_errors(path):
+        try:
+            with h5py.File(path, "w", libver=_LIBVER, meta_block_size=_METADATA_BYTES) as file:
+                _claim(path, metadata, frames)
+                _write_tables(file, metadata, frames, dt, steps_per_frame)
+                size = _claim_rest(path, file)
+            os.truncate(path, size)
+            sync(path)
+        except BaseException:
+            path.unlink(missing_ok=True)
+            raise
+
+
+def frame_tables(file: h5py.File) -> dict[str, FrameTable]:
+    """Where the tables of the frames are, by the names of `quantities`, STEP, TIME and CHECKSUM. Raises KeyError."""
+    return {
+        name: FrameTable(dataset.id.get_offset() or 0, dataset.dtype, dataset.shape[1:], len(dataset))
+        for name, dataset in datasets_of_frames(file).items()
+    }
+
+
+def datasets_of_frames(file: h5py.File) -> dict[str, h5py.Dataset]:
+    """The datasets of the frames by name: STEP, TIME, CHECKSUM (not before format 3), and the quantities. Raises KeyError."""
+    particles, own = file["particles/all"], file["parameters/mdanim"]
+    found = {STEP: particles["position/step"], TIME: particles["position/time"]}
+    if CHECKSUM in own:
+        found[CHECKSUM] = own[CHECKSUM]
+    found |= {name: particles[f"{name}/value"] for name in ("position", "velocity")}
+    names = ("center_of_mass", "center_of_mass_velocity", *(LIQUID if "observables/liquid" in file else ()))
+    return found | {name: file[f"observables/{name}/value"] for name in names}
+
+
+def row_checksum(step: int, time: float) -> int:
+    """Checksum of a frame's step and time."""
+    return zlib.crc32(np.float64(time).tobytes(), zlib.crc32(np.int64(step).tobytes()))
+
+
+def checksum(values: np.ndarray) -> int:
+    """Checksum of the values of one quantity in one frame; C-contiguous."""
+    return zlib.crc32(values) if values.size else 0
+
+
+def _quantities(metadata: TrajectoryMetadata) -> Iterator[tuple[str, str, tuple[int, int], type, str]]:
+    """What every frame has: name, group above it, shape, type, unit."""
+    real = np.float32 if metadata.single else np.float64
+    n, objects, liquid = len(metadata.id), len(metadata.names), metadata.liquid
+    yield "position", "particles/all", (n, 3), real, "m"
+    yield "velocity", "particles/all", (n, 3), real, "m s-1"
+    yield "center_of_mass", "observables", (objects, 3), np.float64, "m"
+    yield "center_of_mass_velocity", "observables", (objects, 3), np.float64, "m s-1"
+    for name in LIQUID if liquid else ():
+        yield name, "observables", liquid.shape[1::-1], np.float32, "m"
+
+
+def _fixed_bytes(particles: int, springs: int, surfaces: Sequence[Surface]) -> int:
+    """What the file holds beside the frames, before packing."""
+    per_surface = (s.triangle.nbytes + s.index.nbytes + s.weight.nbytes for s in surfaces)
+    return 22 * particles + 8 * springs + sum(per_surface)
+
+
+def _claim(path: Path, metadata: TrajectoryMetadata, frames: int) -> None:
+    """Ask for the size of the file and take the room of all that HDF5 writes, before it does: HDF5 cannot close a file once a
+    write has failed. Raises OSError."""
+    text = len(metadata.scene_text) + sum(map(len, metadata.names))
+    fixed = _fixed_bytes(len(metadata.id), len(metadata.bond), metadata.surfaces) + 8 * text + 64 * len(metadata.names)
+    per_frame = [int(np.prod(shape)) * np.dtype(real).itemsize for _, _, shape, real, _ in _quantities(metadata)]
+    fixed += frames * (16 + 4 * (1 + len(per_frame))) + 2 * _METADATA_BYTES
+    os.truncate(path, fixed + frames * sum(per_frame))
+    with path.open("r+b") as file:
+        os.posix_fallocate(file.fileno(), 0, fixed)
+
+
+def _claim_rest(path: Path, file: h5py.File) -> int:
+    """Take the room of all that is not frames; returns the size of the file [bytes]. Raises OSError."""
+    size = file.id.get_filesize()
+    tables = frame_tables(file)
+    rooms = sorted((t.offset, t.offset + t.stride * t.frames) for name, t in tables.items() if name not in _ROW and t.stride)
+    edges = [0, *(edge for room in rooms for edge in room), size]
+    with path.open("r+b") as own:
+        for low, high in zip(edges[::2], edges[1::2]):
+            if high > low:
+                os.posix_fallocate(own.fileno(), low, high - low)
+    return size
+
+
+def _write_tables(file: h5py.File, metadata: TrajectoryMetadata, frames: int, dt: float, steps_per_frame: int) -> None:
+    header = file.create_group("h5md")
+    header.attrs["version"] = np.array([1, 1], dtype=np.int32)
+    header.create_group("author").attrs["name"] = "mdanim-lammps"
+    header.create_group("creator").attrs.update(name="mdanim-lammps", version=_version())
+
+    particles = file.create_group("particles/all")
+    box = particles.create_group("box")
+    box.attrs["dimension"] = 3
+    box.attrs["boundary"] = np.array(["none"] * 3, dtype="S4")
+    for name, array in (
+        ("mass", metadata.mass),
+        ("id", metadata.id.astype(np.int64)),
+        ("species", metadata.layer.astype(np.int8)),
+        ("object", metadata.object_of),
+        ("held", metadata.held.astype(np.uint8)),
+    ):
+        _table(particles, name, array)
+    particles["mass"].attrs["unit"] = "kg"
+    bonds = _table(file.create_group("connectivity"), "bonds", metadata.bond, packed=True)
+    bonds.attrs["particles_group"] = particles.ref
+    own = file.create_group("parameters/mdanim")
+    _write_metadata(own, metadata, dt, steps_per_frame)
+
+    # Written now, so that later writes to them need no room: a full disk leaves all frames before countable.
+    step = particles.create_dataset("position/step", data=np.full(frames, NOT_WRITTEN, np.int64))
+    time = particles.create_dataset("position/time", data=np.full(frames, np.nan))
+    time.attrs["unit"] = "s"
+    quantities = list(_quantities(metadata))
+    own.create_dataset(CHECKSUM, data=np.zeros((frames, 1 + len(quantities)), np.uint32))
+    for name, above, shape, real, unit in quantities:
+        group = file.require_group(f"{above}/{name}")
+        value = _room(group, (frames, *shape), real)
+        # H5MD's own attribute is `unit`, but MDAnalysis refuses a file whose length unit it does not
+        # know, and it knows no metre; so `units` says it everywhere and `unit` where it is understood.
+        value.attrs["units"] = unit
+        if unit != "m":
+            value.attrs["unit"] = unit
+        for key, dataset in ((STEP, step), (TIME, time)):
+            if key not in group:
+                group[key] = dataset
+    if liquid := metadata.liquid:
+        file["observables/liquid"].attrs.update(
+            name=_text([liquid.name]),
+            low=liquid.low,
+            high=liquid.high,
+            shape=np.array(liquid.shape, dtype=np.int64),
+            density=liquid.density,
+            color=_text([liquid.color]),
+        )
+
+
+def _room(group: h5py.Group, shape: tuple[int, ...], real: type) -> h5py.Dataset:
+    """A dataset "value" of which nothing is written; its place in the file is known at once."""
+    import h5py
+
+    create = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    create.set_layout(h5py.h5d.CONTIGUOUS)
+    create.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
+    create.set_fill_time(h5py.h5d.FILL_TIME_NEVER)
+    kind = h5py.h5t.py_create(np.dtype(real))
+    return h5py.Dataset(h5py.h5d.create(group.id, b"value", kind, h5py.h5s.create_simple(shape), create))
+
+
+def _table(group: h5py.Group, name: str, array: np.ndarray, packed: bool = False) -> h5py.Dataset:
+    """A dataset that never changes, with a checksum; ``packed`` shrinks tables of whole numbers."""
+    options = {}
+    if array.size:
+        rows = max(1, min(len(array), _CHUNK_BYTES // (array.nbytes // len(array))))
+        options = {"chunks": (rows, *array.shape[1:]), "fletcher32": True}
+        if packed:
+            options |= {"compression": "gzip", "compression_opts": 1, "shuffle": True}
+    return group.create_dataset(name, data=array, **options)
+
+
+def _write_metadata(group: h5py.Group, metadata: TrajectoryMetadata, dt: float, steps_per_frame: int) -> None:
+    group.attrs.update(
+        format=FORMAT,
+        dt=dt,
+        steps_per_frame=steps_per_frame,
+        title=_text([metadata.title]),
+        total=metadata.total,
+        save=_text([metadata.save.value]),
+        single=metadata.single,
+    )
+    if metadata.ground is not None:
+        group.attrs["ground"] = metadata.ground
+    if metadata.walls is not None:
+        group.attrs["walls"] = np.array(metadata.walls)
+    for name, array in (
+        ("scene", _text([metadata.scene_text])),
+        ("name", _text(metadata.names)),
+        ("color", _text(metadata.colors)),
+        ("still", metadata.still.astype(np.uint8)),
+        ("object_mass", metadata.object_mass),
+        ("first", metadata.first.astype(np.int64)),
+        ("surface_of", metadata.surface_of.astype(np.int64)),
+    ):
+        _table(group, name, array)
+    surfaces = group.create_group("surface")
+    shapes = [(len(s.triangle), len(s.index), s.index.shape[1]) for s in metadata.surfaces]
+    _table(surfaces, "shape", np.array(shapes, dtype=np.int64).reshape(-1, 3))
+    for name in ("triangle", "index", "weight"):
+        none = np.zeros(0, np.int32 if name != "weight" else np.float64)
+        flat = np.concatenate([none, *(getattr(s, name).ravel() for s in metadata.surfaces)])
+        _table(surfaces, name, flat, packed=True)
+
+
+def read_metadata(file: h5py.File) -> TrajectoryMetadata:
+    """What never changes during the run. Raises KeyError, OSError, ValueError for a file that is damaged or newer than FORMAT."""
+    group, particles = file["parameters/mdanim"], file["particles/all"]
+    if group.attrs["format"] > FORMAT:
+        raise KeyError(f"format {group.attrs['format']}, newer than {FORMAT}: update mdanim-lammps")
+    walls = group.attrs.get("walls")
+    return TrajectoryMetadata(
+        title=_string(group.attrs["title"]),
+        names=_texts(group["name"]),
+        colors=_texts(group["color"]),
+        still=group["still"][:].astype(bool),
+        object_mass=group["object_mass"][:],
+        first=group["first"][:],
+        total=int(group.attrs["total"]),
+        id=particles["id"][:],
+        mass=particles["mass"][:],
+        layer=particles["species"][:],
+        held=particles["held"][:].astype(bool),
+        bond=file["connectivity/bonds"][:],
+        surfaces=_read_surfaces(group["surface"]),
+        surface_of=group["surface_of"][:],
+        ground=float(group.attrs["ground"]) if "ground" in group.attrs else None,
+        walls=None if walls is None else (tuple(walls[0].tolist()), tuple(walls[1].tolist())),
+        liquid=_read_liquid(file),
+        save=Save(_string(group.attrs["save"])),
+        single=bool(group.attrs["single"]),
+        scene_text=_texts(group["scene"])[0],
+    )
+
+
+def _read_surfaces(group: Mapping[str, h5py.Dataset]) -> tuple[Surface, ...]:
+    flat = {name: group[name][:] for name in ("triangle", "index", "weight")}
+    shapes = group["shape"][:]
+    ends = np.cumsum(np.stack([3 * shapes[:, 0], shapes[:, 1] * shapes[:, 2]], axis=1), axis=0)
+    return tuple(
+        Surface(
+            triangle=flat["triangle"][t - 3 * triangles : t].reshape(-1, 3),
+            index=flat["index"][v - vertices * corners : v].reshape(-1, corners),
+            weight=flat["weight"][v - vertices * corners : v].reshape(-1, corners),
+        )
+        for (triangles, vertices, corners), (t, v) in zip(shapes, ends)
+    )
+
+
+def _read_liquid(file: h5py.File) -> LiquidMetadata | None:
+    if "observables/liquid" not in file:
+        return None
+    attributes = file["observables/liquid"].attrs
+    low, high, shape = (tuple(attributes[key].tolist()) for key in ("low", "high", "shape"))
+    name, color = (_string(attributes[key]) for key in ("name", "color"))
+    return LiquidMetadata(name, low, high, shape, float(attributes["density"]), color)
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("mdanim-lammps")
+    except PackageNotFoundError:
+        return "source tree"
+
+
+def _text(lines: Sequence[str]) -> np.ndarray:
+    """UTF-8 in fields of fixed width: HDF5 keeps strings of variable length in a heap that has no checksums."""
+    encoded = [line.encode() for line in lines]
+    return np.array(encoded, dtype=f"S{max([1, *map(len, encoded)])}")
+
+
+def _texts(dataset: h5py.Dataset) -> tuple[str, ...]:
+    return tuple(line.decode() for line in dataset[:])
+
+
+def _string(attribute: str | np.ndarray) -> str:
+    """Text of an attribute; before format 3 its length was variable."""
+    return attribute if isinstance(attribute, str) else attribute[0].decode()
+
+
+@contextmanager
+def _hdf5_errors(path: Path) -> Iterator[None]:
+    """Turn the errors of HDF5 too into OutputError; it gives some without a number."""
+    with disk_errors(path):
+        try:
+            yield
+        except RuntimeError as error:
+            full = "space" in str(error)
+            raise OSError(errno.ENOSPC if full else errno.EIO, os.strerror(errno.ENOSPC) if full else str(error)) from error

@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Writes the trajectory file, frame by frame; what was flushed survives a crash, a full disk and a loss of power."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import OutputError
+from ..model.basin import Grid
+from ..model.model import Model
+from ..scene.scene import Scene
+from .files import disk_errors, rename
+from .trajectory import Trajectory
+from .trajectory_file import (
+    CHECKSUM,
+    FORMAT,
+    LIQUID,
+    NOT_WRITTEN,
+    STEP,
+    TIME,
+    checksum,
+    create_trajectory,
+    frame_tables,
+    open_trajectory,
+    part_of,
+    row_checksum,
+)
+from .trajectory_metadata import metadata_of
+
+
+class TrajectoryWriter:
+    """Writes frames to ``PATH.part``; ``close`` gives the file its name.
+
+    A frame counts once ``flush`` has returned: it then survives the death of the process and a loss of power. The step of
+    a frame is written after the frame's data are on the disk, and a frame without a step does not count.
+
+    Args:
+        path: the finished file, usually ``FOLDER/trajectory.h5``.
+        scene: for names, colours, ground, walls and ``control save``.
+        models: one per solid; frames have the particles of all models one after the other.
+        frames: number of frames of the whole run, the first included.
+        dt: time step [s].
+        steps_per_frame: time steps between frames.
+        scene_text: the expanded scene, so that pictures need no other file.
+        grid: cells of the scene's liquid; every frame then has heights. None without liquid.
+
+    Raises:
+        OutputError: the file cannot be written, e.g. because the disk is full.
+    """
+
+    def __init__(
+        self,
+        path: str | Path,
+        scene: Scene,
+        models: Sequence[Model],
+        *,
+        frames: int,
+        dt: float,
+        steps_per_frame: int,
+        scene_text: str = "",
+        grid: Grid | None = None,
+    ):
+        part = part_of(path)
+        create_trajectory(part, metadata_of(scene, models, scene_text, grid), frames, dt, steps_per_frame)
+        self._open(Path(path), models, count=0)
+
+    @classmethod
+    def append(
+        cls, path: str | Path, scene: Scene, models: Sequence[Model], after_step: int, grid: Grid | None = None
+    ) -> TrajectoryWriter:
+        """Go on with the trajectory of a run that ended early; frames after ``after_step`` are dropped.
+
+        The file is continued where it is: frames up to ``after_step`` are read and checked, and not written again.
+
+        Args:
+            path: as for a new trajectory; ``PATH`` or, of a killed run, ``PATH.part`` must exist.
+            scene, models, grid: the same as in the first run.
+            after_step: last step to keep.
+
+        Raises:
+            OutputError: no trajectory there, one that is damaged or of other objects, or it cannot be written.
+        """
+        path = Path(path)
+        with Trajectory(path) as old:
+            if old.format < FORMAT:
+                raise OutputError(f"{old.path}: format {old.format} cannot be continued; start afresh with --force")
+            if old.names != tuple(m.name for m in models) or old.metadata.total != sum(len(m.position) for m in models):
+                raise OutputError(
+                    f"{old.path}: holds {len(old.names)} objects with {old.metadata.total} particles, "
+                    f"not this scene's; start afresh with --force or another -o folder"
+                )
+            if (old.liquid and old.liquid.grid) != grid:
+                raise OutputError(
+                    f"{old.path}: holds {_described(old.liquid and old.liquid.grid)}, this scene "
+                    f"{_described(grid)}; start afresh with --force or another -o folder"
+                )
+            keep = int(np.searchsorted(old.steps, after_step, side="right"))
+            for frame in range(keep):
+                old.check(frame)
+            last = int(old.steps[keep - 1]) if keep else NOT_WRITTEN
+        if old.path == path:
+            with disk_errors(path):
+                rename(path, part_of(path))
+        self = cls.__new__(cls)
+        self._open(path, models, count=keep, last_step=last)
+        self._drop(keep)
+        return self
+
+    def _open(self, path: Path, models: Sequence[Model], *, count: int, last_step: int = NOT_WRITTEN) -> None:
+        self.path, self._partial = path, part_of(path)
+        with Trajectory(self._partial) as made:
+            self.metadata = made.metadata
+        with open_trajectory(self._partial) as file:
+            self._tables = frame_tables(file)
+        self._frames = self._tables[STEP].frames
+        self._count = count
+        self._last_step = last_step
+        self._pending: list[int] = []
+        stored = self.metadata.id
+        self._stored = slice(None) if len(stored) == self.metadata.total else stored - 1
+        # Masses of all particles, stored or not: the centre of mass is that of the whole object.
+        self._mass = np.concatenate([model.mass for model in models])[:, None]
+        self._starts = np.cumsum([0] + [len(model.position) for model in models][:-1])
+        self._object_mass = np.add.reduceat(self._mass, self._starts)
+        with disk_errors(self._partial):
+            self._descriptor: int | None = os.open(self._partial, os.O_RDWR)
+
+    def write(
+        self,
+        step: int,
+        time: float,
+        position: np.ndarray,
+        velocity: np.ndarray,
+        liquid: tuple[np.ndarray, np.ndarray] | None = None,
+    ) -> None:
+        """Add a frame.
+
+        Args:
+            step: time step number, larger than that of the frame before.
+            time: simulated time [s].
+            position: of all particles, stored or not [m], shape (N, 3).
+            velocity: [m/s], shape (N, 3).
+            liquid: heights z of the liquid over the columns of its cells, smooth and raw [m], each of shape
+                (ny, nx); raw ones are NaN where a solid hides
+                the liquid, minus infinity where one keeps the column dry, as a hull does. None without liquid.
+
+        Raises:
+            OutputError: the frame cannot be written; those before it are kept.
+            ValueError: an array has another shape, the step is not larger, or the file has all its frames.
+        """
+        self._check_frame(step, position, velocity, liquid)
+        values = {
+            "position": position[self._stored],
+            "velocity": velocity[self._stored],
+            "center_of_mass": self._mean(position),
+            "center_of_mass_velocity": self._mean(velocity),
+            **(dict(zip(LIQUID, liquid)) if liquid else {}),
+        }
+        values = {name: np.ascontiguousarray(value, self._tables[name].dtype) for name, value in values.items()}
+        sums = [row_checksum(step, time), *map(checksum, values.values())]
+        with disk_errors(self._partial):
+            for name, value in (values | {CHECKSUM: np.array(sums, np.uint32), TIME: np.float64(time)}).items():
+                self._put(name, self._count, value)
+        self._count += 1
+        self._last_step = int(step)
+        self._pending.append(self._last_step)
+
+    def _check_frame(self, step: int, position: np.ndarray, velocity: np.ndarray, liquid: tuple | None) -> None:
+        for name, array in (("position", position), ("velocity", velocity)):
+            if np.shape(array) != (self.metadata.total, 3):
+                raise ValueError(f"{name} must have shape ({self.metadata.total}, 3), found {np.shape(array)}")
+        expected = [self.metadata.liquid.shape[1::-1]] * 2 if self.metadata.liquid else []
+        found = [np.shape(height) for height in liquid or ()]
+        if found != expected:
+            raise ValueError(f"liquid must be heights of shapes {expected}, found {found}")
+        if step <= self._last_step:
+            raise ValueError(f"step must be larger than that of the frame before ({self._last_step}), found {step}")
+        if self._count == self._frames:
+            raise ValueError(f"all {self._frames} frames of the file are written")
+
+    def flush(self) -> None:
+        """Return when all frames so far are on the disk. Raises OutputError."""
+        if not self._pending:
+            return
+        with disk_errors(self._partial):
+            # A step makes its frame count, so the data are on the disk before it.
+            os.fdatasync(self._descriptor)
+            self._put(STEP, self._count - len(self._pending), np.array(self._pending, np.int64))
+            os.fdatasync(self._descriptor)
+        self._pending.clear()
+
+    def close(self, *, finished: bool = True) -> Path:
+        """Flush, close, and give the file its name; returns where it is.
+
+        Args:
+            finished: False leaves it as ``PATH.part``, for a run that will be resumed.
+
+        Raises:
+            OutputError: the file cannot be written.
+            ValueError: it is said to be finished, and lacks frames.
+        """
+        if self._descriptor is not None:
+            try:
+                self.flush()
+                if finished and self._count < self._frames:
+                    raise ValueError(f"{self._count} of {self._frames} frames are written: the trajectory is not finished")
+            finally:
+                os.close(self._descriptor)
+                self._descriptor = None
+            if finished:
+                with disk_errors(self.path):
+                    rename(self._partial, self.path)
+        return self.path if finished else self._partial
+
+    def __enter__(self) -> TrajectoryWriter:
+        return self
+
+    def __exit__(self, kind, value, traceback) -> None:
+        self.close(finished=kind is None)
+
+    def _put(self, name: str, frame: int, value: np.ndarray) -> None:
+        """Write a quantity of a frame, or of several that follow each other. Raises OSError."""
+        table = self._tables[name]
+        data = memoryview(value.reshape(-1).view(np.uint8))
+        offset = table.offset + frame * table.stride
+        while len(data):
+            written = os.pwrite(self._descriptor, data, offset)
+            data, offset = data[written:], offset + written
+
+    def _drop(self, keep: int) -> None:
+        """Let no frame from this one on count."""
+        with disk_errors(self._partial):
+            self._put(STEP, keep, np.full(self._frames - keep, NOT_WRITTEN, np.int64))
+            os.fdatasync(self._descriptor)
+
+    def _mean(self, value: np.ndarray) -> np.ndarray:
+        """Mass-weighted mean over each object, shape (O, 3)."""
+        return np.add.reduceat(self._mass * value, self._starts) / self._object_mass
+
+
+def _described(grid: Grid | None) -> str:
+    return f"a liquid in {' x '.join(map(str, grid.shape))} cells" if grid else "no liquid"
