@@ -17,7 +17,6 @@ from mdanim_lammps.picture import movie
 from mdanim_lammps.picture.movie import movie_frames, render_movie, render_still
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
-from mdanim_lammps.scene.scene import Render
 from mdanim_lammps.scene.scene import Camera, Render
 from picture_samples import falling, slab_scene, write
 

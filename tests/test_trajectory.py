@@ -316,6 +316,50 @@ def test_full_disk_is_an_output_error(slab, tmp_path):
         assert len(t) == int(died.stdout.split()[-1]) == 18
 
 
+def test_a_size_that_is_not_allowed_is_refused_at_once(tmp_path):
+    """The file has its whole size from the start: what the user's limits or the file system refuse is told before any frame."""
+    code = KILLED.replace("writer =", "import resource\nresource.setrlimit(resource.RLIMIT_FSIZE, (800_000, 800_000))\nwriter =")
+    died = subprocess.run(
+        [sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)], capture_output=True, text=True, timeout=60
+    )
+    assert died.returncode == 1 and died.stdout == ""
+    assert died.stderr.splitlines()[-1].endswith(
+        "trajectory.h5.part: cannot be written: File too large; make room and repeat the command, with --force if it "
+        "made this folder"
+    )
+    assert not os.listdir(tmp_path)
+
+
+def test_a_resumed_run_goes_on_in_its_file(slab, tmp_path):
+    """Resume needs no room for frames that are there; frames that are dropped do not count, also when it is killed at once."""
+    scene, models, frames = slab
+    path = tmp_path / "trajectory.h5"
+    writer = TrajectoryWriter(path, scene, models, frames=FRAMES, dt=0.01, steps_per_frame=10)
+    for frame in frames[:5]:
+        writer.write(*frame)
+    part = writer.close(finished=False)
+    before = part.stat()
+    TrajectoryWriter.append(path, scene, models, after_step=20)
+    assert os.listdir(tmp_path) == [part.name]
+    assert (part.stat().st_ino, part.stat().st_blocks) == (before.st_ino, before.st_blocks)
+    with Trajectory(path) as t:
+        assert t.steps.tolist() == [0, 10, 20]
+
+
+def test_a_trajectory_that_lacks_frames_is_not_finished(slab, tmp_path):
+    """It keeps the name of one that is being written."""
+    scene, models, frames = slab
+    writer = TrajectoryWriter(tmp_path / "t.h5", scene, models, frames=2, dt=0.01, steps_per_frame=10)
+    writer.write(*frames[0])
+    with pytest.raises(ValueError, match="1 of 2 frames are written"):
+        writer.close()
+    assert os.listdir(tmp_path) == ["t.h5.part"]
+    with TrajectoryWriter.append(tmp_path / "t.h5", scene, models, after_step=0) as writer:
+        writer.write(*frames[1])
+        with pytest.raises(ValueError, match="all 2 frames of the file are written"):
+            writer.write(*frames[2])
+
+
 @pytest.mark.parametrize("make", [lambda p: None, lambda p: (p / "trajectory.h5").write_text("not HDF5")])
 def test_no_trajectory_there(tmp_path, make):
     """A folder without one, or a file that is none, is an error with its path."""

@@ -72,6 +72,8 @@ def simulate_on(
     try:
         with disk_errors(job):
             job.write_bytes(pickle.dumps(task, protocol=pickle.HIGHEST_PROTOCOL))
+            with part_of(result).open("wb") as part:  # on a full disk too there is room for an error's message
+                os.posix_fallocate(part.fileno(), 0, 1 << 16)
         with _Signals(folder) as signals:
             ranks = signals.ranks = _started(command)
             hearing = threading.Thread(target=_hear, args=(ranks.stderr, said), daemon=True)
@@ -87,7 +89,7 @@ def simulate_on(
             raise lost(_cause(ranks.returncode, said), folder)
         found = pickle.loads(result.read_bytes())
     finally:
-        for file in (job, result):
+        for file in (job, result, part_of(result)):
             file.unlink(missing_ok=True)
     if isinstance(found, Result):
         return found
@@ -145,6 +147,11 @@ def _environment() -> dict[str, str]:
 def result_of(job: Path) -> Path:
     """The file that the supervisor leaves for a job."""
     return job.with_name(job.name + ".result")
+
+
+def part_of(result: Path) -> Path:
+    """The file that the supervisor writes and then renames; it has room from the start."""
+    return result.with_name(result.name + ".part")
 
 
 def _cause(code: int, said: list[str]) -> str:

@@ -17,7 +17,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from ...errors import MdanimError, OutputError
-from .launch import Task, lost, result_of
+from .launch import Task, lost, part_of, result_of
 
 FAREWELL = 30.0
 """Seconds for which an executor that has failed waits for the supervisor to end all ranks, until it does so itself."""
@@ -92,10 +92,10 @@ def _supervise(world, job: Path) -> None:
 def _leave(job: Path, result) -> None:
     """Let the process that has started all ranks find a result, whole."""
     found = result_of(job)
-    part = found.with_name(found.name + ".part")
     with suppress(FileNotFoundError):  # the output folder has been deleted: that tells the process that waits for the result
-        part.write_bytes(pickle.dumps(result))
-        part.rename(found)
+        with part_of(found).open("r+b") as file:
+            file.truncate(file.write(pickle.dumps(result)))
+        part_of(found).rename(found)
 
 
 def _told(error: MdanimError) -> tuple[str, str, str]:
