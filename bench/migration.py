@@ -76,7 +76,8 @@ class Mover:
         return {"pack": pack, "wire": wire, "end to end": time.perf_counter() - start}
 
     def receive(self) -> dict[str, float]:
-        from mdanim_lammps.engine.instance import Instance, State
+        from mdanim_lammps.engine.instance import Instance
+        from mdanim_lammps.engine.state import State
 
         packed = np.empty((3, self.particles, 3))
         self.comm.Barrier()

@@ -6,9 +6,10 @@ from dataclasses import fields
 import numpy as np
 import pytest
 from mdanim_lammps.engine.data_file import data_text
-from mdanim_lammps.engine.instance import Instance, State
+from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.part import Parts
 from mdanim_lammps.engine.plan import both_ends, make_plan
+from mdanim_lammps.engine.state import State
 from mdanim_lammps.errors import SetupError
 from mdanim_lammps.model.system import System
 from mdanim_lammps.results.ledger import LOSS
@@ -122,7 +123,7 @@ def particles(system, objects) -> np.ndarray:
 
 def cut(state: State, rows: np.ndarray, liquid: bool) -> State:
     """What a part has of a state of the whole."""
-    return State(state.x[rows], state.v[rows], state.f[rows], state.liquid if liquid else None)
+    return State(state.x[rows], state.v[rows], state.f[rows], state.records if liquid else {})
 
 
 def evolve(instance, steps: int) -> State:
@@ -135,9 +136,9 @@ def equal(a: State, b: State, what: object = "") -> None:
     """Compare every bit of what moves."""
     for name in ("x", "v", "f"):
         assert np.array_equal(getattr(a, name), getattr(b, name)), (name, what)
-    assert (a.liquid is None) == (b.liquid is None)
-    if a.liquid is not None:
-        assert np.array_equal(np.delete(a.liquid, ACCOUNTS), np.delete(b.liquid, ACCOUNTS)), what
+    assert set(a.records) == set(b.records)
+    if "liquid" in a.records:
+        assert np.array_equal(*(np.delete(state.records["liquid"].data, ACCOUNTS) for state in (a, b))), what
 
 
 def islands(low, high, gap) -> list[tuple[int, ...]]:
@@ -218,9 +219,9 @@ def test_the_liquid_alone(prepared):
         whole.setup()
         start = evolve(whole, 20)
         whole.run(300)
-        alone.put(20, State(*np.zeros((3, 0, 3)), start.liquid))
+        alone.put(20, State(*np.zeros((3, 0, 3)), start.records))
         alone.run(300)
-        assert np.array_equal(alone.liquid_state(), whole.liquid_state())
+        assert np.array_equal(alone.records()["liquid"].data, whole.records()["liquid"].data)
         assert alone.fix_value("liquid", 4) > 0, "nothing has moved, so nothing is shown"
 
 
@@ -242,7 +243,7 @@ def test_float_from_the_start(scenes):
         whole.setup()
         part.setup()
         equal(evolve(part, 100), evolve(whole, 100))
-        assert np.array_equal(part.liquid_state(), whole.liquid_state())
+        assert np.array_equal(part.records()["liquid"].data, whole.records()["liquid"].data)
 
 
 def test_a_part_says_what_a_plan_of_its_own_would_say(prepared):

@@ -9,9 +9,10 @@ import os
 import sys
 from pathlib import Path
 
-from mdanim_lammps.engine.instance import Instance, State
+from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.part import Parts
 from mdanim_lammps.engine.spares import Spares
+from mdanim_lammps.engine.state import State
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 

@@ -5,7 +5,8 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from mdanim_lammps.engine.instance import Instance, State
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.engine.state import State
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 
@@ -23,7 +24,7 @@ def seen(instance: Instance) -> dict[str, np.ndarray]:
     found = {name: getattr(state, name) for name in ("x", "v", "f")}
     if plan.grid:
         smooth, raw = instance.liquid_heights()
-        found |= {"liquid": state.liquid, "cells": instance.liquid_cells(), "smooth": smooth, "raw": raw}
+        found |= {"liquid": state.records["liquid"].data, "cells": instance.liquid_cells(), "smooth": smooth, "raw": raw}
     if "lambda" in plan.columns:
         found["lambda"] = instance.array("d_lambda").copy()
     for name in "xvf":  # ranks have different particles, and all of them together all

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Run one scene in many ways, one after the other, in one start of MPI: ``mpiexec -n 5 python matrix.py CASES.json SECONDS``.
+"""Run one scene in many ways in one start of MPI: ``mpiexec -n 5 python matrix.py CASES.json SECONDS [effect]``.
 
 Each way is a supervisor and executors on some of the ranks, or the sequential program on one of them.
 """
@@ -8,9 +8,16 @@ import faulthandler
 import json
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
+if "effect" in sys.argv:
+    from mpi import memory_effect  # noqa: F401  before the table of effects is read
+
+import numpy as np
+from mdanim_lammps.parallel.plan import frame_plan
 from mdanim_lammps.parallel.plan.frame_plan import Settings
+from mdanim_lammps.parallel.runtime.bundle import Bundle
 from mdanim_lammps.parallel.runtime.executor import serve
 from mdanim_lammps.parallel.runtime.supervisor import Distributed
 from mdanim_lammps.results.checkpoint import Checkpoint
@@ -43,6 +50,33 @@ def run(case: dict, ready, world) -> None:
         source.timeline.write(folder)
 
 
+class Spoiled:
+    """What one case does to all ranks while it runs: ``rotate`` gives every island to the next executor in every plan,
+    ``forget`` lets instances begin without records ("all"), or without those of pairs."""
+
+    def __init__(self, case: dict):
+        self.case, self.turn = case, 0
+        self.assign, self.records = frame_plan.assign, Bundle.records_from
+
+    def __enter__(self) -> None:
+        if self.case.get("rotate"):
+            frame_plan.assign = self._rotated
+        if forget := self.case.get("forget"):
+            whole = self.records
+            Bundle.records_from = lambda bundle, records: {
+                fix: found.where(np.full(len(found), False) if forget == "all" else found.keys[:, 1] == 0)
+                for fix, found in whole(bundle, records).items()
+            }
+
+    def _rotated(self, label, cost, owner, executors, **more):
+        given = self.assign(label, cost, owner, executors, **more)
+        self.turn += 1
+        return given if given.teams else replace(given, owner=np.where(label >= 0, (label + self.turn) % executors, given.owner))
+
+    def __exit__(self, *_) -> None:
+        frame_plan.assign, Bundle.records_from = self.assign, self.records
+
+
 def wait(comm) -> None:
     """A barrier that leaves the processor to others."""
     request = comm.Ibarrier()
@@ -60,10 +94,11 @@ def main() -> None:
         ranks = case["executors"] + 1 if case["control"] else 1
         world = everybody.Split(0 if everybody.rank < ranks else MPI.UNDEFINED, everybody.rank)
         if world != MPI.COMM_NULL:
-            if everybody.rank == 0:
-                run(case, ready, world if case["control"] else None)
-            else:
-                serve(world)
+            with Spoiled(case):
+                if everybody.rank == 0:
+                    run(case, ready, world if case["control"] else None)
+                else:
+                    serve(world)
         wait(everybody)
 
 

@@ -24,8 +24,9 @@ WINDOWS = {"worth": 0, "finest": 8}
 """Windows shorter than a frame wherever loads are not in balance."""
 
 
-def ways(scene: Path, cases: dict[str, dict], ranks: int = 5, timeout: float = 60.0) -> dict[str, Path]:
-    """Run a scene in all of these ways, the sequential one first; returns the folder of each."""
+def ways(scene: Path, cases: dict[str, dict], ranks: int = 5, timeout: float = 60.0, *, effect: bool = False) -> dict[str, Path]:
+    """Run a scene in all of these ways, the sequential one first; returns the folder of each. ``effect``: with that of
+    memory_effect.py."""
     folder = scene.parent
     cases = {"sequential": SEQUENTIAL} | cases
     work = [{"folder": str(folder / case.get("in", name)), **case} for name, case in cases.items()]
@@ -41,6 +42,7 @@ def ways(scene: Path, cases: dict[str, dict], ranks: int = 5, timeout: float = 6
             MATRIX,
             folder / "cases.json",
             str(timeout),
+            *(["effect"] if effect else []),
         ],
         capture_output=True,
         text=True,

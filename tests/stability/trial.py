@@ -7,7 +7,8 @@ import math
 from pathlib import Path
 
 import numpy as np
-from mdanim_lammps.engine.instance import Instance, State
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.engine.state import State
 from mdanim_lammps.errors import DivergedError
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.run.energy import rounding_energy

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from ..model.basin import Grid
 from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude
 from .plan import Ends, Plan
 from .plugin import open_lammps
+from .state import NO_RECORDS, Records, State, StateRecords
 
 LIQUID = b"liquid"
 """ID of the liquid's fix (effects/liquid.py)."""
@@ -32,20 +32,6 @@ REPEATED = ("comm_modify", "bond_style")
 UNDONE = {"fix": "unfix {}", "region": "region {} delete"}
 """What takes back a command for what acts on particles; the others may be given again."""
 GLOBAL, SCALAR, VECTOR, SIZE_VECTOR = 0, 0, 1, 3  # LAMMPS's constants for extract_fix
-
-
-@dataclass(frozen=True)
-class State:
-    """All that the later steps of an instance depend on, but for the number of the step."""
-
-    x: np.ndarray
-    """Positions in tag order [m], shape (N, 3)."""
-    v: np.ndarray
-    """Velocities [m/s], shape (N, 3)."""
-    f: np.ndarray
-    """Forces [N], shape (N, 3): dashpots see half-step velocities, which x and v do not hold."""
-    liquid: np.ndarray | None = None
-    """What the liquid depends on besides, uint8, shape (B,); None without one."""
 
 
 class Instance:
@@ -79,6 +65,7 @@ class Instance:
         """Those of this rank's particles, as they were when it was looked last; their places by ascending tags; and `rows`."""
         for function in (self._library.mdanim_bond_lost, self._library.mdanim_bond_seconds):
             function.restype, function.argtypes = ctypes.c_double, [ctypes.c_void_p]
+        self._library.mdanim_stateful.restype = ctypes.c_char_p
         try:
             self._fill()
         except BaseException as error:
@@ -317,28 +304,53 @@ class Instance:
     def state(self) -> State:
         """A copy of the state."""
         x, v, f = (a.copy() for a in map(self.array, "xvf"))
-        return State(x, v, f, self.liquid_state() if self.plan.grid else None)
+        return State(x, v, f, self.records())
+
+    def records(self) -> dict[str, StateRecords]:
+        """What fixes keep besides, by the ID of the fix; objects are numbered as in the plan."""
+        found = {}
+        for fix in self._stateful():
+            count, size = ctypes.c_longlong(), ctypes.c_longlong()
+            self._call(
+                f"pack the state of fix {fix}", self._library.mdanim_state_pack, fix.encode(), *map(ctypes.byref, (count, size))
+            )
+            keys, first = np.empty((count.value, 2), np.int32), np.empty(count.value + 1, np.int64)
+            data = np.empty(size.value, np.uint8)
+            pointers = map(_pointer, (keys, first, data))
+            self._call(f"give the state of fix {fix}", self._library.mdanim_state_get, fix.encode(), *pointers)
+            found[fix] = StateRecords(keys, first, data)
+        return found
+
+    def _put_records(self, records: Records) -> None:
+        for fix in self._stateful():
+            mine = records.get(fix, NO_RECORDS)
+            self._call(
+                f"take up the state of fix {fix}",
+                self._library.mdanim_state_put,
+                fix.encode(),
+                ctypes.c_longlong(len(mine)),
+                *map(_pointer, (mine.keys, mine.first, mine.data)),
+            )
+
+    def _stateful(self) -> list[str]:
+        """IDs of the fixes that keep a state of their own."""
+        found: list[str] = []
+        while name := self._library.mdanim_stateful(self._handle, ctypes.c_int(len(found))):
+            found.append(name.decode())
+        return found
 
     def put(self, step: int, state: State) -> None:
         """Take up a state bit for bit, at any time and as often as wanted; then `run` goes on from it.
 
-        Energies that were lost before stay in their accounts: who takes back steps is to compare them from here on. Raises
-        SetupError when the liquid's state is of another grid or version, ValueError when the number of particles is another.
+        Energies that were lost before stay in their accounts: a caller that takes back steps must compare them from here on.
+        Raises SetupError when a fix refuses its records, as the liquid does those of another grid, ValueError when the number of
+        particles is another.
         """
         n = self.plan.system.particles
         for name, array in (("x", state.x), ("v", state.v), ("f", state.f)):
             if array.shape != (n, 3):
                 raise ValueError(f"{name} of the state has the shape {array.shape}, the plan has {n} particles")
         self._command(f"reset_timestep {step}")
-        if state.liquid is not None:
-            blob = np.ascontiguousarray(state.liquid, np.uint8)
-            self._call(
-                "take up the liquid's state",
-                self._library.mdanim_liquid_set_state,
-                LIQUID,
-                _pointer(blob),
-                ctypes.c_longlong(len(blob)),
-            )
         if self._comm:
             # A particle may be far from the rank that holds it now, farther than LAMMPS's own exchange reaches.
             self._command("delete_atoms group all compress no")
@@ -353,6 +365,7 @@ class Instance:
         else:
             self.array("x")[:] = state.x
         self._write("v", state.v)
+        self._put_records(state.records)
         self.setup()
         self._write("v", state.v)
         self._write("f", state.f)
@@ -451,15 +464,6 @@ class Instance:
         cells = np.empty(self._grid().shape[::-1], np.uint8)
         self._call("tell cells", self._library.mdanim_liquid_cells, LIQUID, _pointer(cells))
         return cells
-
-    def liquid_state(self) -> np.ndarray:
-        """All that the liquid's later steps depend on, for a State; uint8, shape (B,). Raises SetupError without a liquid."""
-        self._grid()
-        size = ctypes.c_longlong()
-        self._call("tell the liquid's state", self._library.mdanim_liquid_state_size, LIQUID, ctypes.byref(size))
-        state = np.empty(size.value, np.uint8)
-        self._call("tell the liquid's state", self._library.mdanim_liquid_get_state, LIQUID, _pointer(state))
-        return state
 
     def _grid(self) -> Grid:
         if self.plan.grid is None:

@@ -4,15 +4,17 @@
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
+from ..engine.state import Records, State, StateRecords
 from ..errors import OutputError
 from .files import write_whole
 
-VERSION = 3
+VERSION = 4
+"""Of the file: 4 has the records of all fixes that keep any."""
 
 
 @dataclass(frozen=True)
@@ -33,13 +35,21 @@ class Checkpoint:
     """Which run this is a state of: another scene or time step cannot go on from it."""
     ledger: int = 0
     """Checksum of the ledger's rows up to this frame (`Ledger.checksum`)."""
-    liquid: np.ndarray | None = None
-    """State of the liquid's fix, uint8 bytes, shape (S,); None without liquid."""
+    records: Records = field(default_factory=dict)
+    """What fixes keep besides, by the ID of the fix."""
+
+    @property
+    def state(self) -> State:
+        """What an instance takes up."""
+        return State(self.x, self.v, self.f, self.records)
 
     def write(self, path: Path) -> None:
         """Write atomically: the last good checkpoint is never lost. Raises OutputError."""
-        # Cells are mostly equal and shrink to a hundredth; positions and forces would not shrink.
-        liquid = {} if self.liquid is None else {"liquid": np.frombuffer(zlib.compress(self.liquid.tobytes(), 1), np.uint8)}
+        records = {}
+        for n, of_fix in enumerate(self.records.values()):
+            # A liquid's are mostly equal cells: a hundredth is left of them; positions and forces would not shrink.
+            packed = np.frombuffer(zlib.compress(of_fix.data.tobytes(), 1), np.uint8)
+            records |= {f"keys{n}": of_fix.keys, f"first{n}": of_fix.first, f"data{n}": packed}
 
         def save(part: Path) -> None:
             with open(part, "wb") as file:
@@ -55,7 +65,8 @@ class Checkpoint:
                     f=self.f,
                     keys=np.array(list(self.carried)),
                     values=np.array(list(self.carried.values()), float),
-                    **liquid,
+                    fixes=np.array(list(self.records), str),
+                    **records,
                 )
 
         write_whole(path, save)
@@ -67,10 +78,15 @@ class Checkpoint:
             with np.load(path) as data:
                 if int(data["version"]) != VERSION:
                     raise OutputError(
-                        f"{path} is of version {int(data['version'])}, this program writes {VERSION}; "
-                        "run the scene again with --force"
+                        f"{path} is of version {int(data['version'])}, this program reads {VERSION}: "
+                        "go on with the program that wrote it, or run the scene again with --force"
                     )
-                liquid = np.frombuffer(zlib.decompress(data["liquid"]), np.uint8) if "liquid" in data else None
+                records = {
+                    fix: StateRecords(
+                        data[f"keys{n}"], data[f"first{n}"], np.frombuffer(zlib.decompress(data[f"data{n}"]), np.uint8)
+                    )
+                    for n, fix in enumerate(data["fixes"].tolist())
+                }
                 return cls(
                     int(data["step"]),
                     int(data["frame"]),
@@ -80,7 +96,7 @@ class Checkpoint:
                     dict(zip(data["keys"].tolist(), data["values"].tolist())),
                     str(data["run"]),
                     int(data["ledger"]),
-                    liquid,
+                    records,
                 )
         except OutputError:
             raise

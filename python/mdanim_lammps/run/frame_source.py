@@ -10,8 +10,9 @@ from typing import Protocol
 import numpy as np
 
 from ..effects.air_drag import LEAPFROG
-from ..engine.instance import Instance, State
+from ..engine.instance import Instance
 from ..engine.plan import Plan
+from ..engine.state import State
 from ..errors import DivergedError
 from ..results.checkpoint import Checkpoint
 from .energy import energies
@@ -111,7 +112,7 @@ class Sequential:
 
     def begin(self, resume):
         if resume:
-            self.instance.put(resume.step, State(resume.x, resume.v, resume.f, resume.liquid))
+            self.instance.put(resume.step, resume.state)
             return None
         self.instance.setup()
         return self._frame()

@@ -337,7 +337,7 @@ class _Run:
         carried["seconds"] = sum(self.seconds.values())
         s = self.source.state()
         rows = self.ledger.checksum(frame + 1)
-        Checkpoint(now.step, frame, s.x, s.v, s.f, carried, self.run_id, rows, s.liquid).write(self.folder / CHECKPOINT)
+        Checkpoint(now.step, frame, s.x, s.v, s.f, carried, self.run_id, rows, s.records).write(self.folder / CHECKPOINT)
 
     def _reread_ledger(self, frame: int) -> None:
         """Take the rows up to the checkpoint's frame. Raises OutputError when they are not those that were there then."""

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from ...engine.instance import State
 from ...engine.part import Parts
 from ...engine.spares import Spares
+from ...engine.state import Records, State, StateRecords
 from ...model.system import side_by_side
 from ...run.energy import losses
 from ...run.frame_source import run_window
@@ -81,7 +81,7 @@ class Bundle:
         self.instance = spares.instance(self.plan, comm)
         self.places = parts.whole.system.stretches(self.objects)
         """Its particles among all."""
-        self.first = parts.whole.system.first
+        self.first, self.still = parts.whole.system.first, parts.whole.system.still
         self.particles = np.diff(self.plan.system.first) if len(self.objects) else np.zeros(0, np.int64)
         """Of each object."""
         self.scattered = False
@@ -137,6 +137,34 @@ class Bundle:
         among = np.zeros(len(self.first), bool)
         among[np.asarray(objects, np.intp)] = True
         return among[self.objects]
+
+    # --- what fixes keep ---------------------------------------------------------------------------------------------
+
+    @property
+    def inside(self) -> np.ndarray:
+        """Which of all objects are in it and not laid aside, and last whether the whole is: bool, shape (M + 1,)."""
+        inside = np.zeros(len(self.first), bool)
+        inside[list(self.key.objects)] = True
+        inside[-1] = self.key.liquid
+        return inside
+
+    def records_from(self, records: Records) -> dict[str, StateRecords]:
+        """Of records of all objects those that its instance is to have, numbered as there."""
+        inside = self.inside
+        return {fix: found.where(found.of(inside)).take(self.objects, self.key.liquid) for fix, found in records.items()}
+
+    def records_to(self, records: Records) -> dict[str, StateRecords]:
+        """What its instance has of the objects that it moves, numbered as all objects are; of pairs with guests too."""
+        inside, moved, result = self.inside, np.append(self.members, len(self.first) - 1), {}
+        for fix, found in records.items():
+            whole = found.renumbered(self.objects)
+            result[fix] = whole.where(whole.of(inside) & np.isin(whole.home(self.still), moved))
+        return result
+
+    def records_elsewhere(self, records: Records) -> dict[str, StateRecords]:
+        """Those that its instance has nothing to say about, because an object of them is not in it."""
+        inside = self.inside
+        return {fix: found.where(~found.of(inside)) for fix, found in records.items()}
 
     # --- whom it moves --------------------------------------------------------------------------------------------
 

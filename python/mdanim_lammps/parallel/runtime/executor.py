@@ -13,9 +13,9 @@ from contextlib import contextmanager
 import numpy as np
 from mpi4py import MPI
 
-from ...engine.instance import State
 from ...engine.part import Parts
 from ...engine.spares import Spares
+from ...engine.state import Records, State, StateRecords, join_all
 from ...errors import MdanimError
 from ...run.energy import stored
 from ...run.frame_source import Account, Broken, add_clocks, penetration, pool
@@ -70,7 +70,8 @@ class Executor:
         self.x = np.array(resume.x if resume else self.system.position)
         self.v = np.array(resume.v if resume else self.system.velocity)
         self.f = np.array(resume.f) if resume else np.zeros_like(self.x)
-        self.liquid = resume.liquid if resume else None
+        self.records: Records = resume.records if resume else {}
+        """What fixes keep, of the records that travel with its own objects."""
         self.started = resume is not None
         """False before step 0: forces come from the scene then."""
         self.control: Control = make_control(job, self.parts, mail, comm)
@@ -166,7 +167,9 @@ class Executor:
                 if bundle not in live.values():
                     bundle.unite(self.x, self.v, self.f)
                     self._close(bundle)
-            if before is not None:
+            if before is None:
+                self.records = self._records_of(np.flatnonzero(order.plan.owner == self.me))
+            else:
                 self._transfer(before.plan.owner, order.plan.owner)
             self.bundles = [self._go_on(live[w.number], w, again) if w.number in live else self._begin(w) for w in wanted]
 
@@ -186,7 +189,7 @@ class Executor:
         back = again and bundle.key != wanted.key
         bundle.become(wanted)
         if back:
-            self._start(bundle)
+            self._start(bundle, self.records)
         return bundle
 
     def _transfer(self, before: np.ndarray, after: np.ndarray) -> None:
@@ -196,6 +199,7 @@ class Executor:
             goes = changed[(before[changed] == self.me) & (after[changed] == other)]
             if len(goes):
                 self.mail.send(other, Tag.OBJECTS, self._pack(goes), self.comm)
+        self.records = self._records_of(np.flatnonzero(after == self.me))
         for other in range(self.comm.size):
             comes = changed[(before[changed] == other) & (after[changed] == self.me)]
             if len(comes):
@@ -203,36 +207,40 @@ class Executor:
                 self.moves += len(comes)
 
     def _places(self, objects: np.ndarray) -> list[slice]:
-        """Particles of objects, the pool not counted."""
+        """Particles of objects, where the liquid counts as one without any."""
         return self.system.stretches(objects[objects < self.objects])
 
     def _pack(self, objects: np.ndarray) -> Moved:
-        places = self._places(objects)
-        return Moved(*gathered(places, self.x, self.v, self.f), self.liquid if self.objects in objects else None)
+        return Moved(*gathered(self._places(objects), self.x, self.v, self.f), self._records_of(objects))
+
+    def _records_of(self, objects: np.ndarray) -> dict[str, StateRecords]:
+        """Those that travel with such objects."""
+        return {fix: found.where(np.isin(found.home(self.system.still), objects)) for fix, found in self.records.items()}
 
     def _unpack(self, objects: np.ndarray, moved: Moved) -> None:
         scatter(self._places(objects), (self.x, moved.x), (self.v, moved.v), (self.f, moved.f))
-        if self.objects in objects:
-            self.liquid = moved.liquid
+        self.records = join_all([self.records, moved.records])
 
     def _begin(self, wanted: Wanted) -> Bundle:
         """A bundle with the state of the last frame; on a team, that of its leader."""
-        key = wanted.key
+        key, records = wanted.key, self.records
         if len(key.team) > 1 and self.started:
             everything = np.array([*key.objects, *([self.objects] if key.liquid else [])])
             if self.me == key.team[0]:
                 for member in key.team[1:]:
                     self.mail.send(member, Tag.TEAM, self._pack(everything), self.comm)
-            else:
-                self._unpack(everything, self.mail.take(Tag.TEAM, key.team[0], self.comm))
+            else:  # the leader's objects stay the leader's, and their records with them
+                moved = self.mail.take(Tag.TEAM, key.team[0], self.comm)
+                scatter(self._places(everything), (self.x, moved.x), (self.v, moved.v), (self.f, moved.f))
+                records = moved.records
         bundle = Bundle(self.parts, wanted, self._team(key.team), self.spares)
-        self._start(bundle)
+        self._start(bundle, records)
         return bundle
 
-    def _start(self, bundle: Bundle) -> None:
+    def _start(self, bundle: Bundle, records: Records) -> None:
         """Give a bundle the state of the last frame."""
-        liquid = self.liquid if bundle.key.liquid else None
-        bundle.start(self.step, State(*gathered(bundle.places, self.x, self.v, self.f), liquid) if self.started else None)
+        x_v_f = gathered(bundle.places, self.x, self.v, self.f)
+        bundle.start(self.step, State(*x_v_f, bundle.records_from(records)) if self.started else None)
 
     def _team(self, members: tuple[int, ...]) -> MPI.Comm | None:
         """The communicator of a team, its leader first; None for one executor alone."""
@@ -283,10 +291,11 @@ class Executor:
     def _commit(self) -> None:
         """Take the states of all instances, and what was lost and how deep something was meanwhile."""
         self.pool = None
+        records = []
         for bundle in self.bundles:
             instance, lost = bundle.instance, bundle.newly_lost()
             depth, liquid = penetration(instance), pool(instance)
-            content = instance.liquid_state() if bundle.key.liquid else None  # together with the team, as all above
+            kept = instance.records()  # together with the team, as all above
             bundle.tell(x=self.x, v=self.v, f=self.f)
             if not self._leads(bundle):
                 continue
@@ -294,8 +303,11 @@ class Executor:
             if len(bundle.key.team) > 1:
                 self.led.add(bundle.key.team)
             self._count(lost)
+            self.records = bundle.records_elsewhere(self.records)
+            records.append(bundle.records_to(kept))
             if bundle.key.liquid:
-                self.liquid, self.pool = content, liquid
+                self.pool = liquid
+        self.records = join_all([self.records, *records])
         self.started = True
 
     def _weigh(self) -> None:
@@ -336,10 +348,7 @@ class Executor:
     def _keep(self) -> None:
         """What a checkpoint needs besides."""
         places = self._held()
-        has_pool = self.order.plan.owner[-1] == self.me and self.liquid is not None
-        self.mail.send(
-            SUPERVISOR, Tag.KEPT, Kept(self.frame, places, *gathered(places, self.f), self.liquid if has_pool else None)
-        )
+        self.mail.send(SUPERVISOR, Tag.KEPT, Kept(self.frame, places, *gathered(places, self.f), self.records))
 
     def _held(self) -> list[slice]:
         """Particles that it has told at the last frame, where they are among all."""

@@ -14,6 +14,7 @@ from mpi4py import MPI
 from mpi4py.util import pkl5
 
 from ...engine.plan import Plan
+from ...engine.state import Records
 from ...results.checkpoint import Checkpoint
 from ...run.frame_source import Account, Pool
 from ..plan.frame_plan import Settings
@@ -82,8 +83,8 @@ class Moved:
     v: np.ndarray
     f: np.ndarray
     """Forces [N]: dashpots see half-step velocities that x and v do not hold."""
-    liquid: np.ndarray | None = None
-    """State of the liquid's fix when it moves too."""
+    records: Records = field(default_factory=dict)
+    """What fixes keep, of the records that travel with these objects."""
 
 
 @dataclass(frozen=True)
@@ -116,7 +117,8 @@ class Kept:
     places: list[slice]
     """As in `Share`."""
     f: np.ndarray
-    liquid: np.ndarray | None
+    records: Records
+    """Those that travel with the objects that the executor owns."""
 
 
 @dataclass(frozen=True)

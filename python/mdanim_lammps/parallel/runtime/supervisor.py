@@ -15,8 +15,8 @@ import numpy as np
 from mpi4py import MPI
 
 from ... import errors
-from ...engine.instance import State
 from ...engine.part import Parts
+from ...engine.state import Records, State, join_all
 from ...errors import DivergedError
 from ...results.ledger import LOSS
 from ...results.timeline import Timeline
@@ -170,7 +170,7 @@ class Distributed:
             [team for s in shares for team in s.teams],
         )
         if keep:
-            self.last_state = State(sheaf.x, sheaf.v, sheaf.f, sheaf.liquid)
+            self.last_state = State(sheaf.x, sheaf.v, sheaf.f, join_all(sheaf.kept.values()))
         energies |= potentials(self.ready.plan, sheaf.x) | self.losses
         return Frame(
             self.step,
@@ -196,9 +196,8 @@ class Distributed:
             if message.frame <= self.taken and self.last:  # sent a second time, by an end after a frame that was kept anyway
                 return
             sheaf = self._sheaf(message.frame)
-            sheaf.kept.add(executor)
+            sheaf.kept[executor] = message.records
             scatter(message.places, (sheaf.f, message.f))
-            sheaf.liquid = sheaf.liquid if message.liquid is None else message.liquid
         elif isinstance(message, Ended):
             self.gone.add(executor)
             if message.account is not None:
@@ -223,9 +222,8 @@ class _Sheaf:
     """By executor."""
     keep: bool = False
     """Whether what a checkpoint needs comes with it."""
-    kept: set[int] = field(default_factory=set)
-    """Executors that have sent it."""
-    liquid: np.ndarray | None = None
+    kept: dict[int, Records] = field(default_factory=dict)
+    """Records of fixes, by the executor that has sent it."""
 
 
 class _Desk(threading.Thread):
