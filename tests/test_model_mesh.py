@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Meshes from files: what is accepted, what is refused and why, and points inside."""
 
+import os
+
 import numpy as np
 import pytest
 from mdanim_lammps.model import mesh, shapes
@@ -65,6 +67,60 @@ def test_broken_files_are_refused(tmp_path, name, content, words):
     (tmp_path / name).write_bytes(content)
     with pytest.raises(mesh.MeshError, match=words):
         mesh.load(Mesh(tmp_path / name))
+
+
+HEADER = (
+    "ply\nformat {} 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face {}\nproperty list uchar int vertex_indices\nend_header\n"
+)
+CORNERS = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], "<f4").tobytes()
+FACES = b"".join(b"\x03" + np.array(f, "<i4").tobytes() for f in ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)))
+
+
+def ply(vertices: int, faces: int, data: bytes, form: str = "binary_little_endian") -> bytes:
+    """A PLY file that says that it has so many vertices and faces."""
+    return HEADER.format(form, vertices, faces).encode() + data
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("vertices.ply", ply(99_999_999_999, 4, CORNERS + FACES)),
+        ("many.ply", ply(2_000_000_000, 4, CORNERS + FACES)),
+        ("ascii.ply", ply(2_000_000_000, 1, b"0 0 0\n", "ascii")),
+        ("faces.ply", ply(4, 2_000_000_000, CORNERS + FACES)),
+        ("negative.ply", ply(-4, 4, CORNERS + FACES)),
+        ("header.ply", ply(4, 4, b"")),
+        ("half.ply", ply(4, 4, CORNERS[:20])),
+        ("index.ply", ply(4, 4, CORNERS + FACES.replace(b"\x03\0\0\0", b"\xff\xff\xff\x3f"))),
+        ("triangles.stl", b"\0" * 80 + b"\x28\0\0\0" + b"\0" * 70),
+        ("index.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999\n"),
+        ("texture.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/9 2/9 3/9\n"),
+    ],
+)
+def test_damaged_files_do_not_end_the_program(tmp_path, name, content):
+    """VTK's readers end the process on most of these: the message names the file and a way out."""
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(mesh.MeshError, match=name) as caught:
+        mesh.load(Mesh(tmp_path / name))
+    assert "export it again" in caught.value.hint
+
+
+def test_an_undamaged_file_of_that_kind_is_read(tmp_path):
+    """The tetrahedron that the damaged files above are made from."""
+    (tmp_path / "whole.ply").write_bytes(ply(4, 4, CORNERS + FACES))
+    assert mesh.load(Mesh(tmp_path / "whole.ply")).volume == pytest.approx(1 / 6)
+
+
+def test_large_and_irregular_files_are_not_opened(tmp_path):
+    """A sparse file of 20 GB, a pipe that nothing is written to, and a folder: refused by what the file system says."""
+    with open(tmp_path / "sparse.stl", "wb") as file:
+        file.truncate(20 << 30)
+    os.mkfifo(tmp_path / "pipe.stl")
+    (tmp_path / "folder.stl").mkdir()
+    for name, words in (("sparse", "20480 MiB, 256 are the most"), ("pipe", "no regular file"), ("folder", "no regular file")):
+        with pytest.raises(mesh.MeshError, match=words):
+            mesh.load(Mesh(tmp_path / f"{name}.stl"))
 
 
 def test_a_changed_file_is_read_again(tmp_path):

@@ -26,7 +26,7 @@ from .model.cells import TooThin, end_share, fill_cells
 from .model.shapes import thickness
 from .model.system import System
 from .scene.scene import Accuracy, Ellipsoid, Scene, Shape, Sphere
-from .scene.wording import at_least, number, say
+from .scene.wording import at_least, estimate, number, say
 
 WARN = 0.7
 """Time step over the bound above which large motion may blow up: the bound is that of small motion (docs/physics-solids.md)."""
@@ -48,6 +48,8 @@ SOFTER = 2.0 / 3.0
 """With contact softer than its standard that speed falls with this power of ``contact-stiffness`` (docs/physics-contact.md)."""
 SWEEPS = 4
 """Fewest sweeps of the automaton for each cell that the fastest solid travels; 8 are better (docs/physics-liquid.md)."""
+MOST_FRAMES, MOST_STEPS = 10**7, 10**15
+"""Frames and steps of a run at most: every frame has a row of the ledger in memory, and so many steps take years."""
 MOST_OBJECTS = 100
 """Objects whose own bound is told, the smallest first."""
 
@@ -180,6 +182,14 @@ def certify(scene: Scene, system: System, verdicts: dict[str, Verdict], *, allow
         raise RefusedError(str(problem))
     longest = min([fraction * bound, *(e.pace(scene, system) for e in on.values())]) if asked is None else asked
     per_frame, frames, last = fit_steps(scene, longest)
+    if (steps := per_frame * frames + last) > MOST_STEPS:
+        problem = Problem(
+            scene.control.spans.get("timestep") or scene.control.spans.get("time"),
+            f"time {say(scene.control.time, 's')} is {estimate(steps)} steps of {say(longest, 's')}"
+            + ("" if asked else f", set by {name} ({cause})"),
+            "write a shorter time or a longer time step" if asked else "write a shorter time, or a softer or less damped object",
+        )
+        raise RefusedError(str(problem))
     timestep = 1.0 / (scene.control.frames * per_frame)
     return Certificate(
         timestep=timestep,
@@ -205,6 +215,8 @@ def stable_step(stiff: np.ndarray, drag: np.ndarray) -> np.ndarray:
     """Largest dt with dt^2 a + 2 dt b <= 4, for a [1/s^2] and b [1/s] of any shape; infinite where both are 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         root = np.where(stiff > 0.0, (np.sqrt(drag**2 + 4.0 * stiff) - drag) / stiff, 2.0 / drag)
+        # The difference loses all digits where dashpots are strong.
+        root = np.where(drag**2 > 4.0 * stiff, 4.0 / (np.sqrt(drag**2 + 4.0 * stiff) + drag), root)
     return np.where((stiff > 0.0) | (drag > 0.0), root, np.inf)
 
 
@@ -227,6 +239,17 @@ def fit_steps(scene: Scene, longest: float) -> tuple[int, int, int]:
                     f"{number(control.frames, 6)} fps: "
                     "no time step fits both",
                     f"try 'time {number(whole / control.frames, 6)} s' ({whole} frames)",
+                )
+            ]
+        )
+    if ratio.numerator / ratio.denominator > MOST_FRAMES:
+        raise SceneError(
+            [
+                Problem(
+                    control.spans.get("time"),
+                    f"time {number(control.time)} s is {estimate(control.time * control.frames)} frames at "
+                    f"{number(control.frames)} fps; {estimate(MOST_FRAMES)} are the most",
+                    f"write a shorter time, or at most {number(MOST_FRAMES / control.time)} frames a second",
                 )
             ]
         )

@@ -32,4 +32,6 @@ class Damping(Effect):
         return load.steps * np.count_nonzero(load.system.damping) * rate["dashpot"] / load.fullness
 
     def drag_rate(self, scene, system):
+        if system.damping is None:  # all damped solids are held as a whole by boxes, and have no springs
+            return None
         return 2.0 * spring_norm(system, system.damping) / system.mass

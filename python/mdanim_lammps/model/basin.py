@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import Problem
 from ..scene.scene import Liquid, LiquidModel, Mesh, Scene, Solid, Switch, Vector
-from ..scene.wording import say, whole
+from ..scene.wording import estimate, number, say
 from . import shapes
 from .model import Model
 from .spacing import available_memory, choose_spacing
@@ -126,8 +126,8 @@ def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
         return [
             Problem(
                 place,
-                f"the basin has {whole(grid.cells)} cells of {say(max(grid.cell), 'm')}, which need "
-                f"{needed * 1e-9:.1f} GB, {free * 1e-9:.1f} GB are free",
+                f"the basin has {estimate(grid.cells)} cells of {say(max(grid.cell), 'm')}, which need "
+                f"{number(needed * 1e-9)} GB, {number(free * 1e-9)} GB are free",
                 f"try resolution {say(coarser, 'm')}, or a smaller basin",
             )
         ]

@@ -6,7 +6,6 @@ pyvista (VTK) is needed only here and only for scenes that name a mesh; it is im
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,8 +14,12 @@ from pathlib import Path
 import numpy as np
 
 from ..scene.scene import Mesh
+from ..scene.wording import say
+from .mesh_reader import UnreadableMesh, read_polygons
 
 SUFFIXES = (".stl", ".obj", ".ply")
+SIZES = 1e-9, 1e9
+"""Least and largest measure of a shape [m]."""
 
 
 class MeshError(Exception):
@@ -40,6 +43,11 @@ class Triangles:
     thickness: float
     """Thickness of the thinnest part, an estimate [m]."""
 
+    @property
+    def area(self) -> float:
+        """[m^2]"""
+        return float(_areas(self.points, self.triangles).sum())
+
 
 def load(shape: Mesh) -> Triangles:
     """Read the file of a mesh shape once; raise MeshError where it is missing, unreadable or not closed."""
@@ -59,6 +67,13 @@ def _load(path: Path, scale: float, changed: int, size: int) -> Triangles:
     points, triangles = _read(path)
     triangles = _outward(points, triangles, path.name)
     volume, centre = _volume_and_centre(points, triangles)
+    size = float(np.ptp(points, axis=0).max()) * scale
+    if not SIZES[0] <= size <= SIZES[1]:
+        raise MeshError(
+            f"mesh {path.name}: is {say(size, 'm')} long at scale {scale:g}; "
+            f"{say(SIZES[0], 'm')} to {say(SIZES[1], 'm')} can be modelled",
+            "'scale' is the length of a unit of the file; is an exponent wrong?",
+        )
     points = (points - centre) * scale
     return Triangles(points, triangles, volume * scale**3, _thickness(points, triangles, volume * scale**3))
 
@@ -68,15 +83,12 @@ def _read(path: Path) -> tuple[np.ndarray, np.ndarray]:
     import pyvista
 
     try:
-        # VTK's own warnings name its readers; the message below names the file.
-        with warnings.catch_warnings(), pyvista.vtk_verbosity("off"):
-            warnings.simplefilter("ignore")
-            surface = pyvista.read(path).triangulate().clean(tolerance=1e-7, absolute=False)
-        triangles = np.asarray(surface.faces).reshape(-1, 4)[:, 1:].astype(np.int32)
-        points = np.asarray(surface.points, float)
-    except (OSError, ValueError, AttributeError, RuntimeError) as error:
-        hint = "export it again as STL, OBJ or PLY"
-        raise MeshError(f"mesh {path.name}: cannot be read ({error})", hint) from None
+        polygons, faces = read_polygons(path)
+    except (OSError, UnreadableMesh) as error:
+        raise MeshError(f"mesh {path.name}: {error}", "export it again as STL, OBJ or PLY") from None
+    surface = pyvista.PolyData(polygons, faces=faces).triangulate().clean(tolerance=1e-7, absolute=False)
+    triangles = np.asarray(surface.faces).reshape(-1, 4)[:, 1:].astype(np.int32)
+    points = np.asarray(surface.points, float)
     corners = np.sort(triangles, axis=1)
     triangles = triangles[(corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2])]
     if not len(triangles):
@@ -130,6 +142,17 @@ def _reorient(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return np.asarray(surface.faces).reshape(-1, 4)[:, 1:].astype(np.int32)
 
 
+def _normals(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Outward normals of twice the triangles' areas, shape (T, 3)."""
+    corners = points[triangles]
+    return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+
+def _areas(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Area of each triangle, shape (T,)."""
+    return np.linalg.norm(_normals(points, triangles), axis=1) / 2
+
+
 def _volume_and_centre(points: np.ndarray, triangles: np.ndarray) -> tuple[float, np.ndarray]:
     """Signed volume and centre of mass, by summing the tetrahedra from one point to each triangle."""
     origin = points.mean(axis=0)
@@ -151,8 +174,7 @@ def _thickness(points: np.ndarray, triangles: np.ndarray, volume: float) -> floa
     """
     import pyvista
 
-    corners = points[triangles]
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal = _normals(points, triangles)
     area = np.linalg.norm(normal, axis=1) / 2
     rays = 300
     chosen = np.searchsorted(area.cumsum(), (np.arange(rays) + 0.5) / rays * area.sum())
@@ -160,7 +182,7 @@ def _thickness(points: np.ndarray, triangles: np.ndarray, volume: float) -> floa
     # Even spots inside large triangles: barycentric weights from two low-discrepancy sequences.
     u, v = (np.arange(rays)[:, None] * [0.7548776662466927, 0.5698402909980532] % 1).T
     u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
-    a, b, c = np.moveaxis(corners[chosen], 1, 0)
+    a, b, c = np.moveaxis(points[triangles[chosen]], 1, 0)
     start = a + u[:, None] * (b - a) + v[:, None] * (c - a)
     inward = -normal[chosen] / np.linalg.norm(normal[chosen], axis=1)[:, None]
     size = np.linalg.norm(np.ptp(points, axis=0))

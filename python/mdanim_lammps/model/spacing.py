@@ -12,8 +12,9 @@ import numpy as np
 
 from ..errors import Problem, SceneError
 from ..scene.scene import Accuracy, Box, HoldAll, Scene, Shape, Solid
-from ..scene.wording import say, whole
+from ..scene.wording import number, say, whole
 from . import shapes
+from .limits import check_numbers, check_places, check_sparse
 from .mesh import MeshError
 
 BYTES_PER_PARTICLE = 1500.0
@@ -45,11 +46,13 @@ def plan_spacing(scene: Scene) -> Spacing:
     """Choose the spacing: ``resolution``, else the thinnest part of all solids over the cells that accuracy
     asks.
 
-    Raises SceneError, with a problem for every solid that is thinner than the spacing, whose mesh is no body,
-    and where the particles would not fit in memory.
+    Raises SceneError, with a problem for every number out of range, every solid that is thinner than the spacing, too far from
+    the origin or too sparse in its bounding box, or whose mesh is no body, and where the particles would not fit in memory.
     """
+    if problems := check_numbers(scene):
+        raise SceneError(problems)
     h, set_by, thin = choose_spacing(scene)
-    problems = []
+    problems = check_places(scene, h)
     for solid, t in zip(scene.solids, thin):
         if h > t * (1 + 1e-9):
             problems.append(
@@ -62,6 +65,8 @@ def plan_spacing(scene: Scene) -> Spacing:
     if problems:
         raise SceneError(problems)
     particles = tuple(estimate_particles(solid.shape, h) for solid in scene.solids)
+    if sparse := [p for s, n in zip(scene.solids, particles) if (p := check_sparse(s, h, n))]:
+        raise SceneError(sparse)
     plan = Spacing(h, set_by, particles, sum(particles) * BYTES_PER_PARTICLE, available_memory())
     if plan.memory > plan.available:
         raise SceneError([_too_large(scene, plan)])
@@ -88,8 +93,8 @@ def choose_spacing(scene: Scene) -> tuple[float, str, list[float]]:
 def cells_across(accuracy: Accuracy | float) -> int:
     """Cells across the thinnest part for an accuracy class.
 
-    A target error (``accuracy error p %``) is treated as ``balanced`` so far: turning an error into a number
-    of cells needs the measured ladder of ``mdanim-lammps study``.
+    A target error (``accuracy error p %``) counts as ``balanced`` until ``study/target.py`` has put the measured setting in its
+    place.
     """
     return accuracy.cells if isinstance(accuracy, Accuracy) else Accuracy.BALANCED.cells
 
@@ -141,10 +146,9 @@ def available_memory() -> float:
 
 
 def _too_large(scene: Scene, plan: Spacing) -> Problem:
-    gigabytes = 1e-9
     found = (
-        f"about {whole(plan.total)} particles at a spacing of {say(plan.h, 'm')} "
-        f"need {plan.memory * gigabytes:.1f} GB, {plan.available * gigabytes:.1f} GB are free"
+        f"about {whole(plan.total) if plan.total < 1e9 else number(plan.total)} particles at a spacing of {say(plan.h, 'm')} "
+        f"need {_gigabytes(plan.memory)} GB, {_gigabytes(plan.available)} GB are free"
     )
     # Particles go with 1/h^3; a tenth on top, because surfaces go with 1/h^2 only.
     coarser = plan.h * 1.1 * (plan.memory / plan.available) ** (1 / 3)
@@ -156,6 +160,11 @@ def _too_large(scene: Scene, plan: Spacing) -> Problem:
         f"{solid.name} sets the spacing: {found}",
         f"make it thicker, use fewer objects or a lower accuracy, or try resolution {say(coarser, 'm')}",
     )
+
+
+def _gigabytes(size: float) -> str:
+    size *= 1e-9
+    return f"{size:.1f}" if size < 1e6 else number(size)
 
 
 def _span(solid: Solid):

@@ -39,13 +39,17 @@ class Bench:
         return self.budget - (time.perf_counter() - self.start)
 
     def predict(self, setting: Setting) -> float | None:
-        """Wall seconds that a run of this setting will take, from the measured point nearest in work; None before any."""
+        """Wall seconds that a run of this setting will take, from the measured point nearest in work; None before any.
+
+        Only the simulation grows with the work; what comes before and after it takes about as long for every setting.
+        """
         known = [p for p in self.store.points.values() if p.wall]
         if not known:
             return None
         work = self._work(setting)
         near = min(known, key=lambda p: abs(math.log(self._work(p.setting) / work)))
-        return min(near.wall) * work / self._work(near.setting)
+        simulation = min(near.seconds)
+        return min(near.wall) - simulation + simulation * work / self._work(near.setting)
 
     def _work(self, setting: Setting) -> float:
         """Particle-steps over those of the scene's own setting: particles go with cells^3, steps with cells over the fraction.
