@@ -158,6 +158,18 @@ def test_without_gravity_a_liquid_cannot_be():
     assert not found["liquid"].on and found["liquid"].reason == "gravity is off"
 
 
+def test_a_damped_object_that_boxes_hold_as_a_whole_has_no_dashpots(prepared):
+    """Its springs are none, and beside it another object has some without dashpots."""
+    ready = prepared(
+        "object a { shape box (2, 2, 2) position (0, 0, 0) density 1000 elasticity 1 MPa damping 0.1 "
+        "hold within box (-2, -2, -2) m to (2, 2, 2) m }\n"
+        "object b { shape box (2, 2, 2) position (5, 0, 0) density 1000 elasticity 1 MPa }\n"
+        "control { time 1 s }"
+    )
+    assert ready.verdicts["damping"].on and ready.system.damping is None
+    assert 0.0 < ready.certificate.bound < 1.0
+
+
 def test_drag_zero_is_off():
     """Leave no lambda for a liquid without drag."""
     found, _ = verdicts(pool("level 0.25 m\n drag 0"))

@@ -148,6 +148,30 @@ def test_the_energy_guard_is_generous(prepared, tmp_path, accuracy):
             guard.energy(10, residual, v)
 
 
+REST = """
+object a {{ shape sphere 10 cm position (0, 0, {z}) m density 1000 kg/m^3 elasticity 1 MPa }}
+control {{ time {time} s frames 1 fps {control} }}
+"""
+
+
+@pytest.mark.parametrize("z", [1.0, 1e5])
+def test_a_body_at_rest_does_not_diverge(tmp_path, z):
+    """Rounding makes energies of 1e-22 J in a minute, more far from the origin: nothing that an account is kept of."""
+    result, ready = run(REST.format(z=z, time=60, control=""), tmp_path)
+    assert max(abs(r["kinetic"] + r["elastic"]) for r in result.ledger.rows) < ready.system.mass.sum() * 1e-12
+    assert result.ledger.residual < 1e-3
+    assert not result.warnings
+
+
+def test_a_faint_vibration_has_an_account(tmp_path):
+    """A spin of a micrometre a second holds more than the least energy, and its energies add up to that."""
+    text = REST.format(z=1.0, time=3, control="").replace("elasticity", "spin (0, 0, 1e-5) rad/s elasticity")
+    result, _ = run(text, tmp_path)
+    first = result.ledger.rows[0]["kinetic"]
+    assert result.ledger.floor < first
+    assert result.ledger.residual < 1e-3
+
+
 def test_what_lammps_says_is_passed_on(prepared, tmp_path):
     """Blame an object and the time step only where particles have flown apart; other ends speak for themselves."""
     ready = prepared(hit(young=1, speed=-20))

@@ -340,6 +340,20 @@ def test_small_budget_measures_the_own_setting_and_the_cheapest(clock, tmp_path)
     assert 0.7 < clock[0] <= 1.0  # repeats fill what points leave
 
 
+def test_what_a_run_takes_to_start_does_not_grow_with_its_work(clock, tmp_path, monkeypatch):
+    """A second of modelling and writing beside 0.03 s of simulation: 16 times the work is half a second more, not 16 s."""
+    simulated = bench.measure
+
+    def slow_to_start(*arguments, **options):
+        sample = simulated(*arguments, **options)
+        return replace(sample, wall=sample.seconds + 1.0)
+
+    monkeypatch.setattr(bench, "measure", slow_to_start)
+    study = run_study(parse_scene(BAR), tmp_path / "study", budget=8.0)
+    assert study.analysis.own.key in study.analysis.rated
+    assert sum("would take about" in why for why in study.left_out.values()) < 7
+
+
 def test_budget_too_small_for_the_own_setting(clock, tmp_path):
     """Refuse, and say what it would take."""
     with pytest.raises(RefusedError, match="would take about 0.5.*--budget"):

@@ -152,7 +152,7 @@ def test_pairs_are_those_of_the_naive_way(n, size, monkeypatch):
         and not (swept.fixed[i] and swept.fixed[j])
     }
     for block in (1, 50, 1 << 20):
-        monkeypatch.setattr("mdanim_lammps.model.sweep.BLOCK", block)
+        monkeypatch.setattr("mdanim_lammps.model.boxes.BLOCK", block)
         found = [tuple(p) for pairs in _overlaps(swept) for p in pairs.tolist()]
         assert len(found) == len(set(found)) and set(found) == naive
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..scene.wording import say
+from ..errors import Problem
+from ..model.planes import innermost, scene_planes
+from ..model.touching import WAY_NAMES, behind_planes
+from ..scene.wording import at_least, say, whole
 from .effect import Effect, Verdict, stiffness_told
 
 
@@ -23,6 +26,29 @@ class Boundary(Effect):
 
     def commands(self, scene, system):
         return [f"region {self.fix} {self.region(scene)}", f"fix {self.fix} mobile mdanim/wall {self.fix} d_stiffness"]
+
+    def planes(self, scene):
+        return tuple(p for p in scene_planes(scene) if p.effect == self.name)
+
+    def warnings(self, scene, system):
+        planes = self.planes(scene)
+        found = behind_planes(system, *innermost(planes))
+        if not found:
+            return []
+        t = found[0]
+        solid, name = scene.solids[t.second], planes[0].name
+        more = ""
+        if len(found) > 1:
+            more = f"; {whole(len(found))} objects start so, with {say(sum(f.energy for f in found), 'J')} in all"
+        return [
+            Problem(
+                solid.spans.get("position") or solid.spans.get("object"),
+                f"{solid.name} starts with particles beyond {name}, which holds {say(t.energy, 'J')} at the start and pushes "
+                f"them back{more}",
+                f"move {solid.name} {WAY_NAMES[t.way]} by {say(at_least(t.move, 3), 'm')}",
+                severity="warning",
+            )
+        ]
 
     def energy(self, instance, scene, system):
         return instance.fix_scalar(self.fix)

@@ -7,15 +7,12 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..errors import Problem
 from ..model.sweep import closest
-from ..scene.wording import say
+from ..model.touching import REACH, THIN, WAY_NAMES, touching
+from ..scene.wording import at_least, say, whole
 from .effect import Effect, Verdict, stiffness_told
 from .springs import all_held
-
-REACH = 1.6
-"""Reach of the barrier over the spacing: the flattest of the forms measured (docs/physics-contact.md)."""
-THIN = 0.75
-"""Reach of a thin object's own boundary over REACH: 1.2 spacings."""
 
 PARTNERS = 34
 """Pairs that a particle on a surface in touch is tried with: within reach and skin, 3.1 spacings."""
@@ -86,6 +83,26 @@ class Contact(Effect):
         k = 2.0 * s * partner[system.object] / (s + partner[system.object])
         reach = REACH * system.spacing.max() / np.cbrt(system.cell_volume.min())
         return 2.0 * plane_stiffness(round(float(reach), 3)) * k / system.mass
+
+    def warnings(self, scene, system):
+        found = touching(system)
+        if not found:
+            return []
+        t = found[0]
+        first, second = scene.solids[t.first], scene.solids[t.second]
+        more = ""
+        if len(found) > 1:
+            more = f"; {whole(len(found))} pairs start so, with {say(sum(f.energy for f in found), 'J')} in all"
+        return [
+            Problem(
+                second.spans.get("position") or second.spans.get("object"),
+                f"{second.name} starts within reach of {first.name}: contact holds {say(t.energy, 'J')} at the start and pushes "
+                f"them apart{more}",
+                f"leave a gap of {say(at_least(t.gap, 3), 'm')}: move {second.name} {WAY_NAMES[t.way]} "
+                f"by {say(at_least(t.move, 3), 'm')}",
+                severity="warning",
+            )
+        ]
 
     def energy(self, instance, scene, system):
         return instance.fix_scalar(self.fix)

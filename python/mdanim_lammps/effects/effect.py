@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import Problem, Span
+from ..model.planes import Plane
 from ..model.system import System
 from ..scene.scene import Scene, Switch
 from ..scene.wording import number
@@ -110,6 +111,14 @@ class Effect:
     def potential(self, scene: Scene, mass: np.ndarray, x: np.ndarray) -> float:
         """Its energy, where that follows from the places of particles alone [J]; mass [kg], shape (N,), x [m], shape (N, 3)."""
         raise NotImplementedError
+
+    def planes(self, scene: Scene) -> tuple[Plane, ...]:
+        """The planes that push objects back, whether the effect is on or not."""
+        return ()
+
+    def warnings(self, scene: Scene, system: System) -> list[Problem]:
+        """What is doubtful about the start of a scene that the effect is on in."""
+        return []
 
     def clocks(self, instance) -> dict[str, float]:
         """Wall seconds so far of each of its pieces; ``instance`` as in `energy`.

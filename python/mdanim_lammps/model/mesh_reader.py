@@ -35,7 +35,9 @@ def read_polygons(path: Path) -> tuple[np.ndarray, np.ndarray]:
     if found.st_size > MOST_BYTES:
         raise UnreadableMesh(f"has {found.st_size >> 20} MiB, {MOST_BYTES >> 20} are the most")
     try:
-        done = subprocess.run([sys.executable, "-c", f"from {__name__} import main; main()", str(path)], capture_output=True, timeout=SECONDS)
+        done = subprocess.run(
+            [sys.executable, "-c", f"from {__name__} import main; main()", str(path)], capture_output=True, timeout=SECONDS
+        )
     except subprocess.TimeoutExpired:
         raise UnreadableMesh(f"could not be read in {SECONDS:g} s") from None
     if done.returncode:

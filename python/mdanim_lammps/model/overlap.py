@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -11,26 +11,30 @@ from ..errors import Problem
 from ..scene.scene import Scene, Solid
 from ..scene.wording import say
 from . import shapes
-from .model import Model
+from .boxes import box_pairs
+from .model import Layer, Model
+from .planes import Plane, scene_planes
+from .touching import REACH, THIN
 
 HAIR = 1e-6
 """Part of a spacing that two touching objects may seem to overlap by round-off."""
 
 
-def check_geometry(scene: Scene, models: tuple[Model, ...]) -> list[Problem]:
+def check_geometry(scene: Scene, models: tuple[Model, ...], planes: Iterable[Plane] | None = None) -> list[Problem]:
     """Find every object that starts in another one, below the ground, or outside walls or basin.
 
-    Each problem stands at the position of the (second) object and tells how deep it is in and which move
-    frees it. Objects that are held entirely may overlap each other and stick out: they are the scene's
-    architecture.
+    ``planes`` push objects back; None are those of the scene. Each problem stands at the position of the (second) object and tells
+    how deep it is in and which move frees it, so far that contact holds no energy afterwards. Objects that are held entirely may
+    overlap each other and stick out: they are the scene's architecture.
     """
     problems = []
     if not models:
         return problems
+    planes = scene_planes(scene) if planes is None else tuple(planes)
     bodies = _Bodies(models, [m.surface.vertices(m.position) for m in models])
-    problems += _outside(scene, bodies)
+    problems += _outside(scene, bodies, planes)
     for i, j in zip(*_candidates(scene, bodies)):
-        found = _pair(scene, bodies, int(i), int(j))
+        found = _pair(scene, bodies, planes, int(i), int(j))
         if found is not None:
             problems.append(found)
     return problems
@@ -46,6 +50,15 @@ class _Bodies:
         self.high = np.array([v.max(axis=0) for v in vertices])
         self.fixed = np.array([bool(m.held.all()) for m in models])
         self.hair = HAIR * max(m.spacing for m in models)
+        # Cells of a lattice may stand out of the true surface.
+        self.outer_low = np.minimum(self.low, [m.position.min(axis=0) for m in models])
+        self.outer_high = np.maximum(self.high, [m.position.max(axis=0) for m in models])
+
+    def clearance(self, i: int, j: int) -> float:
+        """Gap between the boxes of two bodies at which contact holds no energy [m]."""
+        first, second = self.models[i], self.models[j]
+        thin = (first.layer == Layer.THIN).any() or (second.layer == Layer.THIN).any()
+        return (THIN * REACH if thin else REACH - 1.0) * max(first.spacing, second.spacing)
 
     def cells(self, i: int) -> np.ndarray:
         """Centres of the cells of one body [m], shape (C, 3)."""
@@ -58,32 +71,6 @@ class _Bodies:
 _MOVES = {(0, 1): "to +x", (0, -1): "to -x", (1, 1): "to +y", (1, -1): "to -y", (2, 1): "up", (2, -1): "down"}
 
 
-@dataclass(frozen=True, slots=True)
-class _Limit:
-    """A plane that objects stay above (sign +1) or below (sign -1) along one axis."""
-
-    axis: int
-    sign: int
-    at: float
-    what: str
-
-
-def _limits(scene: Scene) -> list[_Limit]:
-    limits = []
-    if scene.ground is not None:
-        limits.append(_Limit(2, 1, scene.ground, "below the ground"))
-    if scene.walls is not None:
-        for axis in range(3):
-            limits.append(_Limit(axis, 1, scene.walls.low[axis], f"outside the walls at -{'xyz'[axis]}"))
-            limits.append(_Limit(axis, -1, scene.walls.high[axis], f"outside the walls at +{'xyz'[axis]}"))
-    if scene.liquid is not None:
-        for axis in range(2):
-            limits.append(_Limit(axis, 1, scene.liquid.low[axis], f"outside the basin at -{'xyz'[axis]}"))
-            limits.append(_Limit(axis, -1, scene.liquid.high[axis], f"outside the basin at +{'xyz'[axis]}"))
-        limits.append(_Limit(2, 1, scene.liquid.low[2], "below the floor of the basin"))
-    return limits
-
-
 def _rooms(scene: Scene) -> list[tuple[str, tuple, tuple]]:
     """What has a wall on both sides along x and y: its name, lower and upper corner [m]."""
     rooms = [("the space between the walls is", scene.walls)] if scene.walls is not None else []
@@ -91,7 +78,7 @@ def _rooms(scene: Scene) -> list[tuple[str, tuple, tuple]]:
     return [(what, box.low, box.high) for what, box in rooms]
 
 
-def _outside(scene: Scene, bodies: _Bodies) -> list[Problem]:
+def _outside(scene: Scene, bodies: _Bodies, planes: tuple[Plane, ...]) -> list[Problem]:
     problems = []
     too_wide = np.zeros((len(bodies.models), 3), bool)  # no move helps along these axes
     for what, low, high in _rooms(scene):
@@ -106,16 +93,18 @@ def _outside(scene: Scene, bodies: _Bodies) -> list[Problem]:
                     "make it smaller (is a unit missing?), or the room larger",
                 )
             )
-    for limit in _limits(scene):
+    for limit in planes:
         edge = bodies.low if limit.sign > 0 else bodies.high
         out = limit.sign * (limit.at - edge[:, limit.axis])
+        outer = bodies.outer_low if limit.sign > 0 else bodies.outer_high
+        step = limit.sign * (limit.at - outer[:, limit.axis])
         for i in np.flatnonzero((out > bodies.hair) & ~bodies.fixed & ~too_wide[:, limit.axis]):
             solid = scene.solids[i]
             problems.append(
                 Problem(
                     _span(solid),
-                    f"{solid.name} is {say(out[i], 'm')} {limit.what}",
-                    f"move it {_MOVES[limit.axis, limit.sign]} by {say(_enough(out[i]), 'm')}",
+                    f"{solid.name} is {say(out[i], 'm')} {limit.beyond}",
+                    f"move it {_MOVES[limit.axis, limit.sign]} by {say(_enough(step[i]), 'm')}",
                 )
             )
     return problems
@@ -125,32 +114,20 @@ def _outside(scene: Scene, bodies: _Bodies) -> list[Problem]:
 
 
 def _candidates(scene: Scene, bodies: _Bodies) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs i < j whose bounding boxes overlap and whose bounding balls do: sort and sweep along one axis."""
-    low, high = bodies.low + bodies.hair, bodies.high
+    """Pairs i < j whose bounding boxes overlap and whose bounding balls do."""
     centre = np.array([s.position for s in scene.solids])
     radius = np.array([np.linalg.norm(v - c, axis=1).max() for v, c in zip(bodies.vertices, centre)])
-    axis = int(np.argmax(np.ptp(centre, axis=0)))
-    order = np.argsort(low[:, axis], kind="stable")
-    stop = np.searchsorted(low[order, axis], high[order, axis])
-    found_i, found_j = [], []
-    for first in range(0, len(order), 1000):
-        here = np.arange(first, min(first + 1000, len(order)))
-        count = np.maximum(stop[here] - here - 1, 0)
-        a = np.repeat(here, count)
-        b = a + 1 + np.arange(len(a)) - np.repeat(np.cumsum(count) - count, count)
-        i, j = order[a], order[b]
-        meet = (low[i] < high[j]).all(axis=1) & (low[j] < high[i]).all(axis=1)
-        meet &= ~(bodies.fixed[i] & bodies.fixed[j])
-        i, j = i[meet], j[meet]
-        near = np.linalg.norm(centre[i] - centre[j], axis=1) < radius[i] + radius[j]
-        found_i.append(np.minimum(i, j)[near])
-        found_j.append(np.maximum(i, j)[near])
-    i, j = np.concatenate(found_i), np.concatenate(found_j)
+    found = [np.zeros((2, 0), np.intp)]
+    for i, j in box_pairs(bodies.low + bodies.hair, bodies.high):
+        near = ~(bodies.fixed[i] & bodies.fixed[j])
+        near &= np.linalg.norm(centre[i] - centre[j], axis=1) < radius[i] + radius[j]
+        found.append(np.sort([i[near], j[near]], axis=0))
+    i, j = np.concatenate(found, axis=1)
     by_scene = np.lexsort((j, i))
     return i[by_scene], j[by_scene]
 
 
-def _pair(scene: Scene, bodies: _Bodies, i: int, j: int) -> Problem | None:
+def _pair(scene: Scene, bodies: _Bodies, planes: tuple[Plane, ...], i: int, j: int) -> Problem | None:
     first, second = scene.solids[i], scene.solids[j]
     # Vertices of the true surfaces find most overlaps; two bars that cross share no vertex but the centres of
     # cells. Those of the body with fewer cells do, and spare a large floor from being looked through for
@@ -163,7 +140,7 @@ def _pair(scene: Scene, bodies: _Bodies, i: int, j: int) -> Problem | None:
     )
     if deepest <= bodies.hair:
         return None
-    direction, step = _way_out(scene, bodies, i, j)
+    direction, step = _way_out(planes, bodies, i, j)
     return Problem(
         _span(second),
         f"{second.name} starts inside {first.name}, about {say(deepest, 'm')} deep",
@@ -181,17 +158,16 @@ def _deepest(points: np.ndarray, bodies: _Bodies, host: int, solid: Solid) -> fl
     return float(shapes.depth(solid.shape, points).max()) if len(points) else 0.0
 
 
-def _way_out(scene: Scene, bodies: _Bodies, i: int, j: int) -> tuple[str, float]:
-    """Direction and step [m] of object j that part the bounding boxes; the shortest that stays inside."""
-    limits = _limits(scene)
-    ways = []
+def _way_out(planes: tuple[Plane, ...], bodies: _Bodies, i: int, j: int) -> tuple[str, float]:
+    """Direction and step [m] of object j after which contact holds no energy; the shortest that stays between the planes."""
+    ways, gap = [], bodies.clearance(i, j)
     for (axis, sign), name in _MOVES.items():
-        ahead, behind = (bodies.high, bodies.low) if sign > 0 else (bodies.low, bodies.high)
-        step = sign * (ahead[i, axis] - behind[j, axis])
+        ahead, behind = bodies.outer_high, bodies.outer_low
+        if sign < 0:
+            ahead, behind = behind, ahead
+        step = sign * (ahead[i, axis] - behind[j, axis]) + gap
         arrival = ahead[j, axis] + sign * step
-        blocked = any(
-            limit.axis == axis and limit.sign == -sign and sign * (arrival - limit.at) > bodies.hair for limit in limits
-        )
+        blocked = any(p.axis == axis and p.sign == -sign and sign * (arrival - p.at) > bodies.hair for p in planes)
         ways.append((blocked, step, name))
     _, step, name = min(ways)
     return name, step

@@ -7,7 +7,7 @@ other. The bounds are derived in docs/cost.md.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -16,6 +16,8 @@ import numpy as np
 from ..scene import scene as kinds
 from ..scene.scene import Box, HoldAll, HoldFaces, LiquidModel, Scene, Shape, Solid, Switch
 from . import mesh, shapes
+from .boxes import box_pairs
+from .planes import Plane, innermost, scene_planes
 from .spacing import choose_spacing
 from .springs import equivalent_modulus
 
@@ -29,8 +31,6 @@ REACH = 2.5
 stand out (0.87 of a cell), cells up to 1.2 spacings long, and a fifth on top."""
 SAG = 2.0
 """Margin on the deflection of a clamped bar."""
-BLOCK = 1 << 20
-"""Pairs looked at in one go."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,20 +45,20 @@ class Sweeps:
     """Solids that are held entirely, bool, shape (M,): two of them never are in contact."""
 
 
-def can_meet(scene: Scene) -> tuple[Solid, Solid] | None:
+def can_meet(scene: Scene, planes: Iterable[Plane] | None = None) -> tuple[Solid, Solid] | None:
     """Two solids that may come within reach of each other, or None where no two can.
     Raises SceneError for a mesh that is no body."""
-    first, second, apart = closest(scene)
+    first, second, apart = closest(scene, planes)
     return None if apart > 0.0 else (first, second)
 
 
-def closest(scene: Scene) -> tuple[Solid, Solid, float]:
+def closest(scene: Scene, planes: Iterable[Plane] | None = None) -> tuple[Solid, Solid, float]:
     """Two solids of which one can move, and what stays between their boxes at least, along one axis [m].
 
     The first two found whose boxes overlap, with 0.0; where there are none, those whose boxes come nearest. Raises SceneError for
     a mesh that is no body, ValueError where no solid can meet another: one solid, or all held.
     """
-    swept = sweeps(scene)
+    swept = sweeps(scene, planes)
     if len(swept.fixed) < 2 or swept.fixed.all():
         raise ValueError("two solids are needed, of which one can move")
     if (pairs := next(_overlaps(swept), None)) is not None:
@@ -76,15 +76,17 @@ def closest(scene: Scene) -> tuple[Solid, Solid, float]:
 # --- boxes --------------------------------------------------------------------------------------------------
 
 
-def sweeps(scene: Scene) -> Sweeps:
-    """Where every solid can get to.
+def sweeps(scene: Scene, planes: Iterable[Plane] | None = None) -> Sweeps:
+    """Where every solid can get to; ``planes`` push solids back, None are those of the scene that are not switched off.
 
     Along an axis on which nothing but gravity and drag of air acts, the centre of mass moves on its parabola. Along one on which
     a wall, the ground or a liquid may act, it gets no further than at the largest speed that energy allows. Raises SceneError for
     a mesh that is no body.
     """
-    bodies = _Bodies(scene)
-    limit_low, limit_high = _limits(scene)
+    limit_low, limit_high = (
+        innermost(p for p in scene_planes(scene) if on(scene, p.effect)) if planes is None else innermost(planes)
+    )
+    bodies = _Bodies(scene, limit_low[2])
     low, high = _flight(scene, bodies)
     calm = bodies.size(bodies.tip)  # as large as it gets by its own spin
     wild = bodies.size(bodies.speed)
@@ -118,7 +120,7 @@ def sweeps(scene: Scene) -> Sweeps:
 class _Bodies:
     """What the bounds need of every solid."""
 
-    def __init__(self, scene: Scene):
+    def __init__(self, scene: Scene, floor: float):
         solids = scene.solids
         self.h = choose_spacing(scene)[0]
         self.position = np.array([s.position for s in solids], float)
@@ -141,7 +143,7 @@ class _Bodies:
         """Speed of the outermost point around the centre of mass [m/s]."""
         self.loose = self.tip * scene.control.time if loose else np.zeros(len(solids))
         self.pull = _pull(scene, self)
-        self.speed = _speed(scene, self)
+        self.speed = _speed(scene, self, floor)
 
     def size(self, speed: np.ndarray) -> np.ndarray:
         """Radius that a body stays within when this much speed [m/s] turns into deformation [m], shape (M,)."""
@@ -175,19 +177,6 @@ def _gravity(scene: Scene) -> np.ndarray:
     return np.array(scene.gravity, float) * on(scene, "gravity")
 
 
-def _limits(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Planes across each axis that push solids back, the innermost ones [m], each of shape (3,); infinite where there is none."""
-    low, high = np.full(3, -np.inf), np.full(3, np.inf)
-    if scene.ground is not None and on(scene, "ground"):
-        low[2] = scene.ground
-    if scene.walls is not None and on(scene, "walls"):
-        low, high = np.maximum(low, scene.walls.low), np.minimum(high, scene.walls.high)
-    if scene.liquid is not None and on(scene, "basin"):
-        low = np.maximum(low, scene.liquid.low)
-        high[:2] = np.minimum(high[:2], scene.liquid.high[:2])
-    return low, high
-
-
 def _wet_below(scene: Scene) -> float:
     """Height below which liquid may be [m]: waves rise up to the brim of the basin."""
     there = scene.liquid is not None and on(scene, "liquid") and on(scene, "gravity")
@@ -207,7 +196,7 @@ def _pull(scene: Scene, bodies: _Bodies) -> np.ndarray:
     return g * (1.0 + lift)
 
 
-def _speed(scene: Scene, bodies: _Bodies) -> np.ndarray:
+def _speed(scene: Scene, bodies: _Bodies, floor: float) -> np.ndarray:
     """Largest speed that energy allows [m/s], shape (M,): v^2 = v0^2 + (spin) + 2 * pull * way.
 
     The way is the height above the highest floor where gravity alone pulls, down; else it is v * time at most.
@@ -216,7 +205,6 @@ def _speed(scene: Scene, bodies: _Bodies) -> np.ndarray:
     gained = bodies.pull * scene.control.time
     most = gained + np.sqrt(gained**2 + start)
     g = _gravity(scene)
-    floor = _limits(scene)[0][2]
     if np.isfinite(_wet_below(scene)) or g[0] or g[1] or g[2] > 0.0 or not np.isfinite(floor):
         return most
     way = np.maximum(0.0, bodies.position[:, 2] - floor) + bodies.radius
@@ -264,24 +252,9 @@ def _clamped(scene: Scene, bodies: _Bodies) -> np.ndarray:
 
 
 def _overlaps(swept: Sweeps) -> Iterator[np.ndarray]:
-    """Pairs of solids whose boxes overlap and of which one can move, in blocks of shape (P, 2): sort and sweep."""
-    n = len(swept.low)
-    sorted_by = [np.argsort(swept.low[:, axis], kind="stable") for axis in range(3)]
-    stops = [np.searchsorted(swept.low[o, a], swept.high[o, a], side="right") for a, o in enumerate(sorted_by)]
-    axis = min(range(3), key=lambda a: int(stops[a].sum()))  # the one along which the fewest overlap
-    order, stop = sorted_by[axis], stops[axis]
-    count = np.maximum(stop - np.arange(n) - 1, 0)
-    before = np.concatenate([[0], np.cumsum(count)])
-    first = 0
-    while first < n:
-        last = max(first + 1, int(np.searchsorted(before, before[first] + BLOCK, side="right")) - 1)
-        here = np.arange(first, last)
-        a = np.repeat(here, count[here])
-        b = a + 1 + np.arange(len(a)) - np.repeat(before[here] - before[first], count[here])
-        i, j = order[a], order[b]
-        meet = (swept.low[i] <= swept.high[j]).all(axis=1) & (swept.low[j] <= swept.high[i]).all(axis=1)
-        meet &= ~(swept.fixed[i] & swept.fixed[j])
-        if meet.any():
-            pairs = np.sort(np.column_stack([i[meet], j[meet]]), axis=1)
+    """Pairs of solids whose boxes overlap and of which one can move, in blocks of shape (P, 2)."""
+    for i, j in box_pairs(swept.low, swept.high):
+        moves = ~(swept.fixed[i] & swept.fixed[j])
+        pairs = np.sort(np.column_stack([i[moves], j[moves]]), axis=1)
+        if len(pairs):
             yield pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
-        first = last

@@ -13,13 +13,18 @@ from ..engine.plan import Plan
 from ..model.system import System
 from ..results.ledger import LOSS
 
-ROUNDING = 1e-12
-"""Strain that positions in double precision can hardly tell from none."""
+LEAST_STRAIN = 1e-9
+"""Strain that neither a picture nor a measurement of a run shows."""
+ROUNDED_STEPS = 1e8
+"""Steps whose rounding errors of positions, which add up like a random walk, are below the least energy."""
 
 
 def rounding_energy(system: System) -> float:
-    """Energy of all solids at a strain of `ROUNDING` [J]: less is rounding, and no account of it adds up."""
-    return ROUNDING**2 * float((system.young[system.object] * system.volume).sum())
+    """Energy below which no account is kept [J]: that of all solids at a strain of `LEAST_STRAIN`, or at the strain that the
+    rounding of positions, so far from the origin, makes in `ROUNDED_STEPS`."""
+    farthest = np.abs(system.position).max(initial=0.0)
+    strain = max(LEAST_STRAIN, np.sqrt(ROUNDED_STEPS) * np.spacing(farthest) / system.spacing.min(initial=np.inf))
+    return strain**2 * float((system.young[system.object] * system.volume).sum())
 
 
 def ledger_terms(effects: Iterable[Effect]) -> tuple[str, ...]:

@@ -186,7 +186,7 @@ class Guard:
             scene.control.spans.get("accuracy"),
             f"the energy residual {number(residual)} is above {number(goal)}, "
             f"which 'accuracy {_accuracy(scene).value}' stands for",
-            "where it matters, write a smaller timestep or a higher accuracy",
+            "where it matters, write a higher accuracy, a smaller timestep, or some damping: impacts at the full step heat what has none",
             severity="warning",
         )
 

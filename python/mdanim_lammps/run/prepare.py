@@ -70,6 +70,7 @@ def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[i
     models = as_parts(models, system)
     certificate = certify(scene, system, verdicts, allow_unstable=allow_unstable)
     plan = make_plan(scene, system, verdicts, certificate)
+    warnings += [w for e in plan.effects for w in e.warnings(scene, system)]
     warnings += margin_warnings(certificate) + (open_hulls(scene, models) if verdicts["liquid"].on else [])
     return Prepared(scene, models, system, verdicts, (*scene.warnings, *warnings), certificate, plan, allow_unstable)
 

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Objects that start within reach of each other's contact, or behind a plane: the energy that the start puts in, and the gap
+that puts in none.
+
+The laws are those of plugin/laws/barrier.h and wall.h, on the initial positions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .boxes import box_pairs
+from .model import Layer
+from .system import System
+
+REACH = 1.6
+"""Reach of the barrier over the spacing: the flattest of the forms measured (docs/physics-contact.md)."""
+THIN = 0.75
+"""Reach of a thin object's own boundary over REACH: 1.2 spacings."""
+WAYS = np.concatenate([np.eye(3), -np.eye(3)])
+"""Directions in which an object may be moved away, shape (6, 3)."""
+WAY_NAMES = ("to +x", "to +y", "up", "to -x", "to -y", "down")
+MORE = 1.0 + 1e-6
+"""Margin on distances: at the reach itself, rounding would decide."""
+
+
+@dataclass(frozen=True, slots=True)
+class Touch:
+    """Two objects that start within reach of each other, or one that starts behind a plane."""
+
+    first: int
+    """Number of the object that stays, -1 for a plane."""
+    second: int
+    """Number of the object to be moved."""
+    energy: float
+    """What contact holds at the start [J]."""
+    way: int
+    """Row of WAYS along which the shortest move parts them."""
+    move: float
+    """Length of this move, after which contact holds no energy [m]."""
+    gap: float
+    """What is then between the boxes of the two along it [m]; 0 for a plane."""
+
+
+def touching(system: System) -> list[Touch]:
+    """Pairs of objects between which contact holds energy at the start, the most energy first."""
+    one, other, reach, energy = touching_pairs(system)
+    if not len(one):
+        return []
+    swap = system.object[one] > system.object[other]
+    low, high = np.where(swap, other, one), np.where(swap, one, other)
+    objects, pair = np.unique(np.stack([system.object[low], system.object[high]], axis=1), axis=0, return_inverse=True)
+    pair = pair.reshape(-1)
+    total = np.bincount(pair, energy, len(objects))
+    moves = np.zeros((len(objects), len(WAYS)))
+    np.maximum.at(moves, pair, ways_out(system.position[high] - system.position[low], reach))
+    # Something that never moves is moved last: it is a scene's architecture.
+    still = system.still[objects[:, 1]] & ~system.still[objects[:, 0]]
+    moves[still] = np.roll(moves[still], 3, axis=1)
+    first, second = np.where(still, objects[:, 1], objects[:, 0]), np.where(still, objects[:, 0], objects[:, 1])
+    way = moves.argmin(axis=1)
+    move = np.take_along_axis(moves, way[:, None], axis=1)[:, 0] * MORE
+    low, high = system.bounds(system.position)
+    apart = np.concatenate([low[second] - high[first], low[first] - high[second]], axis=1)
+    gap = np.take_along_axis(apart, way[:, None], axis=1)[:, 0] + move
+    columns = (a[np.argsort(-total, kind="stable")].tolist() for a in (first, second, total, way, move, gap))
+    return [Touch(*row) for row in zip(*columns)]
+
+
+def ways_out(apart: np.ndarray, reach: np.ndarray) -> np.ndarray:
+    """How far the second particle of each pair goes along WAYS until it is out of reach [m], shape (P, 6).
+
+    ``apart`` is its place as seen from the first [m], shape (P, 3); ``reach`` [m], shape (P,).
+    """
+    along = apart @ WAYS.T
+    aside = (apart**2).sum(axis=1)[:, None] - along**2
+    return np.sqrt(np.maximum(0.0, reach[:, None] ** 2 - aside)) - along
+
+
+def touching_pairs(system: System) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Pairs of particles of two objects within reach at the start, of which one can move: their numbers, reach [m] and
+    energy [J], each of shape (P,)."""
+    near = _near_others(system)
+    inner, boundary = near & ~system.boundary, near & system.boundary
+    thin = near & (system.layer == Layer.THIN)
+    found = [_within_reach(system, boundary, inner, 1.0), _within_reach(system, thin, boundary, THIN)]
+    one, other, reach = (np.concatenate(parts) for parts in zip(*found))
+    k = system.contact_stiffness
+    q = 1.0 - np.linalg.norm(system.position[one] - system.position[other], axis=1) / reach
+    return one, other, reach, 2.0 * k[one] * k[other] / (k[one] + k[other]) * reach**2 / 3.0 * q**3
+
+
+def _near_others(system: System) -> np.ndarray:
+    """Particles that lie within reach of the box of another object, bool, shape (N,)."""
+    far = REACH * float(system.spacing.max())
+    low, high = system.bounds(system.position)
+    # Where partners are, for each object: the box around all boxes that are within reach of its own.
+    zone_low, zone_high = np.full_like(low, np.inf), np.full_like(high, -np.inf)
+    for i, j in box_pairs(low - far, high):
+        for a, b in ((i, j), (j, i)):
+            np.minimum.at(zone_low, a, low[b] - far)
+            np.maximum.at(zone_high, a, high[b] + far)
+    return ((system.position >= zone_low[system.object]) & (system.position <= zone_high[system.object])).all(axis=1)
+
+
+def _within_reach(system: System, seek: np.ndarray, guard: np.ndarray, factor: float) -> tuple[np.ndarray, ...]:
+    """Pairs of a particle of ``seek`` and one of ``guard``, bool (N,), of two objects, within ``factor`` of the larger reach;
+    a pair that is in both once."""
+    from scipy.spatial import cKDTree
+
+    seekers, guards = np.flatnonzero(seek), np.flatnonzero(guard)
+    if not len(seekers) or not len(guards):
+        return np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(0)
+    x, owner = system.position, system.object
+    farthest = factor * REACH * float(system.spacing.max())
+    found = cKDTree(x[seekers]).sparse_distance_matrix(cKDTree(x[guards]), farthest, output_type="ndarray")
+    one, other = seekers[found["i"]], guards[found["j"]]
+    reach = factor * REACH * np.maximum(system.spacing[owner[one]], system.spacing[owner[other]])
+    keep = (owner[one] != owner[other]) & (found["v"] * MORE < reach) & ~(system.held[one] & system.held[other])
+    keep &= ~(seek[other] & guard[one] & (one > other))
+    return one[keep], other[keep], reach[keep]
+
+
+def behind_planes(system: System, low: np.ndarray, high: np.ndarray) -> list[Touch]:
+    """Objects with particles beyond the planes at ``low`` and ``high`` [m], each of shape (3,), infinite where there is none."""
+    beyond = np.concatenate([low - system.position, system.position - high], axis=1)
+    beyond = np.where(system.held[:, None], 0.0, np.maximum(beyond, 0.0))
+    energy = 0.5 * system.contact_stiffness * (beyond**2).sum(axis=1)
+    total = np.add.reduceat(energy, system.first[:-1])
+    deepest = np.maximum.reduceat(beyond, system.first[:-1])
+    return [
+        Touch(-1, int(m), float(total[m]), int(deepest[m].argmax()), float(deepest[m].max()) * MORE, 0.0)
+        for m in np.argsort(-total, kind="stable")
+        if total[m] > 0.0
+    ]
