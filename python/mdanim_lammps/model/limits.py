@@ -15,7 +15,7 @@ from . import shapes
 from .mesh import SIZES
 
 NUMBERS = 1e-30, 1e30
-"""Least and largest number that a scene may use, in SI units: squares and quotients of them are in the range of double precision."""
+"""Least and largest number that a scene may use, in SI units: their squares and quotients are in the range of doubles."""
 PRECISION = 1e-8
 """Largest distance between neighbouring numbers at an object's place, over the spacing: it is the strain of rounding."""
 SPARSE_CELLS, SPARSE = 3e7, 20.0

@@ -61,7 +61,7 @@ def _read(path: str) -> tuple[np.ndarray, np.ndarray]:
         raise UnreadableMesh("VTK could not read it")
     points, cells = vtk_to_numpy(surface.GetPoints().GetData()), surface.GetPolys()
     first, index = vtk_to_numpy(cells.GetOffsetsArray()), vtk_to_numpy(cells.GetConnectivityArray())
-    if len(index) and not (0 <= index.min() and index.max() < len(points)):
+    if len(index) and (index.min() < 0 or index.max() >= len(points)):
         raise UnreadableMesh("a face names a point that is not there")
     return points, np.insert(index, first[:-1], np.diff(first))
 

@@ -186,7 +186,8 @@ class Guard:
             scene.control.spans.get("accuracy"),
             f"the energy residual {number(residual)} is above {number(goal)}, "
             f"which 'accuracy {_accuracy(scene).value}' stands for",
-            "where it matters, write a higher accuracy, a smaller timestep, or some damping: impacts at the full step heat what has none",
+            "where it matters, write a higher accuracy, a smaller timestep, or some damping: impacts add energy to undamped "
+            "objects",
             severity="warning",
         )
 
