@@ -486,7 +486,7 @@ def test_out_of_memory_is_told(tmp_path):
 
 
 def test_a_still_body_that_was_moved_is_marked_anew(tmp_path):
-    """Between two runs somebody shifts a wall: its cells follow at the setup, and no liquid is lost."""
+    """A wall is shifted between two runs: its cells follow at the setup, and no liquid is lost."""
     wall = lab.block((2, 4, 14), (-5.0, -2.0, 0.0))
     lmp = lab.load(
         wall, tmp_path,

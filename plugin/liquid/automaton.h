@@ -19,6 +19,8 @@ struct Kernels;
 // (below Cells::FULLEST).
 enum class Vertical { LOWER, ANY };
 
+// The cells of a basin and the rules that move liquid in them. It keeps for each layer what no rule can change, and for each 2x2
+// block whether solid cells break it.
 class Automaton {
  public:
   Automaton(int nx, int ny, int nz, std::uint64_t seed, Vertical vertical = Vertical::LOWER);

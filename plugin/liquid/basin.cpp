@@ -147,7 +147,7 @@ void Basin::flow(long changed, std::uint64_t when, double dt)
 
 // --- the surface ---
 
-// Heights, and the surface that solids feel, from the cells as they are now.
+// Heights and the smooth surface from the cells as they are now.
 void Basin::raise_surface(bool just_levelled)
 {
   const Lap lap(automaton_seconds);
@@ -169,13 +169,14 @@ void Basin::smooth()
       blocked[column] = std::isnan(height[column]) && is_parted(x, y);
     }
   smooth_surface(shape.nx, shape.ny, height.data(), blocked.data(), eta.data());
-  // Under a lid from wall to wall no column tells a height: then it is that up to which the open cells would hold the liquid.
+  // Under a lid from wall to wall no column has a height of its own: the surface is then where the open cells would hold the
+  // liquid.
   if (std::all_of(height.begin(), height.end(), [](double h) { return std::isnan(h); }))
     std::fill(eta.begin(), eta.end(), shut_in_height());
   lowest_eta = *std::min_element(eta.begin(), eta.end());
 }
 
-// Whether what ends the liquid of a column that tells no height never moves: each side of a wall has a level of its own.
+// Whether what ends the liquid of a column without a height never moves: each side of a wall has a level of its own.
 bool Basin::is_parted(int x, int y) const
 {
   const Cells &c = cells();
@@ -204,7 +205,7 @@ double Basin::shut_in_height() const
   return shape.nz;
 }
 
-// --- what solids feel ---
+// --- what acts on solids ---
 
 // The paper's own words: liquid in any of the cells around.
 double Basin::liquid_around(const Vec3 &place) const

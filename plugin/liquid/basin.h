@@ -18,8 +18,8 @@
 
 namespace mdanim {
 
-// Cells of liquid that the automaton and the level rule move, the cells that solids fill, the surface that solids feel, and when
-// all of this is brought up to date. Solids are told as counts of samples; sums over ranks come in by RankSums. Every rank holds
+// Cells of liquid that the automaton and the level rule move, the cells that solids fill, the smooth surface, and when all of
+// this is brought up to date. Solids come in as counts of samples, sums over ranks by RankSums. Every rank holds
 // the whole basin. Places and heights are in cells from its lower corner unless they are said to be in units of distance.
 class Basin {
  public:
@@ -68,7 +68,7 @@ class Basin {
   bool is_due(double fastest, double dt);
   void update(const AddBodies &bodies, std::uint64_t when, double dt);
 
-  // --- what solids feel ---
+  // --- what acts on solids ---
 
   Vec3 in_cells(const double *x) const
   { return {(x[0] - shape.low.x) / shape.cell.x, (x[1] - shape.low.y) / shape.cell.y, (x[2] - shape.low.z) / shape.cell.z}; }
@@ -90,7 +90,7 @@ class Basin {
   // liquid in the first open cell along its normal, of length 1, and none above that.
   bool air_before(const Vec3 &x, const Vec3 &normal) const;
 
-  // --- what it tells ---
+  // --- output ---
 
   const Cells &cells() const { return automaton.cells; }
   int columns() const { return shape.nx * shape.ny; }
@@ -104,7 +104,7 @@ class Basin {
   std::int64_t units_at_start() const { return units; }
   std::int64_t sweeps_so_far() const { return swept; }
   double bytes() const;
-  // Height [distance] of the surface, the mean and over a column, and of the column's topmost liquid (NaN where it tells none).
+  // Height [distance] of the surface, the mean and over a column, and of the column's topmost liquid (NaN where it has none).
   double mean_level() const;
   double smooth_height(int column) const { return shape.low.z + eta[column] * shape.cell.z; }
   double raw_height(int column) const { return shape.low.z + height[column] * shape.cell.z; }

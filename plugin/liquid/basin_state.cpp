@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What a basin tells of its liquid, and its state as bytes.
+// Output of a basin, and its state as bytes.
 
 #include "liquid/basin.h"
 
@@ -34,7 +34,7 @@ static int air_below(const Cells &cells, int x, int y, double height)
   return first - z;
 }
 
-// Of the columns that tell no height those with air below the surface count as kept dry, as a hull keeps its inside, where the
+// Of the columns without a height those with air below the surface count as kept dry, as a hull keeps its inside, where the
 // air is two cells deep, and all around as far as it goes on: over what has just gone under the liquid closes a little late.
 void Basin::surface(double *smooth, double *raw) const
 {

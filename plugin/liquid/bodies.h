@@ -35,11 +35,11 @@ class Bodies {
     int x, y, z, units;
   };
 
-  // Read the cells; all that follows speaks of them as they were then.
+  // Read the cells; all that follows is about the cells as they were then.
   void search(const Cells &cells);
-  // Whether all bodies are level, as far as that shows without telling them apart: true is certain.
+  // Whether all bodies are level, as far as that is known before join(): true is certain.
   bool surely_level() const { return excess.empty() && highest <= lowest; }
-  // Tell the bodies apart and describe them. They are numbered by their first cells, counted from the top
+  // Find out which cells are of which body, and describe the bodies. They are numbered by their first cells, counted from the top
   // layer down and in a layer along y, then x.
   void join();
 

@@ -138,10 +138,10 @@ bool Leveller::heights(const Cells &cells, double *height, bool just_moved)
       if (any == 0) continue;
       bodies.each_exposed(y, z, [&](int body, int word, Bodies::Word bits) {
         const Body &b = bodies.all[body];
-        double told = b.deep ? -(z + 1.0) : NO_HEIGHT;
+        double level = b.deep ? -(z + 1.0) : NO_HEIGHT;
         const double cover = b.full + b.part;
-        if (b.deep && b.level() && cover > 0.0) told = b.highest + b.full / cover;
-        each_bit(word, bits & open[word], [&](int x) { row[x] = told; });
+        if (b.deep && b.level() && cover > 0.0) level = b.highest + b.full / cover;
+        each_bit(word, bits & open[word], [&](int x) { row[x] = level; });
       });
       for (int k = 0; k < words; ++k) {
         each_bit(k, open[k] & wet[k] & ~above[k], [&](int x) { row[x] = NO_HEIGHT; });
@@ -154,7 +154,7 @@ bool Leveller::heights(const Cells &cells, double *height, bool just_moved)
   return std::all_of(bodies.all.begin(), bodies.all.end(), [](const Body &b) { return b.level(); });
 }
 
-// Where liquid is uneven, which is told by minus the topmost layer: what a column holds above the solid cell
+// Where liquid is uneven, which is marked by minus the topmost layer: what a column holds above the solid cell
 // below its liquid (or the floor), as if it were packed.
 void Leveller::pile_up(const Cells &cells, int y, double *height)
 {
@@ -178,7 +178,7 @@ void Leveller::pile_up(const Cells &cells, int y, double *height)
     if (height[x] < 0.0) height[x] = std::min(bed[x] + pile[x], cells.nz);
 }
 
-// Of the dry columns of a row those that hold solid cells tell nothing.
+// Of the dry columns of a row those that hold solid cells have no height.
 void Leveller::forget_solid(const Cells &cells, int y, Bodies::Word *dry, double *height)
 {
   const int words = bodies.words();

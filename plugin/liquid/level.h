@@ -14,19 +14,20 @@
 
 namespace mdanim {
 
+// The level rule and the heights of columns, on bodies of connected liquid (bodies.h). Buffers are kept from call to call.
 class Leveller {
  public:
   // In each body of liquid (bodies.h) move units from the highest exposed cells (first of all excess, q > 1)
   // to the lowest cells beside the body, by lot within a layer, while that is at least one layer down
   // (excess: wherever there is room); at most max(1, ceil(rate * exposed cells), at_least) per body. What is
   // exposed or beside is as found before the call; a cell beside two bodies goes to the first in order that
-  // wants it. Returns units moved.
+  // has a unit for it. Returns units moved.
   long move(Cells &cells, std::uint64_t seed, std::uint64_t when, double rate, long at_least);
 
   // Height of the liquid in every column, in cells above the floor, x fastest, shape (ny, nx): of its topmost
   // solid cell (or the floor) and the units above that, as if packed; 0 where dry. In a body that is level
   // all columns that end in an exposed cell get one height, the exact mean of those that stand on liquid: z +
-  // full / (full + part), see Body. So heights over open ground sum to the volume. NaN where a column tells
+  // full / (full + part), see Body. So heights over open ground sum to the volume. NaN where a column has
   // no height: the cell above its topmost liquid is solid; it is dry and holds solid cells; or its topmost
   // liquid is a drop in the air or a film on a solid (no exposed cell of that body stands on liquid or on the
   // floor). `just_moved`: the cells are as the last `move` left them, which saves the search if that moved

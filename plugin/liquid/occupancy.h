@@ -29,6 +29,7 @@ struct CellBox {
   }
 };
 
+// Counts of samples of lattice cells, for each cell of the automaton; a cell with half of FULL is solid.
 class Occupancy {
  public:
   static constexpr int FULL = 27 * 64;    // count of a cell that is filled: 27 samples at rest of weight 64

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Whole numbers put together over ranks, in whatever way these speak to each other.
+// Sums and minima of whole numbers over ranks, without MPI.
 
 #ifndef MDANIM_RANK_SUMS_H
 #define MDANIM_RANK_SUMS_H

@@ -21,10 +21,10 @@ constexpr int STEPS = 10;
 constexpr float MIX = 0.2f;
 constexpr double FAR = std::numeric_limits<double>::infinity();
 
-// Free columns joined through free ones, and between what the heights told in them lie.
+// Free columns joined through free ones, and the lowest and highest of the heights in them.
 struct Region {
   double lowest = FAR, highest = -FAR;
-  bool tells() const { return lowest <= highest; }
+  bool has_height() const { return lowest <= highest; }
 };
 
 // Free columns side by side in a row.
@@ -135,11 +135,11 @@ bool Surface::level() const
   return std::none_of(regions.begin(), regions.end(), [](const Region &r) { return r.lowest < r.highest; });
 }
 
-// A region that tells one height only has it everywhere, bit for bit.
+// A region with one height only has it everywhere, bit for bit.
 void Surface::spread_level()
 {
   for (const Run &run : runs)
-    if (regions[run.region].tells())
+    if (regions[run.region].has_height())
       for (int n = 0; n < run.length; ++n) set(run.place + n, regions[run.region].lowest);
 }
 
@@ -155,9 +155,9 @@ void Surface::filter(const double *height)
       const std::size_t place = run.place + n;
       keep[place] = 1.0f - MIX * (free[place - 1] + free[place + 1] + free[place - row] + free[place + row]);
       take[place] = MIX;
-      const bool tells = !std::isnan(height[run.number + n]);
-      sum[place] = tells ? static_cast<float>(height[run.number + n] - regions[run.region].lowest) : 0.0f;
-      weight[place] = tells ? 1.0f : 0.0f;
+      const bool has_height = !std::isnan(height[run.number + n]);
+      sum[place] = has_height ? static_cast<float>(height[run.number + n] - regions[run.region].lowest) : 0.0f;
+      weight[place] = has_height ? 1.0f : 0.0f;
     }
   for (int n = 0; n < STEPS; ++n) step();
   for (const Run &run : runs)

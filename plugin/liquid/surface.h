@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The surface that solids feel: column heights made smooth, also where a body stands in the column.
+// The smooth surface that acts on solids: column heights made smooth, also where a body stands in the column.
 
 #ifndef MDANIM_SURFACE_H
 #define MDANIM_SURFACE_H
@@ -8,11 +8,11 @@
 
 namespace mdanim {
 
-// Smooth heights (ny, nx; x fastest; NaN = tells nothing) with a filter close to a Gaussian of sigma = 2
-// cells, normalised over the columns that tell a height; columns out of its reach are filled in from around.
-// `blocked` columns (not 0; a held wall that stands through the surface) neither tell nor pass anything on:
+// Smooth heights (ny, nx; x fastest; NaN = none) with a filter close to a Gaussian of sigma = 2
+// cells, normalised over the columns that have a height; columns out of its reach are filled in from around.
+// `blocked` columns (not 0; a held wall that stands through the surface) have no height and pass none on:
 // each side of a wall keeps its own level. They are filled in last, as are places shut in by them where
-// nothing is told. Equal heights stay equal to the last bit; all is 0 where no column tells a height. Writes
+// no column has a height. Equal heights stay equal to the last bit; all is 0 where none has one. Writes
 // (ny, nx) values, never NaN.
 void smooth_surface(int nx, int ny, const double *height, const std::uint8_t *blocked, double *smooth);
 

@@ -107,7 +107,7 @@ void Buoyancy::find_faces(const std::vector<int> &near, const std::string &fix)
   }
 }
 
-// Faces push at the corners that ask for them and are read at all four, which are of one object and mostly all near the liquid.
+// Faces push at the corners near the liquid and are read at all four, which are of one object and mostly all near the liquid.
 void Buoyancy::append_required_atoms(std::vector<int> &particles) const
 {
   for (const Face &face : faces) particles.insert(particles.end(), face.corner, face.corner + 4);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The command, solids as samples on the grid, the particles near the liquid, and what the fix tells.
+// The command, solids as samples on the grid, the particles near the liquid, and output.
 
 #include "styles/fix_mdanim_liquid.h"
 
@@ -399,7 +399,7 @@ bool FixMdanimLiquid::needs_all_atoms() { return due(); }
 double FixMdanimLiquid::safe_displacement() const
 { return lists_are_prompt && asleep() ? lowest - (listed_top + Basin::NEAR * basin->shape.cell.z) : 0.0; }
 
-// --- what it tells ---
+// --- output ---
 
 double FixMdanimLiquid::compute_scalar() { return -buoyancy->energies().work; }
 

@@ -18,7 +18,7 @@
 
 namespace LAMMPS_NS {
 
-// Tells the basin (liquid/basin.h) of solids and of time, and the particles near the liquid to what acts on them (buoyancy.h).
+// Supplies the basin (liquid/basin.h) with solids and time, and Buoyancy (buoyancy.h) with the particles near the liquid.
 class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdanim::Stateful {
  public:
   FixMdanimLiquid(class LAMMPS *, int, char **);
@@ -78,7 +78,7 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   double top_height(double cells) const;    // [distance]
   bool asleep() const { return none_near && basin->is_calm() && basin->moving_solid() == 0; }
 
-  // what the command says
+  // of the command
   std::string region_id, fill_id;
   double volume_asked = -1.0, level_asked = 0.0;
   bool has_level = false;

@@ -16,7 +16,7 @@ using mdanim::Vertical;
 
 namespace mdanim {
 
-// What the tests ask of an automaton from the inside.
+// What tests need of the inside of an automaton.
 struct AutomatonProbe {
   Automaton &a;
 

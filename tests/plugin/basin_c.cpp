@@ -12,7 +12,7 @@ using mdanim::Basin;
 
 namespace {
 
-// As many ranks as it says, all of which have the same.
+// Ranks that all have the same values.
 class EqualRanks : public mdanim::RankSums {
  public:
   explicit EqualRanks(int count) : count(count) {}
