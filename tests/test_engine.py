@@ -250,12 +250,12 @@ def test_a_liquid_state_of_another_grid_is_refused(prepared):
     """Say so instead of going on with other cells."""
     with Instance(prepared(SPLASH).plan) as other:
         other.setup()
-        liquid = other.liquid_state()
+        records = other.state().records
     ready = prepared(SPLASH.replace("40) cm\n  density", "45) cm\n  density"))
     with Instance(ready.plan) as instance:
         still = instance.state()
         with pytest.raises(SetupError, match="grid of 24 x 20 x 16 cells, this one has 24 x 20 x 18"):
-            instance.put(0, replace(still, liquid=liquid))
+            instance.put(0, replace(still, records=records))
 
 
 def test_a_liquid_is_read_back(prepared):

@@ -10,6 +10,7 @@ from itertools import product
 import numpy as np
 import plugin_lab as lab
 import pytest
+import state_lab
 from mdanim_lammps.engine.plugin import folder
 
 G, RHO = 0.01, 1.0
@@ -50,11 +51,13 @@ def cells(lmp, shape=(16, 20, 20)) -> np.ndarray:
 
 def state(lmp) -> np.ndarray:
     """The fix's state as bytes."""
-    size = ctypes.c_longlong()
-    call("liquid_state_size", lmp, ctypes.byref(size))
-    out = np.empty(size.value, np.uint8)
-    call("liquid_get_state", lmp, out.ctypes.data_as(ctypes.c_void_p))
-    return out
+    return state_lab.pack(lmp, "water").record(0)
+
+
+def take_up(lmp, stored: np.ndarray) -> None:
+    """Take up these bytes; RuntimeError with the reason."""
+    records = state_lab.Records(np.zeros((1, 2), np.int32), np.array([0, len(stored)]), stored)
+    state_lab.put(lmp, "water", records)
 
 
 def one(z: float, mass=0.5, v=0.0) -> lab.Body:
@@ -359,13 +362,10 @@ def test_a_state_is_taken_up_to_the_bit(tmp_path):
     second.command("reset_timestep 150")
     second.numpy.extract_atom("x")[: len(x)] = x
     second.numpy.extract_atom("v")[: len(v)] = v
-    error = ctypes.create_string_buffer(200)
-    pointer = stored.ctypes.data_as(ctypes.c_void_p)
-    set_state = library().mdanim_liquid_set_state
-    assert set_state(handle(second), b"water", pointer, ctypes.c_longlong(len(stored)), error, 200) == 0, error.value
+    take_up(second, stored)
     assert same(frames(first, [150])[-1], frames(second, [150])[-1])
-    assert set_state(handle(second), b"water", pointer, ctypes.c_longlong(len(stored) - 1), error, 200) == 1
-    assert b"grid" in error.value
+    with pytest.raises(RuntimeError, match="grid"):
+        take_up(second, stored[:-1])
     first.close()
     second.close()
 
@@ -393,10 +393,7 @@ def test_a_state_comes_back_whole(tmp_path, calm):
     assert (head["nx"], head["nz"], head["units"]) == (20, 16, value(lmp, "units"))
     for name, number in dict(swept=77, waited=3, calm=calm, travel=0.1, crossed=0.2, work=0.3, lost=0.4).items():
         head[name] = number
-    error = ctypes.create_string_buffer(200)
-    pointer = stored.ctypes.data_as(ctypes.c_void_p)
-    size = ctypes.c_longlong(len(stored))
-    assert library().mdanim_liquid_set_state(handle(lmp), b"water", pointer, size, error, 200) == 0, error.value
+    take_up(lmp, stored)
     assert np.array_equal(state(lmp), stored)
     assert np.count_nonzero(cells(lmp) == 255) == 2 * 4 * 14
     lmp.close()
@@ -431,18 +428,14 @@ def test_a_damaged_state_is_refused(tmp_path):
     lmp = block_in_pool(tmp_path, **FAST)
     lmp.command("run 0")
     stored = state(lmp)
-    error = ctypes.create_string_buffer(200)
-
-    def take(bytes_):
-        pointer = bytes_.ctypes.data_as(ctypes.c_void_p)
-        return library().mdanim_liquid_set_state(handle(lmp), b"water", pointer, ctypes.c_longlong(len(bytes_)), error, 200)
-
     dry, burst = stored.copy(), stored.copy()
     dry[-16 * 20 * 20 :] = 0
     burst[-16 * 20 * 20] = 252
-    assert take(dry) == 1 and b"holds 0 units of liquid" in error.value
-    assert take(burst) == 1 and b"a cell holds 252" in error.value
-    assert take(stored) == 0
+    with pytest.raises(RuntimeError, match="holds 0 units of liquid"):
+        take_up(lmp, dry)
+    with pytest.raises(RuntimeError, match="a cell holds 252"):
+        take_up(lmp, burst)
+    take_up(lmp, stored)
     lmp.close()
 
 
@@ -455,13 +448,11 @@ from test_fix_mdanim_liquid import BASIN, call, one
 pool = "fix water all mdanim/liquid basin 1.0 grid 2000 2000 4 level 10 gravity 0.01"
 lmp = lab.load(one(5.0), Path(sys.argv[1]), [*BASIN, pool, "fix move all mdanim/leapfrog", "run 0"])
 smooth, raw = np.empty((2, 2000, 2000))
-size = ctypes.c_longlong()
 pages = int(Path("/proc/self/statm").read_text().split()[0])
 now = pages * resource.getpagesize() + 2**20
 resource.setrlimit(resource.RLIMIT_AS, (now, now))
 for ask in (
     lambda: call("liquid_heights", lmp, *(a.ctypes.data_as(ctypes.c_void_p) for a in (smooth, raw))),
-    lambda: call("liquid_state_size", lmp, ctypes.byref(size)),
     lambda: state_lab.pack(lmp, "water"),
 ):
     try:
@@ -482,7 +473,7 @@ def test_out_of_memory_is_told(tmp_path):
         text=True,
         timeout=100,
     )
-    assert (done.returncode, done.stdout.split("\n")) == (0, ["out of memory"] * 3 + [""]), done.stderr
+    assert (done.returncode, done.stdout.split("\n")) == (0, ["out of memory"] * 2 + [""]), done.stderr
 
 
 def test_a_still_body_that_was_moved_is_marked_anew(tmp_path):

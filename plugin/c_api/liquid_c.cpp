@@ -9,7 +9,6 @@
 #include "lammps.h"
 #include "modify.h"
 
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -34,25 +33,4 @@ MDANIM_EXPORT int mdanim_liquid_heights(void *handle, const char *fix, double *s
 MDANIM_EXPORT int mdanim_liquid_cells(void *handle, const char *fix, unsigned char *cells, char *error, int error_size)
 {
   return guarded(error, error_size, [&] { liquid(handle, fix).liquid().contents(cells); });
-}
-
-// Bytes of the liquid's state. All ranks call it and the next two together.
-MDANIM_EXPORT int mdanim_liquid_state_size(void *handle, const char *fix, long long *size, char *error, int error_size)
-{
-  return guarded(error, error_size, [&] { *size = static_cast<long long>(liquid(handle, fix).state().size()); });
-}
-
-MDANIM_EXPORT int mdanim_liquid_get_state(void *handle, const char *fix, unsigned char *bytes, char *error, int error_size)
-{
-  return guarded(error, error_size, [&] {
-    const auto state = liquid(handle, fix).state();
-    std::copy(state.begin(), state.end(), bytes);
-  });
-}
-
-// To be called before the setup of a run.
-MDANIM_EXPORT int mdanim_liquid_set_state(void *handle, const char *fix, const unsigned char *bytes, long long size, char *error,
-                                          int error_size)
-{
-  return guarded(error, error_size, [&] { liquid(handle, fix).set_state(bytes, size); });
 }

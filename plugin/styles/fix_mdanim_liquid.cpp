@@ -454,20 +454,15 @@ double FixMdanimLiquid::memory_usage()
 
 // --- state ---
 
-void FixMdanimLiquid::set_state(const std::uint8_t *bytes, std::size_t size)
-{
-  buoyancy->set_energies(basin->set_state(bytes, size));
-  asked = -1;
-}
-
-StateRecords FixMdanimLiquid::pack() const { return {{StateKey{}, state()}}; }
+StateRecords FixMdanimLiquid::pack() const { return {{StateKey{}, basin->state(buoyancy->energies())}}; }
 
 void FixMdanimLiquid::unpack(const StateRecords &records)
 {
   if (records.size() != 1 || records.begin()->first.a != 0)
     throw std::runtime_error(fmt::format("the liquid's state is one record (0, 0), there are {} records", records.size()));
   const Bytes &record = records.begin()->second;
-  set_state(record.data(), record.size());
+  buoyancy->set_energies(basin->set_state(record.data(), record.size()));
+  asked = -1;
 }
 
 void FixMdanimLiquid::write_restart(FILE *file) { mdanim::write_restart(*this, lmp, name(), file); }

@@ -40,16 +40,12 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   double safe_displacement() const override;
   void write_restart(FILE *) override;
   void restart(char *) override;
-  // One record, of the whole: the bytes of state().
+  // One record, of the whole: the basin's state with the energies.
   mdanim::StateRecords pack() const override;
   void unpack(const mdanim::StateRecords &records) override;
 
   // For liquid_c.cpp.
   const mdanim::Basin &liquid() const { return *basin; }
-  // Everything that later steps depend on, except positions and velocities; all ranks call it together.
-  mdanim::Bytes state() const { return basin->state(buoyancy->energies()); }
-  // Throws std::runtime_error, and changes nothing, when it is of another basin or damaged.
-  void set_state(const std::uint8_t *bytes, std::size_t size);
 
  private:
   class WorldSums : public mdanim::RankSums {
