@@ -3,11 +3,9 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -19,6 +17,7 @@ from .parallel.limits import check_executors
 from .parallel.runtime.launch import simulate_on
 from .results.checkpoint import Checkpoint
 from .results.files import MARK, open_folder, read_json, write_json
+from .results.untrusted import check_folder, check_plain
 from .run.loop import Progress, Result, simulate, write_inputs
 from .run.manifest import manifest
 from .run.prepare import Prepared, prepare
@@ -118,7 +117,11 @@ def output_folder(record: SceneRecord, out: str | Path | None = None) -> Path:
     Raises OutputError for the current folder, for one that holds it, and for one that holds the scene.
     """
     if out is None:
-        return default_folder(record)
+        out = default_folder(record)
+        check_plain(out)
+        check_folder(out)
+        return out
+    check_folder(Path(out))
     folder, here = Path(out).resolve(), Path.cwd().resolve()
     if here.is_relative_to(folder):
         what = "is the current folder" if here == folder else "holds the current folder"
@@ -141,25 +144,10 @@ def open_run(ready: Prepared, folder: str | Path | None, *, force: bool) -> Path
     movie_file(folder, ready.scene)
     if force and (own := [p.name for p in mesh_files(ready.scene) if p.resolve().is_relative_to(folder.resolve())]):
         raise OutputError(f"{folder} holds the mesh {own[0]} of this scene and cannot be emptied; write elsewhere with -o DIR")
-    with _study_aside(folder):
-        open_folder(folder, force=force)
+    open_folder(folder, force=force, keep=(STUDY,))
     write_json(folder / MARK, manifest(ready.scene, ready.lock, sys.argv))
     write_inputs(ready, folder)
     return folder
-
-
-@contextmanager
-def _study_aside(folder: Path) -> Iterator[None]:
-    """Keep a study out of the way while a run's folder is made: it is no part of the run, and dear to make again."""
-    study, aside = folder / STUDY, folder.with_name(f".{folder.name}.{STUDY}")
-    if study.is_dir():
-        os.replace(study, aside)
-    try:
-        yield
-    finally:
-        if aside.is_dir():
-            folder.mkdir(parents=True, exist_ok=True)
-            os.replace(aside, study)
 
 
 def movie_file(folder: Path, record: SceneRecord) -> Path:
@@ -179,7 +167,8 @@ def movie_file(folder: Path, record: SceneRecord) -> Path:
 
 
 def stored_scene(folder: Path) -> SceneRecord:
-    """The scene of an output folder, under its own name. Raises OutputError, SceneError."""
+    """The scene of an output folder, under its own name. Raises OutputError, also for a folder with links, and SceneError."""
+    check_folder(folder)
     if not (folder / MARK).is_file():
         what = (
             "has no run in it"
@@ -189,9 +178,9 @@ def stored_scene(folder: Path) -> SceneRecord:
             else "does not exist"
         )
         raise OutputError(f"{folder} {what}; name the folder that a run has written, NAME.out beside NAME.txt or what -o said")
-    stored = read_json(folder / MARK)
+    name = read_json(folder / MARK).get("scene")
     scene = load_scene(folder / "scene.lock.txt")
-    return replace(scene, name=Path(stored["scene"]).stem if stored.get("scene") else folder.stem)
+    return replace(scene, name=Path(name).stem if isinstance(name, str) and name else folder.stem)
 
 
 def run_frames(

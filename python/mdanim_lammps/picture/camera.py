@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import UsageError
+from ..errors import OutputError, UsageError
 from ..results.trajectory import Trajectory
 from ..scene.scene import Camera
 from ..scene.keywords import did_you_mean
@@ -59,7 +59,7 @@ class Action:
 
 
 def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
-    """Bounds of all objects in all frames.
+    """Bounds of all objects in all frames. Raises OutputError where a position is NaN or infinite.
 
     Centres are taken from every frame, extents about them from ``samples`` frames, so that a long trajectory
     need not be read whole. Left out is what would make everything else tiny: an object, where there is no
@@ -80,6 +80,8 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
     low = np.array([centers[s].min(axis=0) + below for s in stretches])
     high = np.array([centers[s].max(axis=0) + above for s in stretches])
 
+    if not (np.isfinite(low).all() and np.isfinite(high).all()):
+        raise OutputError(f"{trajectory.path}: damaged: positions are NaN or infinite")
     start_low, start_high = (centers[0] + below).min(axis=0), (centers[0] + above).max(axis=0)
     size = max(float(np.linalg.norm(start_high - start_low)), np.finfo(float).tiny)
     gone = np.zeros(low.shape[:2], dtype=bool)

@@ -20,7 +20,7 @@ from types import ModuleType
 
 import numpy as np
 
-from ..errors import OutputError, SetupError
+from ..errors import OutputError, SetupError, UsageError
 from ..results.files import disk_errors, write_whole
 from ..results.trajectory import Trajectory
 from ..scene.scene import Render
@@ -36,6 +36,7 @@ CODING = {
     ],
 }
 """H.264 that browsers and slides play."""
+MOST_PICTURES = 10_000_000
 FRAMES_PER_PROCESS = 40
 """A process takes about two seconds to start; with fewer frames than this it does not pay."""
 
@@ -136,6 +137,10 @@ def movie_frames(trajectory: Trajectory, fps: float | None = None) -> tuple[np.n
     if len(times) == 1:
         return np.zeros(1, dtype=int), _rate(fps or 30.0)
     own = (len(times) - 1) / (times[-1] - times[0])
+    if (times[-1] - times[0]) * (fps or 0.0) > MOST_PICTURES:
+        raise UsageError(
+            f"{fps:g} pictures per second for {times[-1] - times[0]:g} s are too many; the limit is {MOST_PICTURES:,}"
+        )
     if fps is None:
         return np.arange(len(times)), _rate(own)
     # A picture that falls on the last frame but for rounding is shown.

@@ -6,12 +6,15 @@ from __future__ import annotations
 import zlib
 from dataclasses import dataclass, field
 from pathlib import Path
+from zipfile import ZipFile
 
 import numpy as np
 
 from ..engine.state import Records, State, StateRecords
 from ..errors import OutputError
+from ..model.spacing import available_memory
 from .files import write_whole
+from .untrusted import check_room
 
 VERSION = 4
 """Of the file: 4 has the records of all fixes that keep any."""
@@ -75,24 +78,27 @@ class Checkpoint:
     def read(cls, path: Path) -> Checkpoint:
         """Read a checkpoint. Raises OutputError when it is missing, broken or of another version."""
         try:
-            with np.load(path) as data:
+            with ZipFile(path) as archive:
+                check_room(3.0 * sum(member.file_size for member in archive.infolist()), path)
+            with np.load(path, allow_pickle=False) as data:
                 if int(data["version"]) != VERSION:
                     raise OutputError(
                         f"{path} is of version {int(data['version'])}, this program reads {VERSION}: "
                         "go on with the program that wrote it, or run the scene again with --force"
                     )
+                state = [data[name] for name in "xvf"]
+                if any(array.dtype != np.float64 or array.shape != (len(state[0]), 3) for array in state):
+                    raise ValueError("its arrays are not those of particles")
+                if data["values"].dtype != np.float64 or not np.isfinite(data["values"]).all():
+                    raise ValueError("its sums are not finite numbers")
                 records = {
-                    fix: StateRecords(
-                        data[f"keys{n}"], data[f"first{n}"], np.frombuffer(zlib.decompress(data[f"data{n}"]), np.uint8)
-                    )
+                    fix: _records(data[f"keys{n}"], data[f"first{n}"], _unpacked(data[f"data{n}"], path))
                     for n, fix in enumerate(data["fixes"].tolist())
                 }
                 return cls(
                     int(data["step"]),
                     int(data["frame"]),
-                    data["x"],
-                    data["v"],
-                    data["f"],
+                    *state,
                     dict(zip(data["keys"].tolist(), data["values"].tolist())),
                     str(data["run"]),
                     int(data["ledger"]),
@@ -106,3 +112,23 @@ class Checkpoint:
                 f"{path} cannot be read, it is missing or damaged ({error}): nothing to resume from; "
                 "run the scene again with --force"
             ) from error
+
+
+def _records(keys: np.ndarray, first: np.ndarray, data: np.ndarray) -> StateRecords:
+    """Records whose parts fit together: the plugin reads them as they are. Raises ValueError."""
+    count = len(keys)
+    if keys.shape != (count, 2) or keys.dtype != np.int32 or first.shape != (count + 1,) or first.dtype != np.int64:
+        raise ValueError("its records of fixes have other shapes")
+    if first[0] != 0 or first[-1] != len(data) or (np.diff(first) < 0).any():
+        raise ValueError("its records of fixes do not share out their bytes")
+    return StateRecords(keys, first, data)
+
+
+def _unpacked(packed: np.ndarray, path: Path) -> np.ndarray:
+    """Decompress at most what fits in memory; uint8 bytes, shape (B,)."""
+    stream = zlib.decompressobj()
+    most = int(0.25 * available_memory())
+    data = stream.decompress(packed.tobytes(), most)
+    if not stream.eof:
+        raise OutputError(f"{path}: the state of a fix is cut off, or larger than the free memory")
+    return np.frombuffer(data, np.uint8)

@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import OutputError
 from ..scene.wording import number, say
 from .trajectory import Trajectory
+from .untrusted import check_folder
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,8 @@ class Difference:
 
 def compare(a: Path, b: Path) -> Difference:
     """Compare all frames of two output folders. Raises OutputError when they do not hold the same objects or frames."""
+    for folder in (a, b):
+        check_folder(folder)
     with Trajectory(a) as first, Trajectory(b) as second:
         if not len(first) or not len(second):
             raise OutputError(f"{a if not len(first) else b} holds no frame yet: there is nothing to compare")

@@ -8,7 +8,7 @@ import json
 import os
 import secrets
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -38,13 +38,17 @@ def _way_out(path: Path, error: OSError) -> str:
     return "make room and repeat the command, with --force if it made this folder"
 
 
-def open_folder(folder: Path, *, force: bool) -> None:
-    """Make an empty output folder. Raises OutputError when something is in the way and ``force`` is not given."""
+def open_folder(folder: Path, *, force: bool, keep: Sequence[str] = ()) -> None:
+    """Make an output folder that is empty but for folders named in ``keep``.
+
+    Raises OutputError when something is in the way and ``force`` is not given.
+    """
     with disk_errors(folder):
         if folder.exists():
             if not folder.is_dir():
                 raise OutputError(f"{folder} is a file; name another folder with -o DIR")
-            ours, empty = _ours(folder), not any(folder.iterdir())
+            found = [path for path in folder.iterdir() if path.name not in keep]
+            ours, empty = _ours(folder), not found
             if not empty and not force:
                 raise OutputError(f"{folder} exists; overwrite it with --force, or write elsewhere with -o DIR")
             if not empty and not ours:
@@ -52,8 +56,9 @@ def open_folder(folder: Path, *, force: bool) -> None:
                     f"{folder} holds files that are no results of mdanim-lammps; --force does not delete "
                     "them: name another folder with -o DIR"
                 )
-            if not empty:
-                shutil.rmtree(folder)
+            # The folder is no longer ours once this file is gone: it goes last, so that a deletion that fails can be repeated.
+            for path in sorted(found, key=lambda path: path.name == MARK):
+                shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
         folder.mkdir(parents=True, exist_ok=True)
 
 
@@ -126,6 +131,9 @@ def write_json(path: Path, data: dict) -> None:
 def read_json(path: Path) -> dict:
     """Read a JSON file of an output folder. Raises OutputError when it is missing or broken."""
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        if not isinstance(data, dict):
+            raise ValueError("it holds no table of names and values")
+        return data
+    except (OSError, ValueError, RecursionError) as error:
         raise OutputError(f"{path} cannot be read ({error}); is this an output folder of mdanim-lammps?") from error

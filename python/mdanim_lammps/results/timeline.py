@@ -9,10 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
+from ..errors import OutputError
 from .files import read_json, write_json
+from .untrusted import check_room
 
 TIMELINE = "timeline.json"
 """Name of the file in the output folder."""
+MOST_EXECUTORS = 1_000_000
 KINDS = ("simulating", "moving", "waiting", "frozen", "held")
 """What an executor can be at: running LAMMPS; handing objects on and building instances; waiting for the others at the frame;
 frozen at the end of a window that others do again; held by the supervisor, which has not yet taken the frames before."""
@@ -135,6 +138,32 @@ class Timeline:
     def read(cls, folder: Path) -> Timeline:
         """Read timeline.json of an output folder. Raises OutputError."""
         data = read_json(folder / TIMELINE)
-        rows = {k: [tuple(row) for row in data[k]] for k in ("owners", "spans")}
-        teams = [(frame, tuple(members)) for frame, members in data["teams"]]
-        return cls(**data | rows | {"names": tuple(data["names"]), "teams": teams})
+        try:
+            rows = {k: [tuple(row) for row in data[k]] for k in ("owners", "spans")}
+            teams = [(frame, tuple(members)) for frame, members in data["teams"]]
+            read = cls(**data | rows | {"names": tuple(data["names"]), "teams": teams})
+            read._check()
+        except (KeyError, TypeError, ValueError, IndexError, OverflowError) as error:
+            raise OutputError(f"{folder / TIMELINE} is damaged ({error}); run the scene again") from error
+        return read
+
+    def _check(self) -> None:
+        """Raises ValueError, TypeError where numbers name what is not there."""
+        executors, objects = self.executors, len(self.names)
+        frames, spans = np.array(self.frames, np.int64), np.array([s[3:] for s in self.spans], float).reshape(-1, 2)
+        owners = np.array(self.owners, np.int64).reshape(-1, 3)
+        for what, holds in (
+            ("executors", type(executors) is int and 1 <= executors <= MOST_EXECUTORS and len(self.cpu) == executors),
+            ("frames", (np.diff(frames) > 0).all() and len(frames) == len(self.moves) == len(self.retries)),
+            (
+                "owners",
+                np.isin(owners[:, 0], frames).all()
+                and ((owners[:, 1:] >= [0, -1]) & (owners[:, 1:] < [objects, executors])).all(),
+            ),
+            ("spans", np.isfinite(spans).all() and (spans[:, 0] >= 0.0).all() and (spans[:, 0] <= spans[:, 1]).all()),
+            ("spans", all(0 <= e < executors and kind in KINDS and type(frame) is int for e, kind, frame, *_ in self.spans)),
+            ("names", all(isinstance(name, str) for name in self.names)),
+        ):
+            if not holds:
+                raise ValueError(f"its {what} are not those of a run")
+        check_room(8.0 * (2 * len(frames) * objects + executors * 2400), TIMELINE)

@@ -22,11 +22,13 @@ from .trajectory_file import (
     checksum,
     datasets_of_frames,
     find_trajectory,
+    frame_shapes,
     open_trajectory,
     read_metadata,
     row_checksum,
 )
 from .trajectory_metadata import LiquidMetadata
+from .untrusted import check_frames, check_hdf5, check_metadata
 
 if TYPE_CHECKING:
     import MDAnalysis
@@ -50,7 +52,9 @@ class Trajectory:
         self._file = open_trajectory(self.path)
         try:
             with self._damage():
+                check_hdf5(self.path, self._file)
                 self.metadata = read_metadata(self._file)
+                check_metadata(self.path, self.metadata)
                 tables = datasets_of_frames(self._file)
                 parameters = self._file["parameters/mdanim"].attrs
                 self.format, self.dt = int(parameters["format"]), float(parameters["dt"])
@@ -59,6 +63,7 @@ class Trajectory:
                 self._checksums = tables.pop(CHECKSUM)[:] if CHECKSUM in tables else None
             self._values = tables
             count = self._count(steps, times)
+            check_frames(self.path, frame_shapes(self.metadata), tables, steps[:count], times[:count])
         except OutputError:
             self._file.close()
             raise
@@ -221,7 +226,7 @@ class Trajectory:
         """Turn all that HDF5 says of a damaged file into OutputError."""
         try:
             yield
-        except (KeyError, OSError, RuntimeError, ValueError, TypeError, IndexError) as error:
+        except (KeyError, OSError, RuntimeError, ValueError, TypeError, IndexError, AttributeError, MemoryError) as error:
             raise OutputError(f"{self.path}: not a trajectory of mdanim-lammps, or damaged ({error})") from None
 
 

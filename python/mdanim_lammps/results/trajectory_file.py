@@ -25,6 +25,7 @@ from ..model.model import Model, Surface
 from ..scene.scene import Save
 from .files import disk_errors, sync
 from .trajectory_metadata import LiquidMetadata, TrajectoryMetadata, distinct_surfaces, stored_particles
+from .untrusted import check_plain
 
 if TYPE_CHECKING:
     import h5py
@@ -98,6 +99,8 @@ def find_trajectory(path: Path) -> Path:
     """The trajectory file of a folder, or of its own path, finished or not. Raises OutputError."""
     file = path / FILE_NAME if path.is_dir() else path
     for candidate in (file, part_of(file)):
+        if path.is_dir():
+            check_plain(candidate)
         if candidate.is_file():
             return candidate
     raise OutputError(f"{file}: no such trajectory; run the scene first, or name the folder that a run wrote")
@@ -161,6 +164,11 @@ def row_checksum(step: int, time: float) -> int:
 def checksum(values: np.ndarray) -> int:
     """Checksum of the values of one quantity in one frame; C-contiguous."""
     return zlib.crc32(values) if values.size else 0
+
+
+def frame_shapes(metadata: TrajectoryMetadata) -> dict[str, tuple[int, ...]]:
+    """Shape of one frame of each quantity."""
+    return {name: tuple(shape) for name, _, shape, _, _ in _quantities(metadata)}
 
 
 def _quantities(metadata: TrajectoryMetadata) -> Iterator[tuple[str, str, tuple[int, int], type, str]]:

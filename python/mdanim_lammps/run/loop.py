@@ -145,6 +145,14 @@ class _Run:
                 f"{folder / CHECKPOINT} is of another run: scene, time step or program have changed since; "
                 "run the scene again with --force"
             )
+        c = self.certificate
+        if resume and not (
+            0 <= resume.frame <= len(c.lengths)
+            and resume.step == min(resume.frame * c.steps_per_frame, c.steps)
+            and len(resume.x) == ready.system.particles
+            and all(((r.keys >= 0) & (r.keys <= len(ready.system.names))).all() for r in resume.records.values())
+        ):
+            raise OutputError(f"{folder / 'checkpoint'} is damaged; run the scene again with --force")
         if resume:
             remove_parts(folder)
         self.recorded = recorded(ready.scene.expects)

@@ -7,6 +7,7 @@ import math
 import shutil
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
+from types import NoneType
 
 import numpy as np
 
@@ -75,7 +76,10 @@ class Store:
         if force and path.exists():
             shutil.rmtree(folder)
         elif path.exists():
-            self._read(read_json(path))
+            try:
+                self._read(read_json(path))
+            except (AttributeError, KeyError, TypeError, ValueError) as error:
+                raise OutputError(f"{path} is damaged ({error}); begin the study anew with --force") from error
         elif folder.is_dir() and any(folder.iterdir()):
             raise OutputError(f"{folder} holds files but no study; name another folder with -o DIR")
         with disk_errors(folder):
@@ -90,6 +94,8 @@ class Store:
             )
         for entry in data["points"]:
             values = entry["runs"]
+            if any(not isinstance(value, (int, float, NoneType)) for value in entry["setting"].values()):
+                raise ValueError("a setting is no number")  # settings make names of files
             point = Point(
                 Setting(**entry["setting"]),
                 entry["timestep"] or math.nan,
@@ -102,10 +108,12 @@ class Store:
                 [tuple(math.nan if x is None else x for x in f) for f in values["found"]],
                 problem=entry["problem"],
             )
-            point.tracks = [self._load(point, k) for k in range(len(point.seconds))]
+            point.tracks = [self._load(f"{point.setting.key}-{k}") for k in range(len(point.seconds))]
             self.points[point.setting.key] = point
-        if (times := self.folder / "tracks" / "times.npy").exists():
-            self.times = np.load(times)
+        if any(point.tracks for point in self.points.values()):
+            self.times = self._load("times")
+            if any(track.ndim != 3 or len(track) != len(self.times) for p in self.points.values() for track in p.tracks):
+                raise ValueError("a track has other frames than the study")
 
     def named(self, setting: Setting, timestep: float) -> Setting:
         """The measured setting that comes to the same but for its name: time step [s].
@@ -116,11 +124,11 @@ class Store:
                 return point.setting
         return setting
 
-    def _load(self, point: Point, k: int) -> np.ndarray:
-        path = self.folder / "tracks" / f"{point.setting.key}-{k}.npy"
+    def _load(self, name: str) -> np.ndarray:
+        path = self.folder / "tracks" / f"{name}.npy"
         try:
-            return np.load(path)
-        except (OSError, ValueError) as error:
+            return np.load(path, allow_pickle=False)
+        except (OSError, ValueError, EOFError, MemoryError) as error:
             raise OutputError(f"{path} cannot be read ({error}); begin the study anew with --force") from error
 
     def add(self, sample: Sample) -> Point:

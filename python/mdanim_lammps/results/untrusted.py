@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Checks of an output folder that comes from somebody else: it can neither reach other files nor need more memory than it has
+(docs/security.md)."""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import OutputError
+from ..model.spacing import available_memory
+
+if TYPE_CHECKING:
+    import h5py
+
+    from .trajectory_metadata import TrajectoryMetadata
+
+
+def check_folder(folder: Path) -> None:
+    """Refuse a folder with a link, a pipe or a device anywhere in it: it could lead a command to other files, or never end.
+
+    Raises OutputError.
+    """
+    for place, folders, files in os.walk(folder):
+        for name in (*folders, *files):
+            check_plain(Path(place, name))
+
+
+def check_plain(path: Path) -> None:
+    """Refuse a path of an output folder that is a link, a pipe or a device. Raises OutputError."""
+    try:
+        mode = os.lstat(path).st_mode
+    except FileNotFoundError:  # or a run that is going on has renamed it
+        return
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+        what = "a link" if stat.S_ISLNK(mode) else "a pipe, a socket or a device"
+        raise OutputError(f"{path} is {what}, which no run writes; remove it, or put a file in its place")
+
+
+def check_room(needed: float, what: object) -> None:
+    """Raises OutputError where data would take more than half of the free memory; ``needed`` in bytes."""
+    if needed > 0.5 * available_memory():
+        raise OutputError(
+            f"{what}: would take {needed * 1e-9:.3g} GB of memory, which is not free; it is damaged, or needs a larger host"
+        )
+
+
+def check_hdf5(path: Path, file: h5py.File) -> None:
+    """Refuse data that lie outside of the file, and tables that do not fit in memory. Raises OutputError."""
+    import h5py
+
+    needed = 0.0
+
+    # What HDF5 calls must not raise; what it returns ends the visit.
+    def foreign_link(name: str, link) -> str | None:
+        return f"{name} leads to another file, {link.filename}" if isinstance(link, h5py.ExternalLink) else None
+
+    def foreign_data(name: str, found) -> str | None:
+        nonlocal needed
+        if isinstance(found, h5py.Dataset):
+            if found.external or found.is_virtual:
+                return f"the data of {name} lie in another file"
+            row = found.dtype.itemsize * float(np.prod(found.shape[1:], dtype=np.float64))
+            # Of quantities of frames one frame is read at a time, of all other tables everything.
+            by_frame = name.startswith(("particles/all/position/value", "particles/all/velocity/value", "observables/liquid/"))
+            needed += row * (1 if by_frame or not found.shape else len(found))
+        return None
+
+    if foreign := file.visititems_links(foreign_link) or file.visititems(foreign_data):
+        raise OutputError(f"{path}: {foreign}; no run writes that")
+    check_room(needed, path)
+
+
+def check_metadata(path: Path, m: TrajectoryMetadata) -> None:
+    """Refuse numbers that name what is not there: they would be read beyond the ends of arrays. Raises OutputError."""
+    count, particles = len(m.names), len(m.id)
+
+    def must(holds, what: str) -> None:
+        if not holds:
+            raise OutputError(f"{path}: damaged: {what}")
+
+    must(count > 0, "it holds no object")
+    for name, shape in (
+        ("colors", (count,)),
+        ("still", (count,)),
+        ("object_mass", (count,)),
+        ("surface_of", (count,)),
+        ("first", (count + 1,)),
+        ("mass", (particles,)),
+        ("layer", (particles,)),
+        ("held", (particles,)),
+        ("id", (particles,)),
+        ("bond", (len(m.bond), 2)),
+    ):
+        must(np.shape(getattr(m, name)) == shape, f"{name} has the shape {np.shape(getattr(m, name))}, not {shape}")
+    sizes = np.diff(m.first)
+    must(m.first[0] == 0 and m.first[-1] == particles and (sizes > 0).all(), "objects do not share out the particles")
+    must(
+        particles == 0 or (m.id[0] >= 1 and (np.diff(m.id) > 0).all() and m.id[-1] <= m.total), "tags of particles do not ascend"
+    )
+    must(np.isin(m.bond, m.id).all(), "a spring joins a particle that is not stored")
+    must(((m.surface_of >= 0) & (m.surface_of < len(m.surfaces))).all(), "an object wears a surface that is not there")
+    fewest = np.full(len(m.surfaces), np.iinfo(np.int64).max)
+    np.minimum.at(fewest, m.surface_of, sizes)
+    for surface, size in zip(m.surfaces, fewest):
+        vertices = len(surface.index)
+        must(((surface.index >= 0) & (surface.index < size)).all(), "a surface hangs on a particle that its object does not have")
+        must(((surface.triangle >= 0) & (surface.triangle < vertices)).all(), "a triangle has a vertex that is not there")
+        must(np.isfinite(surface.weight).all(), "a weight of a surface is NaN or infinite")
+    must(np.isfinite(m.object_mass).all() and np.isfinite(m.mass).all(), "a mass is NaN or infinite")
+    must(m.ground is None or np.isfinite(m.ground), "the ground is NaN or infinite")
+    must(m.walls is None or np.isfinite(m.walls).all(), "the walls are NaN or infinite")
+    if m.liquid is not None:
+        low, high, shape = (np.array(getattr(m.liquid, name)) for name in ("low", "high", "shape"))
+        must(low.shape == high.shape == shape.shape == (3,), "the basin is no box")
+        must(np.isfinite([low, high]).all() and (low < high).all() and (shape > 0).all(), "the basin is no box")
+    check_room(8.0 * m.total, path)
+
+
+def check_frames(
+    path: Path, shapes: Mapping[str, tuple[int, ...]], tables: Mapping, steps: np.ndarray, times: np.ndarray
+) -> None:
+    """Refuse quantities of another shape than the metadata say, and times that do not ascend. Raises OutputError.
+
+    Args:
+        path: for the message.
+        shapes: of one frame of each quantity.
+        tables: the quantities, each with frames first.
+        steps, times: of the frames that are whole, shape (F,).
+    """
+    for name, shape in shapes.items():
+        found = tables[name].shape
+        if found[1:] != shape or len(found) < 2 or found[0] < len(steps) or tables[name].dtype.kind != "f":
+            raise OutputError(f"{path}: damaged: {name} has the shape {found}, a frame of it has {shape}")
+    if (np.diff(steps) <= 0).any() or not np.isfinite(times).all() or (np.diff(times) <= 0.0).any():
+        raise OutputError(f"{path}: damaged: the times of its frames do not ascend")
