@@ -1,5 +1,6 @@
 # make demo   set up .venv, run scenes/beam.txt, end with the path of the movie
 # make test   set up .venv, run the tests
+# make develop  set up .venv, build the plugin into the working tree: PYTHONPATH=python .venv/bin/python -m pytest tests/test_x.py
 # make soak   set up .venv, run the long form of the hard cases (tests/stability, test_ranks.py, tests/mpi)
 # make bench  set up .venv, measure all of docs/performance.md (ten minutes; python bench/all.py --quick takes one)
 # make bench-peers  set up .venv and .venv-peers, measure other programs on the same scenes (docs/performance.md)
@@ -9,7 +10,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 SOURCES := pyproject.toml CMakeLists.txt $(shell find plugin python -name '*.so' -prune -o -name __pycache__ -prune -o -type f -print)
 
-.PHONY: demo test soak bench bench-peers setup clean
+.PHONY: demo test develop soak bench bench-peers setup clean
 .DEFAULT_GOAL := demo
 
 setup: $(VENV)/.installed
@@ -29,6 +30,16 @@ demo: setup
 test: setup
 	$(BIN)/python tests/plugin_library.py
 	$(BIN)/python -m pytest -n 2 --dist loadfile
+
+# Ninja builds what has changed only. The file is renamed, as a process may have the old one loaded.
+develop: setup
+	$(BIN)/python -m pip install --quiet cmake ninja
+	$(BIN)/cmake -S . -B build/develop -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja \
+		-DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python
+	$(BIN)/cmake --build build/develop
+	mkdir -p python/mdanim_lammps/plugin
+	cp build/develop/mdanimplugin.so python/mdanim_lammps/plugin/mdanimplugin.so.tmp
+	mv python/mdanim_lammps/plugin/mdanimplugin.so.tmp python/mdanim_lammps/plugin/mdanimplugin.so
 
 soak: setup
 	$(BIN)/python tests/plugin_library.py

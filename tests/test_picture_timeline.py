@@ -8,7 +8,7 @@ from mdanim_lammps.picture.palette import rgb
 from mdanim_lammps.picture.timeline import (
     COLUMNS,
     DOING,
-    NOBODY,
+    NO_OWNER,
     ROWS,
     SINGLE,
     bars,
@@ -80,7 +80,7 @@ def test_every_object_has_its_row():
     colors = executor_colors(2)
     picture = ownership(log(frames=4).owner(), colors)
     assert picture.shape == (3, 5, 3)
-    assert (picture[0] == rgb(NOBODY)).all() and (picture[1] == colors[0]).all()
+    assert (picture[0] == rgb(NO_OWNER)).all() and (picture[1] == colors[0]).all()
     assert (picture[2] == colors[[0, 1, 0, 1, 0]]).all()
 
 

@@ -127,7 +127,7 @@ def check(
     allow_unstable: AllowUnstable = False,
     format: Literal["text", "json"] = "text",
 ) -> None:
-    """Say what a scene calls for and certify its time step; nothing is run.
+    """List the effects of a scene with reasons and certify its time step; nothing is run.
 
     Parameters
     ----------
@@ -198,7 +198,7 @@ def resume(
     allow_unstable: AllowUnstable = False,
     quiet: Quiet = False,
 ) -> None:
-    """Go on from the last checkpoint of an output folder, as if it had never stopped.
+    """Continue a run from its last checkpoint, as if it had never stopped.
 
     Parameters
     ----------
@@ -265,7 +265,7 @@ def render(
 
 @app.command
 def timeline(folder: Path, /, *, out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None) -> None:
-    """Draw who did what and who owned which object in a run on several executors.
+    """Draw what each executor did, and which objects it owned, in a run with -n.
 
     Parameters
     ----------
@@ -291,7 +291,7 @@ def timeline(folder: Path, /, *, out: Annotated[Path | None, Parameter(name=["-o
 
 @app.command
 def compare(a: Path, b: Path, /) -> None:
-    """Say where two runs part: first frame and object, in metres. Ends with 6 when they differ.
+    """Find where two runs differ: first frame and object, in metres. Ends with 6 when they differ.
 
     Parameters
     ----------

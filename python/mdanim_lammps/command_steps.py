@@ -113,7 +113,7 @@ def print_warnings(ready) -> None:
 
 
 def announce(ready, quiet: bool, verbose: bool, executors: int = 1, control: str | None = None) -> None:
-    from .report import certificate_line, effect_line, output_line, scene_lines, who_line
+    from .report import certificate_line, effect_line, output_line, scene_lines, executors_line
 
     print_warnings(ready)
     if quiet:
@@ -124,7 +124,7 @@ def announce(ready, quiet: bool, verbose: bool, executors: int = 1, control: str
             print(effect_line(verdict))
     print(certificate_line(ready))
     print(output_line(ready))
-    if line := who_line(executors, control):
+    if line := executors_line(executors, control):
         print(line)
     sys.stdout.flush()
 

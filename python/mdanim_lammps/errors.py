@@ -41,7 +41,7 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One thing that is wrong (or doubtful) in a scene: where, why, what was found, and a way out."""
+    """An error or a doubt in a scene: its place, its cause, the value found, and a way out."""
 
     span: Span | None
     message: str
@@ -101,7 +101,7 @@ class MdanimError(Exception):
 
 
 class UsageError(MdanimError):
-    """The command line was given something that cannot be."""
+    """An argument of the command line is not valid."""
 
     exit_code = ExitCode.USAGE
 
@@ -129,7 +129,7 @@ class SetupError(MdanimError):
 
 
 class ExecutorLost(MdanimError):
-    """A rank of a distributed run has died: killed, out of memory, a host gone, or an error that nobody has foreseen."""
+    """A rank of a distributed run has died: killed, out of memory, a host gone, or an unforeseen error."""
 
     exit_code = ExitCode.ENVIRONMENT
 

@@ -59,7 +59,7 @@ def _listed(head: str, items: list[str]) -> list[str]:
 
 
 LARGE = 1_000_000
-"""Particles from which on modelling takes so long that it is told before."""
+"""Particles from which on modelling takes so long that a line before it says so."""
 MODELLING = 4e-6
 """Processor seconds for each particle of models, springs and time step, measured at 10^6."""
 
@@ -135,16 +135,16 @@ def cost_line(result: Result, simulated: float) -> str:
     return f"cost     {shares}   total {total:.1f} s, {number(total / simulated, 2)} s of computing per second of film"
 
 
-def who_line(executors: int, control: str | None) -> str:
-    """One line: how many executors run a scene, and who decides; empty for a run in this process."""
+def executors_line(executors: int, control: str | None) -> str:
+    """One line: how many executors run a scene, and what assigns objects to them; empty for a run in this process."""
     if executors == 1 and control is None:
         return ""
-    who = "each decides alike (--control peers)" if control == "peers" else "the supervisor decides (--control central)"
-    return f"spread   over {count(executors, 'executor')} and a supervisor; {who}"
+    decision = "each decides alike (--control peers)" if control == "peers" else "the supervisor decides (--control central)"
+    return f"spread   over {count(executors, 'executor')} and a supervisor; {decision}"
 
 
 def prospect_lines(p: Prospect) -> list[str]:
-    """Below `who_line`: the most that executors can bring at first, and why it is not more."""
+    """Below `executors_line`: the most that executors can bring at first, and why it is not more."""
     when = "in the first second" if p.seconds == 1.0 else f"in the first {number(p.seconds, 2)} s"
     faster = "no faster than one" if p.faster < 1.05 else f"at most {number(p.faster, 2)} times as fast as one"
     if p.faster > 0.9 * p.executors:
@@ -173,8 +173,8 @@ def spread_line(timeline: Timeline, folder: Path) -> str:
 def forecast_line(cost: Cost) -> str:
     """One line of ``check``: what a run will cost on this machine, and most of it."""
     parts = sorted(cost.parts.items(), key=lambda item: -item[1])
-    told = ", ".join(f"{name} {_about(s)}" for name, s in parts if s >= 0.05 * cost.total)
-    return f"cost     about {_about(cost.total)} here: {told}"
+    largest = ", ".join(f"{name} {_about(s)}" for name, s in parts if s >= 0.05 * cost.total)
+    return f"cost     about {_about(cost.total)} here: {largest}"
 
 
 def _about(seconds: float) -> str:
@@ -186,7 +186,7 @@ def _about(seconds: float) -> str:
 
 
 def check_lines(ready: Prepared, forecast: Cost, prospect: Prospect | None = None) -> list[str]:
-    """What ``check`` prints: scene, certificate, limits, output, cost, what executors will bring, and every effect."""
+    """What ``check`` prints: scene, certificate, limits, output, cost, what executors gain, and every effect."""
     return [
         *scene_lines(ready),
         certificate_line(ready),
@@ -194,7 +194,7 @@ def check_lines(ready: Prepared, forecast: Cost, prospect: Prospect | None = Non
         *margin_lines(ready.certificate),
         output_line(ready),
         forecast_line(forecast),
-        *([] if prospect is None else [who_line(prospect.executors, None), *prospect_lines(prospect)]),
+        *([] if prospect is None else [executors_line(prospect.executors, None), *prospect_lines(prospect)]),
         "effects",
         *map(effect_line, ready.verdicts.values()),
     ]
@@ -202,7 +202,7 @@ def check_lines(ready: Prepared, forecast: Cost, prospect: Prospect | None = Non
 
 def check_json(ready: Prepared, forecast: Cost | None = None, prospect: Prospect | None = None) -> dict:
     """What ``check --format json`` prints; with the expected cost (cost/forecast.py),
-    and what executors will bring (cost/speedup_forecast.py)."""
+    and what executors gain (cost/speedup_forecast.py)."""
     return {
         "scene": str(ready.scene.path) if ready.scene.path else ready.scene.name,
         "objects": [

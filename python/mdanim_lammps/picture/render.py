@@ -88,7 +88,7 @@ class Painter:
         return self._pixels()
 
     def close(self) -> None:
-        """Give the windows back."""
+        """Release the windows."""
         for window in (self._window, self._shadow):
             window.Finalize()
 
@@ -123,10 +123,10 @@ class Painter:
         self._surface = MovingMesh(self._mesh.carry.shape[0], self._mesh.triangle)
         self._surface.paint(object_colors(metadata.colors, metadata.still)[self._mesh.object_of_vertex])
         self._actors = [lit_actor(self._surface.data, shading.FRAGMENT_SOLID, bool(self._tank))]
-        # Objects are closed, so nobody sees their insides, and drawing them takes time.
+        # Objects are closed, so their inner faces are never visible, and drawing these takes time.
         self._actors[0].GetProperty().BackfaceCullingOn()
         if self._tank:
-            # Before the floor: what is hidden already is not shaded.
+            # Before the floor: pixels that are hidden are not shaded.
             self._actors.append(self._tank.plate)
         if floor is not None:
             self._actors.append(self._make_floor(floor, low, high))
@@ -151,7 +151,7 @@ class Painter:
         """The ground; without one the lowest point of the action, unless something falls through there."""
         metadata = self.trajectory.metadata
         if metadata.ground is not None:
-            # A basin sunk into the ground would be hidden by it.
+            # The ground would hide a basin that is sunk into it.
             return min(metadata.ground, metadata.liquid.low[2] if metadata.liquid else metadata.ground)
         return None if self.action.escaped else float(self.action.bounds[0][2])
 
@@ -311,7 +311,7 @@ def _window(renderer, size: tuple[int, int], samples: int):
     window.SetOffScreenRendering(1)
     window.SetSize(*size)
     window.SetMultiSamples(samples)
-    # Pictures are read from the buffer that is drawn into; nobody looks at the other one.
+    # Pictures are read from the buffer that is drawn into; the other one is not used.
     window.SwapBuffersOff()
     window.AddRenderer(renderer)
     window.Initialize()
@@ -325,7 +325,7 @@ def _window(renderer, size: tuple[int, int], samples: int):
 
 @contextmanager
 def _silent():
-    """VTK tries an X server first and says so when there is none, which is of no concern off screen."""
+    """Silence VTK's message that there is no X server, which off-screen drawing does not need."""
     from vtkmodules.vtkCommonCore import vtkLogger
 
     before = vtkLogger.GetCurrentVerbosityCutoff()

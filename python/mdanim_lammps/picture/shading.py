@@ -35,14 +35,14 @@ SHADOW = """
 // smoothly over them, so that the edge of a shadow is soft and has no steps however near the camera comes.
 float shadow(vec3 where, vec3 normal)
 {
-  // Start off the surface, or it would shade itself: part of the square is nearer to the lamp.
+  // The test starts off the surface, which would shade itself otherwise: part of the square is nearer to the lamp.
   float lean = length(cross(normal, normalize(lamp)));
   vec3 p = (lampMatrix * vec4(where + normal * lampTexel * (1.0 + 3.0 * lean), 1.0)).xyz;
   if (any(lessThan(p.xy, vec2(0.0))) || any(greaterThan(p.xy, vec2(1.0)))) return 1.0;
   vec2 texel = p.xy * lampPixels - 0.5;
   ivec2 corner = ivec2(floor(texel));
   vec2 part = texel - floor(texel);
-  // Most of what is lit has nothing before it for a long way around.
+  // Most lit points have no object between them and the lamp, nor near that line.
   ivec2 block = clamp(corner, ivec2(0), ivec2(lampPixels) - 1) / lampBlock;
   if (texelFetch(lampNearest, block, 0).r >= p.z - lampBias) return 1.0;
   float lit = 0.0;
@@ -117,7 +117,7 @@ FRAGMENT_SOLID = """//VTK::Light::Impl
   float facing = max(dot(n, toLamp), 0.0);
   float lit = facing > 0.0 ? shadow(worldPosition, n) : 0.0;
   vec3 base = linear(diffuseColor);
-  // Light from the sky above, a little thrown back from the floor below, and from behind the watcher.
+  // Light from the sky above, a little thrown back from the floor below, and from behind the camera.
   vec3 sky = mix(vec3(0.20, 0.19, 0.18), vec3(0.50, 0.54, 0.60), 0.5 + 0.5 * n.z);
   float fill = 0.16 * max(dot(n, toEye), 0.0);
   vec3 color = base * (sky + fill + vec3(0.86, 0.83, 0.78) * facing * lit);
@@ -172,7 +172,7 @@ FRAGMENT_LIQUID = """//VTK::Light::Impl
   float glint = lit * pow(max(dot(normalize(toLamp + toEye), n), 0.0), 120.0);
   float cover = mix(skinCover, 0.80, max(graze, 0.6 * low));
   if (inner) {
-    // Behind the inner faces is floor, which `seen` has coloured, or sky, which nobody has.
+    // Behind the inner faces is floor, which `seen` has coloured, or sky, which is still to be coloured.
     vec3 past = worldPosition - toEye * (worldPosition.z - floorHeight) / toEye.z;
     bool sky = toEye.z <= 0.0 || any(greaterThan(abs(past.xy - floorCentre.xy), vec2(floorCentre.z)));
     cover = 0.10;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""A picture of a run on several executors, from its own log: what each of them did when, and who owned which object."""
+"""A picture of a run on several executors, from its log: what each executor did when, and which objects it owned."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from ..results.timeline import KINDS, Timeline
 from .palette import rgb
 
 DOING = {"simulating": "#34495e", "moving": "#f28e2b", "waiting": "#d5dade", "frozen": "#8fd0f2", "held": "#c8a2c8"}
-"""Colours of `KINDS`: what brings the run on is dark, waiting is pale."""
+"""Colours of `KINDS`: simulating is dark, waiting is pale."""
 EXECUTORS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#2b2b2b")
 """Okabe and Ito's eight, told apart by colour-blind people too; the next eight are tints of them."""
-NOBODY = "#eceeef"
-"""What never moves is nobody's."""
+NO_OWNER = "#eceeef"
+"""Objects that never move have no owner."""
 AGAIN = {"linestyle": "none", "marker": "v", "color": "#d62728", "markersize": 5, "clip_on": False}
 """Marks of windows that were begun again."""
 COLUMNS = 1200
@@ -69,14 +69,14 @@ def bars(share: np.ndarray, height: int) -> np.ndarray:
 def ownership(owner: np.ndarray, colors: np.ndarray) -> np.ndarray:
     """Objects over frames in the colours of their executors; in a group they are sorted by executor, shape (rows, columns, 3).
 
-    :param owner: executor of every object in every frame, -1 for nobody, shape (F, M)
+    :param owner: executor of every object in every frame, -1 for none, shape (F, M)
     """
     table = owner.T[:, np.linspace(0, len(owner) - 1, min(len(owner), COLUMNS)).round().astype(int)]
     count = len(table)
     if count > SINGLE:
         table = np.concatenate([np.sort(group, axis=0) for group in np.array_split(table, edges(count)[1:-1])])
     table = table[np.minimum(((np.arange(min(count, ROWS)) + 0.5) * count / min(count, ROWS)).astype(int), count - 1)]
-    return np.concatenate([colors, [rgb(NOBODY)]])[table]
+    return np.concatenate([colors, [rgb(NO_OWNER)]])[table]
 
 
 def edges(count: int) -> np.ndarray:
@@ -89,8 +89,8 @@ def edges(count: int) -> np.ndarray:
 def headline(timeline: Timeline, title: str = "") -> str:
     """The line above the picture. A dash, as titles end with marks of their own:
     ``Which of them float? – 2 executors, ...``."""
-    who = "the supervisor" if timeline.control == "central" else "every executor alike"
-    return f"{title or 'Run'} – {timeline.executors} executor{'s' * (timeline.executors > 1)}, owners decided by {who}"
+    control = "the supervisor" if timeline.control == "central" else "every executor alike"
+    return f"{title or 'Run'} – {timeline.executors} executor{'s' * (timeline.executors > 1)}, owners decided by {control}"
 
 
 def draw(timeline: Timeline, path: Path, title: str = "") -> None:
@@ -122,7 +122,7 @@ def _draw_doing(axes, timeline: Timeline, colors: np.ndarray, legend_at: float) 
     """A bar for each executor over wall time; above, the frames; on the right, how busy it was."""
     from matplotlib.patches import Patch
 
-    count, end = timeline.executors, timeline.seconds or 1.0  # executors that were stopped at once have told nothing
+    count, end = timeline.executors, timeline.seconds or 1.0  # executors that were stopped at once have no spans
     columns = COLUMNS if len(timeline.spans) <= count * PIECES else PIECES
     axes.imshow(bars(shares(timeline, columns), 24), extent=(0.0, end, count - 0.5, -0.5), aspect="auto", interpolation="nearest")
     axes.set_yticks(range(count), [f"{e}" for e in range(count)], fontsize=9)
@@ -192,7 +192,7 @@ def _draw_owners(axes, timeline: Timeline, colors: np.ndarray) -> None:
             axes.axhline(y, color="white", linewidth=0.6)
     legend = [Patch(color=c, label=str(e)) for e, c in enumerate(colors)]
     if (owner < 0).any():
-        legend.append(Patch(color=NOBODY, label="none: never moves"))
+        legend.append(Patch(color=NO_OWNER, label="none: never moves"))
     axes.legend(
         handles=legend,
         title="executor",
