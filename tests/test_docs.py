@@ -37,6 +37,30 @@ def test_links_lead_somewhere(page):
         assert not anchor or anchor in anchors(target), f"{address}: headings are {sorted(anchors(target))}"
 
 
+def test_promises_have_their_tests():
+    """Every test that docs/security.md names is there."""
+    named = 0
+    for line in (ROOT / "docs" / "security.md").read_text(encoding="utf-8").splitlines():
+        file = None
+        for name, test in re.findall(r"`(test_\w+\.py)?::(test_\w+)", line):
+            file, named = name or file, named + 1
+            assert re.search(rf"^def {test}\(", (ROOT / "tests" / file).read_text(encoding="utf-8"), flags=re.M), (
+                f"{file}::{test}"
+            )
+    assert named > 30
+
+
+def test_contributing_names_files_that_are_there():
+    """Every file and folder that CONTRIBUTING.md names is where it says; names without a folder lie in the package."""
+    text = re.sub(r"^```.*?^```", "", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"), flags=re.S | re.M)
+    package = ROOT / "python" / "mdanim_lammps"
+    named = set(re.findall(r"`([\w*./]+(?:/|\.py|\.h|\.md|\.cpp|\.txt))`", text))
+    assert len(named) > 40
+    assert not [
+        name for name in named if "NAME" not in name and not any(any(folder.glob(name.rstrip("/"))) for folder in (ROOT, package))
+    ]
+
+
 def test_every_page_is_found():
     """Every page of the docs can be reached from docs/index.md by links."""
     index = ROOT / "docs" / "index.md"
