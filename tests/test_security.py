@@ -292,6 +292,26 @@ def test_a_crafted_trajectory(whole, capsys, name):
     assert "trajectory.h5" in message and "Traceback" not in message, message
 
 
+@pytest.mark.parametrize("table", ["particles/all/position", "observables/center_of_mass", "observables/liquid/height"])
+def test_a_damaged_frame_is_not_drawn(whole, capsys, table):
+    """One number that differs from what was written ends the movie with the frame's number, and no movie is left."""
+    with h5py.File(whole / "trajectory.h5", "r+") as file:
+        values = file[f"{table}/value"][3]
+        values.flat[0] += 1e-6
+        file[f"{table}/value"][3] = values
+    assert run("render", whole, "--size", 64, 48, "-q") == 7
+    assert "frame 3 is damaged" in capsys.readouterr().err
+    assert not (whole / "movie.mp4").exists()
+
+
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9])
+def test_a_cut_off_trajectory_is_not_drawn(whole, capsys, share):
+    """A file that is cut off is named as damaged."""
+    os.truncate(whole / "trajectory.h5", int(share * (whole / "trajectory.h5").stat().st_size))
+    assert run("render", whole, "--size", 64, 48, "-q") == 7
+    assert "trajectory.h5" in (message := capsys.readouterr().err) and "Traceback" not in message
+
+
 def test_times_do_not_make_a_movie_endless(whole, capsys):
     """Refuse a rate at which a movie would have more pictures than anybody can draw."""
     crafted(whole, edited("particles/all/position/time", setitem(-1, 1e30)))

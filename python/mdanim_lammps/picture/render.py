@@ -287,13 +287,11 @@ def nearest_around(depth: np.ndarray, block: int) -> np.ndarray:
     Returns:
         shape (n / block, m / block).
     """
+    from scipy.ndimage import minimum_filter
+
     n, m = depth.shape
     least = depth.reshape(n // block, block, m).min(axis=1).reshape(n // block, m // block, block).min(axis=2)
-    for axis in (0, 1):
-        ends = np.pad(least, [(1, 1) if a == axis else (0, 0) for a in (0, 1)], mode="edge")
-        before, behind = (np.delete(ends, cut, axis=axis) for cut in ((-1, -2), (0, 1)))
-        least = np.minimum(least, np.minimum(before, behind))
-    return least
+    return minimum_filter(least, 3, mode="nearest")
 
 
 def grid_spacing(size: float) -> float:
