@@ -56,7 +56,7 @@ def ranks(folder: Path, control: str) -> None:
     """What every rank does: run, and write what its methods took, frame by frame."""
     import importlib
 
-    from mdanim_lammps.parallel.plan.frame_plan import Settings
+    from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions
     from mdanim_lammps.parallel.runtime import executor
     from mdanim_lammps.parallel.runtime.supervisor import Distributed
     from mdanim_lammps.run.loop import simulate
@@ -96,8 +96,8 @@ def ranks(folder: Path, control: str) -> None:
     if world.rank:
         executor.serve(world)
     else:
-        source = Distributed(prepare(load_scene(folder / "crowd.txt")), world, control, Settings())
-        simulate(source.ready, folder, source=source, watch=lambda progress: frames.append({}))
+        source = Distributed(prepare(load_scene(folder / "crowd.txt")), world, control, PlannerOptions())
+        simulate(source.ready, folder, source=source, on_progress=lambda progress: frames.append({}))
         source.timeline.write(folder)
     (folder / f"{world.rank}.json").write_text(json.dumps(frames))
 

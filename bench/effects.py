@@ -150,7 +150,7 @@ def added(rounds: int) -> None:
 
 
 def shares(rounds: int) -> None:
-    """Parts of shared clocks, to be set in effects/*.py."""
+    """SubPlans of shared clocks, to be set in effects/*.py."""
     plain = FLIGHT.format(more="", v=3, off="").replace("-9.81", "-1e-6")  # as many rebuilds with gravity as without
     found = measure(
         {

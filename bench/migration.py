@@ -45,12 +45,12 @@ class Mover:
 
     def __init__(self, n: int, comm):
         from mdanim_lammps.engine.instance import Instance
-        from mdanim_lammps.engine.part import Parts
+        from mdanim_lammps.engine.sub_plan import SubPlans
         from mdanim_lammps.run.prepare import prepare
         from mdanim_lammps.scene.parse import parse_scene
 
         self.comm = comm
-        self.parts = Parts(prepare(parse_scene(SCENE.format(n=n, far=3 * n))).plan)
+        self.parts = SubPlans(prepare(parse_scene(SCENE.format(n=n, far=3 * n))).plan)
         self.particles = self.parts.part((0,), False).system.particles
         self.steps = 50
         if comm.rank == 0:

@@ -117,7 +117,7 @@ def _measure(ready, executors: int, control: str) -> dict:
     ends = []
     with tempfile.TemporaryDirectory() as name:
         folder, clock = Path(name), Clocked(ready.plan)
-        told = {"watch": lambda p: ends.append(time.perf_counter())}
+        told = {"on_progress": lambda p: ends.append(time.perf_counter())}
         if executors == 0:
             simulate(ready, folder, source=clock, **told)
             found = {"cpu": clock.cpu}

@@ -2,7 +2,7 @@
 """Which LAMMPS instances a plan wants of an executor."""
 
 import numpy as np
-from mdanim_lammps.parallel.plan.frame_plan import FramePlan
+from mdanim_lammps.parallel.plan.frame_plan import FrameAssignment
 from mdanim_lammps.parallel.plan.teams import Team
 from mdanim_lammps.parallel.runtime.bundle import wanted_bundles
 
@@ -14,7 +14,7 @@ GUESTS = np.array([[1, 3], [2, 3]])
 
 def wanted(executor, objects=7, teams=()):
     """(objects that it has, liquid, team, objects that it moves) of each bundle."""
-    plan = FramePlan(OWNER, LABEL, BUNDLE, GUESTS, tuple(teams), np.zeros(3, np.int64))
+    plan = FrameAssignment(OWNER, LABEL, BUNDLE, GUESTS, tuple(teams), np.zeros(3, np.int64))
     return [(w.key.objects, w.key.liquid, w.key.team, w.members.tolist()) for w in wanted_bundles(plan, objects, executor)]
 
 

@@ -14,7 +14,7 @@ from mdanim_lammps.cost.forecast import fastest, forecast, rebuilds
 from mdanim_lammps.effects import EFFECTS, springs
 from mdanim_lammps.effects.springs import fullness
 from mdanim_lammps.report import check_json, cost_line, forecast_line
-from mdanim_lammps.results.cost import Cost, Part
+from mdanim_lammps.results.cost import Cost, CostShare
 from mdanim_lammps.run.frame_source import Account, add_clocks
 from mdanim_lammps.run.loop import simulate
 
@@ -119,7 +119,7 @@ def test_cost_json_is_the_cost(pond):
 
 def test_cost_line_has_the_largest_first():
     """Order the parts by their share and leave out what is nothing."""
-    cost = Cost(10.0, 1, 1, {"springs": Part(6.0), "walls": Part(0.01)}, {"output": 3.9})
+    cost = Cost(10.0, 1, 1, {"springs": CostShare(6.0), "walls": CostShare(0.01)}, {"output": 3.9})
     line = cost_line(SimpleNamespace(cost=cost), 5.0)
     assert line == "cost     springs 60%  output 39%   total 10.0 s, 2 s of computing per second of film"
 
@@ -198,7 +198,7 @@ def test_speeds_come_from_falls(prepared):
 
 def test_forecast_is_printed(pond):
     """Say the time in few digits with its largest parts, and all of it in JSON."""
-    cost = Cost(12.4, 1, 1, {"springs": Part(5.2), "walls": Part(0.01)}, {"setup": 1.4, "output": 5.8})
+    cost = Cost(12.4, 1, 1, {"springs": CostShare(5.2), "walls": CostShare(0.01)}, {"setup": 1.4, "output": 5.8})
     assert forecast_line(cost) == "cost     about 12 s here: output 6 s, springs 5 s, setup 1.4 s"
     assert forecast_line(replace(cost, wall=7300.0, effects={}, other={})) == "cost     about 2 h here: "
     assert check_json(pond[0], cost)["cost"]["wall"] == 12.4

@@ -61,7 +61,7 @@ def make(ready, folder: Path, cut: bool) -> None:
             (folder / loop.STOP).touch()
 
     try:
-        run_frames(ready, folder, watch=stop)
+        run_frames(ready, folder, on_progress=stop)
     except loop.Interrupted:
         assert cut
 

@@ -13,7 +13,7 @@ from mdanim_lammps.engine.plugin import open_lammps
 from mdanim_lammps.errors import DivergedError, ExitCode
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.ledger import Ledger
-from mdanim_lammps.run.guard import CLASSES, GENEROUS, LEAST, Guard, energy_class, fastest
+from mdanim_lammps.run.guard import CLASSES, LEAST_RESIDUAL, RESIDUAL_FACTOR, Guard, energy_class, fastest
 from mdanim_lammps.run.loop import simulate, write_inputs
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
@@ -125,7 +125,7 @@ def test_a_class_of_energy_that_is_missed_is_told(tmp_path):
     (tmp_path / "hard").mkdir()
     (tmp_path / "kind").mkdir()
     result, _ = run(hard, tmp_path / "hard")
-    assert 1e-4 < result.ledger.residual < LEAST
+    assert 1e-4 < result.ledger.residual < LEAST_RESIDUAL
     assert [w.severity for w in result.warnings] == ["warning"]
     assert "'accuracy reference' stands for" in result.warnings[0].message
     assert result.warnings[0].span.text.strip() == "accuracy reference"
@@ -139,7 +139,7 @@ def test_the_energy_guard_is_generous(prepared, tmp_path, accuracy):
     ready = prepared(hit(control=f"accuracy {accuracy.value}"))
     guard = Guard(ready, tmp_path)
     v = ready.system.velocity
-    limit = max(LEAST, GENEROUS * CLASSES[accuracy])
+    limit = max(LEAST_RESIDUAL, RESIDUAL_FACTOR * CLASSES[accuracy])
     assert energy_class(ready.scene) == CLASSES[accuracy]
     guard.energy(10, 0.99 * limit, v)
     guard.energy(10, -0.99 * limit, v)
@@ -176,14 +176,14 @@ def test_what_lammps_says_is_passed_on(prepared, tmp_path):
     """Blame an object and the time step only where particles have flown apart; other ends speak for themselves."""
     ready = prepared(hit(young=1, speed=-20))
     guard = Guard(ready, tmp_path)
-    flown = guard.broke(
+    flown = guard.explain_failure(
         7, DivergedError("LAMMPS stopped: ERROR: Bond atoms 1 2\nmissing"), fastest(ready.system, ready.system.velocity)
     )
     assert "ball: LAMMPS stopped: ERROR: Bond atoms 1 2 missing" in str(flown) and "  change: write elasticity" in str(flown)
     assert "ball: LAMMPS" in str(
-        guard.broke(7, DivergedError("LAMMPS stopped: Lost atoms"), fastest(ready.system, ready.system.velocity[:5]))
+        guard.explain_failure(7, DivergedError("LAMMPS stopped: Lost atoms"), fastest(ready.system, ready.system.velocity[:5]))
     )
-    other = str(guard.broke(7, DivergedError("LAMMPS stopped: ERROR: no open cell is left"), 0))
+    other = str(guard.explain_failure(7, DivergedError("LAMMPS stopped: ERROR: no open cell is left"), 0))
     assert other.startswith("step 7, t = ") and "no open cell" in other and "cause" not in other and str(tmp_path) in other
 
 

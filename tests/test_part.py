@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from mdanim_lammps.engine.data_file import data_text
 from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.engine.part import Parts
 from mdanim_lammps.engine.plan import both_ends, make_plan
 from mdanim_lammps.engine.state import State
+from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.errors import SetupError
 from mdanim_lammps.model.system import System
 from mdanim_lammps.results.ledger import LOSS
@@ -157,7 +157,7 @@ def islands(low, high, gap) -> list[tuple[int, ...]]:
 
 def follow(plan, starts=(1, 500), steps=400):
     """Run the whole, and the islands that its own traces show; compare them. Gives the islands of each stretch."""
-    parts, stretches = Parts(plan), []
+    parts, stretches = SubPlans(plan), []
     with Instance(plan) as whole:
         whole.setup()
         for start in starts:
@@ -195,7 +195,7 @@ def test_damped_dragged_thin_and_held_objects(prepared):
 def test_what_is_in_the_liquid_and_what_is_not(prepared, model):
     """Take out the pond with what swims in it, and the two objects that fall far above it and meet."""
     plan = prepared(POND.replace("MODEL", model)).plan
-    parts = Parts(plan)
+    parts = SubPlans(plan)
     assert plan.system.position[particles(plan.system, (0, 2)), 2].min() > parts.liquid_top
     with Instance(plan) as whole:
         whole.setup()
@@ -215,7 +215,7 @@ def test_the_liquid_alone(prepared):
     for name in ("wall", "raft"):
         text = text[: text.index(f"object {name}")] + text[text.index("}", text.index(f"object {name}")) + 2 :]
     plan = prepared(text).plan
-    with Instance(plan) as whole, Instance(Parts(plan).part((), True)) as alone:
+    with Instance(plan) as whole, Instance(SubPlans(plan).part((), True)) as alone:
         whole.setup()
         start = evolve(whole, 20)
         whole.run(300)
@@ -233,13 +233,13 @@ def test_the_liquid_alone_takes_one_process(prepared):
             return 2
 
     with pytest.raises(SetupError, match="run it on one process"):
-        Instance(Parts(prepared(POND.replace("MODEL", "")).plan).part((), True), Two())
+        Instance(SubPlans(prepared(POND.replace("MODEL", "")).plan).part((), True), Two())
 
 
 def test_float_from_the_start(scenes):
     """Take all that floats: the same numbers of particles, and the same pouring."""
     plan = prepare(load_scene(scenes / "float.txt")).plan
-    with Instance(plan) as whole, Instance(Parts(plan).part((0,), True)) as part:
+    with Instance(plan) as whole, Instance(SubPlans(plan).part((0,), True)) as part:
         whole.setup()
         part.setup()
         equal(evolve(part, 100), evolve(whole, 100))
@@ -252,7 +252,7 @@ def test_a_part_says_what_a_plan_of_its_own_would_say(prepared):
     whole, name = prepared(text), "object higher"
     without = text[: text.index(name)] + text[text.index("}", text.index(name)) + 2 :]
     own = prepared(without)
-    part = Parts(whole.plan).part((0, 1, 3), True)
+    part = SubPlans(whole.plan).part((0, 1, 3), True)
     own_plan = make_plan(own.scene, own.system, own.verdicts, whole.certificate)
     # Types may be numbered otherwise.
     for field in {field.name for field in fields(System)} - {"spring_type", "constants"} | {"stiffness", "rest", "damping"}:
@@ -275,10 +275,10 @@ def test_a_part_says_what_a_plan_of_its_own_would_say(prepared):
 
 def test_effects_with_nothing_to_act_on_are_left_out(prepared):
     """Keep walls and ground; drop contact of one object, and of the liquid all traces in what is dry."""
-    parts = Parts(prepared(SHELF).plan)
+    parts = SubPlans(prepared(SHELF).plan)
     assert [e.name for e in parts.part((0,), False).effects] == ["springs", "damping", "gravity", "ground", "walls", "air-drag"]
     assert "reach" not in parts.part((0,), False).columns and "reach" in parts.part((0, 2), False).columns
-    pond = Parts(prepared(POND.replace("MODEL", "")).plan)
+    pond = SubPlans(prepared(POND.replace("MODEL", "")).plan)
     dry = pond.part((0, 2), False)
     assert [e.name for e in dry.effects] == ["springs", "damping", "gravity", "contact", "basin", "air-drag"]
     assert set(dry.columns) == {"stiffness", "reach", "lambda"} and not dry.tables and dry.grid is None
@@ -299,7 +299,7 @@ def test_effects_with_nothing_to_act_on_are_left_out(prepared):
 def test_parts_that_are_refused(prepared, objects, liquid, why):
     """Say what is wrong."""
     with pytest.raises(ValueError, match=why):
-        Parts(prepared(SHELF).plan).part(objects, liquid)
+        SubPlans(prepared(SHELF).plan).part(objects, liquid)
 
 
 @pytest.mark.parametrize("text", [pytest.param(SHELF, id="solids"), pytest.param(POND.replace("MODEL", ""), id="liquid")])
@@ -319,7 +319,7 @@ def test_a_state_is_put_again_and_again(prepared, text):
 
 def test_a_state_of_other_particles_is_refused(prepared):
     """Say how many there are."""
-    parts = Parts(prepared(SHELF).plan)
+    parts = SubPlans(prepared(SHELF).plan)
     with Instance(parts.part((0,), False)) as one, Instance(parts.part((2,), False)) as other:
         other.setup()
         with pytest.raises(ValueError, match=r"shape \(64, 3\), the plan has \d+ particles"):
@@ -337,7 +337,7 @@ def test_an_instance_filled_anew_is_as_a_new_one(prepared, chain):
     """Damped, dragged and thin objects, more and fewer, one after the other in one instance: bits and energies,
     losses from 0, of new ones."""
     plan = prepared(SHELF).plan
-    parts = Parts(plan)
+    parts = SubPlans(plan)
     with Instance(plan) as whole:
         whole.setup()
         start = evolve(whole, 500)
@@ -364,8 +364,8 @@ def test_an_instance_filled_anew_is_as_a_new_one(prepared, chain):
 
 def test_an_instance_is_not_filled_with_what_it_has_no_place_for(prepared):
     """Other columns, more types of springs than there is room for, and the liquid take a new one; the old one is as it was."""
-    parts = Parts(prepared(SHELF).plan)
-    pond = Parts(prepared(POND.replace("MODEL", "")).plan)
+    parts = SubPlans(prepared(SHELF).plan)
+    pond = SubPlans(prepared(POND.replace("MODEL", "")).plan)
     rich = prepared(
         "\n".join(
             f"object o{k} {{ shape box (5, 5, 5) cm  position ({10 * k}, 0, 0) cm  mass 1 kg  elasticity {k} kPa }}"
@@ -381,15 +381,15 @@ def test_an_instance_is_not_filled_with_what_it_has_no_place_for(prepared):
             assert not instance.refill(other)
         assert not wet.refill(pond.part((0,), False))
         equal(instance.state(), before)
-    with Instance(Parts(rich).part((0, 1), False)) as small:
+    with Instance(SubPlans(rich).part((0, 1), False)) as small:
         assert not small.refill(rich)
-        assert small.refill(Parts(rich).part((3, 4), False))
+        assert small.refill(SubPlans(rich).part((3, 4), False))
 
 
 def test_solids_that_are_laid_aside(prepared):
     """Two that have met are laid aside, one in the way of the rest: that evolves, and holds energy, as it does without them."""
     plan = prepared(SHELF).plan
-    parts, names = Parts(plan), plan.system.names
+    parts, names = SubPlans(plan), plan.system.names
     gone, rest = (0, 2), tuple(m for m in range(len(names)) if m not in (0, 2))
     with Instance(plan) as instance:
         instance.setup()

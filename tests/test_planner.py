@@ -3,13 +3,13 @@
 
 import numpy as np
 import pytest
-from mdanim_lammps.engine.part import Parts
+from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.errors import DivergedError
 from mdanim_lammps.parallel.plan import planner as module
-from mdanim_lammps.parallel.plan.frame_plan import Settings
-from mdanim_lammps.parallel.plan.planner import Planner
+from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions
 from mdanim_lammps.parallel.plan.orders import Report
-from mdanim_lammps.run.frame_source import Broken
+from mdanim_lammps.parallel.plan.planner import Planner
+from mdanim_lammps.run.frame_source import LammpsFailure
 from test_part import POND
 
 ROW = """
@@ -26,7 +26,7 @@ LENGTHS = (40, 40, 7)
 @pytest.fixture
 def parts(prepared):
     """Eight cubes in a row, which will meet."""
-    return Parts(prepared(ROW).plan)
+    return SubPlans(prepared(ROW).plan)
 
 
 def report(parts, owner, cost=1000, shift=0.0, speed=1.0, fingerprint="", **more):
@@ -46,14 +46,14 @@ EQUAL = [0, 0, 0, 0, 1, 1, 1, 1]
 
 def begun(parts, **settings):
     """A planner that has given its first order."""
-    planner = Planner(parts, 2, LENGTHS, Settings(**settings))
+    planner = Planner(parts, 2, LENGTHS, PlannerOptions(**settings))
     return planner, planner.decide(report(parts, EQUAL))
 
 
 def test_all_who_plan_order_the_same(parts):
     """Two planners that hear the same stay the same through windows, violations and costs; who hears otherwise does not."""
-    one, other = (Planner(parts, 2, LENGTHS, Settings(worth=0)) for _ in range(2))
-    odd = Planner(parts, 2, LENGTHS, Settings(worth=0))
+    one, other = (Planner(parts, 2, LENGTHS, PlannerOptions(worth=0)) for _ in range(2))
+    odd = Planner(parts, 2, LENGTHS, PlannerOptions(worth=0))
     rng = np.random.default_rng(3)
     owner, prints = EQUAL, ""
     for k in range(12):
@@ -77,7 +77,7 @@ def test_different_plans_are_found_out(parts):
 def test_costs_are_smoothed(parts):
     """The first measurement counts alone, the later ones by a quarter each; the guess before is not mixed in."""
     planner, order = begun(parts)
-    guess = module.GUESS * parts.whole.certificate.steps_per_frame * planner.terms.particles
+    guess = module.GUESSED_COST * parts.whole.certificate.steps_per_frame * planner.context.particles
     assert (planner.cost == np.maximum(1, guess.astype(int))).all()
     planner.decide(report(parts, order.plan.owner, cost=1000))
     assert (planner.cost == 1000).all()
@@ -108,14 +108,14 @@ def test_boxes_double_until_nobody_escapes(parts):
 def test_who_escapes_for_ever_is_named(parts):
     """Not by a loop without end; and so is who is nowhere at all."""
     planner, order = begun(parts)
-    with pytest.raises(Broken, match="leaves every box") as found:
+    with pytest.raises(LammpsFailure, match="leaves every box") as found:
         for _ in range(module.DOUBLINGS + 1):
             order = planner.decide(report(parts, order.plan.owner, escaped=(5,)))
     assert found.value.solid == 5 and found.value.step == LENGTHS[0]
     planner, order = begun(parts)
     said = report(parts, EQUAL)
     said[1].low[1, 2] = np.nan
-    with pytest.raises(Broken) as found:
+    with pytest.raises(LammpsFailure) as found:
         planner.decide(said)
     assert found.value.solid == 5
 
@@ -136,7 +136,7 @@ def test_windows_that_end_at_frames(parts, settings, joined, steps):
     leaves two executors in balance is chosen."""
     reserved = 0.4 - 0.1 * parts.whole.spacing - float(parts.reach.max())  # between two cubes, for both
     speed = 1.02 * reserved / (2 * 1.3 * joined * parts.whole.certificate.timestep)
-    planner, found = Planner(parts, 2, LENGTHS, Settings(**settings)), []
+    planner, found = Planner(parts, 2, LENGTHS, PlannerOptions(**settings)), []
     order = planner.decide(report(parts, EQUAL, speed=speed))
     while planner.frame < len(LENGTHS):
         found.append(order.steps)
@@ -146,15 +146,15 @@ def test_windows_that_end_at_frames(parts, settings, joined, steps):
 
 def test_the_pool_is_one_more_object(prepared):
     """Its box is the basin up to where it matters, it never widens, and has a cost of its own."""
-    parts = Parts(prepared(POND.replace("MODEL", "")).plan)
-    planner = Planner(parts, 2, LENGTHS, Settings())
+    parts = SubPlans(prepared(POND.replace("MODEL", "")).plan)
+    planner = Planner(parts, 2, LENGTHS, PlannerOptions())
     grid, count = parts.whole.grid, planner.objects
-    assert len(planner.cost) == count + 1 and not planner.terms.still[-1] and planner.terms.still.sum() == 1
+    assert len(planner.cost) == count + 1 and not planner.context.still[-1] and planner.context.still.sum() == 1
     assert (planner.low[-1] < np.array(grid.low)).all() and planner.high[-1, 2] == parts.liquid_top
     assert (planner.high[-1, :2] > np.array(grid.high)[:2]).all()
     system = parts.whole.system
     low, high = (f.reduceat(system.position, system.first[:-1]) for f in (np.minimum, np.maximum))
-    moving = np.flatnonzero(~planner.terms.still[:-1])
+    moving = np.flatnonzero(~planner.context.still[:-1])
     said = Report(moving, low[moving], high[moving], np.ones(len(moving)), np.full(len(moving), 100), 700)
     empty = Report(moving[:0], low[:0], high[:0], np.zeros(0), moving[:0])
     order = planner.decide([said, empty])

@@ -13,11 +13,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mdanim_lammps.parallel.plan import frame_plan as planning
 from mdanim_lammps.parallel.plan import islands
-from mdanim_lammps.parallel.plan.frame_plan import FramePlan, z_order
+from mdanim_lammps.parallel.plan.frame_plan import FrameAssignment, z_order
 from mdanim_lammps.parallel.plan.teams import Team
 
-BUNDLE = 4000
-plan, bundles = (partial(make, room=BUNDLE) for make in (planning.plan, planning.bundles))
+BUNDLE_PARTICLES = 4000
+plan, bundles = (partial(make, room=BUNDLE_PARTICLES) for make in (planning.plan, planning.bundles))
 KEPT = np.zeros((0, 2), np.int64)
 
 
@@ -41,7 +41,7 @@ def scene(count, seed=0, still=0.1, volume=20.0, heavy=0.02):
 
 def before(label, owner, bundle, teams=()):
     """A plan to follow."""
-    return FramePlan(np.array(owner), np.array(label), np.array(bundle), KEPT, tuple(teams), np.zeros(4, np.int64))
+    return FrameAssignment(np.array(owner), np.array(label), np.array(bundle), KEPT, tuple(teams), np.zeros(4, np.int64))
 
 
 def moved(at, rng, by=0.1):
@@ -71,7 +71,7 @@ def test_plans_of_a_flight(executors):
         last, at = made, {**moved(at, rng), "owner": made.owner}
 
 
-def whole(made, particles, room=BUNDLE):
+def whole(made, particles, room=BUNDLE_PARTICLES):
     """Every island is in one bundle of one executor, and no bundle but of one island exceeds the room."""
     for b in set(made.bundle.tolist()) - {-1}:
         here = made.bundle == b
@@ -111,7 +111,7 @@ def test_all_who_plan_get_the_same():
     assert told.stdout.strip() == made
 
 
-@pytest.mark.parametrize("field", [f.name for f in fields(FramePlan)])
+@pytest.mark.parametrize("field", [f.name for f in fields(FrameAssignment)])
 def test_the_fingerprint_sees_everything(field):
     """Change with every field of a plan, and with nothing but those."""
     made = plan(**scene(30, 3, heavy=0.1), executors=4)

@@ -6,9 +6,9 @@ import sys
 
 import numpy as np
 import pytest
-from mdanim_lammps.cost.speedup_forecast import Prospect, _Flight, _Moments, prospect
-from mdanim_lammps.engine.part import Parts
-from mdanim_lammps.parallel.plan.frame_plan import Settings
+from mdanim_lammps.cost.speedup_forecast import SpeedupForecast, _Flight, _Moments, forecast_speedup
+from mdanim_lammps.engine.sub_plan import SubPlans
+from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions
 from mdanim_lammps.parallel.plan.planner import Planner
 from mdanim_lammps.report import prospect_lines
 from mdanim_lammps.run.prepare import prepare
@@ -29,8 +29,8 @@ control {{ time 1 s  resolution 5 cm }}
 def test_the_first_moment_is_the_first_order(prepared, text):
     """Make the very plan, window included, that a planner orders at first, when objects cost what is thought here."""
     ready = prepared(text)
-    parts, moments = Parts(ready.plan), _Moments(ready, 2, Settings())
-    planner = Planner(parts, 2, ready.certificate.lengths, Settings())
+    parts, moments = SubPlans(ready.plan), _Moments(ready, 2, PlannerOptions())
+    planner = Planner(parts, 2, ready.certificate.lengths, PlannerOptions())
     planner.cost = moments.cost
     objects = len(ready.system.names)
     who = np.arange(objects) % 2
@@ -57,14 +57,14 @@ def test_objects_fall_and_bounce(prepared):
 
 def test_a_crowd_that_comes_near_is_foreseen(scenes):
     """Half of what is shared out in the first second of crowd.txt is lost: 1.36 was measured on two executors (docs/cost.md)."""
-    two = prospect(prepare(load_scene(scenes / "crowd.txt")), 2)
+    two = forecast_speedup(prepare(load_scene(scenes / "crowd.txt")), 2)
     assert two.faster == pytest.approx(1.36, abs=0.15) and 0.4 < two.share < 0.8 and two.objects == 64 and two.team == 1.0
 
 
 def test_what_is_heavy_runs_on_a_team(prepared):
     """One object that is nearly all of the work: no gain where it is too small for a team, that of a team where it is not."""
     ready = prepared(HEAVY)
-    alone, team = prospect(ready, 2), prospect(ready, 2, Settings(least=50))
+    alone, team = forecast_speedup(ready, 2), forecast_speedup(ready, 2, PlannerOptions(least=50))
     assert alone.faster == pytest.approx(1.0, abs=0.05) and alone.team == 1.0 and alone.share > 0.9 and alone.largest == 1
     assert 1.4 < team.faster <= 1.6 and team.team == 2.0
 
@@ -73,12 +73,12 @@ def test_what_is_heavy_runs_on_a_team(prepared):
     ("found", "lines"),
     [
         pytest.param(
-            Prospect(4, 1.0, 3.9, 64, 6, 0.1, 1.0),
+            SpeedupForecast(4, 1.0, 3.9, 64, 6, 0.1, 1.0),
             ["in the first second of the film at most 3.9 times as fast as one"],
             id="all shared",
         ),
         pytest.param(
-            Prospect(2, 1.0, 1.36, 64, 36, 0.561, 1.0),
+            SpeedupForecast(2, 1.0, 1.36, 64, 36, 0.561, 1.0),
             [
                 "in the first second of the film at most 1.4 times as fast as one:",
                 "36 of 64 objects, 56 % of the work, are near each other and run together",
@@ -86,7 +86,7 @@ def test_what_is_heavy_runs_on_a_team(prepared):
             id="some near",
         ),
         pytest.param(
-            Prospect(2, 0.5, 1.0, 3, 3, 1.0, 1.0),
+            SpeedupForecast(2, 0.5, 1.0, 3, 3, 1.0, 1.0),
             [
                 "in the first 0.5 s of the film no faster than one:",
                 "3 of 3 objects, all of the work, are near each other and run together",
@@ -94,7 +94,7 @@ def test_what_is_heavy_runs_on_a_team(prepared):
             id="one island",
         ),
         pytest.param(
-            Prospect(3, 1.0, 1.6, 2, 1, 0.93, 2.0),
+            SpeedupForecast(3, 1.0, 1.6, 2, 1, 0.93, 2.0),
             [
                 "in the first second of the film at most 1.6 times as fast as one:",
                 "one object is 93 % of the work, on 2 executors at once",

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 from mdanim_lammps.api import Scene
-from mdanim_lammps.run.prepare import prepare
-from mdanim_lammps.run.loop import Interrupted
 from mdanim_lammps.errors import OutputError
+from mdanim_lammps.run.loop import Interrupted
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.meshes import mesh_files
 from mdanim_lammps.scene.parse import load_scene
 from test_cli import run

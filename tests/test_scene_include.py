@@ -40,7 +40,7 @@ def test_include_is_relative_to_its_file(write):
 
 
 def test_include_inside_a_block(write):
-    """Settings may come from another file."""
+    """PlannerOptions may come from another file."""
     path = write(
         main='object a { shape sphere 1 m position (0, 0, 0) m\n include "rubber.txt"\n }\n' + CONTROL,
         rubber="mass 1 kg\nelasticity 3 MPa\n",

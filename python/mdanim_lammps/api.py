@@ -84,7 +84,7 @@ class Scene:
         settled = settle(self.record, make=True, study=output_folder(self.record, folder) / STUDY)
         ready = self.prepared if settled.scene is self.record else prepare(settled.scene)
         folder = open_run(ready, folder, force=force)
-        result = run_frames(ready, folder, executors=executors, control=control, watch=on_progress, started=started)
+        result = run_frames(ready, folder, executors=executors, control=control, on_progress=on_progress, started=started)
         if movie:
             from .picture.movie import render_movie
 

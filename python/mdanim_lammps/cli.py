@@ -100,7 +100,7 @@ def run(
         Make movie.mp4 at the end.
     """
     from .api import open_run, output_folder
-    from .cost.speedup_forecast import prospect
+    from .cost.speedup_forecast import forecast_speedup
     from .report import prospect_lines
 
     check_executors(executors)
@@ -110,7 +110,7 @@ def run(
     ready = prepare(record, allow_unstable=allow_unstable)
     announce(ready, quiet, verbose, executors, control)
     if executors > 1 and not quiet:
-        print("\n".join(prospect_lines(prospect(ready, executors))), flush=True)
+        print("\n".join(prospect_lines(forecast_speedup(ready, executors))), flush=True)
     folder = open_run(ready, out, force=force)
     simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control)
 
@@ -138,7 +138,7 @@ def check(
     """
     from .cost.calibration import calibration
     from .cost.forecast import forecast
-    from .cost.speedup_forecast import prospect
+    from .cost.speedup_forecast import forecast_speedup
     from .report import check_json, check_lines
 
     check_executors(executors)
@@ -147,7 +147,7 @@ def check(
     setup = time.perf_counter() - STARTED
     rates = calibration(lambda line: print(line, file=sys.stderr, flush=True)).rates
     cost = forecast(ready, rates, setup=setup)
-    spread = prospect(ready, executors) if executors > 1 else None
+    spread = forecast_speedup(ready, executors) if executors > 1 else None
     if format == "json":
         print(json.dumps(check_json(ready, cost, spread), indent=1))
         return

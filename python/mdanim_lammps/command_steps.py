@@ -139,7 +139,7 @@ def simulate_and_draw(ready, folder: Path, *, quiet: bool, movie: bool, **option
     try:
         with progress_bar("run", quiet=quiet) as bar:
             result = run_frames(
-                ready, folder, started=STARTED, watch=lambda p: bar(p.frame, p.frames, progress_line(p)), **options
+                ready, folder, started=STARTED, on_progress=lambda p: bar(p.frame, p.frames, progress_line(p)), **options
             )
     except DivergedError as error:
         raise DivergedError(f"{error}\n  draw what was kept with: {PROGRAM} render {shlex.quote(str(folder))}") from error

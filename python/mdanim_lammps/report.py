@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from .certificate import margin_lines
-from .cost.speedup_forecast import Prospect
+from .cost.speedup_forecast import SpeedupForecast
 from .effects import Verdict
 from .model import plan_spacing
 from .results.cost import Cost
@@ -143,7 +143,7 @@ def executors_line(executors: int, control: str | None) -> str:
     return f"spread   over {count(executors, 'executor')} and a supervisor; {decision}"
 
 
-def prospect_lines(p: Prospect) -> list[str]:
+def prospect_lines(p: SpeedupForecast) -> list[str]:
     """Below `executors_line`: the most that executors can bring at first, and why it is not more."""
     when = "in the first second" if p.seconds == 1.0 else f"in the first {number(p.seconds, 2)} s"
     faster = "no faster than one" if p.faster < 1.05 else f"at most {number(p.faster, 2)} times as fast as one"
@@ -185,7 +185,7 @@ def _about(seconds: float) -> str:
     return f"{float(f'{seconds / size:.{digits}g}'):g} {unit}"
 
 
-def check_lines(ready: Prepared, forecast: Cost, prospect: Prospect | None = None) -> list[str]:
+def check_lines(ready: Prepared, forecast: Cost, prospect: SpeedupForecast | None = None) -> list[str]:
     """What ``check`` prints: scene, certificate, limits, output, cost, what executors gain, and every effect."""
     return [
         *scene_lines(ready),
@@ -200,7 +200,7 @@ def check_lines(ready: Prepared, forecast: Cost, prospect: Prospect | None = Non
     ]
 
 
-def check_json(ready: Prepared, forecast: Cost | None = None, prospect: Prospect | None = None) -> dict:
+def check_json(ready: Prepared, forecast: Cost | None = None, prospect: SpeedupForecast | None = None) -> dict:
     """What ``check --format json`` prints; with the expected cost (cost/forecast.py),
     and what executors gain (cost/speedup_forecast.py)."""
     return {

@@ -10,9 +10,9 @@ import sys
 from pathlib import Path
 
 from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.engine.part import Parts
-from mdanim_lammps.engine.spares import Spares
+from mdanim_lammps.engine.instance_cache import InstanceCache
 from mdanim_lammps.engine.state import State
+from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 
@@ -27,9 +27,9 @@ def residue() -> tuple[int, int]:
 
 
 def main(scene: str, count: int, how: str) -> None:
-    """Parts of one and of two objects, in turn, are given a state and run."""
-    spares = Spares()
-    parts = Parts(prepare(load_scene(Path(scene))).plan)
+    """SubPlans of one and of two objects, in turn, are given a state and run."""
+    cache = InstanceCache()
+    parts = SubPlans(prepare(load_scene(Path(scene))).plan)
     with Instance(parts.whole) as instance:
         instance.setup()
         whole = instance.state()
@@ -39,18 +39,18 @@ def main(scene: str, count: int, how: str) -> None:
         for k in range(cycles):
             a, b = ((1, 1), (2, 2), (1, 2))[k % 3]
             rows = slice(first[a], first[b + 1])
-            instance = spares.instance(parts.part(range(a, b + 1), False))
+            instance = cache.instance(parts.part(range(a, b + 1), False))
             instance.put(0, State(whole.x[rows], whole.v[rows], whole.f[rows]))
             instance.run(2)
-            spares.keep(instance)
+            cache.keep(instance)
             if how == "new":
-                spares.close()
+                cache.close()
 
     go(WARM)
     before = residue()
     go(count)
     after = residue()
-    spares.close()
+    cache.close()
     print((after[0] - before[0]) / count, after[1] - before[1])
 
 

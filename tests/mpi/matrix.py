@@ -16,7 +16,7 @@ if "effect" in sys.argv:
 
 import numpy as np
 from mdanim_lammps.parallel.plan import frame_plan
-from mdanim_lammps.parallel.plan.frame_plan import Settings
+from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions
 from mdanim_lammps.parallel.runtime.bundle import Bundle
 from mdanim_lammps.parallel.runtime.executor import serve
 from mdanim_lammps.parallel.runtime.supervisor import Distributed
@@ -38,11 +38,11 @@ def run(case: dict, ready, world) -> None:
             (folder / "stop").touch()
 
     checkpoint = Checkpoint.read(folder / "checkpoint") if case.get("resume") else None
-    source = world and Distributed(ready, world, case["control"], Settings(**case.get("settings", {})))
+    source = world and Distributed(ready, world, case["control"], PlannerOptions(**case.get("settings", {})))
     if source and checkpoint:
         source.before = Timeline.left_in(folder)
     try:
-        simulate(ready, folder, resume=checkpoint, watch=watch, source=source)
+        simulate(ready, folder, resume=checkpoint, on_progress=watch, source=source)
     except Interrupted:
         assert "stop" in case
     if source:

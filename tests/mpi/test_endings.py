@@ -14,7 +14,7 @@ from pathlib import Path
 import plugin_path
 import pytest
 from mdanim_lammps.errors import ExecutorLost, OutputError
-from mdanim_lammps.parallel.plan.frame_plan import Settings
+from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions
 from mdanim_lammps.parallel.runtime.launch import simulate_on
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.timeline import Timeline
@@ -251,7 +251,7 @@ def test_an_executor_that_raises_is_told(place, monkeypatch, capfd, settings, te
     )
     begin = time.monotonic()
     with pytest.raises(ExecutorLost, match="executor 1: ValueError: out of the blue"):
-        simulate_on(2, "peers", ready, folder, settings=Settings(**settings))
+        simulate_on(2, "peers", ready, folder, settings=PlannerOptions(**settings))
     assert time.monotonic() - begin < 15.0
     assert "out of the blue" in capfd.readouterr().err
 

@@ -10,7 +10,7 @@ from ..effects.air_drag import LEAPFROG, leapfrog_rate
 from ..effects.springs import fullness
 from ..engine.commands import SKIN
 from ..model.basin import liquid_level
-from ..results.cost import Cost, Part
+from ..results.cost import Cost, CostShare
 from ..results.expect import recorded
 from ..results.trajectory_file import trajectory_bytes
 from ..run.prepare import Prepared
@@ -43,7 +43,7 @@ def forecast(ready: Prepared, rates: dict[str, float], *, setup: float | None = 
     effects = {}
     for effect in ready.plan.effects:
         span = ready.verdicts[effect.name].span
-        effects[effect.name] = Part(effect.forecast(load, rates), str(span) if span else None)
+        effects[effect.name] = CostShare(effect.forecast(load, rates), str(span) if span else None)
     frames = 1 + len(c.lengths)
     size = trajectory_bytes(ready.models, frames, control.save, control.single, ready.plan.grid)
     looked_at = sum(

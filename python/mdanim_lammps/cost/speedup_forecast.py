@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..engine.part import Parts
+from ..engine.sub_plan import SubPlans
 from ..model.basin import liquid_level
-from ..parallel.plan.frame_plan import FramePlan, Settings, Terms
+from ..parallel.plan.frame_plan import FrameAssignment, PlanContext, PlannerOptions
 from ..run.prepare import Prepared
 
 AHEAD = 1.0
@@ -29,7 +29,7 @@ FLIGHT = 0.005
 
 
 @dataclass(frozen=True, slots=True)
-class Prospect:
+class SpeedupForecast:
     """What to expect of some executors in the first second of a film, the mean of some moments."""
 
     executors: int
@@ -47,7 +47,7 @@ class Prospect:
     """Executors that run it together."""
 
 
-def prospect(ready: Prepared, executors: int, settings: Settings = Settings()) -> Prospect:
+def forecast_speedup(ready: Prepared, executors: int, settings: PlannerOptions = PlannerOptions()) -> SpeedupForecast:
     """Look ahead with that many executors. Nothing is measured: a particle is as dear as any other,
     a liquid costs nothing beside them."""
     moments = _Moments(ready, executors, settings)
@@ -61,7 +61,7 @@ def prospect(ready: Prepared, executors: int, settings: Settings = Settings()) -
     busiest = sum(int(best.load.max()) for best in found)
     work = len(found) * int(moments.cost[~moments.still].sum())
     largest, share, team = np.mean([_heaviest(best, moments) for best in found], axis=0).tolist()
-    return Prospect(
+    return SpeedupForecast(
         executors,
         seconds,
         work / busiest if busiest else 1.0,
@@ -72,7 +72,7 @@ def prospect(ready: Prepared, executors: int, settings: Settings = Settings()) -
     )
 
 
-def _heaviest(found: FramePlan, moments: _Moments) -> tuple[int, float, int]:
+def _heaviest(found: FrameAssignment, moments: _Moments) -> tuple[int, float, int]:
     """Objects in the heaviest island, its part of the work, and who runs it together."""
     moving = found.label >= 0
     if not moving.any():
@@ -86,20 +86,20 @@ def _heaviest(found: FramePlan, moments: _Moments) -> tuple[int, float, int]:
 class _Moments:
     """The plans of moments, as `planner.Planner` makes its first."""
 
-    def __init__(self, ready: Prepared, executors: int, settings: Settings):
-        self.terms = Terms(Parts(ready.plan), executors, settings)
-        self.objects, self.still = self.terms.objects, self.terms.still
-        self.cost = self.terms.guess(STEP)
+    def __init__(self, ready: Prepared, executors: int, settings: PlannerOptions):
+        self.context = PlanContext(SubPlans(ready.plan), executors, settings)
+        self.objects, self.still = self.context.objects, self.context.still
+        self.cost = self.context.guess(STEP)
         self.length = max(ready.plan.certificate.lengths)
 
-    def at(self, low: np.ndarray, high: np.ndarray, speed: np.ndarray) -> FramePlan:
+    def at(self, low: np.ndarray, high: np.ndarray, speed: np.ndarray) -> FrameAssignment:
         """The plan for objects in these boxes (M, 3) [m] at these speeds (M,) [m/s],
         for the window that leaves loads in balance."""
-        terms = self.terms
+        terms = self.context
         if terms.pool is not None:
             low, high, speed = np.vstack([low, terms.pool[0]]), np.vstack([high, terms.pool[1]]), np.append(speed, 0.0)
 
-        def make(steps: int) -> tuple[FramePlan, np.ndarray]:
+        def make(steps: int) -> tuple[FrameAssignment, np.ndarray]:
             d = terms.reach(speed, steps)
             return terms.plan(low, high, d, self.cost), d
 

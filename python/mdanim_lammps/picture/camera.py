@@ -10,8 +10,8 @@ import numpy as np
 
 from ..errors import OutputError, UsageError
 from ..results.trajectory import Trajectory
-from ..scene.scene import Camera
 from ..scene.keywords import did_you_mean
+from ..scene.scene import Camera
 
 FIELD_OF_VIEW = 30.0
 """Vertical angle of view [degrees]."""

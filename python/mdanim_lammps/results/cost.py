@@ -11,7 +11,7 @@ from .files import read_json
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class CostShare:
     """What one effect has cost."""
 
     seconds: float
@@ -29,7 +29,7 @@ class Cost:
     """From the first word of the scene to the last frame [s]; pictures are not in it."""
     steps: int
     particles: int
-    effects: Mapping[str, Part] = field(default_factory=dict)
+    effects: Mapping[str, CostShare] = field(default_factory=dict)
     other: Mapping[str, float] = field(default_factory=dict)
     """Leap-frog, rest of the step, setup (loading and modelling), output, and what a resumed run had cost before [s]."""
 
@@ -70,5 +70,7 @@ class Cost:
     def read(cls, path: Path) -> Cost:
         """Read cost.json. Raises OutputError when it is missing or broken."""
         data = read_json(path)
-        effects = {name: Part(part["seconds"], part["place"], part.get("clocks", {})) for name, part in data["effects"].items()}
+        effects = {
+            name: CostShare(part["seconds"], part["place"], part.get("clocks", {})) for name, part in data["effects"].items()
+        }
         return cls(data["wall"], data["steps"], data["particles"], effects, data["other"])

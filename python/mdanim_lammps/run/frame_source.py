@@ -20,7 +20,7 @@ from .guard import fastest
 
 
 @dataclass(frozen=True)
-class Pool:
+class LiquidFrame:
     """The liquid at a frame."""
 
     heights: tuple[np.ndarray, np.ndarray]
@@ -44,10 +44,10 @@ class Frame:
     """Every term of the ledger [J]; what is lost (``*_loss``) counts from the start of this run, not from before a resume."""
     penetration: float
     """Deepest that a boundary particle has been below a surface in this run [m]."""
-    pool: Pool | None = None
+    pool: LiquidFrame | None = None
     """None without a liquid."""
     kept: bool = True
-    """Whether `Source.state` can be asked for."""
+    """Whether `FrameSource.state` can be asked for."""
 
 
 @dataclass
@@ -68,7 +68,7 @@ class Account:
             mine[clock] = mine.get(clock, 0.0) + share * seconds
 
 
-class Broken(Exception):
+class LammpsFailure(Exception):
     """LAMMPS has ended a run by itself; the guard says why."""
 
     def __init__(self, step: int, error: DivergedError, solid: int | None):
@@ -78,14 +78,14 @@ class Broken(Exception):
         """The solid that is fastest for its wave speed; None when LAMMPS has lost particles."""
 
 
-class Source(Protocol):
+class FrameSource(Protocol):
     """Gives the frames of a run in order. A context manager."""
 
     def begin(self, resume: Checkpoint | None) -> Frame | None:
         """Take up the start, and give frame 0; or the state of a checkpoint, and give nothing."""
 
     def advance(self, frame: int, steps: int) -> Frame:
-        """The state so many steps later, which is frame ``frame``. Raises Broken, DivergedError."""
+        """The state so many steps later, which is frame ``frame``. Raises LammpsFailure, DivergedError."""
 
     def stop(self, frame: int) -> int:
         """Make an end soon after frame ``frame``; returns the last frame that will come, which is a kept one."""
@@ -140,11 +140,11 @@ class Sequential:
 
 
 def run_window(instance: Instance, steps: int) -> None:
-    """Run so many steps. Raises Broken."""
+    """Run so many steps. Raises LammpsFailure."""
     try:
         instance.run(steps)
     except DivergedError as error:
-        raise Broken(instance.step, error, fastest(instance.plan.system, instance.array("v"))) from error
+        raise LammpsFailure(instance.step, error, fastest(instance.plan.system, instance.array("v"))) from error
 
 
 def penetration(instance: Instance) -> float:
@@ -152,11 +152,11 @@ def penetration(instance: Instance) -> float:
     return max([0.0, *(e.penetration(instance, instance.plan.system) for e in instance.plan.effects)])
 
 
-def pool(instance: Instance) -> Pool | None:
+def pool(instance: Instance) -> LiquidFrame | None:
     """The liquid now."""
     if instance.plan.grid is None:
         return None
-    return Pool(instance.liquid_heights(), *(int(instance.fix_value("liquid", n)) for n in (0, 1)))
+    return LiquidFrame(instance.liquid_heights(), *(int(instance.fix_value("liquid", n)) for n in (0, 1)))
 
 
 def add_clocks(account: Account, instance: Instance) -> None:

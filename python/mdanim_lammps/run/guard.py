@@ -18,7 +18,7 @@ from .prepare import Prepared
 
 CLASSES = {Accuracy.PREVIEW: 1e-2, Accuracy.BALANCED: 1e-3, Accuracy.REFERENCE: 1e-4}
 """Largest energy residual that a scene without losses is to have, by its accuracy; a target error counts as balanced."""
-GENEROUS, LEAST = 50.0, 0.05
+RESIDUAL_FACTOR, LEAST_RESIDUAL = 50.0, 0.05
 """The run stops at this multiple of the class, and never below this residual."""
 RINGS = 10.0
 """Times that a wave crosses an object until cells that are inside out count as stuck: in a hard impact some at the surface are so
@@ -60,7 +60,7 @@ class Guard:
         """Of what a glance tells of an object's reach: that towards the plane, for what is below it."""
         self.allowed = np.where(ready.system.still, np.inf, ready.system.spacing)[:, None]
         """How far beyond a plane solids may be [m], shape (M, 1); those of which nothing can move, anywhere."""
-        self.limit = max(LEAST, GENEROUS * energy_class(ready.scene))
+        self.limit = max(LEAST_RESIDUAL, RESIDUAL_FACTOR * energy_class(ready.scene))
         self.since = np.full(len(ready.system.hexahedron), -1)
         """Step since which each cell has been inside out at every frame, -1 where it is not, shape (C,)."""
         self.crumpled = False
@@ -70,13 +70,13 @@ class Guard:
         self.patience = RINGS * (high - low).max(1) / wave_speed(ready.system) / ready.certificate.timestep
         """Steps that a cell of each solid may stay inside out, shape (M,)."""
 
-    def look(self, step: int, x: np.ndarray, v: np.ndarray) -> None:
+    def check(self, step: int, x: np.ndarray, v: np.ndarray) -> None:
         """Raise DivergedError when positions [m] and velocities [m/s], both (N, 3), are not those of bodies in their places."""
         system = self.ready.system
         found, reach = self.geometry.glance(x, v)
         if found == NOT_FINITE:
             i = self.geometry.not_finite(x, v)
-            raise self.stopped(step, "its positions are no numbers any more", system.object[i], "time step", "amplitude", "load")
+            raise self.error_at(step, "its positions are no numbers any more", system.object[i], "time step", "amplitude", "load")
         if found == INVERTED:
             self._look_at_cells(step, self.geometry.inverted(x))
         elif self.crumpled:
@@ -84,7 +84,7 @@ class Guard:
             self.since[:] = -1
         self._look_at_sides(step, reach)
         if self.contact and (pair := self.geometry.sunk(x)):
-            raise self.stopped(
+            raise self.error_at(
                 step, f"it is inside {system.names[pair[1]]}", pair[0], "closing speed", "time step", "amplitude", "thinnest part"
             )
 
@@ -99,7 +99,7 @@ class Guard:
         if len(stuck) and not self.ready.insist:
             count = np.bincount(stuck)
             m = int(count.argmax())
-            raise self.stopped(
+            raise self.error_at(
                 step,
                 f"{count[m]} of its {np.diff(self.geometry.first_cell)[m]} cells have been inside out since step "
                 f"{self.since[cells].min()}; springs cannot tell mirrored from right, so they would stay so",
@@ -120,7 +120,7 @@ class Guard:
         if gone.any():
             n = int(np.where(gone, beyond, -np.inf).argmax())
             m, side = n // len(self.sides), self.sides[n % len(self.sides)]
-            raise self.stopped(
+            raise self.error_at(
                 step,
                 f"it has left {side.name}: all of it is beyond {'xyz'[side.axis]} = {say(side.at, 'm', 6)}, by "
                 f"{say(float(beyond.flat[n]), 'm')}",
@@ -133,7 +133,7 @@ class Guard:
     def energy(self, step: int, residual: float, v: np.ndarray) -> None:
         """Raise DivergedError when the energies do not add up any more. ``residual`` as in results/ledger.py."""
         if not abs(residual) <= self.limit:
-            raise self.stopped(
+            raise self.error_at(
                 step,
                 f"the energies do not add up, residual {number(residual)}; its particles are the fastest",
                 fastest(self.ready.system, v),
@@ -143,15 +143,15 @@ class Guard:
                 "closing speed",
             )
 
-    def broke(self, step: int, error: DivergedError, solid: int | None) -> DivergedError:
+    def explain_failure(self, step: int, error: DivergedError, solid: int | None) -> DivergedError:
         """The error for LAMMPS's own end of a run in the steps up to this one; ``solid`` is the `fastest`."""
         words = " ".join(str(error).split())
         if any(sign in words for sign in FLOWN_APART):
             suspect = self.ready.system.names.index(self.ready.certificate.object) if solid is None else solid
-            return self.stopped(step, words, suspect, "time step", "amplitude", "load", "closing speed")
+            return self.error_at(step, words, suspect, "time step", "amplitude", "load", "closing speed")
         return DivergedError(f"{self._when(step)}: {words}\n  {self._kept()}")
 
-    def stopped(self, step: int, what: str, m: int, *margins: str) -> DivergedError:
+    def error_at(self, step: int, what: str, m: int, *margins: str) -> DivergedError:
         """The error that stops the run at a step for what solid ``m`` does;
         the first of these margins that is passed says why."""
         c = self.ready.certificate

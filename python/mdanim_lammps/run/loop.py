@@ -20,7 +20,7 @@ from ..engine.commands import input_script
 from ..engine.data_file import write_data
 from ..errors import DivergedError, ExitCode, MdanimError, OutputError, Problem
 from ..results.checkpoint import Checkpoint
-from ..results.cost import Cost, Part
+from ..results.cost import Cost, CostShare
 from ..results.expect import Measured, Outcome, evaluate, record, recorded
 from ..results.files import CHECKPOINT, disk_errors, remove_parts, write_json, write_whole
 from ..results.ledger import LOSS, Ledger
@@ -29,7 +29,7 @@ from ..results.trajectory_writer import TrajectoryWriter
 from ..scene.meshes import mesh_files
 from ..scene.wording import number
 from .energy import ledger_terms, rounding_energy
-from .frame_source import Account, Broken, Frame, Sequential, Source
+from .frame_source import Account, Frame, FrameSource, LammpsFailure, Sequential
 from .guard import Guard
 from .prepare import Prepared
 
@@ -98,10 +98,10 @@ def simulate(
     ready: Prepared,
     folder: Path,
     *,
-    watch: Callable[[Progress], None] | None = None,
+    on_progress: Callable[[Progress], None] | None = None,
     resume: Checkpoint | None = None,
     started: float | None = None,
-    source: Source | None = None,
+    source: FrameSource | None = None,
 ) -> Result:
     """Run all frames (or go on from a checkpoint), leaving trajectory.h5, ledger.csv, checkpoint and summary.json in ``folder``.
 
@@ -111,7 +111,7 @@ def simulate(
     OutputError when the disk is full.
     """
     run = _Run(ready, folder, resume, time.perf_counter() if started is None else started, source or Sequential(ready.plan))
-    return run.go(watch or (lambda progress: None))
+    return run.go(on_progress or (lambda progress: None))
 
 
 def run_id(ready: Prepared) -> str:
@@ -126,7 +126,7 @@ def run_id(ready: Prepared) -> str:
 class _Run:
     """The state of one run; only its methods know the order of things."""
 
-    def __init__(self, ready: Prepared, folder: Path, resume: Checkpoint | None, started: float, source: Source):
+    def __init__(self, ready: Prepared, folder: Path, resume: Checkpoint | None, started: float, source: FrameSource):
         self.ready, self.folder, self.resume, self.source = ready, folder, resume, source
         self.certificate = ready.certificate
         self.effects = ready.plan.effects
@@ -165,7 +165,7 @@ class _Run:
 
     # --- the order of things ----------------------------------------------------------------------------------------
 
-    def go(self, watch: Callable[[Progress], None]) -> Result:
+    def go(self, on_progress: Callable[[Progress], None]) -> Result:
         c = self.certificate
         lengths = c.lengths
         frame, last = self.resume.frame if self.resume else 0, len(lengths)
@@ -186,10 +186,10 @@ class _Run:
                     with self._clock("simulation"):
                         now = self._advance(frame, lengths[frame - 1])
                     with self._clock("guard"):
-                        self.guard.look(now.step, now.x, now.v)
+                        self.guard.check(now.step, now.x, now.v)
                     with self._clock("output"):
                         row = self._record(out, now)
-                        watch(
+                        on_progress(
                             Progress(
                                 frame,
                                 len(lengths),
@@ -222,8 +222,8 @@ class _Run:
     def _advance(self, frame: int, steps: int) -> Frame:
         try:
             return self.source.advance(frame, steps)
-        except Broken as broken:
-            raise self.guard.broke(broken.step, broken.error, broken.solid) from broken
+        except LammpsFailure as failure:
+            raise self.guard.explain_failure(failure.step, failure.error, failure.solid) from failure
 
     def _finish(self, account: Account) -> Result:
         with self._clock("output"), Trajectory(self.folder) as trajectory:
@@ -371,7 +371,7 @@ class _Run:
         parts = {}
         for effect in self.effects:
             span, clocks = self.ready.verdicts[effect.name].span, account.effects.get(effect.name, {})
-            parts[effect.name] = Part(sum(clocks.values()), str(span) if span else None, clocks if len(clocks) > 1 else {})
+            parts[effect.name] = CostShare(sum(clocks.values()), str(span) if span else None, clocks if len(clocks) > 1 else {})
         known = sum(p.seconds for p in parts.values()) + account.leapfrog + sum(account.other.values())
         other = {name: s for name, s in self.seconds.items() if name != "simulation"}
         beside = max(0.0, known - self.seconds["simulation"])
@@ -425,5 +425,5 @@ class _Stop:
 
     def __exit__(self, *_) -> None:
         self.file.unlink(missing_ok=True)
-        for number, handler in self.old.items():
-            signal.signal(number, handler)
+        for which, handler in self.old.items():
+            signal.signal(which, handler)

@@ -86,7 +86,7 @@ def measure(
 
     temporary = Path(tempfile.mkdtemp(prefix=f"{setting.key}-", dir=folder))
     try:
-        result = simulate(ready, temporary, watch=look)
+        result = simulate(ready, temporary, on_progress=look)
         with Trajectory(temporary) as t:
             times, center = (np.array(a[:], float) for a in (t.times, t.centers))
         penetration = read_json(temporary / "summary.json")["penetration"]

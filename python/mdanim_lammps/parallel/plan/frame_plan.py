@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...engine.part import Parts
+from ...engine.sub_plan import SubPlans
 from . import islands
 from .assign import assign, firsts, total
 from .teams import GAIN, LEAST, Team
@@ -22,20 +22,20 @@ BALANCED = 1.25
 """Largest load over the mean up to which a window is not made shorter."""
 ASIDE = 1000.0
 """The pool's box beyond the basin's sides and floor, over its size: the liquid looks at heights alone."""
-BUNDLE = 64000
+BUNDLE_PARTICLES = 64000
 """Particles up to which islands of one executor share a LAMMPS instance. `bench/driver.py`, 1000 objects of 120 particles on 2
 executors: of a frame the driver takes 13 ms with 32000, 9 with this and with 128000, and LAMMPS the same; but what begins again
 with other company takes all of its bundle with it."""
-SPARE = 2
+BUNDLES_OVER_ENOUGH = 2
 """Bundles of an executor, over those that would do, from which the thin ones are put together."""
-THIN = 4
-"""Bundles below `BUNDLE` over this are thin. `python bench/planning.py crowd`, 1000 objects and bundles of 4000: with 4, 9 % of
+THIN_BELOW = 4
+"""Bundles below `BUNDLE_PARTICLES` over this are thin. `python bench/planning.py crowd`, 1000 objects and bundles of 4000: with 4, 9 % of
 the particles are in new bundles in every frame; with 2, 16 %; 7 % where none are ever put together,
 with 1.6 times the bundles."""
 
 
 @dataclass(frozen=True, slots=True)
-class Settings:
+class PlannerOptions:
     """What the planner may be told otherwise, for tests and measurements; no setting changes a bit of the result."""
 
     safety: float = 1.3
@@ -51,7 +51,7 @@ class Settings:
 
 
 @dataclass(frozen=True, slots=True)
-class FramePlan:
+class FrameAssignment:
     """Who runs what in a frame of M objects."""
 
     owner: np.ndarray
@@ -90,11 +90,11 @@ def plan(
     gap: float,
     feels: np.ndarray | None = None,
     pinned: np.ndarray | None = None,
-    previous: FramePlan | None = None,
+    previous: FrameAssignment | None = None,
     gain: int = GAIN,
     least: int = LEAST,
-    room: int = BUNDLE,
-) -> FramePlan:
+    room: int = BUNDLE_PARTICLES,
+) -> FrameAssignment:
     """The plan of a frame, from what all executors have reported. O(M log M + pairs that are near). Raises ValueError for boxes
     that are not finite or turned inside out, a cost below 0, an owner out of range.
 
@@ -130,10 +130,10 @@ def plan(
         teams=previous.teams if previous else (),
     )
     bundle = bundles(label, given.owner, particles, given.teams, order=order, previous=previous, room=room)
-    return FramePlan(given.owner, label, bundle, islands.guests(met, label, still), given.teams, given.load)
+    return FrameAssignment(given.owner, label, bundle, islands.guests(met, label, still), given.teams, given.load)
 
 
-def pool_box(parts: Parts) -> tuple[np.ndarray, np.ndarray]:
+def pool_box(parts: SubPlans) -> tuple[np.ndarray, np.ndarray]:
     """The box within which an object and the liquid can matter to each other [m]."""
     grid = parts.whole.grid
     margin = ASIDE * np.max(np.subtract(grid.high, grid.low))
@@ -142,10 +142,10 @@ def pool_box(parts: Parts) -> tuple[np.ndarray, np.ndarray]:
     return low, high
 
 
-class Terms:
+class PlanContext:
     """What all plans of a scene have in common: its M objects, the pool as one more, and how far they matter to each other."""
 
-    def __init__(self, parts: Parts, executors: int, settings: Settings):
+    def __init__(self, parts: SubPlans, executors: int, settings: PlannerOptions):
         whole, system = parts.whole, parts.whole.system
         self.whole, self.executors, self.settings = whole, executors, settings
         self.objects = len(system.names)
@@ -177,8 +177,8 @@ class Terms:
         return d
 
     def plan(
-        self, low: np.ndarray, high: np.ndarray, d: np.ndarray, cost: np.ndarray, previous: FramePlan | None = None
-    ) -> FramePlan:
+        self, low: np.ndarray, high: np.ndarray, d: np.ndarray, cost: np.ndarray, previous: FrameAssignment | None = None
+    ) -> FrameAssignment:
         """`plan` for these objects, by the owners of the plan before."""
         owner = previous.owner if previous else np.full(self.count, -1, np.int64)
         return plan(
@@ -197,8 +197,8 @@ class Terms:
         )
 
     def longest_window(
-        self, length: int, left: int, make: Callable[[int], tuple[FramePlan, np.ndarray]]
-    ) -> tuple[int, FramePlan, np.ndarray]:
+        self, length: int, left: int, make: Callable[[int], tuple[FrameAssignment, np.ndarray]]
+    ) -> tuple[int, FrameAssignment, np.ndarray]:
         """The longest window that leaves the loads in balance: in a shorter one boxes are widened by less, and fewer
         islands merge.
 
@@ -247,14 +247,14 @@ def bundles(
     teams: Sequence[Team] = (),
     *,
     order: np.ndarray | None = None,
-    previous: FramePlan | None = None,
-    room: int = BUNDLE,
+    previous: FrameAssignment | None = None,
+    room: int = BUNDLE_PARTICLES,
 ) -> np.ndarray:
     """LAMMPS instances that executors run their islands in, int64, shape (M,), -1 for what is still; O(M log M).
 
     An island stays in its bundle if all of it was there and its executor is the same: who joins or leaves makes nobody else move.
     The other islands are put together along ``order``, up to ``room`` particles; those larger than half of that, and those of a
-    team, are a bundle each. Bundles only ever lose objects. So when an executor has more than `SPARE` times as many as would do,
+    team, are a bundle each. Bundles only ever lose objects. So when an executor has more than `BUNDLES_OVER_ENOUGH` times as many as would do,
     and 2, its thin ones are put together as well.
     """
     moving = np.flatnonzero(label >= 0)
@@ -308,13 +308,13 @@ def _thin_out(kept, size, runs, room) -> None:
     if not len(stay):
         return
     number, of = np.unique(kept[stay], return_inverse=True)
-    if len(number) <= SPARE + 2:
+    if len(number) <= BUNDLES_OVER_ENOUGH + 2:
         return
     held, place = total(of, size[stay]), np.empty(len(number), np.int64)
     place[of] = runs[stay]
     enough = -(-total(runs, np.minimum(size, room)) // room)
-    many = np.bincount(place, minlength=len(enough)) > SPARE * enough + 2
-    thin = many[place] & (THIN * held < room)
+    many = np.bincount(place, minlength=len(enough)) > BUNDLES_OVER_ENOUGH * enough + 2
+    thin = many[place] & (THIN_BELOW * held < room)
     kept[stay[thin[of]]] = -1
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .frame_plan import FramePlan
+from .frame_plan import FrameAssignment
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Report:
 class Order:
     """What is to be done next."""
 
-    plan: FramePlan
+    plan: FrameAssignment
     low: np.ndarray
     """Corners of the boxes that are reserved for objects, eq. (6.17), the pool's last [m], shape (M, 3)."""
     high: np.ndarray

@@ -9,16 +9,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...engine.part import Parts
+from ...engine.sub_plan import SubPlans
 from ...errors import DivergedError
-from ...run.frame_source import Broken
+from ...run.frame_source import LammpsFailure
 from . import islands
-from .frame_plan import FramePlan, Settings, Terms
+from .frame_plan import FrameAssignment, PlanContext, PlannerOptions
 from .orders import Order, Report
 
-FORGET = 0.25
+WEIGHT_OF_LATEST = 0.25
 """Weight of the latest measurement in the cost of an object."""
-GUESS = 0.05
+GUESSED_COST = 0.05
 """Microseconds of a particle-step, before anything is measured."""
 DOUBLINGS = 60
 """Beyond them a box has no meaning any more: something is flying away."""
@@ -27,30 +27,30 @@ DOUBLINGS = 60
 class Planner:
     """Boxes, costs and owners of all objects, and of the pool as one more; the same on everybody who plans."""
 
-    def __init__(self, parts: Parts, executors: int, lengths: Sequence[int], settings: Settings, frame: int = 0):
+    def __init__(self, parts: SubPlans, executors: int, lengths: Sequence[int], settings: PlannerOptions, frame: int = 0):
         self.lengths, self.frame = lengths, frame
         """The last one that is done."""
         self.done = 0
         """Steps on the way from it to the next."""
         self.steps = 0
         """Of the window that executors are at."""
-        self.terms = Terms(parts, executors, settings)
-        self.objects = self.terms.objects
-        count = self.terms.count
+        self.context = PlanContext(parts, executors, settings)
+        self.objects = self.context.objects
+        count = self.context.count
         self.low, self.high, self.speed = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros(count)
-        if self.terms.pool is not None:
-            self.low[-1], self.high[-1] = self.terms.pool
-        self.cost = self.terms.guess(GUESS)
+        if self.context.pool is not None:
+            self.low[-1], self.high[-1] = self.context.pool
+        self.cost = self.context.guess(GUESSED_COST)
         self.measured = np.zeros(count, bool)
         self.doublings = np.zeros(count, np.int64)
-        self.plan: FramePlan | None = None
+        self.plan: FrameAssignment | None = None
         # Of what is still no report will come.
         self.low[: self.objects], self.high[: self.objects] = parts.whole.system.bounds(parts.whole.system.position)
 
     def decide(self, reports: Sequence[Report]) -> Order:
         """What to do after a window (or before the first), from the reports of all executors in their order.
 
-        Raises Broken when an object is nowhere any more, DivergedError when executors have followed different plans.
+        Raises LammpsFailure when an object is nowhere any more, DivergedError when executors have followed different plans.
         """
         for report in reports:
             here = np.isfinite(np.column_stack([report.low, report.high, report.speed])).all(axis=1)
@@ -70,10 +70,10 @@ class Planner:
         self._advance()
         return self._choose()
 
-    def _flown(self, m: int) -> Broken:
+    def _flown(self, m: int) -> LammpsFailure:
         """For an object that is out of range: the guard tells why."""
         step = sum(self.lengths[: self.frame]) + self.done + self.steps
-        return Broken(step, DivergedError("Out of range: it leaves every box that is reserved for it"), m)
+        return LammpsFailure(step, DivergedError("Out of range: it leaves every box that is reserved for it"), m)
 
     def _advance(self) -> None:
         self.done += self.steps
@@ -84,7 +84,7 @@ class Planner:
         """The next window."""
         length = self.lengths[min(self.frame, len(self.lengths) - 1)]
         left = max(1, length - self.done)  # after the last frame too: its plan is asked for, but not followed
-        return self._order(*self.terms.longest_window(length, left, self._make), commit=True)
+        return self._order(*self.context.longest_window(length, left, self._make), commit=True)
 
     def _take(self, report: Report) -> None:
         who = report.objects
@@ -96,17 +96,17 @@ class Planner:
             who, cost = np.append(who, self.objects), [report.cost, [report.pool_cost]]
         new = np.concatenate(cost).astype(np.int64)
         # Whole numbers only, so that all planners round alike.
-        smooth = np.where(self.measured[who], self.cost[who] + ((new - self.cost[who]) * int(256 * FORGET) >> 8), new)
+        smooth = np.where(self.measured[who], self.cost[who] + ((new - self.cost[who]) * int(256 * WEIGHT_OF_LATEST) >> 8), new)
         self.cost[who], self.measured[who] = np.maximum(1, smooth), True
 
     def reach(self, steps: int) -> np.ndarray:
         """What boxes are widened by in a window of so many steps, eq. (6.17) [m], shape (M,), the pool's last."""
-        return self.terms.reach(self.speed, steps, self.doublings)
+        return self.context.reach(self.speed, steps, self.doublings)
 
-    def _make(self, steps: int) -> tuple[FramePlan, np.ndarray]:
+    def _make(self, steps: int) -> tuple[FrameAssignment, np.ndarray]:
         d = self.reach(steps)
-        return self.terms.plan(self.low, self.high, d, self.cost, self.plan), d
+        return self.context.plan(self.low, self.high, d, self.cost, self.plan), d
 
-    def _order(self, steps: int, plan: FramePlan, d: np.ndarray, commit: bool) -> Order:
+    def _order(self, steps: int, plan: FrameAssignment, d: np.ndarray, commit: bool) -> Order:
         self.plan, self.steps = plan, steps
         return Order(plan, *islands.boxes(self.low, self.high, d), steps, commit)

@@ -10,22 +10,22 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from ...engine.part import Parts
-from ...engine.spares import Spares
+from ...engine.instance_cache import InstanceCache
 from ...engine.state import Records, State, StateRecords
+from ...engine.sub_plan import SubPlans
 from ...model.system import side_by_side
 from ...run.energy import losses
 from ...run.frame_source import run_window
-from ..plan.frame_plan import FramePlan
+from ..plan.frame_plan import FrameAssignment
 from .messages import gathered, scatter
 
-WORTH = 0.5
+LEAST_SHARE_IN_USE = 0.5
 """Least share of an instance's particles that it is kept for; the others are those of objects that it has laid aside."""
 
-LOOKS = 32
+LOOKS_PER_WINDOW = 32
 """In a window, as many at least, or after every step: what boxes are widened by meanwhile is a thirtieth of the way that is
 reserved."""
-SELDOM = 4
+MOST_STEPS_BETWEEN_LOOKS = 4
 """Steps from one look at where particles are to the next, at most."""
 
 
@@ -51,7 +51,7 @@ class Wanted:
     """Objects that it moves, int64, shape (m,); the rest of the key's are guests."""
 
 
-def wanted_bundles(plan: FramePlan, objects: int, executor: int) -> list[Wanted]:
+def wanted_bundles(plan: FrameAssignment, objects: int, executor: int) -> list[Wanted]:
     """What an executor has to run, those of teams first; ``objects`` is the number of them, the pool not counted."""
     team_of = {int(plan.bundle[np.flatnonzero(plan.label == t.island)[0]]): t.members for t in plan.teams}
     mine = (plan.owner == executor) & (plan.bundle >= 0)
@@ -73,12 +73,12 @@ def wanted_bundles(plan: FramePlan, objects: int, executor: int) -> list[Wanted]
 class Bundle:
     """A live one. What is done with its instance in the end is its owner's."""
 
-    def __init__(self, parts: Parts, wanted: Wanted, comm: MPI.Comm | None, spares: Spares):
+    def __init__(self, parts: SubPlans, wanted: Wanted, comm: MPI.Comm | None, cache: InstanceCache):
         self.objects = np.array(wanted.key.objects, np.intp)
         """All in its instance, also those that it has laid aside."""
         self.plan = parts.part(wanted.key.objects, wanted.key.liquid)
         self.comm = comm
-        self.instance = spares.instance(self.plan, comm)
+        self.instance = cache.instance(self.plan, comm)
         self.places = parts.whole.system.stretches(self.objects)
         """Its particles among all."""
         self.first, self.still = parts.whole.system.first, parts.whole.system.still
@@ -104,7 +104,7 @@ class Bundle:
         self._rows: np.ndarray | None = None
         """Of a team: the particles in its instance that these stretches are for."""
 
-    def tell(self, **arrays: np.ndarray) -> None:
+    def write_state(self, **arrays: np.ndarray) -> None:
         """Write what this executor has of ``x``, ``v``, ``f`` now into such arrays of all particles."""
         if self.comm is not None:
             rows = self.instance.rows()
@@ -116,7 +116,7 @@ class Bundle:
             for here, there in self.stretches:  # five times as fast as row by row
                 everything[there] = now[here]
 
-    def unite(self, *arrays: np.ndarray) -> None:
+    def share_state(self, *arrays: np.ndarray) -> None:
         """Let all members of its team have in such arrays what each has told. To be called by all of them together."""
         if not self.scattered:
             return
@@ -177,9 +177,9 @@ class Bundle:
             return False
         if np.count_nonzero(self._among(wanted.key.objects) & ~self.aside) < len(wanted.key.objects):
             return False
-        return self.particles[self._among(wanted.members)].sum() >= WORTH * self.particles.sum()
+        return self.particles[self._among(wanted.members)].sum() >= LEAST_SHARE_IN_USE * self.particles.sum()
 
-    def become(self, wanted: Wanted) -> None:
+    def drop_objects(self, wanted: Wanted) -> None:
         """Lay aside those objects that it does not move any more; a guest that is not needed any more does no harm."""
         if wanted.key == self.key:
             self.number = wanted.number
@@ -204,9 +204,9 @@ class Bundle:
         self.instance.start_trace()
 
     def run(self, steps: int) -> None:
-        """Run a window. Raises Broken."""
+        """Run a window. Raises LammpsFailure."""
         begin, soaked = time.process_time(), self._soaked()
-        self.instance.look_every(min(max(1, steps // LOOKS), SELDOM))
+        self.instance.look_every(min(max(1, steps // LOOKS_PER_WINDOW), MOST_STEPS_BETWEEN_LOOKS))
         run_window(self.instance, steps)
         self.trace = self.instance.trace()
         self.instance.start_trace()  # of the next window

@@ -7,7 +7,7 @@ from typing import Protocol
 
 from mpi4py import MPI
 
-from ...engine.part import Parts
+from ...engine.sub_plan import SubPlans
 from ..plan.orders import Order, Report
 from ..plan.planner import Planner
 from .messages import SUPERVISOR, Job, Mail, Tag
@@ -41,11 +41,11 @@ class Peers:
         return self.planner.decide(self.mail.exchange(self.comm, report))
 
 
-def make_control(job: Job, parts: Parts, mail: Mail, comm: MPI.Comm) -> Control:
+def make_control(job: Job, parts: SubPlans, mail: Mail, comm: MPI.Comm) -> Control:
     """The control that a job asks for, on the communicator of its executors."""
     return Central(mail) if job.control == "central" else Peers(mail, comm, planner_of(job, parts, comm.size))
 
 
-def planner_of(job: Job, parts: Parts, executors: int) -> Planner:
+def planner_of(job: Job, parts: SubPlans, executors: int) -> Planner:
     """The planner with which a job begins, or goes on."""
     return Planner(parts, executors, job.lengths, job.settings, job.resume.frame if job.resume else 0)

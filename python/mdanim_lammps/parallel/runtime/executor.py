@@ -13,12 +13,12 @@ from contextlib import contextmanager
 import numpy as np
 from mpi4py import MPI
 
-from ...engine.part import Parts
-from ...engine.spares import Spares
+from ...engine.instance_cache import InstanceCache
 from ...engine.state import Records, State, StateRecords, join_all
+from ...engine.sub_plan import SubPlans
 from ...errors import MdanimError
 from ...run.energy import stored
-from ...run.frame_source import Account, Broken, add_clocks, penetration, pool
+from ...run.frame_source import Account, LammpsFailure, add_clocks, penetration, pool
 from ..plan.orders import Order, Report
 from .bundle import Bundle, Wanted, wanted_bundles
 from .control import Control, make_control
@@ -42,8 +42,8 @@ def serve(world: MPI.Comm) -> bool:
         return True
     except Aborted:
         last = Tag.ENDED, Ended(None)
-    except Broken as broken:
-        last = Tag.FAILED, Failure("Broken", str(broken.error), broken.step, broken.solid)
+    except LammpsFailure as failure:
+        last = Tag.FAILED, Failure("LammpsFailure", str(failure.error), failure.step, failure.solid)
     except MdanimError as error:
         last = Tag.FAILED, Failure(type(error).__name__, str(error))
     except Exception as error:  # whatever it is, the supervisor must be told
@@ -61,7 +61,7 @@ class Executor:
     def __init__(self, mail: Mail, comm: MPI.Comm, job: Job):
         self.mail, self.comm, self.job = mail, comm, job
         self.me = comm.rank
-        self.parts = Parts(job.plan)
+        self.parts = SubPlans(job.plan)
         self.system, resume = job.plan.system, job.resume
         self.objects = len(self.system.names)
         self.frame = resume.frame if resume else 0
@@ -76,7 +76,7 @@ class Executor:
         """False before step 0: forces come from the scene then."""
         self.control: Control = make_control(job, self.parts, mail, comm)
         self.bundles: list[Bundle] = []
-        self.spares = Spares()
+        self.cache = InstanceCache()
         self.order: Order | None = None
         """What it follows."""
         self.next: Order | None = None
@@ -96,12 +96,12 @@ class Executor:
     # --- the order of things --------------------------------------------------------------------------------------
 
     def work(self) -> None:
-        """All frames. Raises Broken, MdanimError, Aborted; then its instances are left as they are, for a team's others may never
+        """All frames. Raises LammpsFailure, MdanimError, Aborted; then its instances are left as they are, for a team's others may never
         come to close theirs."""
         self._follow(self._decide(self._first_report()))
         few = np.flatnonzero(~self.system.still)[:2]
         if len(few) == 2 and self.parts.reach.any():  # pairs will meet
-            self.spares.stock(self.parts.part(few, False))
+            self.cache.stock(self.parts.part(few, False))
         if not self.started:
             self._commit()
             self._weigh()
@@ -116,7 +116,7 @@ class Executor:
             self._send(grant.keep)
         for bundle in self.bundles:
             self._close(bundle)
-        self.spares.close()
+        self.cache.close()
         self.mail.send(SUPERVISOR, Tag.ENDED, Ended(self.account, self.spans, time.process_time() - self.cpu_origin))
         self.mail.flush()
 
@@ -165,7 +165,7 @@ class Executor:
             live = self._staying(wanted)
             for bundle in self.bundles:
                 if bundle not in live.values():
-                    bundle.unite(self.x, self.v, self.f)
+                    bundle.share_state(self.x, self.v, self.f)
                     self._close(bundle)
             if before is None:
                 self.records = self._records_of(np.flatnonzero(order.plan.owner == self.me))
@@ -187,7 +187,7 @@ class Executor:
         """A bundle that stays, without whom it has to lay aside; ``again`` as in `_follow`: one that changes goes back to the
         window's beginning."""
         back = again and bundle.key != wanted.key
-        bundle.become(wanted)
+        bundle.drop_objects(wanted)
         if back:
             self._start(bundle, self.records)
         return bundle
@@ -233,7 +233,7 @@ class Executor:
                 moved = self.mail.take(Tag.TEAM, key.team[0], self.comm)
                 scatter(self._places(everything), (self.x, moved.x), (self.v, moved.v), (self.f, moved.f))
                 records = moved.records
-        bundle = Bundle(self.parts, wanted, self._team(key.team), self.spares)
+        bundle = Bundle(self.parts, wanted, self._team(key.team), self.cache)
         self._start(bundle, records)
         return bundle
 
@@ -252,7 +252,7 @@ class Executor:
 
     def _close(self, bundle: Bundle) -> None:
         add_clocks(self.account, bundle.instance)
-        self.spares.keep(bundle.instance)
+        self.cache.keep(bundle.instance)
 
     def _leads(self, bundle: Bundle) -> bool:
         return bundle.key.team[0] == self.me
@@ -296,7 +296,7 @@ class Executor:
             instance, lost = bundle.instance, bundle.newly_lost()
             depth, liquid = penetration(instance), pool(instance)
             kept = instance.records()  # together with the team, as all above
-            bundle.tell(x=self.x, v=self.v, f=self.f)
+            bundle.write_state(x=self.x, v=self.v, f=self.f)
             if not self._leads(bundle):
                 continue
             self.deepest = max(self.deepest, depth)

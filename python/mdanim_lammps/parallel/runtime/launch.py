@@ -26,7 +26,7 @@ from ...results.files import disk_errors
 from ...run.loop import STOP, Progress, Result
 from ...run.prepare import Prepared
 from ..limits import MPIEXEC
-from ..plan.frame_plan import Settings
+from ..plan.frame_plan import PlannerOptions
 
 EXCHANGE = ".ranks-"
 """What the names of the two files begin with, in the folder of the run, by which job and result are handed over. The supervisor
@@ -42,7 +42,7 @@ class Task:
     control: str
     resume: Checkpoint | None
     started: float
-    settings: Settings
+    settings: PlannerOptions
 
 
 def simulate_on(
@@ -51,10 +51,10 @@ def simulate_on(
     ready: Prepared,
     folder: Path,
     *,
-    watch: Callable[[Progress], None] | None = None,
+    on_progress: Callable[[Progress], None] | None = None,
     resume: Checkpoint | None = None,
     started: float | None = None,
-    settings: Settings | None = None,
+    settings: PlannerOptions | None = None,
 ) -> Result:
     """`run.simulate` on ``executors`` ranks and a supervising one; the same frames, to the last bit.
 
@@ -66,7 +66,7 @@ def simulate_on(
         old.unlink(missing_ok=True)
     job = folder / f"{EXCHANGE}{secrets.token_hex(4)}"
     result = result_of(job)
-    task = Task(ready, folder, control, resume, time.perf_counter() if started is None else started, settings or Settings())
+    task = Task(ready, folder, control, resume, time.perf_counter() if started is None else started, settings or PlannerOptions())
     command = [*launcher(), "-n", str(executors + 1), sys.executable, "-m", "mdanim_lammps.parallel.runtime.ranks", str(job)]
     said: list[str] = []
     try:
@@ -79,8 +79,8 @@ def simulate_on(
             hearing = threading.Thread(target=_hear, args=(ranks.stderr, said), daemon=True)
             hearing.start()
             for line in ranks.stdout:
-                if watch and line.startswith("{"):
-                    watch(Progress(**json.loads(line)))
+                if on_progress and line.startswith("{"):
+                    on_progress(Progress(**json.loads(line)))
             ranks.wait()
         hearing.join()
         if not folder.exists():

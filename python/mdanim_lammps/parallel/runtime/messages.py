@@ -16,8 +16,8 @@ from mpi4py.util import pkl5
 from ...engine.plan import Plan
 from ...engine.state import Records
 from ...results.checkpoint import Checkpoint
-from ...run.frame_source import Account, Pool
-from ..plan.frame_plan import Settings
+from ...run.frame_source import Account, LiquidFrame
+from ..plan.frame_plan import PlannerOptions
 
 SUPERVISOR = 0
 """Its rank; executor e, counted from 0, has the rank e + 1."""
@@ -62,7 +62,7 @@ class Job:
     control: str
     """``central`` or ``peers``."""
     resume: Checkpoint | None
-    settings: Settings
+    settings: PlannerOptions
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ class Share:
     v: np.ndarray
     energies: dict[str, float]
     penetration: float
-    pool: Pool | None
+    pool: LiquidFrame | None
     moves: int
     """Objects that have come to this executor since the frame before."""
     retries: int
@@ -126,7 +126,7 @@ class Failure:
     """Why an executor cannot go on."""
 
     kind: str
-    """Name of an error of errors.py, or ``Broken``."""
+    """Name of an error of errors.py, or ``LammpsFailure``."""
     text: str
     step: int = 0
     solid: int | None = None

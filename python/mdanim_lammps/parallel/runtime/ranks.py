@@ -68,7 +68,7 @@ def _supervise(world, job: Path) -> None:
             resume=task.resume,
             started=task.started,
             source=source,
-            watch=lambda p: print(json.dumps(asdict(p)), flush=True),
+            on_progress=lambda p: print(json.dumps(asdict(p)), flush=True),
         )
     except MdanimError as error:
         result = _told(error)

@@ -15,15 +15,15 @@ import numpy as np
 from mpi4py import MPI
 
 from ... import errors
-from ...engine.part import Parts
 from ...engine.state import Records, State, join_all
+from ...engine.sub_plan import SubPlans
 from ...errors import DivergedError
 from ...results.ledger import LOSS
 from ...results.timeline import Timeline
 from ...run.energy import ledger_terms, potentials
-from ...run.frame_source import Account, Broken, Frame
+from ...run.frame_source import Account, Frame, LammpsFailure
 from ...run.prepare import Prepared
-from ..plan.frame_plan import Settings
+from ..plan.frame_plan import PlannerOptions
 from ..plan.orders import Report
 from ..plan.planner import Planner
 from .control import planner_of
@@ -38,14 +38,16 @@ PATIENCE = 5.0
 
 
 class Distributed:
-    """K executors under one supervisor, on the ranks of a communicator; a `source.Source`."""
+    """K executors under one supervisor, on the ranks of a communicator; a `source.FrameSource`."""
 
-    def __init__(self, ready: Prepared, world: MPI.Comm, control: str, settings: Settings):
+    def __init__(self, ready: Prepared, world: MPI.Comm, control: str, settings: PlannerOptions):
         self.ready, self.world, self.control, self.settings = ready, world, control, settings
         self.executors = world.size - 1
         self.lengths = ready.certificate.lengths
         self.losses = {term: 0.0 for term in ledger_terms(ready.plan.effects) if term.endswith(LOSS)}
-        self.sheaves: dict[int, _Sheaf] = {}
+        self.pending: dict[int, PendingFrame] = {}
+        self.messages: MessageThread | None = None
+        """From the beginning of the run on."""
         self.ended: dict[int, Ended] = {}
         self.gone: set[int] = set()
         """Executors that have said their last word."""
@@ -53,8 +55,8 @@ class Distributed:
         """Whether an end was asked for after the last frame that was granted."""
         self.clean = False
         """Whether all executors have come to their end; after an error they may be anywhere, and be waiting for each other."""
-        self.used: list[_Sheaf] = []
-        """Sheaves that can be filled again: they are as large as the scene."""
+        self.used: list[PendingFrame] = []
+        """Pending frames that can be filled again: they are as large as the scene."""
         self.timeline = Timeline(self.executors, control, ready.system.names)
         self.before: Timeline | None = None
         """The log of a run that is resumed: in the end `timeline` begins with it."""
@@ -71,23 +73,23 @@ class Distributed:
             (resume.x, resume.v, resume.f) if resume else (system.position, system.velocity, np.zeros_like(system.position))
         )
         self.granted = self.taken = self.resumed_at = resume.frame if resume else 0
-        self.last: _Sheaf | None = None
+        self.last: PendingFrame | None = None
         """That of the frame which was given out last."""
         self.kept_at, self.cpu_begun = time.perf_counter(), time.process_time()
-        self.desk = _Desk(self.world, Job(self.ready.plan, self.lengths, self.control, resume, self.settings))
-        self.desk.start()
+        self.messages = MessageThread(self.world, Job(self.ready.plan, self.lengths, self.control, resume, self.settings))
+        self.messages.start()
         return None if resume else self._frame(0, keep=True)
 
     def advance(self, frame, steps):
         while not self.stopped and self.granted < min(frame + CREDIT - 1, len(self.lengths)):
             self._grant(self.granted + 1)
         self.step += steps
-        return self._frame(frame, self._sheaf(frame).keep)
+        return self._frame(frame, self._pending(frame).keep)
 
     def stop(self, frame):
         if not self.stopped and self.granted < len(self.lengths):  # it may be asked for again after every frame that still comes
-            self.desk.send_all(Tag.GRANT, None)
-            self._sheaf(self.granted).keep = self.stopped = True
+            self.messages.send_all(Tag.GRANT, None)
+            self._pending(self.granted).keep = self.stopped = True
         return self.granted
 
     def state(self):
@@ -109,19 +111,19 @@ class Distributed:
         return mean
 
     def __exit__(self, kind, *_) -> None:
-        if not hasattr(self, "desk"):
+        if self.messages is None:  # it has not begun
             return
         self.clean = kind is None or (self.stopped and self.taken == self.granted)
         if not self.clean:
-            self.desk.send_all(Tag.ABORT, None)
+            self.messages.send_all(Tag.ABORT, None)
         end = time.perf_counter() + PATIENCE
-        while len(self.gone) < self.executors and time.perf_counter() < end and self.desk.is_alive():
+        while len(self.gone) < self.executors and time.perf_counter() < end and self.messages.is_alive():
             try:
                 self._take(patience=0.1)
             except Exception:  # whatever follows, the first word was that of the cause
                 self.clean = False
         self.clean &= len(self.gone) == self.executors
-        self.desk.close()
+        self.messages.close()
         for executor, ended in self.ended.items():
             self.timeline.spans += [(executor, *span) for span in ended.spans]
             self.timeline.cpu[executor] = ended.cpu
@@ -135,26 +137,26 @@ class Distributed:
         keep = frame == len(self.lengths) or time.perf_counter() - self.kept_at > KEEP_SECONDS
         if keep:
             self.kept_at = time.perf_counter()
-        self._sheaf(frame).keep = keep
-        self.desk.send_all(Tag.GRANT, Grant(frame, keep))
+        self._pending(frame).keep = keep
+        self.messages.send_all(Tag.GRANT, Grant(frame, keep))
         self.granted = frame
 
-    def _sheaf(self, frame: int) -> _Sheaf:
-        if frame not in self.sheaves:
+    def _pending(self, frame: int) -> PendingFrame:
+        if frame not in self.pending:
             # What moves is overwritten in every frame, what does not is right in all of them.
             old = self.used.pop() if self.used else None
-            self.sheaves[frame] = _Sheaf(old.x, old.v, old.f) if old else _Sheaf(*(a.copy() for a in self.start))
-        return self.sheaves[frame]
+            self.pending[frame] = PendingFrame(old.x, old.v, old.f) if old else PendingFrame(*(a.copy() for a in self.start))
+        return self.pending[frame]
 
     def _frame(self, frame: int, keep: bool) -> Frame:
         """Wait for all shares of a frame. Raises what an executor raised."""
-        sheaf = self._sheaf(frame)
-        while len(sheaf.shares) < self.executors or (keep and len(sheaf.kept) < self.executors):
+        pending = self._pending(frame)
+        while len(pending.shares) < self.executors or (keep and len(pending.kept) < self.executors):
             self._take()
         if self.last:
             self.used.append(self.last)
-        self.last, self.taken = self.sheaves.pop(frame), frame
-        shares = [sheaf.shares[e] for e in range(self.executors)]
+        self.last, self.taken = self.pending.pop(frame), frame
+        shares = [pending.shares[e] for e in range(self.executors)]
         energies = dict.fromkeys(ledger_terms(self.ready.plan.effects), 0.0)
         for share in shares:
             for term, e in share.energies.items():
@@ -170,12 +172,12 @@ class Distributed:
             [team for s in shares for team in s.teams],
         )
         if keep:
-            self.last_state = State(sheaf.x, sheaf.v, sheaf.f, join_all(sheaf.kept.values()))
-        energies |= potentials(self.ready.plan, sheaf.x) | self.losses
+            self.last_state = State(pending.x, pending.v, pending.f, join_all(pending.kept.values()))
+        energies |= potentials(self.ready.plan, pending.x) | self.losses
         return Frame(
             self.step,
-            sheaf.x,
-            sheaf.v,
+            pending.x,
+            pending.v,
             energies,
             max(s.penetration for s in shares),
             next((s.pool for s in shares if s.pool), None),
@@ -185,34 +187,34 @@ class Distributed:
     def _take(self, patience: float | None = None) -> None:
         """Wait for one message and file it. Raises what an executor or the desk raised."""
         try:
-            executor, message = self.desk.inbox.get(timeout=patience)
+            executor, message = self.messages.inbox.get(timeout=patience)
         except queue.Empty:
             return
         if isinstance(message, Share):
-            sheaf = self._sheaf(message.frame)
-            sheaf.shares[executor] = message
-            scatter(message.places, (sheaf.x, message.x), (sheaf.v, message.v))
+            pending = self._pending(message.frame)
+            pending.shares[executor] = message
+            scatter(message.places, (pending.x, message.x), (pending.v, message.v))
         elif isinstance(message, Kept):
             if message.frame <= self.taken and self.last:  # sent a second time, by an end after a frame that was kept anyway
                 return
-            sheaf = self._sheaf(message.frame)
-            sheaf.kept[executor] = message.records
-            scatter(message.places, (sheaf.f, message.f))
+            pending = self._pending(message.frame)
+            pending.kept[executor] = message.records
+            scatter(message.places, (pending.f, message.f))
         elif isinstance(message, Ended):
             self.gone.add(executor)
             if message.account is not None:
                 self.ended[executor] = message
         elif isinstance(message, Failure):
             self.gone.add(executor)
-            if message.kind == "Broken":
-                raise Broken(message.step, DivergedError(message.text), message.solid)
+            if message.kind == "LammpsFailure":
+                raise LammpsFailure(message.step, DivergedError(message.text), message.solid)
             raise getattr(errors, message.kind)(message.text)
         else:
             raise message
 
 
 @dataclass
-class _Sheaf:
+class PendingFrame:
     """A frame of which shares are still to come."""
 
     x: np.ndarray
@@ -226,7 +228,7 @@ class _Sheaf:
     """Records of fixes, by the executor that has sent it."""
 
 
-class _Desk(threading.Thread):
+class MessageThread(threading.Thread):
     """All talk with executors, so that none of them waits while a frame is written; central control decides here."""
 
     def __init__(self, world: MPI.Comm, job: Job):
@@ -258,7 +260,7 @@ class _Desk(threading.Thread):
         world.bcast(job, root=SUPERVISOR)
         mail = Mail(world)
         executors = world.size - 1
-        planner = planner_of(job, Parts(job.plan), executors) if job.control == "central" else None
+        planner = planner_of(job, SubPlans(job.plan), executors) if job.control == "central" else None
         reports = {}
         nap = NAP
         while True:

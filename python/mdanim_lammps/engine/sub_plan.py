@@ -17,7 +17,7 @@ from .plan import Ends, Plan, both_ends
 
 
 @dataclass(frozen=True)
-class Part(Plan):
+class SubPlan(Plan):
     """A plan of some objects of a whole; object ``k`` of it is object ``objects[k]`` of the whole."""
 
     objects: tuple[int, ...]
@@ -28,7 +28,7 @@ class Part(Plan):
         return self.make_ends()
 
 
-class Parts:
+class SubPlans:
     """Cuts parts out of a plan; keeps what is dear and the same whenever an object is part of one."""
 
     def __init__(self, whole: Plan):
@@ -73,7 +73,7 @@ class Parts:
         used = self._used(objects)
         number = np.zeros(len(whole.coefficients) + 1, whole.bond_kind.dtype)
         number[used] = np.arange(1, len(used) + 1)
-        return Part(
+        return SubPlan(
             scene=whole.scene,
             system=system,
             certificate=whole.certificate,

@@ -6,11 +6,11 @@ from __future__ import annotations
 from .instance import SMALL, Instance
 from .plan import Plan
 
-MOST = 6
+MOST_INSTANCES = 6
 """Instances that are kept, of 3 MB or less each."""
 
 
-class Spares:
+class InstanceCache:
     """What is put in may come out again as an instance of another plan."""
 
     def __init__(self):
@@ -18,7 +18,7 @@ class Spares:
 
     def stock(self, plan: Plan) -> None:
         """Have as many as are kept, of a plan like those that will be asked for."""
-        for _ in range(MOST - len(self.idle) if plan.system.particles <= SMALL else 0):
+        for _ in range(MOST_INSTANCES - len(self.idle) if plan.system.particles <= SMALL else 0):
             self.keep(Instance(plan))
 
     def instance(self, plan: Plan, comm=None) -> Instance:
@@ -30,12 +30,12 @@ class Spares:
         return Instance(plan, comm)
 
     def keep(self, instance: Instance) -> None:
-        """Take one; it is closed if it cannot be filled anew, and the oldest beyond `MOST` is."""
+        """Take one; it is closed if it cannot be filled anew, and the oldest beyond `MOST_INSTANCES` is."""
         if not instance.refillable:
             instance.close()
             return
         self.idle.append(instance)
-        if len(self.idle) > MOST:
+        if len(self.idle) > MOST_INSTANCES:
             self.idle.pop(0).close()
 
     def close(self) -> None:
