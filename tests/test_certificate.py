@@ -156,7 +156,7 @@ def test_fit_steps(time, frames, longest, expected):
 
 def test_a_time_that_fits_no_step_is_a_problem():
     """Say which duration would do."""
-    with pytest.raises(SceneError, match="try 'time 1.73333 s'"):
+    with pytest.raises(SceneError, match=r"try 'time 1\.73333 s'"):
         fit_steps(scene(math.sqrt(3.0)), 1e-2)
 
 

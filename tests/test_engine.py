@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The engine: plans, commands, data files and live instances say the same, to the last bit."""
 
+import itertools
 from dataclasses import replace
 from pathlib import Path
 
@@ -148,8 +149,8 @@ def test_both_ends_are_ascending():
     """Store every spring at both ends with partners in ascending order."""
     bonds = np.array([[0, 1], [0, 3], [1, 2], [2, 3]], np.int32)
     first, partner, kind = both_ends(bonds, np.array([1, 2, 3, 4], np.int32), 4)
-    assert [partner[a:b].tolist() for a, b in zip(first, first[1:])] == [[2, 4], [1, 3], [2, 4], [1, 3]]
-    assert [kind[a:b].tolist() for a, b in zip(first, first[1:])] == [[1, 2], [1, 3], [3, 4], [2, 4]]
+    assert [partner[a:b].tolist() for a, b in itertools.pairwise(first)] == [[2, 4], [1, 3], [2, 4], [1, 3]]
+    assert [kind[a:b].tolist() for a, b in itertools.pairwise(first)] == [[1, 2], [1, 3], [3, 4], [2, 4]]
 
 
 @pytest.mark.parametrize("text", SCENES)

@@ -326,7 +326,8 @@ print(Geometry(system).sunk(np.ascontiguousarray(x / np.abs(x).max() * float(sys
 def test_objects_of_any_size_are_looked_at(tmp_path, size):
     """Come to an end also where the extent of what is looked at exceeds every number."""
     side = "shape box (10, 10, 10) cm density 1000 elasticity 2 kPa"
-    text = f"object a {{ {side} position (0, 0, 0) }}\nobject b {{ {side} position (15, 0, 0) cm }}\ncontrol {{ time 1 s resolution 2.5 cm }}"
+    text = f"object a {{ {side} position (0, 0, 0) }}\nobject b {{ {side} position (15, 0, 0) cm }}\n"
+    text += "control { time 1 s resolution 2.5 cm }"
     (tmp_path / "two.txt").write_text(text)
     done = plugin_path.python(OVERFLOW, tmp_path / "two.txt", size, timeout=60.0)
     assert done.returncode == 0, done.stderr

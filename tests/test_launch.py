@@ -30,7 +30,7 @@ def test_without_mpiexec_it_says_where_one_comes_from(monkeypatch, tmp_path):
     monkeypatch.setattr(shutil, "which", lambda name: None)
     monkeypatch.delenv(launch.MPIEXEC, raising=False)
     (tmp_path / "fall.txt").write_text(FALL)
-    with pytest.raises(SetupError, match="no mpiexec; .*pip install mpich.*MDANIM_MPIEXEC"):
+    with pytest.raises(SetupError, match=r"no mpiexec; .*pip install mpich.*MDANIM_MPIEXEC"):
         Scene.load(tmp_path / "fall.txt").run(executors=2)
     assert not list((tmp_path / "fall.out").glob(".ranks-*"))
     assert SetupError("").exit_code == ExitCode.ENVIRONMENT

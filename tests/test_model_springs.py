@@ -108,9 +108,9 @@ def test_constants_make_an_isotropic_solid_braced_or_not(cell, brace):
     """Sum k l^2 n n n n over the springs of a cell: C11 = 1.2 E, C12 = C44 = 0.4 E along every axis."""
     cell = np.array(cell)
     # One edge per axis, both diagonals of one face per plane and all four body diagonals belong to a cell.
-    l = OFFSETS * cell
+    offset = OFFSETS * cell
     k = spring_constants(cell, 2.5, brace)
-    c = np.einsum("s,si,sj,sk,sl->ijkl", k / (l**2).sum(1), l, l, l, l) / cell.prod()
+    c = np.einsum("s,si,sj,sk,sl->ijkl", k / (offset**2).sum(1), offset, offset, offset, offset) / cell.prod()
     for i, j in product(range(3), repeat=2):
         assert c[i, i, j, j] == pytest.approx((1.2 if i == j else 0.4) * 2.5, rel=1e-12)
         assert c[i, j, i, j] == pytest.approx((1.2 if i == j else 0.4) * 2.5, rel=1e-12)

@@ -123,9 +123,9 @@ def test_unfinished_movie_leaves_nothing(short, tmp_path):
 def test_where_it_cannot_be_written(short, tmp_path):
     """A file in the place of a folder is an OutputError that names it."""
     (tmp_path / "file").write_text("")
-    with pytest.raises(OutputError, match="file/movie.mp4"):
+    with pytest.raises(OutputError, match=r"file/movie\.mp4"):
         render_movie(short, SMALL, tmp_path / "file" / "movie.mp4")
-    with pytest.raises(OutputError, match="file/still.png"):
+    with pytest.raises(OutputError, match=r"file/still\.png"):
         render_still(short, 0, tmp_path / "file" / "still.png", SMALL)
     with pytest.raises(OutputError, match="6 frames, there is no frame 6"):
         render_still(short, 6, tmp_path / "still.png", SMALL)
@@ -156,7 +156,7 @@ def test_killed_process_is_named(short, tmp_path):
         for child in multiprocessing.active_children():
             os.kill(child.pid, signal.SIGKILL)
 
-    with pytest.raises(SetupError, match="a process that draws pictures was killed.*render again"):
+    with pytest.raises(SetupError, match=r"a process that draws pictures was killed.*render again"):
         render_movie(short, SMALL, tmp_path / "movie.mp4", processes=2, fps=1000.0, on_progress=kill)
     assert sorted(os.listdir(tmp_path)) == ["run"]
 

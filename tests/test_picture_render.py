@@ -92,7 +92,7 @@ def test_shadow_lies_on_the_floor_and_on_objects(tmp_path):
         below = np.array([0, 0, 0.9]) - LAMP * (0.9 - height) / LAMP[2]
 
         def brightness(point):
-            column, row = (int(round(c)) for c in pixel_of(view, point))
+            column, row = (round(c) for c in pixel_of(view, point))
             return np.median(image[row - 1 : row + 2, column - 1 : column + 2])
 
         assert brightness(below) < 0.85 * brightness([-0.55, below[1], height])

@@ -106,7 +106,7 @@ def test_colours_differ():
     assert apart[:8, :8].min() > 0.25 and apart.min() > 0.1
 
 
-@pytest.mark.parametrize("executors, objects, frames", [(1, 1, 1), (2, 3, 4), (16, 10_000, 3), (3, 200, 2 * COLUMNS)])
+@pytest.mark.parametrize(("executors", "objects", "frames"), [(1, 1, 1), (2, 3, 4), (16, 10_000, 3), (3, 200, 2 * COLUMNS)])
 def test_a_picture_of_any_size(tmp_path, executors, objects, frames):
     """Draw small and large logs without a warning."""
     draw(log(executors, objects, frames), tmp_path / "t.png", "Title")

@@ -68,7 +68,7 @@ def test_all_who_plan_order_the_same(parts):
 
 def test_different_plans_are_found_out(parts):
     """Executors that have followed different plans end the run."""
-    planner, order = begun(parts)
+    planner, _ = begun(parts)
     said = [*report(parts, EQUAL, fingerprint="a")[:1], *report(parts, EQUAL, fingerprint="b")[1:]]
     with pytest.raises(DivergedError, match="different plans"):
         planner.decide(said)
@@ -108,7 +108,7 @@ def test_boxes_double_until_nobody_escapes(parts):
 def test_who_escapes_for_ever_is_named(parts):
     """Not by a loop without end; and so is who is nowhere at all."""
     planner, order = begun(parts)
-    with pytest.raises(LammpsFailure, match="leaves every box") as found:
+    with pytest.raises(LammpsFailure, match="leaves every box") as found:  # noqa: PT012 -- in which turn is not known
         for _ in range(module.DOUBLINGS + 1):
             order = planner.decide(report(parts, order.plan.owner, escaped=(5,)))
     assert found.value.solid == 5 and found.value.step == LENGTHS[0]

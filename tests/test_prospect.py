@@ -35,7 +35,7 @@ def test_the_first_moment_is_the_first_order(prepared, text):
     objects = len(ready.system.names)
     who = np.arange(objects) % 2
     who[ready.system.still] = -1
-    order = planner.decide([r for r in report(parts, who, speed=ready.system.top_speed(ready.system.velocity))])
+    order = planner.decide(list(report(parts, who, speed=ready.system.top_speed(ready.system.velocity))))
     found = moments.at(*_Flight(ready).boxes())
     assert np.array_equal(found.label, order.plan.label) and np.array_equal(found.load, order.plan.load)
     assert found.teams == order.plan.teams

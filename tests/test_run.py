@@ -221,9 +221,8 @@ def test_disk_full_is_told(fall, tmp_path):
     from mdanim_lammps.results.files import disk_errors
 
     (tmp_path / "checkpoint").touch()
-    with pytest.raises(OutputError, match="make room and resume"), disk_errors(tmp_path / "x"):
-        with open("/dev/full", "w") as file:
-            file.write("x" * 100000)
+    with pytest.raises(OutputError, match="make room and resume"), disk_errors(tmp_path / "x"), open("/dev/full", "w") as file:
+        file.write("x" * 100000)
 
 
 def test_force_never_deletes_a_folder_that_only_looks_like_ours(fall):

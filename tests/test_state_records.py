@@ -63,7 +63,7 @@ def test_equality_sees_every_array():
     assert one == records({(1, 0): b"ab", (1, 2): b"c"}) and len(one) == 2
     for other in ({(2, 0): b"ab", (2, 3): b"c"}, {(1, 0): b"a", (1, 2): b"bc"}, {(1, 0): b"ab", (1, 2): b"d"}):
         assert one != records(other)
-    assert NO_RECORDS == join([]) and NO_RECORDS != one
+    assert join([]) == NO_RECORDS and one != NO_RECORDS
 
 
 def test_fixes_are_joined_apart():

@@ -356,7 +356,7 @@ def test_what_a_run_takes_to_start_does_not_grow_with_its_work(clock, tmp_path, 
 
 def test_budget_too_small_for_the_own_setting(clock, tmp_path):
     """Refuse, and say what it would take."""
-    with pytest.raises(RefusedError, match="would take about 0.5.*--budget"):
+    with pytest.raises(RefusedError, match=r"would take about 0\.5.*--budget"):
         run_study(parse_scene(BAR), tmp_path / "study", budget=0.3)
 
 

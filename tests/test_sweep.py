@@ -120,7 +120,8 @@ def test_held_beams_side_by_side_do_not_meet():
     text = (
         DOWN
         + "".join(
-            f"object bar{k} {{ shape box (1, 0.1, 0.1) position (0, {0.6 * k}, 0) density 1000 elasticity MODULUS hold face -x }}\n"
+            f"object bar{k} {{ shape box (1, 0.1, 0.1) position (0, {0.6 * k}, 0) density 1000 elasticity MODULUS "
+            "hold face -x }\n"
             for k in range(2)
         )
         + "control { time 1 }\n"

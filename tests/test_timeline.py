@@ -67,6 +67,6 @@ def test_what_is_read_is_what_was_written(tmp_path):
 
 def test_a_missing_timeline_is_told(tmp_path):
     """A sequential run leaves none."""
-    with pytest.raises(OutputError, match="timeline.json cannot be read"):
+    with pytest.raises(OutputError, match=r"timeline\.json cannot be read"):
         Timeline.read(tmp_path)
     assert Timeline.left_in(tmp_path) is None

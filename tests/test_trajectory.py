@@ -364,7 +364,7 @@ def test_a_trajectory_that_lacks_frames_is_not_finished(slab, tmp_path):
 def test_no_trajectory_there(tmp_path, make):
     """A folder without one, or a file that is none, is an error with its path."""
     make(tmp_path)
-    with pytest.raises(OutputError, match="trajectory.h5"):
+    with pytest.raises(OutputError, match=r"trajectory\.h5"):
         Trajectory(tmp_path)
 
 
@@ -466,7 +466,7 @@ def test_heights_survive_a_kill_and_a_resume(tmp_path):
     with Trajectory(tmp_path) as t:
         assert len(t) == 48
     out = TrajectoryWriter.append(tmp_path / "trajectory.h5", scene, models, after_step=20, grid=grid)
-    step, time, x, v, heights = frames[0]
+    _, _, x, v, heights = frames[0]
     out.write(30, 0.3, x, v, heights)
     out.close(finished=False)
     with Trajectory(tmp_path) as t:
@@ -483,7 +483,7 @@ def test_append_refuses_another_basin(tmp_path, other):
     """Frames of a liquid go on only in the same cells."""
     scene, models, grid, frames = pool()
     path = write(tmp_path / "trajectory.h5", scene, models, frames, grid)
-    with pytest.raises(OutputError, match="holds a liquid in 20 x 14 x 10 cells, this scene (no|a) liquid"):
+    with pytest.raises(OutputError, match=r"holds a liquid in 20 x 14 x 10 cells, this scene (no|a) liquid"):
         TrajectoryWriter.append(path, scene, models, after_step=0, grid=other)
 
 

@@ -32,9 +32,9 @@ with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "cube.vtk"
     with path.open("w") as out:
         out.write(f"# vtk DataFile Version 2.0\ncube\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {len(nodes)} double\n")
-        out.writelines("%.9g %.9g %.9g\n" % tuple(p) for p in nodes)
+        out.writelines("{:.9g} {:.9g} {:.9g}\n".format(*p) for p in nodes)
         out.write(f"CELLS {len(cells)} {5 * len(cells)}\n")
-        out.writelines("4 %d %d %d %d\n" % c for c in cells)
+        out.writelines("4 {} {} {} {}\n".format(*c) for c in cells)
         out.write(f"CELL_TYPES {len(cells)}\n" + "10\n" * len(cells))
     pybullet.connect(pybullet.DIRECT)
     pybullet.resetSimulation(pybullet.RESET_USE_DEFORMABLE_WORLD)

@@ -11,8 +11,16 @@ from mdanim_lammps.picture.movie import render_still
 HERE = Path(__file__).parent
 SCENES = HERE.parent.parent / "scenes"
 PICTURES = {
-    "beam": 0.33, "drop": 0.5, "duck": 0.6, "crowd": 0.48,
-    "float": 5.0, "densities": 5.0, "vessels": 0.3, "splash": 0.45, "cork": 0.5, "boat": 0.6,
+    "beam": 0.33,
+    "drop": 0.5,
+    "duck": 0.6,
+    "crowd": 0.48,
+    "float": 5.0,
+    "densities": 5.0,
+    "vessels": 0.3,
+    "splash": 0.45,
+    "cork": 0.5,
+    "boat": 0.6,
 }
 """Scene and the moment to show [s]."""
 SIZE = (720, 405)

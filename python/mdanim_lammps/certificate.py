@@ -541,8 +541,9 @@ class _Margins:
                 float(stress[m]),
                 float(strength),
                 "Pa",
-                f"{system.names[m]} bears about {say(stress[m], 'Pa')} at its foot by its weight and by what stands above it at the "
-                f"start, {ratio[m]:.2f} of its crush strength 0.2 E = {say(strength, 'Pa')} (an estimate: evenly spread, at rest)",
+                f"{system.names[m]} bears about {say(stress[m], 'Pa')} at its foot by its weight and by what stands above it at "
+                f"the start, {ratio[m]:.2f} of its crush strength 0.2 E = {say(strength, 'Pa')} "
+                "(an estimate: evenly spread, at rest)",
                 self._of(m, "elasticity"),
                 "warning" if ratio[m] > 1.0 else "ok",
                 hint=f"write elasticity {say(at_least(system.young[m] * ratio[m] * 1.5), 'Pa')} or more, "
@@ -621,7 +622,8 @@ class _Margins:
                 SWEEPS,
                 "per cell",
                 f"liquid is swept {number(each, 2)} times for each cell that {self.system.names[m]} "
-                f"travels at {say(speed, 'm/s')}; below {SWEEPS} it is pushed up before it can flow away, {2 * SWEEPS} are better",
+                f"travels at {say(speed, 'm/s')}; below {SWEEPS} it is pushed up before it can flow away, "
+                f"{2 * SWEEPS} are better",
                 liquid.spans.get("sweeps") or liquid.spans.get("liquid"),
                 "warning" if few else "ok",
                 least=True,

@@ -86,7 +86,7 @@ def begun(place: Path, text: str, *arguments: object, frames: int = 3) -> subpro
 def ended(process: subprocess.Popen, seconds: float) -> tuple[int, str]:
     """Exit code and what was said, within so many seconds."""
     try:
-        out, said = process.communicate(timeout=seconds)
+        _, said = process.communicate(timeout=seconds)
     except subprocess.TimeoutExpired:
         process.kill()
         raise

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 from case import CONTROL, C, Case, block, velocity
 from trial import Trial
@@ -200,7 +202,7 @@ def stand(text: str, long: bool) -> dict[str, float]:
         t.run(30_000)
         settled = np.array([t.centre(n) for n in names])
         t.run(1_000_000 if long else 10_000)
-        gaps = [t.gap(t.face(a, 2, 1), t.face(b, 2, -1), 2) for a, b in zip(names, names[1:])]
+        gaps = [t.gap(t.face(a, 2, 1), t.face(b, 2, -1), 2) for a, b in itertools.pairwise(names)]
         return {
             "creep after 30 000 steps / h": np.abs([t.centre(n) - s for n, s in zip(names, settled)]).max(),
             "kinetic over initial potential energy": abs(t.ledger.rows[-1]["kinetic"]) / at_first,

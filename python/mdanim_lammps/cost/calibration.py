@@ -114,7 +114,7 @@ def processor() -> str:
 
 
 def lanes(damped: bool) -> int:
-    """Numbers in a vector of the plugin, as best_width in plugin/engine/blocks.cpp chooses: wide ones where anything is damped."""
+    """Numbers in a vector of the plugin, as best_width in plugin/engine chooses: wide ones where anything is damped."""
     return 8 if damped and set(_cpuinfo("flags").split()) >= WIDE else 4
 
 

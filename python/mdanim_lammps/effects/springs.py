@@ -29,8 +29,9 @@ def fullness(spring: np.ndarray, lanes: int) -> float:
     """Springs for each lane of the vectors that a step takes [-], 0 < f < 1: 1 where no lane ever waited.
 
     ``spring`` pairs i < j in the order of i, shape (S, 2); ``lanes`` numbers in a vector. The plugin cuts particles into blocks
-    of neighbouring numbers (plugin/engine/blocks.cpp) and computes together the springs of a block that lead equally far, j - i; a lane
-    whose particle has none of that length waits. f = S / (lanes (E + OVERHEAD B)), B blocks, E distinct pairs (block, j - i):
+    of neighbouring numbers (plugin/engine/simd_blocks.cpp) and computes together the springs of a block that lead equally far,
+    j - i; a lane whose particle has none of that length waits. f = S / (lanes (E + OVERHEAD B)), B blocks, E distinct pairs
+    (block, j - i):
     0.76 in a cuboid, where neighbours have springs alike, 0.6 in small balls with 4 lanes, 0.5 with 8. Here all blocks are of
     ``lanes`` particles; the plugin's cut is the best one, which wins a tenth at most (8 lanes, small ball). Of many springs only
     stretches are looked at, spread evenly.

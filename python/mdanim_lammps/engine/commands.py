@@ -98,7 +98,8 @@ def input_script(plan: Plan) -> str:
         [
             f"# {title}",
             f"# Written by mdanim-lammps; run it here with 'lmp -in in.{plan.name}' or 'mpiexec -n 4 lmp -in in.{plan.name}',",
-            "# with the lmp and the mpiexec of the environment that mdanim-lammps is installed in (.venv/bin): they know its styles.",
+            "# with the lmp and the mpiexec of the environment that mdanim-lammps is installed in (.venv/bin): they know "
+            "its styles.",
             f"# Effects: {', '.join(e.name for e in plan.effects) or 'none'}.",
             "",
             *prelude(plan),

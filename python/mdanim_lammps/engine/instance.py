@@ -39,7 +39,8 @@ class Instance:
 
     On a communicator of several ranks all of them call all methods together, with the same arguments, and all get the same
     answers; each holds the particles of its part of space. Every number of a State is the same on any number of ranks, to the
-    last bit; energies are sums over particles and agree but for rounding, those that dashpots take to about 1e-3 (plugin/engine/loss.h).
+    last bit; energies are sums over particles and agree but for rounding, those that dashpots take to about 1e-3
+    (plugin/engine/loss.h).
     When LAMMPS stops on one rank only, the error comes up there alone, and the other ranks wait for ever: who catches it is to
     abort them.
     """

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import accumulate
+from itertools import accumulate, pairwise
 
 import numpy as np
 
@@ -92,7 +92,7 @@ class SubPlans:
 
     def _check(self, objects: tuple[int, ...], liquid: bool) -> None:
         count = len(self.whole.system.names)
-        if any(b <= a for a, b in zip(objects, objects[1:])):
+        if any(b <= a for a, b in pairwise(objects)):
             raise ValueError(f"objects of a part must ascend, so that sums keep their order; got {objects}")
         if objects and not 0 <= objects[0] <= objects[-1] < count:
             raise ValueError(f"objects of a part must be within 0 and {count - 1}, got {objects}")

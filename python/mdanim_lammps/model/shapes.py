@@ -7,6 +7,7 @@ public functions look it up, so a new shape is one more class here and one row i
 
 from __future__ import annotations
 
+import itertools
 from math import ceil, hypot, pi
 
 import numpy as np
@@ -274,6 +275,6 @@ def _polyline(corners, size: float) -> np.ndarray:
     corners = np.asarray(corners, float)
     parts = [
         a + np.linspace(0, 1, max(1, ceil(np.linalg.norm(b - a) / size)), endpoint=False)[:, None] * (b - a)
-        for a, b in zip(corners[:-1], corners[1:])
+        for a, b in itertools.pairwise(corners)
     ]
     return np.concatenate([*parts, corners[-1:]])

@@ -416,8 +416,8 @@ class _Stop:
 
     def __enter__(self) -> _Stop:
         if threading.current_thread() is threading.main_thread():
-            for number in (signal.SIGINT, signal.SIGTERM):
-                self.old[number] = signal.signal(number, lambda *_: self.asked.set())
+            for which in (signal.SIGINT, signal.SIGTERM):
+                self.old[which] = signal.signal(which, lambda *_: self.asked.set())
         return self
 
     def is_set(self) -> bool:

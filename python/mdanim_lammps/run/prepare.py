@@ -55,8 +55,8 @@ def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[i
                 Problem(
                     scene.liquid.spans.get("liquid") if scene.liquid else None,
                     "the scene has no object, and runs without one are not built yet",
-                    "write one; one that never moves will do, e.g.  object stone { shape box (10, 10, 10) cm  position (0, 0, 0) m  "
-                    "density 2000  elasticity 1 MPa  hold all }",
+                    "write one; one that never moves will do, e.g.  object stone { shape box (10, 10, 10) cm  "
+                    "position (0, 0, 0) m  density 2000  elasticity 1 MPa  hold all }",
                 )
             ]
         )

@@ -73,10 +73,7 @@ def _block(head: str, settings: list[tuple[str, str]]) -> list[str]:
 
 
 def _control(c: records.Control) -> list[str]:
-    if isinstance(c.accuracy, records.Accuracy):
-        accuracy = c.accuracy.value
-    else:
-        accuracy = f'"error {Decimal(repr(c.accuracy)) * 100} %"'
+    accuracy = c.accuracy.value if isinstance(c.accuracy, records.Accuracy) else f'"error {Decimal(repr(c.accuracy)) * 100} %"'
     return _block("control", [
         ("time", f"{c.time!r} s"),
         ("frames", f"{c.frames!r} fps"),

@@ -76,7 +76,7 @@ def assign(
     first = moving[firsts(isle)]
     rank = np.argsort(first if order is None else order[first], kind="stable")
     place, load = _place(weight, home, fixed, (), executors, rank, gain)
-    formed = ()
+    formed: tuple[Team, ...] = ()
     if particles is not None and executors > 1:
         formed = form(weight, total(isle, particles[moving]), home, fixed, executors, teams, gain, least)
     if formed:

@@ -42,10 +42,10 @@ def form(weight, particles, home, fixed, executors, previous, gain, least) -> tu
     :param gain: as `GAIN` [%], and ``least`` as `LEAST`
     """
     most = np.minimum(particles // least, executors)
-    heavy = np.flatnonzero((most >= 2) & (weight * executors > weight.sum()))
-    if not len(heavy):
+    found = np.flatnonzero((most >= 2) & (weight * executors > weight.sum()))
+    if not len(found):
         return ()
-    heavy = [int(i) for i in heavy[np.lexsort((heavy, -weight[heavy], ~fixed[heavy]))]]
+    heavy = [int(i) for i in found[np.lexsort((found, -weight[found], ~fixed[found]))]]
     before = {team.members[0]: team.members for team in previous}
     cost = {i: int(weight[i]) for i in heavy}
     size, old = {}, {}

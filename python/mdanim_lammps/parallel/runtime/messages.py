@@ -215,5 +215,5 @@ class Mail:
     def flush(self) -> None:
         """Wait until everything that was sent is on its way. Raises Aborted."""
         for request in self.sent:
-            self.wait(lambda: request.test()[0])
+            self.wait(lambda request=request: request.test()[0])
         self.sent.clear()
