@@ -276,4 +276,5 @@ class ObjectTrack:
 
 
 def _rgb(color: str) -> tuple[int, int, int]:
-    return tuple(bytes.fromhex(color[1:])) if color else (0, 0, 0)
+    red, green, blue = bytes.fromhex(color[1:]) if color else (0, 0, 0)
+    return red, green, blue

@@ -136,6 +136,7 @@ def plan(
 def pool_box(parts: SubPlans) -> tuple[np.ndarray, np.ndarray]:
     """The box within which an object and the liquid can matter to each other [m]."""
     grid = parts.whole.grid
+    assert grid is not None, "only asked for where there is a liquid"
     margin = ASIDE * np.max(np.subtract(grid.high, grid.low))
     low, high = np.array(grid.low) - margin, np.array(grid.high) + margin
     high[2] = parts.liquid_top
@@ -220,6 +221,7 @@ class PlanContext:
                 or shorter < self.settings.worth
             ):
                 break
+        assert best is not None, "the finest window is 1 at least"
         return best
 
 

@@ -91,10 +91,10 @@ class Planner:
         self.low[who], self.high[who], self.speed[who] = report.low, report.high, report.speed
         if self.plan is None:
             return
-        cost = [report.cost]
+        cost = report.cost
         if report.pool_cost is not None:
-            who, cost = np.append(who, self.objects), [report.cost, [report.pool_cost]]
-        new = np.concatenate(cost).astype(np.int64)
+            who, cost = np.append(who, self.objects), np.append(cost, report.pool_cost)
+        new = cost.astype(np.int64)
         # Whole numbers only, so that all planners round alike.
         smooth = np.where(self.measured[who], self.cost[who] + ((new - self.cost[who]) * int(256 * WEIGHT_OF_LATEST) >> 8), new)
         self.cost[who], self.measured[who] = np.maximum(1, smooth), True
