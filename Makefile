@@ -10,7 +10,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 SOURCES := pyproject.toml CMakeLists.txt $(shell find plugin python -name '*.so' -prune -o -name __pycache__ -prune -o -type f -print)
 
-.PHONY: demo test develop soak bench bench-peers setup clean
+.PHONY: demo lint test develop soak bench bench-peers setup clean
 .DEFAULT_GOAL := demo
 
 setup: $(VENV)/.installed
@@ -26,6 +26,16 @@ $(VENV)/.installed: $(SOURCES)
 
 demo: setup
 	$(BIN)/mdanim-lammps scenes/beam.txt --force
+
+lint: setup $(VENV)/.linters
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/clang-format --dry-run --Werror $(shell find plugin tests/plugin -name '*.cpp' -o -name '*.h')
+	$(BIN)/mypy
+
+$(VENV)/.linters: pyproject.toml $(VENV)/.installed
+	$(BIN)/python -m pip install --quiet --group lint
+	@touch $@
 
 test: setup
 	$(BIN)/python tests/plugin_library.py
