@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// fix mdanim/barrier. When LAMMPS rebuilds its lists: boxes of objects, those that meet, particles where they
-// meet, pairs. Every step: pairs are gone through in an order in which each particle sums up its own in the order of its
-// partners' tags, so that the bits of a force depend on neither the order of particles nor the ranks that hold them.
+// fix mdanim/barrier. When LAMMPS rebuilds its lists: boxes of objects, those
+// that meet, the pairs of their particles (engine/contact_search.h). Every
+// step: forces of the pairs in reach. Each particle sums its own in the order
+// of its partners' tags, so the bits of a force depend on neither the order of
+// particles nor the ranks that hold them.
 
 #include "styles/fix_mdanim_barrier.h"
 
+#include "engine/contact_search.h"
 #include "engine/kernels.h"
 #include "engine/stopwatch.h"
 #include "laws/barrier.h"
@@ -28,11 +31,12 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
-static constexpr double MOST = 64.0;    // skins that are looked ahead where objects are apart
+static constexpr double MOST_SKINS = 64.0;    // that are looked ahead where objects are apart
 
 // --- the command ---
 
-// fix ID group mdanim/barrier BOUNDARY BARRIER k rc [thin GROUP ratio] [damp gn] [power 2|3]
+// fix ID group mdanim/barrier BOUNDARY BARRIER k rc [thin GROUP ratio] [damp
+// gn] [power 2|3]
 FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   scalar_flag = 1;
@@ -68,7 +72,10 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
       if (power != 2 && power != 3)
         error->all(FLERR, iarg + 1, "fix mdanim/barrier: power must be 2 or 3, got {}", arg[iarg + 1]);
     } else {
-      error->all(FLERR, iarg, "fix mdanim/barrier: unknown keyword {}; it knows thin, damp and power", arg[iarg]);
+      error->all(FLERR, iarg,
+                 "fix mdanim/barrier: unknown keyword {}; it knows thin, damp "
+                 "and power",
+                 arg[iarg]);
     }
     iarg += 1 + words;
   }
@@ -90,22 +97,29 @@ void FixMdanimBarrier::init()
   if (domain->dimension != 3) refuse("the box has 2 dimensions, 3 are needed; use 'dimension 3'");
   if (domain->triclinic) refuse("the box is triclinic; use an orthogonal one");
   if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
-    refuse("the box is periodic; put 'boundary s s s' (or f) before the box is made");
+    refuse("the box is periodic; put 'boundary s s s' (or f) before the box is "
+           "made");
   if (!atom->molecule_flag)
-    refuse("objects are told apart by molecule IDs; use 'atom_style bond' or 'fix ID all property/atom mol'");
-  if (atom->map_style == Atom::MAP_NONE) refuse("needs an atom map; put 'atom_modify map array' before the box is made");
+    refuse("objects are told apart by molecule IDs; use 'atom_style bond' or "
+           "'fix ID all property/atom mol'");
+  if (atom->map_style == Atom::MAP_NONE)
+    refuse("needs an atom map; put 'atom_modify map array' before the box is "
+           "made");
   if (neighbor->every != 1 || neighbor->delay != 0 || neighbor->build_once)
-    refuse("a pair may come into reach between two rebuilds; use 'neigh_modify every 1 delay 0 check yes "
+    refuse("a pair may come into reach between two rebuilds; use 'neigh_modify "
+           "every 1 delay 0 check yes "
            "once no'");
   if (damping > 0.0 && comm->nprocs > 1 && !comm->ghost_velocity)
-    refuse("damp needs the velocities of particles of other ranks; use 'comm_modify vel yes'");
+    refuse("damp needs the velocities of particles of other ranks; use "
+           "'comm_modify vel yes'");
   stiffness.init(lmp);
   reach.init(lmp);
 
   for (int i = 0; i < atom->nlocal; ++i)
     if (role(i) != NONE && atom->molecule[i] <= 0)
       error->one(FLERR,
-                 "fix {} mdanim/barrier: particle {} belongs to no object, its molecule ID is {}; give it one > 0 "
+                 "fix {} mdanim/barrier: particle {} belongs to no object, its "
+                 "molecule ID is {}; give it one > 0 "
                  "('set group … mol …')",
                  id, atom->tag[i], atom->molecule[i]);
 }
@@ -124,7 +138,7 @@ void FixMdanimBarrier::setup_post_neighbor() { post_neighbor(); }
 void FixMdanimBarrier::post_neighbor()
 {
   const Lap lap(seconds);
-  find_candidates();
+  find_pairs();
   if (damping > 0.0) loss.look(atom->tag, atom->nlocal);
 }
 
@@ -155,7 +169,8 @@ void FixMdanimBarrier::unpack_forward_comm(int n, int start, double *buf)
   for (int i = start; i < start + n; ++i, buf += 4) own[i] = {buf[0], buf[1], buf[2], static_cast<int>(buf[3])};
 }
 
-// Molecule IDs of the objects that have particles of the two groups, ascending; the same on all ranks.
+// Molecule IDs of the objects that have particles of the two groups, ascending;
+// the same on all ranks.
 std::vector<tagint> FixMdanimBarrier::find_objects() const
 {
   const auto make_unique = [](std::vector<tagint> &ids) {
@@ -178,7 +193,8 @@ std::vector<tagint> FixMdanimBarrier::find_objects() const
   return all;
 }
 
-// The longest reach of any pair, and eq. (3.14) for every object in ascending order of molecule IDs; the same on all ranks.
+// The longest reach of any pair, and eq. (3.14) for every object in ascending
+// order of molecule IDs; the same on all ranks.
 double FixMdanimBarrier::survey(std::vector<Box> &boxes)
 {
   const std::vector<tagint> ids = find_objects();
@@ -205,226 +221,87 @@ double FixMdanimBarrier::survey(std::vector<Box> &boxes)
 // Whether this rank adds forces to a particle.
 bool FixMdanimBarrier::moves(int i) const { return i < atom->nlocal && atom->mask[i] & groupbit; }
 
-// The way from particles where boxes meet to the list of pairs.
-struct FixMdanimBarrier::Search {
-  // Particles of one object, copied one after the other.
-  struct Side {
-    Positions place;
-    std::vector<int> rank;    // in `near`
-
-    int size() const { return static_cast<int>(rank.size()); }
-    void clear(int room)
-    {
-      place.make_room(room);
-      rank.clear();
-    }
-    void add(const double *at, int n)
-    {
-      place.put(rank.size(), at);
-      rank.push_back(n);
-    }
-  };
-  // A particle where boxes meet.
-  struct Near {
-    int particle, role;
-    bool moves;
-    double reach;
-  };
-  struct Found {
-    int low, high;    // in `near`
-  };
-
-  const FixMdanimBarrier &fix;
-  const double range, skin;
-  std::vector<Near> near;               // ascending by tag
-  std::vector<int> begin, of_object;    // those of object n, by their places in `near`:
-                                        // of_object[begin[n]] to [begin[n + 1] - 1]
-  std::vector<Found> found;
-
-  Search(const FixMdanimBarrier &fix, double range) : fix(fix), range(range), skin(fix.neighbor->skin) {}
-
-  // Only particles within range of a partner's box can be in a pair: `zone` is for each object the box around all such places.
-  void collect(const std::vector<Box> &zone)
-  {
-    const double *const *x = fix.atom->x;
-    const tagint *tag = fix.atom->tag;
-    for (int i = 0; i < fix.atom->nlocal + fix.atom->nghost; ++i) {
-      const Own &own = fix.own[i];
-      if (own.object != NO_OBJECT && zone[own.object].contains(x[i])) near.push_back({i, fix.role(i), fix.moves(i), own.reach});
-    }
-    const auto by_tag = [tag](const Near &a, const Near &b) { return tag[a.particle] < tag[b.particle]; };
-    if (!std::is_sorted(near.begin(), near.end(), by_tag)) std::sort(near.begin(), near.end(), by_tag);
-
-    begin.assign(zone.size() + 1, 0);
-    for (const Near &n : near) ++begin[fix.own[n.particle].object + 1];
-    for (size_t n = 1; n < begin.size(); ++n) begin[n] += begin[n - 1];
-    of_object.resize(near.size());
-    std::vector<int> at(begin.begin(), begin.end() - 1);
-    for (size_t n = 0; n < near.size(); ++n) of_object[at[fix.own[near[n].particle].object]++] = static_cast<int>(n);
+// How far every particle may go before two objects meet, as far as is looked
+// ahead.
+double FixMdanimBarrier::distance_apart(const std::vector<Box> &boxes, double range) const
+{
+  double apart = 0.0;
+  for (double skins = 1.0; skins <= MOST_SKINS; skins *= 2.0) {
+    const double more = skins * neighbor->skin;
+    if (!meeting_pairs(boxes, range + more).empty()) break;
+    apart = 0.5 * (neighbor->skin + more);
   }
+  return apart;
+}
 
-  // Boundary particles of `seeking` against guards of `guarding`, the particles that form the barrier; each within range of the
-  // other object's box. Thin ones are both: a pair of them is found from one side, that with `thin_too`.
-  void search(int seeking, const Box &seeking_box, int guarding, const Box &guarding_box, bool thin_too)
-  {
-    const double *const *x = fix.atom->x;
-    const auto pick = [&](Side &side, int object, int wanted, const Box &inside) {
-      side.clear(begin[object + 1] - begin[object]);
-      for (int k = begin[object]; k < begin[object + 1]; ++k) {
-        const int n = of_object[k];
-        const double *const place = x[near[n].particle];
-        if (near[n].role & wanted && inside.contains(place)) side.add(place, n);
-      }
-    };
-    pick(guards, guarding, BARRIER | THIN, seeking_box.grown(range));
-    if (guards.size() == 0) return;
-    pick(seekers, seeking, BOUNDARY, guarding_box.grown(range));
-    if (seekers.size() == 0) return;
-
-    close.resize(guards.size() + STRIP);
-    if (static_cast<size_t>(guards.size()) * seekers.size() <= FEW) {
-      for (int s = 0; s < seekers.size(); ++s) look(s, guards, 0, guards.size(), thin_too);
-      return;
-    }
-    const auto place = [&](const Side &side, int k) { return x[near[side.rank[k]].particle]; };
-    const Grid grid([&](int k) { return place(guards, k); }, guards.size(), range);
-    sorted.clear(guards.size());
-    for (const int k : grid.order()) sorted.add(place(guards, k), guards.rank[k]);
-    for (int s = 0; s < seekers.size(); ++s)
-      grid.ranges(place(seekers, s), [&](int from, int to) { look(s, sorted, from, to, thin_too); });
-  }
-
-  // Counts instead of comparisons: twice as many particles take twice as long.
-  template <class Key> void sort_found(Key key)
-  {
-    std::vector<int> at(near.size() + 1, 0);
-    for (const Found &f : found) ++at[key(f) + 1];
-    for (size_t n = 1; n < at.size(); ++n) at[n] += at[n - 1];
-    std::vector<Found> order(found.size());
-    for (const Found &f : found) order[at[key(f)]++] = f;
-    found.swap(order);
-  }
-
-  Law law_of(const Found &pair) const
-  {
-    const Near &one = near[pair.low], &other = near[pair.high];
-    const Own &a = fix.own[one.particle], &b = fix.own[other.particle];
-    const double k = fix.stiffness.constant() ? fix.stiffness.number : pair_stiffness(a.stiffness, b.stiffness);
-    const bool both = fix.atom->mask[one.particle] & fix.atom->mask[other.particle] & fix.groupbit;
-    return {k, reach_of(one, other), (one.moves + other.moves) * (both ? 0.5 : 1.0)};
-  }
-
- private:
-  static constexpr size_t FEW = 4000;    // pairs that are tried one by one: a grid would take longer
-
-  Side seekers, guards, sorted;
-  std::vector<int> close;
-
-  double reach_of(const Near &one, const Near &other) const
-  { return reach_factor(one.role, other.role, fix.thin_ratio) * std::max(one.reach, other.reach); }
-
-  // One seeker and guards in a row.
-  void look(int s, const Side &side, int from, int to, bool thin_too)
-  {
-    const Vec3 at = seekers.place[s];
-    const double of_seeker[] = {at.x, at.y, at.z};
-    const int many = fix.filter->within(side.place.all().data(), from, to, of_seeker, range * range, close.data());
-    for (int m = 0; m < many; ++m) {
-      const Vec3 d = at - side.place[close[m]];
-      consider(seekers.rank[s], side.rank[close[m]], dot(d, d), thin_too);
-    }
-  }
-
-  void consider(int a, int b, double r2, bool thin_too)
-  {
-    const Near &one = near[a], &other = near[b];
-    if (!thin_too && one.role & other.role & THIN) return;
-    if (!one.moves && !other.moves) return;
-    const double reach = reach_of(one, other);
-    if (reach > 0.0 && r2 < (reach + skin) * (reach + skin)) found.push_back({std::min(a, b), std::max(a, b)});
-  }
-};
-
-// Until the next rebuild no two particles come nearer to each other by more than the skin, so pairs within reach + skin are
-// enough.
-void FixMdanimBarrier::find_candidates()
+void FixMdanimBarrier::find_pairs()
 {
   strip.clear();
   reach2.clear();
-  law.clear();
+  pair.clear();
   particle.clear();
   unmoved.clear();
-  pairs = 0.0;
+  tried_pairs = 0.0;
 
   std::vector<Box> boxes;
   const double range = survey(boxes) + neighbor->skin;
   const double ghosts = std::min({comm->cutghost[0], comm->cutghost[1], comm->cutghost[2]});
   if (comm->nprocs > 1 && ghosts < range)
     error->all(FLERR,
-               "fix {} mdanim/barrier: particles of other ranks are seen up to {:.6g}, reach and skin need {:.6g}; "
+               "fix {} mdanim/barrier: particles of other ranks are seen up to "
+               "{:.6g}, reach and skin need {:.6g}; "
                "use 'comm_modify cutoff {:.6g}'",
                id, ghosts, range, 1.001 * range);
 
   const auto meeting = meeting_pairs(boxes, range);
   meeting_objects = static_cast<bigint>(meeting.size());
-  clear = 0.0;
-  if (meeting.empty()) {
-    for (double skins = 1.0; skins <= MOST; skins *= 2.0) {
-      const double more = skins * neighbor->skin;
-      if (!meeting_pairs(boxes, range + more).empty()) break;
-      clear = 0.5 * (neighbor->skin + more);
-    }
-    return;
-  }
+  clear = meeting.empty() ? distance_apart(boxes, range) : 0.0;
+  if (meeting.empty()) return;
   collect_own();
 
-  std::vector<Box> zone(boxes.size());
-  for (const auto &[a, b] : meeting) {
-    zone[a].unite(intersection(boxes[a], boxes[b].grown(range)));
-    zone[b].unite(intersection(boxes[b], boxes[a].grown(range)));
-  }
-  Search search(*this, range);
-  search.collect(zone);
-  for (const auto &[a, b] : meeting) {
-    search.search(a, boxes[a], b, boxes[b], true);
-    search.search(b, boxes[b], a, boxes[a], false);
-  }
-  search.sort_found([](const Search::Found &f) { return f.high; });
-  search.sort_found([](const Search::Found &f) { return f.low; });
+  ContactSearch search(boxes, meeting, {range, neighbor->skin, thin_ratio, filter});
+  for (int i = 0; i < atom->nlocal + atom->nghost; ++i)
+    if (own[i].object != NO_OBJECT && search.is_near(own[i].object, atom->x[i]))
+      search.add({i, atom->tag[i], own[i].object, role(i), moves(i), own[i].reach, atom->x[i]});
+  search.run();
 
-  // Partners of a particle are mostly of the other kind, and more of them are side by side in a list of that kind alone.
+  // Partners of a particle are mostly of the other kind, and more of them are
+  // side by side in a list of that kind alone.
   constexpr int NONE_YET = -1;
-  std::vector<int> number(search.near.size());    // in `particle`
-  for (const Search::Found &found : search.found) number[found.low] = number[found.high] = NONE_YET;
+  std::vector<int> number(search.particles().size());    // in `particle`
+  for (const auto &[low, high] : search.pairs()) number[low] = number[high] = NONE_YET;
   for (const int kind : {static_cast<int>(BOUNDARY), 0})
     for (size_t n = 0; n < number.size(); ++n)
-      if (number[n] == NONE_YET && (search.near[n].role & BOUNDARY) == kind) {
+      if (const auto &one = search.particles()[n]; number[n] == NONE_YET && (one.role & BOUNDARY) == kind) {
         number[n] = static_cast<int>(particle.size());
-        particle.push_back(search.near[n].particle);
+        if (!one.moves) unmoved.push_back(number[n]);
+        particle.push_back(one.index);
       }
-  for (const Search::Found &found : search.found) {
-    const Law known = search.law_of(found);
-    add_candidate(number[found.low], number[found.high], known);
-    pairs += known.share;
+  for (const auto &[low, high] : search.pairs()) {
+    const auto &one = search.particles()[low], &other = search.particles()[high];
+    const double a = own[one.index].stiffness, b = own[other.index].stiffness;
+    const double k = stiffness.constant() ? stiffness.number : pair_stiffness(a, b);
+    const bool both = atom->mask[one.index] & atom->mask[other.index] & groupbit;
+    add_pair(number[low], number[high], {k, search.reach_of(one, other), (one.moves + other.moves) * (both ? 0.5 : 1.0)});
   }
-  for (size_t n = 0; n < particle.size(); ++n)
-    if (!moves(particle[n])) unmoved.push_back(static_cast<int>(n));
   slot.resize(particle.size());
   for (size_t n = 0; n < slot.size(); ++n) slot[n] = 3 * static_cast<long>(n);
 }
 
-// They come in ascending order, of low and then of high tags, and pairs are to be numbered in that order.
-void FixMdanimBarrier::add_candidate(int low, int high, const Law &known)
+// Pairs come in ascending order of low and then of high tags, and are numbered
+// in that order.
+void FixMdanimBarrier::add_pair(int low, int high, const ContactPair &known)
 {
   if (strip.empty() || strip.back().one != low || high <= last_high || strip.back().first + STRIP <= high) {
     constexpr double none[STRIP] = {};
     strip.push_back({low, high});
     reach2.push(none, STRIP);
-    law.resize(law.size() + STRIP, {0.0, 0.0, 0.0});
+    pair.resize(pair.size() + STRIP, {0.0, 0.0, 0.0});
   }
-  const size_t pair = STRIP * (strip.size() - 1) + high - strip.back().first;
-  reach2.data()[pair] = known.reach * known.reach;
-  law[pair] = known;
+  const size_t number = STRIP * (strip.size() - 1) + high - strip.back().first;
+  reach2.data()[number] = known.reach * known.reach;
+  pair[number] = known;
+  tried_pairs += known.share;
   last_high = high;
 }
 
@@ -452,17 +329,18 @@ void FixMdanimBarrier::post_force(int)
 // Puts the pairs in touch into touching_pair; returns how many.
 int FixMdanimBarrier::find_touching(const Positions &place)
 {
-  lanes.resize(strip.size() + 1);
-  touching_pair.resize(law.size() + STRIP);
+  masks.resize(strip.size() + 1);
+  touching_pair.resize(pair.size() + STRIP);
   const auto all = place.all();
-  return filter->in_reach({all.data(), strip.data(), static_cast<int>(strip.size()), reach2.data(), lanes.data()},
+  return filter->in_reach({all.data(), strip.data(), static_cast<int>(strip.size()), reach2.data(), masks.data()},
                           touching_pair.data());
 }
 
 // Between outputs, where nobody reads the energy.
 void FixMdanimBarrier::add_forces(const Positions &place, const ForceSums &total) { push<false>(place, total); }
 
-// On the particles that have candidates; nothing on those that are not moved. TELLS: of energy and pairs in touch, too.
+// On the particles that have candidates; nothing on those that are not moved.
+// TELLS: of energy and pairs in touch, too.
 template <bool TELLS> void FixMdanimBarrier::push(const Positions &place, const ForceSums &total)
 {
   if (TELLS) energy = touching = 0.0;
@@ -477,7 +355,7 @@ template <bool TELLS> void FixMdanimBarrier::push(const Positions &place, const 
 
   const int many = find_touching(place);
   for (int m = 0; m < many; ++m) {
-    const auto &[k, reach, share] = law[touching_pair[m]];
+    const auto &[k, reach, share] = pair[touching_pair[m]];
     const auto [low, first] = strip[touching_pair[m] / STRIP];
     const int high = first + touching_pair[m] % STRIP;
     const Vec3 d = place[low] - place[high];
@@ -521,8 +399,9 @@ double FixMdanimBarrier::sum(double here)
 
 double FixMdanimBarrier::compute_scalar() { return sum(energy); }
 
-// 1: pairs of objects whose boxes meet; 2: pairs of particles tried; 3: pairs in touch; 4: smallest r/reach
-// in this run; 5: energy lost to damp; 6: wall seconds of the slowest rank
+// 1: pairs of objects whose boxes meet; 2: pairs of particles tried; 3: pairs
+// in touch; 4: smallest r/reach in this run; 5: energy lost to damp; 6: wall
+// seconds of the slowest rank
 double FixMdanimBarrier::compute_vector(int n)
 {
   double all = 0.0;
@@ -530,7 +409,7 @@ double FixMdanimBarrier::compute_vector(int n)
     case 0:
       return static_cast<double>(meeting_objects);
     case 1:
-      return sum(pairs);
+      return sum(tried_pairs);
     case 2:
       return sum(touching);
     case 3:
@@ -546,8 +425,8 @@ double FixMdanimBarrier::compute_vector(int n)
 
 double FixMdanimBarrier::memory_usage()
 {
-  return own.capacity() * sizeof(Own) + strip.capacity() * sizeof(Strip) + reach2.bytes() + law.capacity() * sizeof(Law) +
-         lanes.capacity() * sizeof(StripMask) +
+  return own.capacity() * sizeof(Own) + strip.capacity() * sizeof(Strip) + reach2.bytes() +
+         pair.capacity() * sizeof(ContactPair) + masks.capacity() * sizeof(StripMask) +
          (object.capacity() + particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) + here.bytes() +
          on.capacity() * sizeof(double) + slot.capacity() * sizeof(long) + loss.bytes();
 }
