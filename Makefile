@@ -2,6 +2,7 @@
 # make test   set up .venv, run the tests
 # make develop  set up .venv, build the plugin into the working tree: PYTHONPATH=python .venv/bin/python -m pytest tests/test_x.py
 # make soak   set up .venv, run the long form of the hard cases (tests/stability, test_ranks.py, tests/mpi)
+# make sanitize  set up .venv, build the plugin with sanitizers, run its tests and four scenes under them (tests/sanitize.py)
 # make bench  set up .venv, measure all of docs/performance.md (ten minutes; python bench/all.py --quick takes one)
 # make bench-peers  set up .venv and .venv-peers, measure other programs on the same scenes (docs/performance.md)
 # make clean  forget everything that was built
@@ -10,7 +11,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 SOURCES := pyproject.toml CMakeLists.txt $(shell find plugin python -name '*.so' -prune -o -name __pycache__ -prune -o -type f -print)
 
-.PHONY: demo lint test develop soak bench bench-peers setup clean
+.PHONY: demo lint test develop soak sanitize bench bench-peers setup clean
 .DEFAULT_GOAL := demo
 
 setup: $(VENV)/.installed
@@ -54,6 +55,11 @@ develop: setup
 soak: setup
 	$(BIN)/python tests/plugin_library.py
 	$(BIN)/python -m pytest -n 2 -m soak tests/stability tests/test_ranks.py tests/mpi
+
+# The CMake that pip builds the package with is not kept in .venv.
+sanitize: setup
+	$(BIN)/python -m pip install --quiet 'cmake>=3.18,<5'
+	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/python tests/sanitize.py
 
 bench: setup
 	$(BIN)/python bench/all.py --write

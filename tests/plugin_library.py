@@ -56,7 +56,8 @@ def _command() -> list[str]:
     flags = (PLUGIN / "compile_flags.txt").read_text().split()
     folders = [f"-I{PLUGIN}", "-isystem", lammps, "-isystem", mpi]
     kind = ["-std=c++17", "-shared", "-fPIC", "-fvisibility=hidden", "-fvisibility-inlines-hidden"]
-    return [os.environ.get("CXX", "c++"), *kind, *flags, *folders, *map(str, SOURCES)]
+    more = os.environ.get("CXXFLAGS", "").split()
+    return [os.environ.get("CXX", "c++"), *kind, *flags, *more, *folders, *map(str, SOURCES)]
 
 
 def _digest() -> str:

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The plugin under the address and the undefined-behaviour sanitizer: its tests, and four scenes on one and two ranks.
+
+``make sanitize`` runs it. Exit code 0 means that both sanitizers report a planted error, that all tests and scenes pass, and that
+no process has reported anything else. Reports lie in build/sanitize/reports.
+
+Leaks are not looked for: LAMMPS, MPI and Python keep memory until their processes end, and reports about them would hide ours.
+LAMMPS itself is not instrumented: accesses of its code are not checked, accesses of ours to its arrays are.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+WORK = ROOT / "build" / "sanitize"
+REPORTS, PACKAGE, SCENES = WORK / "reports", WORK / "package", WORK / "scenes"
+BIN = Path(sys.executable).parent
+FLAGS = " ".join((ROOT / "plugin" / "sanitize_flags.txt").read_text().split())
+TESTS = (
+    *("test_bond_*.py", "test_fix_*.py", "test_plugin_*.py", "test_verlet_*.py", "test_trace.py", "test_state.py"),
+    *("test_automaton.py", "test_level.py", "test_surface.py"),
+)
+PLANTED = {
+    "mdanim_plant_heap_overflow": "AddressSanitizer: heap-buffer-overflow",
+    "mdanim_plant_signed_overflow": "AddressSanitizer: ABRT",
+}
+SOLID = "density 1000 elasticity 0.2 MPa"
+TEXT = {
+    "touching": f"""
+gravity (0, 0, -9.81)
+ground z 0 m
+object a {{ shape sphere 4 cm position (0, 0, 4) cm {SOLID} }}
+object b {{ shape box (5, 5, 5) cm position (1, 0, 12) cm {SOLID} velocity (0, 0, -1) }}
+object c {{ shape box (6, 6, 1) cm position (-9, 0, 3) cm {SOLID} velocity (1, 0, 0) }}
+""",
+    "liquid": """
+gravity (0, 0, -9.81)
+liquid w { basin from (-10, -10, 0) cm to (10, 10, 20) cm density 1000 level 8 cm drag 4 }
+object a { shape box (5, 5, 5) cm position (-4, 0, 12) cm density 400 elasticity 0.2 MPa velocity (0, 0, -1) }
+object b { shape sphere 3 cm position (4, 0, 12) cm density 1500 elasticity 0.2 MPa }
+""",
+    "damped": f"""
+gravity (0, 0, -9.81)
+ground z 0 m
+object a {{ shape sphere 4 cm position (0, 0, 4.5) cm {SOLID} damping 0.1 spin (3, 0, 20) }}
+object b {{ shape box (5, 5, 5) cm position (1, 0, 12) cm {SOLID} damping 0.2 drag 0.3 velocity (0, 0, -1) }}
+""",
+    "walls": f"""
+walls from (-8, -8, -8) cm to (14, 8, 12) cm
+object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOLID} velocity (2, 0, -2) }}
+object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}
+""",
+}
+END = "control { time 0.2 s frames 50 fps resolution 1 cm }\n"
+
+
+def library(name: str) -> str:
+    """Path of a library of the compiler; exits where the compiler does not have it."""
+    path = Path(subprocess.check_output([compiler(), f"-print-file-name={name}"], text=True).strip())
+    if not path.is_absolute():
+        sys.exit(f"{compiler()} has no {name}; use GCC with its sanitizers (Debian: apt install g++)")
+    return str(path.resolve())
+
+
+def compiler() -> str:
+    """The C++ compiler."""
+    return os.environ.get("CXX", "c++")
+
+
+def build() -> None:
+    """The plugin with both sanitizers, in a copy of the package."""
+    folder = WORK / "plugin"
+    options = [f"-DPython_EXECUTABLE={sys.executable}", f"-DCMAKE_CXX_COMPILER={compiler()}", "-DMDANIM_SANITIZE=ON"]
+    subprocess.run(["cmake", "-S", ROOT, "-B", folder, *options], check=True)
+    subprocess.run(["cmake", "--build", folder, "-j", str(os.cpu_count())], check=True)
+    for old in (REPORTS, PACKAGE, SCENES):
+        shutil.rmtree(old, ignore_errors=True)
+        old.mkdir(parents=True)
+    no_builds = shutil.ignore_patterns("*.so", "__pycache__")
+    shutil.copytree(ROOT / "python" / "mdanim_lammps", PACKAGE / "mdanim_lammps", ignore=no_builds)
+    (PACKAGE / "mdanim_lammps" / "plugin").mkdir(exist_ok=True)
+    shutil.copy(folder / "mdanimplugin.so", PACKAGE / "mdanim_lammps" / "plugin")
+
+
+def environment() -> dict[str, str]:
+    """The environment of all processes: sanitizers first in each of them, and every report in a file."""
+    return {
+        **os.environ,
+        "PYTHONPATH": str(PACKAGE),
+        # The second gives the first what C++ throws exceptions with, which Python alone does not load.
+        "LD_PRELOAD": f"{library('libasan.so')}:{library('libstdc++.so')}",
+        # What GCC's UBSan finds it tells on stderr, then it aborts, of which ASan writes a report.
+        "ASAN_OPTIONS": f"detect_leaks=0:handle_abort=1:log_path={REPORTS}/report",
+        "UBSAN_OPTIONS": f"print_stacktrace=1:abort_on_error=1:log_path={REPORTS}/report",
+        "CXXFLAGS": FLAGS,  # of the test library
+        "MPIEXEC_TIMEOUT": "900",
+    }
+
+
+def reports() -> dict[str, str]:
+    """What sanitizers have reported so far, by file."""
+    return {path.name: path.read_text(errors="replace") for path in sorted(REPORTS.iterdir())}
+
+
+def find_planted() -> None:
+    """Exit where a sanitizer does not report the error that was planted for it."""
+    for function, expected in PLANTED.items():
+        code = f"from mdanim_lammps.engine.plugin import open_library; print(open_library().{function}(7))"
+        done = subprocess.run([sys.executable, "-c", code], env=environment(), capture_output=True, text=True)
+        found = reports()
+        if done.returncode == 0 or not any(expected in text for text in found.values()):
+            sys.exit(f"{function} was not reported, so no other error would be:\n{done.stdout}{done.stderr}{found}")
+        for name in found:
+            (REPORTS / name).unlink()
+    print(f"both planted errors were reported: {', '.join(PLANTED)}")
+
+
+def run(*command: object, folder: Path = SCENES) -> bool:
+    """Run a command under the sanitizers in a folder; whether it succeeded."""
+    words = [str(word) for word in command]
+    print("+", *words, flush=True)
+    return subprocess.run(words, env=environment(), cwd=folder).returncode == 0
+
+
+def run_tests() -> bool:
+    """The plugin's own tests."""
+    options = ("-q", "-x", "-p", "no:cacheprovider", "--timeout", 900, "-c", ROOT / "pyproject.toml")
+    return run(sys.executable, "-m", "pytest", *options, *sorted(path for name in TESTS for path in (ROOT / "tests").glob(name)))
+
+
+def run_scenes() -> bool:
+    """Four scenes: in one process, on two executors, and by LAMMPS alone on two ranks."""
+    done = True
+    lmp = (BIN / "mpiexec", "-n", 2, BIN / "lmp", "-log", "none", "-screen", "none", "-in")
+    for name, text in TEXT.items():
+        (SCENES / f"{name}.txt").write_text(text + END)
+        scene = (sys.executable, "-m", "mdanim_lammps", f"{name}.txt", "--no-movie", "--force", "-q")
+        done = done and run(*scene, "-n", 1) and run(*scene, "-n", 2)
+        done = done and run(*lmp, f"in.{name}", folder=SCENES / f"{name}.out")
+    return done
+
+
+def main() -> None:
+    """Build, prove that errors are seen, run all, and fail on anything that was reported."""
+    build()
+    find_planted()
+    done = run_tests() and run_scenes()
+    found = reports()
+    for name, text in found.items():
+        print(f"=== {REPORTS / name}", text[:8000], sep="\n")
+    if found or not done:
+        sys.exit(f"sanitizers reported {len(found)} errors" + ("" if done else "; a command above failed"))
+    print("no error was reported")
+
+
+if __name__ == "__main__":
+    main()
