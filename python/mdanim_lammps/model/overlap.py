@@ -24,8 +24,8 @@ def check_geometry(scene: Scene, models: tuple[Model, ...], planes: Iterable[Pla
     """Find every object that starts in another one, below the ground, or outside walls or basin.
 
     ``planes`` push objects back; None are those of the scene. Each problem stands at the position of the (second) object and
-    tells how deep it is in and which move frees it, so far that contact holds no energy afterwards. Objects that are held entirely may
-    overlap each other and stick out: they are the scene's architecture.
+    tells how deep it is in and which move frees it, so far that contact holds no energy afterwards. Objects that are held
+    entirely may overlap each other and stick out: they are the scene's architecture.
     """
     problems = []
     if not models:
