@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Measures all that docs/performance.md tells, in one go: ``python bench/all.py [--quick] [--rounds N] [--write] [PART ...]``.
 
-SubPlans: step, alone, pressed, automaton, around, memory, limits. ``--quick`` takes about a minute; ``--write`` puts tables, figures
+Parts: step, alone, pressed, automaton, around, memory, limits. ``--quick`` takes about a minute; ``--write`` puts tables, figures
 (docs/performance.json) and the plot into docs/ in place of those that stand there; without it they are printed only. Every part
 runs in a process of its own, its contenders take turns in every round; a part that fails is told as such, and the exit code is 1.
 """

@@ -40,7 +40,7 @@ pytestmark = pytest.mark.timeout(120)
 
 def run(*arguments) -> int:
     """Exit code of a command, run in this process."""
-    with pytest.raises(SystemExit) as end:
+    with pytest.raises(SystemExit) as end:  # noqa: PT012 -- some commands return, others exit
         cli.main([str(a) for a in arguments])
         raise SystemExit(0)
     return int(end.value.code)

@@ -113,7 +113,7 @@ def print_warnings(ready) -> None:
 
 
 def announce(ready, quiet: bool, verbose: bool, executors: int = 1, control: str | None = None) -> None:
-    from .report import certificate_line, effect_line, output_line, scene_lines, executors_line
+    from .report import certificate_line, effect_line, executors_line, output_line, scene_lines
 
     print_warnings(ready)
     if quiet:

@@ -29,8 +29,8 @@ with other company takes all of its bundle with it."""
 BUNDLES_OVER_ENOUGH = 2
 """Bundles of an executor, over those that would do, from which the thin ones are put together."""
 THIN_BELOW = 4
-"""Bundles below `BUNDLE_PARTICLES` over this are thin. `python bench/planning.py crowd`, 1000 objects and bundles of 4000: with 4, 9 % of
-the particles are in new bundles in every frame; with 2, 16 %; 7 % where none are ever put together,
+"""Bundles below `BUNDLE_PARTICLES` over this are thin. `python bench/planning.py crowd`, 1000 objects and bundles of 4000: with
+4, 9 % of the particles are in new bundles in every frame; with 2, 16 %; 7 % where none are ever put together,
 with 1.6 times the bundles."""
 
 
@@ -256,8 +256,8 @@ def bundles(
 
     An island stays in its bundle if all of it was there and its executor is the same: who joins or leaves makes nobody else move.
     The other islands are put together along ``order``, up to ``room`` particles; those larger than half of that, and those of a
-    team, are a bundle each. Bundles only ever lose objects. So when an executor has more than `BUNDLES_OVER_ENOUGH` times as many as would do,
-    and 2, its thin ones are put together as well.
+    team, are a bundle each. Bundles only ever lose objects. So when an executor has more than `BUNDLES_OVER_ENOUGH`
+    times as many as would do, and 2, its thin ones are put together as well.
     """
     moving = np.flatnonzero(label >= 0)
     bundle = np.full(len(label), -1, np.int64)

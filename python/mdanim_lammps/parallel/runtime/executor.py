@@ -96,8 +96,8 @@ class Executor:
     # --- the order of things --------------------------------------------------------------------------------------
 
     def work(self) -> None:
-        """All frames. Raises LammpsFailure, MdanimError, Aborted; then its instances are left as they are, for a team's others may never
-        come to close theirs."""
+        """All frames. Raises LammpsFailure, MdanimError, Aborted; then its instances are left as they are, for a team's others
+        may never come to close theirs."""
         self._follow(self._decide(self._first_report()))
         few = np.flatnonzero(~self.system.still)[:2]
         if len(few) == 2 and self.parts.reach.any():  # pairs will meet
