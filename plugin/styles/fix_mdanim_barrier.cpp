@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// fix mdanim/barrier. When LAMMPS rebuilds its lists: boxes of objects, those
-// that meet, the pairs of their particles (engine/contact_search.h). Every
-// step: forces of the pairs in reach. Each particle sums its own in the order
-// of its partners' tags, so the bits of a force depend on neither the order of
-// particles nor the ranks that hold them.
+// fix mdanim/barrier. When LAMMPS rebuilds its lists: boxes of objects, those that meet, the pairs of their particles
+// (engine/contact_search.h). Every step: forces of the pairs in reach. Each particle sums its own in the order of its partners'
+// tags, so the bits of a force depend on neither the order of particles nor the ranks that hold them.
 
 #include "styles/fix_mdanim_barrier.h"
 
@@ -35,8 +33,7 @@ static constexpr double MOST_SKINS = 64.0;    // that are looked ahead where obj
 
 // --- the command ---
 
-// fix ID group mdanim/barrier BOUNDARY BARRIER k rc [thin GROUP ratio] [damp
-// gn] [power 2|3]
+// fix ID group mdanim/barrier BOUNDARY BARRIER k rc [thin GROUP ratio] [damp gn] [power 2|3]
 FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   scalar_flag = 1;
@@ -72,10 +69,7 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
       if (power != 2 && power != 3)
         error->all(FLERR, iarg + 1, "fix mdanim/barrier: power must be 2 or 3, got {}", arg[iarg + 1]);
     } else {
-      error->all(FLERR, iarg,
-                 "fix mdanim/barrier: unknown keyword {}; it knows thin, damp "
-                 "and power",
-                 arg[iarg]);
+      error->all(FLERR, iarg, "fix mdanim/barrier: unknown keyword {}; it knows thin, damp and power", arg[iarg]);
     }
     iarg += 1 + words;
   }
@@ -97,31 +91,23 @@ void FixMdanimBarrier::init()
   if (domain->dimension != 3) refuse("the box has 2 dimensions, 3 are needed; use 'dimension 3'");
   if (domain->triclinic) refuse("the box is triclinic; use an orthogonal one");
   if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
-    refuse("the box is periodic; put 'boundary s s s' (or f) before the box is "
-           "made");
+    refuse("the box is periodic; put 'boundary s s s' (or f) before the box is made");
   if (!atom->molecule_flag)
-    refuse("objects are told apart by molecule IDs; use 'atom_style bond' or "
-           "'fix ID all property/atom mol'");
-  if (atom->map_style == Atom::MAP_NONE)
-    refuse("needs an atom map; put 'atom_modify map array' before the box is "
-           "made");
+    refuse("objects are told apart by molecule IDs; use 'atom_style bond' or 'fix ID all property/atom mol'");
+  if (atom->map_style == Atom::MAP_NONE) refuse("needs an atom map; put 'atom_modify map array' before the box is made");
   if (neighbor->every != 1 || neighbor->delay != 0 || neighbor->build_once)
-    refuse("a pair may come into reach between two rebuilds; use 'neigh_modify "
-           "every 1 delay 0 check yes "
-           "once no'");
+    refuse("a pair may come into reach between two rebuilds; use 'neigh_modify every 1 delay 0 check yes once no'");
   if (damping > 0.0 && comm->nprocs > 1 && !comm->ghost_velocity)
-    refuse("damp needs the velocities of particles of other ranks; use "
-           "'comm_modify vel yes'");
+    refuse("damp needs the velocities of particles of other ranks; use 'comm_modify vel yes'");
   stiffness.init(lmp);
   reach.init(lmp);
 
   for (int i = 0; i < atom->nlocal; ++i)
     if (role(i) != NONE && atom->molecule[i] <= 0)
-      error->one(FLERR,
-                 "fix {} mdanim/barrier: particle {} belongs to no object, its "
-                 "molecule ID is {}; give it one > 0 "
-                 "('set group … mol …')",
-                 id, atom->tag[i], atom->molecule[i]);
+      error->one(
+          FLERR,
+          "fix {} mdanim/barrier: particle {} belongs to no object, its molecule ID is {}; give it one > 0 ('set group … mol …')",
+          id, atom->tag[i], atom->molecule[i]);
 }
 
 // --- candidates, when LAMMPS rebuilds ---
@@ -169,8 +155,7 @@ void FixMdanimBarrier::unpack_forward_comm(int n, int start, double *buf)
   for (int i = start; i < start + n; ++i, buf += 4) own[i] = {buf[0], buf[1], buf[2], static_cast<int>(buf[3])};
 }
 
-// Molecule IDs of the objects that have particles of the two groups, ascending;
-// the same on all ranks.
+// Molecule IDs of the objects that have particles of the two groups, ascending; the same on all ranks.
 std::vector<tagint> FixMdanimBarrier::find_objects() const
 {
   const auto make_unique = [](std::vector<tagint> &ids) {
@@ -193,8 +178,7 @@ std::vector<tagint> FixMdanimBarrier::find_objects() const
   return all;
 }
 
-// The longest reach of any pair, and eq. (3.14) for every object in ascending
-// order of molecule IDs; the same on all ranks.
+// The longest reach of any pair, and eq. (3.14) for every object in ascending order of molecule IDs; the same on all ranks.
 double FixMdanimBarrier::survey(std::vector<Box> &boxes)
 {
   const std::vector<tagint> ids = find_objects();
@@ -221,8 +205,7 @@ double FixMdanimBarrier::survey(std::vector<Box> &boxes)
 // Whether this rank adds forces to a particle.
 bool FixMdanimBarrier::moves(int i) const { return i < atom->nlocal && atom->mask[i] & groupbit; }
 
-// How far every particle may go before two objects meet, as far as is looked
-// ahead.
+// How far every particle may go before two objects meet, as far as is looked ahead.
 double FixMdanimBarrier::distance_apart(const std::vector<Box> &boxes, double range) const
 {
   double apart = 0.0;
@@ -248,9 +231,8 @@ void FixMdanimBarrier::find_pairs()
   const double ghosts = std::min({comm->cutghost[0], comm->cutghost[1], comm->cutghost[2]});
   if (comm->nprocs > 1 && ghosts < range)
     error->all(FLERR,
-               "fix {} mdanim/barrier: particles of other ranks are seen up to "
-               "{:.6g}, reach and skin need {:.6g}; "
-               "use 'comm_modify cutoff {:.6g}'",
+               "fix {} mdanim/barrier: particles of other ranks are seen up to {:.6g}, reach and skin need {:.6g}; use "
+               "'comm_modify cutoff {:.6g}'",
                id, ghosts, range, 1.001 * range);
 
   const auto meeting = meeting_pairs(boxes, range);
@@ -265,8 +247,7 @@ void FixMdanimBarrier::find_pairs()
       search.add({i, atom->tag[i], own[i].object, role(i), moves(i), own[i].reach, atom->x[i]});
   search.run();
 
-  // Partners of a particle are mostly of the other kind, and more of them are
-  // side by side in a list of that kind alone.
+  // Partners of a particle are mostly of the other kind, and more of them are side by side in a list of that kind alone.
   constexpr int NONE_YET = -1;
   std::vector<int> number(search.particles().size());    // in `particle`
   for (const auto &[low, high] : search.pairs()) number[low] = number[high] = NONE_YET;
@@ -288,8 +269,7 @@ void FixMdanimBarrier::find_pairs()
   for (size_t n = 0; n < slot.size(); ++n) slot[n] = 3 * static_cast<long>(n);
 }
 
-// Pairs come in ascending order of low and then of high tags, and are numbered
-// in that order.
+// Pairs come in ascending order of low and then of high tags, and are numbered in that order.
 void FixMdanimBarrier::add_pair(int low, int high, const ContactPair &known)
 {
   if (strip.empty() || strip.back().one != low || high <= last_high || strip.back().first + STRIP <= high) {
@@ -336,11 +316,10 @@ int FixMdanimBarrier::find_touching(const Positions &place)
                           touching_pair.data());
 }
 
-// Between outputs, where nobody reads the energy.
+// Between outputs, where the energy is not read.
 void FixMdanimBarrier::add_forces(const Positions &place, const ForceSums &total) { push<false>(place, total); }
 
-// On the particles that have candidates; nothing on those that are not moved.
-// TELLS: of energy and pairs in touch, too.
+// On the particles that have candidates; nothing on those that are not moved. TELLS: of energy and pairs in touch, too.
 template <bool TELLS> void FixMdanimBarrier::push(const Positions &place, const ForceSums &total)
 {
   if (TELLS) energy = touching = 0.0;
@@ -399,9 +378,8 @@ double FixMdanimBarrier::sum(double here)
 
 double FixMdanimBarrier::compute_scalar() { return sum(energy); }
 
-// 1: pairs of objects whose boxes meet; 2: pairs of particles tried; 3: pairs
-// in touch; 4: smallest r/reach in this run; 5: energy lost to damp; 6: wall
-// seconds of the slowest rank
+// 1: pairs of objects whose boxes meet; 2: pairs of particles tried; 3: pairs in touch; 4: smallest r/reach in this run; 5:
+// energy lost to damp; 6: wall seconds of the slowest rank
 double FixMdanimBarrier::compute_vector(int n)
 {
   double all = 0.0;

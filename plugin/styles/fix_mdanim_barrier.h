@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// fix mdanim/barrier: objects repel each other. Wcislo 1999, sec. 3.3, eq.
-// (3.14), (3.15).
+// fix mdanim/barrier: objects repel each other. Wcislo 1999, sec. 3.3, eq. (3.14), (3.15).
 
 #ifndef LMP_FIX_MDANIM_BARRIER_H
 #define LMP_FIX_MDANIM_BARRIER_H
@@ -40,16 +39,14 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
   bool sees_absolute_position() const override { return false; }
 
  private:
-  // What a particle brings into a pair. Of ghosts it is asked from their owners
-  // at every rebuild.
+  // What a particle contributes to a pair. Owners send that of ghosts at every rebuild.
   struct Own {
     double stiffness, reach, mass;
     int object;    // its number in find_objects(), or NO_OBJECT
   };
   struct ContactPair {
     double stiffness, reach;
-    double share;    // of the pair that this rank counts: 1/2 for each end that it
-                     // moves, 1 if the other end is never moved
+    double share;    // of the pair that this rank counts: 1/2 for each end that it moves, 1 if the other end is never moved
   };
 
   int group_bit(int iarg, const char *word);
@@ -74,31 +71,25 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
   std::vector<int> object;                // of local particles, see Own
   std::vector<Own> own;                   // local and ghost particles
 
-  // Pairs that may touch, numbered ascending by the lower tag and then by the
-  // higher one: added up in this order, the forces on every particle are in
-  // ascending order of its partners' tags. There are numbers in between that
-  // are no pairs (pair_filter.h).
+  // Pairs that may touch, numbered ascending by the lower tag and then by the higher one: added up in this order, the forces on
+  // every particle are in ascending order of its partners' tags. There are numbers in between that are no pairs (pair_filter.h).
   std::vector<mdanim::Strip> strip;
   mdanim::Doubles reach2;           // squares of the reach of pairs, 0 for what is none
   std::vector<ContactPair> pair;    // and what else is known of them
   int last_high = 0;                // the higher one of the last pair
-  std::vector<int> particle;        // of pairs, local or ghost: first boundary, then
-                                    // barrier, each ascending by tag
-  std::vector<int> unmoved;         // those of them, as places in it, that this rank
-                                    // adds no forces to
+  std::vector<int> particle;        // of pairs, local or ghost: first boundary, then barrier, each ascending by tag
+  std::vector<int> unmoved;         // those of them, as places in it, that this rank adds no forces to
   const mdanim::PairFilter *filter;
   std::vector<mdanim::StripMask> masks;    // room for the filter
   std::vector<int> touching_pair;          // in this step
-  // In a step without passes: positions of these particles, forces on them, and
-  // where in `on` those of each begin.
+  // In a step without passes: positions of these particles, forces on them, and where in `on` those of each begin.
   mdanim::Positions here;
   std::vector<double> on;
   std::vector<long> slot;
 
-  double clear = 0.0;            // no two objects meet before a particle has gone farther
-  bigint meeting_objects = 0;    // pairs of objects whose boxes meet
-  double tried_pairs = 0.0,
-         touching = 0.0;    // on this rank; a pair counts half at either end
+  double clear = 0.0;                          // no two objects meet before a particle has gone farther
+  bigint meeting_objects = 0;                  // pairs of objects whose boxes meet
+  double tried_pairs = 0.0, touching = 0.0;    // on this rank; a pair counts half at either end
   double energy = 0.0;
   mdanim::Loss loss;       // to damp
   double deepest = 1.0;    // smallest r/reach in this run

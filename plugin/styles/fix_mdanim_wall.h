@@ -49,7 +49,7 @@ class FixMdanimWall : public Fix, public mdanim::PassParticipant {
 
   bool watching = false;    // only particles in `watched` can be behind before the next rebuild
   std::vector<int> watched;
-  double clear = 0.0;    // nobody is at the wall before somebody has gone farther
+  double clear = 0.0;    // no particle is at the wall before one has gone farther
 
   double energy = 0.0;    // all on this rank
   mdanim::Vec3 on_wall;
