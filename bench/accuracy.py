@@ -64,7 +64,7 @@ LADDER_OF = {"sweeps": "sweeps", "contact": "contact", "sunk in": "contact"}
 
 def study(name: str, budget: float, plots: Path | None) -> None:
     """Print the study of a scene."""
-    from mdanim_lammps.scene.wording import say
+    from mdanim_lammps.scene.formatting import say
     from mdanim_lammps.study.error import ROUND_OFF
     from mdanim_lammps.study.report import order_lines
     from mdanim_lammps.study.study import run_study

@@ -6,10 +6,13 @@ from pathlib import Path
 import pytest
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.scene.forms import alternatives
-from mdanim_lammps.scene.keywords import BLOCKS, GLOBALS, KEYWORDS, QUANTITIES, WORDS, Rule, explain, syntax
+from mdanim_lammps.scene.keywords import BLOCKS, KEYWORDS, all_keywords, explain
 from mdanim_lammps.scene.page import language_page
 from mdanim_lammps.scene.parse import parse_scene
+from mdanim_lammps.scene.scene import GLOBALS, QUANTITIES
+from mdanim_lammps.scene.schema import Rule, syntax
 
+WORDS = all_keywords()
 PAGE = Path(__file__).parent.parent / "docs" / "language.md"
 
 BALL = {"shape": "sphere 10 cm", "position": "(0, 0, 1) m", "mass": "2 kg", "elasticity": "200 kPa"}

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What a scene may ask for: whatever is beyond a limit is refused at its line, with the limit and a way out."""
 
+import math
 import os
 import time
 
 import pytest
 from mdanim_lammps.errors import SceneError
-from mdanim_lammps.scene import limits
-from mdanim_lammps.scene.keywords import KEYWORDS
+from mdanim_lammps.scene.forms import slots
+from mdanim_lammps.scene.keywords import all_keywords
 from mdanim_lammps.scene.parse import load_scene, parse_scene
+from mdanim_lammps.scene.schema import limit_of
 from test_scene_parse import CONTROL, ball, pool, text
 
 
@@ -65,14 +67,11 @@ def test_value_beyond_its_limit(scene, line, column, words, limit):
 
 
 def test_every_number_has_a_limit():
-    """No number of any keyword is without bounds: its unit has a limit."""
-    from mdanim_lammps.scene.forms import slots
-
-    for block in KEYWORDS.values():
-        for keyword in block.values():
-            for slot in slots(keyword.form):
-                if slot.kind in ("number", "vector", "place") and slot.unit != "?":
-                    assert keyword.limit or slot.unit in limits.LIMITS, (keyword.name, slot.unit)
+    """No number of any keyword is without bounds: the keyword or its unit has a limit."""
+    for keyword in all_keywords():
+        for slot in slots(keyword.form):
+            if slot.kind in ("number", "vector", "place") and slot.unit != "?":
+                assert limit_of(keyword, slot).most < math.inf, keyword.name
 
 
 def test_object_too_far_out_for_its_size():

@@ -8,10 +8,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mdanim_lammps.scene import scene as records
-from mdanim_lammps.scene.keywords import BLOCKS, GLOBALS, IMMERSION, KEYWORDS, QUANTITIES, STATEMENTS
+from mdanim_lammps.scene.keywords import BLOCKS, KEYWORDS, STATEMENTS
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.scene.rotation import departure, rotation_about, rotation_euler
+from mdanim_lammps.scene.scene import GLOBALS, IMMERSION, QUANTITIES
 
 SCENES = Path(__file__).parent.parent / "scenes"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Scenes drawn at random, in a child of bounded memory: each is checked or refused in seconds, and none is read as something else."""
+"""Scenes drawn at random, in a child of bounded memory: each is checked or refused in seconds, none is read as another."""
 
 import json
 import math
@@ -83,8 +83,10 @@ def scene(seed: int) -> str:
         settings.append(f"elasticity {number(draw, 'Pa', 1e4, 1e8)}")
         optional = [
             f"velocity {vector(draw, 'm/s', 2)}", f"spin {vector(draw, 'rad/s', 9)}", f"damping {number(draw, '', 0.01, 1)}",
-            f"drag {number(draw, 'N*s/m', 0.01, 10)}", f"hold {draw.choice(['all', 'faces x', 'face -z', 'within box (0,0,0) m to (9,9,9) m'])}",
-            f"orientation axis {vector(draw, '', 1)} angle {number(draw, 'deg', 1, 300)}", f"color {draw.choice(['red', 'rde', 'navy', 'tan', 'pink'])}",
+            f"drag {number(draw, 'N*s/m', 0.01, 10)}",
+            f"hold {draw.choice(['all', 'faces x', 'face -z', 'within box (0,0,0) m to (9,9,9) m'])}",
+            f"orientation axis {vector(draw, '', 1)} angle {number(draw, 'deg', 1, 300)}",
+            f"color {draw.choice(['red', 'rde', 'navy', 'tan', 'pink'])}",
             draw.choice(["friction 0.5", "damping 0.1", "drag 1 N*s/m"]),
         ]  # fmt: skip
         settings += [s for s in optional if draw.random() < 0.12]
@@ -207,7 +209,8 @@ def test_expressions_mean_what_they_mean_in_python(seed):
     from mdanim_lammps.scene.parse import parse_scene
 
     text = expression(random.Random(seed), 5)
-    scene = f"let x = 1.5\nlet y = -0.75\nlet value = {text}\nobject a {{ shape sphere 1 m position (0, 0, 0) mass 1 elasticity 1e6 }}\ncontrol {{ time 1 s }}\n"
+    scene = f"let x = 1.5\nlet y = -0.75\nlet value = {text}\ncontrol {{ time 1 s }}\n"
+    scene += "object a { shape sphere 1 m position (0, 0, 0) mass 1 elasticity 1e6 }\n"
     names = {"x": 1.5, "y": -0.75, "pi": math.pi, "sqrt": math.sqrt, "abs": abs, "min": min, "sin": math.sin}
     try:
         value = eval(text.replace("^", "**").replace("mod", "%"), {"__builtins__": {}}, names)

@@ -30,7 +30,7 @@ def test_unit_is_worth(text, worth, dim):
 
 def test_every_listed_unit_is_one():
     """The list that people see holds units of the kind it says, at least one each."""
-    for kind, texts in units.LISTED:
+    for _, kind, texts in units.LISTED:
         dims = {units.unit(t).dim for t in texts.split()}
         assert len(dims) == 1, kind
         assert dims.pop() in units.NAMES

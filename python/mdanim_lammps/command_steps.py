@@ -133,7 +133,7 @@ def simulate_and_draw(ready, folder: Path, *, quiet: bool, movie: bool, **option
     from .api import movie_file, run_frames
     from .report import cost_line, progress_line, spread_line
     from .results.timeline import Timeline
-    from .scene.wording import number
+    from .scene.formatting import number
 
     file = movie_file(folder, ready.scene)
     try:

@@ -16,7 +16,7 @@ from .results.trajectory_file import trajectory_bytes
 from .run.loop import Progress, Result
 from .run.prepare import Prepared
 from .scene.scene import Scene
-from .scene.wording import number, say, whole
+from .scene.formatting import number, say, whole
 
 
 def count(things: int, noun: str) -> str:

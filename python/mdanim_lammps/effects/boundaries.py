@@ -8,7 +8,7 @@ import numpy as np
 from ..errors import Problem
 from ..model.planes import innermost, scene_planes
 from ..model.touching import WAY_NAMES, behind_planes
-from ..scene.wording import at_least, say, whole
+from ..scene.formatting import at_least, say, whole
 from .effect import Effect, Verdict, stiffness_told
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import Problem
 from ..model.sweep import closest
 from ..model.touching import REACH, THIN, WAY_NAMES, touching
-from ..scene.wording import at_least, say, whole
+from ..scene.formatting import at_least, say, whole
 from .effect import Effect, Verdict, stiffness_told
 from .springs import all_held
 

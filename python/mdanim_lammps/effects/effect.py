@@ -15,7 +15,7 @@ from ..errors import Problem, Span
 from ..model.planes import Plane
 from ..model.system import System
 from ..scene.scene import Scene, Switch
-from ..scene.wording import number
+from ..scene.formatting import number
 
 
 @dataclass(frozen=True, slots=True)

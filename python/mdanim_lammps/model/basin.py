@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import Problem
 from ..scene.scene import Liquid, LiquidModel, Mesh, Scene, Solid, Switch, Vector
-from ..scene.wording import estimate, number, say
+from ..scene.formatting import estimate, number, say
 from . import shapes
 from .model import Model
 from .spacing import available_memory, choose_spacing

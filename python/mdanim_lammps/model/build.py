@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import Problem, SceneError
 from ..scene.scene import HoldAll, HoldFaces, HoldWithin, Scene, Shape, Solid, SpringConstant, Young
-from ..scene.wording import number, say
+from ..scene.formatting import number, say
 from . import shapes
 from .cells import TooThin, fill_cells
 from .embed import make_surface

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import Problem, Span
 from ..scene.scene import Box, Mesh, Scene, Shape, Solid
-from ..scene.wording import estimate, number, say
+from ..scene.formatting import estimate, number, say
 from . import shapes
 from .mesh import SIZES
 

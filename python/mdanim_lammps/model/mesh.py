@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from ..scene.scene import Mesh
-from ..scene.wording import say
+from ..scene.formatting import say
 from .mesh_reader import UnreadableMesh, read_polygons
 
 SUFFIXES = (".stl", ".obj", ".ply")

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import Problem
 from ..scene.scene import Scene, Solid
-from ..scene.wording import say
+from ..scene.formatting import say
 from . import shapes
 from .boxes import box_pairs
 from .model import Layer, Model

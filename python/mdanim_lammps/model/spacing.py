@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import Problem, SceneError
 from ..scene.scene import Accuracy, Box, HoldAll, Scene, Shape, Solid
-from ..scene.wording import number, say, whole
+from ..scene.formatting import number, say, whole
 from . import shapes
 from .limits import check_numbers, check_places, check_sparse
 from .mesh import MeshError

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import OutputError
-from ..scene.wording import number, say
+from ..scene.formatting import number, say
 from .trajectory import Trajectory
 from .untrusted import check_folder
 

@@ -12,7 +12,7 @@ from ..model.basin import Grid
 from ..model.model import Model
 from ..model.system import System
 from ..scene.scene import Expect
-from ..scene.wording import number
+from ..scene.formatting import number
 
 
 @dataclass(frozen=True, slots=True)

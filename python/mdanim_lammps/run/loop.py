@@ -27,7 +27,7 @@ from ..results.ledger import LOSS, Ledger
 from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
 from ..scene.meshes import mesh_files
-from ..scene.wording import number
+from ..scene.formatting import number
 from .energy import ledger_terms, rounding_energy
 from .frame_source import Account, Frame, FrameSource, LammpsFailure, Sequential
 from .guard import Guard

@@ -17,10 +17,9 @@ from ..model.build import build_models
 from ..model.model import Model
 from ..model.overlap import check_geometry
 from ..model.system import System, as_parts, assemble
-from ..scene.keywords import IMMERSION
 from ..scene.lock import lock_text
 from ..scene.meshes import mesh_files
-from ..scene.scene import Scene
+from ..scene.scene import IMMERSION, Scene
 
 
 @dataclass(frozen=True)

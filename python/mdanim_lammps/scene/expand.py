@@ -1,28 +1,29 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Runs the lets and repeats of a scene and works out every value: from statements to settings in SI units."""
+"""Runs the lets and repeats of a scene and evaluates every value: from statements to settings in SI units."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from . import units
 from .colors import color
 from .expressions import SPOILED, Env
-from .keywords import Rule, did_you_mean, example
-from .limits import LIMITS, MOST_OBJECTS, MOST_ROUNDS
-from .source import Fault, Problems, Source
+from .formatting import estimate, number, whole
+from .keywords import did_you_mean, example
+from .limits import MOST_OBJECTS, MOST_ROUNDS
+from .schema import Rule, limit_of
+from .source import Fault, Problems, SceneFile
 from .statements import Shared, parse_override
-from .tree import Broken, Entry, Group, Let, Name, Repeat, Value
-from .wording import estimate, number, whole
+from .tree import Group, Let, Name, Repeat, SettingNode, UnreadableStatement, Value
 
 
 @dataclass(slots=True, eq=False)
-class Setting:
-    """A setting with its values worked out."""
+class EvaluatedSetting:
+    """A setting with its values."""
 
-    entry: Entry
+    entry: SettingNode
     values: tuple
 
     def span(self, n: int | None = None):
@@ -35,24 +36,29 @@ class Setting:
 
 
 @dataclass(slots=True, eq=False)
-class Filled:
+class EvaluatedBlock:
     """One block, or the scene itself, with its settings."""
 
     block: str
     group: Group | None = None
-    name: str = ""
-    settings: dict[str, list[Setting]] = field(default_factory=dict)
-    blocks: list[Filled] = field(default_factory=list)
+    names: tuple[str, ...] = ()
+    settings: dict[str, list[EvaluatedSetting]] = field(default_factory=dict)
+    blocks: list[EvaluatedBlock] = field(default_factory=list)
     broken: set[str] = field(default_factory=set)
-    """Words whose statement could not be used; that was told already."""
+    """Words whose statement could not be used; that was reported already."""
     where: str = ""
     """``(i = 1, j = 2)``, in a repeat."""
+
+    @property
+    def name(self) -> str:
+        """``ball[3]``, or the names of both objects."""
+        return " ".join(self.names)
 
     def excused(self, *words: str) -> bool:
         """Whether these words may be missing because something could not be read."""
         return not self.broken.isdisjoint((*words, "include", "repeat"))
 
-    def first(self, word: str) -> Setting | None:
+    def first(self, word: str) -> EvaluatedSetting | None:
         """The setting of a keyword, if there is one."""
         found = self.settings.get(word)
         return found[0] if found else None
@@ -77,28 +83,20 @@ class Expander:
 
     # -- the whole scene
 
-    def scene(self, body: list) -> Filled | None:
+    def scene(self, body: list) -> EvaluatedBlock | None:
         """Everything of a scene, the seed first: rand needs it. None for a scene without measure."""
         env = Env({}, (), self.seed(body), self.strict, self.shared.lets, self.shared.incomplete)
         self.check_overrides()
         if not self.estimate(body, env):
             return None
-        out = Filled("")
+        out = EvaluatedBlock("")
         self.run(body, env, out)
         return out
 
     def seed(self, body: list) -> int:
-        """``control seed``, worked out with the lets of the outermost level."""
-        entry = next(
-            (
-                e
-                for g in body
-                if isinstance(g, Group) and g.block == "control"
-                for e in g.body
-                if isinstance(e, Entry) and e.keyword.name == "seed"
-            ),
-            None,
-        )
+        """``control seed``, evaluated with the lets of the outermost level."""
+        controls = (g for g in body if isinstance(g, Group) and g.block == "control")
+        entry = next((e for g in controls for e in g.body if isinstance(e, SettingNode) and e.keyword.name == "seed"), None)
         if entry is None:
             return 1
         env, quiet = Env({}, seed=None), Expander(Shared(Problems()), self.overrides, False)
@@ -115,12 +113,8 @@ class Expander:
         """Every ``--set`` must name a let."""
         for name in self.overrides:
             if name not in self.shared.lets:
-                self.problems.add(
-                    None,
-                    f"--set {name}: the scene has no 'let {name}'",
-                    did_you_mean(name, self.shared.lets) or "it has no let at all",
-                    key=("--set", name),
-                )
+                hint = did_you_mean(name, self.shared.lets) or "it has no let at all"
+                self.problems.add(None, f"--set {name}: the scene has no 'let {name}'", hint, key=("--set", name))
 
     def estimate(self, body: list, env: Env) -> bool:
         """Refuse a scene of too many objects before any is made."""
@@ -129,22 +123,12 @@ class Expander:
         objects, rounds = quiet.count(body, Env({}, seed=env.seed), worst)
         if objects <= MOST_OBJECTS and rounds <= MOST_ROUNDS:
             return True
-        place = worst[0] if worst else None
-        span = place.source.span(place.token, place.variable) if place else None
+        span = worst[0].source.span(worst[0].token, worst[0].variable) if worst else None
         if objects > MOST_OBJECTS:
-            self.problems.add(
-                span,
-                f"this scene has about {estimate(objects)} objects; the most is {whole(MOST_OBJECTS)}",
-                "repeat less often",
-                key="objects",
-            )
+            cause = f"this scene has about {estimate(objects)} objects; the most is {whole(MOST_OBJECTS)}"
         else:
-            self.problems.add(
-                span,
-                f"the repeats of this scene run about {estimate(rounds)} rounds; the most is {whole(MOST_ROUNDS)}",
-                "repeat less often",
-                key="objects",
-            )
+            cause = f"the repeats of this scene run about {estimate(rounds)} rounds; the most is {whole(MOST_ROUNDS)}"
+        self.problems.add(span, cause, "repeat less often", key="objects")
         return False
 
     def count(self, body: list, env: Env, worst: list) -> tuple[float, float]:
@@ -163,8 +147,11 @@ class Expander:
                 if high < low:
                     continue
                 n = high - low + 1.0
-                inner = env.child({**env.values, str(s.variable): float(low + (high - low) // 2)})
-                o, r = self.count(s.body, inner, worst)
+                known = len(env.values)
+                env.values.setdefault(str(s.variable), float(low + (high - low) // 2))
+                o, r = self.count(s.body, env, worst)
+                while len(env.values) > known:
+                    env.values.popitem()
                 if n * max(o, 1.0) > MOST_OBJECTS or n * (1.0 + r) > MOST_ROUNDS:
                     worst.append(s)
                 objects, rounds = objects + n * o, rounds + n * (1.0 + r)
@@ -173,22 +160,22 @@ class Expander:
     # -- statements
 
     def where(self, env: Env) -> str:
-        """The repeat indices for messages."""
+        """The indices of the repeats for messages."""
         if not env.loops:
             return ""
         return " (with " + ", ".join(f"{n} = {i}" for n, i in zip(self.loop_names, env.loops)) + ")"
 
-    def run(self, body: list, env: Env, out: Filled) -> None:
+    def run(self, body: list, env: Env, out: EvaluatedBlock) -> None:
         """Carry out statements; settings and blocks go to ``out``."""
         own: dict[str, Let] = {}
         for s in body:
-            if isinstance(s, Entry):
+            if isinstance(s, SettingNode):
                 self.setting(s, env, out)
             elif isinstance(s, Group):
                 self.group(s, env, out)
             elif isinstance(s, Repeat):
                 self.repeat(s, env, out)
-            elif isinstance(s, Broken):
+            elif isinstance(s, UnreadableStatement):
                 out.broken.add(s.word)
                 if s.name:
                     env.values.setdefault(s.name, SPOILED)
@@ -200,8 +187,15 @@ class Expander:
                 own[str(s.token)] = s
                 self.let(s, env)
 
+    def scope(self, body: list, env: Env, out: EvaluatedBlock) -> None:
+        """Carry out the statements in braces; names that they give end there."""
+        known = len(env.values)
+        self.run(body, env, out)
+        while len(env.values) > known:
+            env.values.popitem()  # the name given last: none hides another
+
     def let(self, s: Let, env: Env) -> None:
-        """Work out a let; ``--set`` takes its place."""
+        """Evaluate a let; ``--set`` takes its place."""
         name = str(s.token)
         try:
             value = s.node.run(env)
@@ -217,7 +211,7 @@ class Expander:
     def override(self, name: str, s: Let, original) -> object:
         """The value of ``--set name=value``, which must be of the kind of the let's."""
         given = self.overrides[name]
-        source = Source(f"--set {name}", str(given).strip())
+        source = SceneFile(f"--set {name}", str(given).strip())
         node = parse_override(source, self.problems)
         if node is None:
             return SPOILED
@@ -232,26 +226,18 @@ class Expander:
             return SPOILED
         return value
 
-    def _same_kind(self, name: str, source: Source, node, value, original) -> None:
+    def _same_kind(self, name: str, source: SceneFile, node, value, original) -> None:
         one, other = _kinds(value), _kinds(original)
         if len(one) != len(other):
             raise Fault(node.first, f"{name} is {units.show(original)} in the scene, and a value of that kind is needed")
         for a, b in zip(one, other):
             if a != b and a != units.NONE and b != units.NONE:
-                raise Fault(
-                    node.first,
-                    f"{name} is {units.describe(b)} in the scene, found {units.show(value)}",
-                    f"units that fit: {' '.join(units.units_of(b))}",
-                    node.last,
-                )
+                cause = f"{name} is {units.describe(b)} in the scene, found {units.show(value)}"
+                raise Fault(node.first, cause, f"units that fit: {' '.join(units.units_of(b))}", node.last)
             if a != b and a == units.NONE:
-                self.problems.add(
-                    source.span(node.first, node.last),
-                    f"--set {name} has no unit and is read as {units.show(value)} {units.symbol(b)}; "
-                    f"the scene has {units.show(original)}",
-                    "write the unit",
-                    "warning",
-                )
+                cause = f"--set {name} has no unit and is read as {units.show(value)} {units.symbol(b)}"
+                cause += f"; the scene has {units.show(original)}"
+                self.problems.add(source.span(node.first, node.last), cause, "write the unit", "warning")
 
     def bounds(self, s: Repeat, env: Env) -> tuple[int, int]:
         """First and last index of a repeat."""
@@ -263,7 +249,7 @@ class Expander:
             found.append(int(v))
         return found[0], found[1]
 
-    def repeat(self, s: Repeat, env: Env, out: Filled) -> None:
+    def repeat(self, s: Repeat, env: Env, out: EvaluatedBlock) -> None:
         """Run the body once for every index."""
         name = str(s.variable)
         if name in env.values:
@@ -275,37 +261,31 @@ class Expander:
             self.problems.fault(s.source, fault, self.where(env))
             return
         if high < low:
-            self.problems.add(
-                s.source.span(s.token, s.variable),
-                f"this repeat runs from {low} to {high}: not at all",
-                "the first index is the smaller one",
-                "warning",
-            )
+            cause = f"this repeat runs from {low} to {high}: not at all"
+            self.problems.add(s.source.span(s.token, s.variable), cause, "the first index is the smaller one", "warning")
         outer, self.loop_names = self.loop_names, (*self.loop_names, name)
         for i in range(low, high + 1):
             self.rounds += 1
             if self.rounds > MOST_ROUNDS or self.objects > MOST_OBJECTS:
-                self.problems.add(
-                    s.source.span(s.token, s.variable),
-                    f"this scene repeats without measure: more than {MOST_OBJECTS} objects or {MOST_ROUNDS} rounds",
-                    "repeat less often",
-                    key="objects",
-                )
+                cause = f"this scene has more than {whole(MOST_OBJECTS)} objects or {whole(MOST_ROUNDS)} rounds of repeats"
+                self.problems.add(s.source.span(s.token, s.variable), cause, "repeat less often", key="objects")
                 break
-            self.run(s.body, env.child({**env.values, name: float(i)}, (*env.loops, i)), out)
+            env.values[name] = float(i)
+            self.scope(s.body, env.within(i), out)
+        env.values.pop(name, None)
         self.loop_names = outer
 
-    def group(self, s: Group, env: Env, out: Filled) -> None:
+    def group(self, s: Group, env: Env, out: EvaluatedBlock) -> None:
         """One block with a scope of its own."""
         try:
-            name = self.name(s.name, env) if s.name else ""
+            names = tuple(self.name(name, env) for name in s.names)
         except Fault as fault:
             self.problems.fault(s.source, fault, self.where(env))
             out.broken.add(s.block)
             return
-        filled = Filled(s.block, s, name, where=self.where(env))
+        filled = EvaluatedBlock(s.block, s, names, where=self.where(env))
         self.objects += 1
-        self.run(s.body, env.child(dict(env.values)), filled)
+        self.scope(s.body, env, filled)
         out.blocks.append(filled)
 
     def name(self, name: Name, env: Env) -> str:
@@ -319,21 +299,17 @@ class Expander:
 
     # -- settings
 
-    def setting(self, s: Entry, env: Env, out: Filled) -> None:
-        """Work out a setting and put it into its block."""
+    def setting(self, s: SettingNode, env: Env, out: EvaluatedBlock) -> None:
+        """Evaluate a setting and put it into its block."""
         word = s.keyword.name
         given = out.settings.get(word)
         if given and not s.keyword.many:
             first = given[0].entry
-            self.problems.add(
-                s.source.span(s.token),
-                f"{word} is given twice" + (f" in {out.block} {out.name}".rstrip()),
-                f"first given at {first.source.span(first.token)}",
-            )
+            cause = f"{word} is given twice" + f" in {out.block} {out.name}".rstrip()
+            self.problems.add(s.source.span(s.token), cause, f"first given at {first.source.span(first.token)}")
             return
         if word == "seed":
-            env = env.child(env.values)
-            env.seed = None
+            env = replace(env, seed=None)
         try:
             values = s.known if s.known is not None else self.values(s, env)
         except Fault as fault:
@@ -341,11 +317,11 @@ class Expander:
             out.broken.add(word)
             return
         if given:
-            given.append(Setting(s, values))
+            given.append(EvaluatedSetting(s, values))
         else:
-            out.settings[word] = [Setting(s, values)]
+            out.settings[word] = [EvaluatedSetting(s, values)]
 
-    def values(self, s: Entry, env: Env) -> tuple:
+    def values(self, s: SettingNode, env: Env) -> tuple:
         """All values of a setting in SI units; raises Fault."""
         raw = [None if v is None else self.raw(v, env) for v in s.values]
         result = tuple([None if v is None else self.checked(s, v, x) for v, x in zip(s.values, raw)])
@@ -362,7 +338,7 @@ class Expander:
             return self.name(v.name, env)
         return v.text if v.node is None else v.node.run(env)
 
-    def checked(self, s: Entry, v: Value, x):
+    def checked(self, s: SettingNode, v: Value, x):
         """A value as the slot wants it."""
         kind = v.slot.kind
         if kind == "color":
@@ -390,7 +366,7 @@ class Expander:
         names = v.slot.text.strip("()").split(", ")
         return tuple([self.number(s, v, c, f"{n} of {what}", v.first, v.last) for c, n in zip(x, names)])
 
-    def number(self, s: Entry, v: Value, x, what: str, first, last) -> float:
+    def number(self, s: SettingNode, v: Value, x, what: str, first, last) -> float:
         """One number in SI units that has the right dimension and obeys the rule."""
         dim = v.slot.dim
         rule = s.keyword.rule
@@ -411,7 +387,7 @@ class Expander:
             raise Fault(first, f"{what} is not a finite number", "a calculation in it overflows", last)
         if rule is not Rule.ANY and not rule.holds(x):
             raise Fault(first, f"{what} must be {rule.value}, found {_found(s, v, units.quantity(x, dim))}", last=last)
-        limit = s.keyword.limit or LIMITS[v.slot.unit]
+        limit = limit_of(s.keyword, v.slot)
         least = limit.least if rule is Rule.POSITIVE else -limit.most
         if not least <= x <= limit.most:
             size = "small" if x < least else "large"
@@ -422,13 +398,13 @@ class Expander:
             )
         return x
 
-    def _color(self, s: Entry, v: Value, x: str) -> str:
+    def _color(self, s: SettingNode, v: Value, x: str) -> str:
         try:
             return color(x)
         except ValueError as e:
             raise Fault(v.first, str(e.args[0]), e.args[1], v.last) from None
 
-    def _half_units(self, s: Entry, raw: list) -> None:
+    def _half_units(self, s: SettingNode, raw: list) -> None:
         """``cylinder 10 20 cm`` is 10 m by 20 cm: hardly what was meant."""
         measured = [
             (v, x) for v, x in zip(s.values, raw) if v is not None and v.slot.unit not in ("1", "?") and not isinstance(x, str)
@@ -452,7 +428,7 @@ class Expander:
                 )
 
 
-def label(s: Entry, v: Value) -> str:
+def label(s: SettingNode, v: Value) -> str:
     """How a value is called in messages: ``mass``, ``r of sphere``."""
     if len(s.values) == 1 and not s.words:
         return s.keyword.name
@@ -462,7 +438,7 @@ def label(s: Entry, v: Value) -> str:
     return f"{v.slot.text} of {before}" if v.slot.kind == "number" else f"{v.slot.text} in {before}"
 
 
-def _found(s: Entry, v: Value, x) -> str:
+def _found(s: SettingNode, v: Value, x) -> str:
     """A value for messages, together with the expression that it comes from."""
     if v.node.constant and v.slot.length == 1:
         return units.show(x)

@@ -1,20 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""From tokens of grammar.lark to functions of the variables, compiled once, run for every repeat."""
+"""Values as functions of the variables: built once by reader.py, run for every repeat."""
 
 from __future__ import annotations
 
 import math
 import operator
 from dataclasses import dataclass, field
-from functools import lru_cache
-from importlib import resources
-
-from lark import Lark, Token, Transformer, v_args
 
 from . import units
 from .keywords import did_you_mean
 from .limits import DEEPEST_EXPRESSION
 from .source import Fault, Silent
+from .tokens import Token
 from .units import DimensionError, Quantity
 
 RESERVED = frozenset({*units.FUNCTIONS, "rand", "pi", "mod", "let", "repeat", "include", "in"})
@@ -22,7 +19,7 @@ RESERVED = frozenset({*units.FUNCTIONS, "rand", "pi", "mod", "let", "repeat", "i
 
 
 SPOILED = object()
-"""Stands for a let whose value could not be worked out; that was told where it happened."""
+"""Stands for a let that could not be evaluated; that was reported where it happened."""
 
 
 @dataclass(slots=True)
@@ -33,43 +30,61 @@ class Env:
     loops: tuple[int, ...] = ()
     """Indices of the enclosing repeats, outermost first."""
     seed: int | None = 1
-    """None while the seed itself is being worked out."""
+    """None while the seed itself is evaluated."""
     strict: bool = False
     later: dict = field(default_factory=dict)
     """Names that some ``let`` of the scene defines, and the line where."""
     incomplete: bool = False
-    """A part of the scene could not be read: a name without a value is no news."""
+    """A part of the scene could not be read: a name without a value is no new problem."""
 
-    def child(self, values: dict, loops: tuple[int, ...] | None = None) -> Env:
-        """The same surroundings with other variables."""
-        loops = self.loops if loops is None else loops
-        return Env(values, loops, self.seed, self.strict, self.later, self.incomplete)
-
-
-class Rand(Token):
-    """The word ``rand`` and its number among the rands of a scene: a comment line must change nothing."""
-
-    site: int
+    def within(self, i: int) -> Env:
+        """The same surroundings inside round ``i`` of a repeat."""
+        return Env(self.values, (*self.loops, i), self.seed, self.strict, self.later, self.incomplete)
 
 
 class Node:
-    """A compiled expression."""
+    """A compiled value: ``run(env)`` gives a float, a Quantity or a tuple of them; raises Fault."""
 
-    __slots__ = ("constant", "depth", "first", "last", "run", "terms")
+    __slots__ = ("constant", "depth", "first", "last", "terms", "value")
 
-    def __init__(self, run, parts, first, last, constant=True):
-        self.run = run
-        self.terms = ((None, self),)
-        """Of a sum that is not in brackets: its terms, each with the sign before it."""
+    def __init__(self, parts, first: Token, last: Token, constant: bool = True):
         self.first, self.last = first, last
+        self.terms = ()
+        """Of a sum that is not in brackets: its terms, each with the sign before it."""
+        self.value = None
+        """Of a literal: what it is worth."""
         self.constant = constant and all(p.constant for p in parts)
         self.depth = 1 + max((p.depth for p in parts), default=0)
         if self.depth > DEEPEST_EXPRESSION:
             raise Fault(first, f"this expression has more than {DEEPEST_EXPRESSION} nested steps", "split it with let")
 
 
+class Literal(Node):
+    """A value that is known already."""
+
+    __slots__ = ()
+
+    def __init__(self, value, first: Token, last: Token):
+        super().__init__((), first, last)
+        self.value = value
+
+    def run(self, env: Env):
+        """The value."""
+        return self.value
+
+
+class Computed(Node):
+    """A value that ``run`` computes."""
+
+    __slots__ = ("run",)
+
+    def __init__(self, run, parts, first: Token, last: Token, constant: bool = True):
+        super().__init__(parts, first, last, constant)
+        self.run = run
+
+
 def guarded(token: Token, function, *values):
-    """Run a piece of arithmetic; what goes wrong is told at its token."""
+    """Run a piece of arithmetic; what goes wrong is a problem at its token."""
     try:
         return function(*values)
     except DimensionError as e:
@@ -109,169 +124,140 @@ def combine(env: Env, token: Token, x, y):
     return guarded(token, units.subtract if token.type == "MINUS" else units.add, x, y)
 
 
-@v_args(inline=True)
-class Compiler(Transformer):
-    """Builds a Node at each reduction of the LALR parser; no tree is kept."""
+def number(token: Token) -> Node:
+    """A number as it stands."""
+    value = float(token)
+    if math.isinf(value):
+        raise Fault(token, f"{token} is too large a number")
+    return Literal(value, token, token)
 
-    def number(self, token):
-        """A literal."""
-        value = float(token)
-        if math.isinf(value):
-            raise Fault(token, f"{token} is too large a number")
-        return Node(lambda env: value, (), token, token)
 
-    def name(self, token):
-        """A variable, or pi."""
-        text = str(token)
-        if text == "pi":
-            return Node(lambda env: math.pi, (), token, token)
+def name(token: Token) -> Node:
+    """A variable, or pi."""
+    text = str(token)
+    if text == "pi":
+        return Literal(math.pi, token, token)
 
-        def run(env):
+    def run(env):
+        value = env.values.get(text)
+        if value is None:
+            raise _unknown(token, env)
+        if value is SPOILED:
+            raise Silent(token, "")
+        return value
+
+    return Computed(run, (), token, token, constant=False)
+
+
+def binary(x: Node, token: Token, y: Node) -> Node:
+    """Two floats take the short way; everything else asks units.py."""
+    fast, slow = _BINARY[token.type]
+    f, g = x.run, y.run
+    summing = token.type in ("PLUS", "MINUS")
+
+    def run(env):
+        a, b = f(env), g(env)
+        if fast is not None and type(a) is float and type(b) is float:
             try:
-                value = env.values[text]
-            except KeyError:
-                raise _unknown(token, env) from None
-            if value is SPOILED:
-                raise Silent(token, "")
-            return value
+                return fast(a, b)
+            except ArithmeticError:
+                pass
+        return combine(env, token, a, b) if summing else guarded(token, slow, a, b)
 
-        return Node(run, (), token, token, constant=False)
+    node = Computed(run, (x, y), x.first, y.last)
+    if summing:
+        node.terms = (*(x.terms or ((None, x),)), (token, y))
+    return node
 
-    def binary(self, x, token, y):
-        """Two floats take the short way; everything else asks units.py."""
-        fast, slow = _BINARY[token.type]
-        f, g = x.run, y.run
-        summing = token.type in ("PLUS", "MINUS")
 
-        def run(env):
-            a, b = f(env), g(env)
-            if fast is not None and type(a) is float and type(b) is float:
-                try:
-                    return fast(a, b)
-                except ArithmeticError:
-                    pass
-            return combine(env, token, a, b) if summing else guarded(token, slow, a, b)
+def negative(token: Token, x: Node) -> Node:
+    """-x"""
+    if x.value is not None:
+        return Literal(units.negate(x.value), token, x.last)
+    f = x.run
+    return Computed(lambda env: units.negate(f(env)), (x,), token, x.last)
 
-        node = Node(run, (x, y), x.first, y.last)
-        if summing:
-            node.terms = (*x.terms, (token, y))
-        return node
 
-    def negative(self, token, x):
-        """-x"""
-        f = x.run
-        return Node(lambda env: units.negate(f(env)), (x,), token, x.last)
+def vector(left: Token, parts: list[Node], right: Token) -> Node:
+    """(x, y, ...)"""
+    for p in parts:
+        if isinstance(p.value, tuple):
+            raise _nested(p)
+    if all(p.value is not None for p in parts):
+        return Literal(tuple([p.value for p in parts]), left, right)
 
-    def positive(self, token, x):
-        """+x"""
-        x.first = token
-        return x
+    def run(env):
+        value = tuple([p.run(env) for p in parts])
+        for v, p in zip(value, parts):
+            if isinstance(v, tuple):
+                raise _nested(p)
+        return value
 
-    def bracket(self, left, x, right):
-        """Brackets change the place, and make one term of a sum."""
-        x.first, x.last = left, right
-        x.terms = ((None, x),)
-        return x
+    return Computed(run, parts, left, right)
 
-    def vector(self, left, *rest):
-        """(x, y, ...)"""
-        parts = rest[:-1:2]
-        runs = tuple(p.run for p in parts)
 
-        def run(env):
-            value = tuple([f(env) for f in runs])
-            for v, p in zip(value, parts):
-                if isinstance(v, tuple):
-                    raise Fault(p.first, "a vector cannot stand inside a vector", last=p.last)
-            return value
+def _nested(p: Node) -> Fault:
+    return Fault(p.first, "a vector cannot stand inside a vector", last=p.last)
 
-        return Node(run, parts, left, rest[-1])
 
-    def call(self, token, left, *rest):
-        """A function."""
-        name, parts = str(token), rest[:-1:2]
-        if name == "rand":
-            return self._rand(token, parts, rest[-1])
-        if name not in units.FUNCTIONS:
-            raise Fault(token, f"'{name}' is not a function", did_you_mean(name, [*units.FUNCTIONS, "rand"]))
-        least, most, function = units.FUNCTIONS[name]
-        if not least <= len(parts) <= most:
-            raise Fault(token, f"{name} takes {least} number, found {len(parts)}", last=rest[-1])
-        runs = tuple(p.run for p in parts)
-        return Node(lambda env: guarded(token, function, *[f(env) for f in runs]), parts, token, rest[-1])
+def call(token: Token, parts: list[Node], last: Token, site: int) -> Node:
+    """A function. ``site`` is the number of a rand among those of the scene: a comment line must change nothing."""
+    if token == "rand":
+        return _rand(token, parts, last, site)
+    if token not in units.FUNCTIONS:
+        raise Fault(token, f"'{token}' is not a function", did_you_mean(str(token), [*units.FUNCTIONS, "rand"]))
+    least, most, function = units.FUNCTIONS[token]
+    if not least <= len(parts) <= most:
+        raise Fault(token, f"{token} takes {least} number, found {len(parts)}", last=last)
+    return Computed(lambda env: guarded(token, function, *[p.run(env) for p in parts]), parts, token, last)
 
-    def _rand(self, token, parts, last):
-        """rand(a, b): drawn from the seed, the place among the rands of the scene, and the repeat indices."""
-        if len(parts) != 2:
-            raise Fault(token, f"rand takes two numbers, rand(least, most), found {len(parts)}", last=last)
-        low, high = (p.run for p in parts)
-        site = token.site
 
-        def run(env):
-            if env.seed is None:
-                raise Fault(token, "the seed cannot be random", "give it as a whole number, e.g. seed 7", last=last)
-            u = random_unit(env.seed, site, env.loops)
-            a, b = low(env), high(env)
-            return guarded(token, lambda: units.add(a, units.multiply(units.subtract(b, a), u)))
+def _rand(token: Token, parts: list[Node], last: Token, site: int) -> Node:
+    """rand(a, b): drawn from the seed, the place among the rands of the scene, and the repeat indices."""
+    if len(parts) != 2:
+        raise Fault(token, f"rand takes two numbers, rand(least, most), found {len(parts)}", last=last)
+    low, high = (p.run for p in parts)
 
-        return Node(run, parts, token, last, constant=False)
+    def run(env):
+        if env.seed is None:
+            raise Fault(token, "the seed cannot be random", "give it as a whole number, e.g. seed 7", last=last)
+        u = random_unit(env.seed, site, env.loops)
+        a, b = low(env), high(env)
+        return guarded(token, lambda: units.add(a, units.multiply(units.subtract(b, a), u)))
 
-    def factor(self, token, *rest):
-        """One unit with its power."""
-        sign = -1 if len(rest) == 3 else 1
-        power = rest[-1] if rest else "1"
-        if not (power.isascii() and power.isdigit() and 1 <= int(power[:3]) <= 9):
-            raise Fault(rest[-1], f"the power of a unit is a whole number from 1 to 9, found {power}")
-        return token, sign * int(power), rest[-1] if rest else token
+    return Computed(run, parts, token, last, constant=False)
 
-    def unit(self, first, *rest):
-        """A product or quotient of units."""
-        result, sign = units.ONE, 1
-        text = str(first[0])
-        factors = [(None, first), *zip(rest[::2], rest[1::2])]
-        for mark, (token, power, _) in factors:
-            sign = -1 if mark is not None and mark.type == "UNIT_SLASH" else 1
-            known = units.ONE if token.type == "ONE" else units.UNITS.get(str(token))
-            if known is None and token == "h" and sign < 0:
-                known = units.HOUR
-            if known is None:
-                raise Fault(token, f"'{token}' is not a unit", units.suggest_unit(str(token)))
-            result = result.times(known, sign * power)
-            text = text if mark is None else f"{text}{mark}{token}"
-        return factors[-1][1][2], units.Unit(text, result.over, result.under, result.dim)
 
-    def with_unit(self, x, u):
-        """A value measured in a unit. Terms of a sum that have one keep theirs: ``a + 1 kg``, a = 500 g."""
-        last, unit = u
-        f, terms = x.run, x.terms
-        over, under, dim = unit.over, unit.under, unit.dim
+def with_unit(x: Node, unit: units.Unit, last: Token) -> Node:
+    """A value measured in a unit. Terms of a sum that have one keep theirs: ``a + 1 kg``, a = 500 g."""
+    f, terms = x.run, x.terms
+    if x.value is not None and _bare(x.value):
+        return Literal(units.with_unit(x.value, unit), x.first, last)
+    over, under, dim = unit.over, unit.under, unit.dim
 
-        def run(env):
-            if len(terms) > 1:
-                values = [node.run(env) for _, node in terms]
-                bare = [_bare(v) for v in values]
-                if any(bare) and not all(bare):
-                    values = [guarded(last, units.with_unit, v, unit) if b else v for v, b in zip(values, bare)]
-                    total = values[0]
-                    for (token, _), v in zip(terms[1:], values[1:]):
-                        total = combine(env, token, total, v)
-                    return total
-            value = f(env)
-            if type(value) is float and dim != units.NONE:
-                return Quantity(value * over / under, dim)
-            return guarded(last, units.with_unit, value, unit)
+    def run(env):
+        if terms:
+            values = [node.run(env) for _, node in terms]
+            bare = [_bare(v) for v in values]
+            if any(bare) and not all(bare):
+                values = [guarded(last, units.with_unit, v, unit) if b else v for v, b in zip(values, bare)]
+                total = values[0]
+                for (token, _), v in zip(terms[1:], values[1:]):
+                    total = combine(env, token, total, v)
+                return total
+        value = f(env)
+        if type(value) is float and dim != units.NONE:
+            return Quantity(value * over / under, dim)
+        return guarded(last, units.with_unit, value, unit)
 
-        return Node(run, (x,), x.first, last)
+    return Computed(run, (x,), x.first, last)
 
-    def joined(self, x, tail):
-        """``1 m - 20 cm``: the tail carries its sign."""
-        f, g = x.run, tail.run
-        plus = Token.new_borrow_pos("PLUS", "+", tail.first)
-        return Node(lambda env: combine(env, plus, f(env), g(env)), (x, tail), x.first, tail.last)
 
-    def joined_with_unit(self, x, tail, u):
-        """``1 m - 20 cm`` with the unit of the tail."""
-        return self.joined(x, self.with_unit(tail, u))
+def joined(x: Node, tail: Node) -> Node:
+    """``1 m - 20 cm``: the tail carries its sign."""
+    f, g = x.run, tail.run
+    plus = Token("PLUS", "+", tail.first.start, tail.first.line, tail.first.column)
+    return Computed(lambda env: combine(env, plus, f(env), g(env)), (x, tail), x.first, tail.last)
 
 
 def _bare(x) -> bool:
@@ -289,18 +275,3 @@ def _unknown(token: Token, env: Env) -> Fault:
     names = [n for n in env.values if n.isidentifier()]
     hint = did_you_mean(name, names) if names else ""
     return Fault(token, f"'{name}' has no value", hint if "did you" in hint else f"give it one before: let {name} = ...")
-
-
-@lru_cache(maxsize=1)
-def language() -> Lark:
-    """The parser of grammar.lark, built once."""
-    grammar = resources.files(__package__).joinpath("grammar.lark").read_text("utf-8")
-    return Lark(grammar, parser="lalr", lexer="basic", start=["value", "tokens"], transformer=Compiler())
-
-
-def compile_value(tokens: list[Token]) -> Node:
-    """Compile the tokens of one value; raises Fault, and lark's UnexpectedInput where they are none."""
-    parser = language().parse_interactive(start="value")
-    for token in tokens:
-        parser.feed_token(token)
-    return parser.feed_eof(tokens[-1])

@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What may follow a keyword, from its form in words.py: literal words, slots for values, optional parts."""
+"""What may follow a keyword, from its form: words that stand as they are, slots for values, optional parts."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 from .units import NONE, Dim, unit
 
 
 @dataclass(frozen=True, slots=True)
-class Literal:
+class Word:
     """A word or sign that stands as it is."""
 
     text: str
@@ -35,7 +37,7 @@ class Slot:
 
 
 @dataclass(frozen=True, slots=True)
-class Optional:
+class OptionalPart:
     """Parts that may be left out together."""
 
     parts: tuple
@@ -52,16 +54,14 @@ def _slot(text: str) -> Slot:
         return Slot("text", shown)
     if "|" in shown:
         return Slot("choice", shown, choices=tuple(shown.split("|")))
-    if shown == "color":
-        return Slot("color", shown)
-    if shown == "NAME.QUANTITY":
-        return Slot("check", shown)
+    if shown in ("color", "NAME.QUANTITY"):
+        return Slot("color" if shown == "color" else "check", shown)
     return Slot("number", shown, u, dim=dim)
 
 
 @cache
 def alternatives(form: str) -> tuple[tuple, ...]:
-    """A form as alternatives, each a tuple of Literal, Slot and Optional."""
+    """A form as alternatives, each a tuple of Word, Slot and OptionalPart."""
     result, parts, outer = [], [], []
     for part in re.findall(r"<[^>]*>|\[|\]|[^\s\[\]<]+", form):
         if part == "|":
@@ -71,34 +71,58 @@ def alternatives(form: str) -> tuple[tuple, ...]:
             outer.append(parts)
             parts = []
         elif part == "]":
-            outer[-1].append(Optional(tuple(parts)))
+            outer[-1].append(OptionalPart(tuple(parts)))
             parts = outer.pop()
         else:
-            parts.append(_slot(part[1:-1]) if part.startswith("<") else Literal(part))
+            parts.append(_slot(part[1:-1]) if part.startswith("<") else Word(part))
     return (*result, tuple(parts))
 
 
-def literals(form: str) -> frozenset[str]:
-    """Every literal word of a form."""
-
-    def words(parts):
-        for p in parts:
-            if isinstance(p, Literal):
-                yield p.text
-            elif isinstance(p, Optional):
-                yield from words(p.parts)
-
-    return frozenset(w for a in alternatives(form) for w in words(a))
+def pieces(parts: tuple) -> Iterator[Word | Slot]:
+    """Words and slots of an alternative, optional ones among them."""
+    for p in parts:
+        if isinstance(p, OptionalPart):
+            yield from pieces(p.parts)
+        else:
+            yield p
 
 
 def slots(form: str) -> tuple[Slot, ...]:
     """Every slot of a form."""
+    return tuple(p for a in alternatives(form) for p in pieces(a) if isinstance(p, Slot))
 
-    def found(parts):
-        for p in parts:
-            if isinstance(p, Slot):
-                yield p
-            elif isinstance(p, Optional):
-                yield from found(p.parts)
 
-    return tuple(s for a in alternatives(form) for s in found(a))
+@cache
+def literals(form: str) -> frozenset[str]:
+    """Every word of a form that stands as it is."""
+    return frozenset(p.text for a in alternatives(form) for p in pieces(a) if isinstance(p, Word))
+
+
+def write(parts: tuple, values: tuple, number: Callable[[float], str] = repr) -> str:
+    """The text of one alternative with these values, in SI units; optional parts whose values are None are left out."""
+    rest = iter(values)
+
+    def text(p) -> str | None:
+        if isinstance(p, Word):
+            return p.text
+        if isinstance(p, OptionalPart):
+            taken = [text(q) for q in p.parts]
+            return None if None in taken else " ".join(taken)
+        return _value(p, next(rest), number)
+
+    return " ".join(filter(None, map(text, parts)))
+
+
+def _value(slot: Slot, x: Any, number: Callable[[float], str]) -> str | None:
+    """One value as the language has it. Raises ValueError for a text that it cannot hold."""
+    if x is None:
+        return None
+    if slot.kind in ("text", "color"):
+        text = str(x)
+        if any(c in text for c in '"\n\r'):
+            raise ValueError(f"a text of the scene language holds no quote and no line break: {text!r}")
+        return f'"{text}"'
+    if isinstance(x, str):
+        return x
+    unit = "" if slot.unit in ("1", "?") else f" {slot.unit}"
+    return (f"({', '.join(map(number, x))})" if isinstance(x, tuple) else number(x)) + unit

@@ -4,13 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from decimal import Decimal
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
-from . import scene as records
-from .keywords import GLOBALS, KEYWORDS, QUANTITIES
-from .rotation import IDENTITY
-from .scene import Scene, Solid, Vector
+from .keywords import BLOCKS, KEYWORDS, Block
+from .scene import Mesh, Scene
 
 LOCK = "scene.lock.txt"
 
@@ -19,24 +18,35 @@ def lock_text(scene: Scene, meshes: Mapping[Path, str] | None = None) -> str:
     """The scene as a text in SI units whose floats are exact: ``parse_scene(lock_text(s), s.name) == s``.
 
     ``meshes`` are the names of mesh files in the output folder; without it their paths are absolute.
-
     Raises ValueError for a text that the language cannot hold (one with a quote or a line break in it).
     """
+    settings = {name: k.lines(scene) for name, k in KEYWORDS[""].items()}
     lines = [
         f"# {scene.name}: the whole scene as it was run, in SI units, with every default written out.",
         "# Written by mdanim-lammps; it can be run again as it stands.",
         "",
-        f"title {_text(scene.title)}",
-        f"gravity {_vector(scene.gravity)} m/s^2",
+        *(f"{name} {text}" for name, texts in settings.items() if not KEYWORDS[""][name].many for text in texts),
     ]
-    if scene.ground is not None:
-        lines.append(f"ground z {scene.ground!r} m")
-    if scene.walls is not None:
-        lines.append(f"walls {_box(scene.walls)}")
-    blocks = [_control(scene.control), _render(scene.render)]
-    if scene.effects:
-        blocks.append(_block("effects", [(word, switch.value) for word, switch in scene.effects.items()]))
+    for block in reversed(BLOCKS.values()):
+        held = getattr(scene, block.field)
+        for record in held if block.many else (held,):
+            lines += _block(block, _with_mesh(record, meshes or {}))
+    checks = [f"{name} {text}" for name, texts in settings.items() if KEYWORDS[""][name].many for text in texts]
+    return "\n".join([*lines, *(["", *checks] if checks else [])]) + "\n"
+
+
+def _with_mesh(record: Any, meshes: Mapping[Path, str]) -> Any:
+    """The object with the name that its mesh has in the output folder."""
+    shape = getattr(record, "shape", None)
+    return replace(record, shape=replace(shape, path=meshes[shape.path])) if isinstance(shape, Mesh) and meshes else record
+
+
+def _block(block: Block, record: Any) -> list[str]:
+    """Lines of a block, values in one column; none for what the scene does not have."""
+    if block.record is None:
+        settings = [(word, member.value) for word, member in record.items()]
     else:
+<<<<<<< HEAD
         blocks.append(["# effects: all auto"])
     if scene.liquid is not None:
         blocks.append(_liquid(scene.liquid))
@@ -175,3 +185,13 @@ def expect_unit(e: records.Expect) -> str:
     """SI unit of what an expect checks; empty for plain numbers."""
     unit, _ = QUANTITIES[e.subject if e.subject in GLOBALS else "NAME", e.quantity]
     return "" if unit == "1" else unit
+=======
+        settings = (
+            [] if record is None else [(word, text) for word, k in KEYWORDS[block.name].items() for text in k.lines(record)]
+        )
+    if not settings:
+        return []
+    head = " ".join((block.name, *(getattr(record, name) for name in block.names)))
+    width = max(len(word) for word, _ in settings)
+    return ["", head + " {", *(f"  {word:<{width}} {text}" for word, text in settings), "}"]
+>>>>>>> 5805a37 (A keyword is one field of a record: parser, range checks, messages, docs and scene.lock.txt follow from it)

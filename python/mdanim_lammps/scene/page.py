@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 from . import units
-from .keywords import BLOCKS, KEYWORDS, QUANTITIES, Block, Keyword, Rule, syntax, units_shown
+from .keywords import BLOCKS, KEYWORDS
+from .scene import QUANTITIES
+from .schema import Keyword, Rule, syntax, units_shown
 
 _TOP = """\
 # The scene language
@@ -91,19 +93,15 @@ it the check is made at the end of the run, or over the whole run for residuals 
 def language_page() -> str:
     """The whole page."""
     parts = [_TOP]
-    parts += [f"| {kind} | {' '.join(f'`{u}`' for u in names.split())} |\n" for kind, names in units.LISTED]
+    parts += [f"| {kind.split(' ', 1)[1]} | {' '.join(f'`{u}`' for u in names.split())} |\n" for _, kind, names in units.LISTED]
     parts += [_AFTER_UNITS, "\n## Outside of all blocks\n\n", _table(KEYWORDS[""].values())]
     for block in BLOCKS.values():
-        parts += [f"\n## {block.name}\n\n", f"```\n{_head(block)} {{ ... }}\n```\n\n{block.about}\n\n"]
+        parts += [f"\n## {block.name}\n\n", f"```\n{block.head} {{ ... }}\n```\n\n{block.about}\n\n"]
         parts.append(_table(KEYWORDS[block.name].values()))
     parts += ["\n## What `expect` can check\n\n", "| quantity | unit | meaning |\n|---|---|---|\n"]
     parts += [f"| `{k}.{q}` | {u if u != '1' else '-'} | {about} |\n" for (k, q), (u, about) in QUANTITIES.items()]
     parts.append(_END)
     return "".join(parts)
-
-
-def _head(block: Block) -> str:
-    return f"{block.name} {block.head}".rstrip()
 
 
 def _table(keywords) -> str:

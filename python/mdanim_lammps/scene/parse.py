@@ -8,13 +8,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ..errors import Problem, SceneError, Span
-from .build import build
 from .expand import Expander
 from .limits import MOST_BYTES, MOST_BYTES_OF_LOCK
 from .lock import LOCK
 from .scene import Scene
-from .source import Problems, Source, UnreadableFile, read_text
+from .source import Problems, SceneFile, UnreadableFile, read_text
 from .statements import parse
+from .validate import validate
 
 Overrides = Mapping[str, str | float]
 
@@ -33,7 +33,7 @@ def load_scene(path: str | os.PathLike, overrides: Overrides | None = None, stri
         raise SceneError([Problem(e.span, f"{shown} {e}")]) from None
     except OSError as e:
         raise SceneError([Problem(None, f"{shown} cannot be read: {e.strerror}")]) from None
-    return _scene(Source(shown, text, Path(os.path.realpath(file))), Path(shown).stem, overrides, strict)
+    return _scene(SceneFile(shown, text, Path(os.path.realpath(file))), Path(shown).stem, overrides, strict)
 
 
 def parse_scene(
@@ -47,10 +47,10 @@ def parse_scene(
 
     Raises SceneError with every problem of the text; ``name`` stands in for the file name.
     """
-    return _scene(Source(name, text, folder=Path(folder) if folder is not None else None), name, overrides, strict)
+    return _scene(SceneFile(name, text, folder=Path(folder) if folder is not None else None), name, overrides, strict)
 
 
-def _scene(source: Source, name: str, overrides: Overrides | None, strict: bool) -> Scene:
+def _scene(source: SceneFile, name: str, overrides: Overrides | None, strict: bool) -> Scene:
     problems = Problems()
     problems.begin(source)
     if not source.text.strip():
@@ -58,6 +58,6 @@ def _scene(source: Source, name: str, overrides: Overrides | None, strict: bool)
         raise SceneError([Problem(place, f"{source.name} is empty", "a scene has at least an object and a control block")])
     body, shared = parse(source, problems)
     out = Expander(shared, overrides, strict).scene(body)
-    scene = build(out, problems, name, source) if out is not None else None
+    scene = validate(out, problems, name, source) if out is not None else None
     problems.stop()
     return scene

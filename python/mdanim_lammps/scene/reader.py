@@ -1,24 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Walks the tokens of one file and reads one value at a time: where it ends, which of its names are units."""
+"""Reads one value at a time from the tokens of a file, by descent: where it ends, which of its names are units.
+
+    value    = sum [unit {sign term {sign term} unit} [sign term {sign term}]]
+    sum      = term {(+ | -) term}                 unit = factor {(* | /) factor},  factor = NAME [^ [-] NUMBER]
+    term     = signed {(* | / | mod) signed}       signed = {+ | -} power,  power = atom [^ signed]
+    atom     = NUMBER | NAME | NAME ( value {, value} ) | ( value {, value} )
+
+A unit belongs to everything before it, up to a bracket, a comma or the sign after the last unit: ``rho*a*a kg``, ``1 m + 20 cm``.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from lark import Token
-from lark.exceptions import UnexpectedInput
-
+from . import expressions as build
 from . import units
-from .expressions import Node, Rand, compile_value, language
+from .expressions import Node
 from .forms import Slot
-from .limits import DEEPEST_BRACKET
-from .source import Fault, Source
-
-
-def found(t: Token) -> str:
-    """A token for messages."""
-    return {"NEWLINE": "the end of the line", "END": "the end of the file"}.get(t.type, f"'{t}'")
-
+from .limits import DEEPEST_BRACKET, DEEPEST_EXPRESSION
+from .source import Fault, SceneFile
+from .tokens import Token, tokens
 
 ODD = {
     **dict.fromkeys("\u201c\u201d\u201e'", 'use straight double quotes "'),
@@ -35,28 +36,36 @@ ODD = {
 
 
 class Reader:
-    """The tokens of one file; ``at`` is the index of the next one."""
+    """The tokens of one file, made as they are needed; ``at`` is the index of the next one in ``tokens``."""
 
-    def __init__(self, source: Source, names: set[str], sites: Iterator[int]):
+    def __init__(self, source: SceneFile, names: set[str], sites: Iterator[int]):
         self.source, self.names, self.sites = source, names, sites
-        tokens = list(language().lex(source.text))
-        line, column = len(source.lines), len(source.lines[-1]) + 1
-        size = len(source.text)
-        tokens.append(Token("END", "", size, line, column, line, column + 1, size))
-        self.tokens, self.at = tokens, 0
+        self.coming = tokens(source.text)
+        self.tokens: list[Token] = []
+        self.at = 0
 
     @property
     def peek(self) -> Token:
-        return self.tokens[self.at]
+        try:
+            return self.tokens[self.at]
+        except IndexError:
+            return self.ahead(0)
 
     def ahead(self, n: int) -> Token:
-        return self.tokens[min(self.at + n, len(self.tokens) - 1)]
+        while len(self.tokens) <= self.at + n:
+            self.tokens.append(next(self.coming))
+        return self.tokens[self.at + n]
 
     def take(self) -> Token:
-        t = self.tokens[self.at]
+        t = self.peek
         if t.type != "END":
             self.at += 1
         return t
+
+    def forget(self) -> None:
+        """Drop the tokens that were read: nothing goes back behind the beginning of a statement."""
+        del self.tokens[: self.at]
+        self.at = 0
 
     def skip_newlines(self) -> None:
         while self.peek.type == "NEWLINE":
@@ -64,118 +73,168 @@ class Reader:
 
     def expression(self, slot: Slot, stops, more: bool = False) -> Node:
         """Read one value. ``stops``: words that may come next; ``more``: another value may follow."""
-        tokens: list[Token] = []
-        brackets: list[Token] = []
-        wanted, after = "value", "nothing"
+        self.slot, self.stops, self.more = slot, stops, more
+        self.brackets: list[Token] = []
+        self.begin, self.depth = self.at, 0
+        return self._value()
 
-        def push(t: Token, kind: str | None = None) -> None:
-            tokens.append(t if kind is None else Token.new_borrow_pos(kind, str(t), t))
-            self.at += 1
+    # -- the grammar
 
-        while True:
-            t = self.peek
-            kind = t.type
-            inside = bool(brackets)
-            if kind == "NEWLINE" and inside:
-                n = self.ahead(1)
-                if (n.type == "NAME" and wanted != "value" and after != "comma") or n.type in ("RBRACE", "END"):
-                    break
-                self.at += 1
-                continue
-            if wanted == "value":
-                if kind == "NUMBER":
-                    push(t)
-                    wanted, after = "operator", "number"
-                elif kind == "NAME":
-                    if t == "rand":
-                        t = Rand.new_borrow_pos("NAME", "rand", t)
-                        t.site = next(self.sites)
-                    push(t)
-                    wanted, after = "operator", "name"
-                elif kind == "LPAR":
-                    brackets.append(t)
-                    if len(brackets) > DEEPEST_BRACKET:
-                        raise Fault(t, f"more than {DEEPEST_BRACKET} brackets are open here", "split this with let")
-                    push(t)
-                elif kind in ("PLUS", "MINUS"):
-                    push(t)
-                    after = "operator"
-                else:
-                    break
-            elif kind == "NAME":
-                if self._unit_follows(t, slot, stops, more, inside, after):
-                    push(t, "UNIT")
-                    after = "unit"
-                else:
-                    break
-            elif kind == "NUMBER":
-                fraction = t == "1" and self.ahead(1).type == "SLASH" and self.ahead(2).type == "NAME"
-                if fraction and after != "unit" and not (more and not inside and str(self.ahead(2)) not in units.UNITS):
-                    push(t, "ONE")
-                    after = "unit"
-                elif not inside and (more or after == "bracket" or ".." in stops):
-                    break
-                else:
-                    hint = f"write {slot.text}, with commas" if "," in slot.text else "an operator or a comma is missing"
-                    raise Fault(t, f"'{t}' follows another value", hint)
-            elif kind == "LPAR":
-                if after == "name":
-                    brackets.append(t)
-                    push(t)
-                    wanted, after = "value", "operator"
-                elif inside:
-                    raise Fault(t, "an operator is missing before this (", "multiply with *")
-                else:
-                    break
-            elif kind == "RPAR":
-                if not inside:
-                    break
-                brackets.pop()
-                push(t)
-                after = "bracket"
-            elif kind == "COMMA":
-                if not inside:
-                    break
-                push(t)
-                wanted, after = "value", "comma"
-            elif kind in ("STAR", "SLASH") and after == "unit":
-                push(t, "UNIT_" + kind)
-                self._unit_part(t, push)
-            elif kind == "CARET" and after == "unit":
-                push(t)
-                if self.peek.type == "MINUS":
-                    push(self.peek)
-                if self.peek.type != "NUMBER":
-                    raise Fault(self.peek, f"the power of a unit is a number, found {found(self.peek)}")
-                push(self.peek)
-            elif kind == "PLUS_MINUS" and (inside or "+-" not in stops):
-                push(t, "PLUS")
-                tokens.append(Token.new_borrow_pos("MINUS", "-", t))
-                wanted, after = "value", "operator"
-            elif kind in ("PLUS", "MINUS", "STAR", "SLASH", "CARET", "MOD"):
-                if after == "unit" and kind == "MOD":
-                    raise Fault(t, "mod cannot follow a unit", "put the value before it in brackets")
-                push(t)
-                wanted, after = "value", "operator"
-            else:
+    def _next(self, operand: bool = False) -> Token:
+        """The next token; in brackets a value goes on over the end of a line, unless a new statement follows there."""
+        while self.brackets and self.peek.type == "NEWLINE":
+            n = self.ahead(1)
+            if n.type in ("RBRACE", "END") or (n.type == "NAME" and not operand):
                 break
-        self._complete(tokens, brackets, wanted, slot)
-        try:
-            return compile_value(tokens)
-        except UnexpectedInput as e:
-            bad = getattr(e, "token", None) or tokens[-1]
-            raise Fault(
-                bad if bad.type != "$END" else tokens[-1],
-                f"{found(bad)} makes no sense here",
-                "put brackets around values with units",
-            ) from None
+            self.at += 1
+        return self.peek
 
-    def _unit_follows(self, t: Token, slot: Slot, stops, more: bool, inside: bool, after: str) -> bool:
+    def _value(self) -> Node:
+        x = self._sum(self._term())
+        after_unit = False
+        while (u := self._unit(after_unit)) is not None:
+            x, after_unit = build.with_unit(x, *u), True
+            while (sign := self._sign()) is not None:
+                tail = self._sum(self._signed_term(sign))
+                u = self._unit(False)
+                if u is None:
+                    return build.joined(x, tail)
+                x = build.joined(x, build.with_unit(tail, *u))
+        return x
+
+    def _sum(self, x: Node) -> Node:
+        while (sign := self._sign()) is not None:
+            if sign.type == "PLUS_MINUS":
+                sign = Token("PLUS", "+", sign.start, sign.line, sign.column)
+                x = build.binary(x, sign, self._term(build.negative(sign, self._signed())))
+            else:
+                x = build.binary(x, sign, self._term())
+        return x
+
+    def _sign(self) -> Token | None:
+        """The sign before the next term of a sum."""
+        t = self._next()
+        if t.type in ("PLUS", "MINUS") or (t.type == "PLUS_MINUS" and (self.brackets or "+-" not in self.stops)):
+            return self.take()
+        return None
+
+    def _signed_term(self, sign: Token) -> Node:
+        """The first term behind a unit, with its sign."""
+        x = self._term()
+        if sign.type == "PLUS":
+            x.first = sign
+            return x
+        return build.negative(sign, x)
+
+    def _term(self, x: Node | None = None) -> Node:
+        x = x or self._signed()
+        while self._next().type in ("STAR", "SLASH", "MOD"):
+            x = build.binary(x, self.take(), self._signed())
+        return x
+
+    def _signed(self) -> Node:
+        signs = []
+        while self._next(operand=True).type in ("PLUS", "MINUS"):
+            signs.append(self.take())
+        self.depth += 1
+        if max(self.depth, len(signs)) > DEEPEST_EXPRESSION:
+            raise Fault(self.peek, f"this expression has more than {DEEPEST_EXPRESSION} nested steps", "split it with let")
+        x = self._atom()
+        if self._next().type == "CARET":
+            x = build.binary(x, self.take(), self._signed())
+        self.depth -= 1
+        for sign in reversed(signs):
+            if sign.type == "MINUS":
+                x = build.negative(sign, x)
+            x.first = sign
+        return x
+
+    def _atom(self) -> Node:
+        t = self._next(operand=True)
+        if t.type == "NUMBER":
+            return build.number(self.take())
+        if t.type == "NAME":
+            self.take()
+            site = next(self.sites) if t == "rand" else 0
+            if self._next().type != "LPAR":
+                return build.name(t)
+            _, parts, right = self._in_brackets()
+            return build.call(t, parts, right, site)
+        if t.type != "LPAR":
+            raise self._no_value(t)
+        left, parts, right = self._in_brackets()
+        if len(parts) > 1:
+            return build.vector(left, parts, right)
+        x = parts[0]
+        x.first, x.last, x.terms = left, right, ()  # brackets make one term of a sum
+        return x
+
+    def _in_brackets(self) -> tuple[Token, list[Node], Token]:
+        left = self.take()
+        self.brackets.append(left)
+        if len(self.brackets) > DEEPEST_BRACKET:
+            raise Fault(left, f"more than {DEEPEST_BRACKET} brackets are open here", "split this with let")
+        parts = [self._value()]
+        while (t := self._next()).type == "COMMA":
+            self.take()
+            parts.append(self._value())
+        if t.type != "RPAR":
+            line = f" at line {t.line}" if t.line != left.line else ""
+            raise Fault(left, f"this ( is not closed: found {t.found()}{line}", ODD.get(str(t), "") or "add a )")
+        self.brackets.pop()
+        return left, parts, self.take()
+
+    # -- units
+
+    def _unit(self, after_unit: bool) -> tuple[units.Unit, Token] | None:
+        """The unit behind a value, and its last token; None where something else follows."""
+        t, inside = self._next(), bool(self.brackets)
+        if t.type == "NUMBER":
+            fraction = t == "1" and self.ahead(1).type == "SLASH" and self.ahead(2).type == "NAME"
+            if not fraction or after_unit or (self.more and not inside and str(self.ahead(2)) not in units.UNITS):
+                closed = self.at > 0 and self.tokens[self.at - 1].type == "RPAR"
+                if not inside and (self.more or closed or ".." in self.stops):
+                    return None
+                hint = f"write {self.slot.text}, with commas" if "," in self.slot.text else "an operator or a comma is missing"
+                raise Fault(t, f"'{t}' follows another value", hint)
+        elif t.type == "LPAR" and inside:
+            raise Fault(t, "an operator is missing before this (", "multiply with *")
+        elif t.type == "MOD" and after_unit:
+            raise Fault(t, "mod cannot follow a unit", "put the value before it in brackets")
+        elif t.type != "NAME" or not self._unit_follows(t, after_unit):
+            return None
+        unit, last = self._factor(units.ONE, 1)
+        text = str(t)
+        while self._next().type in ("STAR", "SLASH"):
+            operator = self.take()
+            t = self._unit_part(operator)
+            text += f"{operator}{t}"
+            unit, last = self._factor(unit, 1 if operator.type == "STAR" else -1)
+        return units.Unit(text, unit.over, unit.under, unit.dim), last
+
+    def _factor(self, unit: units.Unit, sign: int) -> tuple[units.Unit, Token]:
+        """A unit multiplied by the next one, with its power."""
+        token = last = self.take()
+        known = units.ONE if token == "1" else units.UNITS.get(str(token), units.HOUR)
+        if self._next().type == "CARET":
+            self.take()
+            if self.peek.type == "MINUS":
+                self.take()
+                sign = -sign
+            last = self.take()
+            if last.type != "NUMBER":
+                raise Fault(last, f"the power of a unit is a number, found {last.found()}")
+            if not (last.isascii() and last.isdigit() and 1 <= int(last[:3]) <= 9):
+                raise Fault(last, f"the power of a unit is a whole number from 1 to 9, found {last}")
+            sign *= int(last)
+        return unit.times(known, sign), last
+
+    def _unit_follows(self, t: Token, after_unit: bool) -> bool:
         """Whether a name after a value is its unit (else it is the next word of the setting)."""
-        known = str(t) in units.UNITS
-        if not inside and not known and (more or str(t) in stops):
+        known, inside, slot = str(t) in units.UNITS, bool(self.brackets), self.slot
+        if not inside and not known and (self.more or str(t) in self.stops):
             return False
-        if after == "unit":
+        if after_unit:
             if known:
                 raise Fault(
                     t, f"the unit '{t}' follows another unit", f"write a product of units with *: {self.tokens[self.at - 1]}*{t}"
@@ -193,38 +252,24 @@ class Reader:
             raise Fault(t, f"an operator is missing before '{t}'", "multiply with *")
         raise Fault(t, f"'{t}' is not a unit{what}", units.suggest_unit(str(t), dim))
 
-    def _unit_part(self, operator: Token, push) -> None:
+    def _unit_part(self, operator: Token) -> Token:
         """The unit after * or / of a unit."""
         t = self.peek
-        if t.type != "NAME" or (str(t) not in units.UNITS and not (t == "h" and operator.type == "SLASH")):
-            if t.type == "NAME":
-                raise Fault(t, f"'{t}' is not a unit", units.suggest_unit(str(t)))
-            raise Fault(
-                t,
-                f"a unit is expected after '{operator}', found {found(t)}",
-                "put the value with its unit in brackets to go on calculating: (2 m) * 3",
-            )
-        push(t, "UNIT")
+        if t.type == "NAME" and (str(t) in units.UNITS or (t == "h" and operator.type == "SLASH")):
+            return t
+        if t.type == "NAME":
+            raise Fault(t, f"'{t}' is not a unit", units.suggest_unit(str(t)))
+        hint = "put the value with its unit in brackets to go on calculating: (2 m) * 3"
+        raise Fault(t, f"a unit is expected after '{operator}', found {t.found()}", hint)
 
-    def _complete(self, tokens: list, brackets: list, wanted: str, slot: Slot) -> None:
-        """Refuse a value that breaks off."""
-        t = self.peek
-        if wanted == "value" or not tokens:
-            hint = ODD.get(str(t), "")
-            if t.type == "RPAR" and not brackets:
-                hint = "this ) closes nothing"
-            what = "a vector (x, y, z)" if slot.kind in ("vector", "place") and not tokens else "a number"
-            if tokens:
-                what += f" is missing after '{tokens[-1]}'"
-            else:
-                what += " is expected here"
-            if t.type == "STRING":
-                hint = "leave out the quotes"
-            raise Fault(t, f"{what}, found {found(t)}", hint)
-        if brackets:
-            hint = ODD.get(str(t), "") or "add a )"
-            raise Fault(
-                brackets[-1],
-                f"this ( is not closed: found {found(t)}" + (f" at line {t.line}" if t.line != brackets[-1].line else ""),
-                hint,
-            )
+    def _no_value(self, t: Token) -> Fault:
+        """What is wrong where a value should begin."""
+        read = [u for u in self.tokens[self.begin : self.at] if u.type != "NEWLINE"]
+        what = "a vector (x, y, z)" if self.slot.kind in ("vector", "place") and not read else "a number"
+        what += f" is missing after '{read[-1]}'" if read else " is expected here"
+        hint = ODD.get(str(t), "")
+        if t.type == "STRING":
+            hint = "leave out the quotes"
+        elif t.type == "RPAR" and not self.brackets:
+            hint = "this ) closes nothing"
+        return Fault(t, f"{what}, found {t.found()}", hint)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 
-from .scene import Vector
+from .schema import Vector
 
 
 def rotation_about(axis: Vector, angle: float) -> tuple[Vector, Vector, Vector]:

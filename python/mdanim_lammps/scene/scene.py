@@ -3,134 +3,66 @@
 
 from __future__ import annotations
 
+import math
+import os
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from decimal import Decimal, InvalidOperation
 from enum import Enum
 from pathlib import Path
+from typing import Any, ClassVar
 
 from ..errors import Span
+from .formatting import vector
+from .limits import CONTACT_STIFFNESS, DAMPING, PIXELS, SWEEPS
+from .rotation import IDENTITY, departure, rotation_about, rotation_euler
+from .schema import Codec, Keyword, OneOf, Rule, Vector, Words, setting
+from .shapes import (
+    Box,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Hold,
+    HoldAll,
+    HoldFaces,
+    HoldWithin,
+    Mesh,
+    Shape,
+    Side,  # noqa: F401
+    Sphere,
+    SpringConstant,
+    Torus,
+    Young,
+)
 
-Vector = tuple[float, float, float]
-
-
-# --- shapes: body frame, centre of mass at the origin, axes of revolution along z -------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class Box:
-    """A cuboid."""
-
-    size: Vector
-    """Edge lengths [m]."""
-
-
-@dataclass(frozen=True, slots=True)
-class Sphere:
-    """A ball."""
-
-    radius: float
-    """[m]"""
-
-
-@dataclass(frozen=True, slots=True)
-class Ellipsoid:
-    """An ellipsoid."""
-
-    radii: Vector
-    """Half axes [m]."""
-
-
-@dataclass(frozen=True, slots=True)
-class Cylinder:
-    """A circular cylinder, axis along z."""
-
-    radius: float
-    """[m]"""
-    height: float
-    """[m]"""
-
-
-@dataclass(frozen=True, slots=True)
-class Cone:
-    """A circular cone, apex up (+z); its centre of mass is height/4 above the base."""
-
-    radius: float
-    """Of the base [m]."""
-    height: float
-    """[m]"""
-
-
-@dataclass(frozen=True, slots=True)
-class Torus:
-    """A ring around z."""
-
-    major: float
-    """Radius of the centre line [m]."""
-    minor: float
-    """Radius of the tube [m]."""
-
-
-@dataclass(frozen=True, slots=True)
-class Mesh:
-    """A closed triangle mesh from an STL, OBJ or PLY file; axes as in the file."""
-
-    path: Path
-    """Absolute path."""
-    scale: float = 1.0
-    """Metres per unit of the file."""
-
-
-Shape = Box | Sphere | Ellipsoid | Cylinder | Cone | Torus | Mesh
+BOX = "from <(x0, y0, z0):m> to <(x1, y1, z1):m>"
+"""Two corners of a box of the world, the lower one first."""
+COLOR = 'a CSS name or "#rrggbb". Absent: chosen automatically.'
 
 
 # --- objects ----------------------------------------------------------------------------------------------
 
 
-class Side(Enum):
-    """A face of the bounding box of an object in its own frame."""
+class Orientation(Codec):
+    """An axis and an angle, three angles, or a matrix; the record holds the matrix."""
 
-    MINUS_X, PLUS_X, MINUS_Y, PLUS_Y, MINUS_Z, PLUS_Z = "-x", "+x", "-y", "+y", "-z", "+z"
+    def read(self, k: Keyword, choice: int, values: tuple) -> tuple[Vector, Vector, Vector]:
+        if choice == 1:
+            return rotation_euler(values[0])
+        if choice == 0:
+            axis, angle = values
+            length = math.hypot(*axis)
+            if not 1e-150 < length < 1e150:
+                raise ValueError(f"the axis of a rotation needs a direction, found {vector(axis)}", "e.g. axis (0, 0, 1)", 0)
+            return rotation_about(tuple(c / length for c in axis), angle)
+        if departure(values) > 1e-9:
+            cause = "this matrix is not a rotation: its rows are not orthonormal and right-handed"
+            raise ValueError(cause, "write orientation axis (x, y, z) angle a", None)
+        return values
 
-
-@dataclass(frozen=True, slots=True)
-class HoldFaces:
-    """Particles on these faces (body frame) never move; ``faces x`` is both ``-x`` and ``+x``."""
-
-    sides: tuple[Side, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class HoldAll:
-    """No particle of the object ever moves."""
-
-
-@dataclass(frozen=True, slots=True)
-class HoldWithin:
-    """Particles inside this box (world frame, at the start) never move."""
-
-    low: Vector
-    """[m]"""
-    high: Vector
-    """[m]"""
-
-
-Hold = HoldFaces | HoldAll | HoldWithin
-
-
-@dataclass(frozen=True, slots=True)
-class Young:
-    """Elasticity as Young's modulus."""
-
-    modulus: float
-    """[Pa]"""
-
-
-@dataclass(frozen=True, slots=True)
-class SpringConstant:
-    """Elasticity as the paper writes it: one k for every spring, Wcislo 1999, eq. (3.6)."""
-
-    k: float
-    """[N/m]"""
+    def write(self, k: Keyword, value: Any) -> tuple[int, tuple]:
+        return (0, ((0, 0, 1), 0)) if value == IDENTITY else (2, value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,26 +71,48 @@ class Solid:
 
     name: str
     """``cube`` or ``ball[12]``."""
-    shape: Shape
-    position: Vector
-    """Centre of mass [m]."""
-    rotation: tuple[Vector, Vector, Vector]
+    shape: Shape = setting(
+        None,
+        "Form of the object in its own frame: edge lengths, radii, heights along z. A mesh is a closed STL, OBJ or PLY file, "
+        "beside the scene file; `scale` is metres per unit of the file, default 1.",
+        "sphere 10 cm", Rule.POSITIVE, codec=OneOf(Box, Sphere, Ellipsoid, Cylinder, Cone, Torus, Mesh))  # fmt: skip
+    position: Vector = setting("<(x, y, z):m>", "Centre of mass.", "(0, 0, 1) m")
+    """[m]"""
+    rotation: tuple[Vector, Vector, Vector] = setting(
+        "axis <(x, y, z)> angle <a:rad> | euler <(rx, ry, rz):rad> | matrix <(xx, xy, xz)> <(yx, yy, yz)> <(zx, zy, zz)>",
+        "Rotation about the centre of mass. `euler` rotates about x, then y, then z, all fixed axes. `matrix` gives the rows of "
+        "the rotation matrix (world = matrix * body); `scene.lock.txt` uses it.",
+        "axis (1, 1, 0) angle 20 deg", name="orientation", absent=IDENTITY, codec=Orientation())  # fmt: skip
     """Rotation matrix, rows; world = rotation @ body."""
-    elasticity: Young | SpringConstant
-    mass: float | None = None
+    elasticity: Young | SpringConstant = setting(
+        None, "Young's modulus; or the paper's one k for every spring, Wcislo 1999, eq. (3.6).",
+        "200 kPa", Rule.POSITIVE, codec=OneOf(Young, SpringConstant))  # fmt: skip
+    mass: float | None = setting(
+        "<m:kg>", "Mass of the whole object.", "2 kg", Rule.POSITIVE, default=None, one_of=("mass", "density"))  # fmt: skip
     """[kg]; exactly one of mass and density is given."""
-    density: float | None = None
+    density: float | None = setting(
+        "<rho:kg/m^3>", "Mass per volume.", "900 kg/m^3", Rule.POSITIVE, default=None, one_of=("mass", "density"))  # fmt: skip
     """[kg/m^3]"""
-    damping: float = 0.0
+    damping: float = setting(
+        "<zeta>", "Internal damping, as a fraction of critical damping in each spring.",
+        "0.05", Rule.NOT_NEGATIVE, default=0.0, limit=DAMPING)  # fmt: skip
     """Fraction of critical damping at the bond level [-]."""
-    velocity: Vector = (0.0, 0.0, 0.0)
+    velocity: Vector = setting("<(vx, vy, vz):m/s>", "Velocity at the start.", "(0, 0, -1) m/s", default=(0.0, 0.0, 0.0))
     """[m/s]"""
-    spin: Vector = (0.0, 0.0, 0.0)
+    spin: Vector = setting(
+        "<(wx, wy, wz):rad/s>", "Angular velocity at the start, about the axes of the world.",
+        "(0, 0, 2) rad/s", default=(0.0, 0.0, 0.0))  # fmt: skip
     """Angular velocity, world frame [rad/s]."""
-    drag: float = 0.0
+    drag: float = setting(
+        "<lambda:N*s/m>", "Air drag of the whole object, F = -lambda v, eq. (3.9).",
+        "0.5 N*s/m", Rule.NOT_NEGATIVE, default=0.0)  # fmt: skip
     """lambda of the whole object, eq. (3.9) [N*s/m]."""
-    hold: tuple[Hold, ...] = ()
-    color: str | None = None
+    hold: tuple[Hold, ...] = setting(
+        None,
+        "Particles that never move: both faces across an axis of the object, one face, all of them (a wedge, an obstacle), or "
+        "those inside a box of the world at the start.", "faces x", default=(), many=True,
+        codec=OneOf(HoldFaces, HoldAll, HoldWithin))  # fmt: skip
+    color: str | None = setting("<color>", f"Colour in pictures: {COLOR}", "steelblue", default=None)
     """``#rrggbb``; None lets the renderer choose."""
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
     """Where each keyword's value stands; ``spans["object"]`` is the object's name."""
@@ -178,24 +132,40 @@ class Liquid:
     """The one liquid of a scene."""
 
     name: str
-    low: Vector
+    low: Vector = setting(
+        BOX, "Solid floor and side walls; for objects the walls go on upward.",
+        "from (-1, -1, 0) m to (1, 1, 1.2) m", name="basin", also=("high",))  # fmt: skip
     """Lower corner of the basin [m]."""
     high: Vector
     """Upper corner of the basin [m]."""
-    density: float
+    density: float = setting("<rho:kg/m^3>", "Mass per volume.", "1000 kg/m^3", Rule.POSITIVE)
     """[kg/m^3]"""
-    volume: float | None = None
+    volume: float | None = setting(
+        "<V:m^3>", "Volume, rounded to whole cells.",
+        "2 m^3", Rule.POSITIVE, default=None, one_of=("volume", "level"))  # fmt: skip
     """[m^3]; exactly one of volume and level is given."""
-    level: float | None = None
+    level: float | None = setting(
+        "<z:m>", "Height of the surface at the start.", "0.5 m", default=None, one_of=("volume", "level"))  # fmt: skip
     """Initial height of the surface [m]."""
-    drag: float | None = None
-    """gamma [1/s]; None is ``auto``."""
-    model: LiquidModel = LiquidModel.SURFACE
-    sweeps: int | None = None
-    """Automaton sweeps per update; None is ``auto``."""
-    fill: tuple[Vector, Vector] | None = None
+    fill: tuple[Vector, Vector] | None = setting(
+        BOX, "Part of the basin that the liquid starts in, behind a dam that is gone at once. Absent: all of it.",
+        "from (-1, -1, 0) m to (0, 1, 1.2) m", default=None)  # fmt: skip
     """Lower and upper corner of the part of the basin that the liquid starts in [m]; None is all of it."""
-    color: str | None = None
+    drag: float | None = setting(
+        "auto | <gamma:1/s>",
+        "Immersed solids feel F = -gamma rho V v with the immersed volume V; `auto` is sqrt(g/L) for a body of size L.",
+        "4 1/s", Rule.NOT_NEGATIVE, default=None)  # fmt: skip
+    """gamma [1/s]; None is ``auto``."""
+    model: LiquidModel = setting(
+        None,
+        "`surface`: draft after Archimedes, occupancy by hexahedra, level rule. `pressure`: the same with the liquid's pressure "
+        "on every outer face, so that an open hull floats by the air in it. `paper`: the literal rules of the paper, with a "
+        "warning: not Archimedes, objects denser than about 0.4 of the liquid sink.",
+        "surface", default=LiquidModel.SURFACE, codec=Words(LiquidModel))  # fmt: skip
+    sweeps: int | None = setting(
+        "auto | <n>", "Sweeps of the automaton per update.", "4", Rule.COUNT, default=None, limit=SWEEPS)  # fmt: skip
+    """Automaton sweeps per update; None is ``auto``."""
+    color: str | None = setting("<color>", f"Colour in pictures: {COLOR}", "deepskyblue", default=None)
     """``#rrggbb``; None lets the renderer choose."""
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
 
@@ -204,6 +174,7 @@ class Liquid:
 class Walls:
     """A box that objects never leave."""
 
+    FORMS: ClassVar = (BOX,)
     low: Vector
     """[m]"""
     high: Vector
@@ -242,24 +213,70 @@ class Switch(Enum):
     AUTO = "auto"
 
 
+class AccuracyOrError(Codec):
+    """A class, or the error that is aimed at as a fraction."""
+
+    FORM = 'preview | balanced | reference | <"error p %">'
+
+    def read(self, k: Keyword, choice: int, values: tuple) -> Accuracy | float:
+        if not values:
+            return list(Accuracy)[choice]
+        match = re.fullmatch(r"\s*error\s+([0-9.eE+-]+)\s*%\s*", values[0])
+        try:
+            percent = Decimal(match[1]) if match else Decimal(0)
+        except InvalidOperation:
+            percent = Decimal(0)
+        if not 0 < percent < 100 or float(percent / 100) == 0.0:
+            classes = ", ".join(a.value for a in Accuracy)
+            cause = f'accuracy is {classes} or an error between 0 and 100 %, found "{values[0]}"'
+            raise ValueError(cause, 'write accuracy "error 2 %"', 0)
+        return float(percent / 100)
+
+    def write(self, k: Keyword, value: Any) -> tuple[int, tuple]:
+        if isinstance(value, Accuracy):
+            return list(Accuracy).index(value), ()
+        return len(Accuracy), (f"error {Decimal(repr(value)) * 100} %",)
+
+
+class SaveAndPrecision(Codec):
+    """Which particles are saved, and whether in single precision."""
+
+    def read(self, k: Keyword, choice: int, values: tuple) -> tuple[Save, bool]:
+        return Save(values[0]), values[1] == "single"
+
+    def write(self, k: Keyword, value: Any) -> tuple[int, tuple]:
+        return 0, (value[0].value, "single" if value[1] else "double")
+
+
 @dataclass(frozen=True, slots=True)
 class Control:
     """Duration, frames, accuracy: everything that is neither an object nor a picture."""
 
-    time: float
-    """Simulated duration [s]."""
-    frames: float = 30.0
-    """Frames per simulated second [1/s]."""
-    timestep: float | None = None
+    time: float = setting("<T:s>", "Simulated duration.", "3 s", Rule.POSITIVE)
+    """[s]"""
+    frames: float = setting("<n:fps>", "Frames per simulated second.", "25 fps", Rule.POSITIVE, default=30.0)
+    """[1/s]"""
+    timestep: float | None = setting(
+        "auto | <dt:s>", "`auto` is certified before the run; a number above the bound is refused.",
+        "0.1 ms", Rule.POSITIVE, default=None)  # fmt: skip
     """[s]; None is ``auto``."""
-    resolution: float | None = None
+    resolution: float | None = setting("auto | <h:m>", "Particle spacing.", "2 cm", Rule.POSITIVE, default=None)
     """Particle spacing [m]; None is ``auto``."""
-    accuracy: Accuracy | float = Accuracy.BALANCED
+    accuracy: Accuracy | float = setting(
+        AccuracyOrError.FORM, "How finely objects are resolved, or the error that is aimed at.",
+        '"error 2 %"', default=Accuracy.BALANCED, codec=AccuracyOrError())  # fmt: skip
     """A class, or a target error as a fraction (``error 2 %`` is 0.02)."""
-    contact_stiffness: float = 1.0
+    contact_stiffness: float = setting(
+        "<factor>",
+        "What objects, ground and walls push back with, over E h, the stiffness of the material behind a surface; from 0.1 to "
+        "100. The stiffer it is, the less objects sink into each other, and the shorter time steps get.",
+        "4", Rule.POSITIVE, default=1.0, limit=CONTACT_STIFFNESS)  # fmt: skip
     """What objects and walls push back with, over E h [-]."""
-    seed: int = 1
-    save: Save = Save.ALL
+    seed: int = setting("<n>", "Seed of `rand` and of the liquid.", "7", Rule.WHOLE, default=1)
+    save: Save = setting(
+        "<all|boundary> [<single|double>]",
+        "Which particles the trajectory holds, and its precision; the size is printed before the run.",
+        "boundary single", default=Save.ALL, also=("single",), codec=SaveAndPrecision())  # fmt: skip
     single: bool = False
     """Trajectory in single precision."""
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
@@ -269,6 +286,8 @@ class Control:
 class Camera:
     """One point of the camera's path."""
 
+    FORMS: ClassVar = ("[<T:s>] from <(x, y, z):m> look <(x, y, z):m or NAME> [up <(x, y, z)>]",)
+    ORDER: ClassVar = ("time", "eye", "look", "up")
     eye: Vector
     """[m]"""
     look: Vector | str
@@ -278,17 +297,68 @@ class Camera:
     up: Vector = (0.0, 0.0, 1.0)
 
 
+class MovieName(Codec):
+    """A file below the output folder, and none of the run's own."""
+
+    def read(self, k: Keyword, choice: int, values: tuple) -> str:
+        (name,), path, cause = values, Path(values[0]), ""
+        if not name.isprintable():
+            cause = "the name of a movie holds no characters that cannot be printed"
+        elif path.is_absolute() or ".." in path.parts:
+            cause = "the movie lies outside of the output folder"
+        elif path.suffix.lower() != ".mp4" or max(len(os.fsencode(part)) for part in path.parts) > 255:
+            cause = "a movie is written as .mp4"
+        if cause:
+            shown = "".join(c if c.isprintable() else "?" for c in name)
+            raise ValueError(f"{cause}: '{shown}'", 'write a name inside it, e.g. movie "ball.mp4"', 0)
+        return name
+
+
 @dataclass(frozen=True, slots=True)
 class Render:
     """How the pictures look; every None is chosen automatically."""
 
-    size: tuple[int, int] = (1280, 720)
-    movie: str | None = None
-    background: str | None = None
-    camera: tuple[Camera, ...] = ()
-    liquid: str = "smooth"
-    """``smooth`` or ``cells``: how the surface of the liquid is drawn."""
+    size: tuple[int, int] = setting(
+        "<(w, h)>", "Width and height of the pictures in pixels.",
+        "(1920, 1080)", Rule.COUNT, default=(1280, 720), limit=PIXELS)  # fmt: skip
+    movie: str | None = setting(
+        '<"file.mp4">', "Name of the movie inside the output folder. Absent: `movie.mp4`.",
+        '"ball.mp4"', default=None, codec=MovieName())  # fmt: skip
+    background: str | None = setting("<color>", f"Background: {COLOR}", "white", default=None)
+    liquid: str = setting(
+        "<smooth|cells>",
+        "`smooth`: the surface of the liquid as a smooth sheet. `cells`: the columns of the automaton as they are.",
+        "cells", default="smooth")  # fmt: skip
+    camera: tuple[Camera, ...] = setting(
+        None,
+        "Where the camera stands and what it looks at; several lines with times T make a smooth path. `look NAME` follows an "
+        "object. Absent: chosen so that everything is seen.",
+        "from (4, -4, 2) m look (0, 0, 0.5) m", default=(), many=True, codec=OneOf(Camera))  # fmt: skip
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+
+
+QUANTITIES = {
+    **{
+        ("NAME", f"{what}.{axis}"): (u, f"{about}, {axis}")
+        for what, u, about in (("position", "m", "centre of mass"), ("velocity", "m/s", "velocity of the centre of mass"))
+        for axis in "xyz"
+    },
+    ("NAME", "draft"): ("m", "immersed depth of an object, from the surface to its lowest point; needs a liquid"),
+    ("NAME", "immersed"): ("1", "share of an object's volume below the surface; needs a liquid"),
+    ("NAME", "strain.max"): ("1", "largest relative change of length of a spring"),
+    ("liquid", "volume"): ("m^3", "volume of the liquid"),
+    ("liquid", "residual"): ("1", "whole cells gained or lost"),
+    ("liquid", "level"): ("m", "mean height of the surface"),
+    ("energy", "residual"): ("1", "relative error of the energy ledger"),
+    ("penetration", "max"): ("m", "deepest overlap of two objects"),
+}
+"""What ``expect`` can check: (subject, quantity) to (unit, meaning); NAME stands for any object."""
+
+IMMERSION = ("draft", "immersed")
+"""Quantities of an object that need a liquid."""
+
+GLOBALS = ("liquid", "energy", "penetration")
+"""Subjects of ``expect`` that are no objects."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -307,6 +377,20 @@ class Expect:
     """[s]; None is the end of the run (``strain.max``, ``penetration.max``, residuals: the whole run)."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
+    @property
+    def unit(self) -> str:
+        """SI unit of what is checked; empty for plain numbers."""
+        unit, _ = QUANTITIES[self.subject if self.subject in GLOBALS else "NAME", self.quantity]
+        return "" if unit == "1" else unit
+
+
+class Check(Codec):
+    """A self-check; its values are read in validate.py, for their unit is that of the quantity."""
+
+    def write(self, k: Keyword, value: Any) -> tuple[int, tuple]:
+        numbers = (f"{x!r} {value.unit}".rstrip() for x in (value.value, value.tolerance))
+        return 0, (f"{value.subject}.{value.quantity}", value.time, *numbers)
+
 
 @dataclass(frozen=True, slots=True)
 class Scene:
@@ -315,18 +399,27 @@ class Scene:
     name: str
     """Stem of the file name: ``beam`` for ``beam.txt``."""
     control: Control
-    title: str = ""
-    gravity: Vector = (0.0, 0.0, 0.0)
+    title: str = setting('<"text">', "Title of the scene, shown by `check` and in the movie.", '"Cube on a beam"', default="")
+    gravity: Vector = setting(
+        "<(gx, gy, gz):m/s^2>",
+        "Acceleration of free fall. Absent or zero: no gravity effect at all. With a liquid it must point along -z.",
+        "(0, 0, -9.81) m/s^2", default=(0.0, 0.0, 0.0))  # fmt: skip
     """[m/s^2]"""
     solids: tuple[Solid, ...] = ()
     liquid: Liquid | None = None
-    ground: float | None = None
+    ground: float | None = setting("z <h:m>", "A floor plane at height h. Absent: no floor.", "z 0 m", default=None)
     """Height of the ground plane [m]."""
-    walls: Walls | None = None
+    walls: Walls | None = setting(
+        None, "A box that objects never leave. Absent: no walls.",
+        "from (-2, -2, 0) m to (2, 2, 3) m", default=None, codec=OneOf(Walls))  # fmt: skip
     effects: Mapping[str, Switch] = field(default_factory=dict)
     """Only what ``effects { }`` says; everything else is ``auto``."""
     render: Render = Render()
-    expects: tuple[Expect, ...] = ()
+    expects: tuple[Expect, ...] = setting(
+        "<NAME.QUANTITY> [at <T:s>] = <value:?> [+- <tolerance:?>]",
+        "A self-check, evaluated after the run; a miss is exit code 6. Without `at`: the end of the run, and the whole run for "
+        "residuals and maxima. Without `+-`: exactly.",
+        "ball.position.z at 1 s = 0.1 m +- 1 cm", name="expect", default=(), many=True, codec=Check())  # fmt: skip
     path: Path | None = field(default=None, compare=False)
     """The file that was read, absolute."""
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)

@@ -9,22 +9,23 @@ from pathlib import Path
 
 from ..errors import Problem, SceneError, Span
 from .limits import MOST_PROBLEMS
+from .tokens import Token
 
 
 class Fault(Exception):
-    """Something wrong at a token; whoever knows the file turns it into a Problem."""
+    """Something wrong at a token; the reader of the file turns it into a Problem."""
 
-    def __init__(self, token, message: str, hint: str = "", last=None):
+    def __init__(self, token: Token, message: str, hint: str = "", last: Token | None = None):
         super().__init__(message)
         self.token, self.message, self.hint, self.last = token, message, hint, last or token
 
 
 class Silent(Fault):
-    """Follows from something that was told already."""
+    """Follows from a problem that was reported already."""
 
 
 @dataclass(eq=False)
-class Source:
+class SceneFile:
     """One file of a scene."""
 
     name: str
@@ -42,16 +43,16 @@ class Source:
         if self.folder is None:
             self.folder = self.path.parent if self.path else Path.cwd()
 
-    def span(self, first, last=None) -> Span:
+    def span(self, first: Token, last: Token | None = None) -> Span:
         """The stretch from one token to another (cut at the end of the line of the first)."""
         line = self.lines[first.line - 1] if first.line <= len(self.lines) else ""
         last = last or first
-        end = last.end_column if last.end_line == first.line else len(line) + 1
+        end = last.column + len(last) if last.line == first.line else len(line) + 1
         return Span(self.name, first.line, first.column, max(1, end - first.column), line, self.included_from)
 
-    def excerpt(self, first, last) -> str:
+    def excerpt(self, first: Token, last: Token) -> str:
         """The text from one token to another, on one line."""
-        return self.text[first.start_pos : last.end_pos].replace("\n", " ")
+        return self.text[first.start : last.end].replace("\n", " ")
 
 
 class UnreadableFile(ValueError):
@@ -107,15 +108,15 @@ def _place(shown: str, data: bytes, at: int) -> Span:
 
 
 class Problems:
-    """Everything found so far; one problem per key, so that a repeat tells its trouble once."""
+    """Everything found so far; one problem per key, so that a repeat reports a problem once."""
 
     def __init__(self):
         self.found: list[Problem] = []
         self._keys = set()
         self._files: list[str] = []
 
-    def begin(self, source: Source) -> None:
-        """Tell the main file: its problems come first."""
+    def begin(self, source: SceneFile) -> None:
+        """Name the main file: its problems come first."""
         self._files.append(source.name)
 
     def add(self, span: Span | None, message: str, hint: str = "", severity: str = "error", key=None) -> None:
@@ -127,7 +128,7 @@ class Problems:
             if span and span.file not in self._files:
                 self._files.append(span.file)
 
-    def fault(self, source: Source, fault: Fault, where: str = "", key=None) -> None:
+    def fault(self, source: SceneFile, fault: Fault, where: str = "", key=None) -> None:
         """Note a Fault of a file."""
         if not isinstance(fault, Silent):
             self.add(source.span(fault.token, fault.last), fault.message + where, fault.hint, key=key)

@@ -9,15 +9,16 @@ from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
 
-from lark import Token
-
 from .expressions import RESERVED, Node
-from .forms import Literal, Optional, Slot, alternatives, literals
-from .keywords import BLOCKS, GLOBALS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, SYNONYMS, Keyword, did_you_mean, example, nearest
+from .forms import OptionalPart, Slot, Word, alternatives, literals, pieces
+from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, SYNONYMS, did_you_mean, example, nearest
 from .limits import DEEPEST_INCLUDE, DEEPEST_REPEAT, MOST_BYTES, MOST_FILES
-from .reader import ODD, Reader, found
-from .source import Fault, Problems, Source, UnreadableFile, read_text
-from .tree import Broken, Entry, Group, Let, Name, Repeat, Value
+from .reader import ODD, Reader
+from .scene import GLOBALS
+from .schema import Keyword
+from .source import Fault, Problems, SceneFile, UnreadableFile, read_text
+from .tokens import Token
+from .tree import Group, Let, Name, Repeat, SettingNode, UnreadableStatement, Value
 
 
 class Unclosed(Exception):
@@ -44,19 +45,19 @@ class Shared:
     """A file or a repeat could not be read, so that names may be missing that are not to blame."""
 
 
-def parse(source: Source, problems: Problems) -> tuple[list, Shared]:
+def parse(source: SceneFile, problems: Problems) -> tuple[list, Shared]:
     """All statements of a scene, includes spliced in; what is wrong goes into ``problems``."""
     shared = Shared(problems)
     return Parser(source, shared).body("", None, 0), shared
 
 
-def parse_override(source: Source, problems: Problems) -> Node | None:
+def parse_override(source: SceneFile, problems: Problems) -> Node | None:
     """The value of ``--set name=value``; None after a problem."""
     parser = Parser(source, Shared(problems, sites=count(2**32)))
     try:
         node = parser.expression(Slot("let", ""), frozenset())
         if parser.peek.type not in ("END", "NEWLINE"):
-            raise Fault(parser.peek, f"{found(parser.peek)} cannot follow the value")
+            raise Fault(parser.peek, f"{parser.peek.found()} cannot follow the value")
         return node
     except Fault as fault:
         problems.fault(source, fault)
@@ -69,7 +70,7 @@ def parse_override(source: Source, problems: Problems) -> Node | None:
 class Parser(Reader):
     """Reads one file into statements."""
 
-    def __init__(self, source: Source, shared: Shared, chain: tuple[Path, ...] = ()):
+    def __init__(self, source: SceneFile, shared: Shared, chain: tuple[Path, ...] = ()):
         super().__init__(source, shared.names, shared.sites)
         self.shared = shared
         self.chain = (*chain, source.path) if source.path else chain
@@ -89,9 +90,8 @@ class Parser(Reader):
             t = self.peek
             if t.type == "END":
                 if opened is not None:
-                    self.problem(
-                        Fault(opened, f"{title}, opened at line {opened.line}, is never closed", "add a } where it ends")
-                    )
+                    cause = f"{title}, opened at line {opened.line}, is never closed"
+                    self.problem(Fault(opened, cause, "add a } where it ends"))
                 return result
             if t.type == "RBRACE":
                 self.take()
@@ -99,28 +99,26 @@ class Parser(Reader):
                     return result
                 self.problem(Fault(t, "this } closes nothing", "remove it, or look for a missing { above"))
                 continue
+            if opened is None:
+                self.forget()
             start = self.start = self.at
             try:
                 result += self.statement(block, opened, repeats)
             except Fault as fault:
                 self.problem(fault)
                 self.shared.incomplete |= self.tokens[start] in ("include", "repeat")
-                word, name = self.tokens[start], self.tokens[min(start + 1, len(self.tokens) - 1)]
+                self.at = start
+                word, name = self.peek, self.ahead(1)
                 self.skip_statement(start, block, fault.token)
                 known = [*KEYWORDS[block], *BLOCKS, *STATEMENTS]
-                result.append(Broken(nearest(str(word), known) or str(word), str(name) if word == "let" else ""))
+                result.append(UnreadableStatement(nearest(str(word), known) or str(word), str(name) if word == "let" else ""))
             except Unclosed as trouble:
                 self.at = start
                 if opened is None:
                     raise
-                self.problem(
-                    Fault(
-                        opened,
-                        f"{title}, opened at line {opened.line}, is not closed before "
-                        f"'{trouble.token}' at line {trouble.token.line}",
-                        "add a } between them",
-                    )
-                )
+                word = trouble.token
+                cause = f"{title}, opened at line {opened.line}, is not closed before '{word}' at line {word.line}"
+                self.problem(Fault(opened, cause, "add a } between them"))
                 return result
 
     def skip_statement(self, start: int, block: str, bad: Token | None = None) -> None:
@@ -156,18 +154,14 @@ class Parser(Reader):
     def word(self) -> Token:
         """A word, hyphens included (``air-drag``)."""
         first = last = self.take()
-        while (
-            self.peek.type == "MINUS"
-            and self.peek.start_pos == last.end_pos
-            and self.ahead(1).type == "NAME"
-            and self.ahead(1).start_pos == self.peek.end_pos
-        ):
+        while self.peek.type == "MINUS" and self.peek.start == last.end:
+            if self.ahead(1).type != "NAME" or self.ahead(1).start != self.peek.end:
+                break
             self.take()
             last = self.take()
         if last is first:
             return first
-        text = self.source.text[first.start_pos : last.end_pos]
-        return Token("NAME", text, first.start_pos, first.line, first.column, last.end_line, last.end_column, last.end_pos)
+        return Token("NAME", self.source.text[first.start : last.end], first.start, first.line, first.column)
 
     def opens_block(self) -> bool:
         """Whether the next tokens look like the head of a block."""
@@ -179,7 +173,7 @@ class Parser(Reader):
             raise Fault(t, "this { belongs to no block", "a block begins with a word, e.g. object NAME {")
         if t.type != "NAME":
             hint = ODD.get(str(t), "")
-            raise Fault(t, f"a word of the language is expected here, found {found(t)}", hint)
+            raise Fault(t, f"a word of the language is expected here, found {t.found()}", hint)
         word = self.word()
         if word == "let":
             return [self.let(word)]
@@ -196,7 +190,7 @@ class Parser(Reader):
         return self.unknown(word, block, opened, repeats)
 
     def unknown(self, word: Token, block: str, opened: Token | None, repeats: int) -> list:
-        """A word that has no meaning here: tell it, and read on with what was most likely meant."""
+        """A word that has no meaning here: report it, and read on with what was most likely meant."""
         here = [*KEYWORDS[block], *(() if block else (*BLOCKS, *STATEMENTS))]
         homes = [b for b in KEYWORDS if word in KEYWORDS[b]]
         if "" in homes and opened is not None and self._first_on_line(word) and word.column <= opened.column:
@@ -221,7 +215,7 @@ class Parser(Reader):
         if guess in KEYWORDS[block] and not self.opens_block():
             return [self.entry(word, KEYWORDS[block][guess], repeats)]
         self.skip_statement(self.start, block)
-        return [Broken(guess or str(word))]
+        return [UnreadableStatement(guess or str(word))]
 
     def _first_on_line(self, t: Token) -> bool:
         return not self.source.lines[t.line - 1][: t.column - 1].strip()
@@ -234,7 +228,7 @@ class Parser(Reader):
             self.take()
             return
         missing = Fault(
-            self.tokens[at], f"a {{ is missing after {after}, found {found(self.tokens[at])}", "a block stands in braces"
+            self.tokens[at], f"a {{ is missing after {after}, found {self.tokens[at].found()}", "a block stands in braces"
         )
         if str(self.peek) not in settings:
             self.at = at
@@ -242,20 +236,21 @@ class Parser(Reader):
         self.problem(missing)
 
     def group(self, word: Token, block: str, repeats: int) -> Group:
-        if repeats and block != "object":
+        if repeats and not BLOCKS[block].many:
             raise Fault(word, f"{block} cannot stand in a repeat", "only objects, expect lines and lets are repeated")
-        name = None
-        if BLOCKS[block].head:
+        kind, names = BLOCKS[block], []
+        for _ in kind.names:
             if self.peek.type != "NAME":
-                raise Fault(self.peek, f"a name is missing after {block}, found {found(self.peek)}", f"e.g. {block} ball {{")
-            name = self.name()
-            if name.index is not None and block != "object":
+                hint = f"e.g. {block} {' '.join(('ball', 'floor')[: len(kind.names)])} {{"
+                raise Fault(self.peek, f"a name is missing after {block}, found {self.peek.found()}", hint)
+            names.append(name := self.name())
+            if name.index is not None and not kind.indexed:
                 raise Fault(name.token, f"only objects have an index, found {block} {name.token}[...]", last=name.last)
-        elif self.peek.type == "NAME":
-            raise Fault(self.peek, f"{block} has no name, found {found(self.peek)}", f"write {block} {{ ... }}")
-        title = f"{block} {name.token}" if name else block
+        if not names and self.peek.type == "NAME":
+            raise Fault(self.peek, f"{block} has no name, found {self.peek.found()}", f"write {block} {{ ... }}")
+        title = " ".join((block, *(name.token for name in names)))
         self.brace(title, KEYWORDS[block])
-        return Group(self.source, word, block, name, self.body(block, word, 0, title))
+        return Group(self.source, word, block, tuple(names), self.body(block, word, 0, title))
 
     def name(self) -> Name:
         """NAME or NAME[index]."""
@@ -267,9 +262,9 @@ class Parser(Reader):
         last = self.peek
         if last.type == "COMMA":
             hint = f"make one number of them, e.g. {token}[100*i + j]"
-            raise Fault(last, f"{token}[...] has one index, found {found(last)}", hint)
+            raise Fault(last, f"{token}[...] has one index, found {last.found()}", hint)
         if last.type != "RSQB":
-            raise Fault(last, f"a ] is missing after the index of {token}, found {found(last)}", f"write {token}[1]")
+            raise Fault(last, f"a ] is missing after the index of {token}, found {last.found()}", f"write {token}[1]")
         self.take()
         return Name(token, last, index)
 
@@ -278,7 +273,7 @@ class Parser(Reader):
     def new_name(self, what: str) -> Token:
         t = self.peek
         if t.type not in ("NAME", "MOD"):
-            raise Fault(t, f"a name is missing after {what}, found {found(t)}", f"e.g. {STATEMENTS[what][0]}")
+            raise Fault(t, f"a name is missing after {what}, found {t.found()}", f"e.g. {STATEMENTS[what][0]}")
         if t in RESERVED:
             raise Fault(t, f"'{t}' is a word of the language and cannot be a name", "take another name")
         self.shared.names.add(str(t))
@@ -288,7 +283,7 @@ class Parser(Reader):
         name = self.new_name("let")
         self.shared.lets.setdefault(str(name), name.line)
         if self.peek.type != "EQUAL":
-            raise Fault(self.peek, f"an = is missing after let {name}, found {found(self.peek)}", f"write let {name} = 3")
+            raise Fault(self.peek, f"an = is missing after let {name}, found {self.peek.found()}", f"write let {name} = 3")
         self.take()
         node = self.expression(Slot("let", str(name)), frozenset())
         self.end_of_statement("let", ())
@@ -298,20 +293,13 @@ class Parser(Reader):
         if repeats == DEEPEST_REPEAT:
             raise Fault(word, f"more than {DEEPEST_REPEAT} repeats stand inside each other")
         variable = self.new_name("repeat")
+        way_out = f"write repeat {variable} in 1 .. 10 {{"
         if self.peek != "in":
-            raise Fault(
-                self.peek,
-                f"'in' is missing after repeat {variable}, found {found(self.peek)}",
-                f"write repeat {variable} in 1 .. 10 {{",
-            )
+            raise Fault(self.peek, f"'in' is missing after repeat {variable}, found {self.peek.found()}", way_out)
         self.take()
         low = self.expression(Slot("number", "first"), frozenset([".."]))
         if self.peek.type != "DOTS":
-            raise Fault(
-                self.peek,
-                f"'..' is missing in repeat {variable}, found {found(self.peek)}",
-                f"write repeat {variable} in 1 .. 10 {{",
-            )
+            raise Fault(self.peek, f"'..' is missing in repeat {variable}, found {self.peek.found()}", way_out)
         self.take()
         high = self.expression(Slot("number", "last"), frozenset())
         title = f"repeat {variable}"
@@ -342,7 +330,7 @@ class Parser(Reader):
             reason = e.strerror if isinstance(e, OSError) else str(e)
             raise Fault(t, f"cannot include {t}: {path} {reason}", "the name is relative to this file") from None
         shown = str(Path(self.source.name).parent / file)
-        inner = Source(shown, text, path, (*self.source.included_from, self.source.span(word, t)))
+        inner = SceneFile(shown, text, path, (*self.source.included_from, self.source.span(word, t)))
         parser = Parser(inner, self.shared, self.chain)
         try:
             return parser.body(block, None, repeats)
@@ -352,26 +340,26 @@ class Parser(Reader):
 
     # -- settings
 
-    def entry(self, word: Token, keyword: Keyword, repeats: int) -> Entry:
+    def entry(self, word: Token, keyword: Keyword, repeats: int) -> SettingNode:
         if repeats and not keyword.many:
             raise Fault(word, f"{keyword.name} cannot stand in a repeat", "it is given once")
         if self.peek.type == "EQUAL" or self.peek == ":":
             raise Fault(self.peek, f"no '{self.peek}' is needed after {keyword.name}", example(keyword))
-        parts = self.choose(word, keyword)
+        choice = self.choose(word, keyword)
         words, values = [], []
-        self.match(parts, keyword, words, values)
+        self.match(alternatives(keyword.form)[choice], keyword, words, values)
         self.end_of_statement(keyword.name, KEYWORDS[keyword.block])
-        return Entry(self.source, word, keyword, tuple(words), tuple(values))
+        return SettingNode(self.source, word, keyword, choice, tuple(words), tuple(values))
 
-    def choose(self, word: Token, keyword: Keyword) -> tuple:
+    def choose(self, word: Token, keyword: Keyword) -> int:
         """The alternative of the form that the next word calls for."""
         t = self.peek
         options = alternatives(keyword.form)
-        for parts in options:
-            if isinstance(parts[0], Literal) and parts[0].text == t:
-                return parts
-        starts = [p[0].text for p in options if isinstance(p[0], Literal)]
-        free = [p for p in options if not isinstance(p[0], Literal)]
+        for n, parts in enumerate(options):
+            if isinstance(parts[0], Word) and parts[0].text == t:
+                return n
+        starts = [p[0].text for p in options if isinstance(p[0], Word)]
+        free = [n for n, p in enumerate(options) if not isinstance(p[0], Word)]
         mistyped = t.type == "NAME" and t not in self.shared.names and (nearest(str(t), starts) or not free)
         if not free or mistyped:
             if t.type in ("NEWLINE", "END", "RBRACE"):
@@ -379,11 +367,11 @@ class Parser(Reader):
             hint = did_you_mean(str(t), starts) if len(starts) > 1 or mistyped else example(keyword)
             if SYNONYMS.get(str(t)) in starts:
                 hint = f"did you mean '{SYNONYMS[str(t)]}'?"
-            raise Fault(t, f"{keyword.name} cannot be followed by {found(t)}", hint)
+            raise Fault(t, f"{keyword.name} cannot be followed by {t.found()}", hint)
         return free[0]
 
     def _missing(self, word: Token, t: Token, keyword: Keyword) -> None:
-        rest = self.source.lines[word.line - 1][word.end_column - 1 :].strip()
+        rest = self.source.lines[word.line - 1][word.column + len(word) - 1 :].strip()
         hint = example(keyword)
         if rest.startswith("#") and "color" in keyword.form:
             hint = "'#' starts a comment: put the colour in quotes, \"#rrggbb\""
@@ -393,13 +381,13 @@ class Parser(Reader):
         """Read the parts of one alternative."""
         for n, part in enumerate(parts):
             t = self.peek
-            if isinstance(part, Literal):
+            if isinstance(part, Word):
                 if part.text != t and not (part.text == "+-" and t.type == "PLUS_MINUS"):
-                    raise Fault(t, f"'{part.text}' is missing in {keyword.name}, found {found(t)}", example(keyword))
+                    raise Fault(t, f"'{part.text}' is missing in {keyword.name}, found {t.found()}", example(keyword))
                 words.append(str(self.take()))
-            elif isinstance(part, Optional):
+            elif isinstance(part, OptionalPart):
                 first = part.parts[0]
-                if isinstance(first, Literal):
+                if isinstance(first, Word):
                     present = first.text == t or (first.text == "+-" and t.type == "PLUS_MINUS")
                 else:
                     following = parts[n + 1].text if n + 1 < len(parts) else None
@@ -408,7 +396,7 @@ class Parser(Reader):
                 if present:
                     self.match(part.parts, keyword, words, values)
                 else:
-                    values += [None] * sum(isinstance(p, Slot) for p in part.parts)
+                    values += [None] * sum(isinstance(p, Slot) for p in pieces(part.parts))
             else:
                 if t.type in ("NEWLINE", "END", "RBRACE"):
                     self._missing(self.tokens[self.at - 1], t, keyword)
@@ -427,7 +415,7 @@ class Parser(Reader):
                 self.take()
                 return Value(slot, t, t, text=str(t)[1:-1])
             if t.type != "NAME":
-                raise Fault(t, f"{keyword.name} needs a colour, found {found(t)}", 'write a name such as red, or "#rrggbb"')
+                raise Fault(t, f"{keyword.name} needs a colour, found {t.found()}", 'write a name such as red, or "#rrggbb"')
             self.take()
             return Value(slot, t, t, text=str(t))
         if slot.kind == "check":
@@ -445,7 +433,7 @@ class Parser(Reader):
             raise Fault(t, "this text is never closed", 'add a " at its end')
         if t.type != "STRING":
             hint = ODD.get(str(t)) or hint
-            raise Fault(t, f"{what} needs a text in quotes, found {found(t)}", hint)
+            raise Fault(t, f"{what} needs a text in quotes, found {t.found()}", hint)
         return self.take()
 
     def choice(self, slot: Slot, keyword: Keyword) -> Value:
@@ -455,24 +443,20 @@ class Parser(Reader):
             last = self.take()
             text += str(last)
         if text not in slot.choices:
-            raise Fault(
-                first, f"'{text.strip()}' is not one of the choices of {keyword.name}", did_you_mean(text, slot.choices), last
-            )
+            cause = f"'{text.strip()}' is not one of the choices of {keyword.name}"
+            raise Fault(first, cause, did_you_mean(text, slot.choices), last)
         return Value(slot, first, last, text=text)
 
     def check(self, slot: Slot, keyword: Keyword) -> Value:
         """NAME.QUANTITY of an expect."""
         if self.peek.type != "NAME":
-            raise Fault(
-                self.peek,
-                f"expect needs NAME.QUANTITY, found {found(self.peek)}",
-                f"NAME is an object, or one of {', '.join(GLOBALS)}",
-            )
+            hint = f"NAME is an object, or one of {', '.join(GLOBALS)}"
+            raise Fault(self.peek, f"expect needs NAME.QUANTITY, found {self.peek.found()}", hint)
         name, words = self.name(), []
         while self.peek.type == "DOT":
             self.take()
             if self.peek.type != "NAME":
-                raise Fault(self.peek, f"the quantity is missing after {name.token}., found {found(self.peek)}")
+                raise Fault(self.peek, f"the quantity is missing after {name.token}., found {self.peek.found()}")
             words.append(self.take())
         if not words:
             raise Fault(name.token, f"expect {name.token} names no quantity", f"e.g. {name.token}.position.z", name.last)
@@ -495,4 +479,4 @@ class Parser(Reader):
             hint = "one setting per line"
         elif t.type == "LBRACE":
             hint = f"{what} is a setting, not a block"
-        raise Fault(t, f"{found(t)} cannot follow here; {what} is complete", hint)
+        raise Fault(t, f"{t.found()} cannot follow here; {what} is complete", hint)

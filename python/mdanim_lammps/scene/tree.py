@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The statements of a scene as they stand in the text: values are compiled, but nothing is worked out yet."""
+"""The statements of a scene as they stand in the text: values are compiled, but nothing is evaluated yet."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from lark import Token
-
 from .expressions import Node
 from .forms import Slot
-from .keywords import Keyword
-from .source import Source
+from .schema import Keyword
+from .source import SceneFile
+from .tokens import Token
 
 
 @dataclass(slots=True, eq=False)
@@ -39,14 +38,14 @@ class Value:
 
 @dataclass(slots=True, eq=False)
 class Let:
-    source: Source
+    source: SceneFile
     token: Token
     node: Node
 
 
 @dataclass(slots=True, eq=False)
 class Repeat:
-    source: Source
+    source: SceneFile
     token: Token
     variable: Token
     low: Node
@@ -55,18 +54,20 @@ class Repeat:
 
 
 @dataclass(slots=True, eq=False)
-class Entry:
+class SettingNode:
     """One setting."""
 
-    source: Source
+    source: SceneFile
     token: Token
     keyword: Keyword
+    choice: int
+    """Which alternative of the form was found."""
     words: tuple[str, ...]
-    """The literal words found, e.g. ``("axis", "angle")``."""
+    """The words of the form that were found, e.g. ``("axis", "angle")``."""
     values: tuple[Value | None, ...]
     """In the order of the form; None for what was left out."""
     known: tuple | None = None
-    """The values, once worked out, if they are the same in every repeat."""
+    """The values, once they are evaluated, if they are the same in every repeat."""
 
     @property
     def constant(self) -> bool:
@@ -78,17 +79,17 @@ class Entry:
 class Group:
     """One block."""
 
-    source: Source
+    source: SceneFile
     token: Token
     block: str
-    name: Name | None
+    names: tuple[Name, ...]
     body: list
 
 
 @dataclass(slots=True, eq=False)
-class Broken:
+class UnreadableStatement:
     """A statement that could not be read; keeps checks from complaining that something is missing."""
 
     word: str
     name: str = ""
-    """What a broken let would have named."""
+    """What an unreadable let would have named."""

@@ -10,7 +10,7 @@ from difflib import get_close_matches
 from fractions import Fraction
 from functools import cache
 
-from .wording import number, say
+from .formatting import number, say
 
 Dim = tuple
 """Exponents of (metre, kilogram, second, radian). With the angle, ``mass 20 deg`` is an error."""
@@ -91,49 +91,29 @@ def unit(text: str) -> Unit:
     return Unit(text, result.over, result.under, result.dim)
 
 
-NAMES: dict[Dim, tuple[str, str]] = {
-    unit(text).dim: (text, name)
-    for text, name in (
-        ("m", "a length"),
-        ("kg", "a mass"),
-        ("s", "a time"),
-        ("m^2", "an area"),
-        ("m^3", "a volume"),
-        ("m/s", "a speed"),
-        ("m/s^2", "an acceleration"),
-        ("N", "a force"),
-        ("Pa", "a pressure"),
-        ("kg/m^3", "a density"),
-        ("N/m", "a spring constant"),
-        ("N*s/m", "a drag coefficient"),
-        ("Pa*s", "a viscosity"),
-        ("rad", "an angle"),
-        ("rad/s", "an angular speed"),
-        ("1/s", "a rate"),
-        ("J", "an energy"),
-    )
-}
-"""Dimensions that have a name, with the SI unit they are shown in."""
-
 LISTED = (
-    ("length", "m mm cm km"),
-    ("time", "s ms min"),
-    ("mass", "kg g t"),
-    ("force", "N kN"),
-    ("pressure", "Pa kPa MPa GPa"),
-    ("speed", "m/s km/h"),
-    ("acceleration", "m/s^2"),
-    ("density", "kg/m^3 g/cm^3"),
-    ("spring constant", "N/m"),
-    ("drag", "N*s/m"),
-    ("viscosity", "Pa*s"),
-    ("volume", "m^3 l"),
-    ("angle", "deg rad"),
-    ("angular speed", "rad/s rpm"),
-    ("rate", "1/s Hz fps"),
-    ("energy", "J"),
+    ("m", "a length", "m mm cm km"),
+    ("s", "a time", "s ms min"),
+    ("kg", "a mass", "kg g t"),
+    ("N", "a force", "N kN"),
+    ("Pa", "a pressure", "Pa kPa MPa GPa"),
+    ("m/s", "a speed", "m/s km/h"),
+    ("m/s^2", "an acceleration", "m/s^2"),
+    ("kg/m^3", "a density", "kg/m^3 g/cm^3"),
+    ("N/m", "a spring constant", "N/m"),
+    ("N*s/m", "a drag coefficient", "N*s/m"),
+    ("Pa*s", "a viscosity", "Pa*s"),
+    ("m^2", "an area", "m^2"),
+    ("m^3", "a volume", "m^3 l"),
+    ("rad", "an angle", "deg rad"),
+    ("rad/s", "an angular speed", "rad/s rpm"),
+    ("1/s", "a rate", "1/s Hz fps"),
+    ("J", "an energy", "J"),
 )
-"""The units people use, by kind; products and quotients of them are allowed too."""
+"""SI unit, name and units in use of each dimension that has a name; products and quotients of units are allowed too."""
+
+NAMES: dict[Dim, tuple[str, str]] = {unit(text).dim: (text, name) for text, name, _ in LISTED}
+"""SI unit and name by dimension."""
 
 
 def symbol(dim: Dim) -> str:
@@ -153,7 +133,7 @@ def describe(dim: Dim) -> str:
 
 def units_of(dim: Dim) -> list[str]:
     """The listed units of a dimension, the SI one among them."""
-    found = [text for _, texts in LISTED for text in texts.split() if unit(text).dim == dim]
+    found = [text for *_, texts in LISTED for text in texts.split() if unit(text).dim == dim]
     return found or ([symbol(dim)] if dim != NONE else [])
 
 

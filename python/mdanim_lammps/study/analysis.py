@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..scene.scene import Expect
-from ..scene.wording import number, say
+from ..scene.formatting import number, say
 from .error import Convergence, Growth, converge, distance, extent, growth, order_until
 from .setting import Ladder, Setting
 from .store import Point

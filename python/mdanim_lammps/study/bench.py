@@ -11,7 +11,7 @@ from ..errors import DivergedError, RefusedError, SceneError
 from ..run.loop import Interrupted
 from ..run.prepare import Prepared
 from ..scene.scene import Scene
-from ..scene.wording import say
+from ..scene.formatting import say
 from .measure import Sample, TooLong, measure
 from .setting import Setting
 from .store import Point, Store

@@ -17,7 +17,7 @@ from ..results.trajectory import Trajectory
 from ..run.loop import Progress, simulate
 from ..run.prepare import prepare
 from ..scene.scene import Scene
-from ..scene.wording import say
+from ..scene.formatting import say
 from .setting import Setting, frames_only, with_setting
 
 TRIED = 0.5

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..results.files import write_whole
-from ..scene.wording import number, say
+from ..scene.formatting import number, say
 from .analysis import Rated, lost
 from .error import ROUND_OFF, distance
 from .store import Store

@@ -42,6 +42,11 @@ def number(value: float, digits: int = 3) -> str:
     return f"{float(mantissa):g}e{int(power)}"
 
 
+def vector(v: tuple[float, ...]) -> str:
+    """``(0, 0, 1)``"""
+    return f"({', '.join(number(x, 6) for x in v)})"
+
+
 def whole(count: int) -> str:
     """A count, in threes: ``13 312``."""
     return f"{count:,}".replace(",", " ")
@@ -53,7 +58,7 @@ def estimate(count: float) -> str:
 
 
 def at_least(value: float, digits: int = 2) -> float:
-    """The next number of so few digits that is not below a positive one: what a scene is told to write must be enough."""
+    """The next number of so few digits that is not below a positive one: what a message proposes to write must be enough."""
     rounded = _rounded(value, digits)
     return rounded if rounded >= value else _rounded(rounded + 10.0 ** (math.floor(math.log10(rounded)) + 1 - digits), digits)
 

@@ -4,8 +4,8 @@
 import re
 
 import pytest
+from mdanim_lammps.scene.formatting import PREFIXED, at_least, estimate, number, say, whole
 from mdanim_lammps.scene.units import unit
-from mdanim_lammps.scene.wording import PREFIXED, at_least, estimate, number, say, whole
 from test_cli import GOOD
 
 

@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What a field of a record says about the language: keyword, form, unit, range, default, example.
+
+`setting` gives a field its keyword. Parser, range checks, messages, docs/language.md, records and scene.lock.txt follow from it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from .formatting import number
+from .forms import Slot, alternatives, write
+from .limits import LIMITS, Limit
+from .units import unit
+
+Vector = tuple[float, float, float]
+
+
+class Rule(Enum):
+    """What a number must be."""
+
+    ANY = "any number"
+    POSITIVE = "> 0"
+    NOT_NEGATIVE = ">= 0"
+    COUNT = "a whole number >= 1"
+    WHOLE = "a whole number >= 0"
+
+    def holds(self, x: float) -> bool:
+        """Whether a finite number obeys the rule."""
+        if self is Rule.ANY:
+            return True
+        if self is Rule.POSITIVE:
+            return x > 0.0
+        if self is Rule.NOT_NEGATIVE:
+            return x >= 0.0
+        return x == int(x) and (1 if self is Rule.COUNT else 0) <= x < 2**53
+
+
+class Codec:
+    """How the values of a setting become what the record holds, and back. This one: a value, or None for ``auto``."""
+
+    def read(self, k: Keyword, choice: int, values: tuple) -> Any:
+        """What the record holds, for the values of one alternative. Raises ValueError(message, hint, index of the value)."""
+        if not values:
+            return None
+        if k.rule in (Rule.COUNT, Rule.WHOLE):
+            return tuple(map(int, values[0])) if isinstance(values[0], tuple) else int(values[0])
+        return values[0] if len(values) == 1 else values
+
+    def write(self, k: Keyword, value: Any) -> tuple[int, tuple] | None:
+        """Alternative and values that are read as this; None where nothing is written."""
+        for choice, parts in enumerate(alternatives(k.form)):
+            slots = sum(isinstance(p, Slot) for p in parts)
+            if (value is None) == (slots == 0):
+                return choice, () if value is None else value if slots > 1 else (value,)
+        return None
+
+
+PLAIN = Codec()
+
+
+@dataclass(frozen=True, slots=True)
+class Words(Codec):
+    """A member of an enumeration, named by its value: as a choice, or as an alternative of its own."""
+
+    kind: type[Enum]
+
+    def read(self, k: Keyword, choice: int, values: tuple) -> Any:
+        return self.kind(values[0])
+
+    def write(self, k: Keyword, value: Any) -> tuple[int, tuple] | None:
+        return 0, (value.value,)
+
+
+class OneOf(Codec):
+    """A record of one of several classes; ``FORMS`` of a class are its alternatives, with slots in the order of its fields."""
+
+    def __init__(self, *kinds: type):
+        self.kinds = kinds
+        self.rows = [kind for kind in kinds for _ in kind.FORMS]
+        self.form = " | ".join(form for kind in kinds for form in kind.FORMS)
+
+    def read(self, k: Keyword, choice: int, values: tuple) -> Any:
+        kind = self.rows[choice]
+        if hasattr(kind, "read"):
+            return kind.read(choice - self.rows.index(kind), values)
+        return kind(**{name: v for name, v in zip(fields_in_order(kind), values) if v is not None})
+
+    def write(self, k: Keyword, value: Any) -> tuple[int, tuple] | None:
+        if value is None:
+            return None
+        kind = type(value)
+        own, values = value.write() if hasattr(kind, "write") else (0, tuple(getattr(value, n) for n in fields_in_order(kind)))
+        return self.rows.index(kind) + own, values
+
+
+def fields_in_order(kind: type) -> tuple[str, ...]:
+    """Fields of a class as its form has them."""
+    return getattr(kind, "ORDER", None) or tuple(f.name for f in dataclasses.fields(kind))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Keyword:
+    """One setting of the language."""
+
+    form: str
+    """What follows the word: literal words, ``<slot:unit>``, ``[optional]``, `` | `` between alternatives."""
+    about: str
+    example: str
+    """What could follow the word."""
+    rule: Rule = Rule.ANY
+    """Holds for every number of the setting."""
+    limit: Limit | None = None
+    """Holds for every number of the setting; None is the limit of its unit."""
+    codec: Codec = PLAIN
+    many: bool = False
+    """May be given several times."""
+    one_of: tuple[str, ...] = ()
+    """Exactly one of these is given."""
+    also: tuple[str, ...] = ()
+    """Further fields that the values fill, after the first."""
+    needed: bool = False
+    absent: Any = None
+    """What the record holds where the keyword is not given."""
+    default: str = ""
+    """The same, as it would be written in a scene."""
+    block: str = ""
+    """Block it stands in; the empty string is the scene itself."""
+    name: str = ""
+    field: str = ""
+    """The first field of the record that it fills."""
+
+    def read(self, choice: int, values: tuple) -> dict[str, Any]:
+        """Fields of the record. Raises ValueError(message, hint, value's number)."""
+        value = self.codec.read(self, choice, values)
+        return dict(zip((self.field, *self.also), value)) if self.also else {self.field: value}
+
+    def lines(self, record: Any, number: Callable[[float], str] = repr) -> list[str]:
+        """What follows the keyword, once for every time it is given."""
+        value = getattr(record, self.field)
+        if self.also:
+            value = (value, *(getattr(record, name) for name in self.also))
+        found = [self.codec.write(self, v) for v in (value if self.many else (value,))]
+        return [write(alternatives(self.form)[c], values, number) for c, values in filter(None, found)]
+
+
+def setting(
+    form: str | None,
+    about: str,
+    example: str,
+    rule: Rule = Rule.ANY,
+    *,
+    default: Any = dataclasses.MISSING,
+    name: str = "",
+    shown: str = "",
+    absent: Any = dataclasses.MISSING,
+    codec: Codec | None = None,
+    **facts: Any,
+) -> Any:
+    """A field of a record together with its keyword, which is called as the field unless ``name`` says otherwise.
+
+    ``default`` is that of the field, ``absent`` one that the field itself does not have; without both the keyword must be given.
+    ``shown`` is the default as a scene would write it, where that does not follow. ``facts`` are further fields of Keyword.
+    """
+    codec = codec or PLAIN
+    if form is None:
+        form = codec.form if isinstance(codec, OneOf) else f"<{'|'.join(m.value for m in codec.kind)}>"
+    value = default if absent is dataclasses.MISSING else absent
+    needed = value is dataclasses.MISSING and not facts.get("one_of")
+    keyword = Keyword(
+        form, about, example, rule, codec=codec, name=name, needed=needed, default=shown,
+        absent=None if value is dataclasses.MISSING else value, **facts,
+    )  # fmt: skip
+    return dataclasses.field(default=default, metadata={"keyword": keyword})
+
+
+def keywords(block: str, record: type | None) -> dict[str, Keyword]:
+    """The keywords of a record's fields by name, defaults written out."""
+    found = {}
+    for field in dataclasses.fields(record) if record else ():
+        if (k := field.metadata.get("keyword")) is not None:
+            k = dataclasses.replace(k, block=block, field=field.name, name=k.name or field.name.replace("_", "-"))
+            if not k.default and not k.needed and not k.many and not k.one_of:
+                k = dataclasses.replace(k, default=_default(k, record))
+            found[k.name] = k
+    return found
+
+
+def _default(k: Keyword, record: type) -> str:
+    """What stands for the value of an absent keyword; nothing where none does."""
+    rest = {f.name: f.default for f in dataclasses.fields(record)}
+    value = (k.absent, *(rest[name] for name in k.also)) if k.also else k.absent
+    if value is None or (k.also and None in value):
+        written = k.codec.write(k, None) if not k.also else None
+    else:
+        written = k.codec.write(k, value)
+    return write(alternatives(k.form)[written[0]], written[1], number) if written else ""
+
+
+_BY_DIMENSION = {unit(text).dim: limit for text, limit in LIMITS.items()}
+
+
+def limit_of(keyword: Keyword, slot: Slot) -> Limit:
+    """What a number of this slot may be: the limit of the keyword, or else that of its unit."""
+    return keyword.limit or _BY_DIMENSION[slot.dim]
+
+
+def syntax(keyword: Keyword) -> str:
+    """A form for people: ``box (lx, ly, lz) | sphere r``, without units."""
+
+    def shown(match: re.Match) -> str:
+        text, _, u = match[1].partition(":")
+        u, _, other = u.partition(" or ")
+        return text + (f"|{other}" if other else "")
+
+    return re.sub(r"<([^>]*)>", shown, keyword.form)
+
+
+def units_shown(keyword: Keyword) -> str:
+    """The SI units of a keyword's values, e.g. ``Pa, N/m``."""
+    found = re.findall(r":([^>\s]+)", keyword.form)
+    return ", ".join(dict.fromkeys(u for u in found if u not in ("?", "1")))

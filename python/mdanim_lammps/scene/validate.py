@@ -1,0 +1,412 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""From evaluated settings to the frozen records of scene.py, with the checks that look at more than one value."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ..errors import Span
+from . import keywords, units
+from . import scene as records
+from .expand import EvaluatedBlock, EvaluatedSetting
+from .formatting import number, say, vector, whole
+from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example
+from .limits import FARTHEST, MOST_BYTES_OF_MESH, MOST_FRAMES
+from .scene import GLOBALS, IMMERSION, QUANTITIES, Vector
+from .source import Problems, SceneFile, ordinary
+
+
+def validate(out: EvaluatedBlock, problems: Problems, name: str, source: SceneFile) -> records.Scene | None:
+    """The scene, or None where errors make it impossible."""
+    return Validator(out, problems, Span(source.name, 1, 1)).scene(name, source.path)
+
+
+class Validator:
+    """Makes the records of one scene; every ``problem`` has a place."""
+
+    def __init__(self, out: EvaluatedBlock, problems: Problems, top: Span):
+        self.out, self.problems = out, problems
+        self.top = top
+        """The beginning of the scene, for problems of the scene as a whole."""
+        self.by_kind: dict[str, list[EvaluatedBlock]] = {}
+        for block in out.blocks:
+            self.by_kind.setdefault(block.block, []).append(block)
+        self.names = dict.fromkeys(b.name for b in self.blocks("object"))
+        """Names of all objects, in the order of the scene."""
+
+    def problem(self, span: Span | None, message: str, hint: str = "", severity: str = "error", key=None) -> None:
+        self.problems.add(span, message, hint, severity, key)
+
+    def blocks(self, kind: str) -> list[EvaluatedBlock]:
+        return self.by_kind.get(kind, [])
+
+    def scene(self, name: str, path: Path | None) -> records.Scene | None:
+        """All records; None after an error."""
+        self.one_of_each()
+        held = {block.field: self.records(block) for block in BLOCKS.values()}
+        top, control, liquid = self.settings(self.out), held["control"], held["liquid"]
+        if not self.blocks("control") and not self.out.excused("control"):
+            self.problem(self.top, "the scene has no control block: how long is it?", "write control { time 3 s }", key="control")
+        self.names_once()
+        self.gravity_fits(self.blocks("liquid"))
+        self.ground_below(liquid)
+        if top.get("walls"):
+            self.corners(self.out.first("walls"), "the space between the walls")
+            self.inside_walls(held["solids"], top["walls"])
+        self.cameras(control)
+        top["expects"] = self.expects(control)
+        if not held["solids"] and not self.blocks("liquid") and not self.out.excused("object") and not self.problems.errors:
+            cause = "the scene has neither an object nor a liquid: there is nothing to compute"
+            self.problem(self.top, cause, "write object NAME { ... }", key="empty")
+        if self.problems.errors or control is None:
+            return None
+        spans = {w: found[0].span() for w, found in self.out.settings.items() if w != "expect"}
+        for block in self.blocks("effects"):
+            spans |= {f"effects.{w}": found[0].span() for w, found in block.settings.items()}
+        held = {field: value for field, value in held.items() if value is not None}
+        return keywords.SCENE(name=name, path=path, spans=spans, warnings=tuple(self.problems.ordered()), **held, **top)
+
+    # -- from settings to records
+
+    def records(self, kind: Block) -> Any:
+        """What the scene has of one kind of block: a tuple, one record, a mapping, or None."""
+        found = self.blocks(kind.name)
+        if kind.record is None:
+            return self.settings(found[0]) if found else {}
+        made = tuple(r for r in (self.record(kind, b) for b in (found if kind.many else found[:1])) if r is not None)
+        return made if kind.many else made[0] if made else None
+
+    def record(self, kind: Block, block: EvaluatedBlock) -> Any:
+        """One block with the checks of its kind (``check_KIND``); None after an error."""
+        if kind.of_objects and sum(self.known_object(n, self.head(block)) for n in block.names) < len(block.names):
+            return None
+        if not self.complete(block):
+            return None
+        settings = self.settings(block)
+        if settings is None:
+            return None
+        values = {**dict(zip(kind.names, block.names)), **settings}
+        if "spans" in kind.record.__dataclass_fields__:
+            values["spans"] = self.spans(block)
+        check = getattr(self, f"check_{kind.name}", lambda block, record: record)
+        return check(block, kind.record(**values))
+
+    def settings(self, block: EvaluatedBlock) -> dict[str, Any] | None:
+        """Fields of the record, from the settings of a block; None where a value is no good. Absent ones keep their default."""
+        own, good = KEYWORDS[block.block], True
+        values = {k.field: k.absent for k in own.values() if k.absent is not None} if block.block != "effects" else {}
+        for word, found in block.settings.items():
+            k, read = own[word], []
+            for s in found if k.field != "expects" else ():
+                try:
+                    read.append(k.read(s.entry.choice, s.values))
+                except ValueError as e:
+                    message, hint, at = e.args
+                    self.problem(s.span(at), message, hint)
+                    good = False
+            if k.many:
+                values[k.field] = tuple(r[k.field] for r in read)
+            elif read:
+                values |= read[0]
+        return values if good else None
+
+    # -- several blocks at once
+
+    def head(self, block: EvaluatedBlock) -> Span:
+        """Place of a block's name, or of its word."""
+        g = block.group
+        return g.source.span(g.names[0].token, g.names[-1].last) if g.names else g.source.span(g.token)
+
+    def one_of_each(self) -> None:
+        """Blocks that may stand only once."""
+        for kind, rule in BLOCKS.items():
+            found = self.blocks(kind)
+            if not rule.many and len(found) > 1:
+                for extra in found[1:]:
+                    g = extra.group
+                    self.problem(
+                        g.source.span(g.token),
+                        f"a second {kind} block; a scene has at most one",
+                        f"the first is at {found[0].group.source.span(found[0].group.token)}",
+                    )
+
+    def names_once(self) -> None:
+        """No two blocks of one name, and no name that expect uses for something else."""
+        first: dict[str, EvaluatedBlock] = {}
+        for block in (b for b in self.out.blocks if b.block in ("object", "liquid")):  # as they stand in the scene
+            if block.name in first:
+                self.problem(
+                    self.head(block),
+                    f"the name {block.name} is given twice{block.where}",
+                    f"first given at {self.head(first[block.name])}",
+                    key=("name", id(block.group)),
+                )
+            elif block.block == "object" and block.name in GLOBALS:
+                self.problem(
+                    self.head(block), f"an object cannot be called {block.name}: expect uses this word", "take another name"
+                )
+            first.setdefault(block.name, block)
+
+    def ground_below(self, liquid: records.Liquid | None) -> None:
+        """Ground above the floor of the basin holds solids up within the liquid."""
+        ground = self.out.value("ground")
+        if liquid is None or ground is None or not liquid.low[2] < ground < liquid.high[2]:
+            return
+        self.problem(
+            self.out.first("ground").span(0),
+            f"the ground at z = {say(ground, 'm', 6)} is above the floor of the basin, {say(liquid.low[2], 'm', 6)}: "
+            "nothing sinks below it, liquid does",
+            f"the basin has a floor of its own: leave the ground out, or write ground z {say(liquid.low[2], 'm', 6)}",
+            severity="warning",
+        )
+
+    def gravity_fits(self, liquids: list[EvaluatedBlock]) -> None:
+        """A liquid lies flat only under gravity along -z."""
+        if not liquids or self.out.excused("gravity"):
+            return
+        given = self.out.first("gravity")
+        g = given.values[0] if given else (0.0, 0.0, 0.0)
+        if g[0] != 0.0 or g[1] != 0.0 or g[2] >= 0.0:
+            span = given.span(0) if given else self.head(liquids[0])
+            found = f"found {units.show(g)} m/s^2" if given else "the scene has no gravity"
+            self.problem(span, f"a liquid needs gravity along -z, {found}", "e.g. gravity (0, 0, -9.81) m/s^2", key="gravity")
+
+    def inside_walls(self, solids: list[records.Solid], walls: records.Walls | None) -> None:
+        """An object's centre must lie between the walls; how far it reaches is checked with its model."""
+        if walls is None:
+            return
+        for s in solids:
+            if not all(a < x < b for a, x, b in zip(walls.low, s.position, walls.high)):
+                self.problem(
+                    s.spans["position"],
+                    f"{s.name} stands outside the walls: its centre is {units.show(s.position)} m",
+                    f"the walls go from {units.show(walls.low)} to {units.show(walls.high)} m",
+                )
+
+    # -- helpers for one block
+
+    def complete(self, block: EvaluatedBlock) -> bool:
+        """Whether everything needed is there; what is missing, or given twice, is a problem."""
+        good = not block.broken
+        title = f"{block.block} {block.name}".rstrip()
+        for word, keyword in KEYWORDS[block.block].items():
+            key = ("missing", id(block.group), keyword.one_of or word)
+            if keyword.needed and word not in block.settings and not block.excused(word):
+                self.problem(self.head(block), f"{title} has no {word}{block.where}", example(keyword), key=key)
+                good = False
+            if keyword.one_of and keyword.one_of[0] == word:
+                given = [w for w in keyword.one_of if w in block.settings]
+                if not given and not block.excused(*keyword.one_of):
+                    this = " or ".join(keyword.one_of)
+                    self.problem(self.head(block), f"{title} has no {this}{block.where}", example(keyword), key=key)
+                    good = False
+                elif len(given) > 1:
+                    second = max((block.first(w) for w in given), key=lambda s: (s.entry.token.line, s.entry.token.column))
+                    first = next(block.first(w) for w in given if block.first(w) is not second)
+                    self.problem(
+                        second.span(),
+                        f"{title} has both {' and '.join(given)}; exactly one is needed",
+                        f"remove one; the other stands at {first.span()}",
+                        key=key,
+                    )
+                    good = False
+        return good
+
+    def spans(self, block: EvaluatedBlock) -> dict[str, Span]:
+        """Where each keyword's values stand."""
+        spans = {}
+        for word, found in block.settings.items():
+            s = found[0]
+            values = [v for v in s.entry.values if v is not None]
+            spans[word] = s.entry.source.span(values[0].first, values[-1].last) if values else s.span()
+        spans[block.block] = self.head(block)
+        return spans
+
+    def corners(self, s: EvaluatedSetting, what: str) -> tuple[Vector, Vector]:
+        """Two corners of a box, the lower one first."""
+        a, b = s.values
+        for axis, x, y in zip("xyz", a, b):
+            if not x < y:
+                self.problem(
+                    s.span(1),
+                    f"{what} has no extent along {axis}: it goes from {say(x, 'm', 6)} to {say(y, 'm', 6)}",
+                    "the lower corner stands first",
+                )
+        return a, b
+
+    # -- blocks
+
+    def check_object(self, block: EvaluatedBlock, solid: records.Solid) -> records.Solid | None:
+        """Shape, place and what is held."""
+        for s in block.settings.get("hold", ()):
+            if len(s.values) == 2:
+                self.corners(s, "the held box")
+        s, shape = block.first("shape"), solid.shape
+        if isinstance(shape, records.Mesh):
+            path = self.mesh(s, shape.path)
+            return replace(solid, shape=replace(shape, path=path)) if path else None
+        if isinstance(shape, records.Torus) and shape.minor >= shape.major:
+            r, big = say(shape.minor, "m", 6), say(shape.major, "m", 6)
+            cause = f"the tube of a torus is thinner than the ring: r < R, found r = {r}, R = {big}"
+            self.problem(s.span(1), cause, "write torus R r, the radius of the centre line first")
+            return None
+        self.near_enough(block, solid)
+        return solid
+
+    def mesh(self, s: EvaluatedSetting, name: str) -> Path | None:
+        """The absolute path of a mesh file that may be read."""
+        path = Path(os.path.abspath(s.entry.source.folder / name))
+        cause = hint = ""
+        if path.suffix.lower() not in (".stl", ".obj", ".ply"):
+            cause = f"a mesh is an STL, OBJ or PLY file, found '{name}'"
+        elif not os.path.exists(path):
+            cause, hint = f"the mesh file '{name}' is not there: {path}", "its name is relative to this scene file"
+        elif not ordinary(path):
+            cause, hint = f"the mesh file '{name}' is not an ordinary file", "copy the mesh beside the scene"
+        elif path.stat().st_size > MOST_BYTES_OF_MESH:
+            cause, hint = f"the mesh file '{name}' is larger than {MOST_BYTES_OF_MESH >> 20} MB", "fewer triangles"
+        if cause:
+            self.problem(s.span(0), cause, hint)
+        return None if cause else path
+
+    def near_enough(self, block: EvaluatedBlock, solid: records.Solid) -> None:
+        """Refuse an object so far out that its particles differ by rounding alone."""
+        lengths = [x for v in block.first("shape").values for x in (v if isinstance(v, tuple) else (v,))]
+        position = solid.position
+        if max(map(abs, position)) > FARTHEST * min(lengths):
+            self.problem(
+                block.first("position").span(0),
+                f"{block.name} is too far from the origin for its size: {vector(position)} m with a length of "
+                f"{say(min(lengths), 'm', 6)}",
+                f"at most {number(FARTHEST)} times its smallest length",
+            )
+
+    def check_liquid(self, block: EvaluatedBlock, liquid: records.Liquid) -> records.Liquid:
+        """Volume or level against what the liquid starts in: the basin, or part of it."""
+        self.corners(block.first("basin"), "the basin")
+        low, high = liquid.low, liquid.high
+        if liquid.fill is not None:
+            s = block.first("fill")
+            self.corners(s, "the part that is filled")
+            for which, (corner, name) in enumerate(zip(liquid.fill, ("lower", "upper"))):
+                if not all(a <= x <= b for a, x, b in zip(low, corner, high)):
+                    cause = f"the {name} corner of fill lies outside the basin: {vector(corner)} m"
+                    self.problem(s.span(which), cause, f"the basin goes from {vector(low)} to {vector(high)} m")
+        where = "the basin" if liquid.fill is None else "the fill region"
+        bottom, top = liquid.fill or (low, high)
+        room = math.prod(b - a for a, b in zip(bottom, top))
+        if liquid.volume is not None and liquid.volume > room > 0.0:
+            cause = f"{say(liquid.volume, 'm^3', 6)} of liquid do not fit into {where} of {say(room, 'm^3', 6)}"
+            way_out = "less liquid, or a larger basin" if liquid.fill is None else "less liquid, or a larger fill region"
+            self.problem(block.first("volume").span(0), cause, way_out)
+        if liquid.level is not None and not bottom[2] < liquid.level <= top[2]:
+            cause = f"the level {say(liquid.level, 'm', 6)} is outside {where}, which goes from "
+            cause += f"{say(bottom[2], 'm', 6)} to {say(top[2], 'm', 6)}"
+            self.problem(block.first("level").span(0), cause, "the level is a height, not a depth")
+        if liquid.model is records.LiquidModel.PAPER:
+            self.problem(
+                block.first("model").span(0),
+                "model paper takes the rules literally: not Archimedes, objects denser than about 0.4 of the liquid sink",
+                "leave the line out for drafts after Archimedes",
+                severity="warning",
+            )
+        return liquid
+
+    def check_control(self, block: EvaluatedBlock, control: records.Control) -> records.Control:
+        """At least one frame, and not too many."""
+        frames, rate = control.time * control.frames, f"1/{number(control.frames, 6)} s"
+        if frames < 1.0:
+            cause = f"in {number(control.time, 6)} s there is not one frame of {rate}"
+            self.problem(block.first("time").span(0), cause, "a longer time, or more frames per second")
+        if frames > MOST_FRAMES:
+            cause = f"{number(control.time, 6)} s have {number(frames)} frames of {rate}; the most is {whole(MOST_FRAMES)}"
+            self.problem(block.first("time").span(0), cause, "a shorter time, or fewer frames per second")
+        return control
+
+    def cameras(self, control: records.Control | None) -> None:
+        """Cameras look at something; several are points of one path, each with a time of its own, in order."""
+        settings = [s for block in self.blocks("render")[:1] for s in block.settings.get("camera", ())]
+        last = -math.inf
+        for s in settings:
+            time, eye, look, up = s.values
+            if isinstance(look, str):
+                self.known_object(look, s.span(2))
+            elif math.dist(eye, look) == 0.0:
+                self.problem(s.span(2), "the camera stands where it looks", "move one of the two points")
+            if time is not None and time < 0.0:
+                self.problem(s.span(0), f"the camera's time must be >= 0, found {number(time, 6)} s")
+            if up is not None and math.hypot(*up) == 0.0:
+                self.problem(s.span(3), "up needs a direction, found (0, 0, 0)", "e.g. up (0, 0, 1)")
+            if len(settings) == 1:
+                continue
+            if time is None:
+                self.problem(s.span(), "several cameras make a path, and this one has no time", "write camera 2 s from ...")
+            elif time <= last:
+                cause = f"the times of the cameras must rise, found {number(time, 6)} s after {number(last, 6)} s"
+                self.problem(s.span(0), cause)
+            else:
+                last = time
+
+    def known_object(self, name: str, span: Span) -> bool:
+        """Whether an object has this name; an unknown one is a problem."""
+        if name in self.names or self.out.excused("object"):
+            return name in self.names
+        hint = did_you_mean(name, list(self.names)[:2000])
+        self.problem(span, f"no object is called {name}", hint if self.names else "the scene has no object")
+        return False
+
+    def expects(self, control: records.Control | None) -> tuple[records.Expect, ...]:
+        return tuple(e for s in self.out.settings.get("expect", ()) if (e := self.expect(s, control)) is not None)
+
+    def expect(self, s: EvaluatedSetting, control: records.Control | None) -> records.Expect | None:
+        """One self-check, with the unit of its quantity."""
+        (subject, quantity), time, value, tolerance = s.values
+        kind = subject if subject in GLOBALS else "NAME"
+        known = [q for k, q in QUANTITIES if k == kind]
+        if kind == "NAME" and not self.known_subject(subject, quantity, s.span(0)):
+            return None
+        if (kind, quantity) not in QUANTITIES:
+            self.problem(
+                s.span(0), f"{quantity} is no quantity of {subject} that expect can check", did_you_mean(quantity, known)
+            )
+            return None
+        if (kind == "liquid" or quantity in IMMERSION) and not self.blocks("liquid") and not self.out.excused("liquid"):
+            self.problem(s.span(0), f"{subject}.{quantity} needs a liquid, and the scene has none")
+        if time is not None and (time < 0.0 or (control is not None and time > control.time * (1.0 + 1e-9))):
+            end = f", which ends at {number(control.time, 6)} s" if control else ""
+            self.problem(s.span(1), f"{number(time, 6)} s lies outside the run{end}", "an earlier time, or a longer control time")
+        dim = units.unit(QUANTITIES[kind, quantity][0]).dim
+        numbers = []
+        for n, (x, what) in enumerate(((value, "the value"), (tolerance, "the tolerance")), 2):
+            if x is None:
+                numbers.append(0.0)
+                continue
+            if units.dimension(x) not in (dim, units.NONE):
+                self.problem(
+                    s.span(n),
+                    f"{subject}.{quantity} is {units.describe(dim)}, found {units.show(x)}, {units.describe(units.dimension(x))}",
+                    f"units that fit: {' '.join(units.units_of(dim))}" if dim != units.NONE else "leave out the unit",
+                )
+                return None
+            if not math.isfinite(units.magnitude(x)):
+                self.problem(s.span(n), f"{what} is not a finite number")
+            numbers.append(units.magnitude(x))
+        if numbers[1] < 0.0:
+            self.problem(s.span(3), f"the tolerance must be >= 0, found {units.show(tolerance)}")
+        return records.Expect(subject, quantity, numbers[0], numbers[1], time, s.span())
+
+    def known_subject(self, subject: str, quantity: str, span: Span) -> bool:
+        """An object; or a word for the whole scene, mistyped."""
+        if any(subject == b.name for b in self.blocks("liquid")):
+            self.problem(span, f"the liquid is called liquid in expect, found {subject}", f"write liquid.{quantity}")
+            return False
+        if subject in self.names:
+            return True
+        if not self.out.excused("object"):
+            hint = did_you_mean(subject, [*list(self.names)[:2000], *GLOBALS])
+            self.problem(span, f"no object is called {subject}", hint)
+        return False
