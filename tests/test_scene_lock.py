@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from mdanim_lammps.errors import SceneError
 from mdanim_lammps.scene import scene as records
 from mdanim_lammps.scene.keywords import BLOCKS, KEYWORDS, STATEMENTS
 from mdanim_lammps.scene.lock import lock_text
@@ -211,3 +212,29 @@ def test_a_quote_cannot_be_written():
     scene = records.Scene("s", records.Control(1.0), title='say "hello"')
     with pytest.raises(ValueError, match="no quote"):
         lock_text(scene)
+
+
+ROW = """repeat i in 1 .. {} {{ object b[i] {{ shape sphere 1 cm position (i, 0, 0) m mass 1 kg elasticity 1 MPa }} }}
+control {{ time 1 s }}
+"""
+
+
+def test_lock_may_be_larger_than_a_scene(tmp_path, monkeypatch):
+    """A lock is read by its name: it has every object of a repeat, and so more bytes than any scene may have."""
+    monkeypatch.setattr("mdanim_lammps.scene.parse.MOST_BYTES", 10_000)
+    scene = parse_scene(ROW.format(100))
+    for name in ("scene.lock.txt", "scene.txt"):
+        (tmp_path / name).write_text(lock_text(scene))
+    assert load_scene(tmp_path / "scene.lock.txt").solids == scene.solids
+    with pytest.raises(SceneError, match="is larger than"):
+        load_scene(tmp_path / "scene.txt")
+
+
+@pytest.mark.soak
+@pytest.mark.timeout(3600)
+def test_lock_of_many_objects(tmp_path):
+    """220 000 objects are more than 64 MiB, and read back."""
+    scene = parse_scene(ROW.format(220_000))
+    (tmp_path / "scene.lock.txt").write_text(lock_text(scene))
+    assert (tmp_path / "scene.lock.txt").stat().st_size > 64 * 2**20
+    assert load_scene(tmp_path / "scene.lock.txt").solids == scene.solids

@@ -15,8 +15,8 @@ from .results.timeline import Timeline
 from .results.trajectory_file import trajectory_bytes
 from .run.loop import Progress, Result
 from .run.prepare import Prepared
-from .scene.scene import Scene
 from .scene.formatting import number, say, whole
+from .scene.scene import Scene
 
 
 def count(things: int, noun: str) -> str:

@@ -14,8 +14,8 @@ import numpy as np
 from ..errors import Problem, Span
 from ..model.planes import Plane
 from ..model.system import System
-from ..scene.scene import Scene, Switch
 from ..scene.formatting import number
+from ..scene.scene import Scene, Switch
 
 
 @dataclass(frozen=True, slots=True)

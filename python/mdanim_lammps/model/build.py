@@ -10,8 +10,8 @@ from functools import lru_cache, singledispatch
 import numpy as np
 
 from ..errors import Problem, SceneError
-from ..scene.scene import HoldAll, HoldFaces, HoldWithin, Scene, Shape, Solid, SpringConstant, Young
 from ..scene.formatting import number, say
+from ..scene.scene import HoldAll, HoldFaces, HoldWithin, Scene, Shape, Solid, SpringConstant, Young
 from . import shapes
 from .cells import TooThin, fill_cells
 from .embed import make_surface

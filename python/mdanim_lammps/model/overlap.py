@@ -8,8 +8,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..errors import Problem
-from ..scene.scene import Scene, Solid
 from ..scene.formatting import say
+from ..scene.scene import Scene, Solid
 from . import shapes
 from .boxes import box_pairs
 from .model import Layer, Model

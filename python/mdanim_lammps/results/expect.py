@@ -11,8 +11,8 @@ import numpy as np
 from ..model.basin import Grid
 from ..model.model import Model
 from ..model.system import System
-from ..scene.scene import Expect
 from ..scene.formatting import number
+from ..scene.scene import Expect
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,8 @@ from ..certificate import wave_speed
 from ..engine.geometry import INVERTED, NOT_FINITE, Geometry
 from ..errors import DivergedError, Problem
 from ..model.system import System
-from ..scene.scene import Accuracy, Scene
 from ..scene.formatting import number, say
+from ..scene.scene import Accuracy, Scene
 from .prepare import Prepared
 
 CLASSES = {Accuracy.PREVIEW: 1e-2, Accuracy.BALANCED: 1e-3, Accuracy.REFERENCE: 1e-4}

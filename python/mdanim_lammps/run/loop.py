@@ -26,8 +26,8 @@ from ..results.files import CHECKPOINT, disk_errors, remove_parts, write_json, w
 from ..results.ledger import LOSS, Ledger
 from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
-from ..scene.meshes import mesh_files
 from ..scene.formatting import number
+from ..scene.meshes import mesh_files
 from .energy import ledger_terms, rounding_energy
 from .frame_source import Account, Frame, FrameSource, LammpsFailure, Sequential
 from .guard import Guard

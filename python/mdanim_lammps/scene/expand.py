@@ -84,7 +84,7 @@ class Expander:
     # -- the whole scene
 
     def scene(self, body: list) -> EvaluatedBlock | None:
-        """Everything of a scene, the seed first: rand needs it. None for a scene without measure."""
+        """Everything of a scene, the seed first: rand needs it. None for a scene of too many objects."""
         env = Env({}, (), self.seed(body), self.strict, self.shared.lets, self.shared.incomplete)
         self.check_overrides()
         if not self.estimate(body, env):
@@ -405,7 +405,7 @@ class Expander:
             raise Fault(v.first, str(e.args[0]), e.args[1], v.last) from None
 
     def _half_units(self, s: SettingNode, raw: list) -> None:
-        """``cylinder 10 20 cm`` is 10 m by 20 cm: hardly what was meant."""
+        """``cylinder 10 20 cm`` is 10 m by 20 cm: most likely not what was meant."""
         measured = [
             (v, x) for v, x in zip(s.values, raw) if v is not None and v.slot.unit not in ("1", "?") and not isinstance(x, str)
         ]

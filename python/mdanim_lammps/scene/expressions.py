@@ -24,7 +24,7 @@ SPOILED = object()
 
 @dataclass(slots=True)
 class Env:
-    """What an expression may look at."""
+    """What the value of an expression may depend on."""
 
     values: dict
     loops: tuple[int, ...] = ()
@@ -52,7 +52,7 @@ class Node:
         self.terms = ()
         """Of a sum that is not in brackets: its terms, each with the sign before it."""
         self.value = None
-        """Of a literal: what it is worth."""
+        """Of a literal: its value."""
         self.constant = constant and all(p.constant for p in parts)
         self.depth = 1 + max((p.depth for p in parts), default=0)
         if self.depth > DEEPEST_EXPRESSION:
@@ -150,7 +150,7 @@ def name(token: Token) -> Node:
 
 
 def binary(x: Node, token: Token, y: Node) -> Node:
-    """Two floats take the short way; everything else asks units.py."""
+    """Two floats take the short way; everything else is left to units.py."""
     fast, slow = _BINARY[token.type]
     f, g = x.run, y.run
     summing = token.type in ("PLUS", "MINUS")

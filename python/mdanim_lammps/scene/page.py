@@ -1,19 +1,21 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""docs/language.md, written from the keyword table (``python -m mdanim_lammps.scene.keywords``)."""
+"""docs/language.md, written from the fields of the records (``python -m mdanim_lammps.scene.keywords``)."""
 
 from __future__ import annotations
 
 from . import units
-from .keywords import BLOCKS, KEYWORDS
+from .formatting import say, whole
+from .keywords import BLOCKS, KEYWORDS, all_keywords
+from .limits import LIMITS, MOST_FRAMES, MOST_OBJECTS, MOST_ROUNDS, Limit
 from .scene import QUANTITIES
 from .schema import Keyword, Rule, syntax, units_shown
 
 _TOP = """\
 # The scene language
 
-<!-- Written by `python -m mdanim_lammps.scene.keywords` from the keyword table: change that, not this page. -->
+<!-- Written by `python -m mdanim_lammps.scene.keywords` from scene.py: change that file, not this page. -->
 
-A scene is one UTF-8 text file. Here is a whole one:
+A scene is one UTF-8 text file. This is a complete scene:
 
 ```
 # A rubber ball falls onto the floor
@@ -32,17 +34,17 @@ control {
 
 ## Rules
 
-- `#` starts a comment, up to the end of the line. One setting per line, blocks in braces; several
+- `#` starts a comment, which ends with the line. A setting stands on a line, blocks are in braces; several
   settings may share a line (`control { time 2 s frames 25 fps }`). The order of blocks and settings is
-  free; only a `let` stands above its use.
-- Texts stand in straight quotes and hold no quote.
-- All problems of a file are reported in one pass, each with its place, the cause, what was found and a
-  way out.
-- More than 1 000 000 objects are refused before any is made.
+  free, except that a `let` stands above its use.
+- Texts are in straight quotes and contain no quote.
+- All problems of a file are reported in one pass, each with its place, the cause, the value that was found
+  and a way to fix it.
+- What a scene may ask for is limited, see the [table](#limits).
 
 ### Numbers, vectors, units
 
-- A number may be calculated: `+ - * / mod ^ ( )`, `sqrt sin cos tan min max abs`, `pi`, `rand(a, b)`. `^`
+- A number may be an expression: `+ - * / mod ^ ( )`, `sqrt sin cos tan min max abs`, `pi`, `rand(a, b)`. `^`
   binds strongest and goes from right to left; `-2^2` is -4; `mod` has the sign of the divisor.
 - A vector is `(x, y, z)`. Vectors can be added, and multiplied by a number.
 - A unit may follow any number, vector or bracket. It belongs to everything before it, up to a bracket, a
@@ -52,18 +54,18 @@ control {
   unit belongs.
 - Dimensions are checked: `mass 3 m` is an error, and so is the sum of a length and a time. An angle is
   not a plain number: write `spin (0, 0, 2) rad/s`, not `1/s`.
-- In operand position a name is a variable, right after a value it is a unit: with `let m = 3`, `m m` is 3
+- A name at the place of an operand is a variable; right after a value it is a unit: with `let m = 3`, `m m` is 3
   metres.
 - `rand(a, b)` is drawn from `control seed`, its place among the `rand`s of the scene, and the indices of
-  the repeats around it. A scene is always the same scene, and one more round of a repeat leaves the
-  others as they were.
+  the repeats around it. The same text is always the same scene, and one more round of a repeat does not change
+  the others.
 
 | kind | units |
 |---|---|
 """
 
 _AFTER_UNITS = """
-Products, quotients and powers of these are units too: `kg*m/s^2`. `h` (hour) stands below a fraction bar.
+Products, quotients and powers of these are units too: `kg*m/s^2`. `h` (hour) may only stand behind a `/`.
 
 ### let, repeat, include
 
@@ -77,17 +79,34 @@ include "rubber.txt"            # relative to this file
 
 - `let name = expression` gives a value a name. `--set name=value` on the command line takes its place. A
   `let` inside braces is known up to the closing brace.
-- `repeat i in a .. b { }` runs for whole numbers i from a to b; objects, `expect` and `camera` lines,
-  `hold` and other repeats may stand inside.
-- `include "file"` reads another file in its place. Circles and more than 16 levels are errors that show
-  the chain.
-- There are no conditions and no other loops: every scene ends.
+- `repeat i in a .. b { }` repeats its statements for the whole numbers i from a to b; objects, `expect` and
+  `camera` lines, `hold` and other repeats may stand inside.
+- `include "file"` reads another file in its place. A file that includes itself, and more than 16 levels,
+  are errors that show the chain of files.
+- There are no conditions and no other loops, so the evaluation of a scene always ends.
 """
 
 _END = """
 `position` and `velocity` are followed by `.x`, `.y` or `.z`. Time is written `at 2 s`; without
 it the check is made at the end of the run, or over the whole run for residuals and maxima.
 """
+
+
+_LIMITS = """
+## Limits
+
+A value beyond its limit is an error at its line. The smallest value holds where a value must be above 0;
+[security](security.md) lists the limits of files and expressions.
+
+| what | largest | smallest |
+|---|---|---|
+"""
+
+
+def _limits() -> list[tuple[str, str, Limit]]:
+    """Limits by unit, and those of single keywords: what, SI unit, limit."""
+    by_unit = [(limit.what, "" if unit == "1" else unit, limit) for unit, limit in LIMITS.items()]
+    return by_unit + [(f"`{k.block}` `{k.name}`", "", k.limit) for k in all_keywords() if k.limit]
 
 
 def language_page() -> str:
@@ -100,7 +119,10 @@ def language_page() -> str:
         parts.append(_table(KEYWORDS[block.name].values()))
     parts += ["\n## What `expect` can check\n\n", "| quantity | unit | meaning |\n|---|---|---|\n"]
     parts += [f"| `{k}.{q}` | {u if u != '1' else '-'} | {about} |\n" for (k, q), (u, about) in QUANTITIES.items()]
-    parts.append(_END)
+    parts += [_END, _LIMITS]
+    numbers = [("objects", MOST_OBJECTS), ("rounds of all repeats together", MOST_ROUNDS), ("frames", MOST_FRAMES)]
+    parts += [f"| {what} | {whole(most)} | - |\n" for what, most in numbers]
+    parts += [f"| {what} | {say(x.most, unit, 6)} | {say(x.least, unit, 6) if x.least else '-'} |\n" for what, unit, x in _limits()]
     return "".join(parts)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""From text to statements: walks the blocks, reads settings as keywords.py says, goes on after a bad line."""
+"""From text to statements: walks the blocks, reads settings by the forms of their keywords, goes on after a bad line."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Shared:
     bytes: int = 0
     """Of all files that were included."""
     incomplete: bool = False
-    """A file or a repeat could not be read, so that names may be missing that are not to blame."""
+    """A file or a repeat could not be read, so that names may be missing without a mistake of theirs."""
 
 
 def parse(source: SceneFile, problems: Problems) -> tuple[list, Shared]:

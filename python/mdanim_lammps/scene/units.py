@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Units and dimensions: what ``kg*m/s^2`` is worth in SI, and which quantities may be added to which."""
+"""Units and dimensions: the value of ``kg*m/s^2`` in SI, and which quantities may be added to which."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ UNITS: dict[str, Unit] = {
 """Every unit that may stand alone."""
 
 HOUR = Unit("h", 3600.0, 1.0, UNITS["s"].dim)
-"""Only below a fraction bar (``km/h``): alone, ``h`` is too good a name for a height."""
+"""Only below a fraction bar (``km/h``): alone, ``h`` is a usual name for a height."""
 
 
 @cache
@@ -325,4 +325,4 @@ FUNCTIONS = {
     "max": (1, 99, _extreme(max)),
     "abs": (1, 1, _absolute),
 }
-"""Functions: fewest arguments, most arguments, function. ``rand`` is apart: it needs its place."""
+"""Functions: fewest arguments, most arguments, function. ``rand`` is in expressions.py: its value depends on its place."""

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..scene.scene import Expect
 from ..scene.formatting import number, say
+from ..scene.scene import Expect
 from .error import Convergence, Growth, converge, distance, extent, growth, order_until
 from .setting import Ladder, Setting
 from .store import Point

@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 from ..errors import DivergedError, RefusedError, SceneError
 from ..run.loop import Interrupted
 from ..run.prepare import Prepared
-from ..scene.scene import Scene
 from ..scene.formatting import say
+from ..scene.scene import Scene
 from .measure import Sample, TooLong, measure
 from .setting import Setting
 from .store import Point, Store

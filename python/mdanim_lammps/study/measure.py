@@ -16,8 +16,8 @@ from ..results.files import read_json
 from ..results.trajectory import Trajectory
 from ..run.loop import Progress, simulate
 from ..run.prepare import prepare
-from ..scene.scene import Scene
 from ..scene.formatting import say
+from ..scene.scene import Scene
 from .setting import Setting, frames_only, with_setting
 
 TRIED = 0.5

@@ -12,8 +12,8 @@ from pathlib import Path
 from ..errors import DivergedError, OutputError, Problem
 from ..results.files import read_json, write_json
 from ..run.prepare import prepare
-from ..scene.scene import Accuracy, Scene
 from ..scene.formatting import number, say
+from ..scene.scene import Accuracy, Scene
 from .analysis import Analysis, analyse
 from .bench import BUDGET, Bench
 from .error import ROUND_OFF, distance, extent
