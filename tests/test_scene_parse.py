@@ -663,10 +663,10 @@ def test_many_problems_are_counted():
 ])  # fmt: skip
 def test_monstrous_expression_is_refused(expression):
     """Neither hang nor run out of stack."""
-    begin = time.perf_counter()
+    begin = time.process_time()
     with pytest.raises(SceneError):
         parse_scene(text("let a = 1\n", mass=expression))
-    assert time.perf_counter() - begin < 10.0
+    assert time.process_time() - begin < 10.0
 
 
 def test_monstrous_nesting_is_refused():

@@ -25,8 +25,8 @@ from .model.basin import liquid_level
 from .model.cells import TooThin, end_share, fill_cells
 from .model.shapes import thickness
 from .model.system import System
-from .scene.scene import Accuracy, Ellipsoid, Scene, Shape, Sphere
 from .scene.formatting import at_least, estimate, number, say
+from .scene.scene import Accuracy, Ellipsoid, Scene, Shape, Sphere
 
 WARN = 0.7
 """Time step over the bound above which large motion may blow up: the bound is that of small motion (docs/physics-solids.md)."""

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import Problem
-from ..scene.scene import Liquid, LiquidModel, Mesh, Scene, Solid, Switch, Vector
 from ..scene.formatting import estimate, number, say
+from ..scene.scene import Liquid, LiquidModel, Mesh, Scene, Solid, Switch, Vector
 from . import shapes
 from .model import Model
 from .spacing import available_memory, choose_spacing

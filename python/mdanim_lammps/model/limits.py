@@ -9,8 +9,8 @@ from dataclasses import fields, is_dataclass
 import numpy as np
 
 from ..errors import Problem, Span
-from ..scene.scene import Box, Mesh, Scene, Shape, Solid
 from ..scene.formatting import estimate, number, say
+from ..scene.scene import Box, Mesh, Scene, Shape, Solid
 from . import shapes
 from .mesh import SIZES
 

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..scene.scene import Mesh
 from ..scene.formatting import say
+from ..scene.scene import Mesh
 from .mesh_reader import UnreadableMesh, read_polygons
 
 SUFFIXES = (".stl", ".obj", ".ply")

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import Problem, SceneError
-from ..scene.scene import Accuracy, Box, HoldAll, Scene, Shape, Solid
 from ..scene.formatting import number, say, whole
+from ..scene.scene import Accuracy, Box, HoldAll, Scene, Shape, Solid
 from . import shapes
 from .limits import check_numbers, check_places, check_sparse
 from .mesh import MeshError

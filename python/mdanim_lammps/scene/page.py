@@ -122,7 +122,9 @@ def language_page() -> str:
     parts += [_END, _LIMITS]
     numbers = [("objects", MOST_OBJECTS), ("rounds of all repeats together", MOST_ROUNDS), ("frames", MOST_FRAMES)]
     parts += [f"| {what} | {whole(most)} | - |\n" for what, most in numbers]
-    parts += [f"| {what} | {say(x.most, unit, 6)} | {say(x.least, unit, 6) if x.least else '-'} |\n" for what, unit, x in _limits()]
+    parts += [
+        f"| {what} | {say(x.most, unit, 6)} | {say(x.least, unit, 6) if x.least else '-'} |\n" for what, unit, x in _limits()
+    ]
     return "".join(parts)
 
 
