@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -117,20 +118,22 @@ def output_folder(record: SceneRecord, out: str | Path | None = None) -> Path:
     Raises OutputError for the current folder, for one that holds it, and for one that holds the scene.
     """
     if out is None:
-        out = default_folder(record)
-        check_plain(out)
-        check_folder(out)
-        return out
-    check_folder(Path(out))
-    folder, here = Path(out).resolve(), Path.cwd().resolve()
-    if here.is_relative_to(folder):
-        what = "is the current folder" if here == folder else "holds the current folder"
-        raise OutputError(
-            f"-o {out}: the output folder {what}, and --force would delete it; name one inside, e.g. -o {record.name}.out"
-        )
-    if record.path and record.path.resolve().is_relative_to(folder):
-        raise OutputError(f"-o {out}: the output folder holds the scene, and --force would delete it; name another folder")
-    return folder if ".." in Path(out).parts else Path(out)
+        path = default_folder(record)
+        check_plain(path)
+    else:
+        path, folder, here = Path(out), Path(out).resolve(), Path.cwd().resolve()
+        if here.is_relative_to(folder):
+            what = "is the current folder" if here == folder else "holds the current folder"
+            raise OutputError(
+                f"-o {out}: the output folder {what}, and --force would delete it; name one inside, e.g. -o {record.name}.out"
+            )
+        if record.path and record.path.resolve().is_relative_to(folder):
+            raise OutputError(f"-o {out}: the output folder holds the scene, and --force would delete it; name another folder")
+        path = folder if ".." in path.parts else path
+    # Of a folder without a manifest nothing is read or deleted, but for a study.
+    check_plain(path / STUDY)
+    check_folder(path if os.path.lexists(path / MARK) else path / STUDY)
+    return path
 
 
 def default_folder(record: SceneRecord) -> Path:

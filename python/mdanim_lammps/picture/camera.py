@@ -75,13 +75,13 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
         vertices = metadata.skin.vertices(trajectory.position(frame))
         np.minimum(below, np.minimum.reduceat(vertices, first) - centers[frame], out=below)
         np.maximum(above, np.maximum.reduceat(vertices, first) - centers[frame], out=above)
+    if not (np.isfinite(centers).all() and np.isfinite(below).all() and np.isfinite(above).all()):
+        raise OutputError(f"{trajectory.path}: damaged: positions are NaN or infinite")
     # A stretch is one frame, unless that makes more boxes than are worth looking at.
     stretches = np.array_split(np.arange(len(centers)), min(len(centers), max(1, _BOXES // len(metadata.names))))
     low = np.array([centers[s].min(axis=0) + below for s in stretches])
     high = np.array([centers[s].max(axis=0) + above for s in stretches])
 
-    if not (np.isfinite(low).all() and np.isfinite(high).all()):
-        raise OutputError(f"{trajectory.path}: damaged: positions are NaN or infinite")
     start_low, start_high = (centers[0] + below).min(axis=0), (centers[0] + above).max(axis=0)
     size = max(float(np.linalg.norm(start_high - start_low)), np.finfo(float).tiny)
     gone = np.zeros(low.shape[:2], dtype=bool)
