@@ -88,7 +88,7 @@ def test_a_needed_effect_switched_off_is_a_warning(effect):
     found, warnings = verdicts(FULL + f"effects {{ {effect} off }}\n")
     assert not found[effect].on
     assert [w.severity for w in warnings] == ["warning"]
-    assert next(e for e in EFFECTS if e.name == effect).lost in warnings[0].hint
+    assert next(e for e in EFFECTS if e.name == effect).if_off in warnings[0].hint
 
 
 def test_a_needless_effect_cannot_be_switched_on():

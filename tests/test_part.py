@@ -5,6 +5,7 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from mdanim_lammps.effects import EFFECTS, resolve
 from mdanim_lammps.engine.data_file import data_text
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.plan import both_ends, make_plan
@@ -253,7 +254,7 @@ def test_a_part_says_what_a_plan_of_its_own_would_say(prepared):
     without = text[: text.index(name)] + text[text.index("}", text.index(name)) + 2 :]
     own = prepared(without)
     part = SubPlans(whole.plan).part((0, 1, 3), True)
-    own_plan = make_plan(own.scene, own.system, own.verdicts, whole.certificate)
+    own_plan = make_plan(resolve(EFFECTS, own.scene), own.system, whole.certificate)
     # Types may be numbered otherwise.
     for field in {field.name for field in fields(System)} - {"spring_type", "constants"} | {"stiffness", "rest", "damping"}:
         a, b = getattr(part.system, field), getattr(own_plan.system, field)

@@ -18,7 +18,7 @@ class Memory(effects.Effect):
     name = "memory"
     fix_id = "memory"
 
-    def called_for(self, scene):
+    def called_for(self, scene, planes=None):
         return effects.Verdict(self.name, True, "a test wants it")
 
     def commands(self, scene, system):

@@ -5,7 +5,7 @@ from .air_drag import AirDrag
 from .boundaries import Ground, Walls
 from .contact import Contact
 from .damping import Damping
-from .effect import Effect, Load, Verdict, decide
+from .effect import Effect, Load, Resolved, Verdict, decide, resolve
 from .gravity import Gravity
 from .liquid import Basin, Buoyancy, Liquid, LiquidDrag
 from .springs import Springs
@@ -24,4 +24,4 @@ EFFECTS: tuple[Effect, ...] = (
     LiquidDrag(),
 )
 
-__all__ = ["EFFECTS", "Effect", "Load", "Verdict", "decide"]
+__all__ = ["EFFECTS", "Effect", "Load", "Resolved", "Verdict", "decide", "resolve"]

@@ -44,9 +44,9 @@ def drag_forecast(load, rate, particles: int) -> float:
 class AirDrag(Effect):
     name = "air-drag"
     ledger = "drag_loss"
-    lost = "nothing slows down in air"
+    if_off = "nothing slows down in air"
 
-    def called_for(self, scene):
+    def called_for(self, scene, planes=None):
         for solid in scene.solids:
             if solid.drag and not all_held(solid):
                 return Verdict(self.name, True, f"drag of {solid.name}", solid.spans.get("drag"))

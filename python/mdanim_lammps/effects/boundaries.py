@@ -30,6 +30,9 @@ class Boundary(Effect):
     def planes(self, scene):
         return tuple(p for p in scene_planes(scene) if p.effect == self.name)
 
+    def margins(self, envelope):
+        return envelope.own_step("wall", envelope.rates[self.name])
+
     def warnings(self, scene, system):
         planes = self.planes(scene)
         found = behind_planes(system, *innermost(planes))
@@ -66,9 +69,9 @@ class Boundary(Effect):
 
 class Ground(Boundary):
     name = fix = "ground"
-    lost = "objects fall for ever"
+    if_off = "objects fall for ever"
 
-    def called_for(self, scene):
+    def called_for(self, scene, planes=None):
         if scene.ground is None:
             return Verdict(self.name, False, "no ground in the scene")
         return Verdict(
@@ -81,9 +84,9 @@ class Ground(Boundary):
 
 class Walls(Boundary):
     name = fix = "walls"
-    lost = "objects leave the scene"
+    if_off = "objects leave the scene"
 
-    def called_for(self, scene):
+    def called_for(self, scene, planes=None):
         if scene.walls is None:
             return Verdict(self.name, False, "no walls in the scene")
         return Verdict(self.name, True, f"walls around the scene{stiffness_told(scene)}", scene.spans.get("walls"))

@@ -12,8 +12,15 @@ from ..model.sweep import closest
 from ..model.touching import REACH, THIN, WAY_NAMES, touching
 from ..scene.formatting import at_least, say, whole
 from .effect import Effect, Verdict, stiffness_told
+from .envelope import Envelope
+from .margin import Margin
 from .springs import all_held
 
+TUNNEL = (0.5, 0.65, 0.8)
+"""Closing speed over the wave speed from which a block goes through a clamped plate of 1, 2, 3 and more
+cells (docs/stability.md)."""
+SOFTER = 2.0 / 3.0
+"""With contact softer than its standard that speed falls with this power of ``contact-stiffness`` (docs/physics-contact.md)."""
 PARTNERS = 34
 """Pairs that a particle on a surface in touch is tried with: within reach and skin, 3.1 spacings."""
 
@@ -44,15 +51,16 @@ class Contact(Effect):
     name = "contact"
     fix = "contact"
     ledger = "contact"
-    lost = "objects pass through each other"
+    keeps_apart = True
+    if_off = "objects pass through each other"
 
-    def called_for(self, scene):
+    def called_for(self, scene, planes=None):
         moving = [s for s in scene.solids if not all_held(s)]
         if len(scene.solids) < 2:
             return Verdict(self.name, False, "one object" if scene.solids else "no objects")
         if not moving:
             return Verdict(self.name, False, "every object is held")
-        first, second, apart = closest(scene)
+        first, second, apart = closest(scene, planes)
         if apart > 0.0:
             return Verdict(
                 self.name,
@@ -69,8 +77,9 @@ class Contact(Effect):
         return {"stiffness": system.contact_stiffness, "reach": REACH * system.spacing[system.object]}
 
     def commands(self, scene, system):
+        groups = ["group inner type 1 2 5 6", "group boundary type 3 4 7 8", "group thin type 4 8"]
         thin = f" thin thin {THIN!r}" if (system.layer == 4).any() else ""
-        return [f"fix contact mobile mdanim/barrier boundary inner d_stiffness d_reach{thin}"]
+        return [*groups, f"fix contact mobile mdanim/barrier boundary inner d_stiffness d_reach{thin}"]
 
     def rate(self, scene, system):
         s = system.contact_stiffness
@@ -83,6 +92,43 @@ class Contact(Effect):
         k = 2.0 * s * partner[system.object] / (s + partner[system.object])
         reach = REACH * system.spacing.max() / np.cbrt(system.cell_volume.min())
         return 2.0 * plane_stiffness(round(float(reach), 3)) * k / system.mass
+
+    def margins(self, envelope):
+        return [*envelope.own_step("contact", envelope.rates[self.name]), self._closing_speed(envelope)]
+
+    def _closing_speed(self, envelope: Envelope) -> Margin:
+        """Speed at which each solid may meet another: both fall alike, so only the start tells them apart,
+        until one has landed."""
+        system = envelope.system
+        low, high = system.bounds(system.velocity)
+        apart = np.maximum(high - _least_of_others(low), -_least_of_others(-high) - low)
+        apart = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(1))
+        closing = np.where(envelope.moving, np.sqrt(apart**2 + 2.0 * envelope.g * np.maximum(0.0, envelope.fall())), 0.0)
+        # A held partner may be met at full speed, the softer of two is the one that is passed through.
+        limit = np.array(TUNNEL)[np.clip(np.rint(envelope.cells).astype(int), 1, len(TUNNEL)) - 1] * envelope.wave
+        soft = system.contact_factor < 1.0
+        limit *= system.contact_factor**SOFTER if soft else 1.0
+        weakest = int(limit.argmin())
+        fastest = int((closing / np.minimum(limit, limit[weakest])).argmax())
+        value, most = float(closing[fastest]), float(min(limit[fastest], limit[weakest]))
+        partner = "" if limit[fastest] <= limit[weakest] else f", in {system.names[weakest]}"
+        return Margin(
+            "closing speed",
+            system.names[fastest],
+            value,
+            most,
+            "m/s",
+            f"{system.names[fastest]} may meet another object at {say(value, 'm/s')}; "
+            f"up to {say(most, 'm/s')}{partner} nothing passes through",
+            envelope.scene.control.spans.get("contact-stiffness") if soft else envelope.place(fastest, "velocity", "position"),
+            "warning" if value > most else "ok",
+            hint="write contact-stiffness 1, or a lower speed"
+            if soft
+            else "write a lower speed, a higher elasticity, or a resolution of three cells across the thinnest part",
+        )
+
+    def acts_on(self, system, liquid):
+        return len(system.names) > 1 and not system.held.all()
 
     def warnings(self, scene, system):
         found = touching(system)
@@ -120,3 +166,12 @@ class Contact(Effect):
         # thin objects, this says rather too much.
         smallest = instance.fix_value(self.fix, 3)
         return max(0.0, (1.0 / REACH - smallest) * REACH * float(system.spacing.max()))
+
+
+def _least_of_others(values: np.ndarray) -> np.ndarray:
+    """Along each axis, the least of all rows but one's own; shape (M, 3)."""
+    order = np.argsort(values, axis=0)
+    least = np.broadcast_to(np.take_along_axis(values, order[:1], 0), values.shape).copy()
+    if len(values) > 1:
+        np.put_along_axis(least, order[:1], np.take_along_axis(values, order[1:2], 0), 0)
+    return least

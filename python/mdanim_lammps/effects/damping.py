@@ -13,9 +13,9 @@ class Damping(Effect):
     name = "damping"
     ledger = "damping_loss"
     needs = ("springs",)
-    lost = "damped objects ring for ever"
+    if_off = "damped objects ring for ever"
 
-    def called_for(self, scene):
+    def called_for(self, scene, planes=None):
         for solid in scene.solids:
             if solid.damping and not all_held(solid):
                 return Verdict(self.name, True, f"damping of {solid.name}", solid.spans.get("damping"))

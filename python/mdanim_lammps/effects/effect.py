@@ -16,6 +16,8 @@ from ..model.planes import Plane
 from ..model.system import System
 from ..scene.formatting import number
 from ..scene.scene import Scene, Switch
+from .envelope import Envelope
+from .margin import Margin
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +55,21 @@ class Load:
         return self.scene.control.time
 
 
+@dataclass(frozen=True)
+class Resolved:
+    """The verdicts of a scene, worked out once."""
+
+    scene: Scene
+    verdicts: dict[str, Verdict]
+    """Of every effect, by its name."""
+    effects: tuple[Effect, ...]
+    """Those that are on, in the order in which their forces are summed."""
+    planes: tuple[Plane, ...]
+    """The planes of those that are on."""
+    warnings: tuple[Problem, ...]
+    """About effects that the scene calls for and switches off."""
+
+
 class Effect:
     """One physical effect. A subclass is one file in this folder and says everything that is to be said about it.
 
@@ -65,15 +82,19 @@ class Effect:
     """ID of its LAMMPS fix of ours, which times itself; empty when it has none."""
     ledger = ""
     """Its energy column in ledger.csv; empty when it has none."""
-    placed = False
+    has_potential = False
     """Whether its energy is a `potential` of single particles; no other effect has the same column then."""
+    uses_grid = False
+    """Whether it lives in the cells of the basin."""
+    keeps_apart = False
+    """Whether objects cannot be inside each other where it is on."""
     needs: tuple[str, ...] = ()
     """Effects without which this one cannot be; they stand before it in EFFECTS."""
-    lost = ""
+    if_off = ""
     """What looks wrong when a scene needs the effect and it is switched off."""
 
-    def called_for(self, scene: Scene) -> Verdict:
-        """Whether the scene, by itself, calls for the effect."""
+    def called_for(self, scene: Scene, planes: tuple[Plane, ...] | None = None) -> Verdict:
+        """Whether the scene, by itself, calls for the effect; ``planes`` push objects back, None are those of the scene."""
         raise NotImplementedError
 
     def columns(self, scene: Scene, system: System) -> dict[str, np.ndarray]:
@@ -85,7 +106,7 @@ class Effect:
         return {}
 
     def commands(self, scene: Scene, system: System) -> list[str]:
-        """LAMMPS commands; group ``mobile`` exists by then, with contact also ``boundary``, ``inner``, ``thin``."""
+        """LAMMPS commands; group ``mobile`` exists by then."""
         return []
 
     def rate(self, scene: Scene, system: System) -> np.ndarray | None:
@@ -96,7 +117,7 @@ class Effect:
         """The same of its dashpots, 2 lambda_max(C_i)/m_i [1/s], shape (N,)."""
         return None
 
-    def pace(self, scene: Scene, system: System) -> float:
+    def max_timestep(self, scene: Scene, system: System) -> float:
         """Longest time step that still shows what it does [s]; stability is another matter, see `rate`."""
         return math.inf
 
@@ -106,7 +127,7 @@ class Effect:
 
     def energy(self, instance, scene: Scene, system: System) -> float:
         """What stands in its ledger column now [J]; ``instance`` is the running engine.instance.Instance."""
-        return self.potential(scene, system.mass, instance.array("x")) if self.placed else 0.0
+        return self.potential(scene, system.mass, instance.array("x")) if self.has_potential else 0.0
 
     def potential(self, scene: Scene, mass: np.ndarray, x: np.ndarray) -> float:
         """Its energy, where that follows from the places of particles alone [J]; mass [kg], shape (N,), x [m], shape (N, 3)."""
@@ -115,6 +136,26 @@ class Effect:
     def planes(self, scene: Scene) -> tuple[Plane, ...]:
         """The planes that push objects back, whether the effect is on or not."""
         return ()
+
+    def margins(self, envelope: Envelope) -> list[Margin]:
+        """Limits that a scene in which something can move has to keep because of the effect, each with what the scene reaches."""
+        return []
+
+    def pull(self, scene: Scene) -> float:
+        """Acceleration downward that it gives to everything [m/s^2]."""
+        return 0.0
+
+    def lift(self, scene: Scene, system: System) -> np.ndarray | float:
+        """Part of the mass of each immersed solid that it carries [kg], shape (M,)."""
+        return 0.0
+
+    def surface(self, scene: Scene) -> float | None:
+        """Height below which solids are immersed in it [m]; None where it immerses nothing."""
+        return None
+
+    def acts_on(self, system: System, liquid: bool) -> bool:
+        """Whether it has anything to act on in a part of a scene: some of its solids, and the liquid or not."""
+        return True
 
     def warnings(self, scene: Scene, system: System) -> list[Problem]:
         """What is doubtful about the start of a scene that the effect is on in."""
@@ -147,8 +188,9 @@ def decide(effects: tuple[Effect, ...], scene: Scene) -> tuple[dict[str, Verdict
     """Verdict of each effect, by name, with the scene's own switches applied; and warnings about needed ones switched off."""
     verdicts: dict[str, Verdict] = {}
     warnings: list[Problem] = []
+    planes = tuple(p for e in effects if scene.effects.get(e.name) is not Switch.OFF for p in e.planes(scene))
     for effect in effects:
-        own = effect.called_for(scene)
+        own = effect.called_for(scene, planes)
         switch = scene.effects.get(effect.name, Switch.AUTO)
         span = scene.spans.get(f"effects.{effect.name}")
         if switch is Switch.OFF and own.on:
@@ -156,11 +198,11 @@ def decide(effects: tuple[Effect, ...], scene: Scene) -> tuple[dict[str, Verdict
                 Problem(
                     span,
                     f"{effect.name} is switched off, but the scene calls for it ({own.reason})",
-                    effect.lost,
+                    effect.if_off,
                     severity="warning",
                 )
             )
-            own = Verdict(effect.name, False, f"switched off; {effect.lost}", span)
+            own = Verdict(effect.name, False, f"switched off; {effect.if_off}", span)
         elif switch is Switch.ON and not own.on:
             warnings.append(
                 Problem(
@@ -176,3 +218,10 @@ def decide(effects: tuple[Effect, ...], scene: Scene) -> tuple[dict[str, Verdict
         if (own := verdicts[effect.name]).on and missing:
             verdicts[effect.name] = Verdict(effect.name, False, f"{missing} is off", own.span)
     return verdicts, warnings
+
+
+def resolve(effects: tuple[Effect, ...], scene: Scene) -> Resolved:
+    """Decide on every effect of a scene."""
+    verdicts, warnings = decide(effects, scene)
+    on = tuple(e for e in effects if verdicts[e.name].on)
+    return Resolved(scene, verdicts, on, tuple(p for e in on for p in e.planes(scene)), tuple(warnings))

@@ -14,10 +14,10 @@ PULL = 0.07
 class Gravity(Effect):
     name = fix = "gravity"
     ledger = "gravity"
-    placed = True
-    lost = "nothing falls"
+    has_potential = True
+    if_off = "nothing falls"
 
-    def called_for(self, scene):
+    def called_for(self, scene, planes=None):
         span = scene.spans.get("gravity")
         if any(scene.gravity):
             return Verdict(self.name, True, "the gravity vector is not zero", span)
@@ -26,6 +26,9 @@ class Gravity(Effect):
     def commands(self, scene, system):
         x, y, z = scene.gravity
         return [f"fix gravity mobile mdanim/gravity {x!r} {y!r} {z!r}"]
+
+    def pull(self, scene):
+        return max(0.0, -scene.gravity[2])
 
     def forecast(self, load, rate):
         return load.steps * load.mobile * PULL * rate["leap-frog"]

@@ -7,12 +7,15 @@ import math
 
 import numpy as np
 
+from ..model.basin import liquid_level
 from ..model.embed import FACES
 from ..model.system import System
 from ..scene.scene import LiquidModel
+from ..scene.formatting import number, say
 from . import air_drag
 from .boundaries import Boundary
 from .effect import Effect, Verdict
+from .margin import Margin
 from .springs import all_held
 
 EVERY = 4
@@ -38,6 +41,10 @@ STIR = 2.0
 is 1.3 to 3.3, 2.0 in the mean."""
 
 
+SWEEPS = 4
+"""Fewest sweeps of the automaton for each cell that the fastest solid travels; 8 are better (docs/physics-liquid.md)."""
+
+
 def top_of_reach(grid) -> float:
     """Height above which no solid matters to the liquid, however high it splashes in its basin [m]."""
     return grid.high[2] + NEAR * grid.cell[2]
@@ -52,9 +59,9 @@ class Basin(Boundary):
     """Floor and side walls; these go on upward, so that nothing falls beside the basin."""
 
     name = fix = "basin"
-    lost = "objects fall through the floor of the basin"
+    if_off = "objects fall through the floor of the basin"
 
-    def called_for(self, scene):
+    def called_for(self, scene, planes=None):
         if scene.liquid is None:
             return Verdict(self.name, False, "no liquid in the scene")
         if free_solid(scene) is None:
@@ -70,13 +77,46 @@ class Liquid(Effect):
     """The automaton: liquid that falls, spreads, levels and makes room for solids."""
 
     name = fix = "liquid"
+    uses_grid = True
     needs = ("gravity",)
-    lost = "the basin stays empty"
+    if_off = "the basin stays empty"
 
-    def called_for(self, scene):
+    def called_for(self, scene, planes=None):
         if scene.liquid is None:
             return Verdict(self.name, False, "no liquid in the scene")
         return Verdict(self.name, True, f"{scene.liquid.name} in a basin", scene.liquid.spans.get("liquid"))
+
+    def margins(self, envelope):
+        """Sweeps for each cell that the fastest solid travels: it may go on for EVERY steps before the fix looks."""
+        liquid, cell = envelope.scene.liquid, min(envelope.system.grid.cell)
+        bottom = np.minimum.reduceat(envelope.system.position[:, 2], envelope.system.first[:-1])
+        surface = liquid_level(liquid)
+        # Fastest at the surface on its way down or up, or at the floor.
+        rise = np.maximum(0.0, surface - bottom) * np.maximum(0.0, -envelope.weight_left())
+        fastest = envelope.speed_after(np.maximum.reduce([bottom - surface, rise, envelope.fall()]))
+        m = int(fastest.argmax())
+        speed = float(fastest[m])
+        stride = STRIDE + EVERY * envelope.dt * speed / cell
+        each = 2.0 * SWEEPS if liquid.sweeps is None else liquid.sweeps / stride
+        few = each < SWEEPS
+        return [
+            Margin(
+                "sweeps",
+                envelope.system.names[m],
+                each,
+                SWEEPS,
+                "per cell",
+                f"liquid is swept {number(each, 2)} times for each cell that {envelope.system.names[m]} "
+                f"travels at {say(speed, 'm/s')}; below {SWEEPS} it is pushed up before it can flow away, {2 * SWEEPS} are better",
+                liquid.spans.get("sweeps") or liquid.spans.get("liquid"),
+                "warning" if few else "ok",
+                least=True,
+                hint=f"write sweeps auto, or {math.ceil(2 * SWEEPS * stride)}",
+            )
+        ]
+
+    def acts_on(self, system, liquid):
+        return liquid
 
     def tables(self, scene, system):
         return {} if scene.liquid.model is LiquidModel.PAPER else {"cell": lattice_cells(system)}
@@ -90,7 +130,7 @@ class Liquid(Effect):
         solid = np.count_nonzero(~load.system.held[load.system.hexahedron].all(axis=1))
         return sweeps * (grid.cells * rate["cell"] + solid / SWEEPS_PER_UPDATE * rate["solid"])
 
-    def pace(self, scene, system):
+    def max_timestep(self, scene, system):
         return PERIOD / EVERY * math.sqrt(min(system.grid.cell) / -scene.gravity[2])
 
     def commands(self, scene, system):
@@ -117,9 +157,9 @@ class Buoyancy(Effect):
     name = "buoyancy"
     ledger = "buoyancy"
     needs = ("liquid",)
-    lost = "objects sink like stones"
+    if_off = "objects sink like stones"
 
-    def called_for(self, scene):
+    def called_for(self, scene, planes=None):
         return _reached(self.name, scene)
 
     def columns(self, scene, system):
@@ -131,6 +171,12 @@ class Buoyancy(Effect):
     def commands(self, scene, system):
         faces = " faces i2_face" if scene.liquid.model is LiquidModel.PRESSURE else ""
         return [f"fix_modify liquid buoyancy d_volume{faces}"]
+
+    def lift(self, scene, system):
+        return scene.liquid.density * np.add.reduceat(system.volume, system.first[:-1])
+
+    def surface(self, scene):
+        return liquid_level(scene.liquid)
 
     def rate(self, scene, system):
         weight = scene.liquid.density * -scene.gravity[2]
@@ -163,9 +209,9 @@ class LiquidDrag(Effect):
     name = "liquid-drag"
     ledger = "drag_loss"
     needs = ("liquid", "buoyancy")  # which gives the fix the volumes
-    lost = "floating objects bob for a long time"
+    if_off = "floating objects bob for a long time"
 
-    def called_for(self, scene):
+    def called_for(self, scene, planes=None):
         if scene.liquid is not None and scene.liquid.drag == 0.0:
             return Verdict(self.name, False, f"{scene.liquid.name} has drag 0", scene.liquid.spans.get("drag"))
         return _reached(self.name, scene)

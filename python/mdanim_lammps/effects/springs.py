@@ -7,6 +7,7 @@ import numpy as np
 
 from ..scene.scene import HoldAll
 from .effect import Effect, Verdict
+from .strength import amplitude, load, thinnest
 
 DASHPOTS = 0.44
 """Part of the time of damped springs that goes to their dashpots (bench/effects.py shares)."""
@@ -75,9 +76,9 @@ def block_norm(pair: np.ndarray, weight: np.ndarray, direction: np.ndarray, part
 class Springs(Effect):
     name = "springs"
     ledger = "elastic"
-    lost = "solids fall apart into loose particles"
+    if_off = "solids fall apart into loose particles"
 
-    def called_for(self, scene):
+    def called_for(self, scene, planes=None):
         for solid in scene.solids:
             if not all_held(solid):
                 return Verdict(self.name, True, f"{solid.name} can move and deform", solid.spans.get("elasticity"))
@@ -85,6 +86,9 @@ class Springs(Effect):
 
     def rate(self, scene, system):
         return 2.0 * spring_norm(system, system.stiffness) / system.mass
+
+    def margins(self, envelope):
+        return [amplitude(envelope), *load(envelope), thinnest(envelope)]
 
     def energy(self, instance, scene, system):
         return instance.elastic_energy()

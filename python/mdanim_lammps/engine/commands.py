@@ -64,17 +64,13 @@ def prelude(plan: Plan) -> list[str]:
 
 def physics(plan: Plan) -> list[str]:
     """Commands after the particles exist: groups, effects, integrator, time step."""
-    names = {e.name for e in plan.effects}
-    groups = [f"group mobile type 1:{HELD}"]
-    if "contact" in names:
-        groups += ["group inner type 1 2 5 6", "group boundary type 3 4 7 8", "group thin type 4 8"]
     effects = [c for e in plan.effects for c in e.commands(plan.scene, plan.system)]
     drag = " lambda d_lambda" if "lambda" in plan.columns else ""
     if drag and plan.exponential:
         drag += " drag exp"
     return [
         "mass * 1.0",  # wanted by atom_style bond; the particles' own masses (rmass) are what counts
-        *groups,
+        f"group mobile type 1:{HELD}",
         *effects,
         f"fix leapfrog mobile mdanim/leapfrog{drag}",
         f"timestep {plan.certificate.timestep!r}",

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..certificate import Certificate, strong_drag
-from ..effects import EFFECTS, Effect, Verdict
+from ..effects import Effect, Resolved
 from ..model.basin import Grid
 from ..model.springs import types
 from ..model.system import System
@@ -77,7 +77,7 @@ class Plan:
     @property
     def grid(self) -> Grid | None:
         """Cells of the liquid; None where there is none, or it is switched off."""
-        return self.system.grid if any(e.name == "liquid" for e in self.effects) else None
+        return self.system.grid if any(e.uses_grid for e in self.effects) else None
 
     @property
     def damped(self) -> bool:
@@ -85,9 +85,9 @@ class Plan:
         return bool(self.coefficients[:, 2].any())
 
 
-def make_plan(scene: Scene, system: System, verdicts: dict[str, Verdict], certificate: Certificate) -> Plan:
+def make_plan(resolved: Resolved, system: System, certificate: Certificate) -> Plan:
     """Gather what the effects that are on ask for."""
-    effects = tuple(e for e in EFFECTS if verdicts[e.name].on)
+    scene, effects = resolved.scene, resolved.effects
     names = {e.name for e in effects}
     columns: dict[str, np.ndarray] = {}
     tables: dict[str, np.ndarray] = {}

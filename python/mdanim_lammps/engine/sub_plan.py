@@ -11,7 +11,7 @@ from itertools import accumulate, pairwise
 import numpy as np
 
 from ..effects import Effect
-from ..effects.liquid import Liquid, top_of_reach
+from ..effects.liquid import top_of_reach
 from ..model.system import System
 from .plan import Ends, Plan, both_ends
 
@@ -103,15 +103,12 @@ class SubPlans:
 
     def _effects(self, system: System, liquid: bool) -> tuple[Effect, ...]:
         """The effects of the whole without those that have nothing to act on."""
-        missing = set() if liquid else {Liquid.name}
-        if len(system.names) < 2 or system.held.all():
-            missing.add("contact")
-        effects = []
+        missing, effects = set(), []
         for effect in self.whole.effects:
-            if effect.name in missing or missing.intersection(effect.needs):
-                missing.add(effect.name)
-            else:
+            if effect.acts_on(system, liquid) and not missing.intersection(effect.needs):
                 effects.append(effect)
+            else:
+                missing.add(effect.name)
         return tuple(effects)
 
     def _system(self, objects: tuple[int, ...], runs: list[tuple[int, int]], liquid: bool) -> System:

@@ -47,14 +47,14 @@ def stored(instance: Instance) -> dict[str, float]:
     found = dict.fromkeys(ledger_terms(effects), 0.0)
     found["kinetic"] = instance.kinetic_energy()
     for effect in effects:
-        if not effect.placed:
+        if not effect.has_potential:
             found[effect.ledger] += effect.energy(instance, plan.scene, plan.system)
     return found
 
 
 def potentials(plan: Plan, x: np.ndarray) -> dict[str, float]:
     """The terms that follow from where all particles of a plan are [J]; x [m], shape (N, 3)."""
-    return {e.ledger: e.potential(plan.scene, plan.system.mass, x) for e in plan.effects if e.placed}
+    return {e.ledger: e.potential(plan.scene, plan.system.mass, x) for e in plan.effects if e.has_potential}
 
 
 def losses(instance: Instance) -> dict[str, float]:

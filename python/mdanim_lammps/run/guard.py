@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from ..certificate import wave_speed
+from ..effects.envelope import wave_speed
 from ..engine.geometry import INVERTED, NOT_FINITE, Geometry
 from ..errors import DivergedError, Problem
 from ..model.system import System
@@ -35,26 +34,15 @@ FLOWN_APART = (
 """What LAMMPS says when particles are where they should not be."""
 
 
-@dataclass(frozen=True)
-class _Side:
-    """A plane that pushes objects back: they belong above it when ``sign`` is 1, below when it is -1."""
-
-    name: str
-    axis: int
-    sign: int
-    at: float
-    """[m]"""
-
-
 class Guard:
     """What it has seen of a run so far."""
 
     def __init__(self, ready: Prepared, folder: Path):
         self.ready, self.folder = ready, folder
         self.geometry = Geometry(ready.system)
-        on = {e.name for e in ready.plan.effects}
-        self.sides = _sides(ready.scene, on)
-        self.contact = "contact" in on
+        effects = ready.plan.effects
+        self.sides = [p for e in effects for p in e.planes(ready.scene)]
+        self.apart = any(e.keeps_apart for e in effects)
         self.planes = np.array([s.sign * s.at for s in self.sides])
         self.columns = [s.axis if s.sign > 0 else 3 + s.axis for s in self.sides]
         """Of what a glance tells of an object's reach: that towards the plane, for what is below it."""
@@ -83,7 +71,7 @@ class Guard:
             self.crumpled = False
             self.since[:] = -1
         self._look_at_sides(step, reach)
-        if self.contact and (pair := self.geometry.sunk(x)):
+        if self.apart and (pair := self.geometry.sunk(x)):
             raise self.error_at(
                 step, f"it is inside {system.names[pair[1]]}", pair[0], "closing speed", "time step", "amplitude", "thinnest part"
             )
@@ -210,19 +198,3 @@ def _accuracy(scene: Scene) -> Accuracy:
 def energy_class(scene: Scene) -> float:
     """Energy residual that the scene's accuracy stands for [-]."""
     return CLASSES[_accuracy(scene)]
-
-
-def _sides(scene: Scene, on: set[str]) -> list[_Side]:
-    """Every plane that pushes back."""
-    sides = []
-    if "ground" in on:
-        sides.append(_Side("the ground", 2, 1, scene.ground))
-    if "walls" in on:
-        sides += [
-            _Side("the walls", a, sign, at[a]) for sign, at in ((1, scene.walls.low), (-1, scene.walls.high)) for a in range(3)
-        ]
-    if "basin" in on:
-        liquid = scene.liquid
-        sides.append(_Side("the basin", 2, 1, liquid.low[2]))
-        sides += [_Side("the basin", a, sign, at[a]) for sign, at in ((1, liquid.low), (-1, liquid.high)) for a in range(2)]
-    return sides

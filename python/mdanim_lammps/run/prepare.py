@@ -7,9 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
+from .. import effects
 from ..certificate import Certificate, certify
 from ..certificate import warnings as margin_warnings
-from ..effects import EFFECTS, Verdict, decide
+from ..effects import Verdict, resolve
 from ..engine.plan import Plan, make_plan
 from ..errors import Problem, SceneError
 from ..model.basin import check_basin, open_hulls
@@ -61,14 +62,15 @@ def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[i
         )
     models = build_models(scene, progress=progress)
     problems = check_geometry(scene, models) + check_basin(scene, models)
-    verdicts, warnings = decide(EFFECTS, scene)
+    resolved = resolve(effects.EFFECTS, scene)
+    verdicts, warnings = resolved.verdicts, list(resolved.warnings)
     problems += _unmeasurable(scene, verdicts)
     if problems:
         raise SceneError(problems)
     system = assemble(models, scene)
     models = as_parts(models, system)
-    certificate = certify(scene, system, verdicts, allow_unstable=allow_unstable)
-    plan = make_plan(scene, system, verdicts, certificate)
+    certificate = certify(resolved, system, allow_unstable=allow_unstable)
+    plan = make_plan(resolved, system, certificate)
     warnings += [w for e in plan.effects for w in e.warnings(scene, system)]
     warnings += margin_warnings(certificate) + (open_hulls(scene, models) if verdicts["liquid"].on else [])
     return Prepared(scene, models, system, verdicts, (*scene.warnings, *warnings), certificate, plan, allow_unstable)

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What a lattice bears: blows, loads, thin parts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..model.cells import TooThin, end_share, fill_cells
+from ..model.shapes import thickness
+from ..scene.scene import Ellipsoid, Shape, Sphere
+from ..scene.formatting import at_least, number, say
+from .envelope import Envelope
+from .margin import Margin
+
+FOLDS = 0.2
+"""Speed of an impact over the wave speed above which a lattice folds up and stays crumpled (docs/physics-solids.md)."""
+FOLDS_ON_END, FOLDS_POWER = 0.5, 0.45
+"""The same of a ball or ellipsoid that lands on ground or walls, over a power of the part of its cells that its smallest end has:
+these few bear the blow of all (docs/physics-solids.md)."""
+CRUSH = 0.2
+"""Load over Young's modulus above which a lattice is crushed (docs/physics-solids.md)."""
+THINNEST = 2
+"""Fewest cells across: one cell is 1.9 times too stiff in bending (docs/physics-solids.md)."""
+
+
+def amplitude(env: Envelope) -> Margin:
+    scene, system = env.scene, env.system
+    meets = len(system.names) > 1 or len(env.planes) > 0
+    ratio = np.where(meets, env.speed / env.wave, 0.0)
+    hard = len(env.planes) > 0 and env.surface is None
+    spot = _spots(env) if hard else np.full(len(ratio), np.inf)
+    limit = np.minimum(FOLDS, spot)
+    m = int((ratio / limit).argmax())
+    folds = ratio > limit
+    others = int(folds.sum()) - 1
+    enough = system.young[m] * (ratio[m] / limit[m]) ** 2
+    what, coarser = "a soft object folds up", ""
+    if spot[m] < FOLDS:
+        what = f"one of {number(env.cells[m], 2)} cells across folds up at the spot where it lands"
+        h = float(np.cbrt(system.cell_volume[m]))
+        if ratio[m] < FOLDS and (h := _coarser(scene.solids[m].shape, h, float(ratio[m]))):
+            coarser = f", or resolution {say(h, 'm')}"
+    return Margin(
+        "amplitude",
+        system.names[m],
+        float(ratio[m]),
+        float(limit[m]),
+        "",
+        f"{system.names[m]}{f' and {others} more' if others > 0 else ''} may hit at {say(env.speed[m], 'm/s', 2)}, "
+        f"{ratio[m]:.2f} of the wave speed {say(env.wave[m], 'm/s', 2)}; "
+        f"above about {number(limit[m], 2)} {what} and stays crumpled",
+        env.place(m, "elasticity"),
+        "warning" if folds[m] else "ok",
+        hint=f"write elasticity {say(at_least(enough), 'Pa')} or more{coarser}, or a lower density, height or speed",
+    )
+
+
+def _spots(env: Envelope) -> np.ndarray:
+    """Speed of a landing on the smallest end, over the wave speed, that folds it up; infinite for what is not round,
+    shape (M,)."""
+    system, known = env.system, {}
+    spots = np.full(len(system.names), np.inf)
+    balls = [m for m, s in enumerate(env.scene.solids) if env.moving[m] and isinstance(s.shape, (Sphere, Ellipsoid))]
+    first = np.searchsorted(system.hexahedron[:, 0], system.first)
+    for m in balls:
+        key = env.scene.solids[m].shape, float(system.cell_volume[m])
+        if key not in known:
+            middle = system.position[system.hexahedron[first[m] : first[m + 1]]].mean(axis=1)
+            middle = middle @ np.array(env.scene.solids[m].rotation)
+            place = np.rint((middle - middle.min(axis=0)) / np.cbrt(system.cell_volume[m])).astype(int)  # voxels are cubes
+            filled = np.zeros(place.max(axis=0) + 1, bool)
+            filled[tuple(place.T)] = True
+            known[key] = folds_on_end(filled)
+        spots[m] = known[key]
+    return spots
+
+
+def load(env: Envelope) -> list[Margin]:
+    g = env.g
+    if not g:
+        return []
+    system = env.system
+    stress = _stress(env, g)
+    ratio = np.where(env.moving, stress / (CRUSH * system.young), 0.0)
+    m = int(ratio.argmax())
+    strength = CRUSH * system.young[m]
+    return [
+        Margin(
+            "load",
+            system.names[m],
+            float(stress[m]),
+            float(strength),
+            "Pa",
+            f"{system.names[m]} bears about {say(stress[m], 'Pa')} at its foot by its weight and by what stands above it at the "
+            f"start, {ratio[m]:.2f} of its crush strength 0.2 E = {say(strength, 'Pa')} (an estimate: evenly spread, at rest)",
+            env.place(m, "elasticity"),
+            "warning" if ratio[m] > 1.0 else "ok",
+            hint=f"write elasticity {say(at_least(system.young[m] * ratio[m] * 1.5), 'Pa')} or more, "
+            "or a lower density or height",
+        )
+    ]
+
+
+def _stress(env: Envelope, g: float) -> np.ndarray:
+    """rho g H of each solid and of the part of others that stands above it, less buoyancy [Pa], shape (M,)."""
+    system = env.system
+    low, high = system.bounds(system.position)
+    size = np.maximum(high - low, 1e-300)
+    weight = system.mass_of * g * np.maximum(0.0, env.weight_left())
+    floor = size[:, 0] * size[:, 1]
+    above = np.zeros(len(weight))
+    for start in range(0, len(weight), 256):  # the table of all pairs would be too large for a crowd
+        part = slice(start, start + 256)
+        wide = [
+            np.minimum(high[part, None, a], high[None, :, a]) - np.maximum(low[part, None, a], low[None, :, a]) for a in (0, 1)
+        ]
+        over = np.maximum(wide[0], 0.0) * np.maximum(wide[1], 0.0) / floor
+        over[low[None, :, 2] < high[part, None, 2] - 0.25 * size[part, None, 2]] = 0.0
+        above[part] = over @ weight
+    volume = np.add.reduceat(system.volume, system.first[:-1])
+    return (weight + above) * size[:, 2] / volume
+
+
+def thinnest(env: Envelope) -> Margin:
+    cells = np.where(env.moving, env.cells, np.inf)
+    m = int(cells.argmin())
+    few = round(float(cells[m])) < THINNEST
+    h = float(np.cbrt(env.system.cell_volume[m]))
+    return Margin(
+        "thinnest part",
+        env.system.names[m],
+        float(cells[m]),
+        THINNEST,
+        "cells",
+        f"{env.system.names[m]} is {number(cells[m], 2)} cells thin; one cell is 1.9 times too stiff in bending, two are not",
+        env.place(m, "shape"),
+        "warning" if few else "ok",
+        least=True,
+        hint=f"write resolution {say(0.5 * h * cells[m], 'm')} for two cells",
+    )
+
+
+def folds_on_end(filled: np.ndarray) -> float:
+    """Speed of a landing over the wave speed above which the smallest end of a body of these cells stays folded up [-]."""
+    return FOLDS_ON_END * end_share(filled) ** FOLDS_POWER
+
+
+def _coarser(shape: Shape, h: float, ratio: float) -> float | None:
+    """The next coarser spacing [m] at which a landing at this part of the wave speed folds no end;
+    None below three cells across."""
+    for trial in (at_least(h * 1.05**k) for k in range(1, 40)):
+        try:
+            if thickness(shape) / trial < 3.0:
+                break
+            if ratio <= folds_on_end(fill_cells(shape, trial).filled):
+                return trial
+        except TooThin:
+            continue
+    return None
