@@ -107,7 +107,8 @@ class Liquid(Effect):
                 SWEEPS,
                 "per cell",
                 f"liquid is swept {number(each, 2)} times for each cell that {envelope.system.names[m]} "
-                f"travels at {say(speed, 'm/s')}; below {SWEEPS} it is pushed up before it can flow away, {2 * SWEEPS} are better",
+                f"travels at {say(speed, 'm/s')}; below {SWEEPS} "
+                f"it is pushed up before it can flow away, {2 * SWEEPS} are better",
                 liquid.spans.get("sweeps") or liquid.spans.get("liquid"),
                 "warning" if few else "ok",
                 least=True,
