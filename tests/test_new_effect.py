@@ -115,7 +115,7 @@ def test_its_plane_is_one_of_the_scene(windy, prepared, tmp_path):
     moved = guard.ready.system.object == 0
     x[moved, 0] += 2.0 * FAR  # below the fence
     with pytest.raises(DivergedError, match="it has left the fence"):
-        guard.look(1, x, np.zeros_like(x))
+        guard.check(1, x, np.zeros_like(x))
 
 
 def test_without_it_nothing_is_left(prepared):
