@@ -23,8 +23,8 @@ from .effects.envelope import Envelope
 from .effects.margin import Margin
 from .errors import Problem, RefusedError, SceneError, Span
 from .model.system import System
-from .scene.scene import Accuracy, Scene
 from .scene.formatting import estimate, number, say
+from .scene.scene import Accuracy, Scene
 
 WARN = 0.7
 """Time step over the bound above which large motion may blow up: the bound is that of small motion (docs/physics-solids.md)."""

@@ -10,8 +10,8 @@ import numpy as np
 from ..model.basin import liquid_level
 from ..model.embed import FACES
 from ..model.system import System
-from ..scene.scene import LiquidModel
 from ..scene.formatting import number, say
+from ..scene.scene import LiquidModel
 from . import air_drag
 from .boundaries import Boundary
 from .effect import Effect, Verdict

@@ -7,8 +7,8 @@ import numpy as np
 
 from ..model.cells import TooThin, end_share, fill_cells
 from ..model.shapes import thickness
-from ..scene.scene import Ellipsoid, Shape, Sphere
 from ..scene.formatting import at_least, number, say
+from ..scene.scene import Ellipsoid, Shape, Sphere
 from .envelope import Envelope
 from .margin import Margin
 
