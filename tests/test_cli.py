@@ -245,7 +245,7 @@ def test_a_stopped_run_says_how_to_draw_it(scene, monkeypatch, capsys):
             raise DivergedError("cube has blown up")
 
     path = scene()
-    monkeypatch.setattr(Guard, "look", look)
+    monkeypatch.setattr(Guard, "check", look)
     with pytest.raises(SystemExit) as end:
         cli.main([str(path)])
     assert end.value.code == 6
