@@ -1,7 +1,7 @@
 # make demo   set up .venv, run scenes/beam.txt, end with the path of the movie
 # make test   set up .venv, run the tests
-# make develop  set up .venv, build the plugin into the working tree: PYTHONPATH=python .venv/bin/python -m pytest tests/test_x.py
-# make soak   set up .venv, run the long form of the hard cases (tests/stability, test_ranks.py, test_scene_soak.py, test_scene_lock.py, tests/mpi)
+# make develop  set up .venv, build the plugin into the working tree: PYTHONPATH=python .venv/bin/python -m pytest tests/scene/test_units.py
+# make soak   set up .venv, run the long form of the hard cases (all tests marked soak)
 # make sanitize  set up .venv, build the plugin with sanitizers, run its tests and four scenes under them (tests/sanitize.py)
 # make bench  set up .venv, measure all of docs/performance.md (ten minutes; python bench/all.py --quick takes one)
 # make bench-peers  set up .venv and .venv-peers, measure other programs on the same scenes (docs/performance.md)
@@ -31,7 +31,7 @@ demo: setup
 lint: setup $(VENV)/.linters
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
-	$(BIN)/clang-format --dry-run --Werror $(shell find plugin tests/plugin -name '*.cpp' -o -name '*.h')
+	$(BIN)/clang-format --dry-run --Werror $(shell find plugin tests/lab/plugin -name '*.cpp' -o -name '*.h')
 	$(BIN)/mypy
 
 $(VENV)/.linters: pyproject.toml $(VENV)/.installed
@@ -39,7 +39,7 @@ $(VENV)/.linters: pyproject.toml $(VENV)/.installed
 	@touch $@
 
 test: setup
-	$(BIN)/python tests/plugin_library.py
+	$(BIN)/python tests/lab/plugin_library.py
 	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 # Ninja builds what has changed only. The file is renamed, as a process may have the old one loaded.
@@ -53,8 +53,8 @@ develop: setup
 	mv python/mdanim_lammps/plugin/mdanimplugin.so.tmp python/mdanim_lammps/plugin/mdanimplugin.so
 
 soak: setup
-	$(BIN)/python tests/plugin_library.py
-	$(BIN)/python -m pytest -n 2 -m soak tests/stability tests/test_ranks.py tests/test_scene_soak.py tests/test_scene_lock.py tests/mpi
+	$(BIN)/python tests/lab/plugin_library.py
+	$(BIN)/python -m pytest -n 2 -m soak
 
 # The CMake that pip builds the package with is not kept in .venv.
 sanitize: setup

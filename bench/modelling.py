@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).parent.parent
-sys.path.insert(0, str(ROOT / "tests"))
+sys.path.insert(0, str(ROOT / "tests" / "lab"))
 
 from mdanim_lammps.model import build_models, check_geometry, shapes  # noqa: E402
 from mdanim_lammps.scene.scene import Box, Mesh, Sphere  # noqa: E402
@@ -65,7 +65,7 @@ def cost() -> None:
 
 
 def physics() -> None:
-    from test_model_springs import cantilever, stretched
+    from spring_lab import cantilever, stretched
 
     print("| cells thick | E / E asked | nu | deflection | frequency |\n|---|---|---|---|---|")
     for cells in (1, 2, 3, 4, 6, 8):

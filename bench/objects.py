@@ -9,15 +9,15 @@ import sys
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "lab"))
 
 
 def main(side: int = 100) -> None:
     """Measure and print."""
+    from crowd_text import TEXT
     from mdanim_lammps.engine.instance import Instance
     from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import parse_scene
-    from test_many import TEXT
 
     start = time.perf_counter()
 

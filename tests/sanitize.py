@@ -21,10 +21,7 @@ WORK = ROOT / "build" / "sanitize"
 REPORTS, PACKAGE, SCENES = WORK / "reports", WORK / "package", WORK / "scenes"
 BIN = Path(sys.executable).parent
 FLAGS = " ".join((ROOT / "plugin" / "sanitize_flags.txt").read_text().split())
-TESTS = (
-    *("test_bond_*.py", "test_fix_*.py", "test_plugin_*.py", "test_verlet_*.py", "test_trace.py", "test_state.py"),
-    *("test_automaton.py", "test_level.py", "test_surface.py"),
-)
+TESTS = ("plugin/**/test_*.py", "engine/test_trace.py")
 PLANTED = {
     "mdanim_plant_heap_overflow": "AddressSanitizer: heap-buffer-overflow",
     "mdanim_plant_signed_overflow": "AddressSanitizer: ABRT",

@@ -42,7 +42,7 @@ def test_promises_have_their_tests():
     named = 0
     for line in (ROOT / "docs" / "security.md").read_text(encoding="utf-8").splitlines():
         file = None
-        for name, test in re.findall(r"`(test_\w+\.py)?::(test_\w+)", line):
+        for name, test in re.findall(r"`([\w/]*test_\w+\.py)?::(test_\w+)", line):
             file, named = name or file, named + 1
             assert re.search(rf"^def {test}\(", (ROOT / "tests" / file).read_text(encoding="utf-8"), flags=re.M), (
                 f"{file}::{test}"

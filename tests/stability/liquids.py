@@ -14,7 +14,7 @@ from case import CONTROL, C, Case, block, refused, velocity
 from mdanim_lammps.errors import SceneError
 from trial import START, UNITS, Trial
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[1] / "lab"))
 import automaton_lab
 
 

@@ -12,7 +12,7 @@ from mdanim_lammps.errors import RefusedError
 from mdanim_lammps.scene.rotation import rotation_about
 from trial import Trial
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[1] / "lab"))
 from twin.lattice import CORNER
 
 # --- large motion -------------------------------------------------------------------------------------------------

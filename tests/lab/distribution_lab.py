@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""One scene run in many ways, sequential and on executors, in one start of MPI."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import plugin_path
+import pytest
+from paths import MPI
+
+MATRIX = MPI / "matrix.py"
+
+
+SEQUENTIAL = {"control": None, "executors": 1}
+
+
+BOTH = ("central", "peers")
+
+
+WINDOWS = {"worth": 0, "finest": 8}
+"""Windows shorter than a frame wherever loads are not in balance."""
+
+
+def ways(scene: Path, cases: dict[str, dict], ranks: int = 5, timeout: float = 60.0, *, effect: bool = False) -> dict[str, Path]:
+    """Run a scene in all of these ways, the sequential one first; returns the folder of each. ``effect``: with that of
+    memory_effect.py."""
+    folder = scene.parent
+    cases = {"sequential": SEQUENTIAL} | cases
+    work = [{"folder": str(folder / case.get("in", name)), **case} for name, case in cases.items()]
+    (folder / "cases.json").write_text(json.dumps({"scene": str(scene), "cases": work}))
+    done = subprocess.run(
+        [
+            plugin_path.BIN / "mpiexec",
+            "-n",
+            str(ranks),
+            sys.executable,
+            "-m",
+            "mpi4py",
+            MATRIX,
+            folder / "cases.json",
+            str(timeout),
+            *(["effect"] if effect else []),
+        ],
+        capture_output=True,
+        text=True,
+        timeout=timeout + 10.0,
+        env={**plugin_path.environment(), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return {name: folder / case.get("in", name) for name, case in cases.items()}
+
+
+def matrix(executors=(1, 2, 3, 4), controls=BOTH, name="", **more) -> dict[str, dict]:
+    """Cases for every number of executors under each control."""
+    return {f"{name}{control}{k}": {"executors": k, "control": control, **more} for control in controls for k in executors}
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """Write a scene file."""
+
+    def write(text: str) -> Path:
+        path = tmp_path / "scene.txt"
+        path.write_text(text)
+        return path
+
+    return write

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Build the test library: C functions over the automaton and the level rule, and LAMMPS styles, that only tests use.
+
+``python tests/lab/plugin_library.py`` builds it ahead; else the first test that needs it does.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import fcntl
+import hashlib
+import os
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PLUGIN, TESTS = ROOT / "plugin", ROOT / "tests" / "lab" / "plugin"
+FOLDER = ROOT / "build" / "mdanimtest"
+"""Of the library alone: as LAMMPS_PLUGIN_PATH it makes LAMMPS load the styles of the tests."""
+FILE = FOLDER / "mdanimtestplugin.so"
+SOURCES = (*sorted(TESTS.glob("*.cpp")), *sorted((PLUGIN / "liquid").glob("*.cpp")), PLUGIN / "styles" / "stateful.cpp")
+
+
+def build() -> Path:
+    """The built library, compiled anew where its sources, flags or LAMMPS have changed; one process builds, others wait."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    stamp = FOLDER / "stamp"
+    with (FOLDER / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not FILE.exists() or not stamp.exists() or stamp.read_text() != _digest():
+            part = FOLDER / "part"
+            done = subprocess.run([*_command(), "-o", str(part)], capture_output=True, text=True)
+            if done.returncode:
+                raise RuntimeError(f"the test library does not compile:\n{done.stderr}")
+            part.replace(FILE)
+            stamp.write_text(_digest())
+    return FILE
+
+
+@cache
+def library() -> ctypes.CDLL:
+    """The built library with liblammps below it."""
+    from mdanim_lammps.engine.plugin import open_library
+
+    open_library()  # maps liblammps
+    return ctypes.CDLL(str(build()))
+
+
+@cache
+def _command() -> list[str]:
+    """The compiler's command but for the output; the flags are those of the plugin."""
+    headers = subprocess.run([sys.executable, str(PLUGIN / "headers.py")], capture_output=True, text=True, check=True).stdout
+    lammps, mpi, *_ = headers.split(";")
+    flags = (PLUGIN / "compile_flags.txt").read_text().split()
+    folders = [f"-I{PLUGIN}", "-isystem", lammps, "-isystem", mpi]
+    kind = ["-std=c++17", "-shared", "-fPIC", "-fvisibility=hidden", "-fvisibility-inlines-hidden"]
+    more = os.environ.get("CXXFLAGS", "").split()
+    return [os.environ.get("CXX", "c++"), *kind, *flags, *more, *folders, *map(str, SOURCES)]
+
+
+def _digest() -> str:
+    """Of all that the library is made from."""
+    found = hashlib.sha256(" ".join(_command()).encode())
+    for path in sorted(p for folder in (PLUGIN, TESTS) for p in folder.rglob("*") if p.suffix in (".h", ".cpp")):
+        if path in SOURCES or path.suffix == ".h":
+            found.update(path.read_bytes())
+    return found.hexdigest()
+
+
+if __name__ == "__main__":
+    print(build())

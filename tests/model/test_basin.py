@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Basins: their cells, and what does not fit into them, told before anything runs."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mdanim_lammps.errors import Span
+from mdanim_lammps.model import basin, build_models, check_basin, shapes
+from mdanim_lammps.model.system import assemble
+from mdanim_lammps.scene.scene import Box, HoldAll, HoldFaces, Liquid, LiquidModel, Mesh, Side, Switch
+from model_samples import MESHES, SHAPES, scene, shape_id, solid
+from paths import REPOSITORY
+
+WATER = Liquid(
+    "water",
+    (0.0, 0.0, 0.0),
+    (1.0, 1.0, 1.0),
+    1000.0,
+    volume=0.5,
+    spans={word: Span("test.txt", line, 3) for line, word in enumerate(("basin", "volume", "level"), 11)},
+)
+CUBE = Box((0.4, 0.4, 0.4))
+ABOVE = (0.5, 0.5, 1.5)
+
+
+def block(shape=CUBE, name="block", position=ABOVE, density=500.0, **rest):
+    """A solid of this density."""
+    return solid(shape, name, position=position, mass=None, density=density, **rest)
+
+
+def problems(*solids, h=0.1, effects=None, **liquid):
+    """What is wrong with these solids and this liquid."""
+    made = replace(scene(*solids, resolution=h, liquid=replace(WATER, **liquid)), effects=effects or {})
+    return check_basin(made, build_models(made))
+
+
+# --- cells --------------------------------------------------------------------------------------------------
+
+
+@settings(derandomize=True)
+@given(st.tuples(*[st.floats(0.2, 5.0)] * 3), st.floats(0.01, 0.06))
+def test_cells_fill_the_basin_and_are_hardly_longer_than_the_spacing(size, h):
+    """Divide every side into whole cells, up to a tenth longer than the spacing; a third off below ten."""
+    grid = basin.plan_grid(replace(WATER, high=size), h)
+    for side, n, edge in zip(size, grid.shape, grid.cell):
+        assert n * edge == pytest.approx(side, rel=1e-12)
+        low, high = (0.999999, 1.1) if side >= 10 * h else (2 / 3, 4 / 3)
+        assert low * h <= edge <= high * h * (1 + 1e-9)
+
+
+def test_volume_is_rounded_to_whole_cells():
+    """Round to the nearest number of cells."""
+    grid = basin.plan_grid(WATER, 0.1)
+    assert (grid.shape, grid.cells) == ((10, 10, 10), 1000)
+    assert [grid.units(x) for x in (0.5, 0.50049, 0.50051, 0.0004)] == [500, 500, 501, 0]
+
+
+def test_cells_belong_to_a_region_by_their_centre():
+    """Count a cell whose centre is inside, as the fix does."""
+    grid = basin.plan_grid(WATER, 0.1)
+    assert grid.cells_within((0, 0, 0), (1, 1, 1)) == 1000
+    assert grid.cells_within((0.04, 0, 0), (0.24, 1, 0.26)) == 2 * 10 * 3
+
+
+@pytest.mark.parametrize(
+    ("liquid", "level"),
+    [
+        pytest.param({"volume": 0.5}, 0.5, id="volume"),
+        pytest.param({"volume": None, "level": 0.3}, 0.3, id="level"),
+        pytest.param({"volume": None, "level": 0.8, "fill": ((0.0, 0.0, 0.4), (0.5, 1.0, 1.0))}, 0.2, id="dam"),
+    ],
+)
+def test_level_at_rest(liquid, level):
+    """Spread what is poured over the whole floor."""
+    assert basin.liquid_level(replace(WATER, **liquid)) == pytest.approx(level, rel=1e-12)
+
+
+# --- particles' volumes -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=shape_id)
+def test_particles_share_the_true_volume(shape):
+    """Give each particle m_i / rho, so that a body displaces what its shape says and not what its cells say."""
+    h = shapes.thickness(shape) / 4
+    made = scene(solid(shape, "a"), solid(CUBE, "b", position=(9.0, 0, 0), mass=3.0), resolution=min(h, 0.1))
+    system = assemble(build_models(made), made)
+    one, two = np.add.reduceat(system.volume, system.first[:-1])
+    assert one == pytest.approx(shapes.volume(shape), rel=1e-12) and two == pytest.approx(0.064, rel=1e-12)
+    density = np.where(system.object == 0, 1.0 / shapes.volume(shape), 3.0 / 0.064)
+    np.testing.assert_allclose(system.mass / system.volume, density, rtol=1e-12)
+    assert np.array_equal(np.unique(system.hexahedron), np.arange(system.particles))
+    assert (system.object[system.hexahedron] == system.object[system.hexahedron[:, :1]]).all()
+
+
+# --- what does not fit --------------------------------------------------------------------------------------
+
+
+def test_a_basin_with_a_floating_block_is_fine():
+    """Find nothing wrong, also with an obstacle that sticks out of the basin."""
+    pillar = block(Box((0.2, 0.2, 3.0)), "pillar", (0.1, 0.1, 1.0), hold=(HoldAll(),))
+    assert not problems(block(), pillar)
+
+
+def test_a_basin_too_narrow_is_told():
+    """Ask for three cells along every side, and offer a resolution that gives them."""
+    (problem,) = problems(block(Box((0.1, 0.1, 0.1))), h=0.1, high=(1.0, 0.2, 1.0), volume=0.01)
+    assert problem.line == 11 and "2 cells wide along y" in problem.message
+    assert "resolution 6 cm" in problem.hint
+    assert not problems(block(Box((0.1, 0.1, 0.1))), h=0.06, high=(1.0, 0.2, 1.0), volume=0.01)
+
+
+def test_a_basin_too_large_for_memory_is_told(monkeypatch):
+    """Refuse with the estimate and a resolution that will do."""
+    monkeypatch.setattr(basin, "available_memory", lambda: 1e4)
+    (problem,) = problems(h=0.1)
+    assert problem.line == 11 and "1 000 cells of 10 cm" in problem.message and "are free" in problem.message
+    coarser = float(problem.hint.split()[2]) / 100
+    assert basin.plan_grid(WATER, coarser).cells * basin.BYTES_PER_CELL <= 1e4
+
+
+def test_a_drop_is_no_liquid():
+    """Refuse less than half a cell."""
+    (problem,) = problems(block(), volume=4e-4)
+    assert problem.line == 12 and "less than half a cell of 1 l" in problem.message
+    assert not problems(block(), volume=6e-4)
+
+
+@pytest.mark.parametrize(("volume", "fits"), [(0.93, True), (0.94, False)])
+def test_liquid_has_room_only_beside_what_stands_in_it(volume, fits):
+    """Take off the room of 0.064 m^3 that a held block fills at the start."""
+    found = problems(block(position=(0.5, 0.5, 0.3), hold=(HoldAll(),)), volume=volume)
+    assert fits == (not found)
+    if not fits:
+        assert found[0].line == 12 and "has room for 936 l" in found[0].message
+
+
+@pytest.mark.parametrize(("volume", "fits"), [(0.46, True), (0.48, False)])
+def test_liquid_has_room_only_in_what_is_filled(volume, fits):
+    """The same with a fill region that half of the block stands in."""
+    found = problems(block(position=(0.5, 0.5, 0.3), hold=(HoldAll(),)), volume=volume, fill=((0.0, 0.0, 0.0), (0.5, 1.0, 1.0)))
+    assert fits == (not found)
+    if not fits:
+        assert "the part that is filled has room for 468 l" in found[0].message
+
+
+@pytest.mark.parametrize(
+    ("density", "rest", "fits"),
+    [
+        pytest.param(500.0, {}, True, id="floats: displaces half of its volume"),
+        pytest.param(2000.0, {}, False, id="sinks: displaces all of it"),
+        pytest.param(500.0, {"model": LiquidModel.PAPER}, False, id="the paper's model: may sink"),
+        pytest.param(500.0, {"effects": {"buoyancy": Switch.OFF}}, False, id="without buoyancy"),
+        pytest.param(2000.0, {"effects": {"liquid": Switch.OFF}}, True, id="without liquid"),
+    ],
+)
+def test_a_body_needs_room_to_sink_in(density, rest, fits):
+    """Refuse 0.064 m^3 into a basin with 0.05 m^3 of room, at its place."""
+    found = problems(block(density=density), volume=0.95, **rest)
+    assert fits == (not found)
+    if not fits:
+        assert found[0].line == 2 and "block displaces up to 64 l" in found[0].message
+        assert "room for 50 l more" in found[0].message
+
+
+def test_bodies_that_fit_alone_may_not_fit_together():
+    """Add up what they displace."""
+    two = [block(name=name, position=(x, 0.5, 1.5), density=2000.0) for name, x in (("a", 0.25), ("b", 0.75))]
+    (problem,) = problems(*two, volume=0.9)
+    assert problem.line == 12 and "together displace up to 128 l" in problem.message
+    assert not problems(two[0], volume=0.9)
+
+
+def test_a_body_held_at_one_side_takes_the_room_that_it_has():
+    """Let a beam over the basin be: it cannot fall in."""
+    ends = HoldFaces((Side.MINUS_X, Side.PLUS_X))
+    beam = block(Box((1.0, 0.4, 0.4)), density=2000.0, position=(0.5, 0.5, 1.3), hold=(ends,))
+    assert not problems(beam, volume=0.95)
+
+
+def test_a_level_fits_wherever_it_is():
+    """Fill up to a level beside what stands there, and keep that amount in mind for what falls in."""
+    standing = block(position=(0.5, 0.5, 0.2), hold=(HoldAll(),))
+    assert not problems(standing, volume=None, level=1.0)
+    (problem,) = problems(standing, block(density=3000.0), volume=None, level=0.95)
+    assert "room for 50 l more" in problem.message
+
+
+def test_a_mesh_displaces_its_own_volume():
+    """Weigh the density of a mesh by the volume that it encloses."""
+    shape = Mesh(MESHES / "knot.ply", 0.003)
+    room = math.prod(WATER.high)
+    volume = shapes.volume(shape)
+    made = dict(shape=shape, density=2000.0, position=(0.5, 0.5, 2.0))
+    h = shapes.thickness(shape) / 2
+    if basin.plan_grid(WATER, h).cells > 1e6:
+        pytest.skip("the mesh is too fine for this basin")
+    assert not problems(block(**made), h=h, volume=room - 1.01 * volume)
+    assert problems(block(**made), h=h, volume=room - 0.99 * volume)
+
+
+def test_a_level_of_no_cell_is_told():
+    """Refuse a level that leaves the basin dry, at its line."""
+    (problem,) = problems(block(), volume=None, level=4e-4)
+    assert problem.line == 13 and "less than half a cell" in problem.message
+    assert not problems(block(), volume=None, level=6e-3)
+
+
+def test_a_part_to_fill_between_cell_centres_is_told():
+    """Say that no cell has its centre there, not that there is no room."""
+    (problem,) = problems(block(), fill=((0.06, 0.0, 0.0), (0.14, 1.0, 1.0)))
+    assert "no cell of the basin has its centre" in problem.message and "resolution 7.2 cm" in problem.hint
+    assert not problems(block(), fill=((0.0, 0.0, 0.0), (0.08, 1.0, 1.0)), volume=0.05)
+
+
+@pytest.mark.parametrize(("across", "along", "fits"), [(0.9, 0.9, False), (0.8, 0.9, True), (0.9, 0.4, True)])
+def test_a_body_must_leave_liquid_beside_it(across, along, fits):
+    """Refuse a raft with less than one and a half cells beside it along both axes: nothing tells how deep it floats."""
+    found = problems(block(Box((across, along, 0.3))), volume=0.3)
+    assert fits == (not found)
+    if not fits:
+        assert found[0].line == 2 and "fills the basin from wall to wall but for 10 cm" in found[0].message
+    assert not problems(block(Box((across, along, 0.3)), hold=(HoldAll(),)), volume=0.3)
+
+
+BOAT = Mesh(REPOSITORY / "scenes/meshes/boat.stl", 0.01)
+
+
+def test_an_open_hull_is_told():
+    """Warn of the boat under model surface, not of a duck, nor under model pressure."""
+
+    def told(shape, **liquid):
+        made = scene(block(shape, "boat"), resolution=0.03, liquid=replace(WATER, high=(2.0, 2.0, 2.0), **liquid))
+        return basin.open_hulls(made, build_models(made))
+
+    (warning,) = told(BOAT)
+    assert warning.severity == "warning" and "boat is open and hollow" in warning.message
+    assert "model pressure" in warning.hint
+    assert not told(BOAT, model=LiquidModel.PRESSURE)
+    assert not told(Mesh(BOAT.path.with_name("duck.stl"), 0.03))
+
+
+def test_what_a_hull_encloses():
+    """The boat's inside is about as large as its planks: the hull without them, 118 l, less 60 l."""
+    made = scene(block(BOAT, "boat"), resolution=0.025, liquid=replace(WATER, high=(2.0, 2.0, 2.0)))
+    (model,) = build_models(made)
+    # Whole cells of 2.5 cm on planks of 7 cm.
+    assert basin.enclosed(made.solids[0], model) == pytest.approx(58 / 60, abs=0.1)

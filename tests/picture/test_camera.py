@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Cameras: the automatic one holds the whole action and no more, paths are smooth."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from mdanim_lammps.picture.camera import MARGIN, CameraPath, action_of, automatic_view, fit_view, hermite_weights
+from mdanim_lammps.results.trajectory import Trajectory
+from mdanim_lammps.scene.scene import Camera, Control, Scene
+from picture_measures import project
+from picture_samples import box, falling, slab_scene, solid, write
+
+
+def moving(tmp_path, models, frames, dt=0.1, ground=0.0):
+    """A trajectory in which model i is where frames[k][i] says, as a shift from its start."""
+    scene = Scene("s", Control(1.0), solids=tuple(solid(m, (0, 0, 0)) for m in models), ground=ground)
+    rows = []
+    for k, shifts in enumerate(frames):
+        position = np.concatenate([m.position + np.array(s) for m, s in zip(models, shifts)])
+        rows.append((k, k * dt, position, np.zeros_like(position)))
+    return Trajectory(write(tmp_path / "t.h5", scene, models, rows))
+
+
+@pytest.mark.parametrize("aspect", [16 / 9, 1.0, 9 / 16])
+def test_fit_is_tight(aspect):
+    """All points are inside the margin, and one of them on it."""
+    points = np.random.default_rng(1).normal(size=(200, 3)) * [3.0, 1.0, 0.5] + [10.0, -4.0, 2.0]
+    forward = np.array([0.5, 0.7, -0.4])
+    view = fit_view(points, forward / np.linalg.norm(forward), aspect)
+    seen, depth = project(view, points, aspect)
+    assert (depth > 0).all()
+    assert np.abs(seen).max() == pytest.approx(MARGIN, abs=1e-9)
+    np.testing.assert_allclose(
+        seen.max(axis=0)[np.abs(seen).max(axis=0).argmax()], -seen.min(axis=0)[np.abs(seen).max(axis=0).argmax()], atol=1e-9
+    )
+
+
+@pytest.mark.parametrize("size", [(4.0, 0.2, 0.2), (0.2, 0.2, 4.0), (0.2, 4.0, 0.2)])
+def test_wide_and_tall_scenes_fit(tmp_path, size):
+    """Every surface point of every frame is in the picture, whatever the shape of the scene."""
+    models = [box("a", size, (2, 2, 2), (0, 0, size[2] / 2)), box("b", (0.3, 0.3, 0.3), (1, 1, 1), (0.5, 0.5, 1))]
+    frames = [((0, 0, 0), (0.3 * k, 0.1 * k, 0.02 * k**2)) for k in range(8)]
+    with moving(tmp_path, models, frames) as t:
+        view = automatic_view(action_of(t), 16 / 9)
+        for i in range(len(t)):
+            seen, depth = project(view, t.metadata.skin.vertices(t.position(i)), 16 / 9)
+            assert (depth > 0).all() and np.abs(seen).max() < 1.0
+        largest = max(
+            np.ptp(project(view, t.metadata.skin.vertices(t.position(i)), 16 / 9)[0], axis=0).max() for i in range(len(t))
+        )
+        assert largest > 0.6  # of 2: the action fills the picture
+
+
+def test_action_counts_every_frame(tmp_path):
+    """A single frame between the sampled ones is not forgotten."""
+    models = [box("a", (0.2, 0.2, 0.2), (1, 1, 1), (0, 0, 0.1))]
+    frames = [((0.7 if k == 55 else 0.0, 0, 0),) for k in range(100)]
+    with moving(tmp_path, models, frames) as t:
+        assert action_of(t, samples=3).bounds[1][0] == pytest.approx(0.8)
+
+
+def test_long_runs_are_looked_at_in_stretches(tmp_path, monkeypatch):
+    """With too many boxes to keep, those of several frames are one, and the bounds are the same."""
+    models = [box("a", (0.2, 0.2, 0.2), (1, 1, 1), (0, 0, 0.1))]
+    with moving(tmp_path, models, [((0.1 * k * (-1) ** k, 0.02 * k, 0),) for k in range(20)]) as t:
+        every = action_of(t)
+        monkeypatch.setattr("mdanim_lammps.picture.camera._BOXES", 3)
+        some = action_of(t)
+        assert (len(every.low), len(some.low)) == (20, 3)
+        np.testing.assert_allclose(some.bounds, every.bounds, atol=1e-12)
+
+
+def test_what_falls_out_does_not_shrink_the_rest(tmp_path):
+    """Without ground, an object that drops away for good is followed only a little way."""
+    models = [box("stays", (1, 1, 0.2), (2, 2, 1), (0, 0, 0)), box("falls", (0.2, 0.2, 0.2), (1, 1, 1), (0, 0, 1))]
+    frames = [((0, 0, 0), (0.05 * k, 0, -0.05 * k**2)) for k in range(30)]
+    with moving(tmp_path, models, frames, ground=None) as t:
+        action = action_of(t)
+        assert action.escaped
+        assert action.bounds[0][2] > -0.8 and action.bounds[1][0] < 0.8
+    with moving(tmp_path, models, frames[:2], ground=None) as t:
+        assert not action_of(t).escaped
+
+
+def test_path_passes_through_its_points():
+    """At the times of the points the path is there; between them it has no corner."""
+    times = np.array([0.0, 1.0, 1.5, 4.0])
+    for i, t in enumerate(times):
+        np.testing.assert_allclose(hermite_weights(times, t), np.eye(4)[i], atol=1e-12)
+    value = np.array([0.0, 2.0, 1.0, 5.0])
+    h = 1e-5
+    for t in times[1:-1]:
+        before = value @ (hermite_weights(times, t) - hermite_weights(times, t - h)) / h
+        after = value @ (hermite_weights(times, t + h) - hermite_weights(times, t)) / h
+        assert before == pytest.approx(after, abs=1e-3)  # curvature times h
+    for t in np.linspace(-1, 5, 25):
+        assert hermite_weights(times, t).sum() == pytest.approx(1.0)
+    np.testing.assert_array_equal(hermite_weights(times, 9.0), [0, 0, 0, 1])
+
+
+def test_look_follows_an_object(tmp_path):
+    """``look NAME`` is the object's centre of mass, between frames too."""
+    scene, models = slab_scene()
+    with Trajectory(write(tmp_path / "t.h5", scene, models, falling(models, 4))) as t:
+        path = CameraPath((Camera((3, -3, 2), "cube"),), t)
+        centre = t.objects["cube"].center_of_mass
+        np.testing.assert_allclose(path.at(0.2).look, centre[2], atol=1e-12)
+        np.testing.assert_allclose(path.at(0.15).look, (centre[1] + centre[2]) / 2, atol=1e-12)
+        np.testing.assert_array_equal(path.at(0.15).eye, [3, -3, 2])
+        two = CameraPath((Camera((3, -3, 2), (0, 0, 0), 0.3), Camera((1, -3, 2), "cube", 0.0)), t)
+        np.testing.assert_allclose(two.at(0.0).eye, [1, -3, 2])
+        np.testing.assert_allclose(two.at(0.3).look, [0, 0, 0], atol=1e-12)
+
+
+@pytest.mark.parametrize(("count", "followed"), [pytest.param(4, True, id="few"), pytest.param(40, False, id="crowd")])
+def test_a_crowd_is_not_ruled_by_a_runaway(tmp_path, count, followed):
+    """The camera holds an object that runs off, unless it is one of a crowd."""
+    models = [box(f"b[{i}]", (0.1, 0.1, 0.1), (1, 1, 1), (2.0 * i / count, 0, 0.05)) for i in range(count)]
+    frames = [tuple((4.0 * k if i == 0 else 0.0, 0, 0) for i in range(count)) for k in range(2)]
+    with moving(tmp_path, models, frames) as t:
+        assert action_of(t).bounds[1][0] == pytest.approx(4.05 if followed else models[-1].position[:, 0].max())

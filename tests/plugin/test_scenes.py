@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The inputs of scenes/lammps, run as their user runs them: on 1, 2 and 4 ranks, with energy and draft looked at."""
+
+import re
+import shutil
+
+import numpy as np
+import plugin_path
+import pytest
+from paths import SCENES
+
+SCENES = SCENES / "lammps"
+# Fast and close, so that few steps hold contact, floor, drag, damp, rebuilds and rebalancing.
+SHORT = ("-var", "steps", "100", "-var", "speed", "0.8", "-var", "damp", "0.3", "-var", "lambda", "0.01")
+# A heavier fall, so that few steps hold the plunge and some of the way up.
+PLUNGE = ("-var", "steps", "250", "-var", "g", "0.02")
+
+
+def run(folder, ranks, scene, *arguments):
+    """Run a copy of a scene in a folder of its own; returns its dump and its output."""
+    folder = folder / f"ranks{ranks}"
+    folder.mkdir()
+    shutil.copy(SCENES / f"in.{scene}", folder)
+    done = plugin_path.lmp(folder / f"in.{scene}", ranks, *arguments)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return (folder / f"{scene}.lammpstrj").read_bytes(), done.stdout
+
+
+def table(output):
+    """The thermo table as {column: values}."""
+    lines = output.splitlines()
+    start = next(n for n, line in enumerate(lines) if line.split()[:1] == ["Step"])
+    rows = []
+    for line in lines[start + 1 :]:
+        if not re.match(r"\s*\d", line):
+            break
+        rows.append([float(word) for word in line.split()])
+    return dict(zip(lines[start].split(), np.array(rows).T))
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_any_number_of_ranks_gives_the_same_bits(tmp_path, ranks):
+    """Compare the dumps byte for byte."""
+    alone, output = run(tmp_path, 1, "two_blocks", *SHORT)
+    assert table(output)["f_contact[4]"][-1] < 0.8
+    assert alone == run(tmp_path, ranks, "two_blocks", *SHORT)[0]
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_the_pool_is_the_same_on_any_number_of_ranks(tmp_path, ranks):
+    """Compare the dumps byte for byte while the raft dives."""
+    alone, output = run(tmp_path, 1, "pool", *PLUNGE)
+    t = table(output)
+    assert t["v_height"].min() < t["f_water[3]"].min() and t["f_water[5]"][-1] > 50
+    assert alone == run(tmp_path, ranks, "pool", *PLUNGE)[0]
+
+
+def test_the_raft_floats_half_immersed(tmp_path):
+    """At rest its middle is in the surface, the energies are in balance and no liquid is lost."""
+    _, output = run(tmp_path, 1, "pool")
+    t = table(output)
+    assert (t["f_water[1]"] == t["f_water[1]"][0]).all()
+    assert t["KinEng"][-1] < 1e-9
+    # By symmetry exactly; 1e-3 is what it still bobs by.
+    assert t["v_height"][-1] == pytest.approx(t["f_water[3]"][-1], abs=1e-3)
+    # 8 layers and the raft's 48 cells on 320 columns; whole cells are rounded by a tenth of a raft.
+    assert t["f_water[3]"][-1] == pytest.approx(8.0 + 48.0 / 320.0, abs=0.03)
+    assert t["TotEng"] == pytest.approx(t["TotEng"][0], rel=1e-4)
+
+
+def test_energy_is_kept(tmp_path):
+    """1000 steps with several impacts on floor and block: nothing gets lost."""
+    _, output = run(tmp_path, 1, "two_blocks")
+    t = table(output)
+    assert t["f_contact[4]"][-1] < 0.8 and t["f_floor"].max() > 0.1
+    # docs/physics-solids.md: 1e-3 at 0.3 of the bound; here 0.2 of 2/w_b = 0.71 is 0.28.
+    assert t["v_balance"] == pytest.approx(t["v_balance"][0], rel=1.5e-3)
+
+
+def test_energy_is_kept_with_drag_and_damp(tmp_path):
+    """The same with losses; what they took is in the balance."""
+    _, output = run(tmp_path, 1, "two_blocks", "-var", "damp", "0.3", "-var", "lambda", "0.002")
+    t = table(output)
+    assert t["f_run"][-1] > 0.05 * t["TotEng"][0]
+    assert t["v_balance"] == pytest.approx(t["v_balance"][0], rel=1.5e-3)
