@@ -172,6 +172,16 @@ def test_a_faint_vibration_has_an_account(tmp_path):
     assert result.ledger.residual < 1e-3
 
 
+def test_a_cone_that_falls_on_its_tip_is_foreseen(tmp_path):
+    """At 0.15 of the wave speed the tip folds up and stays so: the guard stops the run, and `check` has told of it."""
+    text = (
+        "ground z 0\nobject a { shape cone 3 m 5 m position (0, 0, 7) m orientation axis (1, 0, 0) angle 180 deg "
+        "density 1000 elasticity 100 kPa velocity (0, 0, -1.64) m/s }\ncontrol { time 20 s frames 1 fps resolution 1 m }"
+    )
+    with pytest.raises(DivergedError, match=r"inside out.*\n *cause: a may hit at 1.6 m/s"):
+        run(text, tmp_path)
+
+
 def test_what_lammps_says_is_passed_on(prepared, tmp_path):
     """Blame an object and the time step only where particles have flown apart; other ends speak for themselves."""
     ready = prepared(hit(young=1, speed=-20))

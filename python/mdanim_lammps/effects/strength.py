@@ -8,15 +8,17 @@ import numpy as np
 from ..model.cells import TooThin, end_share, fill_cells
 from ..model.shapes import thickness
 from ..scene.formatting import at_least, number, say
-from ..scene.scene import Ellipsoid, Shape, Sphere
+from ..scene.scene import Cone, Ellipsoid, Shape, Sphere
 from .envelope import Envelope
 from .margin import Margin
 
 FOLDS = 0.2
 """Speed of an impact over the wave speed above which a lattice folds up and stays crumpled (docs/physics-solids.md)."""
 FOLDS_ON_END, FOLDS_POWER = 0.5, 0.45
-"""The same of a ball or ellipsoid that lands on ground or walls, over a power of the part of its cells that its smallest end has:
-these few bear the blow of all (docs/physics-solids.md)."""
+"""The same of a ball or a cone that lands on a plane, over a power of the part of its cells that its smallest end has: these
+few bear the blow of all (docs/physics-solids.md)."""
+POINTED = (Sphere, Ellipsoid, Cone)
+"""Shapes that may land on an end of few cells."""
 CRUSH = 0.2
 """Load over Young's modulus above which a lattice is crushed (docs/physics-solids.md)."""
 THINNEST = 2
@@ -27,7 +29,7 @@ def amplitude(env: Envelope) -> Margin:
     scene, system = env.scene, env.system
     meets = len(system.names) > 1 or len(env.planes) > 0
     ratio = np.where(meets, env.speed / env.wave, 0.0)
-    hard = len(env.planes) > 0 and env.surface is None
+    hard = len(env.planes) > 0 and not any(e.uses_grid for e in env.on)  # a liquid breaks the fall
     spot = _spots(env) if hard else np.full(len(ratio), np.inf)
     limit = np.minimum(FOLDS, spot)
     m = int((ratio / limit).argmax())
@@ -56,11 +58,11 @@ def amplitude(env: Envelope) -> Margin:
 
 
 def _spots(env: Envelope) -> np.ndarray:
-    """Speed of a landing on the smallest end, over the wave speed, that folds it up; infinite for what is not round,
+    """Speed of a landing on the smallest end, over the wave speed, that folds it up; infinite for shapes that are not POINTED,
     shape (M,)."""
     system, known = env.system, {}
     spots = np.full(len(system.names), np.inf)
-    balls = [m for m, s in enumerate(env.scene.solids) if env.moving[m] and isinstance(s.shape, (Sphere, Ellipsoid))]
+    balls = [m for m, s in enumerate(env.scene.solids) if env.moving[m] and isinstance(s.shape, POINTED)]
     first = np.searchsorted(system.hexahedron[:, 0], system.first)
     for m in balls:
         key = env.scene.solids[m].shape, float(system.cell_volume[m])
