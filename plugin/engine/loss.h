@@ -73,7 +73,7 @@ class Loss {
     ahead = 0.0;
   }
 
-  // Steps that others take (simd_blocks.h), who keep F^{n-1} and v^{n-3/2} meanwhile. Before them the account of all so far is
+  // Steps that passes take (simd_blocks.h), which keep F^{n-1} and v^{n-3/2} meanwhile. Before them the account of all so far is
   // closed; v is what the next forces will see. Of the sum with F^{m+1} - F^{m-1} the second half then always goes `ahead`.
   void close(const double *const *v, double dt)
   {

@@ -23,7 +23,7 @@ MDANIM_ALWAYS_INLINE int bits(Answers yes)
 #endif
 }
 
-// The numbers from `first` on whose bits are set, put behind `many` others; without a branch that nobody could foretell.
+// The numbers from `first` on whose bits are set, put behind `many` others; without a branch that cannot be predicted.
 MDANIM_ALWAYS_INLINE int append(int bits, int first, int *found, int many)
 {
   for (int lane = 0; lane < STRIP; ++lane) {

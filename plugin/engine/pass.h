@@ -37,6 +37,12 @@ enum Motion { MASS, KICK, DT, FOREIGN_LANE, OWNED_LANE, STAY, SHARE, PUSH, BRAKE
 // block's own; OWNED_LANE 1 for a particle of this rank. With friction also, see leapfrog.h: STAY 1 - phi or e; SHARE 1 / (1 +
 // phi); PUSH g dt/2m; BRAKED_MASS m, 0 where there is none; PHI.
 
+// What a particle's motion depends on.
+struct Mover {
+  double pulled;                 // mass that gravity pulls at
+  double mass, kick, dt, phi;    // see Motion
+};
+
 // A row of Pass::trace: a box, see boxes.h, and the largest v^2 with its sign changed.
 enum Trace { FASTEST = 6, TRACE };
 

@@ -32,7 +32,7 @@ class Doubles {
   std::size_t used = 0;
 };
 
-// All x, all y, all z.
+// Positions of particles, all x, all y, all z.
 struct Positions {
   Doubles along[3];
 

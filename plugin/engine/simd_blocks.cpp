@@ -1,200 +1,38 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Cutting particles into blocks, and moving them in and out.
+// Moving particles into blocks and out of them.
 
 #include "engine/simd_blocks.h"
 
-#include "engine/hash.h"
 #include "laws/leapfrog.h"
 
 #include <algorithm>
-#include <cstring>
-#include <limits>
+#include <utility>
 
 namespace mdanim {
 
-// What a block costs besides its springs, in vectors of springs.
-static constexpr int OVERHEAD = 2;
-// Cut only when at least this part of the lanes has work.
-static constexpr double WORTH_IT = 0.3;
 // Arrays that start at the same place of a page get in each other's way in the caches; they start so many doubles apart.
 static constexpr int STAGGER = 72;
 
-// --- storage ---
+// --- layout ---
 
-void Catalogue::start(int numbers)
+SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut)
+    : cutter(of), lanes(of.lanes()), particles(cut.particles), has_damped(of.damped()), all(std::move(cut.block)),
+      entries(std::move(cut.entry))
 {
-  width = numbers;
-  count = latest = 0;
-  rows.clear();
-  known.clear();
-}
-
-unsigned Catalogue::find_or_add(const double *row)
-{
-  const std::size_t size = width * sizeof(double);
-  const auto is = [&](unsigned n) { return std::memcmp(rows.data() + static_cast<std::size_t>(n) * width, row, size) == 0; };
-  if (count && is(latest)) return latest;
-  std::uint64_t hash = HASH_OF_NOTHING;
-  for (int k = 0; k < width; ++k) {
-    std::uint64_t word;
-    std::memcpy(&word, row + k, sizeof word);
-    hash = hash_with(hash, word);
-  }
-  const auto [begin, end] = known.equal_range(hash);
-  for (auto it = begin; it != end; ++it)
-    if (is(it->second)) return latest = it->second;
-  known.emplace(hash, count);
-  rows.push(row, width);
-  return latest = count++;
-}
-
-// --- cutting ---
-
-// How many particles the best cut takes into the block that ends before particle i; index 1 … N.
-std::vector<int> SimdBlocks::lengths(const HalfBonds &bonds, const int *object) const
-{
-  const SpringRows &rows = *bonds.rows;
-  const int particles = rows.size();
-  std::vector<int> best(particles + 1);
-  int farthest = 0;
-  for (int i = 0; i < particles; ++i)
-    for (const SpringRows::Link &link : rows[i]) farthest = std::max(farthest, link.offset);
-  std::vector<int> seen(farthest + 1, -1);    // first particle of the latest block that has this offset
-  std::vector<long> cost(particles + 1, std::numeric_limits<long>::max());
-  cost[0] = 0;
-  for (int i = 0; i < particles; ++i) {
-    long offsets = 0;
-    for (int n = 1; n <= lanes && i + n <= particles; ++n) {
-      const int k = i + n - 1;
-      if (object[k] != object[i]) break;
-      for (const SpringRows::Link &link : rows[k]) {
-        int &latest = seen[link.offset];
-        offsets += latest != i;
-        latest = i;
-      }
-      const long total = cost[i] + OVERHEAD + offsets;
-      if (total <= cost[i + n]) {    // of equal ones the longer, which comes later
-        cost[i + n] = total;
-        best[i + n] = n;
-      }
-    }
-  }
-  return best;
-}
-
-void SimdBlocks::start(int lanes_of_blocks)
-{
-  lanes = lanes_of_blocks;
-  laws.start(2 * lanes);
-  damped_laws.start(3 * lanes);
-  usual_laws = 0;
-  put_together({});
-}
-
-Cut SimdBlocks::cut(const HalfBonds &bonds, const int *object)
-{
-  const SpringRows &rows = *bonds.rows;
-  Cut cut;
-  cut.particles = rows.size();
-  cut.springs = rows.total();
-  const std::vector<int> length = lengths(bonds, object);
-  for (int end = cut.particles; end > 0; end -= length[end])
-    cut.block.push_back({end - length[end], static_cast<short>(length[end]), false, false, false, 0, -1, 0, object[end - 1] - 1});
-  std::reverse(cut.block.begin(), cut.block.end());
-
-  std::vector<bool> damped(cut.particles), bound(cut.particles);
-  for (int i = 0; i < cut.particles; ++i)
-    for (const SpringRows::Link &link : rows[i]) {
-      bound[i] = bound[i + link.offset] = true;
-      if (bonds.law[link.type].c > 0.0) damped[i] = damped[i + link.offset] = true;
-    }
-
-  std::vector<SpringRows::Links> left(lanes);    // springs of each lane
-  std::vector<double> law(3 * lanes);
-  for (Block &block : cut.block) {
-    for (int lane = 0; lane < block.lanes; ++lane) {
-      left[lane] = rows[block.start + lane];
-      block.damped = block.damped || damped[block.start + lane];
-      block.bound = block.bound || bound[block.start + lane];
-    }
-    for (;;) {
-      int offset = 0;    // the longest that is left
-      for (int lane = 0; lane < block.lanes; ++lane)
-        if (left[lane].size()) offset = std::max(offset, left[lane].first->offset);
-      if (offset == 0) break;
-      std::fill(law.begin(), law.end(), 0.0);
-      for (int lane = 0; lane < block.lanes; ++lane) {
-        auto &[link, last] = left[lane];
-        if (link == last || link->offset != offset) continue;
-        const SpringCoeffs &own = bonds.law[link++->type];    // a second spring between the same two is another entry
-        law[lane] = own.push;
-        law[lanes + lane] = own.pull;
-        if (block.damped) law[2 * lanes + lane] = own.c;
-      }
-      cut.entry.push_back({offset, (block.damped ? damped_laws : laws).find_or_add(law.data())});
-      cut.farthest = std::max(cut.farthest, offset);
-    }
-    block.end = static_cast<unsigned>(cut.entry.size());
-  }
-  return cut;
-}
-
-bool LaneUse::worth_it() const { return lanes > 0.0 && springs >= WORTH_IT * lanes; }
-
-LaneUse SimdBlocks::put_together(const std::vector<const Cut *> &cuts)
-{
-  all.clear();
-  entries.clear();
-  has_room = false;
-  particles = farthest = 0;
-  std::size_t springs = 0;
-  for (const Cut *cut : cuts) {
-    const unsigned first = static_cast<unsigned>(entries.size());
-    for (Block block : cut->block) {
-      block.start += particles;
-      block.end += first;
-      all.push_back(block);
-    }
-    entries.insert(entries.end(), cut->entry.begin(), cut->entry.end());
-    particles += cut->particles;
-    springs += cut->springs;
-    farthest = std::max(farthest, cut->farthest);
-  }
-  if (!usual_laws) usual_laws = laws.size() + damped_laws.size();
-  return {static_cast<double>(springs), static_cast<double>(entries.size() * lanes)};
-}
-
-void SimdBlocks::make_room()
-{
-  if (has_room) return;
-  has_room = true;
-  const std::size_t room = (particles + farthest + 2 * lanes) / 512 * 512 + 512 + STAGGER;    // whole pages and a bit
+  const std::size_t room = (particles + cut.farthest + 2 * lanes) / 512 * 512 + 512 + STAGGER;    // whole pages and a bit
   const int kinds = damped() ? 6 : 3;
   memory.assign(3 * kinds * room);
   double *place = memory.data();
   double **const arrays[] = {x, v, f, part, last, seen};
   for (int kind = 0; kind < kinds; ++kind)
     for (int d = 0; d < 3; ++d, place += room) arrays[kind][d] = place;
-  outside.clear();
 }
 
-void SimdBlocks::lay_out()
-{
-  make_room();
-  reordered = false;
-  index.clear();
-  ghosts.clear();
-}
-
-bool SimdBlocks::laws_pile_up() const
-{
-  constexpr unsigned MANY = 4;    // times as many as usual
-  return laws.size() + damped_laws.size() > MANY * (usual_laws + 64);
-}
+SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, const std::vector<int> &places, int own) : SimdBlocks(of, std::move(cut))
+{ lay_out_at(places, own); }
 
 void SimdBlocks::lay_out_at(const std::vector<int> &places, int own)
 {
-  make_room();
   reordered = true;
   index = places;
   owned = own;
@@ -243,7 +81,7 @@ void SimdBlocks::set_apart(const std::vector<bool> &moves)
   for (std::size_t n = 0; n < all.size(); ++n) std::fill_n(&home[all[n].start], all[n].lanes, static_cast<int>(n));
 }
 
-// Blocks with a particle of anybody have a row for everybody.
+// Blocks with a particle of any provider have a row for each of them.
 void SimdBlocks::expect(const std::vector<std::vector<int>> &particles_of)
 {
   const int many = static_cast<int>(particles_of.size());
@@ -434,8 +272,8 @@ void SimdBlocks::fill(Pass &pass, double *const *forces)
   pass.block = all.data();
   pass.blocks = active;
   pass.entry = entries.data();
-  pass.law = laws.data();
-  pass.damped_law = damped() ? damped_laws.data() : nullptr;
+  pass.law = cutter.rows();
+  pass.damped_law = damped() ? cutter.damped_rows() : nullptr;
   pass.motion = motions.data();
   pass.external_force = external_force.data();
   pass.force_providers = static_cast<int>(force_providers.size());
@@ -455,8 +293,7 @@ std::size_t SimdBlocks::bytes() const
   std::size_t of_providers = external_force.bytes();
   for (const ForceProvider &b : force_providers)
     of_providers += b.particle.capacity() * sizeof(int) + b.ghosts.capacity() * sizeof(Ghost) + b.slot.capacity() * sizeof(long);
-  return of_providers + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + laws.bytes() + damped_laws.bytes() +
-         motions.bytes() + memory.bytes() +
+  return of_providers + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + motions.bytes() + memory.bytes() +
          (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
              sizeof(int) +
          total.capacity() * sizeof(double);

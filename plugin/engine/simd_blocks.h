@@ -4,78 +4,34 @@
 #ifndef MDANIM_SIMD_BLOCKS_H
 #define MDANIM_SIMD_BLOCKS_H
 
+#include "engine/cutter.h"
 #include "engine/pass.h"
 #include "engine/pass_participant.h"
 #include "engine/positions.h"
-#include "engine/spring_rows.h"
 #include "laws/vec3.h"
 
-#include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 namespace mdanim {
 
-// Distinct rows of numbers, each kept once.
-class Catalogue {
- public:
-  void start(int width);
-  unsigned find_or_add(const double *row);
-  bool empty() const { return count == 0; }
-  unsigned size() const { return count; }
-  const double *data() const { return rows.data(); }
-  std::size_t bytes() const { return rows.bytes() + count * 32; }
-
- private:
-  Doubles rows;
-  int width = 0;
-  unsigned count = 0, latest = 0;
-  std::unordered_multimap<std::uint64_t, unsigned> known;
-};
-
-// What a particle's motion depends on.
-struct Mover {
-  double pulled;                 // mass that gravity pulls at
-  double mass, kick, dt, phi;    // see Motion
-};
-
-// Blocks of some particles that no spring leads out of; starts count from the first of them, ends from the first entry.
-struct Cut {
-  std::vector<Block> block;
-  std::vector<Entry> entry;
-  int particles = 0, farthest = 0;    // the longest offset
-  std::size_t springs = 0;
-
-  std::size_t bytes() const { return block.capacity() * sizeof(Block) + entry.capacity() * sizeof(Entry); }
-};
-
-// How many of the lanes that passes compute have springs.
-struct LaneUse {
-  double springs = 0.0, lanes = 0.0;
-
-  // Whether enough have: the springs of neighbours in the arrays must mostly lead equally far, as they do in lattices that are
-  // numbered row by row.
-  bool worth_it() const;
-};
-
+// Particles in blocks, laid out: their positions, velocities and forces in arrays of their own, one for each component, and what
+// is to be done with them in a pass. There is none before particles are cut and their order is known.
 class SimdBlocks {
  public:
-  // Forget all cuts: from now on they are for blocks of so many lanes.
-  void start(int lanes);
-  // Cut particles into blocks so that the fewest vectors of forces are to be computed. A block is of one object.
-  Cut cut(const HalfBonds &bonds, const int *object);
-  // Blocks of all cuts, one after the other; there may be none. They are to be laid out before anything else.
-  LaneUse put_together(const std::vector<const Cut *> &cuts);
-  bool laws_pile_up() const;    // so many are those of cuts that are gone that all cuts had better be made anew
-  // Room for their particles, which are in the same order in the arrays of LAMMPS.
-  void lay_out();
-  // Where particles are in the arrays of LAMMPS, if not in the same order: those from `own` on are ghosts, which others move.
-  // After this everybody else's numbers are LAMMPS's: those of mover(), expect(), hold_back(), held_back().
-  void lay_out_at(const std::vector<int> &places, int own);
-  bool damped() const { return !damped_laws.empty(); }    // some block is
+  // Of a cut of all particles, which are in the same order in the arrays of LAMMPS.
+  SimdBlocks(const Cutter &cutter, Cut &&cut);
+  // They are elsewhere in the arrays of LAMMPS: those from `own` on are ghosts, which others move. After this all other numbers
+  // are LAMMPS's: those of mover(), expect(), hold_back(), held_back().
+  SimdBlocks(const Cutter &cutter, Cut &&cut, const std::vector<int> &places, int own);
+  SimdBlocks(const SimdBlocks &) = delete;
+  SimdBlocks &operator=(const SimdBlocks &) = delete;
+  void lay_out_at(const std::vector<int> &places, int own);    // the same blocks when particles are elsewhere again
+
+  bool damped() const { return has_damped; }    // some block is
 
   template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
-  // Who brings forces before every pass, in the order in which they are added: the particles of each, ghosts perhaps among them.
+  // Which participants give forces before every pass, in the order in which they are added: the particles of each, ghosts perhaps
+  // among them.
   void expect(const std::vector<std::vector<int>> &particles);
   // Of those of number n, in the same order: positions, those of ghosts from x; and where forces on them are added up, all of
   // which is to be cleared before every pass.
@@ -89,7 +45,7 @@ class SimdBlocks {
   const std::vector<int> &held_back() const { return reordered ? waiting : outside; }    // all particles of such blocks
 
   void take_in(const double *const *x, const double *const *v);
-  void give_out(double *const *x, double *const *v) const;    // null for what nobody wants
+  void give_out(double *const *x, double *const *v) const;    // null for what is not wanted
   // The same for the particles that are held back.
   void take_in_held_back(const double *const *x, const double *const *v);
   void give_out_held_back(double *const *x, double *const *v) const;
@@ -115,16 +71,16 @@ class SimdBlocks {
   std::size_t bytes() const;
 
  private:
-  std::vector<int> lengths(const HalfBonds &bonds, const int *object) const;
   int at(int i) const { return reordered ? index[i] : i; }
   int ours(int i) const { return reordered ? place[i] : i; }    // the way back
   bool is_ghost(int place) const { return reordered && place >= owned; }
-  void make_room();
   void set_row(const Mover &mover, Friction friction, int lane, double *row) const;
   void set_apart(const std::vector<bool> &moves);    // by the first particle of a block: whether any of it moves
 
-  int particles = 0, lanes = 0, farthest = 0;
-  bool has_room = false, reordered = false;    // by lay_out_at()
+  const Cutter &cutter;
+  const int lanes, particles;
+  const bool has_damped;
+  bool reordered = false;    // by lay_out_at()
   std::vector<Block> all;
   int active = 0;    // so many of them, the first ones, have something to do in a pass
   std::vector<Entry> entries;
@@ -145,9 +101,8 @@ class SimdBlocks {
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
   std::vector<double> total;           // see Pass, in our order
   int owned = 0;                       // in LAMMPS's arrays, ghosts come after them
-  Catalogue laws, damped_laws, motions;
-  unsigned usual_laws = 0;    // how many there were when cuts were put together first after start()
-  Doubles memory;             // of the arrays
+  RowTable motions;
+  Doubles memory;    // of the arrays
   double *x[3] = {}, *v[3] = {}, *f[3] = {};
   double *part[3] = {}, *last[3] = {}, *seen[3] = {};    // where damped
 };

@@ -5,7 +5,7 @@
 #ifndef MDANIM_TAG_ORDER_H
 #define MDANIM_TAG_ORDER_H
 
-#include "engine/simd_blocks.h"
+#include "engine/cutter.h"
 
 #include <functional>
 #include <unordered_map>
@@ -21,9 +21,12 @@ struct Bonded {
   const int *const *type;                      // 0 and less: switched off
   const int *const *partner;                   // tags
   std::function<int(int tag)> find;            // index of a partner, negative where it is not known;
-  std::function<void(int i, int tag)> lost;    // that is an error; i negative where nobody has a bond to it any more
+  std::function<void(int i, int tag)> lost;    // that is an error; i negative where no particle has a bond to it any more
 };
 
+// The line of a rank's own particles and of those ghosts that they have springs to, in tag order, with each spring once: what is
+// cut where a rank does not have all particles in that order. It is made of a piece for each object, and keeps the pieces, with
+// their cuts, of objects whose own particles have not changed.
 class TagOrder {
  public:
   // Particles that stand side by side: those of one object, and all partners of its own ones. Objects whose own particles are the

@@ -8,7 +8,7 @@
 #include "bond.h"
 #include "engine/kernels.h"
 #include "engine/loss.h"
-#include "engine/simd_blocks.h"
+#include "engine/pass_participant.h"
 #include "laws/spring.h"
 #include "laws/vec3.h"
 
@@ -16,7 +16,9 @@
 
 namespace LAMMPS_NS {
 
-class BondMdanimHarmonic : public Bond {
+// Keeps the springs of this rank's particles in rows, each in the order in which their forces are summed, and computes them in
+// plain steps; passes get the same rows. Dashpots beside the springs have an account of the energy that they take.
+class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
  public:
   explicit BondMdanimHarmonic(class LAMMPS *);
   ~BondMdanimHarmonic() override;
@@ -36,15 +38,13 @@ class BondMdanimHarmonic : public Bond {
   // on a rank that is alone.
   void take(mdanim::SpringRows &&upper_rows);
 
-  // For run_style verlet/mdanim, which computes most forces itself: the springs, each once. False where that is not how they are
-  // summed.
-  bool halves(mdanim::HalfBonds &half) const;
-  const std::vector<mdanim::SpringCoeffs> &laws() const { return law; }    // by bond type
-  [[noreturn]] void lost_partner(int i, int partner) const;       // the error that particle i, or nobody, has this one, a tag
-  mdanim::Loss *account() { return damped ? &loss : nullptr; }    // of dashpots, all ranks or none
-  bigint version() const { return made; }                         // another number for other springs
-  bool refresh_coefficients();    // those of bond_coeff since the last run take effect; whether some differ from before
-  void took(double more) { seconds += more; }
+  bool halves(mdanim::HalfBonds &half) const override;
+  const std::vector<mdanim::SpringCoeffs> &coeffs() const override { return law; }
+  mdanim::Loss *account() override { return damped ? &loss : nullptr; }
+  long long version() const override { return made; }
+  bool refresh_coefficients() override;
+  [[noreturn]] void lost_partner(int i, int partner) const override;
+  void took(double more) override { seconds += more; }
 
  private:
   // What the rows were made from, besides the bonds themselves, which they hold; while all is unchanged they are kept.

@@ -4,12 +4,14 @@
 #ifndef LMP_FIX_MDANIM_GRAVITY_H
 #define LMP_FIX_MDANIM_GRAVITY_H
 
+#include "engine/pass_participant.h"
 #include "fix.h"
 #include "laws/vec3.h"
 
 namespace LAMMPS_NS {
 
-class FixMdanimGravity : public Fix {
+// Adds m g to every particle of its group in plain steps, and tells passes the masses and g.
+class FixMdanimGravity : public Fix, public mdanim::PassGravity {
  public:
   FixMdanimGravity(class LAMMPS *, int, char **);
 
@@ -19,11 +21,9 @@ class FixMdanimGravity : public Fix {
   double compute_scalar() override;
   double compute_vector(int) override;
 
-  // For run_style verlet/mdanim, which does its work in passing: mass that it pulls at, acceleration, and the time that went to
-  // it.
-  double pulled(int i) const;
-  const mdanim::Vec3 &acceleration() const { return g; }
-  void took(double more) { seconds += more; }
+  double pulled(int i) const override;
+  const mdanim::Vec3 &acceleration() const override { return g; }
+  void took(double more) override { seconds += more; }
 
  private:
   mdanim::Vec3 g;

@@ -280,7 +280,7 @@ Mover FixMdanimLeapfrog::mover(int i)
   return {0.0, mass, kick, update->dt, phi};
 }
 
-std::vector<FixMdanimLeapfrog::Known> FixMdanimLeapfrog::survey_ghosts(std::vector<int> &those_sent)
+std::vector<PassIntegrator::Known> FixMdanimLeapfrog::survey_ghosts(std::vector<int> &those_sent)
 {
   sent.clear();
   known.resize(atom->nlocal + atom->nghost);
@@ -340,7 +340,7 @@ void FixMdanimLeapfrog::moved(double final_loss, double first_loss, double bend,
 
 // --- energy ---
 
-bool FixMdanimLeapfrog::tells_of(bigint step) const { return step == output->next; }
+bool FixMdanimLeapfrog::tells_of(long long step) const { return step == output->next; }
 
 // dt v . F of the particles that move now.
 double FixMdanimLeapfrog::bend() const

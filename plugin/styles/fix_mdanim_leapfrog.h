@@ -5,9 +5,8 @@
 #define LMP_FIX_MDANIM_LEAPFROG_H
 
 #include "engine/boxes.h"
-#include "engine/simd_blocks.h"
+#include "engine/pass_participant.h"
 #include "fix.h"
-#include "styles/ghosts.h"
 #include "styles/particle_value.h"
 
 #include <string>
@@ -15,7 +14,9 @@
 
 namespace LAMMPS_NS {
 
-class FixMdanimLeapfrog : public Fix {
+// Moves particles by the half steps of laws/leapfrog.h in plain steps, and tells passes how to; keeps the account of friction,
+// the kinetic energy that fits the other energies to fourth order, and the trace: where each object has been.
+class FixMdanimLeapfrog : public Fix, public mdanim::PassIntegrator {
  public:
   FixMdanimLeapfrog(class LAMMPS *, int, char **);
 
@@ -42,23 +43,15 @@ class FixMdanimLeapfrog : public Fix {
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
 
-  // For run_style verlet/mdanim, which moves most particles itself.
-  // All ranks together, after a rebuild: own particles that other ranks have as ghosts, and of all particles their objects, 1
-  // where there are no molecule IDs, and where they are at home.
-  struct Known {
-    int object;
-    mdanim::Home home;
-  };
-  std::vector<Known> survey_ghosts(std::vector<int> &sent);
-  mdanim::Friction friction() const;
-  mdanim::Mover mover(int i);
-  double *trace_rows() { return trace.empty() ? nullptr : trace.front().box.bound; }
-  bool looks();                                           // asked once in every pass
-  void finish_step(const std::vector<int> &particles);    // v^{n-1/2} -> v^n
-  void begin_step(const std::vector<int> &particles);     // v^n -> v^{n+1/2}, r^n -> r^{n+1}
-  bool tells_of(bigint step) const;                       // whether kinetic() may be asked for in that step
-  // By others, in its name; `bend` is what bend() tells, of the particles that they have moved.
-  void moved(double final_loss, double first_loss, double bend, double more_seconds);
+  std::vector<Known> survey_ghosts(std::vector<int> &sent) override;
+  mdanim::Friction friction() const override;
+  mdanim::Mover mover(int i) override;
+  double *trace_rows() override { return trace.empty() ? nullptr : trace.front().box.bound; }
+  bool looks() override;
+  void finish_step(const std::vector<int> &particles) override;
+  void begin_step(const std::vector<int> &particles) override;
+  bool tells_of(long long step) const override;
+  void moved(double final_loss, double first_loss, double bend, double more_seconds) override;
 
  private:
   template <class Visit> void each(Visit visit) const;

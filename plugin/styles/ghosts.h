@@ -12,11 +12,7 @@
 
 namespace mdanim {
 
-// Where a particle is at home: the rank, and the index in its arrays.
-struct Home {
-  int rank, index;
-};
-
+// Which ranks have this one's particles as ghosts, and which have its ghosts; one message to and from each before every pass.
 class Ghosts {
  public:
   // All ranks together, whenever their blocks have been laid out: where this rank's ghosts are at home, in the order of

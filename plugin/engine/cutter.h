@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Cutting particles and their springs into blocks for the vector units (pass.h).
+
+#ifndef MDANIM_CUTTER_H
+#define MDANIM_CUTTER_H
+
+#include "engine/pass.h"
+#include "engine/positions.h"
+#include "engine/spring_rows.h"
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+namespace mdanim {
+
+// Distinct rows of numbers, all of one length, each kept once and found by a hash: coefficients of springs and of motion, one
+// number for each lane, mostly repeat from block to block.
+class RowTable {
+ public:
+  void start(int width);
+  unsigned find_or_add(const double *row);
+  bool empty() const { return count == 0; }
+  unsigned size() const { return count; }
+  const double *data() const { return rows.data(); }
+  std::size_t bytes() const { return rows.bytes() + count * 32; }
+
+ private:
+  Doubles rows;
+  int width = 0;
+  unsigned count = 0, latest = 0;
+  std::unordered_multimap<std::uint64_t, unsigned> known;
+};
+
+// Blocks of some particles that no spring leads out of; starts count from the first of them, ends from the first entry.
+struct Cut {
+  std::vector<Block> block;
+  std::vector<Entry> entry;
+  int particles = 0, farthest = 0;    // the longest offset
+  std::size_t springs = 0;
+
+  std::size_t bytes() const { return block.capacity() * sizeof(Block) + entry.capacity() * sizeof(Entry); }
+};
+
+// How many of the lanes that passes compute have springs.
+struct LaneUse {
+  double springs = 0.0, lanes = 0.0;
+
+  // Whether enough have: the springs of neighbours in the arrays must mostly lead equally far, as they do in lattices that are
+  // numbered row by row.
+  bool worth_it() const;
+};
+
+// Makes cuts for one number of lanes, by dynamic programming, and keeps the rows of coefficients that their entries name.
+class Cutter {
+ public:
+  // Forget all cuts: from now on they are for blocks of so many lanes.
+  void start(int lanes);
+  // Cut particles into blocks so that the fewest vectors of forces are to be computed. A block is of one object.
+  Cut cut(const HalfBonds &bonds, const int *object);
+  // All cuts one after the other, as a single one; there may be none.
+  Cut join(const std::vector<const Cut *> &cuts);
+  LaneUse use(const Cut &cut) const;
+  bool rows_pile_up() const;    // so many are those of cuts that are gone that all cuts had better be made anew
+
+  int lanes() const { return width; }
+  bool damped() const { return !damped_coeffs.empty(); }    // some block is
+  const double *rows() const { return coeffs.data(); }
+  const double *damped_rows() const { return damped() ? damped_coeffs.data() : nullptr; }
+  std::size_t bytes() const { return coeffs.bytes() + damped_coeffs.bytes(); }
+
+ private:
+  std::vector<int> lengths(const HalfBonds &bonds, const int *object) const;
+
+  int width = 0;
+  RowTable coeffs, damped_coeffs;
+  unsigned usual_rows = 0;    // how many there were when cuts were joined first after start()
+};
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// What run_style verlet/mdanim computes with, without LAMMPS and without MPI.
+
+#ifndef MDANIM_PASS_ENGINE_H
+#define MDANIM_PASS_ENGINE_H
+
+#include "engine/kernels.h"
+#include "engine/pass_run.h"
+#include "engine/simd_blocks.h"
+#include "engine/tag_order.h"
+
+#include <optional>
+#include <vector>
+
+namespace mdanim {
+
+// Owns what passes need, in the order in which each makes the next: the crew and its kernels, cuts of the springs, blocks that
+// are laid out, and a run of passes. It cuts anew only what has changed.
+class PassEngine {
+ public:
+  PassCrew crew;
+
+  // The crew is complete: with these kernels, and what only this run knows forgotten. Whether the kernels are others than before.
+  bool begin_run(const Kernels &kernels);
+  void forget_springs();    // particles may have others now
+
+  // Blocks for the springs as they are now, of a rank that has all particles, in tag order; `object` null where there are none.
+  // False where passes are not worth it.
+  bool cut(int particles, const int *object);
+  // Of one of several ranks, for its particles and the ghosts that they have springs to. All ranks are to decide by their uses
+  // together.
+  LaneUse cut(const Bonded &known);
+  const TagOrder &order() const { return line; }
+
+  // Starts a run of passes; `build` is the number of the lists, which particles keep their motion with.
+  PassRun &start(const AtomArrays &atoms, double dt, bool positions, long long build);
+  void keep_motion(long long build) { motion_for = build; }    // lists are new, and particles move as before
+  bool is_running() const { return run.has_value(); }
+  PassRun &running() { return *run; }
+  void leave();    // ends it
+  SimdBlocks &laid_out() { return *blocks; }
+
+  long long held_back() const { return moved_alone; }    // particles, all passes together
+  std::size_t bytes() const;
+
+ private:
+  static constexpr long long NONE = -1;
+
+  const Kernels *kernels = nullptr;
+  long long cut_for = NONE;            // version of the springs
+  long long motion_for = NONE;         // build of lists
+  std::vector<int> objects;            // of a rank that has all particles: what it is cut for
+  TagOrder line;                       // of one of several: what is cut,
+  std::vector<SpringCoeffs> coeffs;    // for these,
+  LaneUse use;                         // and how well
+  Cutter cutter;
+  std::optional<SimdBlocks> blocks;
+  std::optional<PassRun> run;
+  long long moved_alone = 0;
+};
+
+}    // namespace mdanim
+
+#endif

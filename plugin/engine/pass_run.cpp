@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// What passes need to know, and what becomes of what they tell.
+
+#include "engine/pass_run.h"
+
+#include "engine/loss.h"
+#include "engine/stopwatch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mdanim {
+
+// Parts of a pass's time, as a pass without springs tells: drag is in the leap-frog's, and the springs have the rest.
+static constexpr double OF_LEAPFROG = 0.15, OF_DRAG = 0.07, OF_GRAVITY = 0.01;
+
+PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const PassCrew &crew, const AtomArrays &atoms, double dt,
+                 Fresh fresh)
+    : blocks(blocks), kernels(kernels), crew(crew), atoms(atoms), dt(dt)
+{
+  if (fresh.positions) blocks.take_in(atoms.x, atoms.v);
+  if (fresh.motion)
+    blocks.set_motion(crew.integrator->friction(), [&](int i) {
+      Mover mover = crew.integrator->mover(i);
+      if (crew.gravity) mover.pulled = crew.gravity->pulled(i);
+      return mover;
+    });
+  if (Loss *account = crew.springs->account()) {
+    account->close(atoms.v, dt);
+    if (blocks.damped()) blocks.take_in_dashpots(account->latest(), account->latest_seen());
+  }
+  std::vector<std::vector<int>> of_early(crew.early.size());
+  for (std::size_t n = 0; n < crew.early.size(); ++n) crew.early[n]->append_required_atoms(of_early[n]);
+  blocks.expect(of_early);
+  look = !crew.late.empty() ||
+         std::any_of(of_early.begin(), of_early.end(), [](const auto &particles) { return !particles.empty(); });
+  blocks.fill(pass, atoms.f);
+  if (crew.gravity) {
+    const Vec3 &g = crew.gravity->acceleration();
+    pass.gravity[0] = g.x, pass.gravity[1] = g.y, pass.gravity[2] = g.z;
+  }
+  pass.trace = crew.integrator->trace_rows();
+  hold_back();
+}
+
+void PassRun::hold_back()
+{
+  wanted.clear();
+  for (const PassParticipant *p : crew.late) p->append_required_atoms(wanted);
+  blocks.hold_back(wanted, false);
+  pass.friction =
+      blocks.friction_acts() ? crew.integrator->friction() : Friction::NONE;    // without any it is the same, and faster
+}
+
+void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
+{
+  bool needs_all = false;
+  for (PassParticipant *p : crew.late) needs_all = p->needs_all_atoms() || needs_all;
+  if (needs_all) blocks.hold_back(wanted, true);
+  early_participants_turn();
+  double all = 0.0;
+  pass.bends = crew.integrator->tells_of(next);
+  pass.looks = crew.integrator->looks();
+  {
+    const Lap lap(all);
+    kernels.pass(pass);
+  }
+  const double moving = (OF_LEAPFROG + (pass.friction == Friction::NONE ? 0.0 : OF_DRAG)) * all;
+  const double pulling = crew.gravity ? OF_GRAVITY * all : 0.0;
+  crew.integrator->moved(pass.final_loss, pass.first_loss, pass.bend, moving);
+  if (crew.gravity) crew.gravity->took(pulling);
+  crew.springs->took(all - moving - pulling);
+  if (!crew.late.empty()) {
+    late_participants_turn(late);
+    if (needs_all) hold_back();    // they may need others now
+  }
+  if (Loss *account = crew.springs->account()) account->passed(pass.dashpots, dt);
+}
+
+// Forces that the pass is to add.
+void PassRun::early_participants_turn()
+{
+  blocks.clear_external_force();
+  for (std::size_t n = 0; n < crew.early.size(); ++n) {
+    blocks.tell_places(n, atoms.x, place);
+    crew.early[n]->add_forces(place, blocks.external_force_of(n));
+  }
+}
+
+// Forces of the other participants, and the motion of the particles that were held back for them.
+void PassRun::late_participants_turn(const std::function<void(bool at_end)> &late)
+{
+  const std::vector<int> &waiting = blocks.held_back();
+  moved_alone += static_cast<long long>(waiting.size());
+  if (!waiting.empty()) {
+    blocks.give_out_held_back(atoms.x, atoms.v);
+    blocks.give_out_forces(atoms.f);
+  }
+  late(false);
+  if (!waiting.empty()) crew.integrator->finish_step(waiting);
+  late(true);
+  if (waiting.empty()) return;
+  crew.integrator->begin_step(waiting);
+  if (blocks.damped()) blocks.count_held_back(atoms.v, pass.dashpots);
+  blocks.take_in_held_back(atoms.x, atoms.v);
+  for (const int i : waiting) {
+    const double square = dot(vec3(atoms.v[i]), vec3(atoms.v[i]));
+    pass.fastest = std::max(pass.fastest, square);
+    pass.squares += square;
+  }
+}
+
+double PassRun::largest_speed() const { return std::sqrt(pass.fastest); }
+
+bool PassRun::in_range(const AtomArrays &atoms, int particles)
+{
+  double squares = 0.0;
+  for (int i = 0; i < particles; ++i) {
+    const Vec3 x = vec3(atoms.x[i]), v = vec3(atoms.v[i]);
+    squares += dot(x, x) + dot(v, v);
+  }
+  return squares < LARGEST_SQUARE;
+}
+
+void PassRun::leave()
+{
+  blocks.give_out(atoms.x, atoms.v);
+  Loss *account = crew.springs->account();
+  if (!account) return;
+  if (blocks.damped()) blocks.give_out_dashpots(account->latest(), account->latest_seen());
+  account->reopen();
+}
+
+}    // namespace mdanim
