@@ -42,7 +42,7 @@ RATES = {
     "rebuild": "rebuilding lists, per particle [s]",
     "contact": "looking for objects that meet, per particle and rebuild [s]",
     "pair": "a step of a pair of particles within reach [s]",
-    "wall": "looking who is near a wall, per particle and rebuild [s]",
+    "wall": "finding particles near a wall, per particle and rebuild [s]",
     "coupling": "a step of a particle in a liquid [s]",
     "cell": "a sweep of a cell of a liquid, with levelling [s]",
     "solid": "looking where a lattice cell of a solid is in a liquid [s]",
@@ -196,8 +196,8 @@ control {
 SMALL, LARGE = 2, 13
 """Cells along the edge of the two cubes."""
 FAR, NEAR = 90, 9.5
-"""Height of the pebble over the larger cube's middle [cm]: where nobody needs lists, and where its box meets the cube's but
-nobody is in reach."""
+"""Height of the pebble over the larger cube's middle [cm]: where no lists are needed, and where its box meets the cube's but
+no particles are in reach."""
 BELOW, UNDER = -1e8, -7.5
 """Height of the ground [cm]: where it has no concern, and a spacing under the larger cube, where lists are made anew however
 particles move: where only objects are near each other, moving on together needs no new ones."""

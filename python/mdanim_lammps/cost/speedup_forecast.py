@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What several executors will bring, told before the run: who will be near whom, and so which work can be shared out.
+"""What several executors gain, before the run: which objects will be near each other, and hence which work can be shared out.
 
 The objects fly by themselves (gravity, ground, walls, the surface of a liquid; they pass through each other), and at some moments
 the plan that executors would follow is made, by the same pure functions. No MPI and no LAMMPS: the process that starts executors
@@ -47,10 +47,10 @@ class SpeedupForecast:
     """Executors that run it together."""
 
 
-def forecast_speedup(ready: Prepared, executors: int, settings: PlannerOptions = PlannerOptions()) -> SpeedupForecast:
+def forecast_speedup(ready: Prepared, executors: int, settings: PlannerOptions | None = None) -> SpeedupForecast:
     """Look ahead with that many executors. Nothing is measured: a particle is as dear as any other,
     a liquid costs nothing beside them."""
-    moments = _Moments(ready, executors, settings)
+    moments = _Moments(ready, executors, settings or PlannerOptions())
     seconds = min(AHEAD, ready.scene.control.time)
     times = np.arange(MOMENTS) * seconds / MOMENTS
     flight = _Flight(ready)
@@ -73,7 +73,7 @@ def forecast_speedup(ready: Prepared, executors: int, settings: PlannerOptions =
 
 
 def _heaviest(found: FrameAssignment, moments: _Moments) -> tuple[int, float, int]:
-    """Objects in the heaviest island, its part of the work, and who runs it together."""
+    """Objects in the heaviest island, its part of the work, and the number of executors that run it together."""
     moving = found.label >= 0
     if not moving.any():
         return 0, 0.0, 1

@@ -62,6 +62,11 @@ def prelude(plan: Plan) -> list[str]:
     ]
 
 
+def told_once(commands: list[str]) -> list[str]:
+    """Those of `prelude` that LAMMPS is given once, and not again when an instance is filled anew."""
+    return [command for command in commands if not command.startswith("comm_modify")]
+
+
 def physics(plan: Plan) -> list[str]:
     """Commands after the particles exist: groups, effects, integrator, time step."""
     effects = [c for e in plan.effects for c in e.commands(plan.scene, plan.system)]
@@ -94,8 +99,8 @@ def input_script(plan: Plan) -> str:
         [
             f"# {title}",
             f"# Written by mdanim-lammps; run it here with 'lmp -in in.{plan.name}' or 'mpiexec -n 4 lmp -in in.{plan.name}',",
-            "# with the lmp and the mpiexec of the environment that mdanim-lammps is installed in (.venv/bin): they know "
-            "its styles.",
+            "# with the lmp and the mpiexec of the environment that mdanim-lammps is installed in (.venv/bin): "
+            "they know its styles.",
             f"# Effects: {', '.join(e.name for e in plan.effects) or 'none'}.",
             "",
             *prelude(plan),

@@ -10,7 +10,8 @@ import numpy as np
 
 from ..errors import DivergedError, SetupError
 from ..model.basin import Grid
-from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude
+from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude, told_once
+from .cut import box_to_cut, shorter_along_rows
 from .plan import Ends, Plan
 from .plugin import open_lammps
 from .state import NO_RECORDS, Records, State, StateRecords
@@ -20,9 +21,6 @@ LIQUID = b"liquid"
 MANY = 20_000
 """Particles from which on what making them has left free in the heap goes back to the system: 100 to 400 bytes each, in
 10 ns each."""
-ROWS_SHORTER = 0.1
-"""Part of their length by which objects count as shorter along the rows of their lattices when space is cut for ranks; a
-`fix balance` that finds more than 10 % of imbalance in the course of a run cuts anew without it."""
 SMALL = 8000
 """Particles up to which an instance is worth being filled anew: with more, putting them in takes longer than all the rest."""
 TYPES = 256
@@ -39,10 +37,9 @@ class Instance:
 
     On a communicator of several ranks all of them call all methods together, with the same arguments, and all get the same
     answers; each holds the particles of its part of space. Every number of a State is the same on any number of ranks, to the
-    last bit; energies are sums over particles and agree but for rounding, those that dashpots take to about 1e-3
-    (plugin/engine/loss.h).
-    When LAMMPS stops on one rank only, the error comes up there alone, and the other ranks wait for ever: who catches it is to
-    abort them.
+    last bit; energies are sums over particles and agree but for rounding, those that dashpots take
+    to about 1e-3 (plugin/engine/loss.h). When LAMMPS stops on one rank only, the error is raised there alone, and the other ranks
+    wait for ever: the caller must abort them.
     """
 
     def __init__(self, plan: Plan, comm=None):
@@ -91,8 +88,8 @@ class Instance:
 
     def _fill(self) -> None:
         plan, lmp = self.plan, self._lmp
-        places = _shorter_along_rows(plan.system.position) if self._comm else plan.system.position
-        low, high = (self._box_to_cut(places) if self._comm else box(plan)).tolist()
+        places = shorter_along_rows(plan.system.position) if self._comm else plan.system.position
+        low, high = (box_to_cut(places, plan.spacing) if self._comm else box(plan)).tolist()
         # property/atom must exist before the particles, and a box before both.
         self._prelude = prelude(plan)
         *before, columns = self._prelude
@@ -158,7 +155,7 @@ class Instance:
         if not self.refillable or plan.grid or len(plan.coefficients) > self._types:
             return False
         commands = prelude(plan)
-        if _fixed(commands) != _fixed(self._prelude):
+        if told_once(commands) != told_once(self._prelude):
             return False
         undo = [UNDONE[word].format(name) for word, name, *_ in map(str.split, physics(self.plan)) if word in UNDONE]
         self.plan, self._prelude = plan, commands
@@ -216,12 +213,6 @@ class Instance:
                 _pointer(tag),
                 _pointer(np.ascontiguousarray(table, np.int32)),
             )
-
-    def _box_to_cut(self, places: np.ndarray) -> np.ndarray:
-        """Bounds of what is cut for ranks [m], shape (2, 3): LAMMPS cuts its box around all particles. Were it another when they
-        are inserted, each would begin on another rank, perhaps one that is not beside its own, and LAMMPS would lose it."""
-        margin = 1e-3 * self.plan.spacing
-        return np.array([places.min(0) - margin, places.max(0) + margin])
 
     def _cut_space(self, position: np.ndarray) -> None:
         """Give every rank its share of the particles, and all of them their places."""
@@ -355,8 +346,8 @@ class Instance:
         if self._comm:
             # A particle may be far from the rank that holds it now, farther than LAMMPS's own exchange reaches.
             self._command("delete_atoms group all compress no")
-            places = _shorter_along_rows(state.x)
-            sides = zip("xyz", *self._box_to_cut(places).tolist())
+            places = shorter_along_rows(state.x)
+            sides = zip("xyz", *box_to_cut(places, self.plan.spacing).tolist())
             self._command("change_box all " + " ".join(f"{d} final {low!r} {high!r}" for d, low, high in sides) + " units box")
             self._insert(self.plan.ends() if len(self.plan.bonds) else None, places)
             for command in physics(self.plan):
@@ -373,11 +364,11 @@ class Instance:
 
     def lay_aside(self, solids: Sequence[int]) -> None:
         """Take these solids of the plan out of what goes on, without a new setup: from now on they stand as in the plan, at rest,
-        and nobody feels them or pulls at them. For good, and on one process alone.
+        they exert no forces and feel none. This cannot be undone, and works on one process alone.
         """
         system = self.plan.system
         # In no group but "all" nothing acts on them. Their springs are as long as in the plan and hold no energy. A displacement
-        # of more than the skin makes LAMMPS look anew for who is near whom, before the next forces.
+        # of more than the skin makes LAMMPS build its neighbour lists anew before the next forces.
         (x, v, f), mask = map(self.array, "xvf"), self._local("mask", 1)
         for rows in system.stretches(solids):
             place = system.position[rows]
@@ -409,7 +400,7 @@ class Instance:
                 self._gathered["where"] = np.empty(len(tags), np.intp)
                 self._gathered["where"][tags - 1] = np.arange(len(tags))
             self._gathered[name] = mixed.take(self._gathered["where"], axis=0)  # faster than to put rows where they belong
-            self._gathered[name].flags.writeable = False  # all who ask get this one
+            self._gathered[name].flags.writeable = False  # all callers get this one
         return self._gathered[name]
 
     def _gather_as_it_is(self, name: str, width: int) -> np.ndarray:
@@ -500,22 +491,6 @@ class Instance:
     def damping_loss(self) -> float:
         """Energy that dashpots have taken so far [J]."""
         return self.total(float(self._library.mdanim_bond_lost(self._handle)))
-
-
-def _fixed(commands: list[str]) -> list[str]:
-    """Of those before the particles, what LAMMPS is told once."""
-    return [command for command in commands if not command.startswith("comm_modify")]
-
-
-def _shorter_along_rows(position: np.ndarray) -> np.ndarray:
-    """Places in which space is cut for ranks [m], shape (N, 3): all of it is shorter along the rows of lattices, where tags
-    follow each other.
-
-    A cut across rows leaves a ghost and hence an idle lane in each of them, so that a direction which is about as good is better.
-    """
-    along = np.median(np.abs(np.diff(position, axis=0)), axis=0) if len(position) > 1 else np.zeros(3)
-    middle = 0.5 * (position.min(0) + position.max(0))
-    return middle + (1.0 - ROWS_SHORTER * along / max(np.linalg.norm(along), np.finfo(float).tiny)) * (position - middle)
 
 
 def _pointer(array: np.ndarray) -> ctypes.c_void_p:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Instances that nobody needs any more, kept to be filled anew: that takes a fifth of the time of making one."""
+"""Instances that no bundle needs any more, kept to be filled anew, which takes a fifth of the time of making one."""
 
 from __future__ import annotations
 

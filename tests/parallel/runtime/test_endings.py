@@ -275,11 +275,11 @@ def test_a_fault_of_mpi_is_told(place, monkeypatch, rank, module, kind, method):
 
 @pytest.mark.parametrize("control", ["central", "peers"])
 def test_a_folder_that_is_deleted_ends_the_run(place, control):
-    """One message, within seconds."""
+    """One message, as soon as something is to be written under its name: the next checkpoint, ten seconds later at most."""
     process = begun(place, LONG, "-n", 2, "--control", control)
     shutil.rmtree(place / "film.out", ignore_errors=True)
     shutil.rmtree(place / "film.out", ignore_errors=True)  # a rank may just have written
-    code, said = ended(process, 15.0)
+    code, said = ended(process, 40.0)
     assert code == 7 and said.count("error:") == 1 and "film.out" in said and "Traceback" not in said, said
 
 
@@ -303,14 +303,14 @@ def test_a_stop_file_that_is_there_early_is_honoured(place, arguments):
 
 
 def test_a_killed_program_leaves_nothing_behind(place):
-    """Killed alone, its ranks end and clear the folder; killed with its ranks, the next run does."""
+    """Killed alone, its ranks end; what it had put into the folder for them is cleared by the next run."""
     process = begun(place, LONG, "-n", 2)
     process.kill()
     process.wait()
     deadline = time.monotonic() + 10.0
-    while (ranks_in(place) or list(place.rglob(".ranks-*"))) and time.monotonic() < deadline:
+    while ranks_in(place) and time.monotonic() < deadline:
         time.sleep(0.05)
-    assert not ranks_in(place) and not list(place.rglob(".ranks-*"))
+    assert not ranks_in(place)
     (place / "film.out" / ".ranks-old").touch()
     goes_on(place, 0, "-n", 2)
 

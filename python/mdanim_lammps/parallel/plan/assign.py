@@ -19,7 +19,7 @@ CRUMB = 64
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """Who runs what in a frame."""
+    """Which executor runs which objects in a frame."""
 
     owner: np.ndarray
     """Executor of every object, int64, shape (M,); of what is still, as it was."""
@@ -46,14 +46,14 @@ def assign(
     islands allow it; 3. what moves costs little, and nothing moves while loads are in balance.
 
     An island stays at its home, the executor that has most of it. Where that is overloaded, large islands stay and the smallest
-    go, not more than there is too much; they go to whom has least. Only where that leaves loads out of balance by more than a
-    tenth that a new packing would spare are the large islands packed anew. Ties: lowest executor, smallest island.
+    go, not more than there is too much; they go to the executor that has least. Only where that leaves loads out of balance by
+    more than a tenth that a new packing would spare are the large islands packed anew. Ties: lowest executor, smallest island.
     O(M log M), a loop over K executors and over at most ``CRUMB`` K islands. Raises ValueError for a cost below 0 or an owner out
     of range.
 
     :param label: island of every object, -1 for what is still, shape (M,)
     :param cost: time of every object in a frame [µs], int64, shape (M,); an island counts as 1 at least
-    :param owner: executor that has it now, -1 for nobody, shape (M,)
+    :param owner: executor that has it now, -1 for none, shape (M,)
     :param executors: their number K
     :param particles: of every object, shape (M,); without it there are no teams
     :param pinned: objects that never leave their owner (a pool), bool, shape (M,)
@@ -104,17 +104,17 @@ def firsts(group: np.ndarray) -> np.ndarray:
 
 
 def _homes(isle: np.ndarray, cost: np.ndarray, owner: np.ndarray, executors: int) -> np.ndarray:
-    """The executor that has most of each island, by cost, the lowest of equals; -1 where nobody has any of it."""
+    """The executor that has most of each island, by cost, the lowest of equals; -1 where no executor has any of it."""
     key = isle * (executors + 1) + owner + 1
     sort = np.argsort(key, kind="stable")
     key = key[sort]
     begin = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
     share = np.add.reduceat(cost[sort], begin)
-    island, who = np.divmod(key[begin], executors + 1)
-    share[who == 0] = 0
+    island, owner_from_1 = np.divmod(key[begin], executors + 1)
+    share[owner_from_1 == 0] = 0
     most = np.maximum.reduceat(share, np.flatnonzero(np.concatenate([[True], island[1:] != island[:-1]])))
     top = np.flatnonzero(share == most[island])
-    return who[top][firsts(island[top])] - 1
+    return owner_from_1[top][firsts(island[top])] - 1
 
 
 # --- balance ------------------------------------------------------------------------------------------------
@@ -183,7 +183,8 @@ def _fitting(weight, home, room) -> np.ndarray:
 
 
 def _deal(weight, place, home, load, cap, mean, rank) -> tuple[np.ndarray, np.ndarray]:
-    """Islands without a place: large ones go to whom has least, one by one; others fill all to one level, by runs of ``rank``."""
+    """Islands without a place: large ones go to the executor that has least, one by one; others fill all to one level, by runs
+    of ``rank``."""
     place, load = place.copy(), load.copy()
     out = place < 0
     large = np.flatnonzero(out & (weight * CRUMB > mean))
@@ -211,8 +212,8 @@ def _level(load: np.ndarray, amount: int) -> int:
 
 
 def _pack(weight, home, base, cap, mean, rank) -> tuple[np.ndarray, np.ndarray]:
-    """Large islands anew, each to whom has least, the largest first, and some exchanged; then executors that do nothing else are
-    named after the homes of what they have. The other islands as before.
+    """Large islands anew, each to the executor that has least, the largest first, and some exchanged; then executors that do
+    nothing else are named after the homes of what they have. The other islands as before.
     """
     place, load = np.full(len(weight), -1), base.copy()
     large = np.flatnonzero(weight * CRUMB > mean)

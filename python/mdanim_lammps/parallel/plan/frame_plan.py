@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The plan of a frame: who runs which objects, with whom, in which bundle. The supervisor (central control) and every executor
+"""The plan of a frame: which executors run which objects, in which bundle. The supervisor (central control) and every executor
 (decentralised) call the same `plan` and must get the same fingerprint.
 """
 
@@ -52,7 +52,7 @@ class PlannerOptions:
 
 @dataclass(frozen=True, slots=True)
 class FrameAssignment:
-    """Who runs what in a frame of M objects."""
+    """Which executors run what in a frame of M objects."""
 
     owner: np.ndarray
     """Executor of every object, int64, shape (M,); of what is still, as it was."""
@@ -104,7 +104,7 @@ def plan(
     :param low: boxes of the particles, eq. (3.14) [m], (M, 3), with ``high``
     :param d: what they are widened by, eq. (6.17) [m], shape (M,)
     :param cost: time of every object in a frame [µs], int64, shape (M,)
-    :param owner: executor that has its state, -1 for nobody yet, int64, shape (M,)
+    :param owner: executor that has its state, -1 for none yet, int64, shape (M,)
     :param particles: of every object, int64, shape (M,)
     :param still: objects held as a whole, bool, shape (M,)
     :param gap: reach of contact [m]
@@ -254,10 +254,10 @@ def bundles(
 ) -> np.ndarray:
     """LAMMPS instances that executors run their islands in, int64, shape (M,), -1 for what is still; O(M log M).
 
-    An island stays in its bundle if all of it was there and its executor is the same: who joins or leaves makes nobody else move.
-    The other islands are put together along ``order``, up to ``room`` particles; those larger than half of that, and those of a
-    team, are a bundle each. Bundles only ever lose objects. So when an executor has more than `BUNDLES_OVER_ENOUGH`
-    times as many as would do, and 2, its thin ones are put together as well.
+    An island stays in its bundle if all of it was there and its executor is the same: objects that join or leave make no other
+    object move. The other islands are put together along ``order``, up to ``room`` particles; those larger than half of that,
+    and those of a team, are a bundle each. Bundles only ever lose objects. So when an executor has more than
+    `BUNDLES_OVER_ENOUGH` times as many as would do, and 2, its thin ones are put together as well.
     """
     moving = np.flatnonzero(label >= 0)
     bundle = np.full(len(label), -1, np.int64)
@@ -323,8 +323,8 @@ def _thin_out(kept, size, runs, room) -> None:
 def _packed(size, runs, alone, room) -> np.ndarray:
     """Number of the bundle of each island, from 0; they come sorted by executor, with those that are alone last.
 
-    Who begins within the same length of the sum of sizes shares a bundle; the length is shorter than ``room`` by the largest of
-    them, so that no bundle exceeds it.
+    Islands that begin within the same length of the sum of sizes share a bundle; the length is shorter than ``room`` by the
+    largest of them, so that no bundle exceeds it.
     """
     small = np.flatnonzero(~alone)
     slot = np.zeros(len(size), np.int64)

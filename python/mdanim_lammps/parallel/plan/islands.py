@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Who may touch whom in the coming frame: reserved boxes, pairs of them that meet, islands, and still objects that these need.
+"""Which objects may touch in the coming frame: reserved boxes, pairs of them that meet, islands, and still objects that these
+need.
 
 Pure functions of arrays that every executor has: only + - * / and comparisons of IEEE numbers, integers, and stable sorts, so
 that all of them find the same. Wcislo 1999, eq. (3.14), (3.15), (6.17).
@@ -71,7 +72,7 @@ def _every_pair(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _grid_pairs(low: np.ndarray, high: np.ndarray, gap: float) -> np.ndarray:
-    """Boxes of similar size are sorted into a grid by their lower corners, cells as wide as the widest and the gap: who meets a
+    """Boxes of similar size are sorted into a grid by their lower corners, cells as wide as the widest and the gap: what meets a
     box lies in the 27 cells around it. Larger ones come in rounds of their own, against themselves and all smaller ones; a round
     takes half of those that are left at least. Sorts need not be stable: what is found is sorted.
     """
@@ -125,7 +126,7 @@ def _rows_around(key: np.ndarray, others: np.ndarray, rows: tuple[int, int]) -> 
 
 def _look(low, high, gap, mine, others, rows) -> Iterator[np.ndarray]:
     """Those boxes of ``others`` in the given slots that meet mine, in blocks of shape (2, P)."""
-    low_a, high_a, low_b, high_b = (side[:, who] for who in (mine, others) for side in (low, high))
+    low_a, high_a, low_b, high_b = (side[:, rows] for rows in (mine, others) for side in (low, high))
     first, last = map(np.concatenate, zip(*rows))
     size = last - first
     upto = np.cumsum(size)
@@ -156,8 +157,8 @@ def _meeting(one, two, a, b, gap) -> tuple[np.ndarray, np.ndarray]:
 def components(count: int, pairs: np.ndarray, still: np.ndarray) -> np.ndarray:
     """Island of every object, int64, shape (M,): numbered from 0 in the order of their smallest objects; -1 for what is still.
 
-    Objects that meet are in one island. ``still`` (M,) are held as a whole, never move and so connect nobody. Every round joins
-    each tree to the lowest one that it meets, until none meet: O(M + P) a round, a handful of rounds.
+    Objects that meet are in one island. ``still`` (M,) are held as a whole, never move and so connect no others. Every round
+    joins each tree to the lowest one that it meets, until none meet: O(M + P) a round, a handful of rounds.
     """
     root = np.arange(count)
     a, b = pairs[~(still[pairs[:, 0]] | still[pairs[:, 1]])].T

@@ -36,7 +36,7 @@ def form(weight, particles, home, fixed, executors, previous, gain, least) -> tu
     were, then those with least to do. A loop over islands above the mean: fewer than K, and O(K) turns.
 
     :param weight: cost of every island [µs], shape (I,), with its ``particles``
-    :param home: executor that has most of it, -1 for nobody, shape (I,)
+    :param home: executor that has most of it, -1 for none, shape (I,)
     :param fixed: islands that stay there, bool, shape (I,)
     :param previous: teams of the frame before, known by their leaders
     :param gain: as `GAIN` [%], and ``least`` as `LEAST`

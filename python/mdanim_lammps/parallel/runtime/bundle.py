@@ -57,12 +57,12 @@ def wanted_bundles(plan: FrameAssignment, objects: int, executor: int) -> list[W
     mine = (plan.owner == executor) & (plan.bundle >= 0)
     for number, members in team_of.items():
         mine[plan.bundle == number] = executor in members
-    who = np.flatnonzero(mine)
-    who = who[np.argsort(plan.bundle[who], kind="stable")]
+    ordered = np.flatnonzero(mine)
+    ordered = ordered[np.argsort(plan.bundle[ordered], kind="stable")]
     found = []
-    numbers, begin = np.unique(plan.bundle[who], return_index=True)
-    for number, a, b in zip(numbers.tolist(), begin.tolist(), [*begin[1:].tolist(), len(who)]):
-        group = who[a:b]
+    numbers, begin = np.unique(plan.bundle[ordered], return_index=True)
+    for number, a, b in zip(numbers.tolist(), begin.tolist(), [*begin[1:].tolist(), len(ordered)]):
+        group = ordered[a:b]
         guests = plan.guests[np.isin(plan.guests[:, 0], plan.label[group]), 1].tolist() if len(plan.guests) else ()
         members = group[group < objects]
         key = Key(tuple(sorted({*members.tolist(), *guests})), bool(group[-1] == objects), team_of.get(number, (executor,)))
@@ -166,11 +166,11 @@ class Bundle:
         inside = self.inside
         return {fix: found.where(~found.of(inside)) for fix, found in records.items()}
 
-    # --- whom it moves --------------------------------------------------------------------------------------------
+    # --- what it moves --------------------------------------------------------------------------------------------
 
     def can_be(self, wanted: Wanted) -> bool:
-        """Whether it is this bundle, once it has laid aside whom it is to have no more, and most of its work would still be for
-        something. Only instances of one executor without a liquid lay aside."""
+        """Whether it is this bundle, once it has laid aside the objects that it is to have no more, and most of its work would
+        still be for something. Only instances of one executor without a liquid lay aside."""
         if wanted.key == self.key:
             return True
         if wanted.number != self.number or wanted.key.liquid or self.key.liquid or len(wanted.key.team) + len(self.key.team) > 2:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Who decides: the supervisor for all (central control), or every executor the same (peers). Wcislo 1999, sec. 6.2 and 6.3."""
+"""What decides: the supervisor for all executors (central control), or every executor alike (peers). Wcislo 1999, sec. 6.2 and
+6.3."""
 
 from __future__ import annotations
 

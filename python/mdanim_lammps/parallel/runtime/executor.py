@@ -96,8 +96,8 @@ class Executor:
     # --- the order of things --------------------------------------------------------------------------------------
 
     def work(self) -> None:
-        """All frames. Raises LammpsFailure, MdanimError, Aborted; then its instances are left as they are, for a team's others
-        may never come to close theirs."""
+        """All frames. Raises LammpsFailure, MdanimError, Aborted; then its instances are left as they are, because other members
+        of a team may never come to close theirs."""
         self._follow(self._decide(self._first_report()))
         few = np.flatnonzero(~self.system.still)[:2]
         if len(few) == 2 and self.parts.reach.any():  # pairs will meet
@@ -141,7 +141,7 @@ class Executor:
                 if not bundle.ran:
                     with self._span("simulating"):
                         bundle.run(steps)
-            # Who has nothing to do again is frozen at the end of the window until the others have come there too.
+            # An executor that has nothing to do again is frozen at the end of the window until the others have come there too.
             order = self._decide(self._report(steps), "frozen" if again else "waiting")
             if order.commit:
                 self.step += steps
@@ -184,8 +184,8 @@ class Executor:
         return found
 
     def _go_on(self, bundle: Bundle, wanted: Wanted, again: bool) -> Bundle:
-        """A bundle that stays, without whom it has to lay aside; ``again`` as in `_follow`: one that changes goes back to the
-        window's beginning."""
+        """A bundle that stays, without the objects that it has to lay aside; ``again`` as in `_follow`: one that changes goes
+        back to the window's beginning."""
         back = again and bundle.key != wanted.key
         bundle.drop_objects(wanted)
         if back:
@@ -266,7 +266,7 @@ class Executor:
     # --- what is told ---------------------------------------------------------------------------------------------
 
     def _first_report(self) -> Report:
-        """Of all objects that can move, in equal shares: everybody knows where they begin."""
+        """Of all objects that can move, in equal shares: every executor knows where objects begin."""
         mine = np.flatnonzero(~self.system.still)[self.me :: self.comm.size]
         low, high = self.system.bounds(self.x)
         return Report(mine, low[mine], high[mine], self.system.top_speed(self.v)[mine], np.zeros(len(mine), np.int64))

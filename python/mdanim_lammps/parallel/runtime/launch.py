@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import base64
 import importlib
 import json
 import os
@@ -30,7 +31,9 @@ from ..plan.frame_plan import PlannerOptions
 
 EXCHANGE = ".ranks-"
 """What the names of the two files begin with, in the folder of the run, by which job and result are handed over. The supervisor
-deletes the first when it has read it, and leaves the second at its end."""
+deletes the first when it has read it, and leaves the second where it has to abort the other ranks."""
+RESULT_SIGN = "="
+"""What the line begins with in which the supervisor gives the result otherwise."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +72,7 @@ def simulate_on(
     task = Task(ready, folder, control, resume, time.perf_counter() if started is None else started, settings or PlannerOptions())
     command = [*launcher(), "-n", str(executors + 1), sys.executable, "-m", "mdanim_lammps.parallel.runtime.ranks", str(job)]
     said: list[str] = []
+    found = None
     try:
         with disk_errors(job):
             job.write_bytes(pickle.dumps(task, protocol=pickle.HIGHEST_PROTOCOL))
@@ -79,15 +83,18 @@ def simulate_on(
             hearing = threading.Thread(target=_hear, args=(ranks.stderr, said), daemon=True)
             hearing.start()
             for line in ranks.stdout:
-                if on_progress and line.startswith("{"):
+                if line.startswith(RESULT_SIGN):
+                    found = pickle.loads(base64.b64decode(line[len(RESULT_SIGN) :]))
+                elif on_progress and line.startswith("{"):
                     on_progress(Progress(**json.loads(line)))
             ranks.wait()
         hearing.join()
         if not folder.exists():
             raise OutputError(f"{folder} was deleted while the run wrote to it; run the scene again")
-        if not result.exists():
+        if result.exists():
+            found = pickle.loads(result.read_bytes())
+        if found is None:
             raise lost(_cause(ranks.returncode, said), folder)
-        found = pickle.loads(result.read_bytes())
     finally:
         for file in (job, result, part_of(result)):
             file.unlink(missing_ok=True)

@@ -22,7 +22,7 @@ from ..plan.frame_plan import PlannerOptions
 SUPERVISOR = 0
 """Its rank; executor e, counted from 0, has the rank e + 1."""
 NAP, LONG_NAP = 0.0002, 0.001
-"""Shortest and longest pause of somebody who waits [s]."""
+"""Shortest and longest pause of a rank that waits [s]."""
 DROWSE = 0.02
 """A pause over the time that he has waited: looks take processor time too."""
 
@@ -166,7 +166,7 @@ class Aborted(Exception):
 class Mail:
     """Messages to and from other ranks; waiting for one sees an ABORT too.
 
-    Large arrays go as they are, without a copy (pkl5): who sends must not change them any more.
+    Large arrays go as they are, without a copy (pkl5): the sender must not change them any more.
     """
 
     def __init__(self, world: MPI.Comm):
@@ -203,7 +203,7 @@ class Mail:
         return found
 
     def exchange(self, comm: MPI.Comm, message) -> list:
-        """Everybody's message, in the order of ranks. Raises Aborted."""
+        """The messages of all ranks, in their order. Raises Aborted."""
         mine = np.frombuffer(pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL), np.uint8)
         size = np.empty(comm.size, np.int64)
         self.wait(comm.Iallgather(np.array([len(mine)]), size).Test)

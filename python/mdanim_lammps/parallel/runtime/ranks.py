@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What every MPI rank of a distributed run executes: ``mpiexec -n K+1 python -m mdanim_lammps.parallel.runtime.ranks JOB``.
 
-Rank 0 is the supervisor: it takes the job that launch.py has left in this file and leaves the result beside it; progress goes to
-its standard output, a line of JSON for every frame. All others are executors.
+Rank 0 is the supervisor: it takes the job that launch.py has left in this file. Progress goes to its standard output, a line of
+JSON for every frame, and at the end the result; where ranks must be aborted it leaves the result beside the job. All others are
+executors.
 """
 
 from __future__ import annotations
 
+import base64
 import json
 import pickle
 import sys
@@ -17,7 +19,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from ...errors import MdanimError, OutputError
-from .launch import Task, lost, part_of, result_of
+from .launch import RESULT_SIGN, Task, lost, part_of, result_of
 
 FAREWELL = 30.0
 """Seconds for which an executor that has failed waits for the supervisor to end all ranks, until it does so itself."""
@@ -83,14 +85,18 @@ def _supervise(world, job: Path) -> None:
             source.timeline.write(task.folder)
     except OutputError as error:
         result = _told(error) if isinstance(result, Result) else result
-    _leave(job, result)
-    if not source.clean:
+    if source.clean:
+        part_of(result_of(job)).unlink(missing_ok=True)
+        print(RESULT_SIGN + base64.b64encode(pickle.dumps(result)).decode(), flush=True)
+    else:
+        _leave(job, result)
         sys.stderr.flush()
         world.Abort(1)  # executors may wait for ever for what never comes
 
 
 def _leave(job: Path, result) -> None:
-    """Let the process that has started all ranks find a result, whole."""
+    """Let the process that has started all ranks find a result, whole, in a file: an abort may end the processes that pass on
+    what stands on stdout."""
     found = result_of(job)
     with suppress(FileNotFoundError):  # the output folder has been deleted: that tells the process that waits for the result
         with part_of(found).open("r+b") as file:
