@@ -279,12 +279,12 @@ def test_help_lists_every_command():
 
 
 def test_check_is_quick(scenes):
-    """Import neither pyvista nor MDAnalysis to check a scene of boxes."""
+    """Import none of the slow libraries to check a scene of boxes that are far from each other."""
     code = (
         "import sys; from mdanim_lammps.cli import main\n"
         f"try: main(['check', {str(scenes / 'beam.txt')!r}])\n"
         "except SystemExit: pass\n"
-        "dear = {'pyvista', 'vtk', 'MDAnalysis', 'vtkmodules', 'h5py', 'lammps'}\n"
+        "dear = {'pyvista', 'vtk', 'MDAnalysis', 'vtkmodules', 'h5py', 'lammps', 'scipy'}\n"
         "print(sorted({m.split('.')[0] for m in sys.modules} & dear))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)

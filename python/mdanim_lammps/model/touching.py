@@ -108,11 +108,11 @@ def _near_others(system: System) -> np.ndarray:
 def _within_reach(system: System, seek: np.ndarray, guard: np.ndarray, factor: float) -> tuple[np.ndarray, ...]:
     """Pairs of a particle of ``seek`` and one of ``guard``, bool (N,), of two objects, within ``factor`` of the larger reach;
     a pair that is in both once."""
-    from scipy.spatial import cKDTree
-
     seekers, guards = np.flatnonzero(seek), np.flatnonzero(guard)
     if not len(seekers) or not len(guards):
         return np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(0)
+    from scipy.spatial import cKDTree  # takes half a second
+
     x, owner = system.position, system.object
     farthest = factor * REACH * float(system.spacing.max())
     found = cKDTree(x[seekers]).sparse_distance_matrix(cKDTree(x[guards]), farthest, output_type="ndarray")
