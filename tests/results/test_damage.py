@@ -11,6 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from mdanim_lammps.api import open_run, run_frames
@@ -18,7 +19,7 @@ from mdanim_lammps.errors import OutputError
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.trajectory import Trajectory
-from mdanim_lammps.results.trajectory_file import frame_tables, open_trajectory
+from mdanim_lammps.results.trajectory_file import NOT_WRITTEN, frame_tables, open_trajectory
 from mdanim_lammps.run import loop
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
@@ -194,6 +195,44 @@ def test_one_flipped_bit_of_a_frame_is_found(runs, tmp_path, table):
         file.write(bytes([byte ^ 1]))
     for task in (resume, read_all):
         assert f"{part}: frame 3 is damaged" in tried(task, ready, tmp_path / "cut", whole)
+
+
+@pytest.mark.parametrize(
+    ("table", "change"),
+    [
+        ("checksum", lambda sums: sums[:4]),
+        ("checksum", lambda sums: sums[:, :1]),
+        ("checksum", lambda sums: sums[:, 0]),
+        ("step", lambda steps: steps[:4]),
+        ("step", lambda steps: np.array([b"x"] * len(steps))),
+        ("time", lambda times: times[:4]),
+    ],
+)
+def test_tables_of_frames_that_do_not_fit_together_are_refused(runs, tmp_path, table, change):
+    """One that is shorter, narrower or of another kind than the others: no value could be compared with its checksum."""
+    _, whole, _ = runs
+    path = tmp_path / "trajectory.h5"
+    shutil.copy(whole / "trajectory.h5", path)
+    with h5py.File(path, "r+") as file:
+        name = "parameters/mdanim/checksum" if table == "checksum" else f"particles/all/position/{table}"
+        changed = change(file[name][:])
+        del file[name]
+        file[name] = changed
+    with pytest.raises(OutputError, match=r"trajectory\.h5.* damaged"):
+        Trajectory(path)
+
+
+def test_a_trajectory_older_than_the_checkpoint_is_not_resumed(runs, tmp_path):
+    """As after a backup of one file alone: the run would have a hole, and not come to an end."""
+    ready, whole, cut = runs
+    shutil.copytree(cut, tmp_path / "cut")
+    part = tmp_path / "cut" / "trajectory.h5.part"
+    with open_trajectory(part) as file:
+        place = frame_tables(file)["step"]
+    with part.open("r+b") as file:
+        file.seek(place.offset + HALF * place.stride)
+        file.write(np.int64(NOT_WRITTEN).tobytes() * (place.frames - HALF))
+    assert f"{part}: has no frame of step" in tried(resume, ready, tmp_path / "cut", whole)
 
 
 @pytest.mark.parametrize(("line", "change"), [(0, ("kinetic", "kinetIc")), (3, (".", "1.")), (HALF + 1, (",", ",1")), (2, None)])

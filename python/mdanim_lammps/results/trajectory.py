@@ -61,9 +61,9 @@ class Trajectory:
                 self.steps_per_frame = int(parameters["steps_per_frame"])
                 steps, times = tables.pop(STEP)[:], tables.pop(TIME)[:]
                 self._checksums = tables.pop(CHECKSUM)[:] if CHECKSUM in tables else None
-            self._values = tables
-            count = self._count(steps, times)
-            check_frames(self.path, frame_shapes(self.metadata), tables, steps[:count], times[:count])
+                self._values = tables
+                count = self._count(steps, times)
+                check_frames(self.path, frame_shapes(self.metadata), tables, steps[:count], times[:count])
         except OutputError:
             self._file.close()
             raise
@@ -77,6 +77,8 @@ class Trajectory:
         """Number of frames that are whole. Raises OutputError where steps or times are damaged."""
         if self._checksums is None:
             return min(len(steps), len(times), *map(len, self._values.values()))
+        if not len(steps) == len(times) == len(self._checksums) or self._checksums.shape[1:] != (1 + len(self._values),):
+            raise OutputError(f"{self.path}: damaged: its tables of steps, times and checksums do not fit together")
         written = steps != NOT_WRITTEN
         count = int(written.sum())
         if not written[:count].all():

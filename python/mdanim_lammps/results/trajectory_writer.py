@@ -79,10 +79,10 @@ class TrajectoryWriter:
         Args:
             path: as for a new trajectory; ``PATH`` or, of a killed run, ``PATH.part`` must exist.
             scene, models, grid: the same as in the first run.
-            after_step: last step to keep.
+            after_step: last step to keep; the file must have a frame of it.
 
         Raises:
-            OutputError: no trajectory there, one that is damaged or of other objects, or it cannot be written.
+            OutputError: no trajectory there, one that is damaged, too short or of other objects, or it cannot be written.
         """
         path = Path(path)
         with Trajectory(path) as old:
@@ -99,9 +99,14 @@ class TrajectoryWriter:
                     f"{_described(grid)}; start afresh with --force or another -o folder"
                 )
             keep = int(np.searchsorted(old.steps, after_step, side="right"))
+            last = int(old.steps[keep - 1]) if keep else NOT_WRITTEN
+            if last != after_step:
+                raise OutputError(
+                    f"{old.path}: has no frame of step {after_step}, from which the run is to go on, so it is not the file that "
+                    "was written with the checkpoint; copy it again from its source, or start afresh with --force"
+                )
             for frame in range(keep):
                 old.check(frame)
-            last = int(old.steps[keep - 1]) if keep else NOT_WRITTEN
         if old.path == path:
             with disk_errors(path):
                 rename(path, part_of(path))
