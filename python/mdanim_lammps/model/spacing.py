@@ -14,7 +14,7 @@ from ..errors import Problem, SceneError
 from ..scene.formatting import number, say, whole
 from ..scene.scene import Accuracy, Box, HoldAll, Scene, Shape, Solid
 from . import shapes
-from .limits import check_numbers, check_places, check_sparse
+from .limits import check_places, check_sparse
 from .mesh import MeshError
 
 BYTES_PER_PARTICLE = 1500.0
@@ -46,11 +46,9 @@ def plan_spacing(scene: Scene) -> Spacing:
     """Choose the spacing: ``resolution``, else the thinnest part of all solids over the cells that accuracy
     asks.
 
-    Raises SceneError, with a problem for every number out of range, every solid that is thinner than the spacing, too far from
-    the origin or too sparse in its bounding box, or whose mesh is no body, and where the particles would not fit in memory.
+    Raises SceneError, with a problem for every solid that is thinner than the spacing, too far from the origin or too sparse in
+    its bounding box, or whose mesh is no body, and where the particles would not fit in memory.
     """
-    if problems := check_numbers(scene):
-        raise SceneError(problems)
     h, set_by, thin = choose_spacing(scene)
     problems = check_places(scene, h)
     for solid, t in zip(scene.solids, thin):
