@@ -209,12 +209,13 @@ def resume(
     """
     from .api import stored_scene
     from .results.checkpoint import Checkpoint
+    from .results.files import CHECKPOINT
 
     check_executors(executors)
     scene = stored_scene(folder)
     if (folder / "summary.json").exists():
         raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
-    checkpoint = Checkpoint.read(folder / "checkpoint")
+    checkpoint = Checkpoint.read(folder / CHECKPOINT)
     ready = prepare(scene, allow_unstable=allow_unstable)
     announce(ready, quiet, False, executors, control)
     simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control, resume=checkpoint)

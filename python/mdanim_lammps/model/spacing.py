@@ -23,7 +23,7 @@ BYTES_PER_PARTICLE = 1500.0
 
 @dataclass(frozen=True, slots=True)
 class Spacing:
-    """The spacing of a scene, who asked for it, and what it costs."""
+    """The spacing of a scene, what asked for it, and what it costs."""
 
     h: float
     """Particle spacing [m]."""
@@ -72,7 +72,7 @@ def plan_spacing(scene: Scene) -> Spacing:
 
 
 def choose_spacing(scene: Scene) -> tuple[float, str, list[float]]:
-    """The spacing [m], who asked for it, and the thinnest part of every solid [m]; whether it will do is not looked at.
+    """The spacing [m], what asked for it, and the thinnest part of every solid [m]; whether it will do is not looked at.
 
     Raises SceneError with a problem for every solid whose mesh is no body.
     """

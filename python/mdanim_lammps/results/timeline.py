@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the executors of a run did when, and who owned which object: timeline.json."""
+"""What the executors of a run did when, and which owned which object: timeline.json."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Timeline:
     teams: list[tuple[int, tuple[int, ...]]] = field(default_factory=list)
     """(frame, executors, the leading one first) of every team that has run on the way to a frame."""
     owners: list[tuple[int, int, int]] = field(default_factory=list)
-    """(frame, object, executor) whenever an object is first owned, or by another; what never moves is nobody's."""
+    """(frame, object, executor) whenever an object is first owned, or by another; what never moves has no owner."""
     spans: list[tuple[int, str, int, float, float]] = field(default_factory=list)
     """(executor, kind, frame, begin, end), times in seconds since all executors began; kinds are `KINDS`."""
     cpu: list[float] = field(default_factory=list)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Checks of an output folder that comes from somebody else: it can neither reach other files nor need more memory than it has
+"""Checks of an output folder that comes from elsewhere: it can neither reach other files nor need more memory than it has
 (docs/security.md)."""
 
 from __future__ import annotations

@@ -152,7 +152,7 @@ class _Run:
             and len(resume.x) == ready.system.particles
             and all(((r.keys >= 0) & (r.keys <= len(ready.system.names))).all() for r in resume.records.values())
         ):
-            raise OutputError(f"{folder / 'checkpoint'} is damaged; run the scene again with --force")
+            raise OutputError(f"{folder / CHECKPOINT} is damaged; run the scene again with --force")
         if resume:
             remove_parts(folder)
         self.recorded = recorded(ready.scene.expects)

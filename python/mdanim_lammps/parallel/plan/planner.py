@@ -25,7 +25,7 @@ DOUBLINGS = 60
 
 
 class Planner:
-    """Boxes, costs and owners of all objects, and of the pool as one more; the same on everybody who plans."""
+    """Boxes, costs and owners of all objects, and of the pool as one more; the same in every process that plans."""
 
     def __init__(self, parts: SubPlans, executors: int, lengths: Sequence[int], settings: PlannerOptions, frame: int = 0):
         self.lengths, self.frame = lengths, frame
@@ -87,17 +87,17 @@ class Planner:
         return self._order(*self.context.longest_window(length, left, self._make), commit=True)
 
     def _take(self, report: Report) -> None:
-        who = report.objects
-        self.low[who], self.high[who], self.speed[who] = report.low, report.high, report.speed
+        ids = report.objects
+        self.low[ids], self.high[ids], self.speed[ids] = report.low, report.high, report.speed
         if self.plan is None:
             return
         cost = report.cost
         if report.pool_cost is not None:
-            who, cost = np.append(who, self.objects), np.append(cost, report.pool_cost)
+            ids, cost = np.append(ids, self.objects), np.append(cost, report.pool_cost)
         new = cost.astype(np.int64)
         # Whole numbers only, so that all planners round alike.
-        smooth = np.where(self.measured[who], self.cost[who] + ((new - self.cost[who]) * int(256 * WEIGHT_OF_LATEST) >> 8), new)
-        self.cost[who], self.measured[who] = np.maximum(1, smooth), True
+        smooth = np.where(self.measured[ids], self.cost[ids] + ((new - self.cost[ids]) * int(256 * WEIGHT_OF_LATEST) >> 8), new)
+        self.cost[ids], self.measured[ids] = np.maximum(1, smooth), True
 
     def reach(self, steps: int) -> np.ndarray:
         """What boxes are widened by in a window of so many steps, eq. (6.17) [m], shape (M,), the pool's last."""

@@ -23,7 +23,7 @@ from pathlib import Path
 
 from ...errors import ExecutorLost, OutputError, SetupError
 from ...results.checkpoint import Checkpoint
-from ...results.files import disk_errors
+from ...results.files import CHECKPOINT, disk_errors
 from ...run.loop import STOP, Progress, Result
 from ...run.prepare import Prepared
 from ..limits import MPIEXEC
@@ -171,7 +171,7 @@ def _cause(code: int, said: list[str]) -> str:
 
 def lost(why: str, folder: Path) -> ExecutorLost:
     """The one message for ranks that ended without a result."""
-    kept = (folder / "checkpoint").exists()
+    kept = (folder / CHECKPOINT).exists()
     go_on = f"go on with: mdanim-lammps resume {folder}" if kept else "nothing was kept yet; run it again"
     return ExecutorLost(f"an executor was lost ({why}); all others were stopped. {go_on}")
 

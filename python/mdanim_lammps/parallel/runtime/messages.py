@@ -24,7 +24,7 @@ SUPERVISOR = 0
 NAP, LONG_NAP = 0.0002, 0.001
 """Shortest and longest pause of a rank that waits [s]."""
 DROWSE = 0.02
-"""A pause over the time that he has waited: looks take processor time too."""
+"""A pause over the time that a rank has waited: looks take processor time too."""
 
 
 class Tag(IntEnum):
