@@ -80,6 +80,20 @@ def test_what_does_not_fit_in_memory_is_refused(monkeypatch):
         plan_spacing(scene(solid(BEAM, "beam"), accuracy=Accuracy.BALANCED))
 
 
+def test_a_mesh_file_in_other_units_is_named(monkeypatch):
+    """Point at the mesh that has most of the particles, not at the small object that sets the spacing; offer a scale."""
+    monkeypatch.setattr(spacing, "available_memory", lambda: 2e6)
+    in_cm = solid(Mesh(MESHES.parents[2] / "scenes" / "meshes" / "boat.stl"), "boat")
+    with pytest.raises(SceneError) as caught:
+        plan_spacing(scene(in_cm, solid(Sphere(0.1), "ball")))
+    (problem,) = caught.value.problems
+    assert problem.message.startswith("boat is 120 m long, as its mesh file is read in metres: about")
+    assert "scale 0.01" in problem.hint
+    assert problem.span is in_cm.spans["shape"]
+    with pytest.raises(SceneError, match="ball sets the spacing"):
+        plan_spacing(scene(solid(Mesh(in_cm.shape.path, 0.5), "boat"), solid(Sphere(0.1), "ball")))
+
+
 def test_an_absurd_resolution_is_refused_at_once():
     """Estimate 10^24 particles of every shape without making any."""
     for shape in SHAPES:

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import Problem, SceneError
 from ..scene.formatting import number, say, whole
-from ..scene.scene import Accuracy, Box, HoldAll, Scene, Shape, Solid
+from ..scene.scene import Accuracy, Box, HoldAll, Mesh, Scene, Shape, Solid
 from . import shapes
 from .limits import check_places, check_sparse
 from .mesh import MeshError
@@ -152,12 +152,26 @@ def _too_large(scene: Scene, plan: Spacing) -> Problem:
     coarser = plan.h * 1.1 * (plan.memory / plan.available) ** (1 / 3)
     if plan.set_by == "resolution":
         return Problem(scene.control.spans.get("resolution"), found, f"try resolution {say(coarser, 'm')}")
+    if mesh := _without_scale(scene, plan):
+        low, high = shapes.extent(mesh.shape)
+        return Problem(
+            _span(mesh),
+            f"{mesh.name} is {say(float((high - low).max()), 'm')} long, as its mesh file is read in metres: {found}",
+            "if the file is in mm or cm, write scale 0.001 or scale 0.01 after its name",
+        )
     solid = next(s for s in scene.solids if s.name == plan.set_by)
     return Problem(
         _span(solid),
         f"{solid.name} sets the spacing: {found}",
         f"make it thicker, use fewer objects or a lower accuracy, or try resolution {say(coarser, 'm')}",
     )
+
+
+def _without_scale(scene: Scene, plan: Spacing) -> Solid | None:
+    """The object with most particles, if its mesh file is read in metres and another object sets the spacing; else None."""
+    largest = scene.solids[int(np.argmax(plan.particles))]
+    in_metres = isinstance(largest.shape, Mesh) and largest.shape.scale == 1.0
+    return largest if in_metres and largest.name != plan.set_by else None
 
 
 def _gigabytes(size: float) -> str:
