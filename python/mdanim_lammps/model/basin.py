@@ -94,7 +94,7 @@ def liquid_level(liquid: Liquid) -> float:
 
 
 def check_basin(scene: Scene, models: Sequence[Model]) -> list[Problem]:
-    """Find a basin too narrow or too large, a liquid of no cell, and liquid and solids that do not fit into it.
+    """Find a basin that is too narrow or too large, a liquid of no cell, and liquid and solids that do not fit into the basin.
 
     Solids that float need room for what they displace, others for all of their volume; those that are held,
     even in part, take the room that they have at the start.
@@ -156,7 +156,7 @@ def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
 
 
 def _too_snug(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem]:
-    """Bodies that leave no column of liquid beside them that could tell how high it stands."""
+    """Bodies beside which there is no column of liquid that shows its height."""
     problems = []
     for solid, model in zip(scene.solids, models):
         gap = [
@@ -179,7 +179,7 @@ def _too_snug(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem
 
 
 def _too_full(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem]:
-    """Liquid that finds no room at the start, and bodies that find none when they sink in."""
+    """Liquid without room at the start, and bodies without room when they sink in."""
     liquid, cell = scene.liquid, grid.cell_volume
     volume = np.array([shapes.volume(s.shape) for s in scene.solids])
     low, high = liquid.fill or (liquid.low, liquid.high)
@@ -228,11 +228,11 @@ def _too_full(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem
 
 
 HOLLOW = 0.2
-"""Room that a body encloses, over its own volume, from which it is taken for a hull."""
+"""Room that a body encloses, over its own volume, above which the body counts as a hull."""
 
 
 def open_hulls(scene: Scene, models: Sequence[Model]) -> list[Problem]:
-    """Warn of bodies that enclose air which model surface knows nothing of."""
+    """Warn of bodies that enclose air, because model surface ignores that air."""
     if scene.liquid is None or scene.liquid.model is not LiquidModel.SURFACE:
         return []
     return [
@@ -250,7 +250,7 @@ def open_hulls(scene: Scene, models: Sequence[Model]) -> list[Problem]:
 def enclosed(solid: Solid, model: Model) -> float:
     """Room in a body that would hold liquid poured in from above, its +z axis up, over the body's own volume [-].
 
-    Empty cells of its lattice that no way within their layer or below leads out of: layer by layer from the bottom.
+    Empty cells of its lattice without a path to the outside in their layer or below: layer by layer from the bottom.
     """
     from scipy.ndimage import label
 
@@ -280,7 +280,7 @@ def _within(models: Sequence[Model], low: Vector, high: Vector) -> np.ndarray:
 
 
 def _sunk(solid: Solid, volume: float, scene: Scene) -> float:
-    """Part of a free solid that comes to lie below the surface [-]: Archimedes, where the liquid lifts at all."""
+    """Part of a free solid that is below the surface at rest [-]: Archimedes, if the liquid exerts lift."""
     liquid = scene.liquid
     if liquid.model is LiquidModel.PAPER or scene.effects.get("buoyancy") is Switch.OFF:
         return 1.0

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 BLOCK = 1 << 20
-"""Pairs looked at in one go."""
+"""Pairs that are compared at once."""
 
 
 def box_pairs(low: np.ndarray, high: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:

@@ -30,7 +30,7 @@ def build_models(scene: Scene, progress: Callable[[int, int], None] | None = Non
     are their own.
 
     Raises SceneError with all problems of all solids in one pass: those of plan_spacing, a body that falls
-    apart at this spacing, a ``hold`` that catches nothing.
+    apart at this spacing, a ``hold`` without particles.
     """
     h = plan_spacing(scene).h
     workshop = _Workshop(h)
@@ -64,7 +64,7 @@ class _Body:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Fabric:
-    """Masses and springs of a body made of something."""
+    """Masses and springs of a body of one material."""
 
     mass: np.ndarray
     spring: np.ndarray
@@ -156,7 +156,7 @@ class _NothingHeld(Exception):
 
 
 def _held(solid: Solid, lattice: Lattice) -> np.ndarray:
-    """Particles that some ``hold`` of the solid catches, bool, shape (N,); raise where one catches none."""
+    """Particles in any ``hold`` of the solid, bool, shape (N,); raise where a ``hold`` has none."""
     held = np.zeros(len(lattice.position), bool)
     for hold in solid.hold:
         caught = _caught(hold, solid, lattice)
@@ -190,7 +190,7 @@ def _(hold: HoldFaces, solid: Solid, lattice: Lattice) -> np.ndarray:
 @_caught.register
 def _(hold: HoldWithin, solid: Solid, lattice: Lattice) -> np.ndarray:
     position = _rotated(solid, lattice.position) + solid.position
-    # Particles that stand on the border in the scene's round numbers belong to the box.
+    # Particles on the border, by the scene's round numbers, belong to the box.
     hair = 1e-9 * (lattice.cells.edge.max() + np.abs(solid.position).max())
     return ((position >= np.array(hold.low) - hair) & (position <= np.array(hold.high) + hair)).all(axis=1)
 
@@ -205,8 +205,8 @@ def _missed(hold: HoldWithin, solid: Solid, lattice: Lattice) -> tuple[str, str]
 
 
 def _too_thin(solid: Solid, h: float, error: TooThin) -> Problem:
-    """Say which resolution would do, by trying finer ones."""
-    # Two digits, so that the resolution which is tried is the one that is told.
+    """Name a sufficient resolution, by trying finer ones."""
+    # Two digits, so that the resolution that is tried is the one in the message.
     for trial in [float(f"{finer:.2g}") for finer in h * 0.8 ** np.arange(1, 6)]:
         try:
             fill_cells(solid.shape, trial)

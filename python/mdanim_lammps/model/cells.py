@@ -15,7 +15,7 @@ from .springs import MAX_ASPECT
 
 
 class TooThin(Exception):
-    """No cells near this size make the shape; the message says what goes wrong with them."""
+    """No cells near this size form the shape; the message names the cause."""
 
 
 def fill_cells(shape: Shape, spacing: float) -> Cells:
@@ -50,14 +50,14 @@ def box_counts(size, spacing: float) -> tuple[int, int, int]:
         off = abs(np.log(np.prod(edge, axis=1) ** (1 / 3) / spacing))
         fits = (aspect <= MAX_ASPECT * (1 + 1e-9)) & (off <= np.log(reach) + 1e-9)
         if fits.any():
-            # Aspects that differ by less than a hair are equally cubic.
+            # Aspects that differ by rounding only are equally cubic.
             best = np.lexsort((off[fits], aspect[fits].round(6)))[0]
             return tuple(counts[fits][best].tolist())
     raise TooThin("its edges cannot be divided into nearly equal cells")
 
 
 def _trial_counts(size: np.ndarray, spacing: float, reach: float) -> np.ndarray:
-    """Divisions worth a look, shape (n, 3): near the spacing, or fitting one side and in reach."""
+    """Divisions to compare, shape (n, 3): near the spacing, or fitting one side and in reach."""
     near = [
         length / n for length in size for n in range(max(1, ceil(length / (spacing * reach))), int(length * reach / spacing) + 1)
     ]
@@ -75,7 +75,7 @@ def _box_cells(shape: Box, counts) -> Cells:
 # --- all other shapes ---------------------------------------------------------------------------------------
 
 SEARCH = 4_000_000
-"""Cells looked at in one round of the search: small bodies get all trials, large ones fit well without."""
+"""Cells that are compared in one round of the search: small bodies get all trials, large bodies fit well with few."""
 
 GOOD_VOLUME = 0.05
 """Error of the volume that ends the search; balls two or three cells thick need an edge further off."""
@@ -141,7 +141,7 @@ def _filled(shape: Shape, low, high, edge: float, odd) -> Cells | None:
 
 
 def _without_nubs(filled: np.ndarray) -> np.ndarray:
-    """Take away single cells that stick out of a flat face: a blow would push them right through it.
+    """Remove single cells on a flat face: an impact would push such a cell through the face.
 
     Such a cell has one neighbour, which has four or all five others; the end of a needle is none.
     """

@@ -41,7 +41,7 @@ def _faces(lattice: Lattice) -> Surface:
 
 
 def _embedded(points: np.ndarray, triangles: np.ndarray, lattice: Lattice) -> Surface:
-    """Carry each point (V, 3) by the eight corners of the nearest filled cell, with trilinear weights.
+    """Tie each point (V, 3) to the eight corners of the nearest filled cell, with trilinear weights.
 
     At rest the weighted sums are the points themselves. Points up to about a cell outside are extrapolated.
     """

@@ -33,17 +33,17 @@ OFFSETS = np.array(
 )
 """Steps (x, y, z) from a particle to its neighbours of higher number: 3 edges, 6 face diagonals and 4 body diagonals.
 
-They stand in the order of the neighbours' numbers, so springs written particle by particle come out sorted.
+Steps are in the order of the neighbours' numbers, so springs written particle by particle come out sorted.
 """
 
 INWARD = {2: 27 / 256, 3: 20 / 256, 4: 18 / 256}
 """Part of its face diagonals that a cell on a surface moves from the face outside to the one inside, for 2, 3, 4 or more in line.
 
-docs/physics-solids.md, Bending. Binary fractions, so that what is alike by symmetry has equal springs to the last bit.
+docs/physics-solids.md, Bending. Binary fractions, so that springs that are equal by symmetry are equal to the last bit.
 """
 
 EDGES = 3.0
-"""Edges move so many times what diagonals move: then a bar that is pulled stays as wide outside as it is inside."""
+"""Factor of the part of edges over that of diagonals: with this factor a bar under tension is as wide outside as inside."""
 
 AXES = np.count_nonzero(OFFSETS, axis=1)
 """1 for an edge, 2 for a face diagonal, 3 for a body diagonal, shape (13,)."""
@@ -93,9 +93,9 @@ class Lattice:
     kind: np.ndarray
     """Row of OFFSETS of each spring, uint8, shape (S,)."""
     holders: np.ndarray
-    """Filled cells that hold a spring, each counted by its part in it (`_parts`) [-], shape (S,)."""
+    """Filled cells around a spring, each counted by its share of the spring (`_parts`) [-], shape (S,)."""
     braced: np.ndarray
-    """The same of those that are braced [-], shape (S,)."""
+    """The same for braced cells [-], shape (S,)."""
     hexahedron: np.ndarray
     """Corner particles of each filled cell, VTK order, int32, shape (C, 8)."""
     cells: Cells
@@ -168,7 +168,7 @@ def _any_corner(mask: np.ndarray) -> np.ndarray:
 def _springs(filled: np.ndarray, braced: np.ndarray, number: np.ndarray, present: np.ndarray):
     """Pairs (S, 2), rows of OFFSETS, what holding cells and the braced ones among them count (S,), sorted by pair."""
     all_cells, braced_cells = (np.pad(cells, 1).astype(np.float32) for cells in (filled, braced))
-    # What cells give to springs along their upper and their lower face; 0 where there is no cell.
+    # Shares of cells in springs along their upper and their lower face; 0 where there is no cell.
     inward = _inward(filled)
     parts = {
         axes: [((1.0 - more * m) * all_cells, (1.0 + more * m) * all_cells) for m in inward]
@@ -180,7 +180,7 @@ def _springs(filled: np.ndarray, braced: np.ndarray, number: np.ndarray, present
     holders = np.zeros((len(present), len(OFFSETS)), np.float32)
     braces = np.zeros_like(holders)
     # A corner lies between two cells of each axis: a step of +1 runs along the upper one, a step of -1 along
-    # the lower one, and a spring with no step along an axis is held by both.
+    # the lower one, and a spring with no step along an axis belongs to both.
     sides = {0: (0, 1), 1: (1,), -1: (0,)}
     for o, (x, y, z) in enumerate(OFFSETS.tolist()):
         counted, stiffened = (np.zeros(number.shape, np.float32) for _ in range(2))
@@ -203,9 +203,9 @@ def _springs(filled: np.ndarray, braced: np.ndarray, number: np.ndarray, present
 
 
 def _inward(filled: np.ndarray) -> list[np.ndarray]:
-    """What each cell moves from its upper to its lower face across the axes z, y, x [-], float32, padded by one cell all around.
+    """Share that each cell moves from its upper to its lower face across z, y, x [-], float32, padded by one cell all around.
 
-    ``INWARD`` where only its upper side is free, less than nothing where only its lower side is, else 0.
+    ``INWARD`` where only its upper side is free, negative where only its lower side is, else 0.
     """
     padded = np.pad(filled, 1)
     moved = []
@@ -215,7 +215,7 @@ def _inward(filled: np.ndarray) -> list[np.ndarray]:
             outer, line = ~np.roll(padded, -up, axis), padded
             part = np.zeros(padded.shape, np.float32)
             for count in range(2, max(INWARD) + 1):
-                # Cells with so many in line, themselves the first: those that follow are inside.
+                # Cells with so many in line, the first of them included: the next ones are inside.
                 line = padded & np.roll(line, up, axis)
                 part[line] = INWARD[count]
             total += up * part * outer

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the lattice of a scene may ask for, checked before anything is allocated: places, and shapes that fill little of their
+"""Limits of the lattice of a scene, checked before any array is allocated: positions, and shapes that fill little of their
 boxes. Limits of single numbers are in scene/limits.py."""
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ SPARSE_CELLS, SPARSE = 3e7, 20.0
 
 
 def check_places(scene: Scene, h: float) -> list[Problem]:
-    """A problem for every object so far from the origin that its particles, ``h`` [m] apart, cannot be told apart well."""
+    """A problem for every object so far from the origin that its particles, ``h`` [m] apart, cannot be distinguished well."""
     farthest = max((abs(x) for s in scene.solids for x in s.position), default=0.0)
     if np.spacing(farthest) <= PRECISION * h:
         return []
@@ -35,7 +35,7 @@ def check_places(scene: Scene, h: float) -> list[Problem]:
 
 
 def check_sparse(solid: Solid, h: float, particles: float) -> Problem | None:
-    """A problem for a shape that fills so little of its bounding box that looking for its cells would take too long."""
+    """A problem for a shape that fills so little of its bounding box that the search for its cells would take too long."""
     cells = bounding_cells(solid.shape, h)
     if isinstance(solid.shape, Box) or cells <= max(SPARSE_CELLS, SPARSE * particles):
         return None

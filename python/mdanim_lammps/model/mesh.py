@@ -23,7 +23,7 @@ SIZES = 1e-9, 1e9
 
 
 class MeshError(Exception):
-    """A mesh file that cannot become a solid; ``hint`` is the way out."""
+    """A mesh file that cannot become a solid; ``hint`` says how to correct it."""
 
     def __init__(self, message: str, hint: str):
         super().__init__(message)
@@ -237,7 +237,7 @@ def _crossings(mesh: Triangles, lines: np.ndarray, batch: int = 2_000_000) -> It
     if not len(lines):
         return
     low, high = mesh.points[:, :2].min(axis=0), mesh.points[:, :2].max(axis=0)
-    # A hair aside, so that a line does not hit a vertex that stands on a lattice of round numbers.
+    # Slightly displaced, so that a line does not hit a vertex on a lattice of round numbers.
     lines = lines + 1e-9 * np.array([0.5772156649, 0.3819660113]) * (high - low)
     bins = int(np.clip(np.sqrt(len(lines)), 1, 1024))
     to_bin = bins / np.maximum(high - low, np.finfo(float).tiny)
@@ -266,7 +266,7 @@ def _ranges(start: np.ndarray, stop: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _hits(mesh: Triangles, lines: np.ndarray, line: np.ndarray, triangle: np.ndarray):
-    """Those of the pairs (line, triangle) that meet: line numbers and heights [m]."""
+    """Pairs (line, triangle) that intersect: line numbers and heights [m]."""
     corner = mesh.triangles[triangle]
     px, py = lines[line].T
     sides = []
@@ -282,7 +282,7 @@ def _hits(mesh: Triangles, lines: np.ndarray, line: np.ndarray, triangle: np.nda
     with np.errstate(divide="ignore", invalid="ignore"):
         z = a[:, 2] - (n[:, 0] * (px - a[:, 0]) + n[:, 1] * (py - a[:, 1])) / n[:, 2]
     heights = np.stack([a[:, 2], b[:, 2], c[:, 2]])
-    # An almost vertical triangle has no exact height; any one between its corners will do.
+    # An almost vertical triangle has no exact height; any height between its corners is valid.
     return line, np.where(np.isfinite(z), z, a[:, 2]).clip(heights.min(axis=0), heights.max(axis=0))
 
 

@@ -67,7 +67,7 @@ def _read(path: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def main() -> None:
-    """Write what a file holds to the standard output, as two arrays."""
+    """Write the contents of a file to the standard output, as two arrays."""
     for limit, most in ((resource.RLIMIT_AS, MEMORY), (resource.RLIMIT_CORE, 0)):
         hard = resource.getrlimit(limit)[1]
         resource.setrlimit(limit, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))

@@ -13,23 +13,23 @@ class Layer(IntEnum):
     """Where a particle lies in its object (Wcislo 1999, sec. 3.3.2); these are also the LAMMPS atom types."""
 
     INNER = 1
-    """Not on the boundary and no neighbour there."""
+    """Not on the boundary, and no neighbour on the boundary."""
     SUB_BOUNDARY = 2
-    """Not on the boundary, at least one neighbour there."""
+    """Not on the boundary, and at least one neighbour on the boundary."""
     BOUNDARY = 3
     """On the surface: not all eight cells around it are filled."""
     THIN = 4
-    """On the boundary, and so are all its lattice neighbours: guards itself (docs/physics-solids.md)."""
+    """On the boundary, and so are all its lattice neighbours: the particle is its own barrier (docs/physics-solids.md)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """Triangles for pictures; a vertex is a weighted sum of particle positions, so it deforms with them."""
+    """Triangles for pictures; a vertex is a weighted sum of particle positions, so the surface deforms with the particles."""
 
     triangle: np.ndarray
     """Vertex indices, counter-clockwise seen from outside, int32, shape (T, 3)."""
     index: np.ndarray
-    """Particles that carry a vertex, int32, shape (V, K); K is 1 for boxes, 8 for embedded surfaces."""
+    """Particles of which a vertex is the sum, int32, shape (V, K); K is 1 for boxes, 8 for embedded surfaces."""
     weight: np.ndarray
     """Their weights, rows sum to 1, shape (V, K)."""
 
@@ -39,8 +39,8 @@ class Surface:
 
 
 class SpringTypes:
-    """What springs of few types are like: of records with a type for each spring, ``spring_type``,
-    and a row of ``constants`` for each."""
+    """Springs of few types: for records with a type for each spring, ``spring_type``,
+    and a row of ``constants`` for each type."""
 
     __slots__ = ()
 

@@ -25,7 +25,7 @@ def check_geometry(scene: Scene, models: tuple[Model, ...], planes: Iterable[Pla
 
     ``planes`` push objects back; None are those of the scene. Each problem stands at the position of the (second) object and
     tells how deep it is in and which move frees it, so far that contact holds no energy afterwards. Objects that are held
-    entirely may overlap each other and stick out: they are the scene's architecture.
+    entirely may overlap each other and extend beyond the walls: such objects are the scene's architecture.
     """
     problems = []
     if not models:
@@ -50,12 +50,12 @@ class _Bodies:
         self.high = np.array([v.max(axis=0) for v in vertices])
         self.fixed = np.array([bool(m.held.all()) for m in models])
         self.hair = HAIR * max(m.spacing for m in models)
-        # Cells of a lattice may stand out of the true surface.
+        # Cells of a lattice may extend beyond the true surface.
         self.outer_low = np.minimum(self.low, [m.position.min(axis=0) for m in models])
         self.outer_high = np.maximum(self.high, [m.position.max(axis=0) for m in models])
 
     def clearance(self, i: int, j: int) -> float:
-        """Gap between the boxes of two bodies at which contact holds no energy [m]."""
+        """Gap between the boxes of two bodies at which contact has no energy [m]."""
         first, second = self.models[i], self.models[j]
         thin = (first.layer == Layer.THIN).any() or (second.layer == Layer.THIN).any()
         return (THIN * REACH if thin else REACH - 1.0) * max(first.spacing, second.spacing)
@@ -72,7 +72,7 @@ _MOVES = {(0, 1): "to +x", (0, -1): "to -x", (1, 1): "to +y", (1, -1): "to -y", 
 
 
 def _rooms(scene: Scene) -> list[tuple[str, tuple, tuple]]:
-    """What has a wall on both sides along x and y: its name, lower and upper corner [m]."""
+    """The space with a wall on both sides along x and y: its name, lower and upper corner [m]."""
     rooms = [("the space between the walls is", scene.walls)] if scene.walls is not None else []
     rooms += [("the basin is", scene.liquid)] if scene.liquid is not None else []
     return [(what, box.low, box.high) for what, box in rooms]
@@ -130,7 +130,7 @@ def _candidates(scene: Scene, bodies: _Bodies) -> tuple[np.ndarray, np.ndarray]:
 def _pair(scene: Scene, bodies: _Bodies, planes: tuple[Plane, ...], i: int, j: int) -> Problem | None:
     first, second = scene.solids[i], scene.solids[j]
     # Vertices of the true surfaces find most overlaps; two bars that cross share no vertex but the centres of
-    # cells. Those of the body with fewer cells do, and spare a large floor from being looked through for
+    # cells. The cells of the smaller body are enough, so the cells of a large floor are not searched for
     # every pebble.
     small, large = (i, j) if len(bodies.models[i].hexahedron) <= len(bodies.models[j].hexahedron) else (j, i)
     deepest = max(
@@ -149,7 +149,7 @@ def _pair(scene: Scene, bodies: _Bodies, planes: tuple[Plane, ...], i: int, j: i
 
 
 def _deepest(points: np.ndarray, bodies: _Bodies, host: int, solid: Solid) -> float:
-    """How deep the deepest of points [m], shape (N, 3), lies in an object [m]; 0 where all are outside."""
+    """Largest depth of points [m], shape (N, 3), in an object [m]; 0 where all are outside."""
     points = points[((points > bodies.low[host]) & (points < bodies.high[host])).all(axis=1)]
     if not len(points):
         return 0.0
@@ -159,7 +159,7 @@ def _deepest(points: np.ndarray, bodies: _Bodies, host: int, solid: Solid) -> fl
 
 
 def _way_out(planes: tuple[Plane, ...], bodies: _Bodies, i: int, j: int) -> tuple[str, float]:
-    """Direction and step [m] of object j after which contact holds no energy; the shortest that stays between the planes."""
+    """Direction and step [m] of object j after which contact has no energy; the shortest that stays between the planes."""
     ways, gap = [], bodies.clearance(i, j)
     for (axis, sign), name in _MOVES.items():
         ahead, behind = bodies.outer_high, bodies.outer_low
@@ -174,7 +174,7 @@ def _way_out(planes: tuple[Plane, ...], bodies: _Bodies, i: int, j: int) -> tupl
 
 
 def _enough(step: float) -> float:
-    """The step rounded up to two digits, so that doing what the message says helps."""
+    """The step rounded up to two digits, so that the step in the message is sufficient."""
     digit = 10.0 ** (np.floor(np.log10(step)) - 1)
     return float(np.ceil(round(step / digit, 6)) * digit)
 

@@ -26,7 +26,7 @@ class Plane:
     at: float
     """[m]"""
     beyond: str
-    """Where an object is that has passed it: ``below the ground``."""
+    """Position of an object beyond the plane: ``below the ground``."""
 
 
 def scene_planes(scene: Scene) -> tuple[Plane, ...]:

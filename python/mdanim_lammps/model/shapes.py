@@ -125,7 +125,7 @@ class _Cone:
 
     @staticmethod
     def thickness(s):
-        # The tip has no thickness; the largest ball that fits inside says how fine the cells must be.
+        # The tip has no thickness; the largest ball inside determines the size of the cells.
         return 2 * s.radius * s.height / (s.radius + hypot(s.radius, s.height))
 
     @staticmethod
@@ -235,7 +235,7 @@ def extent(shape: kinds.Shape) -> tuple[np.ndarray, np.ndarray]:
 
 
 def depth(shape: kinds.Shape, points: np.ndarray) -> np.ndarray:
-    """How deep points [m], shape (N, 3), lie below the surface [m], shape (N,); negative outside.
+    """Depth of points [m], shape (N, 3), below the surface [m], shape (N,); negative outside.
 
     The sign is exact. Inside, the value is the distance to the surface (of ellipsoids a lower bound).
     """

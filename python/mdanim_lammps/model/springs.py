@@ -12,13 +12,13 @@ from ..scene.scene import SpringConstant, Young
 from .lattice import AXES, OFFSETS, Lattice
 
 MAX_ASPECT = 1.2
-"""Longest over shortest cell edge; an edge spring would pull the wrong way beyond sqrt(3/2) = 1.22."""
+"""Longest over shortest cell edge; an edge spring would have a negative constant beyond sqrt(3/2) = 1.22."""
 
 BRACE = 0.1
-"""Constant of the body diagonals of a braced cell over E h: the least that leaves a corner no second place to rest."""
+"""Constant of the body diagonals of a braced cell over E h: the least value with which a corner has no second equilibrium."""
 
 FULL = np.array([0, 4, 2, 1])[AXES]
-"""Cells that hold a spring inside a body: 4 at an edge, 2 at a face diagonal, 1 at a body diagonal, shape (13,)."""
+"""Cells around a spring inside a body: 4 at an edge, 2 at a face diagonal, 1 at a body diagonal, shape (13,)."""
 
 
 def rest_lengths(cell: np.ndarray) -> np.ndarray:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Where every solid can get to until the end of a scene, and whether any two come within reach of each other.
+"""The region that every solid can reach until the end of a scene, and whether any two come within reach of each other.
 
 From the scene alone, and never too small: a false "can meet" costs time, a false "cannot" lets objects pass through each
 other. The bounds are derived in docs/cost.md.
@@ -22,13 +22,13 @@ from .spacing import choose_spacing
 from .springs import equivalent_modulus
 
 STRETCH = 1.5
-"""Most that a body grows, over its size and over (largest speed inside it) / (wave speed): all of that energy in one even strain
-is sqrt(1.2) of it along a line; half as much again for bodies that are not even."""
+"""Largest growth of a body, over its size and over (largest speed inside it) / (wave speed): all of that energy in one uniform
+strain gives sqrt(1.2) along a line; 1.5 for bodies that are not uniform."""
 SLACK = 1.1
-"""Size of a body over its size as it is drawn."""
+"""Size of a body over that of its shape."""
 REACH = 2.5
-"""What a surface reaches beyond the shape, over the spacing: half the reach of a barrier (0.8 of a cell), corners of cells that
-stand out (0.87 of a cell), cells up to 1.2 spacings long, and a fifth on top."""
+"""Distance of a surface beyond the shape, over the spacing: half the reach of a barrier (0.8 of a cell), corners of cells that
+stand out (0.87 of a cell), cells up to 1.2 spacings long, and a fifth more."""
 SAG = 2.0
 """Margin on the deflection of a clamped bar."""
 
@@ -77,7 +77,7 @@ def closest(scene: Scene, planes: Iterable[Plane] | None = None) -> tuple[Solid,
 
 
 def sweeps(scene: Scene, planes: Iterable[Plane] | None = None) -> Sweeps:
-    """Where every solid can get to; ``planes`` push solids back, None are those of the scene that are not switched off.
+    """The region that every solid can reach; ``planes`` push solids back, None are those of the scene that are not switched off.
 
     Along an axis on which nothing but gravity and drag of air acts, the centre of mass moves on its parabola. Along one on which
     a wall, the ground or a liquid may act, it gets no further than at the largest speed that energy allows. Raises SceneError for
@@ -88,7 +88,7 @@ def sweeps(scene: Scene, planes: Iterable[Plane] | None = None) -> Sweeps:
     )
     bodies = _Bodies(scene, limit_low[2])
     low, high = _flight(scene, bodies)
-    calm = bodies.size(bodies.tip)  # as large as it gets by its own spin
+    calm = bodies.size(bodies.tip)  # the largest size by its own spin
     wild = bodies.size(bodies.speed)
     wet_below = _wet_below(scene)
 
@@ -102,7 +102,7 @@ def sweeps(scene: Scene, planes: Iterable[Plane] | None = None) -> Sweeps:
     by_axis, _ = touched(radius)
     by_axis[~hit] = False
     far = bodies.speed * scene.control.time
-    # What has bounced somewhere may come down in a liquid that its parabola misses.
+    # A body that has bounced may fall into a liquid that its parabola misses.
     bounced = hit & (bodies.position[:, 2] - far - radius <= wet_below)
     by_axis |= bounced[:, None]
     low = np.where(by_axis, np.maximum(bodies.position - far[:, None], limit_low - radius[:, None]), low)
@@ -118,7 +118,7 @@ def sweeps(scene: Scene, planes: Iterable[Plane] | None = None) -> Sweeps:
 
 
 class _Bodies:
-    """What the bounds need of every solid."""
+    """Data of every solid that the bounds need."""
 
     def __init__(self, scene: Scene, floor: float):
         solids = scene.solids
@@ -146,13 +146,13 @@ class _Bodies:
         self.speed = _speed(scene, self, floor)
 
     def size(self, speed: np.ndarray) -> np.ndarray:
-        """Radius that a body stays within when this much speed [m/s] turns into deformation [m], shape (M,)."""
+        """Radius of a body when this speed [m/s] is converted into deformation [m], shape (M,)."""
         return self.radius * (SLACK + STRETCH * speed / self.wave) + REACH * self.h + self.loose
 
 
 @lru_cache(maxsize=4096)
 def bounding_radius(shape: Shape) -> float:
-    """Distance of the outermost point from the centre of mass [m]; of a cone not quite the least that would do."""
+    """Distance of the outermost point from the centre of mass [m]; of a cone slightly more."""
     match shape:
         case kinds.Sphere():
             return shape.radius
@@ -178,7 +178,7 @@ def _gravity(scene: Scene) -> np.ndarray:
 
 
 def _wet_below(scene: Scene) -> float:
-    """Height below which liquid may be [m]: waves rise up to the brim of the basin."""
+    """Height below which liquid may be [m]: waves rise up to the rim of the basin."""
     there = scene.liquid is not None and on(scene, "liquid") and on(scene, "gravity")
     return scene.liquid.high[2] if there else -np.inf
 
@@ -216,11 +216,11 @@ def _flight(scene: Scene, bodies: _Bodies) -> tuple[np.ndarray, np.ndarray]:
     v, g, time = bodies.velocity, _gravity(scene), scene.control.time
     end = v * time + 0.5 * g * time**2
     with np.errstate(divide="ignore", invalid="ignore"):
-        turns = -v / g  # when it stands still along this axis
+        turns = -v / g  # when the velocity along this axis is 0
         apex = np.where((turns > 0.0) & (turns < time), -0.5 * v**2 / g, 0.0)
     apex = np.nan_to_num(apex)
     low, high = np.minimum(np.minimum(end, apex), 0.0), np.maximum(np.maximum(end, apex), 0.0)
-    # Drag of air holds back both parts of the way, so what v and g do is at most what each does alone.
+    # Drag of air reduces both parts of the displacement, so each part is at most that without drag.
     coasts, falls = np.where(apex != 0.0, apex, v * time), np.broadcast_to(0.5 * g * time**2, v.shape)
     slowed = bodies.drag[:, None]
     low = np.where(slowed, np.minimum(coasts, 0.0) + np.minimum(falls, 0.0), low)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""All solids of a scene in one set of arrays, in the order of the scene: what effects, certificate and engine read."""
+"""All solids of a scene in one set of arrays, in the order of the scene: the data that effects, certificate and engine read."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class System(SpringTypes):
 
     @cached_property
     def contact_stiffness(self) -> np.ndarray:
-        """Stiffness that a particle offers to barriers and walls [N/m], shape (N,).
+        """Stiffness of a particle in contact with barriers and walls [N/m], shape (N,).
 
         E h of its solid times the scene's factor, less where few cells stand behind it: min(1, 2 n/8), one half on an edge, a
         quarter in a corner (docs/physics-contact.md). Two of them in series make a pair's k: 2 s_i s_j / (s_i + s_j).
@@ -159,7 +159,7 @@ def assemble(models: Sequence[Model], scene: Scene) -> System:
 
 
 def as_parts(models: Sequence[Model], system: System) -> tuple[Model, ...]:
-    """The models of which a system was assembled, with what no two of them share as views of its arrays: not kept twice."""
+    """The models of which a system was assembled, whose own data are views of the system's arrays, without copies."""
     own = ("position", "velocity", "held")
     return tuple(
         replace(m, **{name: getattr(system, name)[a:b] for name in own})

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Objects that start within reach of each other's contact, or behind a plane: the energy that the start puts in, and the gap
-that puts in none.
+"""Objects that start within reach of each other's contact, or behind a plane: the energy of contact at the start, and the gap
+with which there is none.
 
 The laws are those of plugin/laws/barrier.h and wall.h, on the initial positions.
 """
@@ -16,14 +16,14 @@ from .model import Layer
 from .system import System
 
 REACH = 1.6
-"""Reach of the barrier over the spacing: the flattest of the forms measured (docs/physics-contact.md)."""
+"""Reach of the barrier over the spacing: the smoothest of the forms measured (docs/physics-contact.md)."""
 THIN = 0.75
 """Reach of a thin object's own boundary over REACH: 1.2 spacings."""
 WAYS = np.concatenate([np.eye(3), -np.eye(3)])
 """Directions in which an object may be moved away, shape (6, 3)."""
 WAY_NAMES = ("to +x", "to +y", "up", "to -x", "to -y", "down")
 MORE = 1.0 + 1e-6
-"""Margin on distances: at the reach itself, rounding would decide."""
+"""Margin on distances: exactly at the reach the result would depend on rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,17 +35,17 @@ class Touch:
     second: int
     """Number of the object to be moved."""
     energy: float
-    """What contact holds at the start [J]."""
+    """Energy of contact at the start [J]."""
     way: int
-    """Row of WAYS along which the shortest move parts them."""
+    """Row of WAYS along which the shortest move separates the two."""
     move: float
-    """Length of this move, after which contact holds no energy [m]."""
+    """Length of this move, after which contact has no energy [m]."""
     gap: float
-    """What is then between the boxes of the two along it [m]; 0 for a plane."""
+    """Gap between the two boxes along this row after the move [m]; 0 for a plane."""
 
 
 def touching(system: System) -> list[Touch]:
-    """Pairs of objects between which contact holds energy at the start, the most energy first."""
+    """Pairs of objects whose contact has energy at the start, the largest energy first."""
     one, other, reach, energy = touching_pairs(system)
     if not len(one):
         return []
@@ -56,7 +56,7 @@ def touching(system: System) -> list[Touch]:
     total = np.bincount(pair, energy, len(objects))
     moves = np.zeros((len(objects), len(WAYS)))
     np.maximum.at(moves, pair, ways_out(system.position[high] - system.position[low], reach))
-    # Something that never moves is moved last: it is a scene's architecture.
+    # Objects that never move are moved last: such objects are a scene's architecture.
     still = system.still[objects[:, 1]] & ~system.still[objects[:, 0]]
     moves[still] = np.roll(moves[still], 3, axis=1)
     first, second = np.where(still, objects[:, 1], objects[:, 0]), np.where(still, objects[:, 0], objects[:, 1])
@@ -70,7 +70,7 @@ def touching(system: System) -> list[Touch]:
 
 
 def ways_out(apart: np.ndarray, reach: np.ndarray) -> np.ndarray:
-    """How far the second particle of each pair goes along WAYS until it is out of reach [m], shape (P, 6).
+    """Distance along WAYS after which the second particle of each pair is out of reach [m], shape (P, 6).
 
     ``apart`` is its place as seen from the first [m], shape (P, 3); ``reach`` [m], shape (P,).
     """
@@ -96,7 +96,7 @@ def _near_others(system: System) -> np.ndarray:
     """Particles that lie within reach of the box of another object, bool, shape (N,)."""
     far = REACH * float(system.spacing.max())
     low, high = system.bounds(system.position)
-    # Where partners are, for each object: the box around all boxes that are within reach of its own.
+    # The region of partners, for each object: the box around all boxes within reach of its own box.
     zone_low, zone_high = np.full_like(low, np.inf), np.full_like(high, -np.inf)
     for i, j in box_pairs(low - far, high):
         for a, b in ((i, j), (j, i)):

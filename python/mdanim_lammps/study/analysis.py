@@ -16,7 +16,7 @@ from .setting import Ladder, Setting
 from .store import Point
 
 SHARP = 0.1
-"""An ``expect`` whose tolerance is a larger share of the motion than this states no truth to measure errors by."""
+"""An ``expect`` whose tolerance is a larger share of the motion than this is too inexact to measure errors by."""
 ALIKE = 0.05
 """Relative difference of errors below which they are not ranked, repeated or not: the limit itself is an estimate."""
 UNREPEATED = 0.1
@@ -25,19 +25,19 @@ UNREPEATED = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """A number and how far apart it was found when it was measured again."""
+    """A number and its spread over repeated measurements."""
 
     middle: float
     spread: float
 
     def below(self, other: Value) -> bool:
-        """Whether it is smaller by more than both spreads leave open: what differs less is not ranked."""
+        """Whether this value is smaller by more than both spreads: values that differ by less are not ranked."""
         return self.middle + 0.5 * self.spread < other.middle - 0.5 * other.spread
 
 
 @dataclass(frozen=True)
 class Rated:
-    """A point with what it costs and gives."""
+    """A point with its cost and its error."""
 
     point: Point
     seconds: Value
@@ -47,12 +47,12 @@ class Rated:
     closed: float | None
     """Largest error against the ``expect`` lines that state a truth, relative to the object's own motion; None without any."""
     front: bool = False
-    """On the Pareto front: nothing that can be told from it is both cheaper and better."""
+    """On the Pareto front: no distinguishable point is both cheaper and better."""
 
 
 @dataclass(frozen=True)
 class Analysis:
-    """What a study has found."""
+    """The results of a study."""
 
     own: Setting
     scale: float
@@ -65,13 +65,13 @@ class Analysis:
     until: dict[str, tuple[float, float]]
     """Of ladders without an order that begin with one: up to when [s], and that order."""
     touching: bool
-    """Whether anything may touch anything."""
+    """Whether objects may touch each other or a plane."""
     growth: Growth | None
-    """How the two finest runs of the time step's ladder part."""
+    """Divergence of the two finest runs of the time step's ladder."""
 
     @property
     def chaotic(self) -> bool:
-        """Whether runs of neighbouring time steps part for good, so that no ladder converges."""
+        """Whether runs of neighbouring time steps diverge, so that no ladder converges."""
         found = self.ladders.get("time step")
         return bool(found and found.order is None and self.growth and self.growth.parted is not None)
 
@@ -127,13 +127,13 @@ def analyse(
 
 
 def _usual(seen: Iterable[Sequence[float]], otherwise: float) -> float:
-    """Median of the relative spreads, twice from the median to the least, of what was measured more than once."""
+    """Median of the relative spreads, twice from the median to the least, of quantities that were measured more than once."""
     spreads = [2.0 * (1.0 - min(x) / float(np.median(x))) for x in seen if len(x) > 1 and np.median(x) > 0.0]
     return float(np.median(spreads)) if spreads else otherwise
 
 
 def _duration(seen: Sequence[float], usual: float) -> Value:
-    """The shortest of some durations: what else a machine does only makes them longer. Spread as for `_value`."""
+    """The shortest of some durations: other work of a machine only makes durations longer. Spread as for `_value`."""
     return Value(min(seen), max(2.0 * (float(np.median(seen)) - min(seen)), usual * min(seen)))
 
 
@@ -202,7 +202,7 @@ def advice(a: Analysis) -> str:
             f"t = {number(a.growth.parted)} s on whatever the setting, so no setting follows it to the end; choose by looks, "
             f"by the energy drift and by time."
         )
-    same = [r for r in a.rated.values() if not own.error.below(r.error)]  # no worse, as far as can be told
+    same = [r for r in a.rated.values() if not own.error.below(r.error)]  # no worse within the spreads
     cheapest = min(same, key=lambda r: r.seconds.middle)
     better = [r for r in a.rated.values() if r.error.below(own.error) and r.error.middle <= 0.6 * own.error.middle]
     says = f"The scene's own setting ({a.own}) is {_percent(own.error.middle)} off and takes {_seconds(own.seconds.middle)}"
@@ -224,7 +224,7 @@ def advice(a: Analysis) -> str:
 
 
 def lost(a: Analysis, name: str, begin: str) -> str:
-    """Up to when a ladder has an order, and why no longer; empty where it has one for the whole run, or never."""
+    """The time until which a ladder has an order, and why not longer; empty where it has one for the whole run, or never."""
     if name not in a.until:
         return ""
     time, order = a.until[name]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Measures settings of one scene under a budget: what a run will cost, which is next, what was left out."""
+"""Measures settings of one scene under a budget: the cost of a run, the next run, the settings that were left out."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .store import Point, Store
 BUDGET = 120.0
 """Wall time of a study [s]."""
 REPEATS = 3
-"""Runs of a point, as far as the budget goes: the least that has a median."""
+"""Runs of a point, if the budget allows: the smallest number with a median."""
 FOR_REPEATS = 0.2
 """Share of the budget that new points leave for repeats: without a spread there is no ranking."""
 PRESSED = 1.3
@@ -66,7 +66,7 @@ class Bench:
         for setting in sorted(wanted, key=self._work):
             if self._has(setting):
                 continue
-            # All others are compared with the scene's own setting: they leave room for it, and for repeats.
+            # All others are compared with the scene's own setting: time is reserved for that setting, and for repeats.
             waiting = setting != self.own and not self._has(self.own)
             room = FOR_REPEATS * self.budget + ((self.predict(self.own) or 0.0) if waiting else 0.0)
             share = self.left if setting == self.own else self.left - room

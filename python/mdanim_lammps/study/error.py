@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""How far two runs are apart, what a ladder of runs converges to and how fast, and whether it converges at all.
+"""The distance of two runs, the limit and the order of a ladder of runs, and whether the ladder converges.
 
 A run is its track: centres of mass [m], shape (F, M, 3), of M objects in F frames at the same times. Everything here is a
 pure function of tracks.
@@ -16,17 +16,17 @@ import numpy as np
 ROUND_OFF = 1e-9
 """Differences below this, relative to the extent of the motion, are no errors of a setting."""
 CONVERGENT = 0.3
-"""Differences above this share of the extent are no small errors any more: they do not follow a power of the step."""
+"""Differences above this share of the extent are too large to follow a power of the step."""
 HIGHEST = 4.5
-"""Nothing here converges faster: a steeper fall is chance."""
+"""Highest possible order: a steeper fall is chance."""
 PARTS = 60
 """Ends of a run that are tried to find out up to when it has an order."""
 PART = 0.01
-"""Two runs have parted once they differ by this share of the extent."""
+"""Two runs have diverged once they differ by this share of the extent."""
 
 
 def extent(track: np.ndarray) -> float:
-    """Farthest that any centre of mass gets from where it started [m]."""
+    """Largest distance of any centre of mass from its start [m]."""
     return float(np.linalg.norm(track - track[0], axis=-1).max())
 
 
@@ -48,7 +48,7 @@ def extrapolate(fine: np.ndarray, coarse: np.ndarray, ratio: float, order: float
 
 @dataclass(frozen=True)
 class Convergence:
-    """What a ladder of runs says about its own limit."""
+    """The limit of a ladder of runs, its order and its errors."""
 
     limit: np.ndarray
     """Best estimate of the motion [m], shape (F, M, 3): Richardson's limit, or the finest run where there is no order."""
@@ -126,7 +126,7 @@ def order_until(
             seen.append((float(times[frames - 1]), part.order))
         elif seen:
             break
-    # The median, for the last of them may have seen the beginning of what ends it.
+    # The median, because the last of them may already include the beginning of the divergence.
     return (seen[-1][0], float(np.median([order for _, order in seen]))) if seen else None
 
 
@@ -140,16 +140,16 @@ def _convergent(errors: np.ndarray) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Growth:
-    """How the difference between two runs grows: a scene that forgets how it began has no order in any ladder."""
+    """How the difference between two runs grows: in a chaotic scene no ladder has an order."""
 
     folding: float
-    """Time in which the difference grows e-fold, mean over the run up to where the runs have parted [s]; inf: it does not."""
+    """Time in which the difference grows e-fold, mean over the run until the runs have diverged [s]; inf: no growth."""
     parted: float | None
     """Time from which the difference stays above PART of the extent [s]; None: it never does."""
 
 
 def growth(times: np.ndarray, a: np.ndarray, b: np.ndarray, scale: float) -> Growth:
-    """How two runs of neighbouring settings part.
+    """Divergence of two runs of neighbouring settings.
 
     Args:
         times: of the frames [s], shape (F,).

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""One point of a study: a run without movie in a folder of its own that is thrown away; its track and its seconds stay."""
+"""One point of a study: a run without movie in a temporary folder; its track and its seconds are kept."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from ..scene.scene import Scene
 from .setting import Setting, frames_only, with_setting
 
 TRIED = 0.5
-"""Wall seconds [s] after which a run's own pace tells whether it can be done in time."""
+"""Wall seconds [s] after which a run's own pace shows whether the run can end in time."""
 
 
 @dataclass(frozen=True)
 class Sample:
-    """What one run of a point has left."""
+    """The results of one run of a point."""
 
     setting: Setting
     timestep: float
@@ -40,9 +40,9 @@ class Sample:
     drift: float
     """Largest energy residual [-]."""
     penetration: float
-    """Deepest that something has been where it should not be [m]."""
+    """Largest depth of any object in another object or behind a plane [m]."""
     found: tuple[float, ...]
-    """What the scene's ``expect`` lines found, in their order."""
+    """Results of the scene's ``expect`` lines, in their order."""
     times: np.ndarray
     """Of the frames [s], shape (F,)."""
     center: np.ndarray

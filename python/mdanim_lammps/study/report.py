@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a study leaves for people and programs: table, CSV, study.json, and a plot of error over seconds."""
+"""Output of a study for people and programs: table, CSV, study.json, and a plot of error over seconds."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def _write_csv(study: Study, path: Path) -> None:
 
 
 def _where(study: Study, r: Rated) -> list[str]:
-    """Names of the ladders that a point stands in."""
+    """Names of the ladders that a point belongs to."""
     return [name for name, settings in study.analysis.measured.items() if r.point.setting in settings]
 
 

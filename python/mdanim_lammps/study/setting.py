@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a study varies, how a scene takes it on, and the ladders around a scene's own setting."""
+"""The settings that a study varies, scenes with a setting, and the ladders around a scene's own setting."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LADDERS = ("time step", "resolution", "sweeps", "contact")
 LARGEST = 0.9
 """Largest time step of a ladder over the bound."""
 TOUCHING = ("contact", "ground", "walls")
-"""Effects that push back with ``contact-stiffness`` what is likely to touch; a basin's floor and walls do so too."""
+"""Effects that push objects back with ``contact-stiffness`` and are likely to act; a basin's floor and walls push back too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ class Ladder:
     settings: tuple[Setting, ...]
 
     def step(self, setting: Setting) -> float:
-        """What goes to zero along the ladder, up to a factor."""
+        """The quantity that goes to zero along the ladder, up to a factor."""
         match self.name:
             case "time step":
                 return setting.fraction
@@ -79,7 +79,7 @@ def thinnest(scene: Scene) -> float:
 
 
 def own_setting(scene: Scene, ready: Prepared) -> Setting:
-    """The setting that a scene runs with by itself."""
+    """The scene's own setting."""
     c = ready.certificate
     sweeps = scene.liquid.sweeps if scene.liquid else None
     cells = round(thinnest(scene) / choose_spacing(scene)[0], 6)

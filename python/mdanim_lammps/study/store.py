@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""A study's folder: every point is safe as soon as it is measured, so that a study that was stopped goes on."""
+"""A study's folder: every point is safe as soon as it is measured, so that an interrupted study can be continued."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ class Point:
     drift: list[float] = field(default_factory=list)
     """Largest energy residual."""
     penetration: list[float] = field(default_factory=list)
-    """Deepest that something has been where it should not be [m]."""
+    """Largest depth of any object in another object or behind a plane [m]."""
     found: list[tuple[float, ...]] = field(default_factory=list)
-    """What the scene's ``expect`` lines found."""
+    """Results of the scene's ``expect`` lines."""
     tracks: list[np.ndarray] = field(default_factory=list)
     """Centres of mass [m], each of shape (F, M, 3)."""
     problem: str = ""
@@ -49,7 +49,7 @@ class Point:
         return float(self.particles) * self.steps
 
     def add(self, sample: Sample) -> None:
-        """Take in one more run."""
+        """Add one more run."""
         self.timestep, self.steps, self.particles = sample.timestep, sample.steps, sample.particles
         self.seconds.append(sample.seconds)
         self.wall.append(sample.wall)
@@ -63,7 +63,7 @@ class Store:
     """All points of one scene in a folder.
 
     ``study.json`` holds numbers, ``tracks/`` the centres of mass of every run. Raises OutputError when the folder holds the
-    study of another scene (unless ``force``, which throws that away) or cannot be read.
+    study of another scene (unless ``force``, which deletes that study) or cannot be read.
     """
 
     def __init__(self, folder: Path, digest: str, *, force: bool = False):
@@ -132,7 +132,7 @@ class Store:
             raise OutputError(f"{path} cannot be read ({error}); begin the study anew with --force") from error
 
     def add(self, sample: Sample) -> Point:
-        """Store a run: its track first, so that study.json never names what is not there."""
+        """Store a run: its track first, so that study.json never names a missing file."""
         point = self.points.setdefault(sample.setting.key, Point(sample.setting))
         self._save(f"{sample.setting.key}-{len(point.seconds)}", sample.center)
         if self.times is None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""A study from beginning to end: the scene's own setting, the ladders around it, and what comes of them."""
+"""A study from beginning to end: the scene's own setting, the ladders around it, and the results."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .target import find_choice, store_choice, stored_choice, wanted, with_choic
 
 @dataclass(frozen=True)
 class Study:
-    """What a study has left."""
+    """The results of a study."""
 
     scene: Scene
     folder: Path
@@ -53,8 +53,8 @@ def run_study(
     Args:
         folder: of the study, usually SCENE.out/study.
         only: names of ladders (LADDERS); empty is all.
-        force: throw away a study of another scene.
-        watch: is told what goes on, one line at a time.
+        force: delete a study of another scene.
+        watch: called with each line of progress.
 
     Raises SceneError, OutputError; RefusedError when the budget is too small for the scene's own setting, DivergedError when
     that diverges; Interrupted after Ctrl-C, with all finished points kept.

@@ -22,17 +22,17 @@ from .setting import Ladder, Setting, own_setting, scene_hash, thinnest
 from .store import FILE, Store
 
 START = (2, 3, 4)
-"""Cells across of the first runs: three are the least that show an order."""
+"""Cells across of the first runs: three is the smallest number that shows an order."""
 TIME_SHARE = 0.25
 """Share of the target that the time step may use up; what is left is for the resolution, which costs far more."""
 CLOSE = 0.9
 """A coarser setting is only tried when it would be this much coarser: what is left untried costs two thirds at least, and half
 with the longest step of all."""
 MARGIN = 0.97
-"""Aim a little below the target: the estimate of an error is as good as the limit it is measured against."""
+"""Aim a little below the target: the estimate of an error is as accurate as the limit to which it is relative."""
 HOPE = 1.05
-"""A coarser setting is tried when it promises to come this near to the target:
-between two runs the promise is as good as that."""
+"""A coarser setting is tried when its predicted error is below this multiple of the target:
+between two runs a prediction is as accurate as that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +68,7 @@ class Choice:
 
 
 def wanted(scene: Scene) -> bool:
-    """Whether a scene names a target and leaves something to choose."""
+    """Whether a scene names a target and leaves a setting to choose."""
     control = scene.control
     return not isinstance(control.accuracy, Accuracy) and None in (control.resolution, control.timestep)
 
@@ -129,7 +129,7 @@ def find_choice(
         scene: with a target.
         budget: wall time [s].
         store: a study of this scene whose points are used again; None measures in a temporary folder.
-        watch: is told what goes on, one line at a time.
+        watch: called with each line of progress.
 
     Raises DivergedError when no setting could be found, and what measuring raises.
     """
@@ -268,7 +268,7 @@ class _Search:
         failing = [s for s in known if self._error(a, s) > self.target]
         meeting = next((s for s in known if s not in failing), None)
         if meeting is None:
-            # Never more than twice as fine in one go: what lies ahead is known only by extrapolation.
+            # Never more than twice as fine in one step: finer settings are known only by extrapolation.
             finest, order = self._value(known[-1]), a.ladders[self.name].order or 2.0
             needed = finest * (self._error(a, known[-1]) / (MARGIN * self.target)) ** (1.0 / order)
             value = min(max(self._round(needed), self._round(1.01 * finest)), 2.0 * finest)
@@ -282,7 +282,7 @@ class _Search:
         return replace(known[-1], cells=value) if self.name == "resolution" else replace(known[-1], fraction=1.0 / value)
 
     def _between(self, a: Analysis, failing: Setting, meeting: Setting) -> float:
-        """The coarsest value between two settings that promises to meet the target, by the power of it that the two lie on."""
+        """The coarsest value between two settings whose predicted error meets the target, by the power law through both."""
         low, high = self._value(failing), self._value(meeting)
         bad, good = self._error(a, failing), self._error(a, meeting)
         slope = math.log(bad / good) / math.log(high / low) if good > 0.0 else math.inf
@@ -290,7 +290,7 @@ class _Search:
         return max(self._round(needed), self._round(1.01 * low))
 
     def _value(self, setting: Setting) -> float:
-        """What grows as the setting gets finer: cells across, or steps per bound."""
+        """The quantity that grows as the setting gets finer: cells across, or steps per bound."""
         return setting.cells if self.name == "resolution" else 1.0 / setting.fraction
 
     def _round(self, value: float) -> float:
@@ -315,7 +315,7 @@ class _Search:
         )
 
     def _run(self, setting: Setting) -> bool:
-        """Measure a setting that is not measured yet; whether it is there now."""
+        """Measure a setting that is not measured yet; whether the setting is measured now."""
         point = self.store.points.get(setting.key)
         if point and point.tracks:
             return True
