@@ -231,8 +231,8 @@ def _flight(scene: Scene, bodies: _Bodies) -> tuple[np.ndarray, np.ndarray]:
 def _clamped(scene: Scene, bodies: _Bodies) -> np.ndarray:
     """Half edges of the box that a partly held solid stays in [m], shape (M, 3).
 
-    Held somewhere it may swing around there like a pendulum. A cuboid held at whole faces bends by twice the deflection of a
-    cantilever, 1.5 rho g L^4 / (E t^2), and as far as its own velocity takes it, 1.7 v L^2 / (c t).
+    A solid that is held in one place may swing around that place like a pendulum. A cuboid held at whole faces bends by twice
+    the deflection of a cantilever, 1.5 rho g L^4 / (E t^2), and by its own velocity, 1.7 v L^2 / (c t).
     """
     speed = np.sqrt((bodies.velocity**2).sum(axis=1) + bodies.tip**2 + 4.0 * bodies.pull * bodies.radius)
     pendulum = 3.0 * bodies.radius * (SLACK + STRETCH * speed / bodies.wave)
