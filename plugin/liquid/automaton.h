@@ -13,7 +13,7 @@
 
 namespace mdanim {
 
-struct Kernels;
+struct AutomatonKernels;
 
 // Which excess moves up in (4.16), line 2, besides L > 1: only into a cell that holds less, or into any
 // (below Cells::FULLEST).
@@ -93,7 +93,7 @@ class Automaton {
 
   std::uint64_t seed;
   Vertical vertical;
-  const Kernels *kernels;
+  const AutomatonKernels *kernels;
   Blocks even, odd;
   std::vector<Layer> layers;
 };

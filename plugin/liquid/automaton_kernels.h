@@ -17,7 +17,7 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "pairs of cells are rea
 // What there is among open cells: none with liquid, one unit, more than one.
 enum Holds : std::uint8_t { ZERO = 1, ONE = 2, MORE = 4, ANYTHING = 7 };
 
-struct Kernels {
+struct AutomatonKernels {
   const char *name;
   bool (*runs_here)();
   // Draws first … first + n - 1 under a key, halves apart.
@@ -142,7 +142,7 @@ MDANIM_KERNELS(avx512, __attribute__((target("avx512f,avx512bw,avx512vl,avx512dq
                    __builtin_cpu_supports("avx512dq"))
 #endif
 
-constexpr Kernels KERNELS[] = {
+constexpr AutomatonKernels KERNELS[] = {
     {"common", common::runs_here, common::draw_words, common::permute, common::exchange, common::look, common::differ},
 #if defined(__x86_64__) && defined(__GNUC__)
     {"avx2", avx2::runs_here, avx2::draw_words, avx2::permute, avx2::exchange, avx2::look, avx2::differ},

@@ -19,7 +19,7 @@ from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.scene.scene import Accuracy
 from mdanim_lammps.study import bench
-from mdanim_lammps.study.analysis import Value, advice, analyse, pareto, sharp
+from mdanim_lammps.study.analysis import Measurement, advice, analyse, pareto, sharp
 from mdanim_lammps.study.error import converge, distance, extent, growth, order_until
 from mdanim_lammps.study.measure import Sample, TooLong, measure
 from mdanim_lammps.study.setting import Ladder, Setting, ladders, own_setting, scene_hash, with_setting
@@ -159,12 +159,14 @@ def test_growth_of_what_parts():
 
 def test_not_ranked_what_differs_less_than_the_spread():
     """Call less only what is less by both half spreads, and keep both on the front."""
-    a, b, c = Value(1.0, 0.3), Value(1.2, 0.3), Value(2.0, 0.1)
+    a, b, c = Measurement(1.0, 0.3), Measurement(1.2, 0.3), Measurement(2.0, 0.1)
     assert not a.below(b) and not b.below(a)
     assert a.below(c) and not c.below(a)
-    same = Value(0.1, 0.0)
+    same = Measurement(0.1, 0.0)
     assert pareto({"a": (a, same), "b": (b, same), "c": (c, same)}) == {"a", "b"}
-    assert pareto({"cheap": (a, Value(0.2, 0.0)), "good": (c, Value(0.1, 0.0)), "bad": (c, Value(0.3, 0.0))}) == {"cheap", "good"}
+    assert pareto(
+        {"cheap": (a, Measurement(0.2, 0.0)), "good": (c, Measurement(0.1, 0.0)), "bad": (c, Measurement(0.3, 0.0))}
+    ) == {"cheap", "good"}
 
 
 def test_closed_forms_are_sharp_expects():

@@ -2,12 +2,12 @@
 """The effects, in the order in which their forces are summed. Adding one: a file here, a row in this table."""
 
 from .air_drag import AirDrag
-from .boundaries import Ground, Walls
+from .boundaries import GroundPlane, WallPlanes
 from .contact import Contact
 from .damping import Damping
 from .effect import Effect, Load, Resolved, Verdict, decide, resolve
 from .gravity import Gravity
-from .liquid import Basin, Buoyancy, Liquid, LiquidDrag
+from .liquid import Basin, Buoyancy, LiquidAutomaton, LiquidDrag
 from .springs import Springs
 
 EFFECTS: tuple[Effect, ...] = (
@@ -15,11 +15,11 @@ EFFECTS: tuple[Effect, ...] = (
     Damping(),
     Gravity(),
     Contact(),
-    Ground(),
-    Walls(),
+    GroundPlane(),
+    WallPlanes(),
     Basin(),
     AirDrag(),
-    Liquid(),
+    LiquidAutomaton(),
     Buoyancy(),
     LiquidDrag(),
 )

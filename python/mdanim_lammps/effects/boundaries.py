@@ -67,7 +67,7 @@ class Boundary(Effect):
         return np.where(system.held, 0.0, system.contact_stiffness / system.mass)
 
 
-class Ground(Boundary):
+class GroundPlane(Boundary):
     name = fix = "ground"
     if_off = "objects fall for ever"
 
@@ -82,7 +82,7 @@ class Ground(Boundary):
         return f"plane 0 0 {scene.ground!r} 0 0 1"
 
 
-class Walls(Boundary):
+class WallPlanes(Boundary):
     name = fix = "walls"
     if_off = "objects leave the scene"
 

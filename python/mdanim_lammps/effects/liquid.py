@@ -73,7 +73,7 @@ class Basin(Boundary):
         return f"block {x0!r} {x1!r} {y0!r} {y1!r} {z0!r} INF"
 
 
-class Liquid(Effect):
+class LiquidAutomaton(Effect):
     """The automaton: liquid that falls, spreads, levels and makes room for solids."""
 
     name = fix = "liquid"
@@ -193,11 +193,11 @@ class Buoyancy(Effect):
         return np.where(system.held, 0.0, stiffness / system.mass)
 
     def energy(self, instance, scene, system):
-        return instance.fix_scalar(Liquid.fix)
+        return instance.fix_scalar(LiquidAutomaton.fix)
 
     def clocks(self, instance):
         drag = any(e.name == LiquidDrag.name for e in instance.plan.effects)
-        return {"coupling": instance.fix_value(Liquid.fix, COUPLING) * (1.0 - DRAGGING * drag)}
+        return {"coupling": instance.fix_value(LiquidAutomaton.fix, COUPLING) * (1.0 - DRAGGING * drag)}
 
     def forecast(self, load, rate):
         pressure = load.scene.liquid.model is LiquidModel.PRESSURE
@@ -236,7 +236,7 @@ class LiquidDrag(Effect):
     def clocks(self, instance):
         # Where particles are immersed is looked up for buoyancy in any case; drag adds this to it,
         # and makes the leap-frog slower.
-        coupling = {"coupling": DRAGGING * instance.fix_value(Liquid.fix, COUPLING)}
+        coupling = {"coupling": DRAGGING * instance.fix_value(LiquidAutomaton.fix, COUPLING)}
         if any(e.name == air_drag.AirDrag.name for e in instance.plan.effects):
             return coupling
         return coupling | {air_drag.LEAPFROG: air_drag.slowed_share(instance) * instance.fix_seconds("leapfrog")}

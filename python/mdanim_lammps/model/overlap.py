@@ -31,7 +31,7 @@ def check_geometry(scene: Scene, models: tuple[Model, ...], planes: Iterable[Pla
     if not models:
         return problems
     planes = scene_planes(scene) if planes is None else tuple(planes)
-    bodies = _Bodies(models, [m.surface.vertices(m.position) for m in models])
+    bodies = _BoundingBoxes(models, [m.surface.vertices(m.position) for m in models])
     problems += _outside(scene, bodies, planes)
     for i, j in zip(*_candidates(scene, bodies)):
         found = _pair(scene, bodies, planes, int(i), int(j))
@@ -40,7 +40,7 @@ def check_geometry(scene: Scene, models: tuple[Model, ...], planes: Iterable[Pla
     return problems
 
 
-class _Bodies:
+class _BoundingBoxes:
     """Bounding boxes of all objects: low, high [m], shape (n, 3), from the true surfaces."""
 
     def __init__(self, models, vertices):
@@ -78,7 +78,7 @@ def _rooms(scene: Scene) -> list[tuple[str, tuple, tuple]]:
     return [(what, box.low, box.high) for what, box in rooms]
 
 
-def _outside(scene: Scene, bodies: _Bodies, planes: tuple[Plane, ...]) -> list[Problem]:
+def _outside(scene: Scene, bodies: _BoundingBoxes, planes: tuple[Plane, ...]) -> list[Problem]:
     problems = []
     too_wide = np.zeros((len(bodies.models), 3), bool)  # no move helps along these axes
     for what, low, high in _rooms(scene):
@@ -113,7 +113,7 @@ def _outside(scene: Scene, bodies: _Bodies, planes: tuple[Plane, ...]) -> list[P
 # --- pairs --------------------------------------------------------------------------------------------------
 
 
-def _candidates(scene: Scene, bodies: _Bodies) -> tuple[np.ndarray, np.ndarray]:
+def _candidates(scene: Scene, bodies: _BoundingBoxes) -> tuple[np.ndarray, np.ndarray]:
     """Pairs i < j whose bounding boxes overlap and whose bounding balls do."""
     centre = np.array([s.position for s in scene.solids])
     radius = np.array([np.linalg.norm(v - c, axis=1).max() for v, c in zip(bodies.vertices, centre)])
@@ -127,7 +127,7 @@ def _candidates(scene: Scene, bodies: _Bodies) -> tuple[np.ndarray, np.ndarray]:
     return i[by_scene], j[by_scene]
 
 
-def _pair(scene: Scene, bodies: _Bodies, planes: tuple[Plane, ...], i: int, j: int) -> Problem | None:
+def _pair(scene: Scene, bodies: _BoundingBoxes, planes: tuple[Plane, ...], i: int, j: int) -> Problem | None:
     first, second = scene.solids[i], scene.solids[j]
     # Vertices of the true surfaces find most overlaps; two bars that cross share no vertex but the centres of
     # cells. The cells of the smaller body are enough, so the cells of a large floor are not searched for
@@ -148,7 +148,7 @@ def _pair(scene: Scene, bodies: _Bodies, planes: tuple[Plane, ...], i: int, j: i
     )
 
 
-def _deepest(points: np.ndarray, bodies: _Bodies, host: int, solid: Solid) -> float:
+def _deepest(points: np.ndarray, bodies: _BoundingBoxes, host: int, solid: Solid) -> float:
     """Largest depth of points [m], shape (N, 3), in an object [m]; 0 where all are outside."""
     points = points[((points > bodies.low[host]) & (points < bodies.high[host])).all(axis=1)]
     if not len(points):
@@ -158,7 +158,7 @@ def _deepest(points: np.ndarray, bodies: _Bodies, host: int, solid: Solid) -> fl
     return float(shapes.depth(solid.shape, points).max()) if len(points) else 0.0
 
 
-def _way_out(planes: tuple[Plane, ...], bodies: _Bodies, i: int, j: int) -> tuple[str, float]:
+def _way_out(planes: tuple[Plane, ...], bodies: _BoundingBoxes, i: int, j: int) -> tuple[str, float]:
     """Direction and step [m] of object j after which contact has no energy; the shortest that stays between the planes."""
     ways, gap = [], bodies.clearance(i, j)
     for (axis, sign), name in _MOVES.items():

@@ -86,7 +86,7 @@ def sweeps(scene: Scene, planes: Iterable[Plane] | None = None) -> Sweeps:
     limit_low, limit_high = (
         innermost(p for p in scene_planes(scene) if on(scene, p.effect)) if planes is None else innermost(planes)
     )
-    bodies = _Bodies(scene, limit_low[2])
+    bodies = _Movers(scene, limit_low[2])
     low, high = _flight(scene, bodies)
     calm = bodies.size(bodies.tip)  # the largest size by its own spin
     wild = bodies.size(bodies.speed)
@@ -117,7 +117,7 @@ def sweeps(scene: Scene, planes: Iterable[Plane] | None = None) -> Sweeps:
     return Sweeps(low - half, high + half, bodies.fixed)
 
 
-class _Bodies:
+class _Movers:
     """Data of every solid that the bounds need."""
 
     def __init__(self, scene: Scene, floor: float):
@@ -183,7 +183,7 @@ def _wet_below(scene: Scene) -> float:
     return scene.liquid.high[2] if there else -np.inf
 
 
-def _pull(scene: Scene, bodies: _Bodies) -> np.ndarray:
+def _pull(scene: Scene, bodies: _Movers) -> np.ndarray:
     """Largest force of gravity and liquid over the mass [m/s^2], shape (M,)."""
     g = float(np.linalg.norm(_gravity(scene)))
     if not np.isfinite(_wet_below(scene)):
@@ -196,7 +196,7 @@ def _pull(scene: Scene, bodies: _Bodies) -> np.ndarray:
     return g * (1.0 + lift)
 
 
-def _speed(scene: Scene, bodies: _Bodies, floor: float) -> np.ndarray:
+def _speed(scene: Scene, bodies: _Movers, floor: float) -> np.ndarray:
     """Largest speed that energy allows [m/s], shape (M,): v^2 = v0^2 + (spin) + 2 * pull * way.
 
     The way is the height above the highest floor where gravity alone pulls, down; else it is v * time at most.
@@ -211,7 +211,7 @@ def _speed(scene: Scene, bodies: _Bodies, floor: float) -> np.ndarray:
     return np.minimum(most, np.sqrt(start + 2.0 * bodies.pull * way))
 
 
-def _flight(scene: Scene, bodies: _Bodies) -> tuple[np.ndarray, np.ndarray]:
+def _flight(scene: Scene, bodies: _Movers) -> tuple[np.ndarray, np.ndarray]:
     """Lowest and highest point of every centre of mass in free flight along each axis [m], each of shape (M, 3)."""
     v, g, time = bodies.velocity, _gravity(scene), scene.control.time
     end = v * time + 0.5 * g * time**2
@@ -228,7 +228,7 @@ def _flight(scene: Scene, bodies: _Bodies) -> tuple[np.ndarray, np.ndarray]:
     return bodies.position + low, bodies.position + high
 
 
-def _clamped(scene: Scene, bodies: _Bodies) -> np.ndarray:
+def _clamped(scene: Scene, bodies: _Movers) -> np.ndarray:
     """Half edges of the box that a partly held solid stays in [m], shape (M, 3).
 
     A solid that is held in one place may swing around that place like a pendulum. A cuboid held at whole faces bends by twice

@@ -24,13 +24,13 @@ UNREPEATED = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class Value:
+class Measurement:
     """A number and its spread over repeated measurements."""
 
     middle: float
     spread: float
 
-    def below(self, other: Value) -> bool:
+    def below(self, other: Measurement) -> bool:
         """Whether this value is smaller by more than both spreads: values that differ by less are not ranked."""
         return self.middle + 0.5 * self.spread < other.middle - 0.5 * other.spread
 
@@ -40,9 +40,9 @@ class Rated:
     """A point with its cost and its error."""
 
     point: Point
-    seconds: Value
+    seconds: Measurement
     """Wall time of simulation [s]."""
-    error: Value
+    error: Measurement
     """Of the centres of mass, rms over frames and objects, relative to the extent of the motion [-]."""
     closed: float | None
     """Largest error against the ``expect`` lines that state a truth, relative to the object's own motion; None without any."""
@@ -132,15 +132,15 @@ def _usual(seen: Iterable[Sequence[float]], otherwise: float) -> float:
     return float(np.median(spreads)) if spreads else otherwise
 
 
-def _duration(seen: Sequence[float], usual: float) -> Value:
+def _duration(seen: Sequence[float], usual: float) -> Measurement:
     """The shortest of some durations: other work of a machine only makes durations longer. Spread as for `_value`."""
-    return Value(min(seen), max(2.0 * (float(np.median(seen)) - min(seen)), usual * min(seen)))
+    return Measurement(min(seen), max(2.0 * (float(np.median(seen)) - min(seen)), usual * min(seen)))
 
 
-def _value(seen: Sequence[float], usual: float) -> Value:
+def _value(seen: Sequence[float], usual: float) -> Measurement:
     """Median, and spread or the usual relative spread, whichever is larger: three runs may agree by chance."""
     middle = float(np.median(seen))
-    return Value(middle, max(max(seen) - min(seen), usual * middle))
+    return Measurement(middle, max(max(seen) - min(seen), usual * middle))
 
 
 def sharp(
@@ -178,10 +178,10 @@ def _closed(point: Point, expects: Sequence[Expect], truths: Mapping[int, float]
     return max((abs(point.found[0][k] - expects[k].value) / scale for k, scale in truths.items()), default=None)
 
 
-def pareto(values: Mapping[str, tuple[Value, Value]]) -> set[str]:
+def pareto(values: Mapping[str, tuple[Measurement, Measurement]]) -> set[str]:
     """Keys that no other beats: one beats another by being clearly less in one thing and not clearly more in the other."""
 
-    def beats(a: tuple[Value, Value], b: tuple[Value, Value]) -> bool:
+    def beats(a: tuple[Measurement, Measurement], b: tuple[Measurement, Measurement]) -> bool:
         return any(a[i].below(b[i]) and not b[1 - i].below(a[1 - i]) for i in (0, 1))
 
     return {k for k, own in values.items() if not any(beats(other, own) for j, other in values.items() if j != k)}

@@ -14,7 +14,7 @@ from ..plan.planner import Planner
 from .messages import SUPERVISOR, Job, Mail, Tag
 
 
-class Control(Protocol):
+class Controller(Protocol):
     """How an executor learns what to do next."""
 
     def decide(self, report: Report) -> Order:
@@ -42,7 +42,7 @@ class Peers:
         return self.planner.decide(self.mail.exchange(self.comm, report))
 
 
-def make_control(job: Job, parts: SubPlans, mail: Mail, comm: MPI.Comm) -> Control:
+def make_control(job: Job, parts: SubPlans, mail: Mail, comm: MPI.Comm) -> Controller:
     """The control that a job asks for, on the communicator of its executors."""
     return Central(mail) if job.control == "central" else Peers(mail, comm, planner_of(job, parts, comm.size))
 

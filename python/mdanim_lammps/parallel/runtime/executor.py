@@ -21,7 +21,7 @@ from ...run.energy import stored
 from ...run.frame_source import Account, LammpsFailure, add_clocks, penetration, pool
 from ..plan.orders import Order, Report
 from .bundle import Bundle, Wanted, wanted_bundles
-from .control import Control, make_control
+from .control import Controller, make_control
 from .messages import SUPERVISOR, Aborted, Ended, Failure, Job, Kept, Mail, Moved, Share, Tag, gathered, scatter
 
 OBITUARY = 2.0
@@ -74,7 +74,7 @@ class Executor:
         """What fixes keep, of the records that travel with its own objects."""
         self.started = resume is not None
         """False before step 0: forces come from the scene then."""
-        self.control: Control = make_control(job, self.parts, mail, comm)
+        self.control: Controller = make_control(job, self.parts, mail, comm)
         self.bundles: list[Bundle] = []
         self.cache = InstanceCache()
         self.order: Order | None = None
