@@ -48,8 +48,9 @@ class Bench:
             return None
         work = self._work(setting)
         near = min(known, key=lambda p: abs(math.log(self._work(p.setting) / work)))
-        simulation = min(near.seconds)
-        return min(near.wall) - simulation + simulation * work / self._work(near.setting)
+        whole = min(near.wall)
+        simulation = min(whole, *near.seconds)
+        return whole - simulation + simulation * work / self._work(near.setting)
 
     def _work(self, setting: Setting) -> float:
         """Particle-steps over those of the scene's own setting: particles go with cells^3, steps with cells over the fraction.

@@ -32,8 +32,8 @@ from ..plan.frame_plan import PlannerOptions
 EXCHANGE = ".ranks-"
 """What the names of the two files begin with, in the folder of the run, by which job and result are handed over. The supervisor
 deletes the first when it has read it, and leaves the second where it has to abort the other ranks."""
-RESULT_SIGN = "="
-"""What the line begins with in which the supervisor gives the result otherwise."""
+RESULT_SIGN = "result:"
+"""Start of the line in which the supervisor gives the result otherwise; mpiexec's own words begin with "=" or "YOUR"."""
 
 
 @dataclass(frozen=True)
