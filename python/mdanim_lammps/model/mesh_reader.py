@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-MOST_BYTES = 256 << 20
-"""Largest mesh file [bytes]: five million triangles of a binary STL."""
+from ..scene.limits import MOST_BYTES_OF_MESH
+
 MEMORY = 8 << 30
 """Address space of the reading process [bytes]; VTK takes 20 times the size of a file at most."""
 SECONDS = 120.0
@@ -32,8 +32,8 @@ def read_polygons(path: Path) -> tuple[np.ndarray, np.ndarray]:
     found = path.stat()
     if not stat.S_ISREG(found.st_mode):
         raise UnreadableMesh("is no regular file")
-    if found.st_size > MOST_BYTES:
-        raise UnreadableMesh(f"has {found.st_size >> 20} MiB, {MOST_BYTES >> 20} are the most")
+    if found.st_size > MOST_BYTES_OF_MESH:
+        raise UnreadableMesh(f"has {found.st_size >> 20} MiB, {MOST_BYTES_OF_MESH >> 20} are the most")
     try:
         done = subprocess.run(
             [sys.executable, "-c", f"from {__name__} import main; main()", str(path)], capture_output=True, timeout=SECONDS

@@ -11,8 +11,8 @@ MOST_BYTES = 64 * 2**20
 """Bytes of a scene file, and of all its includes together."""
 MOST_BYTES_OF_LOCK = 2**30
 """Bytes of a scene.lock.txt, which this program wrote: enough for MOST_OBJECTS."""
-MOST_BYTES_OF_MESH = 2**30
-"""Bytes of a mesh file."""
+MOST_BYTES_OF_MESH = 2**28
+"""Bytes of a mesh file: five million triangles of a binary STL."""
 MOST_FILES = 1000
 """Includes of one scene."""
 DEEPEST_INCLUDE = 16
