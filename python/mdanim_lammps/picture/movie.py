@@ -21,7 +21,7 @@ from types import ModuleType
 import numpy as np
 
 from ..errors import OutputError, SetupError, UsageError
-from ..results.files import disk_errors, write_whole
+from ..results.files import disk_errors, sync, write_whole
 from ..results.trajectory import Trajectory
 from ..scene.scene import Render
 
@@ -270,6 +270,7 @@ def _encoder(path: Path, size: tuple[int, int], rate: Fraction, pictures: int) -
             # ffmpeg's exit code cannot be had: a movie that is not whole cannot be read, or is too short.
             if imageio_ffmpeg.count_frames_and_secs(part)[0] != pictures:
                 raise failed()
+            sync(part)
             os.replace(part, path)
         except (OSError, RuntimeError):
             raise failed() from None
