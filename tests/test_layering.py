@@ -105,7 +105,7 @@ def test_there_are_scripts():
 
 
 PLUGIN = Path(__file__).parents[1] / "plugin"
-FOLDERS = ["laws", "engine", "liquid", "styles", "c_api"]
+FOLDERS = ["laws", "engine", "contact", "liquid", "styles", "c_api"]
 WITH_LAMMPS = ("styles", "c_api")
 
 

@@ -5,6 +5,7 @@
 #include "c_api/abi.h"
 #include "styles/bond_mdanim_harmonic.h"
 #include "styles/fix_mdanim_barrier.h"
+#include "styles/fix_mdanim_contact.h"
 #include "styles/fix_mdanim_gravity.h"
 #include "styles/fix_mdanim_leapfrog.h"
 #include "styles/fix_mdanim_liquid.h"
@@ -131,7 +132,8 @@ MDANIM_EXPORT void lammpsplugin_init(void *handle_of_lammps, void *handle, void 
       bond("mdanim/harmonic", "springs in gather form", &make_bond<BondMdanimHarmonic>),
       fix("mdanim/leapfrog", "leap-frog with friction", &make_fix<FixMdanimLeapfrog>),
       fix("mdanim/gravity", "m g on every particle", &make_fix<FixMdanimGravity>),
-      fix("mdanim/barrier", "contact of objects", &make_fix<FixMdanimBarrier>),
+      fix("mdanim/barrier", "a barrier between objects", &make_fix<FixMdanimBarrier>),
+      fix("mdanim/contact", "objects and planes touch, with friction", &make_fix<FixMdanimContact>),
       fix("mdanim/liquid", "liquid that solids float and sink in", &make_fix<FixMdanimLiquid>),
       fix("mdanim/wall", "walls that withstand any impact", &make_fix<FixMdanimWall>),
       run("verlet/mdanim", "verlet with springs, gravity and leap-frog in one pass", &make_run),

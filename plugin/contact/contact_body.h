@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// A body as contact sees it: its undeformed lattice, points of its drawn surface, and the depth below that surface.
+// Places in it are lattice coordinates X: cells from the low corner of its grid, along each axis.
+
+#ifndef MDANIM_CONTACT_BODY_H
+#define MDANIM_CONTACT_BODY_H
+
+#include "laws/vec3.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace mdanim {
+
+enum class PointKind : std::uint8_t {
+  FLAT = 0,     // inside a side of a cuboid
+  SHARP = 1,    // on an edge of a cuboid or in a corner
+  DENSE = 2     // of any other shape
+};
+
+// A point of the drawn surface and the area that it stands for.
+struct SurfacePoint {
+  int cell[3];        // that carries it
+  Vec3 at, centre;    // X of the point and of the centre of its area
+  Vec3 normal;        // outward, body frame
+  double area;        // [m^2]
+  PointKind kind;
+};
+
+// As mdanim_contact_body() is given them.
+struct ContactBodyArrays {
+  const std::int32_t *count;
+  const double *edge;
+  int particles;
+  const std::int32_t *node;
+  const std::uint8_t *filled;
+  int points;
+  const std::int32_t *cell;
+  const double *at, *centre, *normal, *area;
+  const std::uint8_t *kind;
+  const double *depth;    // null for a cuboid
+};
+
+// Depth below one side, and its gradient by X.
+struct Depth {
+  double value;
+  Vec3 slope;
+};
+
+class ContactBody {
+ public:
+  // Throws std::runtime_error when the arrays are not those of a body.
+  explicit ContactBody(const ContactBodyArrays &arrays);
+
+  bool is_cuboid() const { return depth_grid.empty(); }
+  int sides() const { return is_cuboid() ? 6 : 1; }
+  int count(int axis) const { return cells[axis]; }
+  double edge(int axis) const { return edges[axis]; }
+  double spacing() const { return mean_edge; }    // cube root of a cell's volume [m]
+  int particles() const { return static_cast<int>(place_of_node.size()); }
+  const std::vector<SurfacePoint> &points() const { return surface; }
+
+  // Places of the grid, x fastest, and the number of the particle there, -1 for none.
+  int row() const { return cells[0] + 1; }
+  int layer() const { return (cells[0] + 1) * (cells[1] + 1); }
+  int places() const { return layer() * (cells[2] + 1); }
+  int place(int i, int j, int k) const { return i + row() * j + layer() * k; }
+  int place_of(int node) const { return place_of_node[node]; }
+
+  bool is_filled(int i, int j, int k) const
+  {
+    return i >= 0 && j >= 0 && k >= 0 && i < cells[0] && j < cells[1] && k < cells[2] &&
+           filled[i + static_cast<std::size_t>(cells[0]) * (j + static_cast<std::size_t>(cells[1]) * k)];
+  }
+  bool is_outer(int i, int j, int k) const;    // filled, and some neighbour across a face is not
+  int cells_around(int node) const;            // filled ones, of 8
+
+  // Below a side; sides of a cuboid are -x, +x, -y, +y, -z, +z.
+  Depth depth(int side, const Vec3 &X) const;
+  std::size_t bytes() const;
+
+ private:
+  int cells[3];
+  double edges[3], mean_edge;
+  std::vector<int> place_of_node;
+  std::vector<std::uint8_t> filled;
+  std::vector<SurfacePoint> surface;
+  std::vector<double> depth_grid;    // coefficients of quadratic B-splines on nodes -2 to n + 2
+};
+
+}    // namespace mdanim
+
+#endif

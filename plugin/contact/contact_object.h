@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// An object in contact: its body and material, and where its particles are.
+
+#ifndef MDANIM_CONTACT_OBJECT_H
+#define MDANIM_CONTACT_OBJECT_H
+
+#include "contact/contact_body.h"
+#include "contact/material_map.h"
+#include "engine/boxes.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace mdanim {
+
+struct ContactObject {
+  int id;    // ascending in the order of the scene
+  const ContactBody *body;
+  double young;       // [Pa]
+  double friction;    // mu
+  double density;     // of the lattice [kg/m^3]
+
+  Box box;    // when lists were made
+  std::vector<int>
+      slot;    // of its particles by their places in the grid, in the arrays of ContactWorld; -1 for what is not there
+  int first_slot = 0, last_slot = 0;
+  Vec3 way;             // of its first particle in this step
+  double stir = 0.0;    // the most that another has gone otherwise in this step
+};
+
+// What contacts did in a step, and since the beginning.
+struct ContactAccount {
+  double energy = 0.0, stick_energy = 0.0;          // now [J]
+  int touching = 0;                                 // points, now
+  double heat = 0.0, damped = 0.0, let_go = 0.0;    // since the beginning [J]
+  double deepest = 0.0;                             // in this run [m]
+
+  void begin_step() { energy = stick_energy = 0.0, touching = 0; }
+};
+
+// Positions and forces of all particles that contacts may need, by slots.
+struct ContactArrays {
+  std::vector<Vec3> place, force;
+};
+
+// A particle's part in a point.
+struct Carrier {
+  int slot;
+  double weight;
+};
+
+// Points of one object that are near something, with the particles that carry them.
+class NearPoints {
+ public:
+  struct Near {
+    int point;
+    int first, middle, last;    // carriers of the point, of the centre of its area; the second are none where both are the same
+  };
+
+  void clear() { near.clear(), carriers.clear(); }
+  // False, with nothing added, when a particle that carries the point is not there.
+  bool add(const ContactObject &owner, int point);
+  void drop_last()
+  {
+    carriers.resize(near.back().first);
+    near.pop_back();
+  }
+  std::size_t size() const { return near.size(); }
+  int point(std::size_t q) const { return near[q].point; }
+  std::size_t bytes() const { return near.capacity() * sizeof(Near) + carriers.capacity() * sizeof(Carrier); }
+
+  Vec3 place(std::size_t q, const Vec3 *at) const { return sum(near[q].first, near[q].middle, at); }
+  // From the point to the centre of its area.
+  Vec3 shift(std::size_t q, const Vec3 *at) const
+  {
+    const Near &n = near[q];
+    return n.middle == n.last ? Vec3{} : sum(n.middle, n.last, at) - sum(n.first, n.middle, at);
+  }
+  void add_force(std::size_t q, const Vec3 &force, Vec3 *on) const
+  {
+    for (int c = near[q].first; c < near[q].middle; ++c) on[carriers[c].slot] += carriers[c].weight * force;
+  }
+  void add_force_at_centre(std::size_t q, const Vec3 &force, Vec3 *on) const
+  {
+    const Near &n = near[q];
+    const bool own = n.middle < n.last;
+    for (int c = own ? n.middle : n.first; c < (own ? n.last : n.middle); ++c) on[carriers[c].slot] += carriers[c].weight * force;
+  }
+
+ private:
+  Vec3 sum(int first, int last, const Vec3 *at) const
+  {
+    Vec3 x = carriers[first].weight * at[carriers[first].slot];
+    for (int c = first + 1; c < last; ++c) x += carriers[c].weight * at[carriers[c].slot];
+    return x;
+  }
+  bool add_carriers(const ContactObject &owner, const SurfacePoint &point, const Vec3 &X);
+
+  std::vector<Near> near;
+  std::vector<Carrier> carriers;
+};
+
+// Rows of a record as bytes.
+template <class Row> void append_rows(std::vector<std::uint8_t> &bytes, const Row *rows, std::size_t n)
+{
+  const auto *from = reinterpret_cast<const std::uint8_t *>(rows);
+  bytes.insert(bytes.end(), from, from + n * sizeof(Row));
+}
+
+}    // namespace mdanim
+
+#endif

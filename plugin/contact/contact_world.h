@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// All objects in contact, which of them may touch, and their forces. Knows neither LAMMPS nor ranks: what it is given is the same
+// on all of them, and so is what it answers.
+
+#ifndef MDANIM_CONTACT_WORLD_H
+#define MDANIM_CONTACT_WORLD_H
+
+#include "contact/contact_field.h"
+#include "contact/contact_object.h"
+#include "contact/plane_field.h"
+#include "engine/boxes.h"
+
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace mdanim {
+
+// Friction and damping of a pair of objects that its own are not taken for.
+struct PairLaw {
+  double friction, damping;
+};
+
+struct ContactSettings {
+  bool objects = false;      // whether they touch each other
+  double stiffness = 1.0;    // f
+  double damping = 0.0;      // beta of pairs that have friction
+  std::vector<ContactPlane> planes;
+  std::map<std::pair<int, int>, PairLaw> pairs;    // by ids, the lower one first
+};
+
+// A particle of an object, by their numbers in the world.
+struct ContactParticle {
+  int object, node;
+  bool operator<(const ContactParticle &other) const
+  { return object != other.object ? object < other.object : node < other.node; }
+};
+
+class ContactWorld {
+ public:
+  ContactSettings settings;
+
+  // Objects by ascending ids; `moves` tells those of which some particle can move. What is known of contacts stays with their
+  // ids.
+  void take(std::vector<ContactObject> now, std::vector<char> moves);
+  int objects() const { return static_cast<int>(all.size()); }
+  const ContactObject &object(int n) const { return all[n]; }
+
+  // --- lists ---
+  // Boxes of all objects; none is nearer than `skin` to what it does not touch when lists are made again.
+  void look_ahead(const std::vector<Box> &boxes, double skin);
+  // How far every particle may go until two objects, or an object and a plane, can touch, of no more than `skin` times 32; 0
+  // where some already can.
+  double distance_apart() const { return apart; }
+  bool is_idle() const { return near_pairs.empty() && near_planes.empty(); }
+  int pairs() const { return static_cast<int>(near_pairs.size()); }
+  // Whether a particle of an object may have a part in contacts.
+  bool needs(int object, const double *x) const;
+  // The particles that may, ascending, and where they are.
+  void list(const std::vector<ContactParticle> &particles, const std::vector<Vec3> &places);
+  // Nothing is known of points but of those in contact: to be called before list() at the setup of a run.
+  void forget();
+
+  // --- steps ---
+  std::vector<Vec3> &places() { return arrays.place; }
+  const std::vector<Vec3> &forces() const { return arrays.force; }
+  // The forces with all particles at places(). dt = 0 at the setup of a run: nothing changes.
+  void step(double dt);
+
+  ContactAccount account;
+  Vec3 force_on_planes() const;
+
+  using PairKey = std::pair<int, int>;
+  // Contacts of two objects, points of the lower one first, and of an object with all planes; only of those that have any.
+  std::map<PairKey, std::pair<std::vector<FieldContact>, std::vector<FieldContact>>> pair_contacts() const;
+  std::map<int, std::vector<PlaneContact>> plane_contacts() const;
+  // Makes these all that there are.
+  void restore(const std::map<PairKey, std::pair<std::vector<FieldContact>, std::vector<FieldContact>>> &pairs,
+               const std::map<int, std::vector<PlaneContact>> &planes);
+  std::size_t bytes() const;
+
+ private:
+  struct Both {
+    ContactField lower, higher;    // points of the one with the lower id, and of the other
+  };
+  ContactLaw law(const ContactObject &owner, double kappa, double friction, double damping) const;
+  Both new_pair(int a, int b);
+  PlaneField new_plane(int n, int plane);
+  bool can_touch(int a, int b) const { return movable[a] || movable[b]; }
+  bool near_plane(const Box &box, const ContactPlane &plane, double gap) const;
+  void measure_motion();
+
+  std::vector<ContactObject> all;
+  std::vector<char> movable;
+  std::map<int, int> number_of;    // of ids
+  double skin = 0.0, spacing = 0.0, apart = 0.0;
+  std::vector<std::pair<int, int>> near_pairs;               // numbers of objects
+  std::vector<std::pair<int, int>> near_planes;              // object and plane
+  std::vector<std::vector<Box>> zones;                       // of each object: where its particles may have a part
+  std::map<PairKey, Both> fields;                            // by ids
+  std::map<std::pair<int, int>, PlaneField> plane_fields;    // by id and plane
+  ContactArrays arrays;
+  std::vector<Vec3> before;
+  bool is_new = true;    // lists: nothing has moved since
+};
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Points of one object's surface against a plane across an axis, the exact depth below which is known. The law is that of
+// contact_field.h; the plane is rigid and does not move.
+
+#ifndef MDANIM_PLANE_FIELD_H
+#define MDANIM_PLANE_FIELD_H
+
+#include "contact/contact_object.h"
+#include "laws/contact.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace mdanim {
+
+struct ContactPlane {
+  int axis;
+  double sign;    // 1: objects belong above, -1: below
+  double at;      // [m]
+  double depth(const Vec3 &x) const { return sign * (at - (axis == 0 ? x.x : axis == 1 ? x.y : x.z)); }
+  Vec3 normal() const { return {axis == 0 ? sign : 0.0, axis == 1 ? sign : 0.0, axis == 2 ? sign : 0.0}; }
+};
+
+struct PlaneContact {
+  std::int32_t point, plane;
+  Vec3 anchor;    // [m]
+  ContactMemory memory;
+};
+
+class PlaneField {
+ public:
+  PlaneField(ContactObject &owner, int number, const ContactPlane &plane, const ContactLaw &law)
+      : owner(&owner), number(number), plane(plane), law(law)
+  {
+  }
+
+  // As those of ContactField.
+  void list(ContactObject &points_of, const ContactArrays &arrays, double reach);
+  void forget();
+  void settle(const ContactArrays &arrays);
+  void add_forces(ContactArrays &arrays, double nearer, double dt, ContactAccount &account);
+
+  const std::vector<PlaneContact> &touching() const { return contacts; }
+  void restore(std::vector<PlaneContact> those) { contacts = std::move(those); }
+  const Vec3 &force_on_plane() const { return on_plane; }
+  std::size_t bytes() const;
+
+ private:
+  bool look(std::size_t q, const ContactArrays &arrays, bool may_begin);
+
+  ContactObject *owner;
+  int number;
+  ContactPlane plane;
+  ContactLaw law;
+  NearPoints near;
+  std::vector<double> wake;
+  std::vector<std::uint8_t> was_below;    // when a near point was looked at last
+  std::vector<PlaneContact> contacts;     // by ascending points
+  std::vector<std::size_t> of_contact;
+  double budget = 0.0;
+  Vec3 on_plane;
+};
+
+}    // namespace mdanim
+
+#endif

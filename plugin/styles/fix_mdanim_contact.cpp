@@ -1,0 +1,489 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/contact. When LAMMPS rebuilds its lists: boxes of objects, those that are near each other, the particles that may
+// have a part in contacts. Every step all ranks tell each other where those are, and each works out all contacts, with the same
+// bits, and takes the forces on its own particles. Contacts are few against springs; what they remember is then the same on all
+// ranks.
+
+#include "styles/fix_mdanim_contact.h"
+
+#include "engine/stopwatch.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "group.h"
+#include "neighbor.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <stdexcept>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace mdanim;
+
+static constexpr std::int64_t STATE_VERSION = 1;
+static constexpr double USUAL_DAMPING = 0.3;    // beta
+
+// --- the command ---
+
+// fix ID group mdanim/contact BODY YOUNG FRICTION [objects] [plane x|y|z lo|hi at]… [stiffness f] [damping beta]
+//     [pair MOL MOL mu beta]… [among GROUP]
+FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  scalar_flag = 1;
+  extscalar = 1;
+  energy_global_flag = 1;
+  vector_flag = 1;
+  size_vector = 11;
+  static int extensive[] = {1, 1, 1, 1, 0, 1, 1, 0, 1, 1, 1};
+  extvector = -1;
+  extlist = extensive;
+  global_freq = 1;
+  restart_global = 1;
+
+  if (narg < 6) utils::missing_cmd_args(FLERR, "fix mdanim/contact", error);
+  kind = ParticleValue(lmp, "fix mdanim/contact: BODY", 3, arg[3]);
+  young = ParticleValue(lmp, "fix mdanim/contact: YOUNG", 4, arg[4]);
+  friction = ParticleValue(lmp, "fix mdanim/contact: FRICTION", 5, arg[5]);
+  ContactSettings &settings = world_of_contact.settings;
+  settings.damping = USUAL_DAMPING;
+  for (int iarg = 6; iarg < narg;) iarg += read_word(iarg, narg, arg);
+  if (!settings.objects && settings.planes.empty())
+    error->all(FLERR, "fix mdanim/contact: nothing can touch; write objects, or plane x|y|z lo|hi and its place");
+}
+
+// How many words it took.
+int FixMdanimContact::read_word(int iarg, int narg, char **arg)
+{
+  ContactSettings &settings = world_of_contact.settings;
+  const auto is = [&](const char *word) { return strcmp(arg[iarg], word) == 0; };
+  const auto want = [&](int words) {
+    if (iarg + words >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/contact {}", arg[iarg]), error);
+  };
+  const auto number = [&](int at, const char *what, double least) {
+    const double value = utils::numeric(FLERR, arg[at], false, lmp);
+    if (!(value >= least)) error->all(FLERR, at, "fix mdanim/contact: {} must be at least {}, got {}", what, least, arg[at]);
+    return value;
+  };
+  if (is("objects")) {
+    settings.objects = true;
+    return 1;
+  }
+  if (is("plane")) {
+    want(3);
+    const int axis = arg[iarg + 1][0] - 'x';
+    if (axis < 0 || axis > 2 || arg[iarg + 1][1])
+      error->all(FLERR, iarg + 1, "fix mdanim/contact: the axis of a plane is x, y or z, got {}", arg[iarg + 1]);
+    const bool low = strcmp(arg[iarg + 2], "lo") == 0;
+    if (!low && strcmp(arg[iarg + 2], "hi") != 0)
+      error->all(FLERR, iarg + 2, "fix mdanim/contact: a plane is the lower end of what is allowed, lo, or the upper, hi; got {}",
+                 arg[iarg + 2]);
+    settings.planes.push_back({axis, low ? 1.0 : -1.0, utils::numeric(FLERR, arg[iarg + 3], false, lmp)});
+    return 4;
+  }
+  if (is("stiffness")) {
+    want(1);
+    settings.stiffness = number(iarg + 1, "stiffness", 0.0);
+    return 2;
+  }
+  if (is("damping")) {
+    want(1);
+    settings.damping = number(iarg + 1, "damping", 0.0);
+    return 2;
+  }
+  if (is("pair")) {
+    want(4);
+    int a = utils::inumeric(FLERR, arg[iarg + 1], false, lmp), b = utils::inumeric(FLERR, arg[iarg + 2], false, lmp);
+    if (a < 1 || b < 1 || a == b)
+      error->all(FLERR, iarg + 1, "fix mdanim/contact: a pair is two different molecule IDs > 0, got {} and {}", arg[iarg + 1],
+                 arg[iarg + 2]);
+    settings.pairs[{std::min(a, b), std::max(a, b)}] = {number(iarg + 3, "mu of a pair", 0.0),
+                                                        number(iarg + 4, "beta of a pair", 0.0)};
+    return 5;
+  }
+  if (is("among")) {
+    want(1);
+    const int index = group->find(arg[iarg + 1]);
+    if (index < 0)
+      error->all(FLERR, iarg + 1, "fix mdanim/contact: there is no group {}; make it before this fix", arg[iarg + 1]);
+    among_bit = group->bitmask[index];
+    return 2;
+  }
+  error->all(FLERR, iarg, "fix mdanim/contact: unknown keyword {}; it knows objects, plane, stiffness, damping, pair and among",
+             arg[iarg]);
+  return 0;
+}
+
+int FixMdanimContact::setmask() { return POST_NEIGHBOR | POST_FORCE; }
+
+void FixMdanimContact::take_body(int number, const ContactBodyArrays &arrays)
+{
+  bodies.erase(number);
+  bodies.emplace(number, ContactBody(arrays));
+}
+
+void FixMdanimContact::init()
+{
+  const auto refuse = [this](const char *why) { error->all(FLERR, "fix {} mdanim/contact: {}", id, why); };
+  if (utils::strmatch(update->integrate_style, "^respa")) refuse("run_style respa is not supported; use run_style verlet");
+  if (domain->dimension != 3) refuse("the box has 2 dimensions, 3 are needed; use 'dimension 3'");
+  if (domain->triclinic) refuse("the box is triclinic; use an orthogonal one");
+  if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
+    refuse("the box is periodic; put 'boundary s s s' (or f) before the box is made");
+  if (!atom->molecule_flag)
+    refuse("objects are told apart by molecule IDs; use 'atom_style bond' or 'fix ID all property/atom mol'");
+  if (neighbor->every != 1 || neighbor->delay != 0 || neighbor->build_once)
+    refuse("surfaces may meet between two rebuilds; use 'neigh_modify every 1 delay 0 check yes once no'");
+  kind.init(lmp);
+  young.init(lmp);
+  friction.init(lmp);
+}
+
+// --- objects ---
+
+// Of the objects that are here, by ascending IDs; the same on all ranks.
+std::vector<FixMdanimContact::Known> FixMdanimContact::survey() const
+{
+  const double *kinds = kind.values(lmp), *youngs = young.values(lmp), *frictions = friction.values(lmp);
+  std::map<int, Known> here;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & among_bit) || atom->molecule[i] <= 0) continue;
+    const int object_id = static_cast<int>(atom->molecule[i]);
+    Known &one = here.emplace(object_id, Known{object_id, 0, MAXTAGINT, 0, 0, 0, 0, 0}).first->second;
+    ++one.particles;
+    if (atom->mask[i] & groupbit) one.moves = 1;
+    if (atom->tag[i] >= one.lowest) continue;
+    one.lowest = atom->tag[i];
+    one.kind = kinds ? kinds[i] : kind.number;
+    one.young = youngs ? youngs[i] : young.number;
+    one.friction = frictions ? frictions[i] : friction.number;
+    one.mass = mass_of(atom->rmass, atom->mass, atom->type, i);
+  }
+  std::vector<Known> mine_only;
+  for (const auto &[object_id, one] : here) mine_only.push_back(one);
+  if (comm->nprocs == 1) return mine_only;
+
+  const int bytes = static_cast<int>(mine_only.size() * sizeof(Known));
+  std::vector<int> sizes(comm->nprocs), begin(comm->nprocs + 1, 0);
+  MPI_Allgather(&bytes, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
+  std::partial_sum(sizes.begin(), sizes.end(), begin.begin() + 1);
+  std::vector<Known> all(begin.back() / sizeof(Known));
+  MPI_Allgatherv(mine_only.data(), bytes, MPI_BYTE, all.data(), sizes.data(), begin.data(), MPI_BYTE, world);
+  std::map<int, Known> joined;
+  for (const Known &one : all) {
+    Known &total = joined.emplace(one.id, Known{one.id, 0, MAXTAGINT, 0, 0, 0, 0, 0}).first->second;
+    const long long particles = total.particles + one.particles;
+    const int moves = total.moves | one.moves;
+    if (one.lowest < total.lowest) total = one;
+    total.particles = particles, total.moves = moves;
+  }
+  all.clear();
+  for (const auto &[object_id, one] : joined) all.push_back(one);
+  return all;
+}
+
+void FixMdanimContact::take_objects()
+{
+  std::vector<ContactObject> objects;
+  std::vector<char> moves;
+  lowest.clear();
+  for (const Known &one : survey()) {
+    const auto found = bodies.find(static_cast<int>(one.kind));
+    if (found == bodies.end())
+      error->all(FLERR, "fix {} mdanim/contact: object {} (molecule ID) has body {}, and no such body was given", id, one.id,
+                 one.kind);
+    const ContactBody &body = found->second;
+    if (one.particles != body.particles())
+      error->all(FLERR, "fix {} mdanim/contact: object {} (molecule ID) has {} particles, its body {} has {}", id, one.id,
+                 one.particles, one.kind, body.particles());
+    if (!(one.young > 0.0) || !(one.friction >= 0.0))
+      error->all(FLERR, "fix {} mdanim/contact: object {} (molecule ID) needs YOUNG > 0 and FRICTION >= 0, got {} and {}", id,
+                 one.id, one.young, one.friction);
+    const double volume = body.edge(0) * body.edge(1) * body.edge(2);
+    objects.push_back(
+        {one.id, &body, one.young, one.friction, one.mass / (volume * body.cells_around(0) / 8.0), {}, {}, 0, 0, {}, 0.0});
+    moves.push_back(static_cast<char>(one.moves));
+    lowest.push_back(one.lowest);
+  }
+  world_of_contact.take(std::move(objects), std::move(moves));
+}
+
+// --- lists, when LAMMPS rebuilds its own ---
+
+void FixMdanimContact::setup_post_neighbor()
+{
+  take_objects();
+  world_of_contact.forget();
+  list();
+}
+
+void FixMdanimContact::post_neighbor() { list(); }
+
+void FixMdanimContact::list()
+{
+  const Lap lap(seconds);
+  const int nlocal = atom->nlocal, objects = world_of_contact.objects();
+  std::vector<Box> here(objects), boxes(objects);
+  object.assign(nlocal, -1);
+  int last = 0;
+  for (int i = 0; i < nlocal; ++i) {
+    if (!(atom->mask[i] & among_bit) || atom->molecule[i] <= 0) continue;
+    if (world_of_contact.object(last).id != atom->molecule[i]) {
+      int low = 0, high = objects;
+      while (low < high) {
+        const int middle = (low + high) / 2;
+        (world_of_contact.object(middle).id < atom->molecule[i] ? low = middle + 1 : high = middle);
+      }
+      last = low;
+    }
+    object[i] = last;
+    here[last].include(atom->x[i]);
+  }
+  MPI_Allreduce(here.data(), boxes.data(), 6 * objects, MPI_DOUBLE, MPI_MIN, world);
+  world_of_contact.look_ahead(boxes, neighbor->skin);
+
+  mine.clear();
+  std::vector<ContactParticle> particles;
+  if (!world_of_contact.is_idle())
+    for (int i = 0; i < nlocal; ++i)
+      if (object[i] >= 0 && world_of_contact.needs(object[i], atom->x[i])) {
+        mine.push_back(i);
+        particles.push_back({object[i], static_cast<int>(atom->tag[i] - lowest[object[i]])});
+      }
+  std::vector<Vec3> places;
+  for (const int i : mine) places.push_back(vec3(atom->x[i]));
+
+  counts.assign(comm->nprocs, 0);
+  starts.assign(comm->nprocs + 1, 0);
+  const int own = static_cast<int>(mine.size());
+  MPI_Allgather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+  std::partial_sum(counts.begin(), counts.end(), starts.begin() + 1);
+  const int total = starts.back(), first = starts[comm->me];
+  for (int r = 0; r < comm->nprocs; ++r) counts[r] *= 3;
+  std::vector<int> starts3;
+  for (int r = 0; r < comm->nprocs; ++r) starts3.push_back(3 * starts[r]);
+  if (comm->nprocs > 1) {
+    std::vector<int> two = counts, begin = starts3;
+    for (int r = 0; r < comm->nprocs; ++r) two[r] = two[r] / 3 * 2, begin[r] = begin[r] / 3 * 2;
+    std::vector<ContactParticle> all(total);
+    std::vector<Vec3> all_places(total);
+    MPI_Allgatherv(particles.data(), 2 * own, MPI_INT, all.data(), two.data(), begin.data(), MPI_INT, world);
+    MPI_Allgatherv(places.data(), 3 * own, MPI_DOUBLE, all_places.data(), counts.data(), starts3.data(), MPI_DOUBLE, world);
+    particles = std::move(all), places = std::move(all_places);
+  }
+  starts = std::move(starts3);
+  received.resize(3 * static_cast<std::size_t>(total));
+  sent.resize(3 * static_cast<std::size_t>(own));
+
+  std::vector<int> order(total);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int p, int q) { return particles[p] < particles[q]; });
+  slot_of_entry.resize(total);
+  std::vector<ContactParticle> sorted;
+  std::vector<Vec3> sorted_places;
+  for (int slot = 0; slot < total; ++slot) {
+    slot_of_entry[order[slot]] = slot;
+    sorted.push_back(particles[order[slot]]);
+    sorted_places.push_back(places[order[slot]]);
+  }
+  my_slot.assign(slot_of_entry.begin() + first, slot_of_entry.begin() + first + own);
+  for (const ContactParticle &one : sorted)
+    if (one.node < 0 || one.node >= world_of_contact.object(one.object).body->particles())
+      error->all(FLERR, "fix {} mdanim/contact: tags of object {} (molecule ID) do not follow each other", id,
+                 world_of_contact.object(one.object).id);
+  world_of_contact.list(sorted, sorted_places);
+}
+
+// --- forces ---
+
+// place_of(n) is where the n-th of `mine` is.
+template <class PlaceOf> void FixMdanimContact::step(const PlaceOf &place_of, double dt)
+{
+  std::vector<Vec3> &places = world_of_contact.places();
+  if (comm->nprocs > 1) {
+    for (std::size_t n = 0; n < mine.size(); ++n) {
+      const Vec3 x = place_of(n);
+      sent[3 * n] = x.x, sent[3 * n + 1] = x.y, sent[3 * n + 2] = x.z;
+    }
+    MPI_Allgatherv(sent.data(), static_cast<int>(sent.size()), MPI_DOUBLE, received.data(), counts.data(), starts.data(),
+                   MPI_DOUBLE, world);
+    for (std::size_t n = 0; n < slot_of_entry.size(); ++n) places[slot_of_entry[n]] = vec3(&received[3 * n]);
+  } else {
+    for (std::size_t n = 0; n < mine.size(); ++n) places[my_slot[n]] = place_of(n);
+  }
+  world_of_contact.step(dt);
+}
+
+void FixMdanimContact::setup(int)
+{
+  const Lap lap(seconds);
+  world_of_contact.account.deepest = 0.0;
+  step([this](std::size_t n) { return vec3(atom->x[mine[n]]); }, 0.0);
+  for (std::size_t n = 0; n < mine.size(); ++n)
+    if (atom->mask[mine[n]] & groupbit) add_to(atom->f[mine[n]], world_of_contact.forces()[my_slot[n]]);
+}
+
+void FixMdanimContact::post_force(int)
+{
+  const Lap lap(seconds);
+  step([this](std::size_t n) { return vec3(atom->x[mine[n]]); }, update->dt);
+  for (std::size_t n = 0; n < mine.size(); ++n)
+    if (atom->mask[mine[n]] & groupbit) add_to(atom->f[mine[n]], world_of_contact.forces()[my_slot[n]]);
+}
+
+void FixMdanimContact::append_required_atoms(std::vector<int> &particles) const
+{ particles.insert(particles.end(), mine.begin(), mine.end()); }
+
+void FixMdanimContact::add_forces(const Positions &place, const ForceSums &force)
+{
+  const Lap lap(seconds);
+  step([&](std::size_t n) { return place[n]; }, update->dt);
+  for (std::size_t n = 0; n < mine.size(); ++n)
+    if (atom->mask[mine[n]] & groupbit) force.add(n, world_of_contact.forces()[my_slot[n]]);
+}
+
+// --- state ---
+
+namespace {
+
+template <class Row> void append(Bytes &bytes, const std::vector<Row> &rows)
+{
+  const auto n = static_cast<std::int64_t>(rows.size());
+  append_rows(bytes, &n, 1);
+  append_rows(bytes, rows.data(), rows.size());
+}
+
+template <class Row> std::vector<Row> take(const std::uint8_t *&from, const std::uint8_t *end, const char *what)
+{
+  std::int64_t n = -1;
+  if (end - from >= static_cast<std::ptrdiff_t>(sizeof n)) std::memcpy(&n, from, sizeof n);
+  if (n < 0 || n > (end - from - static_cast<std::ptrdiff_t>(sizeof n)) / static_cast<std::ptrdiff_t>(sizeof(Row)))
+    throw std::runtime_error(fmt::format("the record of {} is cut off", what));
+  from += sizeof n;
+  std::vector<Row> rows(n);
+  if (n) std::memcpy(static_cast<void *>(rows.data()), from, n * sizeof(Row));
+  from += n * sizeof(Row);
+  for (std::size_t r = 1; r < rows.size(); ++r)
+    if (rows[r].point < 0 || rows[r - 1].point < 0)
+      throw std::runtime_error(fmt::format("the record of {} is not its own", what));
+  return rows;
+}
+
+}    // namespace
+
+StateRecords FixMdanimContact::pack() const
+{
+  StateRecords records;
+  for (const auto &[ids, contacts] : world_of_contact.pair_contacts()) {
+    Bytes &bytes = records[{ids.first, ids.second}];
+    append_rows(bytes, &STATE_VERSION, 1);
+    append(bytes, contacts.first);
+    append(bytes, contacts.second);
+  }
+  for (const auto &[object_id, contacts] : world_of_contact.plane_contacts()) {
+    Bytes &bytes = records[{object_id, 0}];
+    append_rows(bytes, &STATE_VERSION, 1);
+    append(bytes, contacts);
+  }
+  return records;
+}
+
+void FixMdanimContact::unpack(const StateRecords &records)
+{
+  take_objects();
+  std::map<int, const ContactBody *> body_of;
+  for (int n = 0; n < world_of_contact.objects(); ++n) body_of[world_of_contact.object(n).id] = world_of_contact.object(n).body;
+  const auto is_point = [&](int object_id, int point) {
+    return point >= 0 && point < static_cast<int>(body_of.at(object_id)->points().size());
+  };
+  std::map<ContactWorld::PairKey, std::pair<std::vector<FieldContact>, std::vector<FieldContact>>> pairs;
+  std::map<int, std::vector<PlaneContact>> planes;
+  for (const auto &[key, bytes] : records) {
+    const std::string what = key.b ? fmt::format("objects {} and {}", key.a, key.b) : fmt::format("object {}", key.a);
+    const auto bad = [&](const char *why) { throw std::runtime_error(fmt::format("the record of {} {}", what, why)); };
+    if (!body_of.count(key.a) || (key.b && !body_of.count(key.b))) bad("is of an object that is not there");
+    const std::uint8_t *from = bytes.data(), *const end = from + bytes.size();
+    std::int64_t version = -1;
+    if (bytes.size() >= sizeof version) std::memcpy(&version, from, sizeof version);
+    if (version != STATE_VERSION) bad("has another version");
+    from += sizeof version;
+    if (key.b) {
+      auto &[lower, higher] = pairs[{key.a, key.b}];
+      lower = take<FieldContact>(from, end, what.c_str());
+      higher = take<FieldContact>(from, end, what.c_str());
+      const auto check = [&](const std::vector<FieldContact> &rows, int owner, int host) {
+        for (const FieldContact &row : rows)
+          if (!is_point(owner, row.point) || row.side < 0 || row.side >= body_of[host]->sides() ||
+              !body_of[host]->is_filled(row.cell[0], row.cell[1], row.cell[2]))
+            bad("has points that there are not");
+      };
+      check(lower, key.a, key.b);
+      check(higher, key.b, key.a);
+    } else {
+      planes[key.a] = take<PlaneContact>(from, end, what.c_str());
+      for (const PlaneContact &row : planes[key.a])
+        if (!is_point(key.a, row.point) || row.plane < 0 ||
+            row.plane >= static_cast<int>(world_of_contact.settings.planes.size()))
+          bad("has points or planes that there are not");
+    }
+    if (from != end) bad("is too long");
+  }
+  world_of_contact.restore(pairs, planes);
+}
+
+void FixMdanimContact::write_restart(FILE *file)
+{ mdanim::write_restart(*this, lmp, fmt::format("fix {} mdanim/contact", id), file); }
+
+void FixMdanimContact::restart(char *buffer)
+{ mdanim::read_restart(*this, lmp, fmt::format("fix {} mdanim/contact", id), buffer); }
+
+// --- what it tells ---
+
+double FixMdanimContact::compute_scalar() { return world_of_contact.account.energy + world_of_contact.account.stick_energy; }
+
+// 1: energy of sticking; 2-4: heat of friction, energy that dashpots took, that was let go, since the fix was made; 5: deepest
+// point in this run; 6: points in touch; 7: pairs of objects near each other; 8: wall seconds of the slowest rank; 9-11: force on
+// planes
+double FixMdanimContact::compute_vector(int n)
+{
+  const ContactAccount &account = world_of_contact.account;
+  switch (n) {
+    case 0:
+      return account.stick_energy;
+    case 1:
+      return account.heat;
+    case 2:
+      return account.damped;
+    case 3:
+      return account.let_go;
+    case 4:
+      return account.deepest;
+    case 5:
+      return account.touching;
+    case 6:
+      return world_of_contact.pairs();
+    case 7: {
+      double slowest = 0.0;
+      MPI_Allreduce(&seconds, &slowest, 1, MPI_DOUBLE, MPI_MAX, world);
+      return slowest;
+    }
+    default: {
+      const Vec3 force = world_of_contact.force_on_planes();
+      return n == 8 ? force.x : n == 9 ? force.y : force.z;
+    }
+  }
+}
+
+double FixMdanimContact::memory_usage()
+{
+  double sum = static_cast<double>(world_of_contact.bytes()) +
+               static_cast<double>((mine.capacity() + my_slot.capacity() + slot_of_entry.capacity()) * sizeof(int));
+  for (const auto &[number, body] : bodies) sum += static_cast<double>(body.bytes());
+  return sum;
+}

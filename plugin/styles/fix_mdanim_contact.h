@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/contact: objects touch each other and planes at their drawn surfaces, with friction.
+
+#ifndef LMP_FIX_MDANIM_CONTACT_H
+#define LMP_FIX_MDANIM_CONTACT_H
+
+#include "contact/contact_world.h"
+#include "engine/pass_participant.h"
+#include "fix.h"
+#include "styles/particle_value.h"
+#include "styles/stateful.h"
+
+#include <map>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdanim::Stateful {
+ public:
+  FixMdanimContact(class LAMMPS *, int, char **);
+
+  int setmask() override;
+  void init() override;
+  void setup_post_neighbor() override;
+  void setup(int) override;
+  void post_neighbor() override;
+  void post_force(int) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  void append_required_atoms(std::vector<int> &particles) const override;
+  bool depends_on_positions_only() const override { return true; }
+  void add_forces(const mdanim::Positions &place, const mdanim::ForceSums &force) override;
+  double safe_displacement() const override { return world_of_contact.distance_apart(); }
+  bool sees_absolute_position() const override { return !world_of_contact.settings.planes.empty(); }
+
+  mdanim::StateRecords pack() const override;
+  void unpack(const mdanim::StateRecords &records) override;
+
+  // A body of objects whose particles have this number as their BODY. Throws std::runtime_error.
+  void take_body(int kind, const mdanim::ContactBodyArrays &arrays);
+
+ private:
+  // What all ranks know of an object, from its particle with the lowest tag.
+  struct Known {
+    int id, moves;
+    tagint lowest;
+    long long particles;
+    double kind, young, friction, mass;
+  };
+  int read_word(int iarg, int narg, char **arg);
+  std::vector<Known> survey() const;
+  void take_objects();
+  void list();
+  template <class PlaceOf> void step(const PlaceOf &place_of, double dt);
+
+  mdanim::ParticleValue kind, young, friction;
+  int among_bit = 1;
+  bool has_damping = false;
+  std::map<int, mdanim::ContactBody> bodies;
+  mdanim::ContactWorld world_of_contact;
+
+  std::vector<tagint> lowest;         // tags, of objects
+  std::vector<int> object;            // of local particles when lists were made, -1 for none
+  std::vector<int> mine;              // local particles with a part in contacts
+  std::vector<int> my_slot;           // and where they are in the world
+  std::vector<int> slot_of_entry;     // of particles of all ranks, rank by rank
+  std::vector<int> counts, starts;    // of the numbers that ranks send, three for each particle
+  std::vector<double> sent, received;
+  double seconds = 0.0;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
