@@ -18,9 +18,17 @@ BALL = {"shape": "sphere 10 cm", "position": "(0, 0, 1) m", "mass": "2 kg", "ela
 WATER = {"basin": "from (-1, -1, 0) m to (1, 1, 1.2) m", "density": "1000 kg/m^3", "volume": "2 m^3"}
 
 
+OF_SURFACES = ("friction", "contact-damping")
+"""Settings that the contact of the paper has only as 0."""
+
+
 def scene(block: str, **settings: str):
     """A small scene in which one block has these settings in place of, or beside, its usual ones."""
     blocks = {"object": dict(BALL), "liquid": dict(WATER), "control": {"time": "3 s"}, "render": {}, "effects": {}}
+    if block == "contact":
+        blocks["contact"] = {}
+    if block == "contact" or any(settings.get(word, "0") != "0" for word in OF_SURFACES):
+        blocks["control"]["contact-model"] = "surface"
     top = {"gravity": "(0, 0, -9.81) m/s^2"}
     chosen = blocks[block] if block else top
     for word in settings:
@@ -29,7 +37,7 @@ def scene(block: str, **settings: str):
     chosen |= settings
     text = "".join(f"{word} {value}\n" for word, value in top.items())
     for name, content in blocks.items():
-        head = {"object": "object ball", "liquid": "liquid water"}.get(name, name)
+        head = {"object": "object ball", "liquid": "liquid water", "contact": "contact ball basin"}.get(name, name)
         text += f"{head} {{\n" + "".join(f"  {w} {v}\n" for w, v in content.items()) + "}\n"
     return parse_scene(text)
 

@@ -37,6 +37,8 @@ vectors = st.tuples(numbers, numbers, numbers)
 lengths = st.floats(0.01, 1e9)  # positions up to 1e6 m are then exact enough
 sizes = st.tuples(lengths, lengths, lengths)
 movies = st.from_regex(r"[^\s/\"\x00-\x1f]{1,20}", fullmatch=True).filter(str.isprintable).map(lambda name: f"{name}.mp4")
+frictions = st.none() | st.floats(0, 10)
+dampings = st.none() | st.floats(0, 1)
 colors = st.none() | st.from_regex(r"#[0-9a-f]{6}", fullmatch=True)
 texts = st.text(st.characters(blacklist_characters='"\n\r\ufeff\0', blacklist_categories=("Cs",)), max_size=20)
 words = st.from_regex(r"[a-zA-Z_][a-zA-Z0-9_]{0,8}", fullmatch=True)
@@ -97,6 +99,7 @@ def solids(draw, name):
         velocity=draw(vectors),
         spin=draw(vectors),
         drag=draw(st.floats(0, 1e3)),
+        friction=draw(frictions),
         hold=tuple(draw(st.lists(holds, max_size=2))),
         color=draw(colors),
     )
@@ -112,6 +115,9 @@ def scenes(draw):
         resolution=draw(st.none() | positive),
         accuracy=draw(st.sampled_from(records.Accuracy) | st.floats(1e-6, 0.9)),
         contact_stiffness=draw(st.floats(0.1, 100.0)),
+        contact_model=records.ContactModel.SURFACE,
+        friction=draw(st.floats(0, 10)),
+        contact_damping=draw(dampings),
         seed=draw(st.integers(0, 2**53 - 1)),
         save=draw(st.sampled_from(records.Save)),
         single=draw(st.booleans()),
@@ -138,6 +144,11 @@ def scenes(draw):
             fill=draw(st.none() | st.just((basin.low, basin.high))),
             color=draw(colors),
         )
+    sides = st.lists(st.sampled_from([b.name for b in bodies]), min_size=2, max_size=2, unique=True)
+    contacts = ()
+    if len(bodies) > 1 and draw(st.booleans()):
+        mu, beta = draw(st.tuples(frictions, dampings).filter(lambda both: both != (None, None)))
+        contacts = (records.ContactPair(*draw(sides), mu, beta),)
     cameras = draw(
         st.lists(
             st.builds(records.Camera, vectors, vectors | st.sampled_from([b.name for b in bodies]), up=vectors.filter(any)),
@@ -158,6 +169,7 @@ def scenes(draw):
         gravity=(0.0, 0.0, -draw(positive)) if wet else draw(vectors),
         solids=bodies,
         liquid=liquid,
+        contacts=contacts,
         ground=draw(st.none() | numbers),
         walls=draw(st.none() | st.just(records.Walls((-2e6,) * 3, (2e6,) * 3))),
         effects=draw(st.dictionaries(st.sampled_from(sorted(KEYWORDS["effects"])), st.sampled_from(records.Switch), max_size=3)),

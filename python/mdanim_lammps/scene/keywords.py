@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-from .scene import Control, Liquid, Render, Scene, Solid, Switch
+from .scene import ContactPair, Control, Liquid, Render, Scene, Solid, Switch
 from .schema import Keyword, Rule, Words, keywords, syntax, units_shown
 
 
@@ -28,7 +28,7 @@ class Block:
     indexed: bool = False
     """Whether a name may have an index, ``ball[3]``."""
     of_objects: bool = False
-    """Whether the names are those of objects of the scene, not a name of its own."""
+    """Whether the names are those of objects, repeats and planes of the scene, not a name of its own."""
     many: bool = False
 
     @property
@@ -42,6 +42,10 @@ BLOCKS = {b.name: b for b in (
           names=("name",), indexed=True, many=True),
     Block("liquid", Liquid, "liquid", "The liquid of the scene; there is at most one, and it needs gravity along -z.",
           names=("name",)),
+    Block("contact", ContactPair, "contacts", "What holds where two objects touch, instead of what follows from each: "
+          "`contact ball floor { friction 0.1 }`. The name of a repeat without its index stands for all of its objects; "
+          "`ground`, `walls` and `basin` may stand for one of the two. No pair may be named twice.",
+          names=("first", "second"), indexed=True, of_objects=True, many=True),
     Block("effects", None, "effects", "Switches effects on or off by hand. `auto`, the default, runs only what the scene "
           "calls for; `off` on an effect that the scene needs is a warning."),
     Block("control", Control, "control", "How long, how finely, what is saved. Needed: `time`."),
@@ -95,7 +99,6 @@ STATEMENTS = {
 """Statements that are not settings: how they are written, what they do."""
 
 NOT_SUPPORTED = {
-    "friction": "objects slide freely, see docs/physics-contact.md",
     "restitution": "how high objects bounce follows from elasticity and damping: set damping",
     "rope": "a thin cylinder with hold comes near it",
     "cloth": "a thin box comes near it",

@@ -67,6 +67,13 @@ CONTACT_STIFFNESS = Limit(
     "1 is as stiff as the material itself; 4 halves how deep objects sink in, for a shorter time step",
 )
 """Softer, objects pass through each other before they are crushed; stiffer, only time is lost."""
+FRICTION = Limit(
+    "friction", 10.0, way_out="rubber on dry concrete has 1; above 10 objects stick to walls, as glue would hold them"
+)
+"""At 10 an object stays on a slope of 84 degrees."""
+CONTACT_DAMPING = Limit("contact-damping", 1.0, way_out="1 is critical damping: nothing chatters any more")
+MOST_PAIRS = 10**5
+"""Pairs of objects that all contact blocks of a scene name together."""
 SWEEPS = Limit("sweeps", 4096, way_out="write sweeps auto, which takes 8 for each cell that the fastest solid travels")
 """What fix mdanim/liquid takes."""
 PIXELS = Limit("the size of a picture", 16384, way_out="the most is 16384 along a side")

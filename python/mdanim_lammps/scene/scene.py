@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 
 from ..errors import Span
 from .formatting import vector
-from .limits import CONTACT_STIFFNESS, DAMPING, PIXELS, SWEEPS
+from .limits import CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, FRICTION, PIXELS, SWEEPS
 from .rotation import IDENTITY, departure, rotation_about, rotation_euler
 from .schema import Codec, Keyword, OneOf, Rule, Vector, Words, setting
 from .shapes import (
@@ -107,6 +107,12 @@ class Solid:
         "<lambda:N*s/m>", "Air drag of the whole object, F = -lambda v, eq. (3.9).",
         "0.5 N*s/m", Rule.NOT_NEGATIVE, default=0.0)  # fmt: skip
     """lambda of the whole object, eq. (3.9) [N*s/m]."""
+    friction: float | None = setting(
+        "<mu>",
+        "Coefficient of friction; two objects in touch have sqrt(mu_A mu_B), an object has its own against ground, walls and "
+        "basin. Needs `contact-model surface`. Absent: that of `control`.",
+        "0.4", Rule.NOT_NEGATIVE, default=None, limit=FRICTION)  # fmt: skip
+    """mu [-]; None is that of the scene."""
     hold: tuple[Hold, ...] = setting(
         None,
         "Particles that never move: both faces across an axis of the object, one face, all of them (a wedge, an obstacle), or "
@@ -116,6 +122,25 @@ class Solid:
     """``#rrggbb``; None lets the renderer choose."""
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
     """Where each keyword's value stands; ``spans["object"]`` is the object's name."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContactPair:
+    """What holds where some objects touch some others, or a plane."""
+
+    first: str
+    """An object, all objects of a repeat, ``ground``, ``walls`` or ``basin``."""
+    second: str
+    friction: float | None = setting(
+        "<mu>", "Coefficient of friction of these two. Absent: sqrt(mu_A mu_B), or that of the object against a plane.",
+        "0.1", Rule.NOT_NEGATIVE, default=None, limit=FRICTION)  # fmt: skip
+    """mu [-]; None is that of the two objects."""
+    contact_damping: float | None = setting(
+        "<beta>", "Damping of their contact. Absent: that of `control`.",
+        "0.1", Rule.NOT_NEGATIVE, default=None, limit=CONTACT_DAMPING)  # fmt: skip
+    """Share of critical damping [-]; None is that of the scene."""
+    spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+    """Where each keyword's value stands; ``spans["contact"]`` is that of the names."""
 
 
 class LiquidModel(Enum):
@@ -202,6 +227,17 @@ class Accuracy(Enum):
         return {Accuracy.PREVIEW: 0.7, Accuracy.BALANCED: 0.5, Accuracy.REFERENCE: 0.25}[self]
 
 
+class ContactModel(Enum):
+    PAPER = "paper"
+    """A barrier between boundary and inner particles, without friction."""
+    SURFACE = "surface"
+    """The drawn surface is where objects touch; friction."""
+
+
+CONTACT_MODEL = ContactModel.PAPER
+"""That of a scene which names none."""
+
+
 class Save(Enum):
     ALL = "all"
     BOUNDARY = "boundary"
@@ -272,6 +308,21 @@ class Control:
         "100. The stiffer it is, the less objects sink into each other, and the shorter time steps get.",
         "4", Rule.POSITIVE, default=1.0, limit=CONTACT_STIFFNESS)  # fmt: skip
     """What objects and walls push back with, over E h [-]."""
+    contact_model: ContactModel = setting(
+        None,
+        "`surface`: objects touch where their drawn surfaces are, and have friction. `paper`: a barrier between particles keeps "
+        "objects about half a spacing apart, without friction.",
+        "surface", default=CONTACT_MODEL, codec=Words(ContactModel))  # fmt: skip
+    friction: float = setting(
+        "<mu>", "Coefficient of friction of objects that have none of their own. Needs `contact-model surface`.",
+        "0.5", Rule.NOT_NEGATIVE, default=0.0, limit=FRICTION)  # fmt: skip
+    """mu [-]"""
+    contact_damping: float | None = setting(
+        "<beta>",
+        "Damping of contacts that have friction, as a fraction of critical damping: it ends chatter. Needs `contact-model "
+        "surface`. Absent: 0.3.",
+        "0.3", Rule.NOT_NEGATIVE, default=None, limit=CONTACT_DAMPING)  # fmt: skip
+    """Share of critical damping where there is friction [-]; None is 0.3."""
     seed: int = setting("<n>", "Seed of `rand` and of the liquid.", "7", Rule.WHOLE, default=1)
     save: Save = setting(
         "<all|boundary> [<single|double>]",
@@ -407,6 +458,7 @@ class Scene:
     """[m/s^2]"""
     solids: tuple[Solid, ...] = ()
     liquid: Liquid | None = None
+    contacts: tuple[ContactPair, ...] = ()
     ground: float | None = setting("z <h:m>", "A floor plane at height h. Absent: no floor.", "z 0 m", default=None)
     """Height of the ground plane [m]."""
     walls: Walls | None = setting(

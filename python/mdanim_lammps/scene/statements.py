@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cache
 from itertools import count
 from pathlib import Path
 
@@ -62,6 +63,12 @@ def parse_override(source: SceneFile, problems: Problems) -> Node | None:
     except Fault as fault:
         problems.fault(source, fault)
         return None
+
+
+@cache
+def stops(keyword: Keyword) -> frozenset[str]:
+    """Words that end a value of a keyword; of a word with a hyphen its beginning, which is a token of its own."""
+    return literals(keyword.form) | {word.partition("-")[0] for word in KEYWORDS[keyword.block]} | STATEMENTS.keys()
 
 
 # --- the walk ---------------------------------------------------------------------------------------------
@@ -165,7 +172,10 @@ class Parser(Reader):
 
     def opens_block(self) -> bool:
         """Whether the next tokens look like the head of a block."""
-        return self.peek.type == "LBRACE" or (self.peek.type == "NAME" and self.ahead(1).type in ("LBRACE", "LSQB"))
+        names = 0
+        while self.ahead(names).type == "NAME":
+            names += 1
+        return self.ahead(names).type == "LBRACE" or (names > 0 and self.ahead(names).type == "LSQB")
 
     def statement(self, block: str, opened: Token | None, repeats: int) -> list:
         t = self.peek
@@ -423,8 +433,7 @@ class Parser(Reader):
         if slot.kind == "place" and t.type == "NAME":
             name = self.name()
             return Value(slot, name.token, name.last, name=name)
-        stops = literals(keyword.form) | KEYWORDS[keyword.block].keys() | STATEMENTS.keys()
-        node = self.expression(slot, stops, more)
+        node = self.expression(slot, stops(keyword), more)
         return Value(slot, node.first, node.last, node)
 
     def text(self, what: str, hint: str) -> Token:

@@ -6,16 +6,18 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from ..errors import Span
 from . import keywords, units
 from . import scene as records
+from .contact_pairs import PLANES, objects_by_name, pairs_of
 from .expand import EvaluatedBlock, EvaluatedSetting
 from .formatting import number, say, vector, whole
 from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example
-from .limits import FARTHEST, MOST_BYTES_OF_MESH, MOST_FRAMES
+from .limits import FARTHEST, MOST_BYTES_OF_MESH, MOST_FRAMES, MOST_PAIRS
 from .scene import GLOBALS, IMMERSION, QUANTITIES, Vector
 from .source import Problems, SceneFile, ordinary
 
@@ -37,6 +39,13 @@ class Validator:
             self.by_kind.setdefault(block.block, []).append(block)
         self.names = dict.fromkeys(b.name for b in self.blocks("object"))
         """Names of all objects, in the order of the scene."""
+        self.paired: dict[tuple[int | str, int], Span] = {}
+        """Places of the contact blocks, by the pairs that they are of."""
+
+    @cached_property
+    def named(self) -> dict[str, list[int]]:
+        """Numbers of the objects that each name of a contact block may stand for."""
+        return objects_by_name(self.names)
 
     def problem(self, span: Span | None, message: str, hint: str = "", severity: str = "error", key=None) -> None:
         self.problems.add(span, message, hint, severity, key)
@@ -57,6 +66,7 @@ class Validator:
         if top.get("walls"):
             self.corners(self.out.first("walls"), "the space between the walls")
             self.inside_walls(held["solids"], top["walls"])
+        self.contact_model_fits(control, held["solids"])
         self.cameras(control)
         top["expects"] = self.expects(control)
         if not held["solids"] and not self.blocks("liquid") and not self.out.excused("object") and not self.problems.errors:
@@ -82,8 +92,10 @@ class Validator:
 
     def record(self, kind: Block, block: EvaluatedBlock) -> Any:
         """One block with the checks of its kind (``check_KIND``); None after an error."""
-        if kind.of_objects and sum(self.known_object(n, self.head(block)) for n in block.names) < len(block.names):
-            return None
+        if kind.of_objects:
+            places = (block.group.source.span(name.token, name.last) for name in block.group.names)
+            if sum(map(self.known_body, block.names, places)) < len(block.names):
+                return None
         if not self.complete(block):
             return None
         settings = self.settings(block)
@@ -187,6 +199,25 @@ class Validator:
                     f"the walls go from {units.show(walls.low)} to {units.show(walls.high)} m",
                 )
 
+    def contact_model_fits(self, control: records.Control | None, solids: list[records.Solid]) -> None:
+        """The contact of the paper has neither friction nor damping; that of surfaces is damped where it has friction."""
+        if control is None:
+            return
+        if control.contact_model is not records.ContactModel.PAPER:
+            if control.contact_damping and not (control.friction or self.blocks("contact") or any(s.friction for s in solids)):
+                cause = "contact-damping of control acts where there is friction, and nothing in the scene has any"
+                way_out = "write friction 0.5 in control, or contact-damping in a contact block"
+                self.problem(control.spans["contact-damping"], cause, way_out, severity="warning")
+            return
+        words = {"friction": control.friction, "contact-damping": control.contact_damping}
+        asked = [("a contact block", self.head(b)) for b in self.blocks("contact")]
+        asked += [("friction", s.spans["friction"]) for s in solids if s.friction]
+        asked += [(word, control.spans[word]) for word, value in words.items() if value]
+        if asked:
+            what, span = asked[0]
+            cause = f"{what} needs contact-model surface; the contact of the paper has no friction"
+            self.problem(span, cause, "write contact-model surface in control", key="contact-model")
+
     # -- helpers for one block
 
     def complete(self, block: EvaluatedBlock) -> bool:
@@ -285,6 +316,35 @@ class Validator:
                 f"at most {number(FARTHEST)} times its smallest length",
             )
 
+    def check_contact(self, block: EvaluatedBlock, contact: records.ContactPair) -> records.ContactPair | None:
+        """Two things that can touch, no pair of them twice, and something to say about them."""
+        place = self.head(block)
+        if contact.friction is None and contact.contact_damping is None and not block.excused(*KEYWORDS["contact"]):
+            cause = f"contact {block.name} says nothing{block.where}"
+            self.problem(place, cause, "write friction 0.1 or contact-damping 0 in it, or leave it out")
+            return None
+        planes = [name for name in block.names if name in PLANES and name not in self.named]
+        if len(planes) == 2:
+            self.problem(place, f"{planes[0]} and {planes[1]} never touch", "write the name of an object for one of them")
+            return None
+        first, second = (self.named.get(name, ()) for name in block.names)
+        if first == second and len(first) == 1:
+            cause = f"{contact.first} does not touch itself{block.where}"
+            self.problem(place, cause, "write the names of two objects, or ground, walls or basin for one")
+            return None
+        if len(self.paired) + max(1, len(first)) * max(1, len(second)) > MOST_PAIRS:
+            cause = f"the contact blocks of the scene name more than {whole(MOST_PAIRS)} pairs of objects"
+            self.problem(place, cause, "write friction in the objects, or in control", key="pairs")
+            return None
+        for pair in [(planes[0], i) for i in (*first, *second)] if planes else pairs_of(first, second):
+            if (given := self.paired.setdefault(pair, place)) is not place:
+                names = list(self.names)
+                one, other = (i if isinstance(i, str) else names[i] for i in pair)
+                cause = f"the contact of {one} and {other} is given twice{block.where}"
+                self.problem(place, cause, f"first given at {given}", key=("contact", id(block.group)))
+                return None
+        return contact
+
     def check_liquid(self, block: EvaluatedBlock, liquid: records.Liquid) -> records.Liquid:
         """Volume or level against what the liquid starts in: the basin, or part of it."""
         self.corners(block.first("basin"), "the basin")
@@ -357,6 +417,23 @@ class Validator:
             return name in self.names
         hint = did_you_mean(name, list(self.names)[:2000])
         self.problem(span, f"no object is called {name}", hint if self.names else "the scene has no object")
+        return False
+
+    def known_body(self, name: str, span: Span) -> bool:
+        """Whether a name of a contact block stands for something; an unknown one is a problem."""
+        plane = name in PLANES and bool(self.blocks("liquid") if name == "basin" else self.out.first(name))
+        if name in self.named and plane:
+            cause = f"{name} is both an object and {'the basin of the liquid' if name == 'basin' else f'the {name} of the scene'}"
+            self.problem(span, cause, "give the object another name")
+            return False
+        if name in self.named or plane or self.out.excused("object", "liquid", name):
+            return True
+        if name in PLANES:
+            way_out = example(KEYWORDS["liquid"]["basin"]) + " in a liquid" if name == "basin" else example(KEYWORDS[""][name])
+            self.problem(span, f"the scene has no {name}", way_out)
+        else:
+            hint = did_you_mean(name, list(self.named)[:2000])
+            self.problem(span, f"no object is called {name}", hint if self.names else "the scene has no object")
         return False
 
     def expects(self, control: records.Control | None) -> tuple[records.Expect, ...]:
