@@ -15,10 +15,11 @@ static constexpr double SAME_PLACE = 1e-3;      // cells that X may be off its g
 static constexpr double LEFT = 1e-9;            // cells that X may stand out of its own
 static constexpr double AT_ONCE = -1.0;
 static constexpr double NEVER = std::numeric_limits<double>::infinity();
-static constexpr double LOST = 0.02;       // cells to go before a point that was not found is looked for again
-static constexpr double PRESSED = 0.5;     // cells are taken to be pressed to half at most: motion in space over that in X
-static constexpr double SEARCHED = 5.0;    // cells around a point in which one of the host is looked for
-static constexpr double NEAREST = 2.2;     // cells from the middle of a cell on the surface beyond which there is no contact
+static constexpr double LOST = 0.02;        // cells to go before a point that was not found is looked for again
+static constexpr double PRESSED = 0.5;      // cells are taken to be pressed to half at most: motion in space over that in X
+static constexpr double RAMPS_END = 2.0;    // cells from an edge from which on all of any point counts
+static constexpr double SEARCHED = 5.0;     // cells around a point in which one of the host is looked for
+static constexpr double NEAREST = 2.2;      // cells from the middle of a cell on the surface beyond which there is no contact
 static constexpr std::uint8_t EVERY_SIDE = 63;
 
 static double component(const Vec3 &a, int axis) { return axis == 0 ? a.x : axis == 1 ? a.y : a.z; }
@@ -37,14 +38,13 @@ void ContactField::list(ContactObject &points_of, ContactObject &host_now, const
   owner = &points_of, host = &host_now;
   host_box = host->box;
   outer.clear(), outer_middle.clear(), outer_grid.clear();
-  // The drawn surface of what is no cuboid stands out of its particles.
-  const double stands_out = host->body->is_cuboid() ? 0.25 * host->body->spacing() : 1.25 * host->body->spacing();
+  // A sharp point counts until the centre of its area is a quarter of a cell beyond an edge; the drawn surface of what is no
+  // cuboid stands out of its particles.
+  const double stands_out = 0.6 * owner->body->spacing() + (host->body->is_cuboid() ? 0.6 : 1.25) * host->body->spacing();
 
   std::vector<int> points_before(near.size());
   for (std::size_t q = 0; q < near.size(); ++q) points_before[q] = near.point(q);
-  const std::vector<double> wake_before = std::move(wake);
   const std::vector<Watch> watch_before = std::move(watch);
-  const double spent = budget;
   near.clear(), wake.clear(), watch.clear(), of_contact.clear();
   budget = 0.0;
   std::size_t before = 0, contact = 0;
@@ -62,7 +62,8 @@ void ContactField::list(ContactObject &points_of, ContactObject &host_now, const
     }
     if (touches) of_contact.push_back(near.size() - 1);
     watch.push_back(known ? watch_before[before] : Watch{});
-    wake.push_back(touches ? NEVER : std::max(out, known && wake_before[before] < NEVER ? wake_before[before] - spent : AT_ONCE));
+    // How far all has gone in this step is not known: what is not far away is looked at.
+    wake.push_back(touches ? NEVER : std::max(out, AT_ONCE));
   }
   if (of_contact.size() < contacts.size()) {    // of a point whose particles are not there
     std::vector<FieldContact> kept;
@@ -163,6 +164,10 @@ double ContactField::part(const SurfacePoint &point, const Vec3 &X, int side, Ve
 {
   slope = {};
   if (!host->body->is_cuboid()) return 1.0;
+  double inside = NEVER;    // cells from the nearest edge
+  for (int d = 0; d < 3; ++d)
+    if (d != side / 2) inside = std::min({inside, component(X, d), host->body->count(d) - component(X, d)});
+  if (inside >= RAMPS_END) return 1.0;
   double t[3] = {1.0, 1.0, 1.0}, dt[3] = {0.0, 0.0, 0.0};
   for (int d = 0; d < 3; ++d) {
     if (d == side / 2) continue;
@@ -383,15 +388,18 @@ void ContactField::add_forces(ContactArrays &arrays, double nearer, double dt, C
       if (wake[q] < budget) look(q, arrays, true);
   std::size_t left = 0;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    FieldContact contact = contacts[c];
-    if (!moves) contact.change = {};    // and what is known stays as it is
-    const Fate fate = push(contact, of_contact[c], arrays, dt, account);
-    if (!moves) continue;
-    if (fate != Fate::STAYS) {
-      end(contact, of_contact[c], fate, arrays, account);
+    if (!moves) {    // what is known stays as it is
+      FieldContact copy = contacts[c];
+      copy.change = {};
+      push(copy, of_contact[c], arrays, dt, account);
       continue;
     }
-    contacts[left] = contact, of_contact[left] = of_contact[c];
+    const Fate fate = push(contacts[c], of_contact[c], arrays, dt, account);
+    if (fate != Fate::STAYS) {
+      end(contacts[c], of_contact[c], fate, arrays, account);
+      continue;
+    }
+    if (left < c) contacts[left] = contacts[c], of_contact[left] = of_contact[c];
     ++left;
   }
   if (moves) contacts.resize(left), of_contact.resize(left);

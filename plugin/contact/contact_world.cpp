@@ -10,7 +10,7 @@
 namespace mdanim {
 
 static constexpr double STANDS_OUT = 2.5;    // spacings by which two drawn surfaces may stand out of their particles
-static constexpr double AROUND = 4.5;        // spacings around a contact in which particles may have a part in it
+static constexpr double AROUND = 3.0;        // spacings around a contact in which particles may have a part in it
 static constexpr double MOST_SKINS = 32.0;
 static constexpr double ONSET = 0.05;    // eps over the spacing
 
@@ -92,7 +92,9 @@ void ContactWorld::look_ahead(const std::vector<Box> &boxes, double now)
   }
 
   zones.assign(all.size(), {});
-  const double around = skin + AROUND * spacing;
+  // Points of what is no cuboid stand out of its box.
+  const bool cuboids = std::all_of(all.begin(), all.end(), [](const ContactObject &one) { return one.body->is_cuboid(); });
+  const double around = skin + (AROUND + (cuboids ? 0.0 : 0.5 * STANDS_OUT)) * spacing;
   for (const auto &[a, b] : near_pairs) {
     zones[a].push_back(boxes[b].grown(around));
     zones[b].push_back(boxes[a].grown(around));

@@ -72,19 +72,20 @@ struct Spot {
   }
 };
 
-// False when a particle with a weight is not there.
-inline bool evaluate(const Placed &host, const Weights &weights, Spot &spot)
+// Loops over up to `MOST` nodes of each axis: always two where that is all, which compilers unroll.
+template <int MOST> MDANIM_ALWAYS_INLINE bool evaluate_nodes(const Placed &host, const Weights &weights, Spot &spot)
 {
   const auto &[ax, ay, az] = weights;
+  const int nx = MOST == 2 ? 2 : ax.n, ny = MOST == 2 ? 2 : ay.n, nz = MOST == 2 ? 2 : az.n;
   const int row = host.body.row(), layer = host.body.layer();
   int missing = 0;
   spot.x = spot.J[0] = spot.J[1] = spot.J[2] = Vec3{};
-  for (int k = 0; k < az.n; ++k) {
+  for (int k = 0; k < nz; ++k) {
     Vec3 s, sx, sy;
-    for (int j = 0; j < ay.n; ++j) {
+    for (int j = 0; j < ny; ++j) {
       Vec3 t, tx;
       const int *slot = host.slot + ax.first + row * (ay.first + j) + layer * (az.first + k);
-      for (int i = 0; i < ax.n; ++i) {
+      for (int i = 0; i < nx; ++i) {
         missing |= slot[i];
         const Vec3 &x = host.place[std::max(slot[i], 0)];
         t += ax.w[i] * x;
@@ -104,19 +105,35 @@ inline bool evaluate(const Placed &host, const Weights &weights, Spot &spot)
   return true;
 }
 
+// False when a particle with a weight is not there.
+inline bool evaluate(const Placed &host, const Weights &weights, Spot &spot)
+{
+  const bool two = weights[0].n == 2 && weights[1].n == 2 && weights[2].n == 2;
+  return two ? evaluate_nodes<2>(host, weights, spot) : evaluate_nodes<3>(host, weights, spot);
+}
+
+template <int MOST>
+MDANIM_ALWAYS_INLINE void spread_to_nodes(const Placed &host, const Weights &weights, const Vec3 &force,
+                                          const std::array<Vec3, 3> &moment, Vec3 *on)
+{
+  const auto &[ax, ay, az] = weights;
+  const int nx = MOST == 2 ? 2 : ax.n, ny = MOST == 2 ? 2 : ay.n, nz = MOST == 2 ? 2 : az.n;
+  const int row = host.body.row(), layer = host.body.layer();
+  for (int k = 0; k < nz; ++k) {
+    const Vec3 fz = az.w[k] * force + az.slope[k] * moment[2], zx = az.w[k] * moment[0], zy = az.w[k] * moment[1];
+    for (int j = 0; j < ny; ++j) {
+      const Vec3 fy = ay.w[j] * fz + ay.slope[j] * zy, yx = ay.w[j] * zx;
+      const int *slot = host.slot + ax.first + row * (ay.first + j) + layer * (az.first + k);
+      for (int i = 0; i < nx; ++i) on[slot[i]] += ax.w[i] * fy + ax.slope[i] * yx;
+    }
+  }
+}
+
 // Adds force N_b + dN_b/dX . moment to every particle b.
 inline void spread(const Placed &host, const Weights &weights, const Vec3 &force, const std::array<Vec3, 3> &moment, Vec3 *on)
 {
-  const auto &[ax, ay, az] = weights;
-  const int row = host.body.row(), layer = host.body.layer();
-  for (int k = 0; k < az.n; ++k) {
-    const Vec3 fz = az.w[k] * force + az.slope[k] * moment[2], zx = az.w[k] * moment[0], zy = az.w[k] * moment[1];
-    for (int j = 0; j < ay.n; ++j) {
-      const Vec3 fy = ay.w[j] * fz + ay.slope[j] * zy, yx = ay.w[j] * zx;
-      const int *slot = host.slot + ax.first + row * (ay.first + j) + layer * (az.first + k);
-      for (int i = 0; i < ax.n; ++i) on[slot[i]] += ax.w[i] * fy + ax.slope[i] * yx;
-    }
-  }
+  const bool two = weights[0].n == 2 && weights[1].n == 2 && weights[2].n == 2;
+  two ? spread_to_nodes<2>(host, weights, force, moment, on) : spread_to_nodes<3>(host, weights, force, moment, on);
 }
 
 // The material point that is at a place in space: Newton's method from X in a filled cell, going to the neighbours on the way.
