@@ -161,10 +161,13 @@ def test_a_part_says_what_a_plan_of_its_own_would_say(prepared):
     own = prepared(without)
     part = SubPlans(whole.plan).part((0, 1, 3), True)
     own_plan = make_plan(resolve(EFFECTS, own.scene), own.system, whole.certificate)
-    # Types may be numbered otherwise.
-    for field in {field.name for field in fields(System)} - {"spring_type", "constants"} | {"stiffness", "rest", "damping"}:
+    # Types may be numbered otherwise, and kinds of bodies are numbered as in the whole.
+    numbered = {"spring_type", "constants", "contact_kind", "frames"}
+    for field in {field.name for field in fields(System)} - numbered | {"stiffness", "rest", "damping"}:
         a, b = getattr(part.system, field), getattr(own_plan.system, field)
         assert np.array_equal(a, b) if isinstance(b, np.ndarray) else a == b, field
+    a, b = ([system.frames[k].shape for k in system.contact_kind] for system in (part.system, own_plan.system))
+    assert a == b
     for name in ("columns", "tables"):
         a, b = getattr(part, name), getattr(own_plan, name)
         assert a.keys() == b.keys()

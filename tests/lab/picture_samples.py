@@ -64,6 +64,7 @@ def model(name, points, hexahedron, position, surface, held=None, mass=1.0):
         young=1e5,
         drag=None,
         surface=surface,
+        frame=None,
     )
 
 

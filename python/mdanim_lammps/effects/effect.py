@@ -98,7 +98,10 @@ class Effect:
         raise NotImplementedError
 
     def columns(self, scene: Scene, system: System) -> dict[str, np.ndarray]:
-        """Per-particle properties that its commands name as ``d_NAME``, each of shape (N,)."""
+        """Per-particle properties that its commands name as ``d_NAME``, each of shape (N,).
+
+        With ``body``, the kind of each particle's body (System.contact_kind), its fix is given the contact bodies of all kinds.
+        """
         return {}
 
     def tables(self, scene: Scene, system: System) -> dict[str, np.ndarray]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import DivergedError, SetupError
 from ..model.basin import Grid
+from .c_arrays import body_arguments, pointer
 from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude, told_once
 from .cut import box_to_cut, shorter_along_rows
 from .plan import Ends, Plan
@@ -132,7 +133,7 @@ class Instance:
                 f"take {len(plan.bonds)} springs",
                 self._library.mdanim_give_springs,
                 ctypes.c_int(len(plan.bonds)),
-                *map(_pointer, springs),
+                *map(pointer, springs),
             )
         if len(plan.bonds):
             *rows, last = bond_coeffs(plan)
@@ -141,6 +142,10 @@ class Instance:
                 [f"bond_coeff {row}" for row in (*rows, f"{kind}*{self._types} {rest}")]
             )  # LAMMPS wants all types set
         self._lmp.commands_list(physics(plan))
+        for fix in plan.body_fixes:
+            for kind, body in plan.contact_bodies.items():
+                arguments = body_arguments(kind, body)
+                self._call(f"give body {kind} to fix {fix}", self._library.mdanim_contact_body, fix.encode(), *arguments)
 
     @property
     def refillable(self) -> bool:
@@ -197,11 +202,11 @@ class Instance:
             f"insert {n} particles",
             self._library.mdanim_insert,
             ctypes.c_int(n),
-            *(_pointer(a) for a in arrays),
+            *(pointer(a) for a in arrays),
             ctypes.c_int(len(names)),
             (ctypes.c_char_p * max(1, len(names)))(*(c.encode() for c in names)),
-            _pointer(properties),
-            *(map(_pointer, ends) if ends else [None] * 3),
+            pointer(properties),
+            *(map(pointer, ends) if ends else [None] * 3),
         )
         for name, table in plan.tables.items():
             self._call(
@@ -210,8 +215,8 @@ class Instance:
                 name.encode(),
                 ctypes.c_int(table.shape[1]),
                 ctypes.c_int(n),
-                _pointer(tag),
-                _pointer(np.ascontiguousarray(table, np.int32)),
+                pointer(tag),
+                pointer(np.ascontiguousarray(table, np.int32)),
             )
 
     def _cut_space(self, position: np.ndarray) -> None:
@@ -308,7 +313,7 @@ class Instance:
             )
             keys, first = np.empty((count.value, 2), np.int32), np.empty(count.value + 1, np.int64)
             data = np.empty(size.value, np.uint8)
-            pointers = map(_pointer, (keys, first, data))
+            pointers = map(pointer, (keys, first, data))
             self._call(f"give the state of fix {fix}", self._library.mdanim_state_get, fix.encode(), *pointers)
             found[fix] = StateRecords(keys, first, data)
         return found
@@ -321,7 +326,7 @@ class Instance:
                 self._library.mdanim_state_put,
                 fix.encode(),
                 ctypes.c_longlong(len(mine)),
-                *map(_pointer, (mine.keys, mine.first, mine.data)),
+                *map(pointer, (mine.keys, mine.first, mine.data)),
             )
 
     def _stateful(self) -> list[str]:
@@ -431,13 +436,13 @@ class Instance:
         Coordinates that are no numbers are passed over. Raises SetupError when nothing is traced.
         """
         low, high = np.empty((2, len(self.plan.system.names), 3))
-        self._call("tell the trace", self._library.mdanim_trace, ctypes.c_int(len(low)), _pointer(low), _pointer(high))
+        self._call("tell the trace", self._library.mdanim_trace, ctypes.c_int(len(low)), pointer(low), pointer(high))
         return low, high
 
     def top_speeds(self) -> np.ndarray:
         """Speed of the fastest particle of each object [m/s], shape (M,). Speeds that are no numbers are passed over."""
         speed = np.empty(len(self.plan.system.names))
-        self._call("tell speeds", self._library.mdanim_top_speeds, ctypes.c_int(len(speed)), _pointer(speed))
+        self._call("tell speeds", self._library.mdanim_top_speeds, ctypes.c_int(len(speed)), pointer(speed))
         return speed
 
     def liquid_heights(self) -> tuple[np.ndarray, np.ndarray]:
@@ -448,13 +453,13 @@ class Instance:
         """
         nx, ny, _ = self._grid().shape
         smooth, raw = np.empty((ny, nx)), np.empty((ny, nx))
-        self._call("tell the surface", self._library.mdanim_liquid_heights, LIQUID, _pointer(smooth), _pointer(raw))
+        self._call("tell the surface", self._library.mdanim_liquid_heights, LIQUID, pointer(smooth), pointer(raw))
         return smooth, raw
 
     def liquid_cells(self) -> np.ndarray:
         """Content of every cell, 255 where it is solid; uint8, shape (nz, ny, nx). Raises SetupError without a liquid."""
         cells = np.empty(self._grid().shape[::-1], np.uint8)
-        self._call("tell cells", self._library.mdanim_liquid_cells, LIQUID, _pointer(cells))
+        self._call("tell cells", self._library.mdanim_liquid_cells, LIQUID, pointer(cells))
         return cells
 
     def _grid(self) -> Grid:
@@ -491,7 +496,3 @@ class Instance:
     def damping_loss(self) -> float:
         """Energy that dashpots have taken so far [J]."""
         return self.total(float(self._library.mdanim_bond_lost(self._handle)))
-
-
-def _pointer(array: np.ndarray) -> ctypes.c_void_p:
-    return array.ctypes.data_as(ctypes.c_void_p)

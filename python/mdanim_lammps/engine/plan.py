@@ -12,12 +12,17 @@ import numpy as np
 from ..certificate import Certificate, strong_drag
 from ..effects import Effect, Resolved
 from ..model.basin import Grid
+from ..model.contact_body import ContactBody
 from ..model.springs import types
 from ..model.system import System
 from ..scene.scene import Scene
 
 HELD = 4
 """Atom types 1-4 are the layers of free particles (model.Layer), 5-8 those of held ones."""
+
+
+BODY = "body"
+"""Column of the kinds of particles' bodies, model.system.System.contact_kind."""
 
 
 class Ends(NamedTuple):
@@ -78,6 +83,16 @@ class Plan:
     def grid(self) -> Grid | None:
         """Cells of the liquid; None where there is none, or it is switched off."""
         return self.system.grid if any(e.uses_grid for e in self.effects) else None
+
+    @property
+    def body_fixes(self) -> tuple[str, ...]:
+        """IDs of the fixes that look up the undeformed bodies: those of effects that ask for the column ``body``."""
+        return tuple(e.fix for e in self.effects if BODY in self.asked[e.name])
+
+    @property
+    def contact_bodies(self) -> dict[int, ContactBody]:
+        """The bodies that `body_fixes` are given, by kind, ascending; without such fixes none, and none is made."""
+        return self.system.contact_bodies if self.body_fixes else {}
 
     @property
     def damped(self) -> bool:

@@ -133,6 +133,8 @@ class SubPlans:
             cell_volume=lambda: s.cell_volume[index],
             per_mass=lambda: s.per_mass[index],
             hexahedron=lambda: particle.renumber(s.hexahedron, cell),
+            contact_kind=lambda: s.contact_kind[index],
+            frames=lambda: s.frames,
             grid=lambda: s.grid if liquid else None,
         )
 

@@ -14,6 +14,7 @@ from ..scene.formatting import number, say
 from ..scene.scene import HoldAll, HoldFaces, HoldWithin, Scene, Shape, Solid, SpringConstant, Young
 from . import shapes
 from .cells import TooThin, fill_cells
+from .contact_body import BodyFrame
 from .embed import make_surface
 from .lattice import Lattice, make_lattice
 from .mesh import MeshError
@@ -26,7 +27,7 @@ def build_models(scene: Scene, progress: Callable[[int, int], None] | None = Non
     """Make the model of every solid, in the order of the scene, all with one particle spacing.
 
     ``progress(done, total)`` is called after each solid. Objects of equal shape, elasticity and mass share
-    their arrays of springs, masses, layers and surface, which are read-only; positions, velocities and held
+    their arrays of springs, masses, layers, surface and contact body, which are read-only; positions, velocities and held
     are their own.
 
     Raises SceneError with all problems of all solids in one pass: those of plan_spacing, a body that falls
@@ -56,10 +57,11 @@ def build_models(scene: Scene, progress: Callable[[int, int], None] | None = Non
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Body:
-    """A lattice and its surface, body frame."""
+    """A lattice, its surface, and what its contact body is made from; body frame."""
 
     lattice: Lattice
     surface: Surface
+    frame: BodyFrame
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,7 +88,7 @@ def _make_body(shape: Shape, h: float) -> _Body:
     surface = make_surface(shape, lattice)
     _freeze(lattice.position, lattice.share, lattice.layer, lattice.spring, lattice.hexahedron)
     _freeze(surface.triangle, surface.index, surface.weight)
-    return _Body(lattice, surface)
+    return _Body(lattice, surface, BodyFrame(shape, lattice.cells))
 
 
 def _make_fabric(lattice: Lattice, mass: float, elasticity: Young | SpringConstant, damping: float, rigid: bool) -> _Fabric:
@@ -141,6 +143,7 @@ def _make_model(solid: Solid, workshop: _Workshop) -> Model:
         hexahedron=lattice.hexahedron,
         cell=tuple(lattice.cells.edge.tolist()),
         surface=body.surface,
+        frame=body.frame,
     )
 
 

@@ -45,13 +45,20 @@ def _embedded(points: np.ndarray, triangles: np.ndarray, lattice: Lattice) -> Su
 
     At rest the weighted sums are the points themselves. Points up to about a cell outside are extrapolated.
     """
-    from scipy.spatial import cKDTree
-
-    cells = lattice.cells
-    # A point on the true surface has a cell on the outside of the lattice as its nearest one.
     outer = np.flatnonzero((lattice.share[lattice.hexahedron] < 1).any(axis=1))
-    low = lattice.position[lattice.hexahedron[outer, 0]]
-    _, near = cKDTree(low + cells.edge / 2).query(points)
-    t = ((points - low[near]) / cells.edge)[:, None, :]
+    near, t = nearest_cell(points, lattice.position[lattice.hexahedron[outer, 0]], lattice.cells.edge)
+    t = t[:, None, :]
     weight = np.where(CORNERS == 1, t, 1 - t).prod(axis=2)
     return Surface(np.asarray(triangles, np.int32), lattice.hexahedron[outer[near]], weight)
+
+
+def nearest_cell(points: np.ndarray, low: np.ndarray, edge: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The cell with the nearest centre to each point [m], shape (V, 3), and the place in it, in cell edges, shape (V, 3).
+
+    ``low`` are the lower corners of the cells [m], shape (C, 3): those on the outside of the lattice do for points of the true
+    surface.
+    """
+    from scipy.spatial import cKDTree
+
+    _, near = cKDTree(low + edge / 2).query(points)
+    return near, (points - low[near]) / edge

@@ -109,8 +109,8 @@ def make_lattice(cells: Cells) -> Lattice:
     alone, a blow on such a corner pushes it through the cell, where it stays (docs/physics-solids.md). Particles are
     numbered row by row (z slowest, x fastest).
     """
-    around = _cells_around(cells.filled)
-    braced = cells.filled & _any_corner(around == 1)
+    around = cells_around(cells.filled)
+    braced = cells.filled & any_corner(around == 1)
     present = np.flatnonzero(around)
     number = np.full(around.size, -1, np.int32)
     number[present] = np.arange(len(present), dtype=np.int32)
@@ -133,7 +133,7 @@ def make_lattice(cells: Cells) -> Lattice:
     )
 
 
-def _cells_around(filled: np.ndarray) -> np.ndarray:
+def cells_around(filled: np.ndarray) -> np.ndarray:
     """Count the filled cells at each corner of the grid, uint8, shape (nz + 1, ny + 1, nx + 1)."""
     padded = np.pad(filled, 1).astype(np.uint8)
     return sum(_window(padded, start) for start in product((0, 1), repeat=3))
@@ -156,7 +156,7 @@ def _corner_positions(cells: Cells, present: np.ndarray) -> np.ndarray:
     return position
 
 
-def _any_corner(mask: np.ndarray) -> np.ndarray:
+def any_corner(mask: np.ndarray) -> np.ndarray:
     """Which cells have a corner in the mask, bool, one shorter than the mask along every axis."""
     nz, ny, nx = np.array(mask.shape) - 1
     found = np.zeros((nz, ny, nx), bool)

@@ -179,11 +179,7 @@ def _thickness(points: np.ndarray, triangles: np.ndarray, volume: float) -> floa
     rays = 300
     chosen = np.searchsorted(area.cumsum(), (np.arange(rays) + 0.5) / rays * area.sum())
     chosen = chosen.clip(max=len(area) - 1)
-    # Even spots inside large triangles: barycentric weights from two low-discrepancy sequences.
-    u, v = (np.arange(rays)[:, None] * [0.7548776662466927, 0.5698402909980532] % 1).T
-    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
-    a, b, c = np.moveaxis(points[triangles[chosen]], 1, 0)
-    start = a + u[:, None] * (b - a) + v[:, None] * (c - a)
+    start = _spots(points[triangles[chosen]])
     inward = -normal[chosen] / np.linalg.norm(normal[chosen], axis=1)[:, None]
     size = np.linalg.norm(np.ptp(points, axis=0))
     surface = pyvista.PolyData.from_regular_faces(points, triangles)
@@ -284,6 +280,35 @@ def _hits(mesh: Triangles, lines: np.ndarray, line: np.ndarray, triangle: np.nda
     heights = np.stack([a[:, 2], b[:, 2], c[:, 2]])
     # An almost vertical triangle has no exact height; any height between its corners is valid.
     return line, np.where(np.isfinite(z), z, a[:, 2]).clip(heights.min(axis=0), heights.max(axis=0))
+
+
+# --- surface ------------------------------------------------------------------------------------------------
+
+
+def unit_normals(mesh: Triangles) -> np.ndarray:
+    """Outward normals of the triangles, of length 1 (0 without area), shape (T, 3)."""
+    normal = _normals(mesh.points, mesh.triangles)
+    length = np.linalg.norm(normal, axis=1)[:, None]
+    return np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+
+
+def scatter(mesh: Triangles, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Samples about ``spacing`` [m] apart: places [m] (K, 3), triangles (K,) and areas [m^2] (K,), which sum to that of the mesh.
+
+    Every triangle has at least one.
+    """
+    area = _areas(mesh.points, mesh.triangles)
+    count = np.ceil(area / spacing**2).clip(min=1).astype(np.int64)
+    triangle = np.repeat(np.arange(len(area)), count)
+    return _spots(mesh.points[mesh.triangles[triangle]]), triangle, (area / count)[triangle]
+
+
+def _spots(corners: np.ndarray) -> np.ndarray:
+    """An even place [m] in each triangle, corners (K, 3, 3): barycentric weights from two low-discrepancy sequences."""
+    u, v = (np.arange(len(corners))[:, None] * [0.7548776662466927, 0.5698402909980532] % 1).T
+    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+    a, b, c = np.moveaxis(corners, 1, 0)
+    return a + u[:, None] * (b - a) + v[:, None] * (c - a)
 
 
 def refined_surface(mesh: Triangles, size: float) -> tuple[np.ndarray, np.ndarray]:

@@ -5,8 +5,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from .contact_body import BodyFrame
 
 
 class Layer(IntEnum):
@@ -95,6 +99,8 @@ class Model(SpringTypes):
     drag: np.ndarray | None
     """lambda of each particle, in proportion to its mass [N*s/m], shape (N,); None without air drag."""
     surface: Surface
+    frame: BodyFrame
+    """Its shape and cells; objects of equal shape share one, and with it the contact body."""
 
     @property
     def spacing(self) -> float:

@@ -12,6 +12,7 @@ import numpy as np
 from ..scene.scene import Scene
 from . import shapes
 from .basin import Grid, scene_grid
+from .contact_body import BodyFrame, ContactBody
 from .model import Layer, Model, SpringTypes
 from .springs import types
 
@@ -53,6 +54,10 @@ class System(SpringTypes):
     """True volume of each solid over its mass [m^3/kg], shape (M,)."""
     hexahedron: np.ndarray
     """Corners of every filled lattice cell, particle numbers in VTK order, int32, shape (C, 8)."""
+    contact_kind: np.ndarray
+    """Kind of body of each solid as contact sees it, by which solid has it first, int32, shape (M,)."""
+    frames: tuple[BodyFrame, ...]
+    """What the contact body of each kind of the scene is made from."""
     grid: Grid | None
     """Cells of the liquid's basin; None without a liquid."""
     contact_factor: float = 1.0
@@ -86,6 +91,12 @@ class System(SpringTypes):
         """
         full = self.contact_factor * self.young * np.cbrt(self.cell_volume)
         return full[self.object] * np.minimum(1.0, 2.0 * self.share)
+
+    @cached_property
+    def contact_bodies(self) -> dict[int, ContactBody]:
+        """The undeformed bodies of the kinds that some solid has, by kind, ascending; made when they are first asked for, and
+        the same objects in all systems that are cut out of one."""
+        return {kind: self.frames[kind].contact for kind in np.unique(self.contact_kind).tolist()}
 
     @cached_property
     def still(self) -> np.ndarray:
@@ -133,6 +144,8 @@ def assemble(models: Sequence[Model], scene: Scene) -> System:
     merged, constants = types(np.concatenate([m.constants for m in models]))
     start = np.cumsum([0, *(len(m.constants) for m in models)])
     offsets = first[:-1].astype(np.int32)
+    frames = tuple({id(m.frame): m.frame for m in models}.values())
+    kind = {id(frame): k for k, frame in enumerate(frames)}
     return System(
         names=tuple(m.name for m in models),
         first=first,
@@ -153,6 +166,8 @@ def assemble(models: Sequence[Model], scene: Scene) -> System:
         cell_volume=np.array([np.prod(m.cell) for m in models]),
         per_mass=np.array([shapes.volume(s.shape) / m.mass.sum() for m, s in zip(models, scene.solids)]),
         hexahedron=join([m.hexahedron + o if o else m.hexahedron for m, o in zip(models, offsets)]),
+        contact_kind=np.array([kind[id(m.frame)] for m in models], np.int32),
+        frames=frames,
         grid=scene_grid(scene),
         contact_factor=scene.control.contact_stiffness,
     )

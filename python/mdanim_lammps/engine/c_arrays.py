@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Arrays as arguments of the plugin's C functions."""
+
+from __future__ import annotations
+
+import ctypes
+
+import numpy as np
+
+from ..model.contact_body import ContactBody
+
+
+def pointer(array: np.ndarray) -> ctypes.c_void_p:
+    """Where the numbers of a contiguous array lie."""
+    return array.ctypes.data_as(ctypes.c_void_p)
+
+
+def body_arguments(kind: int, body: ContactBody) -> list:
+    """What ``mdanim_contact_body`` wants behind the ID of the fix (plugin/c_api/contact_c.cpp)."""
+    return [
+        ctypes.c_int(kind),
+        *map(pointer, (body.count, body.edge)),
+        ctypes.c_int(len(body.node)),
+        *map(pointer, (body.node, body.filled)),
+        ctypes.c_int(len(body.cell)),
+        *map(pointer, (body.cell, body.at, body.centre, body.normal, body.area, body.kind)),
+        None if body.depth is None else pointer(body.depth),
+    ]

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The undeformed body as contact sees it: points of its drawn surface, and the depth below it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+
+from ..scene.scene import Box, Shape
+from .distance import distance
+from .embed import nearest_cell
+from .lattice import Cells, any_corner, cells_around
+from .spread import spread
+
+FLAT, SHARP, DENSE = 0, 1, 2
+"""Kinds of points: inside a side of a cuboid, on an edge or in a corner of a cuboid, of any other shape."""
+DENSITY = 4
+"""Points along a cell edge on shapes that are no cuboids."""
+MARGIN = 2
+"""Nodes around the grid whose depth is kept."""
+OUTSIDE = 2
+"""Nodes further out whose depth is worked out: where the spline ends it is not that of an endless grid, and a sixth of that error
+is left at each next node."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ContactBody:
+    """P points of the drawn surface of a body of N particles, and how deep its inside is; read-only arrays.
+
+    Lattice coordinates X: cells from the lower corner of the grid along the body axes. Flat numbers count x fastest.
+    """
+
+    count: np.ndarray
+    """Cells nx, ny, nz of the grid, int32, shape (3,)."""
+    edge: np.ndarray
+    """Cell edges along the body axes [m], shape (3,)."""
+    node: np.ndarray
+    """Flat number of each particle among the (nx + 1)(ny + 1)(nz + 1) corners of cells, ascending, int32, shape (N,)."""
+    filled: np.ndarray
+    """Which cells are filled, uint8, shape (nz ny nx,)."""
+    cell: np.ndarray
+    """Flat number of the filled cell that carries each point, int32, shape (P,)."""
+    at: np.ndarray
+    """X of each point [-], shape (P, 3)."""
+    centre: np.ndarray
+    """X of the middle of the area of each point [-], shape (P, 3)."""
+    normal: np.ndarray
+    """Outward normals of length 1, body frame, shape (P, 3)."""
+    area: np.ndarray
+    """Part of the drawn surface that each point stands for [m^2], shape (P,)."""
+    kind: np.ndarray
+    """FLAT, SHARP or DENSE, uint8, shape (P,)."""
+    depth: np.ndarray | None
+    """Depth below the drawn surface [m], the distance to it, negative outside: coefficients of centred quadratic B-splines on the
+    nodes -2 .. n + 2 of each axis, shape ((nz + 5)(ny + 5)(nx + 5),). None for a cuboid: the distance to its six sides."""
+
+
+@dataclass(frozen=True, eq=False)
+class BodyFrame:
+    """A shape and the cells that it fills: what a contact body is made from, when one is first asked for."""
+
+    shape: Shape
+    cells: Cells
+
+    @cached_property
+    def contact(self) -> ContactBody:
+        """The same object at every call."""
+        return make_contact_body(self.shape, self.cells)
+
+
+def make_contact_body(shape: Shape, cells: Cells) -> ContactBody:
+    """Points and depth of a shape that fills these cells, both about its centre of mass.
+
+    A cuboid has a point for every boundary particle and side, in the order FLAT, SHARP, then sides -x, +x, -y, +y, -z, +z, then
+    particles. Any other shape has points of its true surface, 1 / DENSITY of a cell apart, each carried by the nearest cell.
+    """
+    points = _cuboid(cells) if isinstance(shape, Box) else _dense(shape, cells)
+    body = ContactBody(
+        count=cells.count.astype(np.int32),
+        edge=cells.edge,
+        node=np.flatnonzero(cells_around(cells.filled)).astype(np.int32),
+        filled=cells.filled.astype(np.uint8).ravel(),
+        **points,
+        depth=None if isinstance(shape, Box) else _depth(shape, cells),
+    )
+    for name in body.__slots__:
+        if (array := getattr(body, name)) is not None:
+            array.setflags(write=False)
+    return body
+
+
+# --- cuboids ----------------------------------------------------------------------------------------------------------
+
+
+def _cuboid(cells: Cells) -> dict[str, np.ndarray]:
+    """Fields of the points of a cuboid."""
+    count, edge = cells.count, cells.edge
+    rows = [_side(count, edge, axis, end) for axis, end in product(range(3), (0, 1))]
+    points = {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
+    order = np.argsort(points["kind"], kind="stable")
+    return {name: field[order] for name, field in points.items()}
+
+
+def _side(count: np.ndarray, edge: np.ndarray, axis: int, end: int) -> dict[str, np.ndarray]:
+    """Fields of the points of the lower or upper side across an axis, by ascending particle."""
+    steps = [np.arange(n + 1) if a != axis else np.array([end * n]) for a, n in enumerate(count)]
+    node = np.stack(np.meshgrid(*steps[::-1], indexing="ij")[::-1], axis=-1).reshape(-1, 3)
+    # -1 and 1 where a point lies on the lower or the upper edge of the side across each axis.
+    border = (node == count).astype(int) - (node == 0)
+    border[:, axis] = 0
+    normal = np.zeros((len(node), 3))
+    normal[:, axis] = 2 * end - 1
+    return {
+        "cell": _flat(np.minimum(node, count - 1), count),
+        "at": node.astype(float),
+        "centre": node - border / 4,
+        "normal": normal,
+        "area": np.delete(edge, axis).prod() / 2.0 ** abs(border).sum(axis=1),
+        "kind": np.where(border.any(axis=1), SHARP, FLAT).astype(np.uint8),
+    }
+
+
+def _flat(place: np.ndarray, count: np.ndarray) -> np.ndarray:
+    """Flat numbers, int32, of places (x, y, z), shape (P, 3), in a grid of this many."""
+    return (place @ [1, count[0], count[0] * count[1]]).astype(np.int32)
+
+
+# --- all other shapes -------------------------------------------------------------------------------------------------
+
+
+def _dense(shape: Shape, cells: Cells) -> dict[str, np.ndarray]:
+    """Fields of the points of any other shape."""
+    point, normal, area = spread(shape, float(cells.edge.min()) / DENSITY)
+    around = cells_around(cells.filled)
+    z, y, x = np.nonzero(cells.filled & any_corner(around < 8))
+    outer = np.stack([x, y, z], axis=1)
+    near, _ = nearest_cell(point, cells.low + outer * cells.edge, cells.edge)
+    at = (point - cells.low) / cells.edge
+    kind = np.full(len(point), DENSE, np.uint8)
+    cell = _flat(outer, cells.count)[near]
+    return {"cell": cell, "at": at, "centre": at, "normal": normal, "area": area, "kind": kind}
+
+
+def _depth(shape: Shape, cells: Cells) -> np.ndarray:
+    """Coefficients of the depth, see ContactBody."""
+    out = MARGIN + OUTSIDE
+    x, y, z = (low + edge * np.arange(-out, n + out + 1) for low, edge, n in zip(cells.low, cells.edge, cells.count))
+    nodes = np.stack(np.meshgrid(z, y, x, indexing="ij")[::-1], axis=-1)
+    depth = distance(shape, nodes.reshape(-1, 3), float(cells.edge.min()) / (2 * DENSITY)).reshape(nodes.shape[:-1])
+    inner = slice(OUTSIDE, -OUTSIDE)
+    return _spline(depth)[inner, inner, inner].ravel()
+
+
+def _spline(values: np.ndarray) -> np.ndarray:
+    """Coefficients of centred quadratic B-splines that have these values at the nodes, same shape, linear beyond the ends."""
+    from scipy.linalg import solve_banded
+
+    for axis in range(values.ndim):
+        rows = np.moveaxis(values, axis, 0)
+        bands = np.repeat([[1 / 8], [3 / 4], [1 / 8]], len(rows), axis=1)
+        bands[1, [0, -1]] = 1
+        bands[0, 1] = bands[2, -2] = 0
+        solved = solve_banded((1, 1), bands, rows.reshape(len(rows), -1))
+        values = np.moveaxis(solved.reshape(rows.shape), 0, axis)
+    return values

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Signed distance of points to the true surface of every shape but the cuboid; body frame, whole arrays."""
+
+from __future__ import annotations
+
+from functools import singledispatch
+
+import numpy as np
+
+from ..scene.scene import Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere, Torus
+from . import mesh, shapes
+
+NEAR = 12
+"""Samples of a mesh whose triangles are tried: for 3000 places in and around the duck the distance is then right to 1e-5 of the
+samples' spacing, with 6 to 2e-2; right on the surface it is off by up to a tenth of the spacing."""
+CLOSE, COARSE = 16, 4
+"""Spacings of the samples up to which triangles are looked at. Further off the nearest of samples that are COARSE times as far
+apart will do: around a duck and a knot it is too far by up to 1.1 spacings, 5 % of the distance, where a search among all samples
+would take five times as long."""
+NEWTON_STEPS = 40
+"""Not reached: 20 are enough for half axes from 1 to 100, in the middle and on planes of symmetry too."""
+
+
+@singledispatch
+def distance(shape: Shape, points: np.ndarray, spacing: float) -> np.ndarray:
+    """Distance of points [m], shape (N, 3), to the surface [m], shape (N,), positive inside.
+
+    Exact but for a mesh: there samples of the surface, ``spacing`` [m] apart, tell the distance, and near by which triangles to
+    look at.
+    """
+    raise TypeError(f"no distance to {shape!r}")
+
+
+@distance.register
+def _(shape: Sphere, points, spacing):
+    return shapes.depth(shape, points)
+
+
+@distance.register
+def _(shape: Torus, points, spacing):
+    return shapes.depth(shape, points)
+
+
+@distance.register
+def _(shape: Cylinder, points, spacing):
+    r, h = shape.radius, shape.height
+    return _to_outline(shape, points, [(0, -h / 2), (r, -h / 2), (r, h / 2), (0, h / 2)])
+
+
+@distance.register
+def _(shape: Cone, points, spacing):
+    r, h = shape.radius, shape.height
+    return _to_outline(shape, points, [(0, -h / 4), (r, -h / 4), (0, 3 * h / 4)])
+
+
+def _to_outline(shape: Shape, points: np.ndarray, outline) -> np.ndarray:
+    """Signed distance to what an outline (r, z) [m] makes when it turns about z."""
+    corner = np.array(outline)
+    place = np.stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]], axis=1)[:, None]
+    return np.copysign(_to_segments(place, corner[:-1], corner[1:]).min(axis=1), shapes.depth(shape, points))
+
+
+@distance.register
+def _(shape: Ellipsoid, points, spacing):
+    """Closest point y = r^2 x/(t + r^2 - c^2), c the least r: Newton from a t > 0 that is too small.
+
+    The sum of the squares of y/r is convex in t, so no step goes too far.
+    """
+    r = np.array(shape.radii)
+    more = r**2 - r.min() ** 2
+    # By symmetry in one octant. On a plane of symmetry the sum has a pole in the way, beside it has not.
+    x = np.maximum(abs(points), 1e-12 * r.max())
+    t = np.maximum((r * x - more).max(axis=1), np.linalg.norm(r * x, axis=1) - more.max())
+    for _ in range(NEWTON_STEPS):
+        below = t[:, None] + more
+        part = (r * x / below) ** 2
+        step = (part.sum(axis=1) - 1) / (2 * (part / below).sum(axis=1))
+        t += step
+        if (abs(step) <= 1e-14 * t).all():
+            break
+    closest = r**2 * x / (t[:, None] + more)
+    return np.copysign(np.linalg.norm(closest - x, axis=1), shapes.depth(shape, points))
+
+
+@distance.register
+def _(shape: Mesh, points, spacing):
+    from scipy.spatial import cKDTree
+
+    body = mesh.load(shape)
+    sample, triangle, _ = mesh.scatter(body, spacing)
+    away, _ = cKDTree(mesh.scatter(body, COARSE * spacing)[0]).query(points)
+    length, near = cKDTree(sample).query(points, NEAR, distance_upper_bound=CLOSE * spacing)
+    close = np.flatnonzero(length[:, 0] < np.inf)
+    # Where fewer are close, any other one does no harm.
+    corners = body.points[body.triangles[triangle[near[close].clip(max=len(sample) - 1)]]]
+    away[close] = _to_triangles(points[close, None], *np.moveaxis(corners, 2, 0)).min(axis=1)
+    return np.where(mesh.contains(body, points), away, -away)
+
+
+def _to_segments(p: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Distance of points to segments from a to b, the last axis is that of components."""
+    along, out = b - a, p - a
+    t = ((out * along).sum(axis=-1) / (along**2).sum(axis=-1)).clip(0, 1)
+    return np.linalg.norm(out - t[..., None] * along, axis=-1)
+
+
+def _to_triangles(p: np.ndarray, a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Distance of points to triangles, the last axis is that of components."""
+    normal = np.cross(b - a, c - a)
+    sides = [(np.cross(v - u, p - u) * normal).sum(axis=-1) for u, v in ((a, b), (b, c), (c, a))]
+    edge = np.minimum(np.minimum(_to_segments(p, a, b), _to_segments(p, b, c)), _to_segments(p, c, a))
+    length = np.linalg.norm(normal, axis=-1)
+    # A triangle without area is its edges.
+    over = (np.minimum.reduce(sides) >= 0) & (length > 0)
+    height = abs(((p - a) * normal).sum(axis=-1)) / np.where(over, length, 1)
+    return np.where(over, height, edge)
