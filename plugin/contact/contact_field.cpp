@@ -53,6 +53,8 @@ void ContactField::list(ContactObject &points_of, ContactObject &host_now, const
     while (contact < contacts.size() && contacts[contact].point < p) ++contact;
     const bool touches = contact < contacts.size() && contacts[contact].point == p;
     while (before < points_before.size() && points_before[before] < p) ++before;
+    // The sides of a cuboid have a point in each cell, too few for what is curved; the points of that are dense.
+    if (owner->body->points()[p].kind == PointKind::FLAT && !host->body->is_cuboid()) continue;
     if (!near.add(*owner, p)) continue;
     const double out = outside(host_box, near.place(near.size() - 1, arrays.place.data())) - stands_out;
     const bool known = before < points_before.size() && points_before[before] == p;
