@@ -124,3 +124,15 @@ def test_plugin_includes_point_up_the_list(path):
 def test_the_plugin_has_its_folders():
     """None is missing from the list, and each has files."""
     assert {p.parent.name for p in PLUGIN.glob("*/*.h")} == set(FOLDERS)
+
+
+SHIPPED_C = [p for p in sorted(PLUGIN.glob("c_api/*.cpp")) if p.name != "planted_c.cpp"]  # that one fails on purpose
+
+
+@pytest.mark.parametrize("path", SHIPPED_C, ids=lambda p: p.name)
+def test_no_exception_leaves_a_c_function(path):
+    """Each that Python calls does its work inside of guarded(), or is declared noexcept: ctypes cannot pass an exception on."""
+    functions = re.findall(r"^MDANIM_EXPORT ([^{;]*)\{\s*(.*)", path.read_text(encoding="utf-8"), re.MULTILINE)
+    assert functions
+    for head, body in functions:
+        assert "noexcept" in head or re.match(r"return (mdanim::)?guarded\(", body), head

@@ -26,12 +26,19 @@ static Stateful &stateful(void *handle, const char *fix)
   return *state;
 }
 
-// ID of the n-th (from 0) fix that has a state of its own; a null pointer after the last. Valid until fixes come or go.
-MDANIM_EXPORT const char *mdanim_stateful(void *handle, int n)
+// ID of the n-th (from 0) fix that has a state of its own, valid until fixes come or go; a null pointer after the last. Returns 0,
+// or 1 with a message in `error`.
+MDANIM_EXPORT int mdanim_stateful(void *handle, int n, const char **id, char *error, int error_size)
 {
-  for (Fix *fix : static_cast<LAMMPS *>(handle)->modify->get_fix_list())
-    if (dynamic_cast<Stateful *>(fix) && n-- == 0) return fix->id;
-  return nullptr;
+  return guarded(error, error_size, [=] {
+    *id = nullptr;
+    int left = n;
+    for (Fix *fix : static_cast<LAMMPS *>(handle)->modify->get_fix_list())
+      if (dynamic_cast<Stateful *>(fix) && left-- == 0) {
+        *id = fix->id;
+        return;
+      }
+  });
 }
 
 // Puts the state together for mdanim_state_get: numbers of its records and of their bytes. Returns 0, or 1 with a message in

@@ -38,9 +38,7 @@ class Records(NamedTuple):
 
 
 def _library() -> ctypes.CDLL:
-    library = ctypes.CDLL(f"{folder()}/mdanimplugin.so")
-    library.mdanim_stateful.restype = ctypes.c_char_p
-    return library
+    return ctypes.CDLL(f"{folder()}/mdanimplugin.so")
 
 
 def _handle(lmp) -> ctypes.c_void_p:
@@ -59,10 +57,12 @@ def _call(function, *arguments) -> None:
 
 def stateful(lmp) -> list[str]:
     """IDs of the fixes that have a state of their own."""
-    found = []
-    while name := _library().mdanim_stateful(_handle(lmp), len(found)):
-        found.append(name.decode())
-    return found
+    found, name = [], ctypes.c_char_p()
+    while True:
+        _call(_library().mdanim_stateful, _handle(lmp), len(found), ctypes.byref(name))
+        if name.value is None:
+            return found
+        found.append(name.value.decode())
 
 
 def pack(lmp, fix: str) -> Records:

@@ -64,7 +64,6 @@ class Instance:
         """Those of this rank's particles, as they were when it was looked last; their places by ascending tags; and `rows`."""
         for function in (self._library.mdanim_bond_lost, self._library.mdanim_bond_seconds):
             function.restype, function.argtypes = ctypes.c_double, [ctypes.c_void_p]
-        self._library.mdanim_stateful.restype = ctypes.c_char_p
         try:
             self._fill()
         except BaseException as error:
@@ -332,9 +331,12 @@ class Instance:
     def _stateful(self) -> list[str]:
         """IDs of the fixes that keep a state of their own."""
         found: list[str] = []
-        while name := self._library.mdanim_stateful(self._handle, ctypes.c_int(len(found))):
-            found.append(name.decode())
-        return found
+        name = ctypes.c_char_p()
+        while True:
+            self._call("list fixes", self._library.mdanim_stateful, ctypes.c_int(len(found)), ctypes.byref(name))
+            if name.value is None:
+                return found
+            found.append(name.value.decode())
 
     def put(self, step: int, state: State) -> None:
         """Take up a state bit for bit, at any time and as often as wanted; then `run` goes on from it.

@@ -16,7 +16,7 @@ from ..errors import SetupError
 
 VERSION = 20250722
 """The LAMMPS version whose headers the plugin was compiled with; its ABI is that of one version."""
-ABI = 9
+ABI = 10
 """Number of the plugin's own C interface, `mdanim_abi`."""
 STYLES = (
     ("bond", "mdanim/harmonic"),
