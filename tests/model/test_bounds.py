@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 from mdanim_lammps.certificate import stable_step
-from mdanim_lammps.errors import MdanimError
+from mdanim_lammps.errors import MdanimError, SceneError
 
 ROOM = 1 << 30
 """Address space that a check may add [bytes]."""
@@ -119,3 +119,15 @@ def test_a_ring_that_fills_little_of_its_box_is_refused_before_it_is_searched(pr
         prepared(text(shape="torus 10 m 1 cm"))
     assert "several objects" in str(error.value)
     assert prepared(text(shape="torus 10 m 50 cm", control="time 1 s accuracy preview")).system.particles > 500
+
+
+@pytest.mark.parametrize(("shape", "place"), [("sphere 1 mm", "(0, 0, 1e7) m"), ("sphere 1 m", "(0, 0, 1e9) m")])
+def test_an_object_too_far_out_for_its_size_is_refused(prepared, shape, place):
+    """At its position particles would differ by rounding alone; such a scene is read, and then refused at that position."""
+    with pytest.raises(SceneError) as error:
+        prepared(text(shape=shape, place=place))
+    (problem,) = error.value.problems
+    scene = text(shape=shape, place=place).splitlines()
+    assert scene[problem.line - 1][problem.column - 1 :].startswith(place)
+    assert "too far from the origin for its size" in problem.message
+    assert "nearer to the origin" in problem.hint

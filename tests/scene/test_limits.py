@@ -11,7 +11,7 @@ from mdanim_lammps.scene.forms import slots
 from mdanim_lammps.scene.keywords import all_keywords
 from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.scene.schema import limit_of
-from scene_parts import CONTROL, ball, pool, text
+from scene_parts import CONTROL, pool, text
 
 
 def problems(scene: str, **options) -> list:
@@ -72,15 +72,6 @@ def test_every_number_has_a_limit():
         for slot in slots(keyword.form):
             if slot.kind in ("number", "vector", "place") and slot.unit != "?":
                 assert limit_of(keyword, slot).most < math.inf, keyword.name
-
-
-def test_object_too_far_out_for_its_size():
-    """Refuse a position at which the particles of an object differ by rounding alone."""
-    assert ball(shape="sphere 1 m", position="(0, 0, 1e9) m").position[2] == 1e9
-    (problem,) = problems(text(shape="sphere 1 mm", position="(0, 0, 1e7) m"))
-    assert (problem.line, problem.column) == (3, 12)
-    assert "too far from the origin for its size" in problem.message
-    assert "1e9 times" in problem.hint
 
 
 # --- names of files -----------------------------------------------------------------------------------------

@@ -25,8 +25,8 @@ def check_places(scene: Scene, h: float) -> list[Problem]:
     return [
         Problem(
             s.spans.get("position") or s.spans.get("object"),
-            f"{s.name} is {say(far, 'm')} from the origin, where numbers are {say(float(np.spacing(far)), 'm')} apart: "
-            f"too coarse for particles at {say(h, 'm')}",
+            f"{s.name} is too far from the origin for its size: at {say(far, 'm')} numbers are "
+            f"{say(float(np.spacing(far)), 'm')} apart, too coarse for particles that are {say(h, 'm')} apart",
             "move the scene nearer to the origin, or make everything larger",
         )
         for s in scene.solids

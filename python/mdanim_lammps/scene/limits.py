@@ -79,5 +79,3 @@ SWEEPS = Limit("sweeps", 4096, way_out="write sweeps auto, which takes 8 for eac
 PIXELS = Limit("the size of a picture", 16384, way_out="the most is 16384 along a side")
 MOST_FRAMES = 10**7
 """Frames of a run."""
-FARTHEST = 1e9
-"""Distance from the origin over the smallest length of an object; beyond it, rounding of positions looks like strain."""

@@ -17,7 +17,7 @@ from .contact_pairs import PLANES, objects_by_name, pairs_of
 from .expand import EvaluatedBlock, EvaluatedSetting
 from .formatting import number, say, vector, whole
 from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example
-from .limits import FARTHEST, MOST_BYTES_OF_MESH, MOST_FRAMES, MOST_PAIRS
+from .limits import MOST_BYTES_OF_MESH, MOST_FRAMES, MOST_PAIRS
 from .scene import GLOBALS, IMMERSION, QUANTITIES, Vector
 from .source import Problems, SceneFile, ordinary
 
@@ -285,7 +285,6 @@ class Validator:
             cause = f"the tube of a torus is thinner than the ring: r < R, found r = {r}, R = {big}"
             self.problem(s.span(1), cause, "write torus R r, the radius of the centre line first")
             return None
-        self.near_enough(block, solid)
         return solid
 
     def mesh(self, s: EvaluatedSetting, name: str) -> Path | None:
@@ -303,18 +302,6 @@ class Validator:
         if cause:
             self.problem(s.span(0), cause, hint)
         return None if cause else path
-
-    def near_enough(self, block: EvaluatedBlock, solid: records.Solid) -> None:
-        """Refuse an object so far out that its particles differ by rounding alone."""
-        lengths = [x for v in block.first("shape").values for x in (v if isinstance(v, tuple) else (v,))]
-        position = solid.position
-        if max(map(abs, position)) > FARTHEST * min(lengths):
-            self.problem(
-                block.first("position").span(0),
-                f"{block.name} is too far from the origin for its size: {vector(position)} m with a length of "
-                f"{say(min(lengths), 'm', 6)}",
-                f"at most {number(FARTHEST)} times its smallest length",
-            )
 
     def check_contact(self, block: EvaluatedBlock, contact: records.ContactPair) -> records.ContactPair | None:
         """Two things that can touch, no pair of them twice, and something to say about them."""
