@@ -285,6 +285,7 @@ def test_filling_is_exact(shape):
         assert (a.content == q).all() and a.total == units // 2 - left + units - rest
 
 
+@pytest.mark.no_memory
 def test_a_grid_without_memory_is_told():
     """An absurd size raises an error with its reason instead of ending the process."""
     with pytest.raises(MemoryError, match="out of memory"):

@@ -441,6 +441,7 @@ for ask in (
 """
 
 
+@pytest.mark.no_memory
 def test_out_of_memory_is_told(tmp_path):
     """In a process that may take no more memory each function returns with a message, and the process goes on."""
     paths = {"PYTHONPATH": os.pathsep.join(sys.path), "LAMMPS_PLUGIN_PATH": folder()}
