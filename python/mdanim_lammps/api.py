@@ -6,7 +6,8 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -84,12 +85,12 @@ class Scene:
         started = time.perf_counter()
         settled = settle(self.record, make=True, study=output_folder(self.record, folder) / STUDY)
         ready = self.prepared if settled.scene is self.record else prepare(settled.scene)
-        folder = open_run(ready, folder, force=force)
-        result = run_frames(ready, folder, executors=executors, control=control, on_progress=on_progress, started=started)
-        if movie:
-            from .picture.movie import render_movie
+        with open_run(ready, folder, force=force) as folder:
+            result = run_frames(ready, folder, executors=executors, control=control, on_progress=on_progress, started=started)
+            if movie:
+                from .picture.movie import render_movie
 
-            render_movie(folder, self.record.render, movie_file(folder, self.record))
+                render_movie(folder, self.record.render, movie_file(folder, self.record))
         return result
 
     def study(
@@ -141,16 +142,18 @@ def default_folder(record: SceneRecord) -> Path:
     return (record.path.parent if record.path else Path.cwd()) / f"{record.name}.out"
 
 
-def open_run(ready: Prepared, folder: str | Path | None, *, force: bool) -> Path:
-    """Make the output folder (None: the default one) with all that is known before the run. Raises OutputError."""
+@contextmanager
+def open_run(ready: Prepared, folder: str | Path | None, *, force: bool) -> Iterator[Path]:
+    """Make the output folder (None: the default one) with all that is known before the run, and keep other runs out of it.
+    Raises OutputError."""
     folder = output_folder(ready.scene, folder)
     movie_file(folder, ready.scene)
     if force and (own := [p.name for p in mesh_files(ready.scene) if p.resolve().is_relative_to(folder.resolve())]):
         raise OutputError(f"{folder} holds the mesh {own[0]} of this scene and cannot be emptied; write elsewhere with -o DIR")
-    open_folder(folder, force=force, keep=(STUDY,))
-    write_json(folder / MARK, manifest(ready.scene, ready.lock, sys.argv))
-    write_inputs(ready, folder)
-    return folder
+    with open_folder(folder, force=force, keep=(STUDY,)):
+        write_json(folder / MARK, manifest(ready.scene, ready.lock, sys.argv))
+        write_inputs(ready, folder)
+        yield folder
 
 
 def movie_file(folder: Path, record: SceneRecord) -> Path:

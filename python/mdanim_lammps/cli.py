@@ -111,8 +111,8 @@ def run(
     announce(ready, quiet, verbose, executors, control)
     if executors > 1 and not quiet:
         print("\n".join(prospect_lines(forecast_speedup(ready, executors))), flush=True)
-    folder = open_run(ready, out, force=force)
-    simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control)
+    with open_run(ready, out, force=force) as folder:
+        simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control)
 
 
 @app.command
@@ -182,7 +182,8 @@ def build(
     record = settle(record, make=True, quiet=quiet, out=out)
     ready = prepare(record, allow_unstable=allow_unstable)
     announce(ready, quiet, verbose)
-    folder = open_run(ready, out, force=force)
+    with open_run(ready, out, force=force) as folder:
+        pass  # all of it is known before the run
     if not quiet:
         print(f"built    cd {shlex.quote(str(folder))} && {lmp_command()} -in {shlex.quote(f'in.{ready.plan.name}')}")
 
@@ -209,16 +210,17 @@ def resume(
     """
     from .api import stored_scene
     from .results.checkpoint import Checkpoint
-    from .results.files import CHECKPOINT
+    from .results.files import CHECKPOINT, claimed
 
     check_executors(executors)
     scene = stored_scene(folder)
-    if (folder / "summary.json").exists():
-        raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
-    checkpoint = Checkpoint.read(folder / CHECKPOINT)
-    ready = prepare(scene, allow_unstable=allow_unstable)
-    announce(ready, quiet, False, executors, control)
-    simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control, resume=checkpoint)
+    with claimed(folder):
+        if (folder / "summary.json").exists():
+            raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
+        checkpoint = Checkpoint.read(folder / CHECKPOINT)
+        ready = prepare(scene, allow_unstable=allow_unstable)
+        announce(ready, quiet, False, executors, control)
+        simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control, resume=checkpoint)
 
 
 @app.command

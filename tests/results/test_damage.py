@@ -17,10 +17,11 @@ import pytest
 from mdanim_lammps.api import open_run, run_frames
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.results.checkpoint import Checkpoint
+from mdanim_lammps.results.files import STOP
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.results.trajectory_file import NOT_WRITTEN, frame_tables, open_trajectory
-from mdanim_lammps.run import loop
+from mdanim_lammps.run.loop import Interrupted
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 
@@ -55,16 +56,16 @@ def runs(tmp_path_factory):
 
 def make(ready, folder: Path, cut: bool) -> None:
     """Run a scene; stop it at a frame if asked to."""
-    open_run(ready, folder, force=False)
 
     def stop(progress):
         if cut and progress.frame == HALF:
-            (folder / loop.STOP).touch()
+            (folder / STOP).touch()
 
-    try:
-        run_frames(ready, folder, on_progress=stop)
-    except loop.Interrupted:
-        assert cut
+    with open_run(ready, folder, force=False):
+        try:
+            run_frames(ready, folder, on_progress=stop)
+        except Interrupted:
+            assert cut
 
 
 def harm(path: Path, chance: random.Random) -> str:

@@ -164,6 +164,15 @@ def test_killed_run_keeps_its_frames(tmp_path):
         assert len(t) == 16
 
 
+def test_a_finished_ledger_is_written_once(tmp_path, monkeypatch):
+    """With the last checkpoint; before that with the first one alone, in a run that is too short for others."""
+    lengths, write = [], Ledger.write
+    monkeypatch.setattr(Ledger, "write", lambda self, path: (lengths.append(len(self.rows)), write(self, path)))
+    (tmp_path / "a.txt").write_text(FALL.replace("time 0.3 s", "time 0.04 s").split("expect")[0])
+    Scene.load(tmp_path / "a.txt").run()
+    assert lengths == [1, 3]
+
+
 def test_a_run_that_blows_up_keeps_the_last_good_frame(tmp_path):
     """Insist on a step far above the bound: stop with the object, the cause and what to change, and keep the good frames."""
     (tmp_path / "bad.txt").write_text(FALL.replace("time 0.3 s", "time 3 s\n timestep 4 ms"))

@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The output folder: never overwritten unasked; every file appears under its name when it is whole and on the disk."""
+"""The output folder: never overwritten unasked, used by one run at a time; every file appears under its name when it is whole
+and on the disk."""
 
 from __future__ import annotations
 
 import errno
+import fcntl
 import json
 import os
 import secrets
 import shutil
+import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..errors import OutputError
@@ -19,6 +22,20 @@ CHECKPOINT = "checkpoint"
 """Name of the file from which a run is resumed."""
 PROGRAM = "mdanim-lammps"
 """Only a folder whose manifest says that this program made it is emptied by ``--force``."""
+STOP = "stop"
+"""A file of this name in the run's folder stops the run as Ctrl-C does."""
+JOB = ".ranks-"
+"""What the name of the file begins with by which a run is handed to its ranks, readable for its owner alone. The supervising rank
+empties the file when it has read it; the process that has started the ranks deletes it when it has the result."""
+IN_USE = ".in-use"
+"""A file of this name is locked while a run writes into the folder. The lock ends with the processes of the run: a file that a
+killed run leaves is in nothing's way."""
+PATIENCE = 2.0
+"""Seconds for which a lock is waited for: processes of a run that was killed may take as long to end."""
+NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
+"""What a file system answers that has no locks: there, two runs in one folder are not noticed."""
+claims: set[int] = set()
+"""Descriptors of the locks of this process. The ranks of a run are given them, so that a lock lasts until all have ended."""
 
 
 @contextmanager
@@ -38,28 +55,90 @@ def _way_out(path: Path, error: OSError) -> str:
     return "make room and repeat the command, with --force if it made this folder"
 
 
-def open_folder(folder: Path, *, force: bool, keep: Sequence[str] = ()) -> None:
-    """Make an output folder that is empty but for folders named in ``keep``.
+@contextmanager
+def open_folder(folder: Path, *, force: bool, keep: Sequence[str] = ()) -> Iterator[None]:
+    """Make an output folder that is empty but for folders named in ``keep``, and claim it.
 
-    Raises OutputError when something is in the way and ``force`` is not given.
+    Raises OutputError when something is in the way and ``force`` is not given, and when another run writes into the folder.
     """
     with disk_errors(folder):
-        if folder.exists():
-            if not folder.is_dir():
-                raise OutputError(f"{folder} is a file; name another folder with -o DIR")
-            found = [path for path in folder.iterdir() if path.name not in keep]
-            ours, empty = _ours(folder), not found
-            if not empty and not force:
-                raise OutputError(f"{folder} exists; overwrite it with --force, or write elsewhere with -o DIR")
-            if not empty and not ours:
-                raise OutputError(
-                    f"{folder} holds files that are no results of mdanim-lammps; --force does not delete "
-                    "them: name another folder with -o DIR"
-                )
-            # The folder is no longer ours once this file is gone: it goes last, so that a deletion that fails can be repeated.
-            for path in sorted(found, key=lambda path: path.name == MARK):
-                shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+        _to_delete(folder, force, keep)  # refused before anything is made in a folder that is not ours
         folder.mkdir(parents=True, exist_ok=True)
+    with claimed(folder):
+        with disk_errors(folder):
+            # The folder is no longer ours once the mark is gone: it goes last, so that a deletion that fails can be repeated.
+            for path in sorted(_to_delete(folder, force, keep), key=lambda path: path.name == MARK):
+                shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+        yield
+
+
+def _to_delete(folder: Path, force: bool, keep: Sequence[str]) -> list[Path]:
+    """What stands in the way of a new run. Raises OutputError where it is not to be deleted, and OSError."""
+    if not folder.exists():
+        return []
+    if not folder.is_dir():
+        raise OutputError(f"{folder} is a file; name another folder with -o DIR")
+    found = [path for path in folder.iterdir() if path.name not in (*keep, IN_USE)]
+    if found and not force:
+        raise OutputError(f"{folder} exists; overwrite it with --force, or write elsewhere with -o DIR")
+    if found and not _ours(folder):
+        raise OutputError(
+            f"{folder} holds files that are no results of mdanim-lammps; --force does not delete "
+            "them: name another folder with -o DIR"
+        )
+    return found
+
+
+@contextmanager
+def claimed(folder: Path) -> Iterator[None]:
+    """Keep other runs out of an output folder, and remove what killed runs have left there of unfinished files.
+
+    Raises OutputError when another run writes into it.
+    """
+    path = folder / IN_USE
+    descriptor = _locked(path)
+    claims.add(descriptor)
+    try:
+        with disk_errors(folder):
+            remove_parts(folder)
+        yield
+    finally:
+        claims.remove(descriptor)
+        with suppress(OSError):
+            if _is_open_as(path, descriptor):  # the folder may have been deleted, and be another run's now
+                path.unlink()
+        os.close(descriptor)
+
+
+def _locked(path: Path) -> int:
+    """A descriptor of a file that no other process has locked. Raises OutputError."""
+    deadline = time.monotonic() + PATIENCE
+    with disk_errors(path):
+        while True:
+            descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
+            try:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                if _is_open_as(path, descriptor):  # else the process that had it has deleted it meanwhile
+                    return descriptor
+            except BlockingIOError as error:
+                if time.monotonic() > deadline:
+                    os.close(descriptor)
+                    raise OutputError(
+                        f"{path.parent}: another run is writing into this folder; wait for its end, "
+                        f"stop it with 'touch {path.parent / STOP}', or write elsewhere with -o DIR"
+                    ) from error
+            except OSError as error:
+                if error.errno in NO_LOCKS:
+                    return descriptor
+                os.close(descriptor)
+                raise
+            os.close(descriptor)
+            time.sleep(0.05)
+
+
+def _is_open_as(path: Path, descriptor: int) -> bool:
+    """Whether a path names the file that is open."""
+    return path.exists() and os.path.samestat(path.stat(), os.fstat(descriptor))
 
 
 def _ours(folder: Path) -> bool:
@@ -103,9 +182,11 @@ def _new_part(path: Path) -> Path:
 
 
 def remove_parts(folder: Path) -> None:
-    """Remove what killed processes have left of files that were being written; only for a folder that no other process uses."""
-    for part in folder.glob(".*.????????.part"):
-        part.unlink(missing_ok=True)
+    """Remove what killed processes have left: jobs, and parts of files that were being written. Only for a folder that no other
+    process uses."""
+    for pattern in (".*.????????.part", f"{JOB}*"):
+        for part in folder.glob(pattern):
+            part.unlink(missing_ok=True)
 
 
 def sync(path: Path) -> None:

@@ -22,7 +22,7 @@ from ..errors import DivergedError, ExitCode, MdanimError, OutputError, Problem
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
 from ..results.expect import Measured, Outcome, evaluate, record, recorded
-from ..results.files import CHECKPOINT, disk_errors, remove_parts, write_json, write_whole
+from ..results.files import CHECKPOINT, STOP, disk_errors, write_json, write_whole
 from ..results.ledger import LOSS, Ledger
 from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
@@ -35,8 +35,6 @@ from .prepare import Prepared
 
 CHECKPOINT_SECONDS = 10.0
 """Wall time between checkpoints: a killed run loses at most this much, and a fast one does not write all the time."""
-STOP = "stop"
-"""A file of this name in the run's folder stops the run as Ctrl-C does."""
 
 
 @dataclass
@@ -153,8 +151,6 @@ class _Run:
             and all(((r.keys >= 0) & (r.keys <= len(ready.system.names))).all() for r in resume.records.values())
         ):
             raise OutputError(f"{folder / CHECKPOINT} is damaged; run the scene again with --force")
-        if resume:
-            remove_parts(folder)
         self.recorded = recorded(ready.scene.expects)
         self.grid = ready.plan.grid
         self.ledger = Ledger(
@@ -207,8 +203,9 @@ class _Run:
                         if now.kept and (frame == last or time.perf_counter() - saved > CHECKPOINT_SECONDS):
                             self._save(out, frame, now)
                             saved = time.perf_counter()
-            finally:
-                self._close_ledger()
+            except BaseException:
+                self._write_ledger()  # without an error the last frame has done so
+                raise
             if last < len(lengths):
                 insist = " --allow-unstable" if c.fraction > 1.0 else ""
                 raise Interrupted(
@@ -339,7 +336,7 @@ class _Run:
     def _save(self, out: TrajectoryWriter, frame: int, now: Frame) -> None:
         """Make everything up to this frame safe; the checkpoint last, so that it never is ahead of the trajectory."""
         out.flush()
-        self._close_ledger()
+        self._write_ledger()
         carried = {t: self.ledger.rows[-1][t] for t in self.ledger.terms if t.endswith(LOSS)}
         carried["penetration"] = self.penetration
         carried["seconds"] = sum(self.seconds.values())
@@ -358,7 +355,7 @@ class _Run:
         for row in stored.rows[: frame + 1]:
             self.ledger.add(row["time"], row)
 
-    def _close_ledger(self) -> None:
+    def _write_ledger(self) -> None:
         write_whole(self.folder / "ledger.csv", self.ledger.write)
 
     # --- time and signals -------------------------------------------------------------------------------------------

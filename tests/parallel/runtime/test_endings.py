@@ -14,6 +14,7 @@ import plugin_path
 import pytest
 from mdanim_lammps.errors import ExecutorLost, OutputError
 from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions
+from mdanim_lammps.parallel.runtime import launch
 from mdanim_lammps.parallel.runtime.launch import simulate_on
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.timeline import Timeline
@@ -313,6 +314,62 @@ def test_a_killed_program_leaves_nothing_behind(place):
     assert not ranks_in(place)
     (place / "film.out" / ".ranks-old").touch()
     goes_on(place, 0, "-n", 2)
+
+
+@pytest.mark.parametrize("executors", [1, 2])
+def test_a_second_run_into_the_same_folder_is_refused(place, executors):
+    """Neither --force nor resume disturbs a run that is under way."""
+    process = begun(place, LONG, "-n", executors)
+    for again in ((place / "film.txt", "--force"), ("resume", place / "film.out")):
+        done = subprocess.run(command(*again, "--no-movie", "-q"), env=environment(), capture_output=True, text=True)
+        assert done.returncode == 7 and "another run is writing into this folder" in done.stderr, done.stderr
+    process.send_signal(signal.SIGINT)
+    code, said = ended(process, 20.0)
+    assert code == 130 and "mdanim-lammps resume" in said, said
+    with Trajectory(place / "film.out") as film:
+        assert len(film) > 1
+
+
+def test_a_folder_is_in_use_until_the_last_process_of_a_killed_run_has_ended(place, monkeypatch):
+    """Ranks whose program was killed may write on for a while: a resume does not write beside them."""
+    process = begun(place, LONG, "-n", 2)
+    processes = list(ranks_in(place))
+    for p in processes:
+        os.kill(p, signal.SIGSTOP)
+    process.kill()
+    process.wait()
+    done = subprocess.run(command("resume", place / "film.out", "-q"), env=environment(), capture_output=True, text=True)
+    for p in processes:
+        os.kill(p, signal.SIGCONT)
+    assert done.returncode == 7 and "another run is writing into this folder" in done.stderr, done.stderr
+    goes_on(place, 0)
+
+
+def test_only_its_owner_can_read_or_change_a_job(place, monkeypatch):
+    """Whatever mask the process has: it would be unpickled."""
+    ready, folder = readied(place, LONG)
+    monkeypatch.setenv(launch.MPIEXEC, f"sh -c 'stat -c %a {folder}/{launch.JOB}* > {place}/mode; exit 3' sh")
+    former = os.umask(0)
+    try:
+        with pytest.raises(ExecutorLost, match="exit code 3"):
+            simulate_on(2, "central", ready, folder)
+    finally:
+        os.umask(former)
+    assert (place / "mode").read_text() == "600\n"
+
+
+def test_a_job_is_not_written_into_a_file_that_is_there(place, monkeypatch):
+    """Also where the name was guessed: it could be open elsewhere, or lead elsewhere."""
+    ready, folder = readied(place, LONG)
+
+    def guessed(_):
+        (folder / f"{launch.JOB}1").symlink_to(place / "elsewhere")
+        return "1"
+
+    monkeypatch.setattr(launch.secrets, "token_hex", guessed)
+    with pytest.raises(OutputError, match="File exists"):
+        simulate_on(2, "central", ready, folder)
+    assert not (place / "elsewhere").exists()
 
 
 def test_a_rank_that_cannot_begin_is_told(place, monkeypatch):

@@ -23,17 +23,14 @@ from pathlib import Path
 
 from ...errors import ExecutorLost, OutputError, SetupError
 from ...results.checkpoint import Checkpoint
-from ...results.files import CHECKPOINT, disk_errors
-from ...run.loop import STOP, Progress, Result
+from ...results.files import CHECKPOINT, JOB, STOP, claims, disk_errors
+from ...run.loop import Progress, Result
 from ...run.prepare import Prepared
 from ..limits import MPIEXEC
 from ..plan.frame_plan import PlannerOptions
 
-EXCHANGE = ".ranks-"
-"""What the names of the two files begin with, in the folder of the run, by which job and result are handed over. The supervisor
-deletes the first when it has read it, and leaves the second where it has to abort the other ranks."""
 RESULT_SIGN = "result:"
-"""Start of the line in which the supervisor gives the result otherwise; mpiexec's own words begin with "=" or "YOUR"."""
+"""Start of the line on stdout in which the supervisor gives the result; mpiexec's own words begin with "=" or "YOUR"."""
 
 
 @dataclass(frozen=True)
@@ -65,19 +62,14 @@ def simulate_on(
     ExecutorLost when a rank dies.
     """
     folder = folder.resolve()
-    for old in folder.glob(EXCHANGE + "*"):  # of a run that was killed together with the process that had started it
-        old.unlink(missing_ok=True)
-    job = folder / f"{EXCHANGE}{secrets.token_hex(4)}"
-    result = result_of(job)
+    job = folder / f"{JOB}{secrets.token_hex(4)}"
     task = Task(ready, folder, control, resume, time.perf_counter() if started is None else started, settings or PlannerOptions())
     command = [*launcher(), "-n", str(executors + 1), sys.executable, "-m", "mdanim_lammps.parallel.runtime.ranks", str(job)]
     said: list[str] = []
     found = None
     try:
-        with disk_errors(job):
-            job.write_bytes(pickle.dumps(task, protocol=pickle.HIGHEST_PROTOCOL))
-            with part_of(result).open("wb") as part:  # on a full disk too there is room for an error's message
-                os.posix_fallocate(part.fileno(), 0, 1 << 16)
+        with disk_errors(job), open(job, "xb", opener=lambda path, flags: os.open(path, flags, 0o600)) as file:
+            pickle.dump(task, file, protocol=pickle.HIGHEST_PROTOCOL)
         with _Signals(folder) as signals:
             ranks = signals.ranks = _started(command)
             hearing = threading.Thread(target=_hear, args=(ranks.stderr, said), daemon=True)
@@ -85,19 +77,17 @@ def simulate_on(
             for line in ranks.stdout:
                 if line.startswith(RESULT_SIGN):
                     found = pickle.loads(base64.b64decode(line[len(RESULT_SIGN) :]))
+                    job.unlink(missing_ok=True)
                 elif on_progress and line.startswith("{"):
                     on_progress(Progress(**json.loads(line)))
             ranks.wait()
         hearing.join()
         if not folder.exists():
             raise OutputError(f"{folder} was deleted while the run wrote to it; run the scene again")
-        if result.exists():
-            found = pickle.loads(result.read_bytes())
         if found is None:
             raise lost(_cause(ranks.returncode, said), folder)
     finally:
-        for file in (job, result, part_of(result)):
-            file.unlink(missing_ok=True)
+        job.unlink(missing_ok=True)
     if isinstance(found, Result):
         return found
     kind, module, text = found
@@ -129,6 +119,7 @@ def _started(command: list[str]) -> subprocess.Popen:
             text=True,
             env=_environment(),
             start_new_session=True,
+            pass_fds=claims,
         )
     except OSError as error:
         named = f"{MPIEXEC}={os.environ[MPIEXEC]}" if os.environ.get(MPIEXEC) else command[0]
@@ -149,16 +140,6 @@ def _hear(stream, said: list[str]) -> None:
 def _environment() -> dict[str, str]:
     """That of this process, but with one thread for each rank's linear algebra."""
     return os.environ | dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-
-
-def result_of(job: Path) -> Path:
-    """The file that the supervisor leaves for a job."""
-    return job.with_name(job.name + ".result")
-
-
-def part_of(result: Path) -> Path:
-    """The file that the supervisor writes and then renames; it has room from the start."""
-    return result.with_name(result.name + ".part")
 
 
 def _cause(code: int, said: list[str]) -> str:

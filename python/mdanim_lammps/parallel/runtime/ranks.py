@@ -2,24 +2,23 @@
 """What every MPI rank of a distributed run executes: ``mpiexec -n K+1 python -m mdanim_lammps.parallel.runtime.ranks JOB``.
 
 Rank 0 is the supervisor: it takes the job that launch.py has left in this file. Progress goes to its standard output, a line of
-JSON for every frame, and at the end the result; where ranks must be aborted it leaves the result beside the job. All others are
-executors.
+JSON for every frame, and at the end the result. All others are executors.
 """
 
 from __future__ import annotations
 
 import base64
 import json
+import os
 import pickle
 import sys
 import time
 import traceback
-from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 
 from ...errors import MdanimError, OutputError
-from .launch import RESULT_SIGN, Task, lost, part_of, result_of
+from .launch import RESULT_SIGN, Task, lost
 
 FAREWELL = 30.0
 """Seconds for which an executor that has failed waits for the supervisor to end all ranks, until it does so itself."""
@@ -60,7 +59,7 @@ def _supervise(world, job: Path) -> None:
     from .supervisor import Distributed
 
     task: Task = pickle.loads(job.read_bytes())
-    job.unlink()
+    os.truncate(job, 0)
     source = Distributed(task.ready, world, task.control, task.settings)
     try:
         source.before = Timeline.left_in(task.folder) if task.resume else None
@@ -77,8 +76,7 @@ def _supervise(world, job: Path) -> None:
     except BaseException as error:
         if isinstance(error, MPI.Exception):  # where another rank has died, mpiexec ends this one now, and tells the better cause
             time.sleep(OBITUARY)
-        # What stands on stderr may be lost: an abort also ends the processes that pass it on.
-        _leave(job, _told(lost(f"{type(error).__name__}: {error}", task.folder)))
+        _hand_over(_told(lost(f"{type(error).__name__}: {error}", task.folder)), job)
         raise
     try:
         if source.timeline.frames or not task.resume:  # else the log that is there stands
@@ -86,22 +84,23 @@ def _supervise(world, job: Path) -> None:
     except OutputError as error:
         result = _told(error) if isinstance(result, Result) else result
     if source.clean:
-        part_of(result_of(job)).unlink(missing_ok=True)
-        print(RESULT_SIGN + base64.b64encode(pickle.dumps(result)).decode(), flush=True)
+        _hand_over(result)
     else:
-        _leave(job, result)
+        _hand_over(result, job)
         sys.stderr.flush()
         world.Abort(1)  # executors may wait for ever for what never comes
 
 
-def _leave(job: Path, result) -> None:
-    """Let the process that has started all ranks find a result, whole, in a file: an abort may end the processes that pass on
-    what stands on stdout."""
-    found = result_of(job)
-    with suppress(FileNotFoundError):  # the output folder has been deleted: that tells the process that waits for the result
-        with part_of(found).open("r+b") as file:
-            file.truncate(file.write(pickle.dumps(result)))
-        part_of(found).rename(found)
+def _hand_over(result, job: Path | None = None) -> None:
+    """Tell the process that has started all ranks the result.
+
+    With a job, before an abort of all ranks, wait until that process has deleted it, which it does when it has the result: an
+    abort may end the processes that pass on what stands on stdout.
+    """
+    print(RESULT_SIGN + base64.b64encode(pickle.dumps(result)).decode(), flush=True)
+    deadline = time.monotonic() + FAREWELL
+    while job and job.exists() and time.monotonic() < deadline:
+        time.sleep(0.02)
 
 
 def _told(error: MdanimError) -> tuple[str, str, str]:
