@@ -182,14 +182,14 @@ std::vector<tagint> FixMdanimBarrier::find_objects() const
 double FixMdanimBarrier::survey(std::vector<Box> &boxes)
 {
   const std::vector<tagint> ids = find_objects();
-  const double *rc = reach.values(lmp);
+  const double *k = stiffness.values(lmp), *rc = reach.values(lmp);
   const int nlocal = atom->nlocal;
   double reach_here = 0.0, longest = 0.0;
   std::vector<Box> here(ids.size());
   object.assign(nlocal, NO_OBJECT);
   int number = 0;
   for (int i = 0; i < nlocal; ++i) {
-    if (role(i) == NONE) continue;
+    if (role(i) == NONE || (k && k[i] == 0.0)) continue;    // what is without stiffness takes no part
     const tagint id = atom->molecule[i];
     if (ids[number] != id) number = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
     object[i] = number;

@@ -91,6 +91,17 @@ def test_particles_outside_the_group_push_but_are_not_pushed(tmp_path):
     lmp.close()
 
 
+@pytest.mark.parametrize("k", [(0.0, 1.5), (0.0, 0.0)])
+def test_what_has_no_stiffness_takes_no_part(tmp_path, k):
+    """Neither a force nor 0/0."""
+    body, commands = two(0.8, words="d_k d_rc")
+    lmp = lab.load(body, tmp_path, commands, columns={"k": np.array(k), "rc": np.full(2, RC)})
+    assert np.array_equal(lab.by_tag(lmp, "f"), np.zeros((2, 3)))
+    assert lmp.extract_fix("contact", 0, 0) == 0.0
+    assert lmp.extract_fix("contact", 0, 1, 3) == 1.0
+    lmp.close()
+
+
 @pytest.mark.parametrize(
     "options",
     [
