@@ -159,7 +159,9 @@ def _(shape: Mesh, spacing):
     from scipy.spatial import cKDTree
 
     body = mesh.load(shape)
-    sample, triangle, area = mesh.scatter(body, spacing / sqrt(SAMPLES))
+    found = mesh.scatter(body, spacing / sqrt(SAMPLES))
+    has_area = found[2] > 0
+    sample, triangle, area = (rows[has_area] for rows in found)
     normal = mesh.unit_normals(body)[triangle]
     # With the normals as three more coordinates the two sides of a sheet and of an edge stay apart.
     place = np.concatenate([sample, spacing * normal], axis=1)
