@@ -108,7 +108,7 @@ def test_a_cuboid_has_the_points_of_the_definition(count):
 def test_types_are_those_of_the_plugin():
     """Contiguous arrays of the types that the C function takes, not to be changed."""
     expected = dict(count="i4", node="i4", filled="u1", cell="i4", kind="u1")
-    for body in (body_of(Box((1.0, 0.6, 0.4))), body_of(Torus(1.0, 0.3))):
+    for body in map(body_of, SHAPES):
         for name in body.__slots__:
             array = getattr(body, name)
             if array is None:

@@ -78,6 +78,7 @@ def make_contact_body(shape: Shape, cells: Cells) -> ContactBody:
     particles. Any other shape has points of its true surface, 1 / DENSITY of a cell apart, each carried by the nearest cell.
     """
     points = _cuboid(cells) if isinstance(shape, Box) else _dense(shape, cells)
+    points = {name: np.ascontiguousarray(field) for name, field in points.items()}  # row by row, as C functions read them
     body = ContactBody(
         count=cells.count.astype(np.int32),
         edge=cells.edge,
