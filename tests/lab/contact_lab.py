@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Small cuboids that touch, for the tests of fix mdanim/contact: particles, contact bodies, instances, records of contacts."""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import plugin_lab as lab
+import state_lab
+from mdanim_lammps.engine.plugin import folder
+from mdanim_lammps.model.contact_body import make_contact_body
+from mdanim_lammps.model.lattice import Cells
+from mdanim_lammps.scene.shapes import Box
+
+ARRAYS = ("count", "edge", "node", "filled", "cell", "at", "centre", "normal", "area", "kind", "depth")
+COLUMNS = ("body", "young", "friction", "moves")
+FIELD = np.dtype(
+    [
+        ("point", "i4"),
+        ("side", "i4"),
+        ("cell", "i4", 3),
+        ("spare", "i4"),
+        ("X", "f8", 3),
+        ("change", "f8", 3),
+        ("anchor", "f8", 3),
+        ("offset", "f8"),
+        ("depth", "f8"),
+        ("pull", "f8", 3),
+        ("stick", "f8"),
+        ("stick_energy", "f8"),
+        ("force", "f8", 3),
+        ("moved", "f8", 3),
+        ("energy", "f8"),
+    ]
+)
+"""FieldContact in plugin/contact/contact_field.h."""
+PLANE = np.dtype(
+    [
+        ("point", "i4"),
+        ("plane", "i4"),
+        ("anchor", "f8", 3),
+        ("offset", "f8"),
+        ("depth", "f8"),
+        ("pull", "f8", 3),
+        ("stick", "f8"),
+        ("stick_energy", "f8"),
+    ]
+)
+"""PlaneContact in plugin/contact/plane_field.h."""
+
+
+@dataclass(frozen=True)
+class Cuboid:
+    """An elastic cuboid of cubic cells at rest in a place, turned about its centre."""
+
+    cells: tuple[int, int, int]
+    centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    spacing: float = 1.0
+    young: float = 1.0
+    density: float = 1.0
+    friction: float = 0.0
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    angle: float = 0.0
+    """[deg]"""
+    held: bool = False
+
+    @property
+    def particles(self) -> lab.Body:
+        """Particles and springs, one object."""
+        h, unit = self.spacing, lab.block(self.cells)
+        x = (unit.x - 0.5 * np.array(self.cells)) * h @ rotation(self.axis, self.angle).T + self.centre
+        v = np.tile(np.asarray(self.velocity, float), (len(x), 1))
+        return replace(unit, x=x, v=v, mass=self.density * h**3 * unit.mass, k=self.young * h * unit.k, r0=h * unit.r0)
+
+    @property
+    def arrays(self) -> dict:
+        """The arrays of its contact body."""
+        return cuboid_arrays(self.cells, (self.spacing,) * 3)
+
+
+def rotation(axis, angle: float) -> np.ndarray:
+    """The matrix (3, 3) that turns by an angle [deg] about an axis."""
+    a, s, c = np.asarray(axis, float) / np.linalg.norm(axis), np.sin(np.radians(angle)), np.cos(np.radians(angle))
+    cross = np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+    return c * np.eye(3) + s * cross + (1.0 - c) * np.outer(a, a)
+
+
+def cuboid_arrays(cells, edge) -> dict:
+    """The arrays of a cuboid's contact body."""
+    size = np.array(cells) * edge
+    body = make_contact_body(Box(tuple(size.tolist())), Cells(np.ones(cells[::-1], bool), -size / 2, size / 2))
+    return {name: getattr(body, name) for name in ARRAYS}
+
+
+def give_body(lmp, fix: str, kind: int, arrays: dict) -> None:
+    """Hand a contact body over; RuntimeError with the plugin's message."""
+    library = ctypes.CDLL(f"{folder()}/mdanimplugin.so")
+    kept = {name: None if arrays[name] is None else np.ascontiguousarray(arrays[name]) for name in ARRAYS}
+    count, edge, node, filled, *of_points = (a if a is None else a.ctypes.data_as(ctypes.c_void_p) for a in kept.values())
+    sizes = ctypes.c_int(len(kept["node"])), ctypes.c_int(len(kept["cell"]))
+    error = ctypes.create_string_buffer(1024)
+    handle = ctypes.c_void_p(ctypes.cast(lmp.lmp, ctypes.c_void_p).value)
+    if library.mdanim_contact_body(
+        handle,
+        fix.encode(),
+        ctypes.c_int(kind),
+        count,
+        edge,
+        sizes[0],
+        node,
+        filled,
+        sizes[1],
+        *of_points,
+        error,
+        ctypes.c_int(1024),
+    ):
+        raise RuntimeError(error.value.decode())
+
+
+def scene(cuboids) -> tuple[lab.Body, dict]:
+    """All particles, and the columns that the fix is told."""
+    parts = [one.particles for one in cuboids]
+    sizes = [len(part.x) for part in parts]
+    table = [(float(n), one.young, one.friction, float(not one.held)) for n, one in enumerate(cuboids)]
+    return lab.join(*parts), dict(zip(COLUMNS, np.repeat(np.array(table).T, sizes, axis=1)))
+
+
+def commands(cuboids, words: str, dt: float, more=()) -> list[str]:
+    """What follows the particles: the group of those that move, contact, leap-frog."""
+    first = np.cumsum([0] + [len(one.particles.x) for one in cuboids])
+    moving = " ".join(f"{a + 1}:{b}" for one, a, b in zip(cuboids, first, first[1:]) if not one.held)
+    return [
+        f"group mobile id {moving}",
+        f"fix contact mobile mdanim/contact d_body d_young d_friction {words}",
+        *more,
+        "fix run mobile mdanim/leapfrog",
+        f"timestep {dt!r}",
+        "thermo_style custom step ebond",
+    ]
+
+
+def load(cuboids, folder: Path, words: str = "objects", dt: float = 0.2, more=(), setup: bool = True, **options):
+    """A LAMMPS instance of cuboids that has their contact bodies, set up for runs with ``pre no``."""
+    body, columns = scene(cuboids)
+    lmp = lab.load(body, folder, commands(cuboids, words, dt, more), columns=columns, **options)
+    for n, one in enumerate(cuboids):
+        give_body(lmp, "contact", n, one.arrays)
+    if setup:
+        lmp.command("run 0 post no")
+    return lmp
+
+
+def contacts(records: state_lab.Records) -> dict[tuple[int, int], np.ndarray]:
+    """Rows of all contacts by (object of the points, object or -1 - plane that they are in), both from 0."""
+    found = {}
+    for a, b in records.key.tolist():
+        data = records.record(a, b).tobytes()[8:]
+        if b == 0:
+            rows = np.frombuffer(data[8:], PLANE)
+            found |= {(a - 1, -1 - int(p)): rows[rows["plane"] == p] for p in np.unique(rows["plane"])}
+            continue
+        lower = int(np.frombuffer(data[:8], "i8")[0])
+        end = 8 + lower * FIELD.itemsize
+        found[a - 1, b - 1] = np.frombuffer(data[8:end], FIELD)
+        found[b - 1, a - 1] = np.frombuffer(data[end + 8 :], FIELD)
+    return {key: rows for key, rows in found.items() if len(rows)}
+
+
+def rows(cuboids) -> list[slice]:
+    """Particles of each object."""
+    first = np.cumsum([0] + [len(one.particles.x) for one in cuboids]).tolist()
+    return [slice(a, b) for a, b in pairwise(first)]

@@ -1,0 +1,465 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Naive twin of fix mdanim/contact for cuboids, from the page of its law (docs/physics-contact.md): all points of every object
+against every other object and plane, each looked at in every step, places in the host by Newton's method to the end.
+
+It has no boxes, no lists and no look ahead. A cell in contact that is turned inside out is an error here: nothing is let go.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+FACING = 0.45
+"""Least cosine between a point's outward normal and that of a side that faces it, negated."""
+DEEPEST = 0.5
+"""Cells up to which a contact begins."""
+ONSET = 0.05
+"""eps over the spacing."""
+STICK = 0.8
+"""kappa_t over kappa."""
+FAR = 2.2
+"""Spacings from the middle of the nearest cell beyond which nothing is known of a point."""
+
+
+# --- maps from lattice coordinates to space ---
+
+
+def linear(X, cell, nodes: int = 2):
+    """First node, weights (P, nodes) and their slopes along one axis: those of a third node are 0."""
+    u, zero = X - cell, np.zeros_like(X)
+    return cell, np.stack([1.0 - u, u, zero][:nodes], -1), np.stack([zero - 1.0, zero + 1.0, zero][:nodes], -1)
+
+
+def smooth(X, cells: int):
+    """The same of quadratic B-splines, linear within half a cell of an end and beyond it."""
+    middle = np.floor(X + 0.5)
+    u = X - middle
+    w = np.stack([(0.5 - u) ** 2 / 2.0, 0.75 - u**2, (0.5 + u) ** 2 / 2.0], -1)
+    slope = np.stack([u - 0.5, -2.0 * u, u + 0.5], -1)
+    end = np.where((X < 0.5) | (cells == 1), 0.0, cells - 1.0)
+    first, straight, straight_slope = linear(X, end, 3)
+    is_straight = (X < 0.5) | (cells == 1) | (X - (cells - 0.5) >= 0.0)
+    pick = is_straight[:, None]
+    return np.where(is_straight, first, middle - 1.0), np.where(pick, straight, w), np.where(pick, straight_slope, slope)
+
+
+@dataclass
+class Spot:
+    """Where points X are: place (P, 3), J = dx/dX (P, 3, 3), nodes (P, 8 or 27), their weights and the gradients of these by
+    X."""
+
+    x: np.ndarray
+    J: np.ndarray
+    nodes: np.ndarray
+    N: np.ndarray
+    dN: np.ndarray
+
+    def to_material(self, way):
+        """A change of place as one of X."""
+        return np.einsum("pac,pc->pa", self.K, way)
+
+    def gradient(self, slope):
+        """A gradient by X as one in space."""
+        return np.einsum("pac,pa->pc", self.K, slope)
+
+    def take(self, rows) -> Spot:
+        """Some of the points."""
+        return Spot(self.x[rows], self.J[rows], self.nodes[rows], self.N[rows], self.dN[rows])
+
+    @cached_property
+    def K(self):
+        """dX/dx."""
+        return np.linalg.inv(self.J)
+
+
+def evaluate(x, count, axes) -> Spot:
+    """The map with these weights along the axes; ``x`` are the particles of a cuboid, x fastest."""
+    (first_x, wx, sx), (first_y, wy, sy), (first_z, wz, sz) = axes
+    n = wx.shape[1]
+    i, j, k = (np.minimum(first[:, None].astype(int) + np.arange(n), c) for first, c in zip((first_x, first_y, first_z), count))
+    product = lambda a, b, c: (c[:, :, None, None] * b[:, None, :, None] * a[:, None, None, :]).reshape(len(a), n**3)
+    nx, ny = count[0] + 1, count[1] + 1
+    nodes = (i[:, None, None, :] + nx * (j[:, None, :, None] + ny * k[:, :, None, None])).reshape(len(i), n**3)
+    N = product(wx, wy, wz)
+    dN = np.stack([product(sx, wy, wz), product(wx, sy, wz), product(wx, wy, sz)], -1)
+    at = x[nodes]
+    return Spot((N[:, None, :] @ at)[:, 0], at.transpose(0, 2, 1) @ dN, nodes, N, dN)
+
+
+def trilinear_spot(x, count, X, cell, nodes: int = 2) -> Spot:
+    """By the cells given."""
+    return evaluate(x, count, [linear(X[:, a], cell[:, a].astype(float), nodes) for a in range(3)])
+
+
+def smooth_spot(x, count, X) -> Spot:
+    """By B-splines."""
+    return evaluate(x, count, [smooth(X[:, a], int(count[a])) for a in range(3)])
+
+
+def newton(place, X, spot_of):
+    """X of these places, to the last bit that it reaches; NaN where a cell is turned inside out on the way."""
+    for _ in range(60):
+        spot = spot_of(np.nan_to_num(X))
+        X = np.where((np.linalg.det(spot.J) > 0.0)[:, None], X, np.nan)
+        if not np.isfinite(X).all():
+            spot.J[~np.isfinite(X).all(1)] = np.eye(3)
+        change = spot.to_material(place - spot.x)
+        length = np.linalg.norm(change, axis=1, keepdims=True)
+        X = X + change / np.maximum(1.0, 2.0 * length)
+        if length[np.isfinite(X).all(1)].max(initial=0.0) < 1e-7:  # the next step would be its square
+            return X
+    return np.where(length < 1e-7, X, np.nan)
+
+
+def inverse(x, count, place, X, is_smooth):
+    """X and cell of these places; ``X`` is where to begin. X is NaN where it is not found."""
+    for _ in range(20):
+        cell = np.clip(np.floor(np.nan_to_num(X)), 0, count - 1)
+        X = newton(place, X, lambda at, cell=cell: trilinear_spot(x, count, at, cell))
+        if (np.clip(np.floor(np.nan_to_num(X) + 1e-9), 0, count - 1) == cell).all():
+            break
+    X[is_smooth] = newton(place[is_smooth], X[is_smooth], lambda at: smooth_spot(x, count, at))
+    at = np.nan_to_num(X)
+    spot, sharp = trilinear_spot(x, count, at, cell, 3), smooth_spot(x, count, at[is_smooth])
+    for name in ("x", "J", "nodes", "N", "dN"):
+        getattr(spot, name)[is_smooth] = getattr(sharp, name)
+    return X, cell.astype(int), spot
+
+
+# --- the undeformed cuboid ---
+
+
+def depths(count, edge, X):
+    """Depth (P, 6) below the sides -x, +x, -y, +y, -z, +z, and its gradient by X (6, 3)."""
+    both = np.stack([X * edge, (np.array(count) - X) * edge], -1)
+    slopes = np.zeros((6, 3))
+    slopes[[0, 2, 4], [0, 1, 2]], slopes[[1, 3, 5], [0, 1, 2]] = edge, -np.array(edge)
+    return both.reshape(len(X), 6), slopes
+
+
+def ramps(count, is_flat, X):
+    """What of a point counts across each axis (P, 3), the slope of that, and cells that are missing to the first of it."""
+    width = np.where(is_flat[:, None], np.minimum(1.0, 0.25 * np.array(count)), 0.5)
+    start = np.where(is_flat[:, None], width, -0.25)
+    low, high = (X - start) / width, (count - X - start) / width
+    t = np.clip(low, 0, 1) * np.clip(high, 0, 1)
+    on = lambda r: ((r > 0.0) & (r < 1.0)) / width
+    return t, on(low) * np.clip(high, 0, 1) - on(high) * np.clip(low, 0, 1), start - np.minimum(X, count - X)
+
+
+def onset(d, eps):
+    """g(d) and its derivative."""
+    d = np.maximum(d, 0.0)
+    early = d < eps
+    return np.where(early, d**3 / (6 * eps), (d - eps / 2) ** 2 / 2 + eps**2 / 24), np.where(early, d**2 / (2 * eps), d - eps / 2)
+
+
+# --- contacts ---
+
+
+@dataclass
+class Law:
+    """Of the points of one object in another, or against a plane."""
+
+    kappa: float
+    onset: float
+    friction: float
+    eta: float
+    """Of the dashpot, by area [N s/m^3]."""
+
+
+@dataclass
+class Account:
+    energy: float = 0.0
+    stick: float = 0.0
+    heat: float = 0.0
+    damped: float = 0.0
+    touching: int = 0
+    deepest: float = 0.0
+
+
+@dataclass
+class Memory:
+    """Of all points of an object in one host: side -1 where there is no contact."""
+
+    side: np.ndarray
+    open: np.ndarray
+    X: np.ndarray
+    anchor: np.ndarray
+    offset: np.ndarray
+    depth: np.ndarray
+    pull: np.ndarray
+    stick: np.ndarray
+    stick_energy: np.ndarray
+    cell: np.ndarray
+
+    @classmethod
+    def new(cls, points: int, sides: int = 6) -> Memory:
+        zeros = np.zeros
+        return cls(
+            np.full(points, -1), zeros((points, sides), bool), np.full((points, 3), np.nan), zeros((points, 3)), zeros(points),
+            zeros(points), zeros((points, 3)), zeros(points), zeros(points), zeros((points, 3), int),
+        )  # fmt: skip
+
+
+def pressure(law, area, t, c, memory, depth, dt, account):
+    """Force over the gradient of the depth, and kappa w g, of the contacts c."""
+    memory.offset[c] = np.minimum(memory.offset[c], depth)
+    value, slope = onset(depth - memory.offset[c], law.onset)
+    press = law.kappa * area * t * slope
+    if dt > 0.0 and law.eta > 0.0:
+        rate = (depth - memory.depth[c]) / dt
+        more = np.where(depth > memory.offset[c], np.maximum(law.eta * area * t * rate, -press), 0.0)
+        account.damped += float((more * rate * dt).sum())
+        press = press + more
+    memory.depth[c] = depth
+    return press, law.kappa * area * value
+
+
+def friction(law, area, t, c, memory, away, normal, press, dt, account):
+    """Force of the stick spring, of its dashpot, and what is left of the way to the anchor."""
+    k = STICK * law.kappa * area * t
+    length, steep = np.linalg.norm(away, axis=1), np.linalg.norm(normal, axis=1)
+    most = law.friction * press * steep
+    slips = k * length > most
+    kept = np.where(slips, most / np.maximum(k * length, 1e-300), 1.0)
+    drag = np.zeros_like(away)
+    if dt > 0.0 and law.eta > 0.0:
+        before = np.where(memory.stick[c, None] > 0, -memory.pull[c] / np.maximum(memory.stick[c, None], 1e-300), 0.0)
+        rate = (away - before) / dt
+        unit = normal / steep[:, None]
+        rate -= (rate * unit).sum(1)[:, None] * unit
+        eta = law.eta * np.sqrt(STICK) * area * t  # 2 beta sqrt(kappa_t rho h/2) w t
+        drag = np.where(slips[:, None], 0.0, -eta[:, None] * rate)
+        account.damped += float((np.where(slips, 0.0, eta) * (rate**2).sum(1) * dt).sum())
+    left = kept[:, None] * away
+    pull = -k[:, None] * left
+    if dt > 0.0:
+        account.heat += float((np.where(slips, -0.5, 0.0) * ((pull + memory.pull[c]) * (away - left)).sum(1)).sum())
+    memory.pull[c], memory.stick[c] = pull, k
+    memory.stick_energy[c] = 0.5 * k * (left**2).sum(1)
+    return pull, drag, kept
+
+
+@dataclass
+class Solid:
+    """A cuboid: the arrays of its contact body, its particles' rows, and material."""
+
+    body: dict
+    rows: slice
+    young: float
+    friction: float
+    density: float
+    held: bool = False
+    carriers: tuple = field(init=False)
+
+    def __post_init__(self):
+        cell = np.stack(np.unravel_index(self.body["cell"], self.count[::-1])[::-1], -1)
+        still = np.zeros(((self.count + 1).prod(), 3))
+        self.carriers = tuple(trilinear_spot(still, self.count, self.body[name], cell) for name in ("at", "centre"))
+        self.middles = trilinear_spot(still, self.count, cell + 0.5, cell)
+
+    @property
+    def count(self):
+        return self.body["count"].astype(int)
+
+    @property
+    def spacing(self) -> float:
+        return float(np.cbrt(self.body["edge"].prod()))
+
+    def points(self, x):
+        """Places of the points and of the centres of their areas."""
+        return (np.einsum("pn,pnc->pc", s.N, x[self.rows][s.nodes]) for s in self.carriers)
+
+    def normals(self, x):
+        """Outward unit normals of the points in space: by the middle of the cell that carries each."""
+        m = self.middles
+        J = np.einsum("pnc,pna->pca", x[self.rows][m.nodes], m.dN)
+        n = Spot(None, J, None, None, None).gradient(self.body["normal"] * self.body["edge"])
+        return n / np.linalg.norm(n, axis=1, keepdims=True)
+
+    def push(self, which, points, forces, onto):
+        """Add forces at points (0: themselves, 1: centres of their areas)."""
+        s = self.carriers[which]
+        np.add.at(onto[self.rows], s.nodes[points], s.N[points][..., None] * forces[:, None, :])
+
+
+class Twin:
+    """The law over all objects. `forces` is asked once for every step, in order."""
+
+    def __init__(self, solids, planes=(), objects=True, stiffness=1.0, damping=0.3, pairs=None):
+        """``planes``: (axis, sign, place) each, sign 1 where objects belong above. ``pairs``: (mu, beta) by objects (a, b)."""
+        self.solids, self.planes = solids, planes
+        self.account = Account()
+        self.memory, self.laws = {}, {}
+
+        def law(a, kappa, mu, beta):
+            one = self.solids[a]
+            h = one.spacing
+            return Law(kappa, ONSET * h, mu, 2.0 * beta * np.sqrt(kappa * one.density * h / 2.0))
+
+        for a, first in enumerate(solids):
+            for b, second in enumerate(solids):
+                if a == b or not objects or (first.held and second.held):
+                    continue
+                mu = np.sqrt(first.friction * second.friction)
+                mu, beta = (pairs or {}).get((min(a, b), max(a, b)), (mu, damping if mu > 0.0 else 0.0))
+                kappa = stiffness * 2.0 * first.young * second.young / (first.young + second.young)
+                self.laws[a, b] = law(a, kappa / max(first.spacing, second.spacing), mu, beta)
+                self.memory[a, b] = Memory.new(len(first.body["cell"]))
+            for p in range(len(planes)):
+                beta = damping if first.friction > 0.0 else 0.0
+                if not first.held:
+                    self.laws[a, -1 - p] = law(a, stiffness * first.young / first.spacing, first.friction, beta)
+                    self.memory[a, -1 - p] = Memory.new(len(first.body["cell"]), 1)
+
+    def forces(self, x, dt: float):
+        """Forces (N, 3) on all particles at ``x``. dt = 0 is the setup of a run: points are looked at, and no contact begins."""
+        total = np.zeros_like(x)
+        self.account.energy = self.account.stick = 0.0
+        self.account.touching = 0
+        for (a, b), law in self.laws.items():
+            (self._in_object if b >= 0 else self._in_plane)(a, b, law, x, dt, total)
+        return total
+
+    def _in_object(self, a, b, law, x, dt, total):
+        owner, host, memory, account = self.solids[a], self.solids[b], self.memory[a, b], self.account
+        count, edge, h = host.count, host.body["edge"], host.spacing
+        place, centre = owner.points(x)
+        shift, normal = centre - place, owner.normals(x)
+        there = x[host.rows]
+        is_sharp, is_flat = owner.body["kind"] == 1, owner.body["kind"] == 0
+        area = owner.body["area"]
+
+        # Where every point is in the host; nothing is known of those far away.
+        grid = there.reshape(*(count[::-1] + 1), 3)
+        middles = 0.5 * (grid[:-1, :-1, :-1] + grid[1:, 1:, 1:]).reshape(-1, 3)
+        away = np.linalg.norm(place[:, None] - middles, axis=2)
+        cell = np.stack(np.unravel_index(away.argmin(1), count[::-1])[::-1], -1)
+        touches = memory.side >= 0
+        near = np.flatnonzero((away.min(1) <= FAR * h) | touches)
+        memory.X[~np.isfinite(memory.X)] = (cell + 0.5)[~np.isfinite(memory.X)]
+        X, cell, spot = inverse(there, count, place[near], memory.X[near], is_sharp[near])
+        is_found = np.isfinite(X).all(1)
+        assert is_found[touches[near]].all(), "a cell in contact is turned inside out"
+        known, X, cell, spot = near[is_found], X[is_found], cell[is_found], spot.take(is_found)
+        memory.X[:] = np.nan
+        memory.X[known], memory.cell[known] = X, cell
+        X_centre = X + spot.to_material(shift[known])
+        depth, slopes = depths(count, edge, X)
+
+        # Which sides a point might be in, and which could not hold energy.
+        facing = np.empty((len(known), 6))
+        apart = np.empty((len(known), 6))
+        _, _, missing = ramps(count, is_flat[known], X_centre)
+        for s in range(6):
+            inward = spot.gradient(np.tile(slopes[s], (len(known), 1)))
+            facing[:, s] = (normal[known] * inward).sum(1) / np.linalg.norm(inward, axis=1)
+            others = [d for d in range(3) if d != s // 2]
+            apart[:, s] = np.maximum(-depth[:, s] / h, missing[:, others].max(1))
+        is_open = (apart <= 0.0) | (0.5 * (FACING - facing) > apart)
+        t, slope_t, _ = ramps(count, is_flat[known], X_centre)
+        product = lambda values, side: np.where(np.arange(3) == side[:, None] // 2, 1.0, values).prod(1)
+
+        if dt > 0.0:
+            faces = facing >= FACING
+            is_shut = (faces & (depth <= 0.0)).any(1)
+            rank = np.where(faces & (depth > 0.0), depth / np.maximum(facing, FACING), np.inf)
+            side = rank.argmin(1)
+            row = np.arange(len(known))
+            born = ~touches[known] & ~is_shut & np.isfinite(rank.min(1))
+            born &= (depth[row, side] <= DEEPEST * h) & (product(t, side) > 0.0)
+            n = known[born]
+            memory.side[n] = side[born]
+            memory.anchor[n] = X[born]
+            memory.depth[n] = depth[born, side[born]]
+            was_open = memory.open[n, side[born]]
+            memory.offset[n] = np.where(was_open, memory.depth[n], 0.0)
+            memory.pull[n] = memory.stick[n] = memory.stick_energy[n] = 0.0
+        free = memory.side[known] < 0
+        memory.open[:] = False
+        memory.open[near[~is_found]] = True
+        memory.open[known[free]] = is_open[free]
+        if dt == 0.0:
+            assert free.all(), "a setup with contacts is not in the twin"
+            return
+
+        c = np.flatnonzero(~free)  # rows of `known`
+        if not len(c):
+            return
+        side = memory.side[known[c]]
+        d, t_c = depth[c, side], product(t[c], side)
+        over = (d <= 0.0) | (t_c <= 0.0)
+        ended = known[c[over]]
+        account.heat += float(memory.stick_energy[ended].sum())
+        memory.side[ended] = -1
+        memory.open[ended] = is_open[c[over]]
+        c = c[~over]
+        side, d, t_c, n = side[~over], d[~over], t_c[~over], known[c]
+        spot = spot.take(c)
+
+        grad_t = np.zeros((len(c), 3))
+        for axis in range(3):
+            rest = np.where(np.arange(3) == axis, slope_t[c], np.where(np.arange(3) == side[:, None] // 2, 1.0, t[c]))
+            grad_t[:, axis] = np.where(side // 2 == axis, 0.0, rest[:, axis] * np.delete(rest, axis, 1).prod(1))
+        grad = spot.gradient(slopes[side])
+        press, surface = pressure(law, area[n], t_c, n, memory, d, dt, account)
+        pull = drag = lean = np.zeros((len(c), 3))
+        if law.friction > 0.0:
+            lean = memory.anchor[n] - X[c]  # to the anchor, at the depth of the point
+            lean = lean - ((lean * slopes[side]).sum(1) / (slopes[side] ** 2).sum(1))[:, None] * slopes[side]
+            way = -np.einsum("pca,pa->pc", spot.J, lean)
+            pull, drag, kept = friction(law, area[n], t_c, n, memory, way, grad, press, dt, account)
+            lean = kept[:, None] * lean
+            memory.anchor[n] = X[c] + lean
+        at_point = -press[:, None] * grad + pull + drag
+        at_centre = -surface[:, None] * spot.gradient(grad_t)
+        owner.push(0, n, at_point, total)
+        owner.push(1, n, at_centre, total)
+        to_centre = spot.to_material(shift[n])
+        moment = to_centre[:, :, None] * at_centre[:, None, :] + lean[:, :, None] * pull[:, None, :]  # (P, a, c)
+        back = spot.N[:, :, None] * (at_point + at_centre)[:, None, :] + np.einsum("pna,pac->pnc", spot.dN, moment)
+        np.add.at(total[host.rows], spot.nodes, -back)
+
+        account.energy += float((t_c * surface).sum())
+        account.stick += float(memory.stick_energy[n].sum())
+        account.touching += len(c)
+        account.deepest = max(account.deepest, float(d.max(initial=0.0)))
+
+    def _in_plane(self, a, b, law, x, dt, total):
+        axis, sign, at = self.planes[-1 - b]
+        owner, memory, account = self.solids[a], self.memory[a, b], self.account
+        place, _ = owner.points(x)
+        depth = sign * (at - place[:, axis])
+        inside, touches = depth > 0.0, memory.side >= 0
+        if dt > 0.0:
+            n = np.flatnonzero(inside & ~touches)
+            memory.side[n], memory.anchor[n], memory.depth[n] = 0, place[n], depth[n]
+            memory.offset[n] = np.where(memory.open[n, 0], depth[n], 0.0)
+            memory.pull[n] = memory.stick[n] = memory.stick_energy[n] = 0.0
+            ended = np.flatnonzero(~inside & touches)
+            account.heat += float(memory.stick_energy[ended].sum())
+            memory.side[ended] = -1
+        memory.open[:, 0] = inside
+        n = np.flatnonzero(memory.side >= 0)
+        if not len(n):
+            return
+        downward = np.zeros((len(n), 3))
+        downward[:, axis] = -sign
+        area, one = owner.body["area"][n], np.ones(len(n))
+        press, surface = pressure(law, area, one, n, memory, depth[n], dt, account)
+        force = -press[:, None] * downward
+        if law.friction > 0.0:
+            away = place[n] - memory.anchor[n]
+            away[:, axis] = 0.0
+            pull, drag, kept = friction(law, area, one, n, memory, away, downward, press, dt, account)
+            memory.anchor[n] = place[n] - kept[:, None] * away
+            force = force + pull + drag
+        owner.push(0, n, force, total)
+        account.energy += float(surface.sum())
+        account.stick += float(memory.stick_energy[n].sum())
+        account.touching += len(n)
+        account.deepest = max(account.deepest, float(depth[n].max()))
