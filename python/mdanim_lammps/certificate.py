@@ -21,6 +21,7 @@ import numpy as np
 from .effects import Effect, Resolved
 from .effects.envelope import Envelope
 from .effects.margin import Margin
+from .effects.resting import frictionless, slopes
 from .errors import Problem, RefusedError, SceneError, Span
 from .model.system import System
 from .scene.formatting import estimate, number, say
@@ -59,6 +60,8 @@ class Certificate:
     """Scene line of what sets the bound."""
     margins: tuple[Margin, ...] = ()
     """The bound of each object, the smallest first, and every other limit that the scene has to keep."""
+    notes: tuple[Problem, ...] = ()
+    """What is not doubtful, but may not be known, of severity ``note``."""
 
     @property
     def lengths(self) -> tuple[int, ...]:
@@ -84,6 +87,7 @@ class Certificate:
             "steps": self.steps,
             "fraction": self.fraction,
             "margins": [m.to_json() for m in self.margins],
+            "notes": [{"message": n.message, "hint": n.hint, "place": str(n.span) if n.span else None} for n in self.notes],
         }
 
     def __str__(self) -> str:
@@ -135,6 +139,7 @@ def certify(resolved: Resolved, system: System, *, allow_unstable: bool = False)
         )
         raise RefusedError(str(problem))
     timestep = 1.0 / (scene.control.frames * per_frame)
+    envelope = Envelope(resolved, system, rates, timestep)
     return Certificate(
         timestep=timestep,
         bound=bound,
@@ -145,7 +150,8 @@ def certify(resolved: Resolved, system: System, *, allow_unstable: bool = False)
         frames=frames,
         last_steps=last,
         span=scene.solids[system.object[worst]].spans.get("elasticity"),
-        margins=tuple(_margins(resolved, Envelope(resolved, system, rates, timestep), limit)),
+        margins=tuple(_margins(resolved, envelope, limit)),
+        notes=tuple(_notes(envelope)),
     )
 
 
@@ -236,10 +242,22 @@ def margin_lines(certificate: Certificate) -> list[str]:
     return lines
 
 
+def note_lines(certificate: Certificate) -> list[str]:
+    """Lines for ``check``: what may not be known, and what to write."""
+    return [f"  {n.severity:<8} {n.message}; {n.hint}" + (f"  [{n.span}]" if n.span else "") for n in certificate.notes]
+
+
 def _margins(resolved: Resolved, envelope: Envelope, limit: np.ndarray) -> list[Margin]:
     """The margins, the bound of the objects first; ``limit`` is the largest stable step of each particle [s], shape (N,)."""
     found = [*_bounds(envelope, limit), *_drag(envelope, resolved)]
     return found + [m for e in resolved.effects for m in e.margins(envelope)] if envelope.moving.any() else found
+
+
+def _notes(envelope: Envelope) -> list[Problem]:
+    """Those of the effects, and what slides."""
+    if not envelope.moving.any():
+        return []
+    return [*(n for e in envelope.on for n in e.notes(envelope)), *frictionless(envelope), *slopes(envelope)]
 
 
 def _bounds(env: Envelope, limit: np.ndarray) -> list[Margin]:

@@ -49,7 +49,7 @@ class Problem:
     hint: str = ""
     """The way out, e.g. ``did you mean 'kg'?``."""
     severity: str = "error"
-    """``error`` or ``warning``."""
+    """``error``, ``warning`` or ``note``."""
 
     @property
     def file(self) -> str:

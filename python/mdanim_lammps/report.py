@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from pathlib import Path
 
-from .certificate import margin_lines
+from .certificate import margin_lines, note_lines
 from .cost.speedup_forecast import SpeedupForecast
 from .effects import Verdict
 from .model import plan_spacing
@@ -192,6 +192,7 @@ def check_lines(ready: Prepared, forecast: Cost, prospect: SpeedupForecast | Non
         certificate_line(ready),
         "limits",
         *margin_lines(ready.certificate),
+        *note_lines(ready.certificate),
         output_line(ready),
         forecast_line(forecast),
         *([] if prospect is None else [executors_line(prospect.executors, None), *prospect_lines(prospect)]),

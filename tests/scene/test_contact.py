@@ -3,7 +3,7 @@
 
 import pytest
 from mdanim_lammps.errors import SceneError
-from mdanim_lammps.scene.contact_pairs import objects_by_name, pairs_of
+from mdanim_lammps.scene.contact_pairs import any_friction, frictions, objects_by_name, pair_rules, pairs_of
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import parse_scene
 from mdanim_lammps.scene.scene import CONTACT_MODEL, ContactModel, ContactPair
@@ -42,7 +42,7 @@ def test_contacts_survive_the_lock():
     """Single objects, a repeat, its single objects, planes; both settings, or one of them."""
     said = (
         "contact b ball { friction 0.1 }\ncontact b b { friction 0 contact-damping 0.5 }\n"
-        "contact ground b[2] { contact-damping 0 }\ncontact ball walls { friction 1 }\n"
+        "contact ground b[2] { friction 0 }\ncontact ball walls { friction 1 }\n"
         "contact b[1] ground { friction 2 }\n"
     )
     top = "ground z -1 m\nwalls from (-9, -9, -9) m to (9, 9, 9) m\n"
@@ -50,7 +50,7 @@ def test_contacts_survive_the_lock():
     assert scene.contacts == (
         ContactPair("b", "ball", 0.1),
         ContactPair("b", "b", 0.0, 0.5),
-        ContactPair("ground", "b[2]", None, 0.0),
+        ContactPair("ground", "b[2]", 0.0),
         ContactPair("ball", "walls", 1.0),
         ContactPair("b[1]", "ground", 2.0),
     )
@@ -140,6 +140,9 @@ def test_mistake(said, line, column, words, hint):
             "the contact of ground and b[2] is given twice",
             id="plane twice",
         ),
+        pytest.param(
+            "contact ground b { contact-damping 0 }", "the contact-damping of ground is that of control", id="damping of a plane"
+        ),
     ],
 )
 def test_mistake_with_planes(said, words):
@@ -148,12 +151,14 @@ def test_mistake_with_planes(said, words):
     assert words in found.message and found.hint
 
 
-def test_a_plane_and_an_object_of_one_name():
-    """Refuse the word where it has two meanings; elsewhere it is the object."""
+def test_a_name_with_two_meanings():
+    """Refuse a word that is a plane and an object, or an object and a repeat; where it is one of them, that one is meant."""
     named = pile("contact b ground { friction 1 }").replace("object ball", "object ground")
     assert parse_scene(named).contacts == (ContactPair("b", "ground", 1.0),)
     (found,) = problems("ground z -9 m\n" + named)
-    assert "ground is both an object and the ground of the scene" in found.message and "another name" in found.hint
+    assert "ground is the name of an object and of a plane of the scene" in found.message and "another name" in found.hint
+    (found,) = problems(pile("contact b b[1] { friction 1 }").replace("object ball", "object b"))
+    assert "b is the name of an object and of a repeat" in found.message and "another name" in found.hint
 
 
 def test_too_many_pairs(monkeypatch):
@@ -185,9 +190,9 @@ def test_a_switch_is_no_block():
 
 
 def test_what_a_name_stands_for():
-    """An object before a repeat of the same name."""
-    assert objects_by_name(["a", "b[1]", "b[2]", "c[7]", "c"]) == {
-        "a": [0], "b[1]": [1], "b[2]": [2], "c[7]": [3], "c": [4], "b": [1, 2],
+    """An object, or all of a repeat."""
+    assert objects_by_name(["a", "b[1]", "b[2]", "c[7]"]) == {
+        "a": [0], "b[1]": [1], "b[2]": [2], "c[7]": [3], "b": [1, 2], "c": [3],
     }  # fmt: skip
 
 
@@ -205,3 +210,40 @@ def test_what_a_name_stands_for():
 def test_pairs_of_two_sets(first, second, expected):
     """Each pair once, whichever way it is named."""
     assert sorted(pairs_of(first, second)) == expected and sorted(pairs_of(second, first)) == expected
+
+
+RULES = """contact b ball { friction 0.1 }
+contact b b { contact-damping 0.5 }
+contact ground b[2] { friction 0.9 }
+"""
+
+
+def test_friction_of_pairs():
+    """A block's own; else the geometric mean of the objects', and damping where there is friction."""
+    scene = parse_scene(pile(RULES, f"{SURFACE} friction 0.25", top="ground z -1 m\n", friction="0.64"))
+    names = [s.name for s in scene.solids]
+    assert sorted(pair_rules(scene, names)) == [
+        (0, 1, 0.25, 0.5), (0, 2, 0.25, 0.5), (0, 3, 0.1, 0.3), (1, 2, 0.25, 0.5), (1, 3, 0.1, 0.3), (2, 3, 0.1, 0.3),
+    ]  # fmt: skip
+    assert pair_rules(scene, ["b[2]", "ball"]) == [(0, 1, 0.1, 0.3)]
+    mixed = parse_scene(pile("contact b[1] ball { contact-damping 0 }", f"{SURFACE} friction 0.25", friction="0.64"))
+    smooth = parse_scene(pile("contact b[1] ball { friction 0 }", f"{SURFACE} friction 0.25"))
+    assert pair_rules(smooth, names) == [(0, 3, 0.0, 0.0)]
+    assert pair_rules(mixed, names) == [(0, 3, pytest.approx(0.4), 0.0)]
+    assert frictions(scene) == [0.25, 0.25, 0.25, 0.64]
+    assert frictions(scene, "ground") == [0.25, 0.9, 0.25, 0.64] and frictions(scene, "walls") == frictions(scene)
+
+
+@pytest.mark.parametrize(
+    ("control", "contacts", "settings", "expected"),
+    [
+        ("", "", {}, False),
+        ("friction 0.1", "", {}, True),
+        ("", "contact b b { friction 0 }", {}, False),
+        ("", "contact b b { friction 0.1 }", {}, True),
+        ("", "", {"friction": "0.1"}, True),
+    ],
+)
+def test_whether_anything_has_friction(control, contacts, settings, expected):
+    """The scene, an object, or a pair."""
+    assert any_friction(parse_scene(pile(contacts, f"{SURFACE} {control}", **settings))) == expected

@@ -26,7 +26,7 @@ def scene(block: str, **settings: str):
     """A small scene in which one block has these settings in place of, or beside, its usual ones."""
     blocks = {"object": dict(BALL), "liquid": dict(WATER), "control": {"time": "3 s"}, "render": {}, "effects": {}}
     if block == "contact":
-        blocks["contact"] = {}
+        blocks |= {"contact": {}, "floor": dict(BALL)}
     if block == "contact" or any(settings.get(word, "0") != "0" for word in OF_SURFACES):
         blocks["control"]["contact-model"] = "surface"
     top = {"gravity": "(0, 0, -9.81) m/s^2"}
@@ -37,7 +37,9 @@ def scene(block: str, **settings: str):
     chosen |= settings
     text = "".join(f"{word} {value}\n" for word, value in top.items())
     for name, content in blocks.items():
-        head = {"object": "object ball", "liquid": "liquid water", "contact": "contact ball basin"}.get(name, name)
+        head = {"object": "object ball", "liquid": "liquid water", "contact": "contact ball floor", "floor": "object floor"}.get(
+            name, name
+        )
         text += f"{head} {{\n" + "".join(f"  {w} {v}\n" for w, v in content.items()) + "}\n"
     return parse_scene(text)
 

@@ -11,7 +11,7 @@ from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.state import State
 from mdanim_lammps.errors import DivergedError
 from mdanim_lammps.results.ledger import Ledger
-from mdanim_lammps.run.energy import rounding_energy
+from mdanim_lammps.run.energy import ledger_terms, losses, rounding_energy
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
@@ -28,10 +28,7 @@ class Trial:
         self.ready = prepare(parse_scene(text, folder=Path(__file__).parent), allow_unstable=unstable)
         self.system, self.timestep = self.ready.system, self.ready.certificate.timestep
         self.instance = Instance(self.ready.plan)
-        effects = self.ready.plan.effects
-        self.ledger = Ledger(
-            ("kinetic", *dict.fromkeys(e.ledger for e in effects if e.ledger)), floor=rounding_energy(self.system)
-        )
+        self.ledger = Ledger(ledger_terms(self.ready.plan), floor=rounding_energy(self.system))
         self.lost_cells = 0
         try:
             self.instance.setup()
@@ -83,6 +80,7 @@ class Trial:
         for effect in self.ready.plan.effects:
             if effect.ledger:
                 energies[effect.ledger] += effect.energy(self.instance, scene, self.system)
+        energies |= losses(self.instance)
         self.ledger.add(self.instance.step * self.timestep, energies)
         if self.ready.plan.grid:
             gained = self.instance.fix_value("liquid", UNITS) - self.instance.fix_value("liquid", START)

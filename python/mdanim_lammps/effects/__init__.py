@@ -4,6 +4,7 @@
 from .air_drag import AirDrag
 from .boundaries import GroundPlane, WallPlanes
 from .contact import Contact
+from .contact_surface import SurfaceBasin, SurfaceContact, SurfaceGround, SurfaceWalls
 from .damping import Damping
 from .effect import Effect, Load, Resolved, Verdict, decide, resolve
 from .gravity import Gravity
@@ -14,10 +15,10 @@ EFFECTS: tuple[Effect, ...] = (
     Springs(),
     Damping(),
     Gravity(),
-    Contact(),
-    GroundPlane(),
-    WallPlanes(),
-    Basin(),
+    Contact(SurfaceContact()),
+    GroundPlane(SurfaceGround()),
+    WallPlanes(SurfaceWalls()),
+    Basin(SurfaceBasin()),
     AirDrag(),
     LiquidAutomaton(),
     Buoyancy(),

@@ -11,6 +11,8 @@ from .springs import all_held
 
 LEAPFROG = "leap-frog"
 """Clock of the integrator; what effects take of it is not counted with the integrator's own time."""
+DRAG_LOSS = "drag_loss"
+"""Column of the ledger; the leap-frog counts what air and liquid take together."""
 SLOWING = 0.3
 """Part of the leap-frog's time for a particle that goes to its drag, of air or liquid (bench/effects.py shares)."""
 
@@ -43,7 +45,6 @@ def drag_forecast(load, rate, particles: int) -> float:
 
 class AirDrag(Effect):
     name = "air-drag"
-    ledger = "drag_loss"
     if_off = "nothing slows down in air"
 
     def called_for(self, scene, planes=None):
@@ -64,5 +65,8 @@ class AirDrag(Effect):
     def forecast(self, load, rate):
         return drag_forecast(load, rate, np.count_nonzero(load.system.drag[~load.system.held]))
 
-    def energy(self, instance, scene, system):
-        return instance.fix_scalar("leapfrog")
+    def losses(self, scene):
+        return (DRAG_LOSS,)
+
+    def lost(self, instance, scene, system):
+        return {DRAG_LOSS: instance.fix_scalar("leapfrog")}

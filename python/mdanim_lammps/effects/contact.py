@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import Problem
 from ..model.sweep import closest
+from ..model.system import System
 from ..model.touching import REACH, THIN, WAY_NAMES, touching
 from ..scene.formatting import at_least, say, whole
 from .effect import Effect, Verdict, stiffness_told
@@ -47,6 +48,31 @@ def plane_stiffness(reach: float) -> float:
     return float(np.linalg.eigvalsh(hessian)[:, -1].max())
 
 
+def barrier(fix: str, system: System) -> list[str]:
+    """Commands for a barrier of this name, with the columns ``stiffness`` and ``reach``."""
+    groups = ["group inner type 1 2 5 6", "group boundary type 3 4 7 8", "group thin type 4 8"]
+    thin = f" thin thin {THIN!r}" if (system.layer == 4).any() else ""
+    return [*groups, f"fix {fix} mobile mdanim/barrier boundary inner d_stiffness d_reach{thin}"]
+
+
+def barrier_rate(system: System, reach: float) -> np.ndarray:
+    """Its share in the bound, see `Effect.rate`, with a largest reach [m]."""
+    s = system.contact_stiffness
+    partner = largest_of_others(np.maximum.reduceat(s, system.first[:-1]))[system.object]
+    k = 2.0 * s * partner / (s + partner)
+    over_spacing = float(reach / np.cbrt(system.cell_volume.min()))
+    return 2.0 * plane_stiffness(round(over_spacing, 3)) * k / system.mass
+
+
+def closing_speeds(system: System, g: float, fall: np.ndarray) -> np.ndarray:
+    """Speed at which each solid may meet another [m/s], shape (M,): both fall alike, with g [m/s^2], so only the start tells
+    them apart until one has landed; ``fall`` [m], shape (M,), is how far."""
+    low, high = system.bounds(system.velocity)
+    apart = np.maximum(high + largest_of_others(-low), largest_of_others(high) - low)
+    apart = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(1))
+    return np.where(system.still, 0.0, np.sqrt(apart**2 + 2.0 * g * np.maximum(0.0, fall)))
+
+
 class Contact(Effect):
     name = "contact"
     fix = "contact"
@@ -74,36 +100,24 @@ class Contact(Effect):
         )
 
     def columns(self, scene, system):
-        return {"stiffness": system.contact_stiffness, "reach": REACH * system.spacing[system.object]}
+        return {"stiffness": system.contact_stiffness, "reach": self.reach(scene, system)[system.object]}
+
+    def reach(self, scene, system):
+        return REACH * system.spacing
 
     def commands(self, scene, system):
-        groups = ["group inner type 1 2 5 6", "group boundary type 3 4 7 8", "group thin type 4 8"]
-        thin = f" thin thin {THIN!r}" if (system.layer == 4).any() else ""
-        return [*groups, f"fix contact mobile mdanim/barrier boundary inner d_stiffness d_reach{thin}"]
+        return barrier(self.fix, system)
 
     def rate(self, scene, system):
-        s = system.contact_stiffness
-        largest = np.full(len(system.names), 0.0)
-        np.maximum.at(largest, system.object, s)
-        # The stiffest partner is in another object: the largest of all, or the second largest for the largest itself.
-        order = np.argsort(largest)
-        partner = np.full(len(largest), largest[order[-1]])
-        partner[order[-1]] = largest[order[-2]]
-        k = 2.0 * s * partner[system.object] / (s + partner[system.object])
-        reach = REACH * system.spacing.max() / np.cbrt(system.cell_volume.min())
-        return 2.0 * plane_stiffness(round(float(reach), 3)) * k / system.mass
+        return barrier_rate(system, REACH * system.spacing.max())
 
     def margins(self, envelope):
         return [*envelope.own_step("contact", envelope.rates[self.name]), self._closing_speed(envelope)]
 
     def _closing_speed(self, envelope: Envelope) -> Margin:
-        """Speed at which each solid may meet another: both fall alike, so only the start tells them apart,
-        until one has landed."""
+        """Speed at which each solid may meet another."""
         system = envelope.system
-        low, high = system.bounds(system.velocity)
-        apart = np.maximum(high - _least_of_others(low), -_least_of_others(-high) - low)
-        apart = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(1))
-        closing = np.where(envelope.moving, np.sqrt(apart**2 + 2.0 * envelope.g * np.maximum(0.0, envelope.fall())), 0.0)
+        closing = closing_speeds(system, envelope.g, envelope.fall())
         # A held partner may be met at full speed, the softer of two is the one that is passed through.
         limit = np.array(TUNNEL)[np.clip(np.rint(envelope.cells).astype(int), 1, len(TUNNEL)) - 1] * envelope.wave
         soft = system.contact_factor < 1.0
@@ -168,10 +182,10 @@ class Contact(Effect):
         return max(0.0, (1.0 / REACH - smallest) * REACH * float(system.spacing.max()))
 
 
-def _least_of_others(values: np.ndarray) -> np.ndarray:
-    """Along each axis, the least of all rows but one's own; shape (M, 3)."""
-    order = np.argsort(values, axis=0)
-    least = np.broadcast_to(np.take_along_axis(values, order[:1], 0), values.shape).copy()
+def largest_of_others(values: np.ndarray) -> np.ndarray:
+    """Of every column, the largest of all rows but one's own; shape (M,) or (M, K)."""
+    order = np.argsort(values, axis=0)[::-1]
+    largest = np.broadcast_to(np.take_along_axis(values, order[:1], 0), values.shape).copy()
     if len(values) > 1:
-        np.put_along_axis(least, order[:1], np.take_along_axis(values, order[1:2], 0), 0)
-    return least
+        np.put_along_axis(largest, order[:1], np.take_along_axis(values, order[1:2], 0), 0)
+    return largest

@@ -11,7 +11,6 @@ from .springs import all_held, spring_norm, time_of_dashpots
 
 class Damping(Effect):
     name = "damping"
-    ledger = "damping_loss"
     needs = ("springs",)
     if_off = "damped objects ring for ever"
 
@@ -21,8 +20,11 @@ class Damping(Effect):
                 return Verdict(self.name, True, f"damping of {solid.name}", solid.spans.get("damping"))
         return Verdict(self.name, False, "no object has damping")
 
-    def energy(self, instance, scene, system):
-        return instance.damping_loss()
+    def losses(self, scene):
+        return ("damping_loss",)
+
+    def lost(self, instance, scene, system):
+        return {"damping_loss": instance.damping_loss()}
 
     def clocks(self, instance):
         more = time_of_dashpots(instance.plan.system)

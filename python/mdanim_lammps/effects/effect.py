@@ -15,7 +15,7 @@ from ..errors import Problem, Span
 from ..model.planes import Plane
 from ..model.system import System
 from ..scene.formatting import number
-from ..scene.scene import Scene, Switch
+from ..scene.scene import ContactModel, Scene, Switch
 from .envelope import Envelope
 from .margin import Margin
 
@@ -81,7 +81,7 @@ class Effect:
     fix = ""
     """ID of its LAMMPS fix of ours, which times itself; empty when it has none."""
     ledger = ""
-    """Its energy column in ledger.csv; empty when it has none."""
+    """The column of ledger.csv with the energy that it stores; empty when it stores none."""
     has_potential = False
     """Whether its energy is a `potential` of single particles; no other effect has the same column then."""
     uses_grid = False
@@ -92,6 +92,15 @@ class Effect:
     """Effects without which this one cannot be; they stand before it in EFFECTS."""
     if_off = ""
     """What looks wrong when a scene needs the effect and it is switched off."""
+
+    def __init__(self, on_surfaces: Effect | None = None):
+        self.on_surfaces = on_surfaces
+        """What it is under ``contact-model surface``; None where that is the same."""
+
+    def of(self, scene: Scene) -> Effect:
+        """What it is under the contact model of a scene."""
+        surface = scene.control.contact_model is ContactModel.SURFACE
+        return self.on_surfaces if surface and self.on_surfaces else self
 
     def called_for(self, scene: Scene, planes: tuple[Plane, ...] | None = None) -> Verdict:
         """Whether the scene, by itself, calls for the effect; ``planes`` push objects back, None are those of the scene."""
@@ -129,12 +138,20 @@ class Effect:
         return None
 
     def energy(self, instance, scene: Scene, system: System) -> float:
-        """What stands in its ledger column now [J]; ``instance`` is the running engine.instance.Instance."""
+        """What stands in its column ``ledger`` now [J]; ``instance`` is the running engine.instance.Instance."""
         return self.potential(scene, system.mass, instance.array("x")) if self.has_potential else 0.0
 
     def potential(self, scene: Scene, mass: np.ndarray, x: np.ndarray) -> float:
         """Its energy, where that follows from the places of particles alone [J]; mass [kg], shape (N,), x [m], shape (N, 3)."""
         raise NotImplementedError
+
+    def losses(self, scene: Scene) -> tuple[str, ...]:
+        """The columns of ledger.csv with the energies that it has taken so far."""
+        return ()
+
+    def lost(self, instance, scene: Scene, system: System) -> dict[str, float]:
+        """What stands in these columns now [J]; ``instance`` as in `energy`."""
+        return {}
 
     def planes(self, scene: Scene) -> tuple[Plane, ...]:
         """The planes that push objects back, whether the effect is on or not."""
@@ -164,6 +181,19 @@ class Effect:
         """What is doubtful about the start of a scene that the effect is on in."""
         return []
 
+    def notes(self, envelope: Envelope) -> list[Problem]:
+        """What ``check`` tells of a scene in which something can move besides: nothing is doubtful, but it may not be known."""
+        return []
+
+    def reach(self, scene: Scene, system: System) -> np.ndarray | float:
+        """Gap from which on a solid does not feel another by it, the larger one of both counts [m], shape (M,)."""
+        return 0.0
+
+    @property
+    def fixes(self) -> tuple[str, ...]:
+        """IDs of the fixes whose scalars are its energy."""
+        return (self.fix,) if self.fix else ()
+
     def clocks(self, instance) -> dict[str, float]:
         """Wall seconds so far of each of its pieces; ``instance`` as in `energy`.
 
@@ -189,6 +219,7 @@ def stiffness_told(scene: Scene) -> str:
 
 def decide(effects: tuple[Effect, ...], scene: Scene) -> tuple[dict[str, Verdict], list[Problem]]:
     """Verdict of each effect, by name, with the scene's own switches applied; and warnings about needed ones switched off."""
+    effects = tuple(e.of(scene) for e in effects)
     verdicts: dict[str, Verdict] = {}
     warnings: list[Problem] = []
     planes = tuple(p for e in effects if scene.effects.get(e.name) is not Switch.OFF for p in e.planes(scene))
@@ -225,6 +256,7 @@ def decide(effects: tuple[Effect, ...], scene: Scene) -> tuple[dict[str, Verdict
 
 def resolve(effects: tuple[Effect, ...], scene: Scene) -> Resolved:
     """Decide on every effect of a scene."""
+    effects = tuple(e.of(scene) for e in effects)
     verdicts, warnings = decide(effects, scene)
     on = tuple(e for e in effects if verdicts[e.name].on)
     return Resolved(scene, verdicts, on, tuple(p for e in on for p in e.planes(scene)), tuple(warnings))

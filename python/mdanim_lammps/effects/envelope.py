@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import Span
+from ..model.planes import Plane
 from ..model.shapes import thickness
 from ..model.system import System
 from ..scene.formatting import say
@@ -23,6 +24,12 @@ def wave_speed(system: System) -> np.ndarray:
     """Speed of longitudinal waves in each solid, sqrt(1.2 E / rho) [m/s], shape (M,)."""
     density = system.mass_of / (np.add.reduceat(system.share, system.first[:-1]) * system.cell_volume)
     return np.sqrt(1.2 * system.young / density)
+
+
+def heights(system: System, planes: Iterable[Plane]) -> tuple[np.ndarray, float]:
+    """Height of the lowest point of each solid [m], shape (M,), and of the lowest solid or floor [m]."""
+    bottom = np.minimum.reduceat(system.position[:, 2], system.first[:-1])
+    return bottom, min([bottom.min(), *(p.at for p in planes if p.axis == 2 and p.sign > 0)])
 
 
 class Envelope:
@@ -85,8 +92,7 @@ class Envelope:
         As if through air: in a liquid, heights count by what it leaves of the weight. Below the surface a light solid gains
         height; where there are others it may meet them at the surface already.
         """
-        bottom = np.minimum.reduceat(self.system.position[:, 2], self.system.first[:-1])
-        floor = min([bottom.min(), *(p.at for p in self.planes if p.axis == 2 and p.sign > 0)])
+        bottom, floor = heights(self.system, self.planes)
         if self.surface is None:
             return bottom - floor
         in_air, in_liquid = np.maximum(0.0, bottom - self.surface), np.minimum(bottom, self.surface) - floor

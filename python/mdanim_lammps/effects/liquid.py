@@ -208,7 +208,6 @@ class LiquidDrag(Effect):
     """-gamma rho_l V_i s_i v on the immersed part of a particle, taken by the leap-frog with the drag of air."""
 
     name = "liquid-drag"
-    ledger = "drag_loss"
     needs = ("liquid", "buoyancy")  # which gives the fix the volumes
     if_off = "floating objects bob for a long time"
 
@@ -229,9 +228,13 @@ class LiquidDrag(Effect):
         base = "" if air_drag.felt(scene, system) is None else " base d_air"
         return [f"fix_modify liquid drag d_gamma lambda d_lambda{base}"]
 
-    def energy(self, instance, scene, system):
-        # The leap-frog counts what air and liquid take together; where air drag is on, that effect tells it.
-        return 0.0 if air_drag.felt(scene, system) is not None else instance.fix_scalar("leapfrog")
+    def losses(self, scene):
+        return (air_drag.DRAG_LOSS,)
+
+    def lost(self, instance, scene, system):
+        # Where air drag is on, that effect tells it.
+        mine = 0.0 if air_drag.felt(scene, system) is not None else instance.fix_scalar("leapfrog")
+        return {air_drag.DRAG_LOSS: mine}
 
     def clocks(self, instance):
         # Where particles are immersed is looked up for buoyancy in any case; drag adds this to it,

@@ -86,7 +86,7 @@ def physics(plan: Plan) -> list[str]:
 def input_script(plan: Plan) -> str:
     """The text of ``in.NAME``: runs alone with ``lmp -in in.NAME``, on any number of ranks, to the same bits."""
     c = plan.certificate
-    energy = "".join(f" f_{e.fix}" for e in plan.effects if e.fix)
+    energy = "".join(f" f_{fix}" for e in plan.effects for fix in e.fixes)
     when = f"{c.steps_per_frame}"
     variable, modify = [], []
     if c.last_steps:

@@ -47,8 +47,9 @@ class SubPlans:
     def reach(self) -> np.ndarray:
         """Gap from which on two objects do not feel each other [m]: the larger of their entries; shape (M,),
         0 without contact."""
-        reach, first = self.whole.columns.get("reach"), self._particle
-        return np.zeros(len(first) - 1) if reach is None else np.maximum.reduceat(reach, first[:-1])
+        whole = self.whole
+        own = [np.broadcast_to(e.reach(whole.scene, whole.system), len(whole.system.names)) for e in whole.effects]
+        return np.maximum.reduce(own, initial=0.0, axis=0) if own else np.zeros(len(whole.system.names))
 
     @cached_property
     def liquid_top(self) -> float:

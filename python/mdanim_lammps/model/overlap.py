@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import Problem
 from ..scene.formatting import say
-from ..scene.scene import Scene, Solid
+from ..scene.scene import ContactModel, Scene, Solid
 from . import shapes
 from .boxes import box_pairs
 from .model import Layer, Model
@@ -18,6 +18,9 @@ from .touching import REACH, THIN
 
 HAIR = 1e-6
 """Part of a spacing that two touching objects may seem to overlap by round-off."""
+BORN_AT_REST = 0.25
+"""Part of a spacing by which surfaces may start below each other without stress, where contact is at the surfaces: what starts
+so deep is where contact begins. The law takes twice as much."""
 
 
 def check_geometry(scene: Scene, models: tuple[Model, ...], planes: Iterable[Plane] | None = None) -> list[Problem]:
@@ -25,13 +28,15 @@ def check_geometry(scene: Scene, models: tuple[Model, ...], planes: Iterable[Pla
 
     ``planes`` push objects back; None are those of the scene. Each problem stands at the position of the (second) object and
     tells how deep it is in and which move frees it, so far that contact holds no energy afterwards. Objects that are held
-    entirely may overlap each other and extend beyond the walls: such objects are the scene's architecture.
+    entirely may overlap each other and extend beyond the walls: such objects are the scene's architecture. Under ``contact-model
+    surface`` they may overlap a little, by BORN_AT_REST.
     """
     problems = []
     if not models:
         return problems
     planes = scene_planes(scene) if planes is None else tuple(planes)
-    bodies = _BoundingBoxes(models, [m.surface.vertices(m.position) for m in models])
+    surface = scene.control.contact_model is ContactModel.SURFACE
+    bodies = _BoundingBoxes(models, [m.surface.vertices(m.position) for m in models], surface)
     problems += _outside(scene, bodies, planes)
     for i, j in zip(*_candidates(scene, bodies)):
         found = _pair(scene, bodies, planes, int(i), int(j))
@@ -43,19 +48,28 @@ def check_geometry(scene: Scene, models: tuple[Model, ...], planes: Iterable[Pla
 class _BoundingBoxes:
     """Bounding boxes of all objects: low, high [m], shape (n, 3), from the true surfaces."""
 
-    def __init__(self, models, vertices):
-        self.models = models
+    def __init__(self, models, vertices, on_surfaces: bool):
+        """``on_surfaces``: whether contact acts at the surfaces, not before them."""
+        self.models, self.on_surfaces = models, on_surfaces
         self.vertices = vertices
         self.low = np.array([v.min(axis=0) for v in vertices])
         self.high = np.array([v.max(axis=0) for v in vertices])
         self.fixed = np.array([bool(m.held.all()) for m in models])
-        self.hair = HAIR * max(m.spacing for m in models)
+        spacing = max(m.spacing for m in models)
+        self.hair = HAIR * spacing
+        self.allowed = (BORN_AT_REST if on_surfaces else HAIR) * spacing
+        """Depth of a start that is no problem [m]."""
+        self.outer_low, self.outer_high = self.low, self.high
+        if on_surfaces:
+            return
         # Cells of a lattice may extend beyond the true surface.
         self.outer_low = np.minimum(self.low, [m.position.min(axis=0) for m in models])
         self.outer_high = np.maximum(self.high, [m.position.max(axis=0) for m in models])
 
     def clearance(self, i: int, j: int) -> float:
         """Gap between the boxes of two bodies at which contact has no energy [m]."""
+        if self.on_surfaces:
+            return 0.0
         first, second = self.models[i], self.models[j]
         thin = (first.layer == Layer.THIN).any() or (second.layer == Layer.THIN).any()
         return (THIN * REACH if thin else REACH - 1.0) * max(first.spacing, second.spacing)
@@ -98,7 +112,7 @@ def _outside(scene: Scene, bodies: _BoundingBoxes, planes: tuple[Plane, ...]) ->
         out = limit.sign * (limit.at - edge[:, limit.axis])
         outer = bodies.outer_low if limit.sign > 0 else bodies.outer_high
         step = limit.sign * (limit.at - outer[:, limit.axis])
-        for i in np.flatnonzero((out > bodies.hair) & ~bodies.fixed & ~too_wide[:, limit.axis]):
+        for i in np.flatnonzero((out > bodies.allowed) & ~bodies.fixed & ~too_wide[:, limit.axis]):
             solid = scene.solids[i]
             problems.append(
                 Problem(
@@ -138,7 +152,7 @@ def _pair(scene: Scene, bodies: _BoundingBoxes, planes: tuple[Plane, ...], i: in
         _deepest(bodies.vertices[j], bodies, i, first),
         _deepest(bodies.cells(small), bodies, large, scene.solids[large]),
     )
-    if deepest <= bodies.hair:
+    if deepest <= bodies.allowed:
         return None
     direction, step = _way_out(planes, bodies, i, j)
     return Problem(

@@ -14,6 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..scene import scene as kinds
+from ..scene.contact_pairs import any_friction, frictions
 from ..scene.scene import Box, HoldAll, HoldFaces, LiquidModel, Scene, Shape, Solid, Switch
 from . import mesh, shapes
 from .boxes import box_pairs
@@ -80,8 +81,8 @@ def sweeps(scene: Scene, planes: Iterable[Plane] | None = None) -> Sweeps:
     """The region that every solid can reach; ``planes`` push solids back, None are those of the scene that are not switched off.
 
     Along an axis on which nothing but gravity and drag of air acts, the centre of mass moves on its parabola. Along one on which
-    a wall, the ground or a liquid may act, it gets no further than at the largest speed that energy allows. Raises SceneError for
-    a mesh that is no body.
+    a wall, the ground or a liquid may act, it gets no further than at the largest speed that energy allows. A plane acts along
+    its own axis, one with friction along all of them. Raises SceneError for a mesh that is no body.
     """
     limit_low, limit_high = (
         innermost(p for p in scene_planes(scene) if on(scene, p.effect)) if planes is None else innermost(planes)
@@ -101,6 +102,7 @@ def sweeps(scene: Scene, planes: Iterable[Plane] | None = None) -> Sweeps:
     radius = np.where(hit, wild, calm)
     by_axis, _ = touched(radius)
     by_axis[~hit] = False
+    by_axis |= (_rough(scene) & by_axis.any(axis=1))[:, None]  # friction acts along the other axes
     far = bodies.speed * scene.control.time
     # A body that has bounced may fall into a liquid that its parabola misses.
     bounced = hit & (bodies.position[:, 2] - far - radius <= wet_below)
@@ -226,6 +228,11 @@ def _flight(scene: Scene, bodies: _Movers) -> tuple[np.ndarray, np.ndarray]:
     low = np.where(slowed, np.minimum(coasts, 0.0) + np.minimum(falls, 0.0), low)
     high = np.where(slowed, np.maximum(coasts, 0.0) + np.maximum(falls, 0.0), high)
     return bodies.position + low, bodies.position + high
+
+
+def _rough(scene: Scene) -> np.ndarray:
+    """Solids that may have friction against a plane, bool, shape (M,)."""
+    return np.array(frictions(scene)) > 0.0 if not scene.contacts else np.full(len(scene.solids), any_friction(scene))
 
 
 def _clamped(scene: Scene, bodies: _Movers) -> np.ndarray:

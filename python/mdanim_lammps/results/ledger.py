@@ -15,8 +15,6 @@ from ..errors import OutputError
 
 POTENTIALS = ("gravity", "buoyancy")
 """Energies whose zero is arbitrary: only how far they have changed says how much is in play."""
-LOSS = "_loss"
-"""End of the name of an energy that only grows: what something has taken so far."""
 WHOLE = ("liquid_cells",)
 """Extras that are whole numbers, and written as such."""
 

@@ -3,15 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
-from ..effects import Effect
 from ..engine.instance import Instance
 from ..engine.plan import Plan
 from ..model.system import System
-from ..results.ledger import LOSS
 
 LEAST_STRAIN = 1e-9
 """Strain that neither a picture nor a measurement of a run shows."""
@@ -27,9 +23,15 @@ def rounding_energy(system: System) -> float:
     return strain**2 * float((system.young[system.object] * system.volume).sum())
 
 
-def ledger_terms(effects: Iterable[Effect]) -> tuple[str, ...]:
+def ledger_terms(plan: Plan) -> tuple[str, ...]:
     """Columns of the ledger: kinetic energy, and those of the effects that are on."""
-    return ("kinetic", *dict.fromkeys(e.ledger for e in effects if e.ledger))
+    of_effects = (term for e in plan.effects for term in (e.ledger, *e.losses(plan.scene)) if term)
+    return ("kinetic", *dict.fromkeys(of_effects))
+
+
+def loss_terms(plan: Plan) -> tuple[str, ...]:
+    """Those of them that only grow: what effects have taken so far."""
+    return tuple(dict.fromkeys(term for e in plan.effects for term in e.losses(plan.scene)))
 
 
 def energies(instance: Instance) -> dict[str, float]:
@@ -43,8 +45,8 @@ def stored(instance: Instance) -> dict[str, float]:
     Objects that stand still, guests or laid aside, have no part in them.
     """
     plan = instance.plan
-    effects = [e for e in plan.effects if e.ledger and not e.ledger.endswith(LOSS)]
-    found = dict.fromkeys(ledger_terms(effects), 0.0)
+    effects = [e for e in plan.effects if e.ledger]
+    found = dict.fromkeys(("kinetic", *(e.ledger for e in effects)), 0.0)
     found["kinetic"] = instance.kinetic_energy()
     for effect in effects:
         if not effect.has_potential:
@@ -59,8 +61,8 @@ def potentials(plan: Plan, x: np.ndarray) -> dict[str, float]:
 
 def losses(instance: Instance) -> dict[str, float]:
     """The terms of what has been lost since the instance was made [J]."""
-    plan, found = instance.plan, {}
+    plan, found = instance.plan, dict.fromkeys(loss_terms(instance.plan), 0.0)
     for effect in plan.effects:
-        if effect.ledger.endswith(LOSS):
-            found[effect.ledger] = found.get(effect.ledger, 0.0) + effect.energy(instance, plan.scene, plan.system)
+        for term, energy in effect.lost(instance, plan.scene, plan.system).items():
+            found[term] += energy
     return found

@@ -41,7 +41,7 @@ class Frame:
     v: np.ndarray
     """[m/s], shape (N, 3)."""
     energies: dict[str, float]
-    """Every term of the ledger [J]; what is lost (``*_loss``) counts from the start of this run, not from before a resume."""
+    """Every term of the ledger [J]; what is lost counts from the start of this run, not from before a resume."""
     penetration: float
     """Deepest that a boundary particle has been below a surface in this run [m]."""
     pool: LiquidFrame | None = None

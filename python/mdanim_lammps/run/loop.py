@@ -23,12 +23,12 @@ from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
 from ..results.expect import Measured, Outcome, evaluate, record, recorded
 from ..results.files import CHECKPOINT, STOP, disk_errors, write_json, write_whole
-from ..results.ledger import LOSS, Ledger
+from ..results.ledger import Ledger
 from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
 from ..scene.formatting import number
 from ..scene.meshes import mesh_files
-from .energy import ledger_terms, rounding_energy
+from .energy import ledger_terms, loss_terms, rounding_energy
 from .frame_source import Account, Frame, FrameSource, LammpsFailure, Sequential
 from .guard import Guard
 from .prepare import Prepared
@@ -154,7 +154,7 @@ class _Run:
         self.recorded = recorded(ready.scene.expects)
         self.grid = ready.plan.grid
         self.ledger = Ledger(
-            ledger_terms(self.effects),
+            ledger_terms(ready.plan),
             (*self.recorded.values(), *(("liquid_cells",) if self.grid else ())),
             rounding_energy(ready.system),
         )
@@ -337,7 +337,7 @@ class _Run:
         """Make everything up to this frame safe; the checkpoint last, so that it never is ahead of the trajectory."""
         out.flush()
         self._write_ledger()
-        carried = {t: self.ledger.rows[-1][t] for t in self.ledger.terms if t.endswith(LOSS)}
+        carried = {t: self.ledger.rows[-1][t] for t in loss_terms(self.ready.plan)}
         carried["penetration"] = self.penetration
         carried["seconds"] = sum(self.seconds.values())
         s = self.source.state()

@@ -20,7 +20,7 @@ from ..model.overlap import check_geometry
 from ..model.system import System, as_parts, assemble
 from ..scene.lock import lock_text
 from ..scene.meshes import mesh_files
-from ..scene.scene import IMMERSION, ContactModel, Scene
+from ..scene.scene import IMMERSION, Scene
 
 
 @dataclass(frozen=True)
@@ -57,16 +57,6 @@ def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[i
                     "the scene has no object, and runs without one are not built yet",
                     "write one; one that never moves will do, e.g.  object stone { shape box (10, 10, 10) cm  "
                     "position (0, 0, 0) m  density 2000  elasticity 1 MPa  hold all }",
-                )
-            ]
-        )
-    if scene.control.contact_model is ContactModel.SURFACE:
-        raise SceneError(
-            [
-                Problem(
-                    scene.control.spans.get("contact-model"),
-                    "contact-model surface can be written but not be run yet",
-                    "write contact-model paper, and take out friction and contact-damping",
                 )
             ]
         )

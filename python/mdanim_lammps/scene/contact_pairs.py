@@ -1,24 +1,33 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Which objects the names of a contact block stand for."""
+"""Which objects the names of contact blocks stand for, and the friction of objects and pairs that follows."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from math import sqrt
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .scene import Scene
 
 PLANES = ("ground", "walls", "basin")
 """Words of a contact block that are no objects."""
+USUAL_DAMPING = 0.3
+"""Share of critical damping of a contact with friction: enough to end chatter."""
 
 
 def objects_by_name(names: Iterable[str]) -> dict[str, list[int]]:
-    """Objects, from 0 and ascending, that a name stands for: one by its own name, all of a repeat by the name without index."""
-    alone: dict[str, list[int]] = {}
-    repeated: dict[str, list[int]] = {}
+    """Objects, from 0 and ascending, that a name stands for: one by its own name, all of a repeat by the name without index.
+
+    Some of the objects of a scene give the same as all of them; so a name that is both has all of these objects.
+    """
+    found: dict[str, list[int]] = {}
     for number, name in enumerate(names):
-        alone[name] = [number]
         base, indexed, _ = name.partition("[")
+        found.setdefault(name, []).append(number)
         if indexed:
-            repeated.setdefault(base, []).append(number)
-    return repeated | alone
+            found.setdefault(base, []).append(number)
+    return found
 
 
 def pairs_of(first: Sequence[int], second: Sequence[int]) -> Iterator[tuple[int, int]]:
@@ -28,3 +37,38 @@ def pairs_of(first: Sequence[int], second: Sequence[int]) -> Iterator[tuple[int,
         for j in second:
             if i < j or (j < i and not (i in both and j in both)):
                 yield min(i, j), max(i, j)
+
+
+def frictions(scene: Scene, plane: str = "") -> list[float]:
+    """Coefficient of friction of every object [-], its own or, with the name of a plane, that against the plane."""
+    found = [scene.control.friction if s.friction is None else s.friction for s in scene.solids]
+    told = [c for c in scene.contacts if plane in (c.first, c.second) and c.friction is not None] if plane else []
+    by_name = objects_by_name(s.name for s in scene.solids) if told else {}
+    for contact in told:
+        for i in (*by_name.get(contact.first, ()), *by_name.get(contact.second, ())):
+            found[i] = contact.friction
+    return found
+
+
+def pair_rules(scene: Scene, names: Sequence[str]) -> list[tuple[int, int, float, float]]:
+    """What contact blocks say of pairs i < j, from 0, of these objects of a scene: i, j, friction, share of critical damping."""
+    own = dict(zip((s.name for s in scene.solids), frictions(scene))) if any(c.friction is None for c in scene.contacts) else {}
+    by_name = objects_by_name(names) if scene.contacts else {}
+    rules = []
+    for c in scene.contacts:
+        for i, j in pairs_of(by_name.get(c.first, ()), by_name.get(c.second, ())):
+            mu = sqrt(own[names[i]] * own[names[j]]) if c.friction is None else c.friction
+            usual = damping(scene) if mu > 0.0 else 0.0
+            rules.append((i, j, mu, usual if c.contact_damping is None else c.contact_damping))
+    return rules
+
+
+def damping(scene: Scene) -> float:
+    """Share of critical damping of a contact with friction of which no contact block says anything else."""
+    asked = scene.control.contact_damping
+    return USUAL_DAMPING if asked is None else asked
+
+
+def any_friction(scene: Scene) -> bool:
+    """Whether anything in a scene may have friction."""
+    return any(frictions(scene)) or any(c.friction for c in scene.contacts)

@@ -311,6 +311,10 @@ class Validator:
             self.problem(place, cause, "write friction 0.1 or contact-damping 0 in it, or leave it out")
             return None
         planes = [name for name in block.names if name in PLANES and name not in self.named]
+        if planes and contact.contact_damping is not None:
+            cause = f"the contact-damping of {planes[0]} is that of control; a contact block cannot change it"
+            self.problem(contact.spans["contact-damping"], cause, "write contact-damping in control")
+            return None
         if len(planes) == 2:
             self.problem(place, f"{planes[0]} and {planes[1]} never touch", "write the name of an object for one of them")
             return None
@@ -409,9 +413,9 @@ class Validator:
     def known_body(self, name: str, span: Span) -> bool:
         """Whether a name of a contact block stands for something; an unknown one is a problem."""
         plane = name in PLANES and bool(self.blocks("liquid") if name == "basin" else self.out.first(name))
-        if name in self.named and plane:
-            cause = f"{name} is both an object and {'the basin of the liquid' if name == 'basin' else f'the {name} of the scene'}"
-            self.problem(span, cause, "give the object another name")
+        twice = "a plane of the scene" if plane else "a repeat" if name in self.names and len(self.named[name]) > 1 else ""
+        if name in self.named and twice:
+            self.problem(span, f"{name} is the name of an object and of {twice}", "give the object another name")
             return False
         if name in self.named or plane or self.out.excused("object", "liquid", name):
             return True

@@ -18,9 +18,8 @@ from ... import errors
 from ...engine.state import Records, State, join_all
 from ...engine.sub_plan import SubPlans
 from ...errors import DivergedError
-from ...results.ledger import LOSS
 from ...results.timeline import Timeline
-from ...run.energy import ledger_terms, potentials
+from ...run.energy import ledger_terms, loss_terms, potentials
 from ...run.frame_source import Account, Frame, LammpsFailure
 from ...run.prepare import Prepared
 from ..plan.frame_plan import PlannerOptions
@@ -44,7 +43,7 @@ class Distributed:
         self.ready, self.world, self.control, self.settings = ready, world, control, settings
         self.executors = world.size - 1
         self.lengths = ready.certificate.lengths
-        self.losses = {term: 0.0 for term in ledger_terms(ready.plan.effects) if term.endswith(LOSS)}
+        self.losses = dict.fromkeys(loss_terms(ready.plan), 0.0)
         self.pending: dict[int, PendingFrame] = {}
         self.messages: MessageThread | None = None
         """From the beginning of the run on."""
@@ -157,7 +156,7 @@ class Distributed:
             self.used.append(self.last)
         self.last, self.taken = self.pending.pop(frame), frame
         shares = [pending.shares[e] for e in range(self.executors)]
-        energies = dict.fromkeys(ledger_terms(self.ready.plan.effects), 0.0)
+        energies = dict.fromkeys(ledger_terms(self.ready.plan), 0.0)
         for share in shares:
             for term, e in share.energies.items():
                 if term in self.losses:

@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Contact at the drawn surfaces, with friction (docs/physics-contact.md): objects, ground, walls and basin under
+``contact-model surface``.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from ..errors import Problem
+from ..model.contact_body import ContactBody
+from ..model.planes import AXES, scene_planes
+from ..model.sweep import on
+from ..model.system import System
+from ..scene.contact_pairs import USUAL_DAMPING, damping, frictions, pair_rules
+from ..scene.scene import Scene
+from .boundaries import Boundary, GroundPlane, WallPlanes
+from .contact import Contact, barrier, barrier_rate, closing_speeds, largest_of_others
+from .effect import Effect
+from .envelope import heights, wave_speed
+from .liquid import Basin
+
+SHORT, FULL = 0.8, 1.6
+"""Reach of the barrier behind the surface, over the spacing: it does not reach the surface and leaves friction alone; that of
+objects which meet others faster than SLOW."""
+SPARE = 1.6
+"""What a share of critical damping above USUAL_DAMPING counts in the bound: both sides of a body and the barrier never act along
+one direction at once, and what `rate` counts too much covers the usual damping."""
+SLOW = 0.4
+"""Closing speed over the wave speed up to which a short barrier stops all that meets."""
+HEAT, DAMPED, LET_GO = "friction_heat", "contact_damping_loss", "let_go"
+"""Columns of the ledger."""
+TAKEN = {HEAT: 1, DAMPED: 2, LET_GO: 3}
+"""Their entries of the fix's vector, from 0."""
+DEEPEST, SECONDS = 4, 7
+"""In the fix's vector: the deepest point below a surface in this run [m], and wall seconds."""
+
+
+class OnSurfaces(Effect):
+    """What objects and planes have in common: bodies, friction, the law ``fix mdanim/contact``."""
+
+    def columns(self, scene, system):
+        return {
+            "body": system.contact_kind[system.object].astype(float),
+            "young": system.young[system.object],
+            self.friction_column(scene): np.array(self.frictions(scene))[system.object],
+        }
+
+    def frictions(self, scene: Scene) -> list[float]:
+        """Coefficient of friction of each object [-]."""
+        return frictions(scene)
+
+    def friction_column(self, scene: Scene) -> str:
+        """The column with the friction of each particle's object."""
+        return "friction"
+
+    def law(self, scene: Scene, touched: str) -> str:
+        """The command of the fix, with what objects touch."""
+        words = [f"fix {self.fix} mobile mdanim/contact d_body d_young d_{self.friction_column(scene)}"]
+        words.append(f"stiffness {scene.control.contact_stiffness!r}")
+        if damping(scene) != USUAL_DAMPING:
+            words.append(f"damping {damping(scene)!r}")
+        return " ".join([*words, touched])
+
+    def rubs(self, scene: Scene) -> bool:
+        """Whether some contact may have friction."""
+        return any(self.frictions(scene))
+
+    def damping(self, scene: Scene) -> float:
+        """Largest share of critical damping of a contact [-]."""
+        return damping(scene) if self.rubs(scene) else 0.0
+
+    def losses(self, scene):
+        return (*[HEAT] * self.rubs(scene), *[DAMPED] * (self.damping(scene) > 0.0))
+
+    def dashpots(self, scene: Scene, system: System, kappa: np.ndarray) -> np.ndarray | None:
+        """eta_i s_i / m_i [1/s], shape (N,), of the part of the damping that counts in the bound; None where none does.
+
+        The dashpot of a point is eta w_q with eta = 2 beta sqrt(kappa rho h/2), of an area s_i at most for a particle;
+        ``kappa`` of each solid [N/m^3], shape (M,).
+        """
+        beta = SPARE * (self.damping(scene) - USUAL_DAMPING)
+        if beta <= 0.0:
+            return None
+        h = np.cbrt(system.cell_volume)
+        density = system.mass_of / (np.add.reduceat(system.share, system.first[:-1]) * system.cell_volume)
+        eta = 2.0 * beta * np.sqrt(kappa * (density * h).max() / 2.0)
+        return eta[system.object] * borne_area(system) / system.mass
+
+    def lost(self, instance, scene, system):
+        return {term: instance.fix_value(self.fix, TAKEN[term]) for term in self.losses(scene)}
+
+    def warnings(self, scene, system):
+        # Surfaces that touch at the start are free of stress; those deeper in each other are refused (model/overlap.py).
+        return []
+
+    def clocks(self, instance):
+        return {self.fix: instance.fix_value(self.fix, SECONDS)}
+
+    def penetration(self, instance, system):
+        return instance.fix_value(self.fix, DEEPEST)
+
+
+class SurfaceContact(OnSurfaces, Contact):
+    """Points of each drawn surface against the depth below that of the other body, and a short barrier behind it."""
+
+    behind = "barrier"
+    """ID of the barrier's fix."""
+
+    @property
+    def fixes(self):
+        return (self.fix, self.behind)
+
+    def columns(self, scene, system):
+        own = super().columns(scene, system)
+        return {**own, "stiffness": system.contact_stiffness, "reach": self.barrier_reach(scene, system)[system.object]}
+
+    def barrier_reach(self, scene: Scene, system: System) -> np.ndarray:
+        """Reach of the barrier of each object [m], shape (M,)."""
+        return np.where(fast(scene, system), FULL, SHORT) * system.spacing
+
+    def commands(self, scene, system):
+        rules = [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for i, j, mu, beta in pair_rules(scene, system.names)]
+        return [self.law(scene, " ".join(["objects", *rules])), *barrier(self.behind, system)]
+
+    def rate(self, scene, system):
+        """A contact is a spring along one direction, kappa w G G^T with node weights whose sum is 2: those of the point and those
+        of the place that it presses on. K <= 2 blockdiag as for springs gives
+
+            a_i = 2 kappa (w_i + s_i) / m_i,    w_i = sum over the points q of the own body of w_q |W_qi| sum_a |W_qa|
+
+        with s_i the area of another body that a particle may bear: h^2 within a face, h^2/2 on an edge, h^2/4 in a corner. The
+        barrier behind is added. The stick spring of friction, 0.8 kappa along the surface, adds nothing to the norm of a
+        contact. No strict bound: the gradient of depth grows in pressed cells, and a folded sheet bears more than one layer.
+        """
+        kappa = self.stiffness(scene, system)[system.object]
+        surface = 2.0 * kappa * (own_area(system) + borne_area(system)) / system.mass
+        return surface + barrier_rate(system, float(self.barrier_reach(scene, system).max()))
+
+    def drag_rate(self, scene, system):
+        """Points of the own body and of another, and the factor 2 as in `rate`."""
+        one = self.dashpots(scene, system, self.stiffness(scene, system))
+        return None if one is None else 4.0 * one
+
+    def stiffness(self, scene: Scene, system: System) -> np.ndarray:
+        """kappa of the surface of each solid with the stiffest partner [N/m^3], shape (M,)."""
+        partner = largest_of_others(system.young)
+        return surface_stiffness(scene, system, 2.0 * partner / (system.young + partner))
+
+    def notes(self, envelope):
+        system, scene = envelope.system, envelope.scene
+        found = np.flatnonzero(fast(scene, system))
+        if not len(found):
+            return []
+        more = f" and {len(found) - 1} more" if len(found) > 1 else ""
+        return [
+            Problem(
+                envelope.place(int(found[0]), "velocity", "position"),
+                f"{system.names[found[0]]}{more} may meet others at more than {SLOW:g} of the wave speed and keeps the full "
+                "reach of the barrier, which bears objects without friction",
+                "write a lower speed or a higher elasticity where friction matters",
+                severity="note",
+            )
+        ]
+
+    def rubs(self, scene):
+        return super().rubs(scene) or any(c.friction for c in scene.contacts)
+
+    def damping(self, scene):
+        return max(super().damping(scene), *(c.contact_damping or 0.0 for c in scene.contacts), 0.0)
+
+    def losses(self, scene):
+        return (*super().losses(scene), LET_GO)
+
+    def energy(self, instance, scene, system):
+        return instance.fix_scalar(self.fix) + instance.fix_scalar(self.behind)
+
+    def clocks(self, instance):
+        return {**super().clocks(instance), self.behind: instance.fix_seconds(self.behind)}
+
+
+class SurfacePlanes(OnSurfaces, Boundary):
+    """Planes that points of drawn surfaces are pushed back by."""
+
+    def frictions(self, scene):
+        return frictions(scene, self.name)
+
+    def friction_column(self, scene):
+        named = any(self.name in (c.first, c.second) for c in scene.contacts)
+        return f"friction_{self.name}" if named else "friction"
+
+    def commands(self, scene, system):
+        planes = (f"plane {AXES[p.axis]} {'lo' if p.sign > 0 else 'hi'} {p.at!r}" for p in self.planes(scene))
+        return [self.law(scene, " ".join(planes))]
+
+    def rate(self, scene, system):
+        """a_i = kappa w_i / m_i with w_i as in `SurfaceContact.rate`: the plane does not move, so there is no factor 2."""
+        rate = surface_stiffness(scene, system)[system.object] * own_area(system) / system.mass
+        return np.where(system.held, 0.0, rate)
+
+    def drag_rate(self, scene, system):
+        return self.dashpots(scene, system, surface_stiffness(scene, system))
+
+
+class SurfaceGround(SurfacePlanes, GroundPlane):
+    pass
+
+
+class SurfaceWalls(SurfacePlanes, WallPlanes):
+    pass
+
+
+class SurfaceBasin(SurfacePlanes, Basin):
+    pass
+
+
+def surface_stiffness(scene: Scene, system: System, share: np.ndarray | float = 1.0) -> np.ndarray:
+    """kappa = f E/h of the surface of each solid, times a share that a partner leaves of it [N/m^3], shape (M,).
+
+    Between two solids kappa = f 2 E_A E_B/(E_A + E_B)/max(h_A, h_B): the share is 2 E_B/(E_A + E_B).
+    """
+    return scene.control.contact_stiffness * system.young * share / np.cbrt(system.cell_volume)
+
+
+def own_area(system: System) -> np.ndarray:
+    """w_i, the area of the surface that each particle carries [m^2], shape (N,)."""
+    of_kind = {kind: carried_area(body) for kind, body in system.contact_bodies.items()}
+    return np.concatenate([of_kind[kind] for kind in system.contact_kind.tolist()])
+
+
+def borne_area(system: System) -> np.ndarray:
+    """s_i, the area of another surface that each particle may bear [m^2], shape (N,): h^2 within a face, less where fewer cells
+    are behind it."""
+    return (np.cbrt(system.cell_volume) ** 2)[system.object] * np.minimum(1.0, 2.0 * system.share)
+
+
+def carried_area(body: ContactBody) -> np.ndarray:
+    """w_i of one body, shape (N,). Points beyond the cell that carries them have weights below 0."""
+    cells, nodes = body.count.astype(np.int64), body.count + 1
+    z, rest = np.divmod(body.cell, cells[0] * cells[1])
+    y, x = np.divmod(rest, cells[0])
+    corner = np.stack([x, y, z], axis=1)
+    inside = body.at - corner
+    weight, flat = [], []
+    for way in product((0, 1), repeat=3):
+        weight.append(np.abs(np.where(way, inside, 1.0 - inside)).prod(axis=1))
+        flat.append((corner + way) @ np.array([1, nodes[0], nodes[0] * nodes[1]], np.int64))
+    area = np.array(weight) * (body.area * np.sum(weight, axis=0))
+    return np.bincount(np.searchsorted(body.node, np.array(flat)).ravel(), area.ravel(), len(body.node))
+
+
+def fast(scene: Scene, system: System) -> np.ndarray:
+    """Solids that may meet others at more than SLOW of the wave speed of the softest, as if through air, bool, shape (M,)."""
+    g = max(0.0, -scene.gravity[2]) * on(scene, "gravity")
+    bottom, floor = heights(system, [p for p in scene_planes(scene) if on(scene, p.effect)])
+    return closing_speeds(system, g, bottom - floor) > SLOW * float(wave_speed(system).min())

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Objects that come to rest on others and on slopes: what ``check`` tells of friction."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..errors import Problem
+from ..model.planes import Plane
+from ..scene.contact_pairs import any_friction, frictions, pair_rules
+from ..scene.formatting import number
+from ..scene.scene import Box, ContactModel, Ellipsoid, Sphere, Torus
+from .envelope import Envelope
+
+LEVEL = 1e-6
+"""Tangent of a slope that is nothing but rounding."""
+ROLLING = (Sphere, Ellipsoid, Torus)
+"""Shapes that roll down a slope before they slide."""
+Row = tuple[float, float, int, str, str]
+"""Tangent, friction, object, and what a contact block and a message call the slope."""
+
+
+def frictionless(envelope: Envelope) -> list[Problem]:
+    """That objects will slide, once, where some may come to rest and nothing has friction."""
+    scene, system = envelope.scene, envelope.system
+    if any_friction(scene) or envelope.g <= 0.0 or not envelope.moving.any():
+        return []
+    if not _floors(envelope):
+        low, high = system.bounds(system.position)
+        holding = np.logical_or.reduceat(system.held, system.first[:-1])
+        met = any(e.keeps_apart for e in envelope.on) and holding.any()
+        if not met or low[holding, 2].min() >= high[envelope.moving, 2].max():
+            return []
+    paper = scene.control.contact_model is ContactModel.PAPER
+    return [
+        Problem(
+            scene.control.spans.get("contact-model") or scene.control.spans.get("control"),
+            f"contacts are frictionless{', as in the paper' if paper else ''}",
+            f"write friction 0.5{' and contact-model surface' if paper else ''} in control",
+            severity="note",
+        )
+    ]
+
+
+def slopes(envelope: Envelope) -> list[Problem]:
+    """What will slide because a slope is steeper than its friction holds: the worst of all. Without friction it is meant to."""
+    if envelope.g <= 0.0 or not envelope.moving.any():
+        return []
+    found, own = _Slopes(envelope), np.array(frictions(envelope.scene))
+    steep = [row for row in (*found.on_floors(), *found.on_solids(own)) if row[0] > row[1]]
+    if not steep:
+        return []
+    tangent, mu, m, word, slope = max(steep, key=lambda row: row[0] / row[1])
+    name = envelope.system.names[m]
+    return [
+        Problem(
+            envelope.place(m, "friction", "object"),
+            f"{name} will slide on {slope}: its slope has a tangent of {number(tangent, 2)}, friction is {number(mu, 2)}",
+            f"write contact {word} {name} {{ friction {number(math.ceil(11.0 * tangent) / 10.0, 2)} }} where it is to stay",
+            severity="note",
+        )
+    ]
+
+
+def _floors(envelope: Envelope) -> list[Plane]:
+    """Planes that objects may lie on."""
+    return [p for p in envelope.planes if p.axis == 2 and p.sign > 0]
+
+
+class _Slopes:
+    """Finds the row of every slope, for the object there that has the least friction above 0."""
+
+    def __init__(self, envelope: Envelope):
+        self.envelope, self.scene = envelope, envelope.scene
+        self.gravity = np.array(self.scene.gravity)
+        rolling = np.array([isinstance(s.shape, ROLLING) for s in self.scene.solids])
+        self.sliding = envelope.moving & ~rolling
+
+    def on_floors(self) -> Iterator[Row]:
+        tangent = math.hypot(*self.gravity[:2]) / -self.gravity[2]
+        for plane in _floors(self.envelope) if tangent > LEVEL else ():
+            yield from self._worst(tangent, np.array(frictions(self.scene, plane.effect)), self.sliding, plane.effect, plane.name)
+
+    def on_solids(self, own: np.ndarray) -> Iterator[Row]:
+        """Cuboids that never move, and what is above each at the start; ``own`` friction of each object, shape (M,)."""
+        system = self.envelope.system
+        if not any(e.keeps_apart for e in self.envelope.on):
+            return
+        up = -self.gravity / np.linalg.norm(self.gravity)
+        low, high = system.bounds(system.position)
+        told: dict[int, list[tuple[int, float]]] = {}
+        for i, j, mu, _ in pair_rules(self.scene, system.names):
+            told.setdefault(i, []).append((j, mu))
+            told.setdefault(j, []).append((i, mu))
+        for k in np.flatnonzero(system.still).tolist():
+            solid = self.scene.solids[k]
+            cosine = float(np.abs(up @ np.array(solid.rotation)).max())
+            tangent = math.sqrt(max(0.0, 1.0 - cosine**2)) / cosine
+            if tangent <= LEVEL or not isinstance(solid.shape, Box):
+                continue
+            above = self.sliding & (low[:, :2] < high[k, :2]).all(1) & (high[:, :2] > low[k, :2]).all(1)
+            above &= (low + high)[:, 2] > (low + high)[k, 2]
+            mu = np.sqrt(own * own[k])
+            for other, of_pair in told.get(k, ()):
+                mu[other] = of_pair
+            yield from self._worst(tangent, mu, above, solid.name, solid.name)
+
+    def _worst(self, tangent: float, mu: np.ndarray, among: np.ndarray, *names: str) -> Iterator[Row]:
+        mu = np.where(among & (mu > 0.0), mu, np.inf)
+        m = int(mu.argmin())
+        if mu[m] < np.inf:
+            yield (tangent, float(mu[m]), m, *names)
