@@ -53,8 +53,8 @@ void ContactField::list(ContactObject &points_of, ContactObject &host_now, const
     while (contact < contacts.size() && contacts[contact].point < p) ++contact;
     const bool touches = contact < contacts.size() && contacts[contact].point == p;
     while (before < points_before.size() && points_before[before] < p) ++before;
-    // The sides of a cuboid have a point in each cell, too few for what is curved; the points of that are dense.
-    if (owner->body->points()[p].kind == PointKind::FLAT && !host->body->is_cuboid()) continue;
+    // Points of a cuboid are a cell apart, too few for what is curved: its own points are dense.
+    if (owner->body->points()[p].kind != PointKind::DENSE && !host->body->is_cuboid()) continue;
     if (!near.add(*owner, p)) continue;
     const double out = outside(host_box, near.place(near.size() - 1, arrays.place.data())) - stands_out;
     const bool known = before < points_before.size() && points_before[before] == p;
@@ -175,7 +175,8 @@ double ContactField::part(const SurfacePoint &point, const Vec3 &X, int side, Ve
     if (d == side / 2) continue;
     double from;
     const double width = ramp_width(point, d, from);
-    const Ramp low(component(X, d), from, width), high(host->body->count(d) - component(X, d), from, width);
+    const bool bends = point.kind == PointKind::DENSE;
+    const Ramp low(component(X, d), from, width, bends), high(host->body->count(d) - component(X, d), from, width, bends);
     t[d] = low.value * high.value;
     dt[d] = low.slope * high.value - high.slope * low.value;
   }

@@ -55,7 +55,7 @@ class ContactField {
 
   Placed placed(const ContactArrays &arrays) const { return {*host->body, host->slot.data(), arrays.place.data()}; }
   const SurfacePoint &surface_point(std::size_t q) const { return owner->body->points()[near.point(q)]; }
-  bool is_smooth(const SurfacePoint &point) const { return point.kind == PointKind::SHARP && host->body->is_cuboid(); }
+  bool is_smooth(const SurfacePoint &point) const { return point.kind != PointKind::FLAT && host->body->is_cuboid(); }
   bool look(std::size_t q, const ContactArrays &arrays, bool may_begin);
   bool find(std::size_t q, const Vec3 &x, const Placed &at, Spot &spot, Vec3 &X);
   std::array<int, 3> nearest_cell(const Vec3 &x, const ContactArrays &arrays);

@@ -103,11 +103,12 @@ inline void contact_friction(const ContactLaw &law, double area, double part, co
 // Part of a point that counts near a sharp edge of the other body, `inside` cells from it: 0 before `from`, 1 a `width` later.
 struct Ramp {
   double value, slope;
-  Ramp(double inside, double from, double width)
+  // `bends`: without kinks, for points so many that they need not add up to a straight line.
+  Ramp(double inside, double from, double width, bool bends)
   {
-    const double r = (inside - from) / width;
-    value = std::clamp(r, 0.0, 1.0);
-    slope = r > 0.0 && r < 1.0 ? 1.0 / width : 0.0;
+    const double r = std::clamp((inside - from) / width, 0.0, 1.0);
+    value = bends ? r * r * (3.0 - 2.0 * r) : r;
+    slope = bends ? 6.0 * r * (1.0 - r) / width : r > 0.0 && r < 1.0 ? 1.0 / width : 0.0;
   }
 };
 
