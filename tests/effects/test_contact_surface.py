@@ -249,6 +249,18 @@ def test_a_damped_blow_is_stable_up_to_the_bound(prepared, tmp_path, damping):
 # --- what check says ------------------------------------------------------------------------------------------------
 
 
+def test_a_barrier_does_not_bear_what_is_round(prepared):
+    """Unless it is fast: the cells of a ball stand out of its surface, so that it would roll on their corners."""
+    ball = "object ball { shape sphere 10 cm  position (0, 0, 0.5) m  density 1000  elasticity 400 kPa  VELOCITY }"
+    slow, quick = (prepared(pile(ball.replace("VELOCITY", f"velocity (0, 0, {v}) m/s"))) for v in (-1, -15))
+    for ready, bears in ((slow, False), (quick, True)):
+        stiffness = ready.plan.columns["stiffness"]
+        round_one = ready.system.object == ready.system.names.index("ball")
+        assert stiffness[round_one].all() == stiffness[round_one].any() == bears
+        assert stiffness[~round_one].all()
+    assert rate(slow, "contact")[slow.system.object == slow.system.names.index("ball")].min() > 0.0
+
+
 def test_fast_objects_keep_the_full_reach(prepared):
     """Above 0.4 of the wave speed of the softest the barrier has its full reach there, which the bound and `check` tell."""
     slow, quick = (prepared(pile(cube=f"velocity (0, 0, {-v})", z=0.3)) for v in (8.0, 8.8))

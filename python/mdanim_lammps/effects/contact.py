@@ -55,11 +55,10 @@ def barrier(fix: str, system: System) -> list[str]:
     return [*groups, f"fix {fix} mobile mdanim/barrier boundary inner d_stiffness d_reach{thin}"]
 
 
-def barrier_rate(system: System, reach: float) -> np.ndarray:
-    """Its share in the bound, see `Effect.rate`, with a largest reach [m]."""
-    s = system.contact_stiffness
+def barrier_rate(system: System, s: np.ndarray, reach: float) -> np.ndarray:
+    """Its share in the bound, see `Effect.rate`: stiffness of each particle [N/m], shape (N,), and the largest reach [m]."""
     partner = largest_of_others(np.maximum.reduceat(s, system.first[:-1]))[system.object]
-    k = 2.0 * s * partner / (s + partner)
+    k = np.divide(2.0 * s * partner, s + partner, out=np.zeros(len(s)), where=s > 0.0)
     over_spacing = float(reach / np.cbrt(system.cell_volume.min()))
     return 2.0 * plane_stiffness(round(over_spacing, 3)) * k / system.mass
 
@@ -109,7 +108,7 @@ class Contact(Effect):
         return barrier(self.fix, system)
 
     def rate(self, scene, system):
-        return barrier_rate(system, REACH * system.spacing.max())
+        return barrier_rate(system, system.contact_stiffness, REACH * system.spacing.max())
 
     def margins(self, envelope):
         return [*envelope.own_step("contact", envelope.rates[self.name]), self._closing_speed(envelope)]

@@ -15,7 +15,7 @@ from ..model.planes import AXES, scene_planes
 from ..model.sweep import on
 from ..model.system import System
 from ..scene.contact_pairs import USUAL_DAMPING, damping, frictions, pair_rules
-from ..scene.scene import Scene
+from ..scene.scene import Box, Scene
 from .boundaries import Boundary, GroundPlane, WallPlanes
 from .contact import Contact, barrier, barrier_rate, closing_speeds, largest_of_others
 from .effect import Effect
@@ -115,7 +115,17 @@ class SurfaceContact(OnSurfaces, Contact):
 
     def columns(self, scene, system):
         own = super().columns(scene, system)
-        return {**own, "stiffness": system.contact_stiffness, "reach": self.barrier_reach(scene, system)[system.object]}
+        reach = self.barrier_reach(scene, system)[system.object]
+        return {**own, "stiffness": self.barrier_stiffness(scene, system), "reach": reach}
+
+    def barrier_stiffness(self, scene: Scene, system: System) -> np.ndarray:
+        """Of each particle [N/m], shape (N,); 0 without a barrier.
+
+        The cells of what is no cuboid stand out of its drawn surface: a barrier would bear it on their corners, so that balls do
+        not roll. The surface alone stops it up to SLOW.
+        """
+        cuboid = np.array([isinstance(frame.shape, Box) for frame in system.frames])[system.contact_kind]
+        return np.where((cuboid | fast(scene, system))[system.object], system.contact_stiffness, 0.0)
 
     def barrier_reach(self, scene: Scene, system: System) -> np.ndarray:
         """Reach of the barrier of each object [m], shape (M,)."""
@@ -137,7 +147,9 @@ class SurfaceContact(OnSurfaces, Contact):
         """
         kappa = self.stiffness(scene, system)[system.object]
         surface = 2.0 * kappa * (own_area(system) + borne_area(system)) / system.mass
-        return surface + barrier_rate(system, float(self.barrier_reach(scene, system).max()))
+        return surface + barrier_rate(
+            system, self.barrier_stiffness(scene, system), float(self.barrier_reach(scene, system).max())
+        )
 
     def drag_rate(self, scene, system):
         """Points of the own body and of another, and the factor 2 as in `rate`."""
