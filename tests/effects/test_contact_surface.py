@@ -292,6 +292,8 @@ FREE = "contacts are frictionless"
         pytest.param(pile("effects { ground off walls off }", slab="hold faces x"), f"{FREE}; write", id="a held slab below"),
         pytest.param(pile("effects { ground off walls off }"), "", id="all fall"),
         pytest.param(pile("effects { ground off walls off contact off }", slab="hold all"), "", id="all fall through the slab"),
+        pytest.param(POOL.format(control="", more=""), "", id="floats"),
+        pytest.param(POOL.format(control="", more="").replace("500 ", "1500 "), FREE, id="sinks to the floor of a basin"),
     ],
 )
 def test_frictionless_is_told_once(prepared, text, told):

@@ -172,6 +172,7 @@ control {{
   time 1 s
   frames 1000 fps
   resolution 1 cm
+  contact-model paper
 }}
 """
 POOL = """

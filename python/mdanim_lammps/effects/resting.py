@@ -28,7 +28,8 @@ def frictionless(envelope: Envelope) -> list[Problem]:
     scene, system = envelope.scene, envelope.system
     if any_friction(scene) or envelope.g <= 0.0 or not envelope.moving.any():
         return []
-    if not _floors(envelope):
+    sinks = (envelope.moving & (envelope.weight_left() > 0.0)).any()
+    if not any(sinks or p.effect != "basin" for p in _floors(envelope)):
         low, high = system.bounds(system.position)
         holding = np.logical_or.reduceat(system.held, system.first[:-1])
         met = any(e.keeps_apart for e in envelope.on) and holding.any()
