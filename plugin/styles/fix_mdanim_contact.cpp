@@ -140,9 +140,6 @@ void FixMdanimContact::init()
     refuse("objects are told apart by molecule IDs; use 'atom_style bond' or 'fix ID all property/atom mol'");
   if (neighbor->every != 1 || neighbor->delay != 0 || neighbor->build_once)
     refuse("surfaces may meet between two rebuilds; use 'neigh_modify every 1 delay 0 check yes once no'");
-  kind.init(lmp);
-  young.init(lmp);
-  friction.init(lmp);
 }
 
 // --- objects ---
@@ -190,6 +187,9 @@ std::vector<FixMdanimContact::Known> FixMdanimContact::survey() const
 
 void FixMdanimContact::take_objects()
 {
+  kind.init(lmp);
+  young.init(lmp);
+  friction.init(lmp);
   std::vector<ContactObject> objects;
   std::vector<char> moves;
   lowest.clear();
@@ -219,6 +219,13 @@ void FixMdanimContact::take_objects()
 void FixMdanimContact::setup_post_neighbor()
 {
   take_objects();
+  if (restarted) {
+    try {
+      unpack(StateRecords(*restarted));
+    } catch (const std::exception &problem) {
+      error->all(FLERR, "fix {} mdanim/contact: {}", id, problem.what());
+    }
+  }
   world_of_contact.forget();
   list();
 }
@@ -375,10 +382,17 @@ template <class Row> std::vector<Row> take(const std::uint8_t *&from, const std:
   return rows;
 }
 
+struct KeptRecords : Stateful {
+  StateRecords records;
+  StateRecords pack() const override { return records; }
+  void unpack(const StateRecords &given) override { records = given; }
+};
+
 }    // namespace
 
 StateRecords FixMdanimContact::pack() const
 {
+  if (restarted) return *restarted;
   StateRecords records;
   for (const auto &[ids, contacts] : world_of_contact.pair_contacts()) {
     Bytes &bytes = records[{ids.first, ids.second}];
@@ -435,13 +449,18 @@ void FixMdanimContact::unpack(const StateRecords &records)
     if (from != end) bad("is too long");
   }
   world_of_contact.restore(pairs, planes);
+  restarted.reset();
 }
 
 void FixMdanimContact::write_restart(FILE *file)
 { mdanim::write_restart(*this, lmp, fmt::format("fix {} mdanim/contact", id), file); }
 
 void FixMdanimContact::restart(char *buffer)
-{ mdanim::read_restart(*this, lmp, fmt::format("fix {} mdanim/contact", id), buffer); }
+{
+  KeptRecords kept;
+  mdanim::read_restart(kept, lmp, fmt::format("fix {} mdanim/contact", id), buffer);
+  restarted = std::move(kept.records);
+}
 
 // --- what it tells ---
 

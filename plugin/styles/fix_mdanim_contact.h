@@ -11,6 +11,7 @@
 #include "styles/stateful.h"
 
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -61,6 +62,7 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
   int among_bit = 1;
   bool has_damping = false;
   std::map<int, mdanim::ContactBody> bodies;
+  std::optional<mdanim::StateRecords> restarted;    // of a restart file, until bodies are there
   mdanim::ContactWorld world_of_contact;
 
   std::vector<tagint> lowest;         // tags, of objects

@@ -7,9 +7,11 @@ import ctypes
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import plugin_lab as lab
+import plugin_path
 import state_lab
 from mdanim_lammps.engine.plugin import folder
 from mdanim_lammps.model.contact_body import make_contact_body
@@ -144,15 +146,88 @@ def commands(cuboids, words: str, dt: float, more=()) -> list[str]:
     ]
 
 
-def load(cuboids, folder: Path, words: str = "objects", dt: float = 0.2, more=(), setup: bool = True, **options):
-    """A LAMMPS instance of cuboids that has their contact bodies, set up for runs with ``pre no``."""
+def load(
+    cuboids,
+    folder: Path,
+    words: str = "objects",
+    dt: float = 0.2,
+    more=(),
+    *,
+    setup: bool = True,
+    give: bool = True,
+    comm=None,
+    **options,
+):
+    """A LAMMPS instance of cuboids that has their contact bodies, set up for runs with ``pre no``; on a communicator all of its
+    processes share it."""
     body, columns = scene(cuboids)
-    lmp = lab.load(body, folder, commands(cuboids, words, dt, more), columns=columns, **options)
-    for n, one in enumerate(cuboids):
+    if comm is None or comm.rank == 0:
+        script = lab.script(body, folder, commands(cuboids, words, dt, more), columns=columns, **options)
+    if comm is not None:
+        script = comm.bcast(script if comm.rank == 0 else None)
+    lmp = plugin_path.lammps(comm=comm)
+    for command in script:
+        lmp.command(command)
+        if command.startswith("thermo_style"):  # which forgets thermo_modify
+            lmp.command("thermo_modify norm no")
+    for n, one in enumerate(cuboids if give else ()):
         give_body(lmp, "contact", n, one.arrays)
     if setup:
         lmp.command("run 0 post no")
     return lmp
+
+
+class State(NamedTuple):
+    """All that a run goes on from, in tag order."""
+
+    x: np.ndarray
+    v: np.ndarray
+    f: np.ndarray
+    contacts: state_lab.Records
+
+    @classmethod
+    def of(cls, lmp) -> State:
+        arrays = (np.ctypeslib.as_array(lmp.gather_atoms(name, 1, 3)).reshape(-1, 3).copy() for name in "xvf")
+        return cls(*arrays, state_lab.pack(lmp, "contact"))
+
+    def put(self, lmp) -> None:
+        """Take it up on one process; then a run with ``pre no`` goes on from it."""
+        order = lmp.numpy.extract_atom("id")[: len(self.x)] - 1
+        write = lambda name, values: lmp.numpy.extract_atom(name)[: len(order)].__setitem__(slice(None), values[order])
+        write("x", self.x)
+        write("v", self.v)
+        state_lab.put(lmp, "contact", self.contacts)
+        lmp.command("run 0 post no")
+        write("v", self.v)
+        write("f", self.f)
+
+    def same(self, other: State) -> bool:
+        """Whether all bits of it are the same."""
+        return all(a.tobytes() == b.tobytes() for a, b in zip(self[:3], other[:3])) and self.contacts.same(other.contacts)
+
+
+def pile(seed: int, friction: bool = True) -> tuple[Cuboid, ...]:
+    """Cuboids of several sizes, stiffnesses and spacings, turned at random, that come together and fall on a ground at z = 0."""
+    random, found = np.random.default_rng(seed), []
+    for place in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1)):
+        centre = 3.4 * (np.array(place) + 0.05 * random.uniform(-1, 1, 3)) + (0, 0, 1.9)
+        found.append(
+            Cuboid(
+                tuple(random.integers(1, 4, 3).tolist()),
+                tuple(centre.tolist()),
+                spacing=float(random.choice([0.7, 0.8, 1.0])),
+                young=float(random.uniform(0.7, 2.0)),
+                friction=float(random.uniform(0.2, 0.8)) if friction else 0.0,
+                velocity=tuple((-0.15 * (np.array(place) - (0.4, 0.3, -0.2)) + 0.03 * random.standard_normal(3)).tolist()),
+                axis=tuple(random.standard_normal(3).tolist()),
+                angle=float(random.uniform(0, 180)),
+            )
+        )
+    return tuple(found)
+
+
+PILE = {"words": "objects plane z lo 0.0", "dt": 0.1, "more": ("fix weight mobile mdanim/gravity 0 0 -0.005",)}
+"""How a pile is loaded."""
 
 
 def contacts(records: state_lab.Records) -> dict[tuple[int, int], np.ndarray]:

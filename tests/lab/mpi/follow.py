@@ -22,6 +22,7 @@ def seen(instance: Instance) -> dict[str, np.ndarray]:
     """Everything that a driver asks an instance for."""
     state, plan = instance.state(), instance.plan
     found = {name: getattr(state, name) for name in ("x", "v", "f")}
+    found |= {fix: records.data for fix, records in state.records.items() if fix != "liquid"}
     if plan.grid:
         smooth, raw = instance.liquid_heights()
         found |= {"liquid": state.records["liquid"].data, "cells": instance.liquid_cells(), "smooth": smooth, "raw": raw}
