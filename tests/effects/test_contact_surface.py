@@ -55,37 +55,41 @@ BARRIER = [
     "fix barrier mobile mdanim/barrier boundary inner d_stiffness d_reach",
 ]
 
+SOLID = "group solid type 1:8"
+"""What is laid aside leaves this group."""
+
 
 def test_objects_and_planes_in_lammps_terms(prepared):
     """Bodies, Young's modulus, friction; what objects touch; the short barrier behind the surfaces of objects."""
     plan = prepared(pile()).plan
-    law = "mdanim/contact d_body d_young d_friction stiffness 1.0"
-    assert commands(plan, "contact") == [f"fix contact mobile {law} objects", *BARRIER]
-    assert commands(plan, "ground") == [f"fix ground mobile {law} plane z lo 0.0"]
+    law = "mdanim/contact d_body d_young d_friction stiffness 1.0 among solid"
+    assert commands(plan, "contact") == [SOLID, f"fix contact mobile {law} objects", *BARRIER]
+    assert commands(plan, "ground") == [SOLID, f"fix ground mobile {law} plane z lo 0.0"]
     assert commands(plan, "walls") == [
-        f"fix walls mobile {law} plane x lo -2.0 plane x hi 2.0 plane y lo -2.0 plane y hi 2.0 plane z lo -0.1 plane z hi 3.0"
+        SOLID,
+        f"fix walls mobile {law} plane x lo -2.0 plane x hi 2.0 plane y lo -2.0 plane y hi 2.0 plane z lo -0.1 plane z hi 3.0",
     ]
     basin = commands(prepared(POOL.format(control="", more="")).plan, "basin")
-    assert basin == [f"fix basin mobile {law} plane x lo 0.0 plane x hi 1.0 plane y lo 0.0 plane y hi 0.8 plane z lo 0.0"]
+    assert basin == [SOLID, f"fix basin mobile {law} plane x lo 0.0 plane x hi 1.0 plane y lo 0.0 plane y hi 0.8 plane z lo 0.0"]
 
 
 def test_stiffness_damping_and_pairs(prepared):
     """What the scene says beside the usual, once; pairs by molecules, lower one first."""
     more = "contact cube slab { friction 0.1 }\ncontact cube cube { contact-damping 0.7 }"
     plan = prepared(pile(more, "contact-stiffness 2 contact-damping 0.5 friction 0.25")).plan
-    law = "mdanim/contact d_body d_young d_friction stiffness 2.0 damping 0.5"
-    assert commands(plan, "contact")[0] == (
+    law = "mdanim/contact d_body d_young d_friction stiffness 2.0 damping 0.5 among solid"
+    assert commands(plan, "contact")[1] == (
         f"fix contact mobile {law} objects pair 1 2 0.1 0.5 pair 1 3 0.1 0.5 pair 2 3 0.25 0.7"
     )
-    assert commands(plan, "ground") == [f"fix ground mobile {law} plane z lo 0.0"]
+    assert commands(plan, "ground") == [SOLID, f"fix ground mobile {law} plane z lo 0.0"]
 
 
 def test_pairs_of_a_part_have_its_numbers(prepared):
     """A part counts its objects anew, and knows nothing of others."""
     plan = prepared(pile("contact cube slab { friction 0.1 }\ncontact cube cube { friction 0.2 }")).plan
     parts = SubPlans(plan)
-    assert commands(parts.part([1, 2], False), "contact")[0].endswith(" objects pair 1 2 0.2 0.3")
-    assert commands(parts.part([0, 2], False), "contact")[0].endswith(" objects pair 1 2 0.1 0.3")
+    assert commands(parts.part([1, 2], False), "contact")[1].endswith(" objects pair 1 2 0.2 0.3")
+    assert commands(parts.part([0, 2], False), "contact")[1].endswith(" objects pair 1 2 0.1 0.3")
     assert "contact" not in [e.name for e in parts.part([1], False).effects]
 
 
@@ -100,7 +104,7 @@ def test_columns(prepared):
     assert by_object.pop("friction_ground") == [0.64, 0.25, 0.9]
     assert by_object.keys() == {"stiffness", "reach"}
     np.testing.assert_allclose(plan.columns["reach"], 0.8 * plan.system.spacing[plan.system.object])
-    assert "d_friction_ground" in commands(plan, "ground")[0] and "d_friction " in commands(plan, "walls")[0]
+    assert "d_friction_ground" in commands(plan, "ground")[1] and "d_friction " in commands(plan, "walls")[1]
 
 
 def test_a_scene_pays_for_what_it_calls_for(prepared):

@@ -56,13 +56,14 @@ class OnSurfaces(Effect):
         """The column with the friction of each particle's object."""
         return "friction"
 
-    def law(self, scene: Scene, touched: str) -> str:
-        """The command of the fix, with what objects touch."""
+    def law(self, scene: Scene, touched: str) -> list[str]:
+        """The command of the fix, with what objects touch, behind that of the group of all that is there: what is laid aside
+        leaves it."""
         words = [f"fix {self.fix} mobile mdanim/contact d_body d_young d_{self.friction_column(scene)}"]
         words.append(f"stiffness {scene.control.contact_stiffness!r}")
         if damping(scene) != USUAL_DAMPING:
             words.append(f"damping {damping(scene)!r}")
-        return " ".join([*words, touched])
+        return ["group solid type 1:8", " ".join([*words, "among solid", touched])]
 
     def rubs(self, scene: Scene) -> bool:
         """Whether some contact may have friction."""
@@ -133,7 +134,7 @@ class SurfaceContact(OnSurfaces, Contact):
 
     def commands(self, scene, system):
         rules = [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for i, j, mu, beta in pair_rules(scene, system.names)]
-        return [self.law(scene, " ".join(["objects", *rules])), *barrier(self.behind, system)]
+        return [*self.law(scene, " ".join(["objects", *rules])), *barrier(self.behind, system)]
 
     def rate(self, scene, system):
         """A contact is a spring along one direction, kappa w G G^T with node weights whose sum is 2: those of the point and those
@@ -205,7 +206,7 @@ class SurfacePlanes(OnSurfaces, Boundary):
 
     def commands(self, scene, system):
         planes = (f"plane {AXES[p.axis]} {'lo' if p.sign > 0 else 'hi'} {p.at!r}" for p in self.planes(scene))
-        return [self.law(scene, " ".join(planes))]
+        return self.law(scene, " ".join(planes))
 
     def rate(self, scene, system):
         """a_i = kappa w_i / m_i with w_i as in `SurfaceContact.rate`: the plane does not move, so there is no factor 2."""
