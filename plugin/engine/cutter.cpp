@@ -3,10 +3,7 @@
 
 #include "engine/cutter.h"
 
-#include "engine/hash.h"
-
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
 namespace mdanim {
@@ -15,33 +12,6 @@ namespace mdanim {
 static constexpr int OVERHEAD = 2;
 // Passes are taken only when at least this part of the lanes has work.
 static constexpr double WORTH_IT = 0.3;
-
-void RowTable::start(int numbers)
-{
-  width = numbers;
-  count = latest = 0;
-  rows.clear();
-  known.clear();
-}
-
-unsigned RowTable::find_or_add(const double *row)
-{
-  const std::size_t size = width * sizeof(double);
-  const auto is = [&](unsigned n) { return std::memcmp(rows.data() + static_cast<std::size_t>(n) * width, row, size) == 0; };
-  if (count && is(latest)) return latest;
-  std::uint64_t hash = HASH_OF_NOTHING;
-  for (int k = 0; k < width; ++k) {
-    std::uint64_t word;
-    std::memcpy(&word, row + k, sizeof word);
-    hash = hash_with(hash, word);
-  }
-  const auto [begin, end] = known.equal_range(hash);
-  for (auto it = begin; it != end; ++it)
-    if (is(it->second)) return latest = it->second;
-  known.emplace(hash, count);
-  rows.push(row, width);
-  return latest = count++;
-}
 
 // How many particles the best cut takes into the block that ends before particle i; index 1 … N.
 std::vector<int> Cutter::lengths(const HalfBonds &bonds, const int *object) const
@@ -78,8 +48,7 @@ std::vector<int> Cutter::lengths(const HalfBonds &bonds, const int *object) cons
 void Cutter::start(int lanes_of_blocks)
 {
   width = lanes_of_blocks;
-  coeffs.start(2 * width);
-  damped_coeffs.start(3 * width);
+  coeffs = damped_coeffs = {};
   usual_rows = 0;
 }
 
@@ -123,7 +92,8 @@ Cut Cutter::cut(const HalfBonds &bonds, const int *object)
         law[width + lane] = own.pull;
         if (block.damped) law[2 * width + lane] = own.c;
       }
-      cut.entry.push_back({offset, (block.damped ? damped_coeffs : coeffs).find_or_add(law.data())});
+      cut.entry.push_back(
+          {offset, block.damped ? damped_coeffs.find_or_add(law.data(), 3 * width) : coeffs.find_or_add(law.data(), 2 * width)});
       cut.farthest = std::max(cut.farthest, offset);
     }
     block.end = static_cast<unsigned>(cut.entry.size());

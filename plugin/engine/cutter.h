@@ -4,33 +4,13 @@
 #ifndef MDANIM_CUTTER_H
 #define MDANIM_CUTTER_H
 
+#include "engine/distinct_rows.h"
 #include "engine/pass.h"
-#include "engine/positions.h"
 #include "engine/spring_rows.h"
 
-#include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 namespace mdanim {
-
-// Distinct rows of numbers, all of one length, each kept once and found by a hash: coefficients of springs and of motion, one
-// number for each lane, mostly repeat from block to block.
-class RowTable {
- public:
-  void start(int width);
-  unsigned find_or_add(const double *row);
-  bool empty() const { return count == 0; }
-  unsigned size() const { return count; }
-  const double *data() const { return rows.data(); }
-  std::size_t bytes() const { return rows.bytes() + count * 32; }
-
- private:
-  Doubles rows;
-  int width = 0;
-  unsigned count = 0, latest = 0;
-  std::unordered_multimap<std::uint64_t, unsigned> known;
-};
 
 // Blocks of some particles that no spring leads out of; starts count from the first of them, ends from the first entry.
 struct Cut {
@@ -64,7 +44,7 @@ class Cutter {
   bool rows_pile_up() const;    // so many are those of cuts that are gone that all cuts had better be made anew
 
   int lanes() const { return width; }
-  bool damped() const { return !damped_coeffs.empty(); }    // some block is
+  bool damped() const { return damped_coeffs.size() > 0; }    // some block is
   const double *rows() const { return coeffs.data(); }
   const double *damped_rows() const { return damped() ? damped_coeffs.data() : nullptr; }
   std::size_t bytes() const { return coeffs.bytes() + damped_coeffs.bytes(); }
@@ -73,8 +53,8 @@ class Cutter {
   std::vector<int> lengths(const HalfBonds &bonds, const int *object) const;
 
   int width = 0;
-  RowTable coeffs, damped_coeffs;
-  unsigned usual_rows = 0;    // how many there were when cuts were joined first after start()
+  DistinctRows<double> coeffs, damped_coeffs;    // all of one length, one number for each lane or several
+  unsigned usual_rows = 0;                       // how many there were when cuts were joined first after start()
 };
 
 }    // namespace mdanim

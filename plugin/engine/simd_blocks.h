@@ -101,7 +101,7 @@ class SimdBlocks {
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
   std::vector<double> total;           // see Pass, in our order
   int owned = 0;                       // in LAMMPS's arrays, ghosts come after them
-  RowTable motions;
+  DistinctRows<double> motions;
   Doubles memory;    // of the arrays
   double *x[3] = {}, *v[3] = {}, *f[3] = {};
   double *part[3] = {}, *last[3] = {}, *seen[3] = {};    // where damped
@@ -111,7 +111,7 @@ template <class Tell> void SimdBlocks::set_motion(Friction friction, Tell mover)
 {
   std::vector<double> row(MOTIONS * lanes);
   std::vector<bool> slow(particles), moves(particles);    // by the first particle of a block
-  motions.start(MOTIONS * lanes);
+  motions = {};
   for (Block &block : all) {
     for (int lane = 0; lane < lanes; ++lane) {
       const int i = lane < block.lanes ? at(block.start + lane) : -1;
@@ -122,7 +122,7 @@ template <class Tell> void SimdBlocks::set_motion(Friction friction, Tell mover)
       row[FOREIGN_LANE * lanes + lane] = lane < block.lanes ? 0.0 : 1.0;
       row[OWNED_LANE * lanes + lane] = i < 0 || is_ghost(i) ? 0.0 : 1.0;
     }
-    block.motion = motions.find_or_add(row.data());
+    block.motion = motions.find_or_add(row.data(), row.size());
   }
   set_apart(moves);
   slowed.clear();

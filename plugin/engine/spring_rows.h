@@ -4,10 +4,10 @@
 #ifndef MDANIM_SPRING_ROWS_H
 #define MDANIM_SPRING_ROWS_H
 
+#include "engine/distinct_rows.h"
 #include "laws/spring.h"
 
 #include <cstddef>
-#include <unordered_map>
 #include <vector>
 
 namespace mdanim {
@@ -19,7 +19,6 @@ class SpringRows {
   struct Link {
     int offset;    // partner - i
     int type;      // of the bond
-    bool operator==(const Link &other) const { return offset == other.offset && type == other.type; }
   };
   // In the order in which forces are summed: `lower` partners of lower tag, ascending, then upper ones, descending.
   struct Row {
@@ -34,27 +33,40 @@ class SpringRows {
   };
 
   explicit SpringRows(int particles = 0) { kind.reserve(particles); }
-  void add(const Row &row);                                              // of the next particle
-  void close() { known = {}; }                                           // that was the last
-  bool is(int i, const Row &row) const { return same(kind[i], row); }    // the row of particle i
-  Links operator[](int i) const { return links(kind[i]); }
-  int lower(int i) const { return lowers[kind[i]]; }
+  void add(Row &row);                   // of the next particle
+  void close() { distinct.close(); }    // that was the last
+  bool is(int i, Row &row) const;       // the row of particle i
+  Links operator[](int i) const { return {distinct.first_of(kind[i]), end(i)}; }
+  int lower(int i) const { return end(i)->offset; }
 
   int size() const { return static_cast<int>(kind.size()); }
   std::size_t total() const { return all; }    // length of all rows
-
-  std::size_t bytes() const;
+  std::size_t bytes() const { return kind.capacity() * sizeof(unsigned) + distinct.bytes(); }
 
  private:
-  Links links(int k) const { return {distinct.data() + first[k], distinct.data() + first[k + 1]}; }
-  bool same(int k, const Row &row) const;
+  // Rows are kept with one more link at the end, whose `offset` is `lower`.
+  const Link *end(int i) const { return distinct.last_of(kind[i]) - 1; }
 
-  std::vector<int> kind;                // of row, for each particle
-  std::vector<int> first{0}, lowers;    // for each kind
-  std::vector<Link> distinct;           // of all kinds
+  std::vector<unsigned> kind;    // of row, for each particle
+  DistinctRows<Link> distinct;
   std::size_t all = 0;
-  std::unordered_multimap<std::size_t, int> known;    // kinds by hash, until all rows are here
 };
+
+inline void SpringRows::add(Row &row)
+{
+  all += row.link.size();
+  row.link.push_back({row.lower, 0});
+  kind.push_back(distinct.find_or_add(row.link.data(), row.link.size()));
+  row.link.pop_back();
+}
+
+inline bool SpringRows::is(int i, Row &row) const
+{
+  row.link.push_back({row.lower, 0});
+  const bool same = distinct.is(kind[i], row.link.data(), row.link.size());
+  row.link.pop_back();
+  return same;
+}
 
 // Rows to partners of a higher tag alone, so each spring once, of particles in the order of tags; and the law of each type.
 struct HalfBonds {

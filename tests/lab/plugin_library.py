@@ -20,7 +20,7 @@ PLUGIN, TESTS = ROOT / "plugin", ROOT / "tests" / "lab" / "plugin"
 FOLDER = ROOT / "build" / "mdanimtest"
 """Of the library alone: as LAMMPS_PLUGIN_PATH it makes LAMMPS load the styles of the tests."""
 FILE = FOLDER / "mdanimtestplugin.so"
-ENGINE = [PLUGIN / "engine" / f"{n}.cpp" for n in ("cutter", "displacement_budget", "positions", "spring_rows", "tag_order")]
+ENGINE = [PLUGIN / "engine" / f"{n}.cpp" for n in ("cutter", "displacement_budget", "positions", "tag_order")]
 SOURCES = (*sorted(TESTS.glob("*.cpp")), *sorted((PLUGIN / "liquid").glob("*.cpp")), *ENGINE, PLUGIN / "styles" / "stateful.cpp")
 
 
