@@ -2,22 +2,25 @@
 """What effects cost: ``python bench/effects.py added|shares|forecast [rounds]`` prints a table in Markdown (docs/cost.md).
 
 ``added``: one scene with its effects added one by one. ``shares``: parts of clocks that several effects share, as they are to be
-set in effects/*.py. ``forecast``: expected and measured cost of every scene of scenes/ (runs them all). Variants take turns, so
-that all of them see the same machine; figures are medians of processor time, or of the styles' own clocks; for ``shares`` minima,
-because those clocks run on while others have the processor. What effects cost that are on and have nothing to do:
-bench/sleeping.py.
+set in effects/*.py and, of a pass, in plugin/engine/pass_run.cpp. ``forecast``: expected and measured cost of every scene of
+scenes/ (runs them all). Variants take turns, so that all of them see the same machine; figures are medians of processor time, or
+of the styles' own clocks; for ``shares`` minima of short rounds, because those clocks run on while others have the processor.
+What effects cost that are on and have nothing to do: bench/sleeping.py.
 """
 
 import statistics
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from pathlib import Path
 
 SCENES = Path(__file__).parent.parent / "scenes"
 ROUNDS = 15
 ROUND = 0.05
 """About the length of a round [s]."""
+SHORT = 10
+"""Rounds for one of the others, where minima are wanted."""
 
 POND = """
 gravity (0, 0, -9.81)
@@ -77,19 +80,19 @@ SEA = "liquid water {{ basin from (-50, -50, 0) cm to (50, 50, 60) cm density 10
 class Runner:
     """A live scene that runs in rounds."""
 
-    def __init__(self, text: str):
+    def __init__(self, text: str, length: float = ROUND, change=lambda plan: plan):
         from mdanim_lammps.engine.instance import Instance
         from mdanim_lammps.run.prepare import prepare
         from mdanim_lammps.scene.parse import parse_scene
 
         self.ready = prepare(parse_scene(text))
-        self.instance = Instance(self.ready.plan)
+        self.instance = Instance(change(self.ready.plan))
         self.instance.setup()
         self.particles = self.ready.system.particles
         self.instance.run(20)
         start = time.process_time()
         self.instance.run(20)
-        self.steps = max(20, round(20 * ROUND / (time.process_time() - start)))
+        self.steps = max(20, round(20 * length / (time.process_time() - start)))
 
     def clocks(self) -> dict[str, float]:
         """Seconds so far of every effect, and of the clocks that several effects share."""
@@ -97,7 +100,8 @@ class Runner:
 
         found = {e.name: sum(e.clocks(self.instance).values()) for e in self.ready.plan.effects}
         coupling = {"coupling": self.instance.fix_value("liquid", COUPLING)} if self.ready.plan.grid else {}
-        return found | coupling | {"leapfrog": self.instance.fix_seconds("leapfrog"), "bonds": self.instance.bond_seconds()}
+        leapfrog, bonds = self.instance.fix_seconds("leapfrog"), self.instance.bond_seconds()
+        return found | coupling | {"leapfrog": leapfrog, "bonds": bonds, "pass": leapfrog + bonds + found.get("gravity", 0.0)}
 
     def round(self) -> dict[str, float]:
         """Seconds of a step: of processor time as ``step``, and by clock."""
@@ -107,11 +111,13 @@ class Runner:
         return {"step": step} | {k: (s - before[k]) / self.steps for k, s in self.clocks().items()}
 
 
-def measure(texts: dict[str, str], rounds: int, of=statistics.median) -> dict[str, dict[str, float]]:
-    """Seconds of a step, by variant and clock, the median ``of`` all rounds; variants take turns."""
-    runners = {name: Runner(text) for name, text in texts.items()}
+def measure(texts: dict[str, str], rounds: int, of=statistics.median, **changes) -> dict[str, dict[str, float]]:
+    """Seconds of a step, by variant and clock, the median ``of`` all rounds; variants take turns. ``changes`` are those of the
+    plans of some of them."""
+    short = SHORT if of is min else 1
+    runners = {name: Runner(text, ROUND / short, changes.get(name, lambda plan: plan)) for name, text in texts.items()}
     found = {name: [] for name in texts}
-    for _ in range(rounds):
+    for _ in range(rounds * short):
         for name, runner in runners.items():
             found[name].append(runner.round())
     for runner in runners.values():
@@ -149,8 +155,19 @@ def added(rounds: int) -> None:
         last = step
 
 
+DIRECTIONS, AXES = 13, 3
+"""Of the springs of a particle to partners after it: all, and those along the edges of cells."""
+
+
+def along_axes(plan):
+    """A plan without diagonals: the step takes so much less as their springs take, which tells what one without springs takes."""
+    way = plan.system.position[plan.bonds[:, 1]] - plan.system.position[plan.bonds[:, 0]]
+    kept = (abs(way) > 0.5 * plan.spacing).sum(axis=1) == 1
+    return replace(plan, bonds=plan.bonds[kept], bond_kind=plan.bond_kind[kept])
+
+
 def shares(rounds: int) -> None:
-    """SubPlans of shared clocks, to be set in effects/*.py."""
+    """Parts of shared clocks, to be set in effects/*.py and pass_run.cpp."""
     plain = FLIGHT.format(more="", v=3, off="").replace("-9.81", "-1e-6")  # as many rebuilds with gravity as without
     found = measure(
         {
@@ -158,10 +175,17 @@ def shares(rounds: int) -> None:
             "no gravity": plain.replace("gravity (0, 0, -1e-6)", ""),
             "damped": plain.replace("elasticity 1 MPa", "elasticity 1 MPa\n  damping 0.1"),
             "drag": plain.replace("elasticity 1 MPa", "elasticity 1 MPa\n  drag 1"),
+            "along_axes": plain,
         },
         rounds,
         min,
+        along_axes=along_axes,
     )
+    of = {name: values["pass"] for name, values in found.items()}
+    without = of["along_axes"] - AXES / (DIRECTIONS - AXES) * (of["plain"] - of["along_axes"])
+    print(f"OF_LEAPFROG {(without - of['plain'] + of['no gravity']) / of['plain']:.2f}   of a pass")
+    print(f"OF_DRAG     {1 - of['plain'] / of['drag']:.2f}   of a pass")
+    print(f"OF_GRAVITY  {1 - of['no gravity'] / of['plain']:.2f}   of a pass")
     bare = {k: found[k]["leapfrog"] for k in found}
     print(f"DASHPOTS  {1 - found['plain']['bonds'] / found['damped']['bonds']:.2f}   of the springs' clock")
     print(f"SLOWING   {1 - bare['plain'] / bare['drag']:.2f}   of the leap-frog's clock")

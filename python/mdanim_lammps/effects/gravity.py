@@ -7,8 +7,8 @@ import numpy as np
 
 from .effect import Effect, Verdict
 
-PULL = 0.07
-"""Time of gravity over that of the leap-frog without drag, in a pass over blocks (plugin/styles/verlet_mdanim.cpp)."""
+PULL = 0.03
+"""Time of gravity over that of the leap-frog without drag, in a pass over blocks (bench/effects.py shares)."""
 
 
 class Gravity(Effect):
