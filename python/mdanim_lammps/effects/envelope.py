@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -46,8 +47,6 @@ class Envelope:
         self.wave = wave_speed(system)
         self.speed = self.speed_after(self.fall())
         """Largest speed that each solid may reach by its start and its fall [m/s], shape (M,)."""
-        self.cells = self._cells()
-        """Cells across the thinnest part of each solid [-], shape (M,)."""
 
     def own_step(self, name: str, rate: np.ndarray) -> list[Margin]:
         """What a single effect would bear, by its share in the bound [1/s^2], shape (N,)."""
@@ -106,7 +105,9 @@ class Envelope:
             1.0 - sum((e.lift(self.scene, self.system) for e in self.on), np.zeros(len(self.system.names))) / self.system.mass_of
         )
 
-    def _cells(self) -> np.ndarray:
+    @cached_property
+    def cells(self) -> np.ndarray:
+        """Cells across the thinnest part of each solid [-], shape (M,)."""
         system, known = self.system, {}
         thin = np.array(
             [known[s.shape] if s.shape in known else known.setdefault(s.shape, thickness(s.shape)) for s in self.scene.solids]

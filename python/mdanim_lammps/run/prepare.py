@@ -11,6 +11,7 @@ from .. import effects
 from ..certificate import Certificate, certify
 from ..certificate import warnings as margin_warnings
 from ..effects import Verdict, resolve
+from ..effects.effect import Resolved
 from ..engine.plan import Plan, make_plan
 from ..errors import Problem, SceneError
 from ..model.basin import check_basin, open_hulls
@@ -30,12 +31,17 @@ class Prepared:
     scene: Scene
     models: tuple[Model, ...]
     system: System
-    verdicts: dict[str, Verdict]
+    resolved: Resolved
     warnings: tuple[Problem, ...]
     certificate: Certificate
     plan: Plan
     insist: bool = False
     """Whether a time step above the bound was asked for all the same (``--allow-unstable``)."""
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        """Of every effect, by its name."""
+        return self.resolved.verdicts
 
     @cached_property
     def lock(self) -> str:
@@ -73,7 +79,7 @@ def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[i
     plan = make_plan(resolved, system, certificate)
     warnings += [w for e in plan.effects for w in e.warnings(scene, system)]
     warnings += margin_warnings(certificate) + (open_hulls(scene, models) if verdicts["liquid"].on else [])
-    return Prepared(scene, models, system, verdicts, (*scene.warnings, *warnings), certificate, plan, allow_unstable)
+    return Prepared(scene, models, system, resolved, (*scene.warnings, *warnings), certificate, plan, allow_unstable)
 
 
 def _unmeasurable(scene: Scene, verdicts: dict[str, Verdict]) -> list[Problem]:
