@@ -329,7 +329,10 @@ ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, Cont
   const double longest = 2.0 * host->body->spacing() +
                          std::max({host->body->count(0) * host->body->edge(0), host->body->count(1) * host->body->edge(1),
                                    host->body->count(2) * host->body->edge(2)});
-  if (below.value <= 0.0 || t <= 0.0 || below.value > longest) return Fate::OUT;
+  if (below.value <= 0.0 || t <= 0.0 || below.value > longest) {
+    if (dt > 0.0) account.damped += last_damping_work(contact.memory, below.value);
+    return Fate::OUT;
+  }
 
   const Vec3 normal = spot.gradient(below.slope);    // of the depth, in space
   ContactForce force = contact_pressure(law, point.area, t, below.value, dt, contact.memory);

@@ -89,6 +89,7 @@ void PlaneField::add_forces(ContactArrays &arrays, double nearer, double dt, Con
     if (depth <= 0.0) {
       if (!moves) continue;
       account.heat += contact.memory.stick_energy;
+      account.damped += last_damping_work(contact.memory, depth);
       was_below[q] = 0;
       wake[q] = budget - depth;
       continue;

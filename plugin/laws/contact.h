@@ -43,6 +43,8 @@ struct ContactMemory {
   Vec3 pull;                    // force of the stick spring [N]
   double stick = 0.0;           // its stiffness kappa_t w t [N/m]
   double stick_energy = 0.0;    // [J]
+  double damping = 0.0;         // force of the dashpot of the depth [N]
+  Vec3 drag;                    // that of the dashpot of the stick spring [N]
 };
 
 struct ContactForce {
@@ -64,15 +66,21 @@ inline ContactForce contact_pressure(const ContactLaw &law, double area, double 
   ContactForce force;
   force.surface_energy = k * g.value;
   force.press = k * part * g.slope;
-  if (law.damping > 0.0 && dt > 0.0 && depth > memory.offset) {
-    const double rate = (depth - memory.depth) / dt;
-    const double more = std::max(law.damping * k * part * rate, -force.press);    // a dashpot never pulls
-    force.damped = more * rate * dt;
+  if (law.damping > 0.0 && dt > 0.0) {
+    const double deeper = depth - memory.depth;
+    double more = 0.0;
+    if (depth > memory.offset) more = std::max(law.damping * k * part * deeper / dt, -force.press);    // a dashpot never pulls
+    force.damped = 0.5 * (memory.damping + more) * deeper;    // the mean of the forces before and after does the work
     force.press += more;
+    memory.damping = more;
   }
   memory.depth = depth;
   return force;
 }
+
+// What the dashpot of the depth still takes in the step in which the contact ends.
+inline double last_damping_work(const ContactMemory &memory, double depth)
+{ return 0.5 * memory.damping * (depth - memory.depth); }
 
 // Friction. `away` is the way from the anchor to the point in space [m], `normal` the gradient of d there.
 inline void contact_friction(const ContactLaw &law, double area, double part, const Vec3 &away, const Vec3 &normal, double dt,
@@ -83,17 +91,17 @@ inline void contact_friction(const ContactLaw &law, double area, double part, co
   const double most = law.friction * force.press * std::sqrt(square), pull = k * length;
   const bool slips = pull > most;
   force.kept = slips ? most / pull : 1.0;
-  if (!slips && dt > 0.0 && law.damping > 0.0) {
+  if (dt > 0.0 && law.damping > 0.0) {
     const Vec3 before = memory.stick > 0.0 ? (-1.0 / memory.stick) * memory.pull : Vec3{};
-    Vec3 rate = (1.0 / dt) * (away - before);
-    if (square > 0.0) rate -= (dot(rate, normal) / square) * normal;
+    Vec3 way = away - before;
+    if (square > 0.0) way -= (dot(way, normal) / square) * normal;
     const double eta = law.damping * k / std::sqrt(ContactLaw::STICK);    // 2 beta sqrt(kappa_t rho h / 2) w t
-    force.drag = -eta * rate;
-    force.damped += eta * dot(rate, rate) * dt;
+    if (!slips) force.drag = (-eta / dt) * way;
+    force.damped -= 0.5 * dot(memory.drag + force.drag, way);
+    memory.drag = force.drag;
   }
   const Vec3 left = force.kept * away;
   force.pull = -k * left;
-  // The mean of the forces before and after does work along the slip.
   if (slips && dt > 0.0) force.heat = -0.5 * dot(force.pull + memory.pull, away - left);
   memory.pull = force.pull;
   memory.stick = k;

@@ -34,6 +34,8 @@ FIELD = np.dtype(
         ("pull", "f8", 3),
         ("stick", "f8"),
         ("stick_energy", "f8"),
+        ("damping", "f8"),
+        ("drag", "f8", 3),
         ("force", "f8", 3),
         ("moved", "f8", 3),
         ("energy", "f8"),
@@ -50,6 +52,8 @@ PLANE = np.dtype(
         ("pull", "f8", 3),
         ("stick", "f8"),
         ("stick_energy", "f8"),
+        ("damping", "f8"),
+        ("drag", "f8", 3),
     ]
 )
 """PlaneContact in plugin/contact/plane_field.h."""

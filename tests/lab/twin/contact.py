@@ -194,6 +194,8 @@ class Memory:
     pull: np.ndarray
     stick: np.ndarray
     stick_energy: np.ndarray
+    damping: np.ndarray
+    drag: np.ndarray
     cell: np.ndarray
 
     @classmethod
@@ -201,7 +203,8 @@ class Memory:
         zeros = np.zeros
         return cls(
             np.full(points, -1), zeros((points, sides), bool), np.full((points, 3), np.nan), zeros((points, 3)), zeros(points),
-            zeros(points), zeros((points, 3)), zeros(points), zeros(points), zeros((points, 3), int),
+            zeros(points), zeros((points, 3)), zeros(points), zeros(points), zeros(points), zeros((points, 3)),
+            zeros((points, 3), int),
         )  # fmt: skip
 
 
@@ -211,10 +214,11 @@ def pressure(law, area, t, c, memory, depth, dt, account):
     value, slope = onset(depth - memory.offset[c], law.onset)
     press = law.kappa * area * t * slope
     if dt > 0.0 and law.eta > 0.0:
-        rate = (depth - memory.depth[c]) / dt
-        more = np.where(depth > memory.offset[c], np.maximum(law.eta * area * t * rate, -press), 0.0)
-        account.damped += float((more * rate * dt).sum())
+        deeper = depth - memory.depth[c]
+        more = np.where(depth > memory.offset[c], np.maximum(law.eta * area * t * deeper / dt, -press), 0.0)
+        account.damped += float((0.5 * (memory.damping[c] + more) * deeper).sum())
         press = press + more
+        memory.damping[c] = more
     memory.depth[c] = depth
     return press, law.kappa * area * value
 
@@ -234,7 +238,8 @@ def friction(law, area, t, c, memory, away, normal, press, dt, account):
         rate -= (rate * unit).sum(1)[:, None] * unit
         eta = law.eta * np.sqrt(STICK) * area * t  # 2 beta sqrt(kappa_t rho h/2) w t
         drag = np.where(slips[:, None], 0.0, -eta[:, None] * rate)
-        account.damped += float((np.where(slips, 0.0, eta) * (rate**2).sum(1) * dt).sum())
+        account.damped -= float((0.5 * (memory.drag[c] + drag) * rate * dt).sum())
+        memory.drag[c] = drag
     left = kept[:, None] * away
     pull = -k[:, None] * left
     if dt > 0.0:
@@ -379,6 +384,7 @@ class Twin:
             was_open = memory.open[n, side[born]]
             memory.offset[n] = np.where(was_open, memory.depth[n], 0.0)
             memory.pull[n] = memory.stick[n] = memory.stick_energy[n] = 0.0
+            memory.damping[n] = memory.drag[n] = 0.0
         free = memory.side[known] < 0
         memory.open[:] = False
         memory.open[near[~is_found]] = True
@@ -394,6 +400,7 @@ class Twin:
         d, t_c = depth[c, side], product(t[c], side)
         over = (d <= 0.0) | (t_c <= 0.0)
         ended = known[c[over]]
+        account.damped += float((0.5 * memory.damping[ended] * (d[over] - memory.depth[ended])).sum())
         account.heat += float(memory.stick_energy[ended].sum())
         memory.side[ended] = -1
         memory.open[ended] = is_open[c[over]]
@@ -440,7 +447,9 @@ class Twin:
             memory.side[n], memory.anchor[n], memory.depth[n] = 0, place[n], depth[n]
             memory.offset[n] = np.where(memory.open[n, 0], depth[n], 0.0)
             memory.pull[n] = memory.stick[n] = memory.stick_energy[n] = 0.0
+            memory.damping[n] = memory.drag[n] = 0.0
             ended = np.flatnonzero(~inside & touches)
+            account.damped += float((0.5 * memory.damping[ended] * (depth[ended] - memory.depth[ended])).sum())
             account.heat += float(memory.stick_energy[ended].sum())
             memory.side[ended] = -1
         memory.open[:, 0] = inside
