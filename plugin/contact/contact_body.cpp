@@ -17,8 +17,14 @@ static void need(bool good, const char *what)
   if (!good) throw std::runtime_error(std::string("the arrays are not those of a contact body: ") + what);
 }
 
+static bool are_finite(const double *values, std::size_t n)
+{
+  return std::all_of(values, values + n, [](double value) { return std::isfinite(value); });
+}
+
 ContactBody::ContactBody(const ContactBodyArrays &given)
 {
+  need(given.particles > 0 && given.points >= 0, "it has no particles, or less than no points");
   std::size_t volume = 1, nodes = 1, coefficients = 1;
   double product = 1.0;
   for (int d = 0; d < 3; ++d) {
@@ -38,14 +44,21 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
   for (int n = 0; n < given.particles; ++n)
     need(given.node[n] >= 0 && given.node[n] < static_cast<int>(nodes) && (n == 0 || given.node[n - 1] < given.node[n]),
          "places of particles do not ascend");
-  if (given.depth)
+  need_particles_of_cells();
+  if (given.depth) {
+    need(are_finite(given.depth, coefficients), "a depth is no number");
     depth_grid.assign(given.depth, given.depth + coefficients);
-  else
+  } else {
     need(given.particles == static_cast<int>(nodes), "a cuboid has a particle in each place");
+    need(std::find(filled.begin(), filled.end(), 0) == filled.end(), "a cuboid has no empty cells");
+  }
   surface.reserve(given.points);
   for (int p = 0; p < given.points; ++p) {
     need(given.cell[p] >= 0 && given.cell[p] < static_cast<int>(volume) && filled[given.cell[p]], "a point is in no filled cell");
-    need(given.area[p] > 0.0 && given.kind[p] <= 2, "a point has no area or is of no kind");
+    need(given.area[p] > 0.0 && std::isfinite(given.area[p]) && given.kind[p] <= 2, "a point has no area or is of no kind");
+    need(are_finite(given.at + 3 * p, 3) && are_finite(given.centre + 3 * p, 3), "a point is nowhere");
+    const Vec3 normal = vec3(given.normal + 3 * p);
+    need(std::fabs(dot(normal, normal) - 1.0) < 1e-6, "a normal has not length 1");
     surface.push_back({{given.cell[p] % cells[0], given.cell[p] / cells[0] % cells[1], given.cell[p] / (cells[0] * cells[1])},
                        vec3(given.at + 3 * p),
                        vec3(given.centre + 3 * p),
@@ -53,6 +66,23 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
                        given.area[p],
                        static_cast<PointKind>(given.kind[p])});
   }
+}
+
+// Particles are at the corners of filled cells, and nowhere else.
+void ContactBody::need_particles_of_cells() const
+{
+  std::vector<char> is_corner(places(), 0);
+  for (int k = 0; k < cells[2]; ++k)
+    for (int j = 0; j < cells[1]; ++j)
+      for (int i = 0; i < cells[0]; ++i)
+        if (is_filled(i, j, k))
+          for (int corner = 0; corner < 8; ++corner)
+            is_corner[place(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2))] = 1;
+  for (const int at : place_of_node) {
+    need(is_corner[at], "a particle is at no filled cell");
+    is_corner[at] = 0;
+  }
+  need(std::find(is_corner.begin(), is_corner.end(), 1) == is_corner.end(), "a filled cell lacks a particle");
 }
 
 bool ContactBody::is_outer(int i, int j, int k) const

@@ -80,6 +80,8 @@ class ContactBody {
   std::size_t bytes() const;
 
  private:
+  void need_particles_of_cells() const;
+
   int cells[3];
   double edges[3], mean_edge;
   std::vector<int> place_of_node;

@@ -32,8 +32,8 @@ struct AxisWeights {
 
   static AxisWeights smooth(double x, int cells)
   {
-    if (cells == 1 || x < 0.5) return linear(x, 0);
-    if (x >= cells - 0.5) return linear(x, cells - 1);    // at the half itself the next node would be none
+    if (cells == 1 || !(x >= 0.5)) return linear(x, 0);    // what is no number, too
+    if (x >= cells - 0.5) return linear(x, cells - 1);     // at the half itself the next node would be none
     const int middle = static_cast<int>(std::floor(x + 0.5));
     const double u = x - middle, p = 0.5 - u, q = 0.5 + u;
     return {middle - 1, 3, {0.5 * p * p, 0.75 - u * u, 0.5 * q * q}, {-p, -2.0 * u, q}};

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <numeric>
 #include <stdexcept>
@@ -124,8 +125,7 @@ int FixMdanimContact::setmask() { return POST_NEIGHBOR | POST_FORCE; }
 
 void FixMdanimContact::take_body(int number, const ContactBodyArrays &arrays)
 {
-  bodies.erase(number);
-  bodies.emplace(number, ContactBody(arrays));
+  bodies.insert_or_assign(number, ContactBody(arrays));
 }
 
 void FixMdanimContact::init()
@@ -376,10 +376,16 @@ template <class Row> std::vector<Row> take(const std::uint8_t *&from, const std:
   std::vector<Row> rows(n);
   if (n) std::memcpy(static_cast<void *>(rows.data()), from, n * sizeof(Row));
   from += n * sizeof(Row);
-  for (std::size_t r = 1; r < rows.size(); ++r)
-    if (rows[r].point < 0 || rows[r - 1].point < 0)
-      throw std::runtime_error(fmt::format("the record of {} is not its own", what));
   return rows;
+}
+
+// Whether all of a row from this byte on are numbers.
+template <class Row> bool has_numbers(const Row &row, std::size_t from)
+{
+  double values[sizeof(Row) / sizeof(double)];
+  const std::size_t bytes = sizeof(Row) - from;
+  std::memcpy(values, reinterpret_cast<const std::uint8_t *>(&row) + from, bytes);
+  return std::all_of(values, values + bytes / sizeof(double), [](double value) { return std::isfinite(value); });
 }
 
 struct KeptRecords : Stateful {
@@ -432,19 +438,29 @@ void FixMdanimContact::unpack(const StateRecords &records)
       lower = take<FieldContact>(from, end, what.c_str());
       higher = take<FieldContact>(from, end, what.c_str());
       const auto check = [&](const std::vector<FieldContact> &rows, int owner, int host) {
-        for (const FieldContact &row : rows)
+        int before = -1;
+        for (const FieldContact &row : rows) {
           if (!is_point(owner, row.point) || row.side < 0 || row.side >= body_of[host]->sides() ||
               !body_of[host]->is_filled(row.cell[0], row.cell[1], row.cell[2]))
             bad("has points that there are not");
+          if (row.point <= before) bad("has points that do not ascend");
+          if (!has_numbers(row, offsetof(FieldContact, X))) bad("has what is no number");
+          before = row.point;
+        }
       };
       check(lower, key.a, key.b);
       check(higher, key.b, key.a);
     } else {
       planes[key.a] = take<PlaneContact>(from, end, what.c_str());
-      for (const PlaneContact &row : planes[key.a])
+      std::pair<int, int> before{-1, -1};
+      for (const PlaneContact &row : planes[key.a]) {
         if (!is_point(key.a, row.point) || row.plane < 0 ||
             row.plane >= static_cast<int>(world_of_contact.settings.planes.size()))
           bad("has points or planes that there are not");
+        if (std::pair{row.plane, row.point} <= before) bad("has points that do not ascend");
+        if (!has_numbers(row, offsetof(PlaneContact, anchor))) bad("has what is no number");
+        before = {row.plane, row.point};
+      }
     }
     if (from != end) bad("is too long");
   }
