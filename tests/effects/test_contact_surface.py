@@ -286,7 +286,7 @@ FREE = "contacts are frictionless"
         pytest.param(pile(), f"{FREE}; write friction 0.5 in control", id="surface"),
         pytest.param(
             pile(z=0.2).replace("contact-model surface", "contact-model paper"),
-            f"{FREE}, as in the paper; write friction 0.5 and contact-model surface in control",
+            f"{FREE}, as in the paper; write friction 0.5 in control",
             id="paper",
         ),
         pytest.param(pile(control="friction 0.1"), "", id="friction"),

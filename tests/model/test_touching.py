@@ -113,9 +113,10 @@ def test_what_a_newcomer_writes_is_told(prepared, text, each, names, joules):
     told = float(re.search(r"holds ([\d.]+) J", warning.message)[1])
     assert told == pytest.approx(joules, rel=0.1)
     assert warning.span is not None
-    by = re.search(r"by ([\d.]+) (mm|cm)$", warning.hint)
+    by = re.search(r"by ([\d.]+) (mm|cm); or write (contact-model surface) in control", warning.hint)
     gap = float(by[1]) / (10 if by[2] == "mm" else 1)
     assert not start_warnings(prepared(text.format(each=each + gap, stuff=STUFF)))
+    assert not start_warnings(prepared(text.format(each=each, stuff=STUFF).replace("control {", f"control {{ {by[3]} ")))
 
 
 def test_the_way_out_of_an_overlap_is_no_exact_touch(prepared):

@@ -78,9 +78,11 @@ def test_the_contact_of_the_paper_has_no_friction(control, contacts, settings, p
     """One problem that says what to write; with what it says there is none."""
     (found,) = problems(pile(contacts, f"contact-model paper {control}", **settings))
     assert found.message.startswith(f"{what} needs contact-model surface")
-    assert found.hint == "write contact-model surface in control"
+    assert found.hint == "take contact-model paper out of control"
     assert (found.line, found.column) == place
-    parse_scene(pile(contacts, f"{SURFACE} {control}", **settings))
+    said, taken_out = (parse_scene(pile(contacts, f"{word} {control}", **settings)) for word in (SURFACE, ""))
+    assert taken_out.control.contact_model is ContactModel.SURFACE
+    assert parse_scene(lock_text(taken_out), strict=True) == said
 
 
 def test_no_friction_is_what_the_paper_has():

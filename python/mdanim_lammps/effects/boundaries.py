@@ -11,6 +11,9 @@ from ..model.touching import WAY_NAMES, behind_planes
 from ..scene.formatting import at_least, say, whole
 from .effect import Effect, Verdict, stiffness_told
 
+OR_ON_SURFACES = "or write contact-model surface in control, where what touches holds no energy"
+"""The other way out of a start within the reach of the paper's contact."""
+
 
 class Boundary(Effect):
     """What ground, walls and basins have in common: a region, and a fix that pushes back whatever leaves it."""
@@ -48,7 +51,7 @@ class Boundary(Effect):
                 solid.spans.get("position") or solid.spans.get("object"),
                 f"{solid.name} starts with particles beyond {name}, which holds {say(t.energy, 'J')} at the start and pushes "
                 f"them back{more}",
-                f"move {solid.name} {WAY_NAMES[t.way]} by {say(at_least(t.move, 3), 'm')}",
+                f"move {solid.name} {WAY_NAMES[t.way]} by {say(at_least(t.move, 3), 'm')}; {OR_ON_SURFACES}",
                 severity="warning",
             )
         ]

@@ -12,6 +12,7 @@ from ..model.sweep import closest
 from ..model.system import System
 from ..model.touching import REACH, THIN, WAY_NAMES, touching
 from ..scene.formatting import at_least, say, whole
+from .boundaries import OR_ON_SURFACES
 from .effect import Effect, Verdict, stiffness_told
 from .envelope import Envelope
 from .margin import Margin
@@ -158,7 +159,7 @@ class Contact(Effect):
                 f"{second.name} starts within reach of {first.name}: contact holds {say(t.energy, 'J')} at the start and pushes "
                 f"them apart{more}",
                 f"leave a gap of {say(at_least(t.gap, 3), 'm')}: move {second.name} {WAY_NAMES[t.way]} "
-                f"by {say(at_least(t.move, 3), 'm')}",
+                f"by {say(at_least(t.move, 3), 'm')}; {OR_ON_SURFACES}",
                 severity="warning",
             )
         ]

@@ -40,7 +40,7 @@ def frictionless(envelope: Envelope) -> list[Problem]:
         Problem(
             scene.control.spans.get("contact-model") or scene.control.spans.get("control"),
             f"contacts are frictionless{', as in the paper' if paper else ''}",
-            f"write friction 0.5{' and contact-model surface' if paper else ''} in control",
+            "write friction 0.5 in control",
             severity="note",
         )
     ]

@@ -110,7 +110,7 @@ class Solid:
     friction: float | None = setting(
         "<mu>",
         "Coefficient of friction; two objects in touch have sqrt(mu_A mu_B), an object has its own against ground, walls and "
-        "basin. Needs `contact-model surface`. Absent: that of `control`.",
+        "basin. Calls for `contact-model surface`. Absent: that of `control`.",
         "0.4", Rule.NOT_NEGATIVE, default=None, limit=FRICTION)  # fmt: skip
     """mu [-]; None is that of the scene."""
     hold: tuple[Hold, ...] = setting(
@@ -311,15 +311,15 @@ class Control:
     contact_model: ContactModel = setting(
         None,
         "`surface`: objects touch where their drawn surfaces are, and have friction. `paper`: a barrier between particles keeps "
-        "objects about half a spacing apart, without friction.",
+        "objects about half a spacing apart, without friction. What has friction has `surface` without being told.",
         "surface", default=CONTACT_MODEL, codec=Words(ContactModel))  # fmt: skip
     friction: float = setting(
-        "<mu>", "Coefficient of friction of objects that have none of their own. Needs `contact-model surface`.",
+        "<mu>", "Coefficient of friction of objects that have none of their own. Calls for `contact-model surface`.",
         "0.5", Rule.NOT_NEGATIVE, default=0.0, limit=FRICTION)  # fmt: skip
     """mu [-]"""
     contact_damping: float | None = setting(
         "<beta>",
-        "Damping of contacts that have friction, as a fraction of critical damping: it ends chatter. Needs `contact-model "
+        "Damping of contacts that have friction, as a fraction of critical damping: it ends chatter. Calls for `contact-model "
         "surface`. Absent: 0.3.",
         "0.3", Rule.NOT_NEGATIVE, default=None, limit=CONTACT_DAMPING)  # fmt: skip
     """Share of critical damping where there is friction [-]; None is 0.3."""

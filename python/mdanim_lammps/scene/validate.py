@@ -66,7 +66,7 @@ class Validator:
         if top.get("walls"):
             self.corners(self.out.first("walls"), "the space between the walls")
             self.inside_walls(held["solids"], top["walls"])
-        self.contact_model_fits(control, held["solids"])
+        held["control"] = control = self.contact_model(control, held["solids"])
         self.cameras(control)
         top["expects"] = self.expects(control)
         if not held["solids"] and not self.blocks("liquid") and not self.out.excused("object") and not self.problems.errors:
@@ -199,24 +199,26 @@ class Validator:
                     f"the walls go from {units.show(walls.low)} to {units.show(walls.high)} m",
                 )
 
-    def contact_model_fits(self, control: records.Control | None, solids: list[records.Solid]) -> None:
-        """The contact of the paper has neither friction nor damping; that of surfaces is damped where it has friction."""
+    def contact_model(self, control: records.Control | None, solids: list[records.Solid]) -> records.Control | None:
+        """Control with the contact model that the scene calls for: the contact of the paper has neither friction nor damping."""
         if control is None:
-            return
+            return None
+        words = {"friction": control.friction, "contact-damping": control.contact_damping}
+        asked = [("a contact block", self.head(b)) for b in self.blocks("contact")]
+        asked += [("friction", s.spans["friction"]) for s in solids if s.friction]
+        asked += [(word, control.spans[word]) for word, value in words.items() if value]
+        if asked and "contact-model" not in control.spans:
+            control = replace(control, contact_model=records.ContactModel.SURFACE)
         if control.contact_model is not records.ContactModel.PAPER:
             if control.contact_damping and not (control.friction or self.blocks("contact") or any(s.friction for s in solids)):
                 cause = "contact-damping of control acts where there is friction, and nothing in the scene has any"
                 way_out = "write friction 0.5 in control, or contact-damping in a contact block"
                 self.problem(control.spans["contact-damping"], cause, way_out, severity="warning")
-            return
-        words = {"friction": control.friction, "contact-damping": control.contact_damping}
-        asked = [("a contact block", self.head(b)) for b in self.blocks("contact")]
-        asked += [("friction", s.spans["friction"]) for s in solids if s.friction]
-        asked += [(word, control.spans[word]) for word, value in words.items() if value]
-        if asked:
+        elif asked:
             what, span = asked[0]
             cause = f"{what} needs contact-model surface; the contact of the paper has no friction"
-            self.problem(span, cause, "write contact-model surface in control", key="contact-model")
+            self.problem(span, cause, "take contact-model paper out of control", key="contact-model")
+        return control
 
     # -- helpers for one block
 
