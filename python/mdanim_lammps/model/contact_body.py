@@ -17,8 +17,11 @@ from .spread import spread
 
 FLAT, SHARP, DENSE = 0, 1, 2
 """Kinds of points: inside a side of a cuboid, on an edge or in a corner of a cuboid, of any other shape."""
-DENSITY = 4
-"""Points along a cell edge on shapes that are no cuboids."""
+DENSITY = 3
+"""Points along a cell edge on shapes that are no cuboids: with 2 a rolling ball strays by a hundredth of its way, with 4 it strays
+half as much as with 3."""
+SAMPLES = 8
+"""Samples of a mesh along a cell edge, from which distances are taken."""
 MARGIN = 2
 """Nodes around the grid whose depth is kept."""
 OUTSIDE = 2
@@ -150,7 +153,7 @@ def _depth(shape: Shape, cells: Cells) -> np.ndarray:
     out = MARGIN + OUTSIDE
     x, y, z = (low + edge * np.arange(-out, n + out + 1) for low, edge, n in zip(cells.low, cells.edge, cells.count))
     nodes = np.stack(np.meshgrid(z, y, x, indexing="ij")[::-1], axis=-1)
-    depth = distance(shape, nodes.reshape(-1, 3), float(cells.edge.min()) / (2 * DENSITY)).reshape(nodes.shape[:-1])
+    depth = distance(shape, nodes.reshape(-1, 3), float(cells.edge.min()) / SAMPLES).reshape(nodes.shape[:-1])
     inner = slice(OUTSIDE, -OUTSIDE)
     return _spline(depth)[inner, inner, inner].ravel()
 
