@@ -10,8 +10,6 @@
 
 namespace mdanim {
 
-static constexpr int MARGIN = 2;    // nodes of the depth's grid beyond the body's, at either end of an axis
-
 static void need(bool good, const char *what)
 {
   if (!good) throw std::runtime_error(std::string("the arrays are not those of a contact body: ") + what);
@@ -34,7 +32,7 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
     need(edges[d] > 0.0 && std::isfinite(edges[d]), "an edge of the cells is no length");
     volume *= cells[d];
     nodes *= cells[d] + 1;
-    coefficients *= cells[d] + 1 + 2 * MARGIN;
+    coefficients *= cells[d] + 1 + 2 * DEPTH_MARGIN;
     product *= edges[d];
   }
   need(nodes < (std::size_t{1} << 31), "it has too many places");
@@ -99,45 +97,26 @@ int ContactBody::cells_around(int node) const
   return sum;
 }
 
-// Of a point at `x`, the first of three nodes and their weights: centred quadratic B-splines.
-static int spline(double x, int nodes, double (&w)[3], double (&slope)[3])
+Lattice ContactBody::lattice() const
 {
-  const int middle = std::clamp(static_cast<int>(std::floor(x + 0.5)), 1, nodes - 2);
-  const double u = std::clamp(x - middle, -0.5, 0.5), p = 0.5 - u, q = 0.5 + u;
-  w[0] = 0.5 * p * p, w[1] = 0.75 - u * u, w[2] = 0.5 * q * q;
-  slope[0] = -p, slope[1] = -2.0 * u, slope[2] = q;
-  return middle - 1;
+  return {{cells[0], cells[1], cells[2]},           {edges[0], edges[1], edges[2]}, mean_edge, row(), layer(),
+          is_cuboid() ? nullptr : depth_grid.data()};
 }
 
-Depth ContactBody::depth(int side, const Vec3 &X) const
+Depth<double> ContactBody::depth(int side, const Vec3 &X) const
 {
-  const double at[3] = {X.x, X.y, X.z};
-  Depth found{0.0, {}};
-  if (is_cuboid()) {
-    const int axis = side / 2;
-    const bool high = side & 1;
-    found.value = edges[axis] * (high ? cells[axis] - at[axis] : at[axis]);
-    const double slope = high ? -edges[axis] : edges[axis];
-    found.slope = {axis == 0 ? slope : 0.0, axis == 1 ? slope : 0.0, axis == 2 ? slope : 0.0};
-    return found;
+  const Lattice grid = lattice();
+  if (is_cuboid()) return depth_below<double>({static_cast<double>(side / 2), static_cast<double>(side & 1)}, grid, X);
+  const std::size_t nx = depth_row(grid, 0), ny = depth_row(grid, 1), step[3] = {1, nx, nx * ny};
+  const double *first = grid.depth;
+  Weights<double> weights;
+  for (int d = 0; d < 3; ++d) {
+    const double x = component(X, d) + DEPTH_MARGIN;
+    const int middle = middle_node(x, depth_row(grid, d) - 1);
+    weights[d] = depth_weights<double>(x, middle);
+    first += (middle - 1) * step[d];
   }
-  double w[3][3], s[3][3];
-  int first[3];
-  for (int d = 0; d < 3; ++d) first[d] = spline(at[d] + MARGIN, cells[d] + 1 + 2 * MARGIN, w[d], s[d]);
-  const std::size_t nx = cells[0] + 1 + 2 * MARGIN, ny = cells[1] + 1 + 2 * MARGIN;
-  for (int k = 0; k < 3; ++k) {
-    double sum = 0.0, sum_x = 0.0, sum_y = 0.0;
-    for (int j = 0; j < 3; ++j) {
-      const double *c = &depth_grid[first[0] + nx * ((first[1] + j) + ny * (first[2] + k))];
-      const double line = (w[0][0] * c[0] + w[0][1] * c[1]) + w[0][2] * c[2];
-      sum += w[1][j] * line;
-      sum_x += w[1][j] * ((s[0][0] * c[0] + s[0][1] * c[1]) + s[0][2] * c[2]);
-      sum_y += s[1][j] * line;
-    }
-    found.value += w[2][k] * sum;
-    found.slope += {w[2][k] * sum_x, w[2][k] * sum_y, s[2][k] * sum};
-  }
-  return found;
+  return depth_by_splines(weights, [&](int i, int j, int k) { return first[i + nx * (j + ny * k)]; });
 }
 
 std::size_t ContactBody::bytes() const

@@ -5,7 +5,7 @@
 #ifndef MDANIM_CONTACT_BODY_H
 #define MDANIM_CONTACT_BODY_H
 
-#include "laws/vec3.h"
+#include "contact/contact_push.h"
 
 #include <cstdint>
 #include <vector>
@@ -41,12 +41,6 @@ struct ContactBodyArrays {
   const double *depth;    // null for a cuboid
 };
 
-// Depth below one side, and its gradient by X.
-struct Depth {
-  double value;
-  Vec3 slope;
-};
-
 class ContactBody {
  public:
   // Throws std::runtime_error when the arrays are not those of a body.
@@ -58,6 +52,7 @@ class ContactBody {
   double edge(int axis) const { return edges[axis]; }
   double spacing() const { return mean_edge; }    // cube root of a cell's volume [m]
   int particles() const { return static_cast<int>(place_of_node.size()); }
+  Lattice lattice() const;
   const std::vector<SurfacePoint> &points() const { return surface; }
 
   // Places of the grid, x fastest, and the number of the particle there, -1 for none.
@@ -76,7 +71,7 @@ class ContactBody {
   int cells_around(int node) const;            // filled ones, of 8
 
   // Below a side; sides of a cuboid are -x, +x, -y, +y, -z, +z.
-  Depth depth(int side, const Vec3 &X) const;
+  Depth<double> depth(int side, const Vec3 &X) const;
   std::size_t bytes() const;
 
  private:

@@ -11,18 +11,13 @@ namespace mdanim {
 
 static constexpr double LEAST_COSINE = 0.45;    // between the outward normals of the point and of a side that faces it, negated
 static constexpr double DEEPEST_BIRTH = 0.5;    // cells
-static constexpr double SAME_PLACE = 1e-3;      // cells that X may be off its guess without a second evaluation
-static constexpr double LEFT = 1e-9;            // cells that X may stand out of its own
 static constexpr double AT_ONCE = -1.0;
 static constexpr double NEVER = std::numeric_limits<double>::infinity();
-static constexpr double LOST = 0.02;        // cells to go before a point that was not found is looked for again
-static constexpr double PRESSED = 0.5;      // cells are taken to be pressed to half at most: motion in space over that in X
-static constexpr double RAMPS_END = 2.0;    // cells from an edge from which on all of any point counts
-static constexpr double SEARCHED = 5.0;     // cells around a point in which one of the host is looked for
-static constexpr double NEAREST = 2.2;      // cells from the middle of a cell on the surface beyond which there is no contact
+static constexpr double LOST = 0.02;       // cells to go before a point that was not found is looked for again
+static constexpr double PRESSED = 0.5;     // cells are taken to be pressed to half at most: motion in space over that in X
+static constexpr double SEARCHED = 5.0;    // cells around a point in which one of the host is looked for
+static constexpr double NEAREST = 2.2;     // cells from the middle of a cell on the surface beyond which there is no contact
 static constexpr std::uint8_t EVERY_SIDE = 63;
-
-static double component(const Vec3 &a, int axis) { return axis == 0 ? a.x : axis == 1 ? a.y : a.z; }
 
 static double outside(const Box &box, const Vec3 &x)
 {
@@ -118,7 +113,7 @@ std::array<int, 3> ContactField::nearest_cell(const Vec3 &x, const ContactArrays
 }
 
 // X of a point at x, the same bits whatever was known of it: the last search begins in the middle of the cell that X lies in.
-bool ContactField::find(std::size_t q, const Vec3 &x, const Placed &at, Spot &spot, Vec3 &X)
+bool ContactField::find(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X)
 {
   Watch &known = watch[q];
   const MaterialSearch search(at);
@@ -134,16 +129,16 @@ bool ContactField::find(std::size_t q, const Vec3 &x, const Placed &at, Spot &sp
   X = {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
   if (!search.solve(x, cell, X, false)) return false;
   known.cell = cell, known.X = X;
-  if (is_smooth(surface_point(q))) return search.solve_smooth(x, X) && evaluate(at, smooth(X, *host->body), spot);
-  return evaluate(at, trilinear(X, cell), spot);
+  if (is_smooth(surface_point(q).kind)) return search.solve_smooth(x, X) && evaluate(at, smooth(X, *host->body), spot);
+  return evaluate(at, trilinear(X, cell, at.body), spot);
 }
 
 bool ContactField::world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const
 {
   const Placed own = {*owner->body, owner->slot.data(), arrays.place.data()};
   const std::array<int, 3> cell = {point.cell[0], point.cell[1], point.cell[2]};
-  Spot spot;
-  if (!evaluate(own, trilinear({cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}, cell), spot)) return false;
+  Spot<double> spot;
+  if (!evaluate(own, trilinear({cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}, cell, *owner->body), spot)) return false;
   const ContactBody &body = *owner->body;
   normal = spot.gradient({point.normal.x * body.edge(0), point.normal.y * body.edge(1), point.normal.z * body.edge(2)});
   const double length = std::sqrt(dot(normal, normal));
@@ -152,36 +147,16 @@ bool ContactField::world_normal(const SurfacePoint &point, const ContactArrays &
   return true;
 }
 
-// The ramp near a sharp edge across an axis, in cells: flat points count from one cell inside on, fully from two; others about
-// the edge.
-double ContactField::ramp_width(const SurfacePoint &point, int axis, double &from) const
+// Flat points count from one cell inside of an edge on, fully from two; others about the edge.
+Ramps ContactField::ramps(PointKind kind) const
 {
-  const double width = point.kind == PointKind::FLAT ? std::min(1.0, 0.25 * host->body->count(axis)) : 0.5;
-  from = point.kind == PointKind::FLAT ? width : -0.25;
-  return width;
-}
-
-// t(X) over a side, and its gradient by X: the product of ramps about all edges of that side.
-double ContactField::part(const SurfacePoint &point, const Vec3 &X, int side, Vec3 &slope) const
-{
-  slope = {};
-  if (!host->body->is_cuboid()) return 1.0;
-  double inside = NEVER;    // cells from the nearest edge
-  for (int d = 0; d < 3; ++d)
-    if (d != side / 2) inside = std::min({inside, component(X, d), host->body->count(d) - component(X, d)});
-  if (inside >= RAMPS_END) return 1.0;
-  double t[3] = {1.0, 1.0, 1.0}, dt[3] = {0.0, 0.0, 0.0};
+  Ramps ramps;
   for (int d = 0; d < 3; ++d) {
-    if (d == side / 2) continue;
-    double from;
-    const double width = ramp_width(point, d, from);
-    const bool bends = point.kind == PointKind::DENSE;
-    const Ramp low(component(X, d), from, width, bends), high(host->body->count(d) - component(X, d), from, width, bends);
-    t[d] = low.value * high.value;
-    dt[d] = low.slope * high.value - high.slope * low.value;
+    ramps.width[d] = kind == PointKind::FLAT ? std::min(1.0, 0.25 * host->body->count(d)) : 0.5;
+    ramps.from[d] = kind == PointKind::FLAT ? ramps.width[d] : -0.25;
   }
-  slope = {dt[0] * t[1] * t[2], t[0] * dt[1] * t[2], t[0] * t[1] * dt[2]};
-  return t[0] * t[1] * t[2];
+  ramps.bend = kind == PointKind::DENSE;
+  return ramps;
 }
 
 // Whether a contact begins; else when to look again.
@@ -200,9 +175,9 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
   };
   if (known.cell[0] < 0) {
     const std::array<int, 3> cell = nearest_cell(x, arrays);
-    Spot there;
+    Spot<double> there;
     const Vec3 middle = {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
-    if (cell[0] >= 0 && !evaluate(at, trilinear(middle, cell), there)) return lost();
+    if (cell[0] >= 0 && !evaluate(at, trilinear(middle, cell, at.body), there)) return lost();
     const double away = cell[0] < 0 ? 0.5 * SEARCHED * h : std::sqrt(dot(x - there.x, x - there.x));
     if (away > NEAREST * h) {
       known.open = 0;
@@ -211,16 +186,18 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
     }
     known.cell = cell, known.X = middle;
   }
-  Spot spot;
+  Spot<double> spot;
   Vec3 X, normal;
   if (!find(q, x, at, spot, X) || !world_normal(point, arrays, normal)) return lost();
   const Vec3 X_centre = X + spot.to_material(near.shift(q, arrays.place.data()));
 
+  const Lattice grid = host->body->lattice();
+  const Ramps near_edges = ramps(point.kind);
   int side = -1;
   bool is_shut = false;
   double best = NEVER, until = 0.0, slack = NEVER;
   std::uint8_t open = 0;
-  Depth of_side[6];
+  Depth<double> of_side[6];
   for (int s = 0; s < host->body->sides(); ++s) {
     of_side[s] = host->body->depth(s, X);
     const double depth = of_side[s].value / h;    // in cells
@@ -232,9 +209,8 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
     if (host->body->is_cuboid())
       for (int d = 0; d < 3; ++d) {
         if (d == s / 2) continue;
-        double from;
-        ramp_width(point, d, from);
-        apart = std::max(apart, from - std::min(component(X_centre, d), host->body->count(d) - component(X_centre, d)));
+        const double inside = std::min(component(X_centre, d), grid.cells[d] - component(X_centre, d));
+        apart = std::max(apart, near_edges.from[d] - inside);
       }
     if (apart <= 0.0 || turned > apart) open |= static_cast<std::uint8_t>(1u << s);
     slack = std::min(slack, PRESSED * h * std::max({apart, turned, depth - DEEPEST_BIRTH}));
@@ -249,8 +225,11 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
   if (is_shut) slack = std::max(slack, until);
   const std::uint8_t was_open = known.open;
   known.open = open;
-  Vec3 slope;
-  if (is_shut || side < 0 || of_side[side].value > DEEPEST_BIRTH * h || part(point, X_centre, side, slope) <= 0.0 || !may_begin) {
+  const auto counts = [&] {
+    Vec3 slope;
+    return !host->body->is_cuboid() || part_that_counts<double>(near_edges, grid, X_centre, side / 2, slope) > 0.0;
+  };
+  if (!may_begin || is_shut || side < 0 || of_side[side].value > DEEPEST_BIRTH * h || !counts()) {
     wake[q] = budget + std::max(0.0, slack);
     return false;
   }
@@ -271,23 +250,40 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
 
 // --- contacts ---
 
+PushTask ContactField::task(PointKind kind, const ContactArrays &arrays, double dt) const
+{
+  const ContactBody &body = *host->body;
+  const double longest = std::max({body.count(0) * body.edge(0), body.count(1) * body.edge(1), body.count(2) * body.edge(2)});
+  return {law,
+          dt,
+          body.lattice(),
+          host->slot.data(),
+          arrays.place.data(),
+          2.0 * body.spacing() + longest,
+          ramps(kind),
+          is_smooth(kind)};
+}
+
+PointNow ContactField::point_now(std::size_t q, const ContactArrays &arrays) const
+{ return {near.place(q, arrays.place.data()), near.shift(q, arrays.place.data()), surface_point(q).area}; }
+
 // X of the point is that of the weights plus `off`, about which everything is linear. False when it cannot be found.
-bool ContactField::follow(FieldContact &contact, const SurfacePoint &point, const Vec3 &x, const Placed &at, Weights &weights,
-                          Spot &spot, Vec3 &off) const
+bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec3 &x, MapWeights &weights, Spot<double> &spot,
+                          Vec3 &off) const
 {
   constexpr int MOST = 12;
+  const Placed at = {*host->body, task.slot, task.place};
   const MaterialSearch search(at);
-  const bool is_smooth_one = is_smooth(point);
   std::array<int, 3> cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
   Vec3 X = contact.X + contact.change;
   bool again = true;
   for (int step = 0; again; ++step) {
     if (step == MOST) return false;
     again = false;
-    weights = is_smooth_one ? smooth(X, *host->body) : trilinear(X, cell);
+    weights = task.is_smooth ? smooth(X, at.body) : trilinear(X, cell, at.body);
     if (!evaluate(at, weights, spot)) return false;
     if (search.is_collapsed(spot)) {    // from the last place, then from the cells around
-      if (is_smooth_one) return false;
+      if (task.is_smooth) return false;
       Vec3 from = contact.X;
       cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
       if (step > 0 || !(search.solve(x, cell, from) || search.solve_around(x, cell, from))) return false;
@@ -299,7 +295,7 @@ bool ContactField::follow(FieldContact &contact, const SurfacePoint &point, cons
     if (square > SAME_PLACE * SAME_PLACE) {
       X += (square > 1.0 ? 1.0 / std::sqrt(square) : 1.0) * off;
       again = true;
-    } else if (!is_smooth_one && search.step_to_neighbour(cell, X + off, LEFT)) {
+    } else if (!task.is_smooth && search.step_to_neighbour(cell, X + off, LEFT)) {
       X += off;
       again = true;
     }
@@ -311,61 +307,77 @@ bool ContactField::follow(FieldContact &contact, const SurfacePoint &point, cons
   return true;
 }
 
-ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, ContactArrays &arrays, double dt,
-                                      ContactAccount &account)
+ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now,
+                                      ContactArrays &arrays, ContactAccount &account) const
 {
-  const SurfacePoint &point = surface_point(q);
-  const Vec3 *place = arrays.place.data();
-  const Placed at = placed(arrays);
-  const Vec3 x = near.place(q, place);
-  Weights weights;
-  Spot spot;
-  Vec3 off;
-  if (!follow(contact, point, x, at, weights, spot, off)) return Fate::LOST;
-  const Vec3 shift = spot.to_material(near.shift(q, place));
-  const Depth below = host->body->depth(contact.side, contact.X);
-  Vec3 part_slope;
-  const double t = part(point, contact.X + shift, contact.side, part_slope);
-  const double longest = 2.0 * host->body->spacing() +
-                         std::max({host->body->count(0) * host->body->edge(0), host->body->count(1) * host->body->edge(1),
-                                   host->body->count(2) * host->body->edge(2)});
-  if (below.value <= 0.0 || t <= 0.0 || below.value > longest) {
-    if (dt > 0.0) account.damped += last_damping_work(contact.memory, below.value);
+  MapWeights weights;
+  Spot<double> spot;
+  Vec3 off, part_slope;
+  if (!follow(contact, task, now.x, weights, spot, off)) return Fate::LOST;
+  const Vec3 shift = spot.to_material(now.shift);
+  const Depth<double> below = host->body->depth(contact.side, contact.X);
+  double part = 1.0;
+  if (host->body->is_cuboid())
+    part = part_that_counts<double>(task.ramps, task.host, contact.X + shift, contact.side / 2, part_slope);
+  if (!(below.value > 0.0 && part > 0.0 && below.value <= task.longest)) {
+    if (task.dt > 0.0) account.damped += last_damping_work(contact.memory, below.value);
     return Fate::OUT;
   }
 
-  const Vec3 normal = spot.gradient(below.slope);    // of the depth, in space
-  ContactForce force = contact_pressure(law, point.area, t, below.value, dt, contact.memory);
-  Vec3 lean;
-  if (law.friction > 0.0) {
-    // At the same depth as the point.
-    lean = contact.anchor - contact.X;
-    lean -= (dot(lean, below.slope) / dot(below.slope, below.slope)) * below.slope;
-    contact_friction(law, point.area, t, -1.0 * spot.to_space(lean), normal, dt, contact.memory, force);
-    lean = force.kept * lean;
-    contact.anchor = contact.X + lean;
-  }
-  const Vec3 on_point = -force.press * normal + force.pull + force.drag;
-  const Vec3 at_centre = -force.surface_energy * spot.gradient(part_slope);
-  Vec3 *on = arrays.force.data();
-  near.add_force(q, on_point, on);
-  if (part_slope.x != 0.0 || part_slope.y != 0.0 || part_slope.z != 0.0) near.add_force_at_centre(q, at_centre, on);
-  const Vec3 both = on_point + at_centre;
-  const auto moment = [&](int d) {
-    return component(off, d) * both + component(shift, d) * at_centre + component(lean, d) * force.pull;
-  };
-  spread(at, weights, -1.0 * both, {-1.0 * moment(0), -1.0 * moment(1), -1.0 * moment(2)}, on);
+  ContactState<double> state = {contact.X, contact.change, contact.anchor, contact.memory};
+  const ContactPush<double> push = contact_push(task.law, task.dt, now.area, part, part_slope, below, spot, off, shift, state);
+  contact.anchor = state.anchor;
+  contact.memory = state.memory;
+  contact.force = push.on_point;
+  contact.moved = push.moved;
+  contact.energy = push.energy;
 
-  contact.force = on_point;
-  contact.moved = spot.to_space(contact.change);
-  contact.energy = t * force.surface_energy;
+  Vec3 *on = arrays.force.data();
+  near.add_force(q, push.on_point, on);
+  if (part_slope.x != 0.0 || part_slope.y != 0.0 || part_slope.z != 0.0) near.add_force_at_centre(q, push.at_centre, on);
+  spread({*host->body, task.slot, task.place}, weights, -1.0 * push.both,
+         {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]}, on);
+  count(contact, push.heat, push.damped, account);
+  return Fate::STAYS;
+}
+
+// As push(), of what the kernel has worked out.
+void ContactField::take(FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,
+                        ContactAccount &account) const
+{
+  contact.X = pushed.X.of(lane);
+  contact.change = pushed.change.of(lane);
+  contact.anchor = pushed.anchor.of(lane);
+  contact.memory = {pushed.offset[lane],       pushed.depth[lane],   pushed.pull.of(lane), pushed.stick[lane],
+                    pushed.stick_energy[lane], pushed.damping[lane], pushed.drag.of(lane)};
+  contact.force = pushed.force.of(lane);
+  contact.moved = pushed.moved.of(lane);
+  contact.energy = pushed.energy[lane];
+
+  Vec3 *on = arrays.force.data();
+  near.add_force(q, contact.force, on);
+  if (pushed.on_ramp >> lane & 1) near.add_force_at_centre(q, pushed.at_centre.of(lane), on);
+  for (int n = 0; n < pushed.nodes; ++n) on[pushed.slot[n][lane]] += pushed.on_node[n].of(lane);
+  count(contact, pushed.heat[lane], pushed.damped[lane], account);
+}
+
+// Whether the kernel's numbers are not those of push(), which goes on to another cell or another guess, or ends the contact.
+bool ContactField::is_hard(const FieldContact &contact, const PushedBlock &pushed, int lane, const PushTask &task) const
+{
+  if (pushed.hard >> lane & 1) return true;
+  if (!(pushed.outside >> lane & 1)) return false;
+  std::array<int, 3> cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
+  return MaterialSearch({*host->body, task.slot, task.place}).step_to_neighbour(cell, pushed.X.of(lane), LEFT);
+}
+
+void ContactField::count(const FieldContact &contact, double heat, double damped, ContactAccount &account) const
+{
   account.energy += contact.energy;
   account.stick_energy += contact.memory.stick_energy;
-  account.heat += force.heat;
-  account.damped += force.damped;
-  account.deepest = std::max(account.deepest, below.value);
+  account.heat += heat;
+  account.damped += damped;
+  account.deepest = std::max(account.deepest, contact.memory.depth);
   ++account.touching;
-  return Fate::STAYS;
 }
 
 // A contact that is over becomes a point to be looked at.
@@ -392,30 +404,53 @@ void ContactField::add_forces(ContactArrays &arrays, double nearer, double dt, C
   if (moves)
     for (std::size_t q = 0; q < wake.size(); ++q)
       if (wake[q] < budget) look(q, arrays, true);
+  now.clear();
+  for (const std::size_t q : of_contact) now.push_back(point_now(q, arrays));
   std::size_t left = 0;
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    if (!moves) {    // what is known stays as it is
-      FieldContact copy = contacts[c];
-      copy.change = {};
-      push(copy, of_contact[c], arrays, dt, account);
-      continue;
-    }
-    const Fate fate = push(contacts[c], of_contact[c], arrays, dt, account);
+  for (std::size_t first = 0, end = 0; first < contacts.size(); first = end) {
+    const PointKind kind = surface_point(of_contact[first]).kind;
+    while (end < contacts.size() && surface_point(of_contact[end]).kind == kind) ++end;
+    const PushTask law_of_kind = task(kind, arrays, dt);
+    if (moves)
+      push_run(first, end, left, law_of_kind, arrays, account);
+    else
+      for (std::size_t c = first; c < end; ++c) {    // what is known stays as it is
+        FieldContact copy = contacts[c];
+        copy.change = {};
+        push(copy, of_contact[c], law_of_kind, now[c], arrays, account);
+      }
+  }
+  if (moves) contacts.resize(left), of_contact.resize(left);
+}
+
+// Of contacts from `first` to `end` - 1, those that stay go to the places from `left` on.
+void ContactField::push_run(std::size_t first, std::size_t end, std::size_t &left, const PushTask &task, ContactArrays &arrays,
+                            ContactAccount &account)
+{
+  PushedBlock pushed;
+  for (std::size_t c = first; c < end; ++c) {
+    const int lane = static_cast<int>((c - first) % CONTACT_LANES);
+    if (lane == 0 && arrays.kernels)
+      arrays.kernels->push(task, &contacts[c], &now[c], static_cast<int>(std::min<std::size_t>(CONTACT_LANES, end - c)), pushed);
+    Fate fate = Fate::STAYS;
+    if (!arrays.kernels || is_hard(contacts[c], pushed, lane, task))
+      fate = push(contacts[c], of_contact[c], task, now[c], arrays, account);
+    else
+      take(contacts[c], of_contact[c], pushed, lane, arrays, account);
     if (fate != Fate::STAYS) {
-      end(contacts[c], of_contact[c], fate, arrays, account);
+      this->end(contacts[c], of_contact[c], fate, arrays, account);
       continue;
     }
     if (left < c) contacts[left] = contacts[c], of_contact[left] = of_contact[c];
     ++left;
   }
-  if (moves) contacts.resize(left), of_contact.resize(left);
 }
 
 std::size_t ContactField::bytes() const
 {
   return near.bytes() + wake.capacity() * sizeof(double) + watch.capacity() * sizeof(Watch) +
-         contacts.capacity() * sizeof(FieldContact) + of_contact.capacity() * sizeof(std::size_t) +
-         outer.capacity() * (sizeof(outer[0]) + sizeof(Vec3));
+         contacts.capacity() * sizeof(FieldContact) + now.capacity() * sizeof(PointNow) +
+         of_contact.capacity() * sizeof(std::size_t) + outer.capacity() * (sizeof(outer[0]) + sizeof(Vec3));
 }
 
 }    // namespace mdanim

@@ -6,26 +6,14 @@
 #ifndef MDANIM_CONTACT_FIELD_H
 #define MDANIM_CONTACT_FIELD_H
 
+#include "contact/contact_kernel.h"
 #include "contact/contact_object.h"
-#include "laws/contact.h"
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
 namespace mdanim {
-
-// A point in contact. All but forces are in the host's lattice coordinates.
-struct FieldContact {
-  std::int32_t point, side;
-  std::int32_t cell[3], spare;
-  Vec3 X, change;    // in the last step, and from the one before
-  Vec3 anchor;
-  ContactMemory memory;
-  Vec3 force;       // on the point in the last step [N]
-  Vec3 moved;       // against the host in the last step [m]
-  double energy;    // of the pressure, in the last step [J]
-};
 
 class ContactField {
  public:
@@ -55,18 +43,27 @@ class ContactField {
 
   Placed placed(const ContactArrays &arrays) const { return {*host->body, host->slot.data(), arrays.place.data()}; }
   const SurfacePoint &surface_point(std::size_t q) const { return owner->body->points()[near.point(q)]; }
-  bool is_smooth(const SurfacePoint &point) const { return point.kind != PointKind::FLAT && host->body->is_cuboid(); }
+  bool is_smooth(PointKind kind) const { return kind != PointKind::FLAT && host->body->is_cuboid(); }
   bool look(std::size_t q, const ContactArrays &arrays, bool may_begin);
-  bool find(std::size_t q, const Vec3 &x, const Placed &at, Spot &spot, Vec3 &X);
+  bool find(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X);
   std::array<int, 3> nearest_cell(const Vec3 &x, const ContactArrays &arrays);
   bool world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const;
-  bool follow(FieldContact &contact, const SurfacePoint &point, const Vec3 &x, const Placed &at, Weights &weights, Spot &spot,
-              Vec3 &off) const;
+  Ramps ramps(PointKind kind) const;
+
   enum class Fate { STAYS, OUT, LOST };
-  Fate push(FieldContact &contact, std::size_t q, ContactArrays &arrays, double dt, ContactAccount &account);
+  PushTask task(PointKind kind, const ContactArrays &arrays, double dt) const;
+  PointNow point_now(std::size_t q, const ContactArrays &arrays) const;
+  bool follow(FieldContact &contact, const PushTask &task, const Vec3 &x, MapWeights &weights, Spot<double> &spot,
+              Vec3 &off) const;
+  Fate push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now, ContactArrays &arrays,
+            ContactAccount &account) const;
+  void take(FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,
+            ContactAccount &account) const;
+  bool is_hard(const FieldContact &contact, const PushedBlock &pushed, int lane, const PushTask &task) const;
+  void count(const FieldContact &contact, double heat, double damped, ContactAccount &account) const;
+  void push_run(std::size_t first, std::size_t end, std::size_t &left, const PushTask &task, ContactArrays &arrays,
+                ContactAccount &account);
   void end(const FieldContact &contact, std::size_t q, Fate fate, const ContactArrays &arrays, ContactAccount &account);
-  double part(const SurfacePoint &point, const Vec3 &X, int side, Vec3 &slope) const;
-  double ramp_width(const SurfacePoint &point, int axis, double &from) const;
 
   ContactObject *owner, *host;
   ContactLaw law;
@@ -75,6 +72,7 @@ class ContactField {
   std::vector<Watch> watch;
   std::vector<FieldContact> contacts;     // by ascending points
   std::vector<std::size_t> of_contact;    // their near points
+  std::vector<PointNow> now;              // and their points in this step
   double budget = 0.0;
   Box host_box;
   // Cells of the host on its surface, for points that have not been found yet: made when the first is asked for.

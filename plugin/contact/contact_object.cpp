@@ -6,12 +6,12 @@ namespace mdanim {
 
 bool NearPoints::add_carriers(const ContactObject &owner, const SurfacePoint &point, const Vec3 &X)
 {
-  const Weights weights = trilinear(X, {point.cell[0], point.cell[1], point.cell[2]});
   const ContactBody &body = *owner.body;
+  const MapWeights weights = trilinear(X, {point.cell[0], point.cell[1], point.cell[2]}, body);
   for (int k = 0; k < 2; ++k)
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i) {
-        const double weight = weights[0].w[i] * weights[1].w[j] * weights[2].w[k];
+        const double weight = weights.axis[0].w[i] * weights.axis[1].w[j] * weights.axis[2].w[k];
         if (weight == 0.0) continue;
         const int slot = owner.slot[body.place(point.cell[0] + i, point.cell[1] + j, point.cell[2] + k)];
         if (slot < 0) return false;

@@ -13,6 +13,8 @@
 
 namespace mdanim {
 
+struct ContactKernels;
+
 struct ContactObject {
   int id;    // ascending in the order of the scene
   const ContactBody *body;
@@ -41,6 +43,7 @@ struct ContactAccount {
 // Positions and forces of all particles that contacts may need, by slots.
 struct ContactArrays {
   std::vector<Vec3> place, force;
+  const ContactKernels *kernels = nullptr;    // null: contacts one at a time, with the same bits
 };
 
 // A particle's part in a point.

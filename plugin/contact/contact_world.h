@@ -63,6 +63,8 @@ class ContactWorld {
   void forget();
 
   // --- steps ---
+  // Null: contacts one at a time, with the same bits.
+  void use(const ContactKernels *kernels) { arrays.kernels = kernels; }
   std::vector<Vec3> &places() { return arrays.place; }
   const std::vector<Vec3> &forces() const { return arrays.force; }
   // The forces with all particles at places(). dt = 0 at the setup of a run: nothing changes.

@@ -2,6 +2,8 @@
 
 #include "contact/material_map.h"
 
+#include <cmath>
+
 namespace mdanim {
 
 static constexpr int MOST_STEPS = 16;
@@ -13,11 +15,7 @@ static double norm(const Vec3 &a) { return std::sqrt(dot(a, a)); }
 
 static Vec3 middle(const std::array<int, 3> &cell) { return {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}; }
 
-bool MaterialSearch::is_collapsed(const Spot &spot) const
-{
-  const double h = host.body.spacing();
-  return !(spot.det > SMALLEST * h * h * h);
-}
+bool MaterialSearch::is_collapsed(const Spot<double> &spot) const { return !(spot.det > smallest_volume(host.body.spacing())); }
 
 bool MaterialSearch::step_to_neighbour(std::array<int, 3> &cell, const Vec3 &X, double over) const
 {
@@ -37,9 +35,9 @@ bool MaterialSearch::step_to_neighbour(std::array<int, 3> &cell, const Vec3 &X, 
 bool MaterialSearch::solve(const Vec3 &x, std::array<int, 3> &cell, Vec3 &X, bool walk) const
 {
   const double near = DONE * host.body.spacing();
-  Spot spot;
+  Spot<double> spot;
   for (int step = 0; step < MOST_STEPS; ++step) {
-    if (!evaluate(host, trilinear(X, cell), spot) || is_collapsed(spot)) return false;
+    if (!evaluate(host, trilinear(X, cell, host.body), spot) || is_collapsed(spot)) return false;
     const Vec3 miss = x - spot.x;
     const bool done = dot(miss, miss) < near * near;
     if (!done) {
@@ -74,7 +72,7 @@ bool MaterialSearch::solve_around(const Vec3 &x, std::array<int, 3> &cell, Vec3 
 bool MaterialSearch::solve_smooth(const Vec3 &x, Vec3 &X) const
 {
   const double near = DONE * host.body.spacing();
-  Spot spot;
+  Spot<double> spot;
   for (int step = 0; step < MOST_STEPS; ++step) {
     if (!evaluate(host, smooth(X, host.body), spot) || is_collapsed(spot)) return false;
     const Vec3 miss = x - spot.x;

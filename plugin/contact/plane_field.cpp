@@ -95,7 +95,7 @@ void PlaneField::add_forces(ContactArrays &arrays, double nearer, double dt, Con
       continue;
     }
     const double area = owner->body->points()[near.point(q)].area;
-    ContactForce force = contact_pressure(law, area, 1.0, depth, dt, contact.memory);
+    ContactForce<double> force = contact_pressure(law, area, 1.0, depth, dt, contact.memory);
     if (law.friction > 0.0) {
       Vec3 away = x - contact.anchor;
       away -= dot(away, downward) * downward;

@@ -24,7 +24,7 @@ struct ContactPlane {
 struct PlaneContact {
   std::int32_t point, plane;
   Vec3 anchor;    // [m]
-  ContactMemory memory;
+  ContactMemory<double> memory;
 };
 
 class PlaneField {

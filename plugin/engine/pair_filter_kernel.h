@@ -10,18 +10,7 @@
 namespace mdanim {
 namespace {
 
-typedef double Four __attribute__((vector_size(8 * STRIP)));
-typedef long long Answers __attribute__((vector_size(8 * STRIP)));    // -1 for yes, 0 for no
-
-// Bit n tells what lane n says.
-MDANIM_ALWAYS_INLINE int bits(Answers yes)
-{
-#ifdef __AVX2__
-  return __builtin_ia32_movmskpd256(reinterpret_cast<Four>(yes));
-#else
-  return static_cast<int>((yes[0] & 1) | (yes[1] & 2) | (yes[2] & 4) | (yes[3] & 8));
-#endif
-}
+static_assert(STRIP == 4, "a strip is a vector");
 
 // The numbers from `first` on whose bits are set, put behind `many` others; without a branch that cannot be predicted.
 MDANIM_ALWAYS_INLINE int append(int bits, int first, int *found, int many)
@@ -32,8 +21,6 @@ MDANIM_ALWAYS_INLINE int append(int bits, int first, int *found, int many)
   }
   return many;
 }
-
-MDANIM_ALWAYS_INLINE Four all_lanes(double a) { return Four{a, a, a, a}; }
 
 // r^2 between one place and those from k on.
 MDANIM_ALWAYS_INLINE Four square(const Vec<Four> &at, const double *const *place, int k)
@@ -51,7 +38,7 @@ int in_reach(const Candidates &all, int *found)
   int some = 0;
   for (int n = 0; n < strips; ++n) {
     const auto [one, first] = all.strip[n];
-    const Vec<Four> at{all_lanes(place[0][one]), all_lanes(place[1][one]), all_lanes(place[2][one])};
+    const Vec<Four> at{constant<Four>(place[0][one]), constant<Four>(place[1][one]), constant<Four>(place[2][one])};
     const int near = bits(square(at, place, first) < load<Four>(all.reach2 + STRIP * n));
     lanes[some] = {n, near};
     some += near != 0;
@@ -63,7 +50,7 @@ int in_reach(const Candidates &all, int *found)
 
 int within(const double *const *place, int from, int to, const double *x, double range2, int *found)
 {
-  const Vec<Four> at{all_lanes(x[0]), all_lanes(x[1]), all_lanes(x[2])};
+  const Vec<Four> at{constant<Four>(x[0]), constant<Four>(x[1]), constant<Four>(x[2])};
   int many = 0;
   for (int k = from; k < to; k += STRIP) {
     const int wanted = to - k < STRIP ? (1 << (to - k)) - 1 : -1;

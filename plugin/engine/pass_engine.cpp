@@ -15,7 +15,7 @@ bool PassEngine::begin_run(const Kernels &now)
   kernels = &now;
   motion_for = NONE;
   for (const auto *participants : {&crew.early, &crew.late})
-    for (PassParticipant *p : *participants) p->set_pair_filter(kernels->pair_filter);
+    for (PassParticipant *p : *participants) p->set_kernels(*kernels);
   return others;
 }
 

@@ -6,7 +6,6 @@
 #define MDANIM_PASS_PARTICIPANT_H
 
 #include "engine/displacement_budget.h"
-#include "engine/pair_filter.h"
 #include "engine/pass.h"
 #include "engine/positions.h"
 #include "engine/spring_rows.h"
@@ -17,6 +16,7 @@
 namespace mdanim {
 
 class Loss;
+struct Kernels;
 
 // Where a particle is at home: the rank, and the index in its arrays.
 struct Home {
@@ -113,8 +113,8 @@ class PassParticipant : public PassMember {
   // append_required_atoms() names, in that order, those of ghosts without meaning.
   virtual bool depends_on_positions_only() const { return false; }
   virtual void add_forces(const Positions & /*place*/, const ForceSums & /*force*/) {}
-  // What kind of processor to compute for.
-  virtual void set_pair_filter(const PairFilter &) {}
+  // Of the instructions to compute with.
+  virtual void set_kernels(const Kernels &) {}
   // Whether it will read any particle in this step. Asked once, when the step has begun, unless positions are all that it needs.
   virtual bool needs_all_atoms() { return false; }
   // How far particles may go from where they stood when lists were made before it must look again, as far as it can tell: one

@@ -9,6 +9,18 @@
 namespace mdanim {
 namespace {
 
+typedef double Four __attribute__((vector_size(32)));
+
+// Bit n tells whether a comparison is true in lane n.
+template <class Yes> MDANIM_ALWAYS_INLINE int bits(const Yes &yes)
+{
+#ifdef __AVX2__
+  return __builtin_ia32_movmskpd256(reinterpret_cast<Four>(yes));
+#else
+  return static_cast<int>((yes[0] & 1) | (yes[1] & 2) | (yes[2] & 4) | (yes[3] & 8));
+#endif
+}
+
 template <class Vector> struct __attribute__((packed, may_alias)) Unaligned {
   Vector value;
 };

@@ -6,7 +6,6 @@
 #include "styles/fix_mdanim_barrier.h"
 
 #include "engine/contact_search.h"
-#include "engine/kernels.h"
 #include "engine/stopwatch.h"
 #include "laws/barrier.h"
 

@@ -140,6 +140,7 @@ void FixMdanimContact::init()
     refuse("objects are told apart by molecule IDs; use 'atom_style bond' or 'fix ID all property/atom mol'");
   if (neighbor->every != 1 || neighbor->delay != 0 || neighbor->build_once)
     refuse("surfaces may meet between two rebuilds; use 'neigh_modify every 1 delay 0 check yes once no'");
+  world_of_contact.use(nullptr);    // until passes tell those of their instructions
 }
 
 // --- objects ---

@@ -5,6 +5,7 @@
 #define LMP_FIX_MDANIM_CONTACT_H
 
 #include "contact/contact_world.h"
+#include "engine/kernels.h"
 #include "engine/pass_participant.h"
 #include "fix.h"
 #include "styles/particle_value.h"
@@ -34,6 +35,7 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
 
   void append_required_atoms(std::vector<int> &particles) const override;
   bool depends_on_positions_only() const override { return true; }
+  void set_kernels(const mdanim::Kernels &kernels) override { world_of_contact.use(&mdanim::contact_kernels(kernels.name)); }
   void add_forces(const mdanim::Positions &place, const mdanim::ForceSums &force) override;
   double safe_displacement() const override { return world_of_contact.distance_apart(); }
   bool sees_absolute_position() const override { return !world_of_contact.settings.planes.empty(); }

@@ -6,11 +6,16 @@ from __future__ import annotations
 import ctypes
 
 import numpy as np
+import plugin_path
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
 SOLID = "density 1000 elasticity 0.2 MPa"
+
+
+WIDTHS = ("common", "avx2", "avx512")
+"""Of verlet/mdanim."""
 
 
 FALL = "gravity (0, 0, -9.81)\n"
@@ -96,6 +101,20 @@ def passes(instance: Instance) -> int:
     """How many steps were taken by passes over blocks."""
     instance._library.mdanim_passes.restype = ctypes.c_longlong
     return instance._library.mdanim_passes(instance._handle)
+
+
+def supported(width: str) -> bool:
+    """Whether this processor has it."""
+    lmp = plugin_path.lammps()
+    try:
+        for command in ("region box block 0 1 0 1 0 1", "create_box 1 box", f"run_style verlet/mdanim width {width}"):
+            lmp.command(command)
+        return True
+    except Exception as error:
+        assert "this processor does not have it" in str(error)
+        return False
+    finally:
+        lmp.close()
 
 
 def film(text: str, style: str, pieces=(1, 150, 149), comm=None, more=()) -> tuple[np.ndarray, list[float], np.ndarray, int]:

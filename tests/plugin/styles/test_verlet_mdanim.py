@@ -9,32 +9,16 @@ import numpy as np
 import plugin_lab as lab
 import plugin_path
 import pytest
-from filming import BETWEEN, EFFECTS, END, FALL, LATER, SHAPES, film, passes
+from filming import BETWEEN, EFFECTS, END, FALL, LATER, SHAPES, WIDTHS, film, passes, supported
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
-
-WIDTHS = ("common", "avx2", "avx512")
 
 
 def held_back(instance: Instance) -> int:
     """How many particles were moved one by one, all passes together."""
     instance._library.mdanim_held_back.restype = ctypes.c_longlong
     return instance._library.mdanim_held_back(instance._handle)
-
-
-def supported(width: str) -> bool:
-    """Whether this processor has it."""
-    lmp = plugin_path.lammps()
-    try:
-        for command in ("region box block 0 1 0 1 0 1", "create_box 1 box", f"run_style verlet/mdanim width {width}"):
-            lmp.command(command)
-        return True
-    except Exception as error:
-        assert "this processor does not have it" in str(error)
-        return False
-    finally:
-        lmp.close()
 
 
 @pytest.mark.parametrize("name", [*SHAPES, *EFFECTS])

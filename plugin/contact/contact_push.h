@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// What a contact does in a step, once X of its point is known: depth, the part that counts, forces on the point and the host.
+// Templates over Real (laws/real.h), compiled for every set of instructions (contact_kernel_of_set.cpp).
+
+#ifndef MDANIM_CONTACT_PUSH_H
+#define MDANIM_CONTACT_PUSH_H
+
+#include "contact/lattice_map.h"
+#include "laws/contact.h"
+
+namespace mdanim {
+
+constexpr double SAME_PLACE = 1e-3;    // cells that X may be off its guess without a second evaluation
+constexpr double LEFT = 1e-9;          // cells that X may stand out of its own
+constexpr double RAMPS_END = 2.0;      // cells from an edge from which on all of any point counts
+
+// Volume of a cell that is not believed to be turned over.
+MDANIM_ALWAYS_INLINE double smallest_volume(double spacing) { return 0.02 * spacing * spacing * spacing; }
+
+// Depth below one side [m], and its gradient by X.
+template <class Real> struct Depth {
+  Real value{};
+  Vec<Real> slope;
+};
+
+// A side of a cuboid: across which axis, and 1 at its upper end, 0 at its lower one.
+template <class Real> struct Side {
+  Real axis, is_high;
+};
+
+template <class Real>
+MDANIM_ALWAYS_INLINE Depth<Real> depth_below(const Side<Real> &side, const Lattice &host, const Vec<Real> &X)
+{
+  Depth<Real> found;
+  Real slope[3];
+  const auto high = side.is_high > 0.0;
+  for (int d = 0; d < 3; ++d) {
+    const Real at = component(X, d), edge = constant<Real>(host.edge[d]);
+    const auto across = side.axis == static_cast<double>(d);
+    found.value = pick(across, edge * pick(high, host.cells[d] - at, at), found.value);
+    slope[d] = pick(across, pick(high, -edge, edge), Real{});
+  }
+  found.slope = {slope[0], slope[1], slope[2]};
+  return found;
+}
+
+// Factors of centred quadratic B-splines at x along an axis of the depth, for three nodes around the middle one.
+template <class Real> MDANIM_ALWAYS_INLINE AxisWeights<Real> depth_weights(const Real &x, const Real &middle)
+{
+  const Real u = smaller(larger(x - middle, constant<Real>(-0.5)), constant<Real>(0.5)), p = 0.5 - u, q = 0.5 + u;
+  return {{0.5 * p * p, 0.75 - u * u, 0.5 * q * q}, {-p, -2.0 * u, q}, true, true};
+}
+
+MDANIM_ALWAYS_INLINE int depth_row(const Lattice &host, int axis) { return host.cells[axis] + 1 + 2 * DEPTH_MARGIN; }
+
+// coefficient(i, j, k): so many nodes from the first of the three along each axis.
+template <class Real, class Coefficient>
+MDANIM_ALWAYS_INLINE Depth<Real> depth_by_splines(const Weights<Real> &weights, const Coefficient &coefficient)
+{
+  const AxisWeights<Real> &ax = weights[0], &ay = weights[1], &az = weights[2];
+  Depth<Real> found;
+  for (int k = 0; k < 3; ++k) {
+    Real sum{}, sum_x{}, sum_y{};
+    for (int j = 0; j < 3; ++j) {
+      const Real c0 = coefficient(0, j, k), c1 = coefficient(1, j, k), c2 = coefficient(2, j, k);
+      const Real line = (ax.w[0] * c0 + ax.w[1] * c1) + ax.w[2] * c2;
+      sum += ay.w[j] * line;
+      sum_x += ay.w[j] * ((ax.slope[0] * c0 + ax.slope[1] * c1) + ax.slope[2] * c2);
+      sum_y += ay.slope[j] * line;
+    }
+    found.value += az.w[k] * sum;
+    found.slope += Vec<Real>{az.w[k] * sum_x, az.w[k] * sum_y, az.slope[k] * sum};
+  }
+  return found;
+}
+
+// The ramps near sharp edges of a host, of points of one kind: along each axis, in cells.
+struct Ramps {
+  double from[3], width[3];
+  bool bend;    // without kinks, for points so many that they need not add up to a straight line
+};
+
+// t(X) over a side of a cuboid, and its gradient by X: the product of ramps about all edges of that side.
+template <class Real>
+MDANIM_ALWAYS_INLINE Real part_that_counts(const Ramps &ramps, const Lattice &host, const Vec<Real> &X, const Real &axis,
+                                           Vec<Real> &slope)
+{
+  Real inside = constant<Real>(RAMPS_END), t[3], dt[3];    // cells from the nearest edge
+  for (int d = 0; d < 3; ++d) {
+    const Real nearest = smaller(component(X, d), host.cells[d] - component(X, d));
+    inside = smaller(inside, pick(axis == static_cast<double>(d), inside, nearest));
+  }
+  slope = Vec<Real>{};
+  if (!any(inside < RAMPS_END)) return constant<Real>(1.0);
+  for (int d = 0; d < 3; ++d) {
+    const auto across = axis == static_cast<double>(d);
+    const Ramp<Real> low(component(X, d), ramps.from[d], ramps.width[d], ramps.bend),
+        high(host.cells[d] - component(X, d), ramps.from[d], ramps.width[d], ramps.bend);
+    t[d] = pick(across, constant<Real>(1.0), low.value * high.value);
+    dt[d] = pick(across, Real{}, low.slope * high.value - high.slope * low.value);
+  }
+  slope = {dt[0] * t[1] * t[2], t[0] * dt[1] * t[2], t[0] * t[1] * dt[2]};
+  return t[0] * t[1] * t[2];
+}
+
+// What a contact brings from the step before, and what changes in it.
+template <class Real> struct ContactState {
+  Vec<Real> X, change, anchor;
+  ContactMemory<Real> memory;
+};
+
+// Of one point. The host gets -(N_b both + dN_b/dX . moment).
+template <class Real> struct ContactPush {
+  Vec<Real> on_point, at_centre, both, moment[3];
+  Vec<Real> moved;    // against the host in this step [m]
+  Real energy, heat, damped;
+};
+
+// `off` is X less its guess, about which all is linear; `shift` goes from X to the centre of the point's area.
+template <class Real>
+MDANIM_ALWAYS_INLINE ContactPush<Real> contact_push(const ContactLaw &law, double dt, const Real &area, const Real &part,
+                                                    const Vec<Real> &part_slope, const Depth<Real> &below, const Spot<Real> &spot,
+                                                    const Vec<Real> &off, const Vec<Real> &shift, ContactState<Real> &state)
+{
+  const Vec<Real> normal = spot.gradient(below.slope);    // of the depth, in space
+  ContactForce<Real> force = contact_pressure(law, area, part, below.value, dt, state.memory);
+  ContactPush<Real> push;
+  Vec<Real> lean;
+  if (law.friction > 0.0) {
+    // At the same depth as the point.
+    lean = state.anchor - state.X;
+    lean -= (dot(lean, below.slope) / dot(below.slope, below.slope)) * below.slope;
+    contact_friction(law, area, part, -1.0 * spot.to_space(lean), normal, dt, state.memory, force);
+    lean = force.kept * lean;
+    state.anchor = state.X + lean;
+  }
+  push.on_point = -force.press * normal + force.pull + force.drag;
+  push.at_centre = -force.surface_energy * spot.gradient(part_slope);
+  push.both = push.on_point + push.at_centre;
+  for (int d = 0; d < 3; ++d)
+    push.moment[d] = component(off, d) * push.both + component(shift, d) * push.at_centre + component(lean, d) * force.pull;
+  push.moved = spot.to_space(state.change);
+  push.energy = part * force.surface_energy;
+  push.heat = force.heat;
+  push.damped = force.damped;
+  return push;
+}
+
+}    // namespace mdanim
+
+#endif

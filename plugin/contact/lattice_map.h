@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// From lattice coordinates X of a body to places in space, by the particles of its lattice, and forces the other way round.
+//   x(X) = sum_b N_b(X) x_b    trilinear: the 8 corners of a cell; smooth: quadratic B-splines on up to 27 particles, linear on
+//                              two rows within half a cell of a face: without kinks, and the face is met
+// Weights sum to 1 and reproduce X, so forces that are spread by them keep momentum and angular momentum.
+// Templates over Real (laws/real.h), compiled for every set of instructions (contact_kernel_of_set.cpp).
+
+#ifndef MDANIM_LATTICE_MAP_H
+#define MDANIM_LATTICE_MAP_H
+
+#include "laws/vec3.h"
+
+namespace mdanim {
+
+template <class Real> MDANIM_ALWAYS_INLINE const Real &component(const Vec<Real> &a, int axis)
+{ return axis == 0 ? a.x : axis == 1 ? a.y : a.z; }
+
+// The grid of a body's cells, and its depth.
+struct Lattice {
+  int cells[3];
+  double edge[3], spacing;    // [m]
+  int row, layer;             // places to the next one along y and z
+  const double *depth;        // coefficients of quadratic B-splines on nodes -DEPTH_MARGIN to n + DEPTH_MARGIN; null for a cuboid
+};
+constexpr int DEPTH_MARGIN = 2;
+
+// Factors of the weights along an axis, for three nodes from the base on; one that is not used in any lane has no weight.
+template <class Real> struct AxisWeights {
+  Real w[3], slope[3];
+  bool uses_first, uses_last;
+};
+
+template <class Real> using Weights = AxisWeights<Real>[3];
+
+// Of the two nodes of a cell.
+template <class Real> MDANIM_ALWAYS_INLINE AxisWeights<Real> linear_weights(const Real &x, const Real &cell)
+{ return {{1.0 - (x - cell), x - cell, Real{}}, {constant<Real>(-1.0), constant<Real>(1.0), Real{}}, true, false}; }
+
+// The middle one of three nodes whose splines are at x, of an axis with `cells`.
+MDANIM_ALWAYS_INLINE int middle_node(double x, int cells)
+{
+  const int nearest = static_cast<int>(x + 0.5), most = cells - 1;
+  const int below = nearest < most ? nearest : most;
+  return below > 1 ? below : 1;
+}
+
+template <class Real> MDANIM_ALWAYS_INLINE AxisWeights<Real> smooth_weights(const Real &x, const Real &middle, int cells)
+{
+  if (cells == 1) return linear_weights(x, Real{});
+  const Real u = x - middle, p = 0.5 - u, q = 0.5 + u, none{}, one = constant<Real>(1.0);
+  const auto low = x<0.5, high = x> cells - 0.5;    // near a face
+  const Real inside = pick(low, x, x - (cells - 1.0));
+  return {
+      {pick(low, 1.0 - inside, pick(high, none, 0.5 * p * p)), pick(low, inside, pick(high, 1.0 - inside, 0.75 - u * u)),
+       pick(low, none, pick(high, inside, 0.5 * q * q))},
+      {pick(low, -one, pick(high, none, -p)), pick(low, one, pick(high, -one, -2.0 * u)), pick(low, none, pick(high, one, q))},
+      any(x < cells - 0.5),
+      any(x >= 0.5)};
+}
+
+// x(X) and its gradient: columns J = dx/dX, rows K of the inverse.
+template <class Real> struct Spot {
+  Vec<Real> x, J[3], K[3];
+  Real det{};
+
+  // A change of place in space as one of X, and the other way round.
+  MDANIM_ALWAYS_INLINE Vec<Real> to_material(const Vec<Real> &way) const
+  { return {dot(K[0], way), dot(K[1], way), dot(K[2], way)}; }
+  MDANIM_ALWAYS_INLINE Vec<Real> to_space(const Vec<Real> &way) const { return way.x * J[0] + way.y * J[1] + way.z * J[2]; }
+  // A gradient by X as one in space.
+  MDANIM_ALWAYS_INLINE Vec<Real> gradient(const Vec<Real> &slope) const
+  { return slope.x * K[0] + slope.y * K[1] + slope.z * K[2]; }
+
+  MDANIM_ALWAYS_INLINE void invert()
+  {
+    const Vec<Real> k0 = cross(J[1], J[2]), k1 = cross(J[2], J[0]), k2 = cross(J[0], J[1]);
+    det = dot(J[0], k0);
+    const Real over = 1.0 / det;
+    K[0] = over * k0;
+    K[1] = over * k1;
+    K[2] = over * k2;
+  }
+};
+
+template <bool SMOOTH, class Real> MDANIM_ALWAYS_INLINE bool uses(const AxisWeights<Real> &axis, int n)
+{ return SMOOTH ? n == 1 || (n == 0 ? axis.uses_first : axis.uses_last) : n < 2; }
+
+// Sums over three nodes begin at +0, so that one without weight does not change them; sums over two begin with the first.
+template <bool SMOOTH, class Real> MDANIM_ALWAYS_INLINE void add(int n, Vec<Real> &sum, const Vec<Real> &term)
+{ sum = SMOOTH || n > 0 ? sum + term : term; }
+
+// place(i, j, k) is where the particle is that is so many nodes from the base.
+template <bool SMOOTH, class Real, class Place>
+MDANIM_ALWAYS_INLINE void evaluate_nodes(const Weights<Real> &weights, const Place &place, Spot<Real> &spot)
+{
+  const AxisWeights<Real> &ax = weights[0], &ay = weights[1], &az = weights[2];
+  spot.x = spot.J[0] = spot.J[1] = spot.J[2] = Vec<Real>{};
+  for (int k = 0; k < 3; ++k) {
+    if (!uses<SMOOTH>(az, k)) continue;
+    Vec<Real> s, sx, sy;
+    for (int j = 0; j < 3; ++j) {
+      if (!uses<SMOOTH>(ay, j)) continue;
+      Vec<Real> t, tx;
+      for (int i = 0; i < 3; ++i) {
+        if (!uses<SMOOTH>(ax, i)) continue;
+        const Vec<Real> x = place(i, j, k);
+        add<SMOOTH>(i, t, ax.w[i] * x);
+        add<SMOOTH>(i, tx, ax.slope[i] * x);
+      }
+      add<SMOOTH>(j, s, ay.w[j] * t);
+      add<SMOOTH>(j, sx, ay.w[j] * tx);
+      add<SMOOTH>(j, sy, ay.slope[j] * t);
+    }
+    add<SMOOTH>(k, spot.x, az.w[k] * s);
+    add<SMOOTH>(k, spot.J[0], az.w[k] * sx);
+    add<SMOOTH>(k, spot.J[1], az.w[k] * sy);
+    add<SMOOTH>(k, spot.J[2], az.slope[k] * s);
+  }
+  spot.invert();
+}
+
+// Of every particle b: on(i, j, k, force N_b + dN_b/dX . moment).
+template <bool SMOOTH, class Real, class On>
+MDANIM_ALWAYS_INLINE void spread_to_nodes(const Weights<Real> &weights, const Vec<Real> &force, const Vec<Real> (&moment)[3],
+                                          const On &on)
+{
+  const AxisWeights<Real> &ax = weights[0], &ay = weights[1], &az = weights[2];
+  for (int k = 0; k < 3; ++k) {
+    if (!uses<SMOOTH>(az, k)) continue;
+    const Vec<Real> fz = az.w[k] * force + az.slope[k] * moment[2], zx = az.w[k] * moment[0], zy = az.w[k] * moment[1];
+    for (int j = 0; j < 3; ++j) {
+      if (!uses<SMOOTH>(ay, j)) continue;
+      const Vec<Real> fy = ay.w[j] * fz + ay.slope[j] * zy, yx = ay.w[j] * zx;
+      for (int i = 0; i < 3; ++i)
+        if (uses<SMOOTH>(ax, i)) on(i, j, k, ax.w[i] * fy + ax.slope[i] * yx);
+    }
+  }
+}
+
+}    // namespace mdanim
+
+#endif
