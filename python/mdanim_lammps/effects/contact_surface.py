@@ -28,7 +28,7 @@ objects which meet others faster than SLOW."""
 SPARE = 1.6
 """What a share of critical damping above USUAL_DAMPING counts in the bound: both sides of a body and the barrier never act along
 one direction at once, and what `rate` counts too much covers the usual damping."""
-SLOW = 0.4
+SLOW = 0.3
 """Closing speed over the wave speed up to which a short barrier stops all that meets."""
 HEAT, DAMPED, LET_GO = "friction_heat", "contact_damping_loss", "let_go"
 """Columns of the ledger."""

@@ -18,8 +18,8 @@ from .spread import spread
 FLAT, SHARP, DENSE = 0, 1, 2
 """Kinds of points: inside a side of a cuboid, on an edge or in a corner of a cuboid, of any other shape."""
 DENSITY = 3
-"""Points along a cell edge on shapes that are no cuboids: with 2 a rolling ball strays by a hundredth of its way, with 4 it strays
-half as much as with 3."""
+"""Points along a cell edge on shapes that are no cuboids: with 2 a rolling ball strays by a hundredth of its way, with 4 by half
+as much as with 3."""
 SAMPLES = 8
 """Samples of a mesh along a cell edge, from which distances are taken."""
 MARGIN = 2
