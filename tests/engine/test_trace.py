@@ -6,36 +6,15 @@ import plugin_path
 import pytest
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SetupError
+from scene_texts import ON_GROUND, solid
 
-SCENE = """
-gravity (0, 0, -9.81) m/s^2
-ground z 0 m
-object stone {
-  shape box (10, 10, 5) cm
-  position (0, 0, 20) cm
-  density 2000
-  elasticity 1 MPa
-  hold all
-}
-object ball {
-  shape sphere 5 cm
-  position (2, 0, 29) cm
-  mass 0.5 kg
-  elasticity 100 kPa
-  velocity (0.5, 0, -3) m/s
-  spin (0, 30, 0)
-  drag 0.5
-}
-object beam {
-  shape box (20, 5, 5) cm
-  position (40, 0, 4) cm
-  mass 0.5 kg
-  elasticity 100 kPa
-  velocity (0, 1, -2) m/s
-  hold faces x
-}
-control { time 0.2 s  frames 50 fps  resolution 2.5 cm }
-"""
+SCENE = (
+    ON_GROUND
+    + solid("stone", "box (10, 10, 5) cm", "(0, 0, 20) cm", "density 2000", "hold all", elasticity="1 MPa")
+    + solid("ball", "sphere 5 cm", "(2, 0, 29) cm", "mass 0.5 kg", "velocity (0.5, 0, -3) m/s", "spin (0, 30, 0)", "drag 0.5")
+    + solid("beam", "box (20, 5, 5) cm", "(40, 0, 4) cm", "mass 0.5 kg", "velocity (0, 1, -2) m/s", "hold faces x")
+    + "control { time 0.2 s  frames 50 fps  resolution 2.5 cm }\n"
+)
 
 
 def extremes(film, system):

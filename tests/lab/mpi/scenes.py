@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Short scenes in which everything happens that executors must get right."""
 
-from scene_texts import SHELF, SPLASH
+from scene_texts import GRAVITY, ON_GROUND, SHELF, SPLASH, solid
 
 FLYING = """
 gravity (0, 0, -9.81) m/s^2
@@ -28,75 +28,36 @@ expect ball[5].position.z at 0.2 s = 0.5 +- 0.5 m
 """Balls that fly about and meet others all the time."""
 MIXED = (
     SHELF.replace("time 0.2 s  frames 50 fps", "time 0.12 s  frames 100 fps")
-    + """
-object shelf {
-  shape box (40, 10, 5) cm
-  position (-20, 40, 20) cm
-  density 900
-  elasticity 300 kPa
-  hold faces x
-}
-object onto {
-  shape box (10, 10, 5) cm
-  position (-20, 42, 30) cm
-  density 900
-  elasticity 200 kPa
-  velocity (0, 0, -3) m/s
-  drag 0.5
-  damping 0.1
-}
-object skimming {
-  shape box (10, 10, 10) cm
-  position (-60, 0, 17) cm
-  density 600
-  elasticity 100 kPa
-  velocity (1, 0, -2) m/s
-}
-"""
+    + solid("shelf", "box (40, 10, 5) cm", "(-20, 40, 20) cm", "density 900", "hold faces x", elasticity="300 kPa")
+    + solid(
+        "onto",
+        "box (10, 10, 5) cm",
+        "(-20, 42, 30) cm",
+        "density 900",
+        "velocity (0, 0, -3) m/s  drag 0.5  damping 0.1",
+        elasticity="200 kPa",
+    )
+    + solid("skimming", "box (10, 10, 10) cm", "(-60, 0, 17) cm", "density 600", "velocity (1, 0, -2) m/s")
 )
 """Damped and dragged, thin, held at faces and as a whole, with one that lands on the rock."""
 PASSING = FLYING.split("expect")[0] + "effects { contact off }"
 """The same where nothing feels another: no island but of one."""
 RAFTS = (
     SPLASH.replace("time 0.1 s", "time 0.24 s")
-    + """
-object buoy {
-  shape box (10, 10, 7.5) cm
-  position (-15, 18, 30) cm
-  density 300
-  elasticity 100 kPa
-}
-object above {
-  shape box (10, 10, 10) cm
-  position (18, 8, 120) cm
-  density 800
-  elasticity 100 kPa
-}
-"""
+    + solid("buoy", "box (10, 10, 7.5) cm", "(-15, 18, 30) cm", "density 300")
+    + solid("above", "box (10, 10, 10) cm", "(18, 8, 120) cm", "density 800")
 )
 """Two that fall into the liquid, one that lies in it, one that never comes near."""
 DAM = SPLASH[: SPLASH.index("object raft")] + "control { time 0.2 s  frames 50 fps  resolution 2.5 cm  seed 5 }"
 """Nothing moves but the liquid."""
-HEAVY = """
-gravity (0, 0, -9.81) m/s^2
-ground z 0 m
-object block {
-  shape box (40, 30, 20) cm
-  position (0, 0, 11) cm
-  density 900
-  elasticity 100 kPa
-  velocity (0, 0, -2) m/s
-  spin (1, 2, 0)
-  damping 0.05
-}
-object crumb {
-  shape box (5, 5, 5) cm
-  position (60, 0, 20) cm
-  density 900
-  elasticity 100 kPa
-}
-control { time 0.06 s  frames 100 fps  resolution 2.5 cm }
-"""
+HEAVY = (
+    ON_GROUND
+    + solid(
+        "block", "box (40, 30, 20) cm", "(0, 0, 11) cm", "density 900", "velocity (0, 0, -2) m/s  spin (1, 2, 0)  damping 0.05"
+    )
+    + solid("crumb", "box (5, 5, 5) cm", "(60, 0, 20) cm", "density 900")
+    + "control { time 0.06 s  frames 100 fps  resolution 2.5 cm }\n"
+)
 """One object that is nearly all of the work."""
 BOUNCE = """
 object left  { shape box (20, 20, 20) cm  position (-18, 0, 0) cm  density 900  elasticity 1 MPa  velocity (4, 0, 0.5) m/s }
@@ -122,29 +83,11 @@ UNEVEN = FLYING.split("control")[0].replace("1 .. 4", "1 .. 3") + "control { tim
 """A last frame that is shorter than the others."""
 POOL = RAFTS.replace("time 0.24 s", "time 0.16 s")
 """The same, shorter."""
-APART = """
-gravity (0, 0, -9.81) m/s^2
-object falling {
-  shape box (10, 10, 10) cm
-  position (0, 0, 0) m
-  density 900
-  elasticity 100 kPa
-  velocity (0, 0, -2) m/s
-}
-object below {
-  shape box (10, 10, 10) cm
-  position (0, 0, -20) cm
-  density 900
-  elasticity 1 MPa
-  hold faces z
-}
-object hanging {
-  shape box (10, 10, 10) cm
-  position (5, 0, 0) m
-  density 900
-  elasticity 1 MPa
-  hold faces z
-}
-control { time 0.1 s  frames 100 fps  resolution 2.5 cm }
-"""
+APART = (
+    GRAVITY
+    + solid("falling", "box (10, 10, 10) cm", "(0, 0, 0) m", "density 900", "velocity (0, 0, -2) m/s")
+    + solid("below", "box (10, 10, 10) cm", "(0, 0, -20) cm", "density 900", "hold faces z", elasticity="1 MPa")
+    + solid("hanging", "box (10, 10, 10) cm", "(5, 0, 0) m", "density 900", "hold faces z", elasticity="1 MPa")
+    + "control { time 0.1 s  frames 100 fps  resolution 2.5 cm }\n"
+)
 """One that moves fast, onto one that hardly moves, and another of these."""
