@@ -32,7 +32,9 @@ def seen(instance: Instance) -> dict[str, np.ndarray]:
         assert np.array_equal(instance.here(name), found[name][instance.rows()])
     assert instance.total(len(instance.here("x"))) == plan.system.particles
     found["speed"] = instance.top_speeds()
-    energies = [effect.energy(instance, plan.scene, plan.system) for effect in plan.effects]
+    asked = (instance, plan.scene, plan.system)
+    energies = [effect.energy(*asked) for effect in plan.effects if effect.ledger]
+    energies += [loss for effect in plan.effects for loss in effect.lost(*asked).values()]
     return found | {
         "step": np.array(instance.step),
         "energies": np.array(energies),
