@@ -6,6 +6,7 @@
 
 #include "styles/fix_mdanim_contact.h"
 
+#include "contact/bodies_file.h"
 #include "engine/stopwatch.h"
 
 #include "atom.h"
@@ -21,6 +22,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <numeric>
 #include <stdexcept>
 
@@ -29,12 +32,13 @@ using namespace FixConst;
 using namespace mdanim;
 
 static constexpr std::int64_t STATE_VERSION = 1;
+static constexpr int LARGEST_FILE = 1 << 30;    // bytes
 static constexpr double USUAL_DAMPING = 0.3;    // beta
 
 // --- the command ---
 
 // fix ID group mdanim/contact BODY YOUNG FRICTION [objects] [plane x|y|z lo|hi at]… [stiffness f] [damping beta]
-//     [pair MOL MOL mu beta]… [among GROUP]
+//     [pair MOL MOL mu beta]… [among GROUP] [bodies FILE]
 FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   scalar_flag = 1;
@@ -116,17 +120,46 @@ int FixMdanimContact::read_word(int iarg, int narg, char **arg)
     among_bit = group->bitmask[index];
     return 2;
   }
-  error->all(FLERR, iarg, "fix mdanim/contact: unknown keyword {}; it knows objects, plane, stiffness, damping, pair and among",
+  if (is("bodies")) {
+    want(1);
+    read_bodies_of(arg[iarg + 1]);
+    return 2;
+  }
+  error->all(FLERR, iarg,
+             "fix mdanim/contact: unknown keyword {}; it knows objects, plane, stiffness, damping, pair, among and bodies",
              arg[iarg]);
   return 0;
+}
+
+// Rank 0 reads the file, all take the same text apart.
+void FixMdanimContact::read_bodies_of(const char *file)
+{
+  std::string text;
+  int bytes = -1;
+  if (comm->me == 0) {
+    std::error_code none;
+    std::ifstream in(file, std::ios::binary | std::ios::ate);
+    const bool is_file = in && std::filesystem::is_regular_file(file, none);
+    const std::streamoff size = is_file ? static_cast<std::streamoff>(in.tellg()) : -1;
+    if (size > LARGEST_FILE) error->one(FLERR, "fix mdanim/contact: {} has {} bytes, more than {}", file, size, LARGEST_FILE);
+    if (size >= 0) text.resize(size);
+    if (size >= 0 && in.seekg(0).read(text.data(), size)) bytes = static_cast<int>(size);
+  }
+  MPI_Bcast(&bytes, 1, MPI_INT, 0, world);
+  if (bytes < 0) error->all(FLERR, "fix mdanim/contact: cannot read the bodies in {}", file);
+  text.resize(bytes);
+  MPI_Bcast(text.data(), bytes, MPI_CHAR, 0, world);
+  try {
+    bodies = read_bodies(file, text);
+  } catch (const std::exception &problem) {
+    error->all(FLERR, "fix mdanim/contact: {}", problem.what());
+  }
 }
 
 int FixMdanimContact::setmask() { return POST_NEIGHBOR | POST_FORCE; }
 
 void FixMdanimContact::take_body(int number, const ContactBodyArrays &arrays)
-{
-  bodies.insert_or_assign(number, ContactBody(arrays));
-}
+{ bodies.insert_or_assign(number, ContactBody(arrays)); }
 
 void FixMdanimContact::init()
 {

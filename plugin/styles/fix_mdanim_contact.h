@@ -55,6 +55,7 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
     double kind, young, friction, mass;
   };
   int read_word(int iarg, int narg, char **arg);
+  void read_bodies_of(const char *file);
   std::vector<Known> survey() const;
   void take_objects();
   void list();

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Objects that touch by the law of surfaces, with friction: the same bits where they are cut out, put back, laid aside, shared."""
+"""Objects that touch by the law of surfaces, with friction: the same bits where they are cut out, put back, laid aside."""
 
 import numpy as np
+import plugin_path
 import pytest
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.state import State, join_all
 from mdanim_lammps.engine.sub_plan import SubPlans
+from mdanim_lammps.run.loop import write_inputs
 from mpi.follow import follow
 from paths import MPI
 from ranks_lab import on_ranks
@@ -125,3 +127,34 @@ def test_ranks_see_what_one_sees(tmp_path, ranks):
     for what in ("x", "v", "f", "contact", "ground"):
         for when in ("again", "new"):
             assert found[f"{when} {what}"].tobytes() == found[f"end {what}"].tobytes(), (when, what)
+
+
+HAND = TOUCHING.replace("time 1 s", "time 0.06 s frames 50 fps").replace(
+    "control {", f"object ball {{ shape sphere 7 cm position (-17.1, 0, 7) cm velocity (1, 0, 0) m/s {SOLID} }}\ncontrol {{"
+)
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_lmp_gives_the_bits_of_the_driver(prepared, tmp_path, ranks):
+    """Run the written input by hand, which reads the bodies, cuboids and a ball, from contact.NAME."""
+    ready = prepared(HAND)
+    film = []
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        for steps in (0, *[ready.certificate.steps_per_frame] * ready.certificate.frames):
+            instance.run(steps) if steps else None
+            film.append(np.concatenate([instance.array("x"), instance.array("v")], axis=1))
+        assert contacts(instance.state()) > 4000
+    write_inputs(ready, tmp_path)
+    done = plugin_path.lmp(tmp_path / "in.small", ranks, "-screen", "none", timeout=240)
+    assert done.returncode == 0, done.stdout + done.stderr
+    blocks = (tmp_path / "small.lammpstrj").read_text().split("ITEM: ATOMS")[1:]
+    found = [np.array([row.split()[3:9] for row in block.partition("ITEM")[0].splitlines()[1:]], float) for block in blocks]
+    assert np.array_equal(found, film)
+
+
+def test_a_scene_without_surfaces_has_no_file_of_bodies(prepared, tmp_path):
+    """Nor names one."""
+    write_inputs(prepared(HAND.replace("contact-model surface friction 0.4", "")), tmp_path)
+    assert not (tmp_path / "contact.small").exists() and "bodies" not in (tmp_path / "in.small").read_text()

@@ -21,6 +21,8 @@ def run(folder, ranks, scene, *arguments):
     folder = folder / f"ranks{ranks}"
     folder.mkdir()
     shutil.copy(SCENES / f"in.{scene}", folder)
+    if (bodies := SCENES / f"contact.{scene}").exists():
+        shutil.copy(bodies, folder)
     done = plugin_path.lmp(folder / f"in.{scene}", ranks, *arguments)
     assert done.returncode == 0, done.stdout + done.stderr
     return (folder / f"{scene}.lammpstrj").read_bytes(), done.stdout
@@ -45,6 +47,16 @@ def test_any_number_of_ranks_gives_the_same_bits(tmp_path, ranks):
     alone, output = run(tmp_path, 1, "two_blocks", *SHORT)
     assert table(output)["f_contact[4]"][-1] < 0.8
     assert alone == run(tmp_path, ranks, "two_blocks", *SHORT)[0]
+
+
+@pytest.mark.mpi
+def test_two_cubes_rub_alike_on_any_number_of_ranks(tmp_path):
+    """Dumps are the same byte for byte, the books close, and friction has taken some of the energy."""
+    alone, output = run(tmp_path, 1, "two_cubes", "-var", "steps", "400")
+    t = table(output)
+    np.testing.assert_allclose(t["v_balance"], t["v_balance"][0], rtol=2e-4)
+    assert t["f_contact[2]"][-1] > 0.03 and t["f_contact[5]"][-1] > 0.2
+    assert alone == run(tmp_path, 3, "two_cubes", "-var", "steps", "400")[0]
 
 
 @pytest.mark.mpi

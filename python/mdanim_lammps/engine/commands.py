@@ -83,6 +83,12 @@ def physics(plan: Plan) -> list[str]:
     ]
 
 
+def _with_bodies(plan: Plan, commands: list[str]) -> list[str]:
+    """The same with the file of contact bodies named to fixes that look them up."""
+    fixes = tuple(f"fix {fix} " for fix in plan.body_fixes)
+    return [f"{c} bodies contact.{plan.name}" if fixes and c.startswith(fixes) else c for c in commands]
+
+
 def input_script(plan: Plan) -> str:
     """The text of ``in.NAME``: runs alone with ``lmp -in in.NAME``, on any number of ranks, to the same bits."""
     c = plan.certificate
@@ -106,7 +112,7 @@ def input_script(plan: Plan) -> str:
             *prelude(plan),
             f"read_data data.{plan.name} fix model NULL Model",
             "",
-            *physics(plan),
+            *_with_bodies(plan, physics(plan)),
             "",
             "# Several ranks: cut space so that every rank has the same share; changes no bit of the result.",
             *BALANCE,

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""A plan as a LAMMPS data file. The only place where ids become 1-based in text."""
+"""A plan as a LAMMPS data file, and its contact bodies as text. The only place where ids become 1-based in text."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
 
+from ..model.contact_body import ContactBody
 from .commands import bond_coeffs, box
 from .plan import Plan
 
@@ -50,3 +51,27 @@ def write_data(plan: Plan, path: Path) -> None:
     """Write ``data.NAME``. Raises OSError."""
     with open(path, "w", encoding="ascii", errors="replace") as file:  # a title may hold any letter
         file.writelines(data_text(plan))
+
+
+def bodies_text(bodies: Mapping[int, ContactBody]) -> Iterator[str]:
+    """The text of ``contact.NAME``, in pieces: bodies by their numbers (docs/fix_mdanim_contact.md)."""
+    yield "# Contact bodies, written by mdanim-lammps\n"
+    for kind, body in bodies.items():
+        yield f"\nbody {kind}\n"
+        yield from rows("cells %d %d %d\n", *body.count[:, None])
+        yield from rows("edge %r %r %r\n", *body.edge[:, None])
+        yield f"particles {len(body.node)}\n"
+        yield from rows("%d\n", body.node)
+        yield f"filled {len(body.filled)}\n"
+        yield from rows("%d\n", body.filled)
+        yield f"points {len(body.cell)}  # cell, kind, area, at, centre, normal\n"
+        yield from rows("%d %d" + " %r" * 10 + "\n", body.cell, body.kind, body.area, *body.at.T, *body.centre.T, *body.normal.T)
+        depth = np.zeros(0) if body.depth is None else body.depth
+        yield f"depth {len(depth)}\n"
+        yield from rows("%r\n", depth)
+
+
+def write_bodies(plan: Plan, path: Path) -> None:
+    """Write ``contact.NAME``. Raises OSError."""
+    with open(path, "w", encoding="ascii") as file:
+        file.writelines(bodies_text(plan.contact_bodies))

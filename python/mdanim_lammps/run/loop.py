@@ -17,7 +17,7 @@ import numpy as np
 from .. import __version__
 from ..effects.air_drag import LEAPFROG
 from ..engine.commands import input_script
-from ..engine.data_file import write_data
+from ..engine.data_file import write_bodies, write_data
 from ..errors import DivergedError, ExitCode, MdanimError, OutputError, Problem
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
@@ -80,7 +80,8 @@ class Interrupted(MdanimError):
 
 
 def write_inputs(ready: Prepared, folder: Path) -> None:
-    """Write scene.lock.txt, copies of its meshes, certificate.json, ``data.NAME`` and ``in.NAME``. Raises OutputError."""
+    """Write scene.lock.txt, copies of its meshes, certificate.json, ``data.NAME``, ``in.NAME`` and, where surfaces touch,
+    ``contact.NAME``. Raises OutputError."""
     plan = ready.plan
     for path, name in mesh_files(ready.scene).items():
         with disk_errors(folder / name):
@@ -89,6 +90,8 @@ def write_inputs(ready: Prepared, folder: Path) -> None:
     write_whole(folder / "scene.lock.txt", ready.lock)
     write_json(folder / "certificate.json", ready.certificate.to_json())
     write_whole(folder / f"data.{plan.name}", lambda part: write_data(plan, part))
+    if plan.body_fixes:
+        write_whole(folder / f"contact.{plan.name}", lambda part: write_bodies(plan, part))
     write_whole(folder / f"in.{plan.name}", input_script(plan))
 
 
