@@ -21,6 +21,10 @@ PICTURES = {
     "splash": 0.45,
     "cork": 0.5,
     "boat": 0.6,
+    "dominoes": 1.1,
+    "race": 1.4,
+    "stairs": 0.88,
+    "tower": 1.1,
 }
 """Scene and the moment to show [s]."""
 SIZE = (720, 405)
