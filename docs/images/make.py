@@ -25,6 +25,8 @@ PICTURES = {
     "race": 1.4,
     "stairs": 0.88,
     "tower": 1.1,
+    "cards": 1.0,
+    "plates": 0.0,
 }
 """Scene and the moment to show [s]."""
 SIZE = (720, 405)
