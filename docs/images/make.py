@@ -27,6 +27,8 @@ PICTURES = {
     "tower": 1.1,
     "cards": 1.0,
     "plates": 0.0,
+    "billiard": 0.5,
+    "cradle": 0.8,
 }
 """Scene and the moment to show [s]."""
 SIZE = (720, 405)
