@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace mdanim {
@@ -13,10 +14,9 @@ static constexpr double LEAST_COSINE = 0.45;    // between the outward normals o
 static constexpr double DEEPEST_BIRTH = 0.5;    // cells
 static constexpr double AT_ONCE = -1.0;
 static constexpr double NEVER = std::numeric_limits<double>::infinity();
-static constexpr double LOST = 0.02;       // cells to go before a point that was not found is looked for again
-static constexpr double PRESSED = 0.5;     // cells are taken to be pressed to half at most: motion in space over that in X
-static constexpr double SEARCHED = 5.0;    // cells around a point in which one of the host is looked for
-static constexpr double NEAREST = 2.2;     // cells from the middle of a cell on the surface beyond which there is no contact
+static constexpr double LOST = 0.02;      // cells to go before a point that was not found is looked for again
+static constexpr double PRESSED = 0.5;    // cells are taken to be pressed to half at most: motion in space over that in X
+static constexpr double NEAREST = 2.2;    // cells from the middle of a cell on the surface beyond which there is no contact
 static constexpr std::uint8_t EVERY_SIDE = 63;
 
 static double outside(const Box &box, const Vec3 &x)
@@ -28,11 +28,11 @@ static double outside(const Box &box, const Vec3 &x)
 
 // --- lists ---
 
-void ContactField::list(ContactObject &points_of, ContactObject &host_now, const ContactArrays &arrays, double reach)
+void ContactField::list(ContactObject &points_of, ContactObject &host_now, const PointFinder &finder, const ContactArrays &arrays,
+                        double reach)
 {
   owner = &points_of, host = &host_now;
   host_box = host->box;
-  outer.clear(), outer_middle.clear(), outer_grid.clear();
   // A sharp point counts until the centre of its area is a quarter of a cell beyond an edge; the drawn surface of what is no
   // cuboid stands out of its particles.
   const double stands_out = 0.6 * owner->body->spacing() + (host->body->is_cuboid() ? 0.6 : 1.25) * host->body->spacing();
@@ -43,8 +43,14 @@ void ContactField::list(ContactObject &points_of, ContactObject &host_now, const
   near.clear(), wake.clear(), watch.clear(), of_contact.clear();
   budget = 0.0;
   std::size_t before = 0, contact = 0;
-  const int points = static_cast<int>(owner->body->points().size());
-  for (int p = 0; p < points; ++p) {
+  std::vector<int> candidates;
+  {
+    const std::vector<int> inside = finder.inside(host_box.grown(reach + 1.01 * stands_out));
+    std::vector<int> touching;
+    for (const FieldContact &one : contacts) touching.push_back(one.point);
+    std::set_union(inside.begin(), inside.end(), touching.begin(), touching.end(), std::back_inserter(candidates));
+  }
+  for (const int p : candidates) {
     while (contact < contacts.size() && contacts[contact].point < p) ++contact;
     const bool touches = contact < contacts.size() && contacts[contact].point == p;
     while (before < points_before.size() && points_before[before] < p) ++before;
@@ -84,33 +90,6 @@ void ContactField::settle(const ContactArrays &arrays)
 }
 
 // --- points without a contact ---
-
-// The cell on the host's surface whose middle was nearest when lists were made.
-std::array<int, 3> ContactField::nearest_cell(const Vec3 &x, const ContactArrays &arrays)
-{
-  const ContactBody &body = *host->body;
-  if (outer_grid.empty()) {
-    for (int k = 0; k < body.count(2); ++k)
-      for (int j = 0; j < body.count(1); ++j)
-        for (int i = 0; i < body.count(0); ++i) {
-          if (!body.is_outer(i, j, k)) continue;
-          const int low = host->slot[body.place(i, j, k)], high = host->slot[body.place(i + 1, j + 1, k + 1)];
-          if (low < 0 || high < 0) continue;
-          outer.push_back({i, j, k});
-          outer_middle.push_back(0.5 * (arrays.place[low] + arrays.place[high]));
-        }
-    outer_grid.emplace_back([this](int n) { return &outer_middle[n].x; }, static_cast<int>(outer.size()),
-                            SEARCHED * body.spacing());
-  }
-  int best = -1;
-  double least = NEVER;
-  const auto compare = [&](int n) {
-    const Vec3 d = outer_middle[n] - x;
-    if (dot(d, d) < least || (dot(d, d) == least && n < best)) least = dot(d, d), best = n;
-  };
-  outer_grid[0].around(&x.x, [&](int slot) { compare(outer_grid[0].order()[slot]); });
-  return best < 0 ? std::array<int, 3>{-1, -1, -1} : outer[best];
-}
 
 // X of a point at x, the same bits whatever was known of it: the last search begins in the middle of the cell that X lies in.
 bool ContactField::find(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X)
@@ -174,11 +153,12 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
     return false;
   };
   if (known.cell[0] < 0) {
-    const std::array<int, 3> cell = nearest_cell(x, arrays);
+    if (!host->outer) host->outer = std::make_shared<const OuterCells>(*host, arrays);
+    const std::array<int, 3> cell = host->outer->nearest(x);
     Spot<double> there;
     const Vec3 middle = {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
     if (cell[0] >= 0 && !evaluate(at, trilinear(middle, cell, at.body), there)) return lost();
-    const double away = cell[0] < 0 ? 0.5 * SEARCHED * h : std::sqrt(dot(x - there.x, x - there.x));
+    const double away = cell[0] < 0 ? 0.5 * OuterCells::SEARCHED * h : std::sqrt(dot(x - there.x, x - there.x));
     if (away > NEAREST * h) {
       known.open = 0;
       wake[q] = budget + away - NEAREST * h;
@@ -450,7 +430,7 @@ std::size_t ContactField::bytes() const
 {
   return near.bytes() + wake.capacity() * sizeof(double) + watch.capacity() * sizeof(Watch) +
          contacts.capacity() * sizeof(FieldContact) + now.capacity() * sizeof(PointNow) +
-         of_contact.capacity() * sizeof(std::size_t) + outer.capacity() * (sizeof(outer[0]) + sizeof(Vec3));
+         of_contact.capacity() * sizeof(std::size_t);
 }
 
 }    // namespace mdanim

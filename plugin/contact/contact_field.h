@@ -20,8 +20,9 @@ class ContactField {
   ContactField(ContactObject &owner, ContactObject &host, const ContactLaw &law) : owner(&owner), host(&host), law(law) {}
 
   // Points that may come in until lists are made again; contacts and what is known of points stay. `reach`: how far objects may
-  // come nearer. Objects and slots are as they are now.
-  void list(ContactObject &points_of, ContactObject &host_now, const ContactArrays &arrays, double reach);
+  // come nearer. Objects and slots are as they are now; the finder is of the first.
+  void list(ContactObject &points_of, ContactObject &host_now, const PointFinder &finder, const ContactArrays &arrays,
+            double reach);
   // Nothing is known of points but of those in contact; to be followed by list().
   void forget();
   // Looks at every point without a contact as it is now; nothing is born. For the setup of a run.
@@ -46,7 +47,6 @@ class ContactField {
   bool is_smooth(PointKind kind) const { return kind != PointKind::FLAT && host->body->is_cuboid(); }
   bool look(std::size_t q, const ContactArrays &arrays, bool may_begin);
   bool find(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X);
-  std::array<int, 3> nearest_cell(const Vec3 &x, const ContactArrays &arrays);
   bool world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const;
   Ramps ramps(PointKind kind) const;
 
@@ -75,10 +75,6 @@ class ContactField {
   std::vector<PointNow> now;              // and their points in this step
   double budget = 0.0;
   Box host_box;
-  // Cells of the host on its surface, for points that have not been found yet: made when the first is asked for.
-  std::vector<std::array<int, 3>> outer;
-  std::vector<Vec3> outer_middle;
-  std::vector<Grid> outer_grid;    // one or none
 };
 
 }    // namespace mdanim

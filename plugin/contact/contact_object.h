@@ -8,12 +8,15 @@
 #include "contact/material_map.h"
 #include "engine/boxes.h"
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace mdanim {
 
 struct ContactKernels;
+class OuterCells;
 
 struct ContactObject {
   int id;    // ascending in the order of the scene
@@ -26,8 +29,9 @@ struct ContactObject {
   std::vector<int>
       slot;    // of its particles by their places in the grid, in the arrays of ContactWorld; -1 for what is not there
   int first_slot = 0, last_slot = 0;
-  Vec3 way;             // of its first particle in this step
-  double stir = 0.0;    // the most that another has gone otherwise in this step
+  std::shared_ptr<const OuterCells> outer;    // made when it is first asked for; none after lists were made
+  Vec3 way;                                   // of its first particle in this step
+  double stir = 0.0;                          // the most that another has gone otherwise in this step
 };
 
 // What contacts did in a step, and since the beginning.
@@ -101,6 +105,34 @@ class NearPoints {
 
   std::vector<Near> near;
   std::vector<Carrier> carriers;
+};
+
+// The points of an object whose particles are there, by their places when lists were made: found once for all its partners.
+class PointFinder {
+ public:
+  PointFinder(const ContactObject &owner, const ContactArrays &arrays);
+  // Ascending numbers of those in a box.
+  std::vector<int> inside(const Box &box) const;
+
+ private:
+  std::vector<int> number;
+  std::vector<Vec3> place;
+  Grid grid;
+};
+
+// Cells on an object's surface, to begin a search in.
+class OuterCells {
+ public:
+  OuterCells(const ContactObject &owner, const ContactArrays &arrays);
+  // The one whose middle was nearest when this was made; -1 for none within SEARCHED cells.
+  std::array<int, 3> nearest(const Vec3 &x) const;
+  std::size_t bytes() const { return cell.capacity() * (sizeof cell[0] + sizeof middle[0]); }
+  static constexpr double SEARCHED = 5.0;
+
+ private:
+  std::vector<std::array<int, 3>> cell;
+  std::vector<Vec3> middle;
+  Grid grid;
 };
 
 // Rows of a record as bytes.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace mdanim {
 
@@ -128,6 +129,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const std
   std::size_t from = 0;
   for (int n = 0; n < objects(); ++n) {
     ContactObject &one = all[n];
+    one.outer.reset();
     if (zones[n].empty()) {
       one.slot.clear();
       one.slot.shrink_to_fit();
@@ -141,13 +143,15 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const std
     one.last_slot = static_cast<int>(from);
   }
 
+  std::vector<std::optional<PointFinder>> finders(all.size());
+  const auto finder = [&](int n) -> const PointFinder & { return finders[n] ? *finders[n] : finders[n].emplace(all[n], arrays); };
   std::map<PairKey, Both> kept;
   for (const auto &[a, b] : near_pairs) {
     const PairKey key{all[a].id, all[b].id};
     const auto old = fields.find(key);
     Both &both = kept.emplace(key, old == fields.end() ? new_pair(a, b) : std::move(old->second)).first->second;
-    both.lower.list(all[a], all[b], arrays, skin);
-    both.higher.list(all[b], all[a], arrays, skin);
+    both.lower.list(all[a], all[b], finder(a), arrays, skin);
+    both.higher.list(all[b], all[a], finder(b), arrays, skin);
   }
   fields = std::move(kept);
   std::map<std::pair<int, int>, PlaneField> kept_planes;
@@ -259,7 +263,8 @@ void ContactWorld::restore(const std::map<PairKey, std::pair<std::vector<FieldCo
 std::size_t ContactWorld::bytes() const
 {
   std::size_t sum = (arrays.place.capacity() + arrays.force.capacity() + before.capacity()) * sizeof(Vec3);
-  for (const ContactObject &one : all) sum += sizeof one + one.slot.capacity() * sizeof(int);
+  for (const ContactObject &one : all)
+    sum += sizeof one + one.slot.capacity() * sizeof(int) + (one.outer ? one.outer->bytes() : 0);
   for (const auto &[key, both] : fields) sum += sizeof both + both.lower.bytes() + both.higher.bytes();
   for (const auto &[key, field] : plane_fields) sum += sizeof field + field.bytes();
   return sum;

@@ -123,6 +123,21 @@ class Grid {
     });
   }
 
+  // Calls visit(k) for slots that together hold all points in a box.
+  template <class Visit> void inside(const Box &box, Visit visit) const
+  {
+    if (begin.empty()) return;
+    int from[3], to[3];
+    for (int d = 0; d < 3; ++d) {
+      double corner[3];
+      corner[d] = box.low(d), from[d] = place(corner, d);
+      corner[d] = box.high(d), to[d] = place(corner, d);
+    }
+    for (int a = from[0]; a <= to[0]; ++a)
+      for (int b = from[1]; b <= to[1]; ++b)
+        for (int k = begin[index(a, b, from[2])]; k < begin[index(a, b, to[2]) + 1]; ++k) visit(k);
+  }
+
  private:
   static constexpr double MOST = 1e9;    // cells in a row; an int holds one more
 

@@ -241,7 +241,7 @@ void FixMdanimContact::take_objects()
                  one.id, one.young, one.friction);
     const double volume = body.edge(0) * body.edge(1) * body.edge(2);
     objects.push_back(
-        {one.id, &body, one.young, one.friction, one.mass / (volume * body.cells_around(0) / 8.0), {}, {}, 0, 0, {}, 0.0});
+        {one.id, &body, one.young, one.friction, one.mass / (volume * body.cells_around(0) / 8.0), {}, {}, 0, 0, {}, {}, 0.0});
     moves.push_back(static_cast<char>(one.moves));
     lowest.push_back(one.lowest);
   }
