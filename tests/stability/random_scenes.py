@@ -100,10 +100,10 @@ def scenes(draw) -> Text:
     return Text(text)
 
 
-def control(step: float | None = None) -> str:
+def control(step: float | None = None, more: str = "") -> str:
     """Frames so rare that they set no time step, or exactly as long as it."""
     return (
-        "control { time 10^9 frames 0.000001 fps resolution 1 }\n"
+        f"control {{ time 10^9 frames 0.000001 fps resolution 1 {more} }}\n"
         if step is None
         else (f"control {{ time {4 * STEPS * step!r} frames {1.0 / step!r} fps timestep {step!r} resolution 1 }}\n")
     )
@@ -144,9 +144,9 @@ class Tally:
         )
 
 
-def play(scene: Text, tally: Tally) -> Trial:
-    """Run a scene at the step that is certified; its trial, closed. Raises DivergedError."""
-    with Trial(scene.scene + control()) as t:
+def play(scene: Text, tally: Tally, more: str = "") -> Trial:
+    """Run a scene at the step that is certified; its trial, closed. Raises DivergedError. ``more`` goes into control."""
+    with Trial(scene.scene + control(more=more)) as t:
         tally.particles = max(tally.particles, t.system.particles)
         t.run(STEPS, 40)
         tally.drift.append(t.drift)
@@ -187,6 +187,19 @@ def try_scenes(count: int, check) -> Tally:
         check(t)
         tally.contact.append(t.ready.verdicts["contact"].on)
         tally.diverged.append(breaks_down(scene, t.ready.certificate.bound))
+
+    each()
+    return tally
+
+
+def play_scenes(count: int, check, more: str) -> Tally:
+    """The same scenes, with ``more`` in control, at their certified step alone."""
+    tally = Tally()
+
+    @settings(max_examples=count, derandomize=True, deadline=None, database=None)
+    @given(scenes())
+    def each(scene):
+        check(play(scene, tally, more))
 
     each()
     return tally

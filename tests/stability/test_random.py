@@ -2,7 +2,7 @@
 """Random scenes: none breaks down at the certified time step, most do at three times it. Always the same scenes."""
 
 import pytest
-from random_scenes import BROKEN, MOST, STEPS, try_scenes
+from random_scenes import BROKEN, MOST, STEPS, play_scenes, try_scenes
 
 
 def check(trial) -> None:
@@ -38,3 +38,19 @@ def test_thirty_random_scenes():
 def test_three_hundred_random_scenes():
     """Three hundred, for `make soak`."""
     judge(300, 0.5)
+
+
+@pytest.mark.timeout(300)
+def test_ten_random_scenes_with_friction():
+    """Ten, for every day; most of them touch something."""
+    assert play_scenes(10, check, "friction 0.5").met >= 4
+
+
+@pytest.mark.soak
+@pytest.mark.timeout(1800)
+@pytest.mark.parametrize("more", ["friction 0.5", "contact-model surface"])
+def test_three_hundred_random_scenes_at_the_surfaces(more):
+    """Three hundred, for `make soak`, with and without friction."""
+    tally = play_scenes(300, check, more)
+    print(f"\n{max(tally.drift):.1e}")
+    assert tally.met >= 210
