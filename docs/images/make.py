@@ -29,6 +29,7 @@ PICTURES = {
     "plates": 0.0,
     "billiard": 0.5,
     "cradle": 0.8,
+    "pile": 1.2,
 }
 """Scene and the moment to show [s]."""
 SIZE = (720, 405)
