@@ -51,7 +51,6 @@ def commands(plan, name):
 BARRIER = [
     "group inner type 1 2 5 6",
     "group boundary type 3 4 7 8",
-    "group thin type 4 8",
     "fix barrier mobile mdanim/barrier boundary inner d_stiffness d_reach",
 ]
 

@@ -129,3 +129,15 @@ def test_a_touching_tower_stands(scene):
     one.run(1.0)
     assert np.abs(one.mean("x") - place)[:2].max() < 0.01 * SIDE
     assert abs(one.mean("x") - place)[2] < 0.1 * SIDE  # the column is 1.2 m of rubber: it springs
+
+
+def test_thin_plates_lie_on_each_other(scene):
+    """One cell thick, face on face: no particle of one is the barrier of the other."""
+    plates = "".join(
+        f"object p{k} {{ shape box (24, 24, 4) cm  position (0, 0, {2 + 4 * k}) cm  density 300  elasticity 2 MPa }}\n"
+        for k in range(3)
+    )
+    one = scene(f"gravity (0, 0, {-G})\nground z 0\n{plates}", "resolution 4 cm  friction 0.5")
+    place = one.mean("x")
+    one.run(0.3)
+    assert np.abs(one.mean("x") - place).max() < 0.001

@@ -49,11 +49,14 @@ def plane_stiffness(reach: float) -> float:
     return float(np.linalg.eigvalsh(hessian)[:, -1].max())
 
 
-def barrier(fix: str, system: System) -> list[str]:
-    """Commands for a barrier of this name, with the columns ``stiffness`` and ``reach``."""
-    groups = ["group inner type 1 2 5 6", "group boundary type 3 4 7 8", "group thin type 4 8"]
-    thin = f" thin thin {THIN!r}" if (system.layer == 4).any() else ""
-    return [*groups, f"fix {fix} mobile mdanim/barrier boundary inner d_stiffness d_reach{thin}"]
+def barrier(fix: str, system: System, own_thin: bool = True) -> list[str]:
+    """Commands for a barrier of this name, with the columns ``stiffness`` and ``reach``; ``own_thin``: whether what has no inner
+    particles is its own barrier."""
+    groups = ["group inner type 1 2 5 6", "group boundary type 3 4 7 8"]
+    words = f"fix {fix} mobile mdanim/barrier boundary inner d_stiffness d_reach"
+    if not own_thin:
+        return [*groups, words]
+    return [*groups, "group thin type 4 8", f"{words} thin thin {THIN!r}" if (system.layer == 4).any() else words]
 
 
 def barrier_rate(system: System, s: np.ndarray, reach: float) -> np.ndarray:
@@ -76,6 +79,7 @@ def closing_speeds(system: System, g: float, fall: np.ndarray) -> np.ndarray:
 class Contact(Effect):
     name = "contact"
     fix = "contact"
+    tunnel = TUNNEL
     ledger = "contact"
     keeps_apart = True
     if_off = "objects pass through each other"
@@ -119,7 +123,7 @@ class Contact(Effect):
         system = envelope.system
         closing = closing_speeds(system, envelope.g, envelope.fall())
         # A held partner may be met at full speed, the softer of two is the one that is passed through.
-        limit = np.array(TUNNEL)[np.clip(np.rint(envelope.cells).astype(int), 1, len(TUNNEL)) - 1] * envelope.wave
+        limit = np.array(self.tunnel)[np.clip(np.rint(envelope.cells).astype(int), 1, len(self.tunnel)) - 1] * envelope.wave
         soft = system.contact_factor < 1.0
         limit *= system.contact_factor**SOFTER if soft else 1.0
         weakest = int(limit.argmin())

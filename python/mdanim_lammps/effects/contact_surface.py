@@ -17,7 +17,7 @@ from ..model.system import System
 from ..scene.contact_pairs import USUAL_DAMPING, damping, frictions, pair_rules
 from ..scene.scene import Box, Scene
 from .boundaries import Boundary, GroundPlane, WallPlanes
-from .contact import Contact, barrier, barrier_rate, closing_speeds, largest_of_others
+from .contact import TUNNEL, Contact, barrier, barrier_rate, closing_speeds, largest_of_others
 from .effect import Effect
 from .envelope import heights, wave_speed
 from .liquid import Basin
@@ -108,7 +108,8 @@ class SurfaceContact(OnSurfaces, Contact):
     """Points of each drawn surface against the depth below that of the other body, and a short barrier behind it."""
 
     behind = "barrier"
-    """ID of the barrier's fix."""
+    """ID of the barrier's fix. What has no inner particles is no barrier of its own: its faces coincide with what it touches."""
+    tunnel = (0.35, *TUNNEL[1:])
 
     @property
     def fixes(self):
@@ -134,7 +135,7 @@ class SurfaceContact(OnSurfaces, Contact):
 
     def commands(self, scene, system):
         rules = [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for i, j, mu, beta in pair_rules(scene, system.names)]
-        return [*self.law(scene, " ".join(["objects", *rules])), *barrier(self.behind, system)]
+        return [*self.law(scene, " ".join(["objects", *rules])), *barrier(self.behind, system, own_thin=False)]
 
     def rate(self, scene, system):
         """A contact is a spring along one direction, kappa w G G^T with node weights whose sum is 2: those of the point and those
