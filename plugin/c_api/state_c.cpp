@@ -26,8 +26,8 @@ static Stateful &stateful(void *handle, const char *fix)
   return *state;
 }
 
-// ID of the n-th (from 0) fix that has a state of its own, valid until fixes come or go; a null pointer after the last. Returns 0,
-// or 1 with a message in `error`.
+// ID of the n-th (from 0) fix that has a state of its own, valid until fixes come or go; a null pointer after the last. Returns
+// 0, or 1 with a message in `error`.
 MDANIM_EXPORT int mdanim_stateful(void *handle, int n, const char **id, char *error, int error_size)
 {
   return guarded(error, error_size, [=] {
