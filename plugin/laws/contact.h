@@ -93,9 +93,10 @@ MDANIM_ALWAYS_INLINE void contact_friction(const ContactLaw &law, const Real &ar
   const Real most = law.friction * force.press * root(square), pull = k * length;
   const auto slips = pull > most;
   force.kept = pick(slips, most / pull, constant<Real>(1.0));
+  const Real compliance = pick(memory.stick > 0.0, -1.0 / memory.stick, Real{});
+  const Vec<Real> before = compliance * memory.pull;
   if (dt > 0.0 && law.damping > 0.0) {
-    const Real compliance = pick(memory.stick > 0.0, -1.0 / memory.stick, Real{});
-    Vec<Real> way = away - compliance * memory.pull;
+    Vec<Real> way = away - before;
     way -= pick(square > 0.0, dot(way, normal) / square, Real{}) * normal;
     const Real eta = law.damping * k / __builtin_sqrt(ContactLaw::STICK);    // 2 beta sqrt(kappa_t rho h / 2) w t
     const Vec<Real> drag = (-eta / dt) * way;
@@ -105,7 +106,11 @@ MDANIM_ALWAYS_INLINE void contact_friction(const ContactLaw &law, const Real &ar
   }
   const Vec<Real> left = force.kept * away;
   force.pull = -k * left;
-  if (dt > 0.0) force.heat = pick(slips, -0.5 * dot(force.pull + memory.pull, away - left), Real{});
+  if (dt > 0.0) {
+    force.heat = pick(slips, -0.5 * dot(force.pull + memory.pull, away - left), Real{});
+    // Where less of the point counts than before the spring is softer, and no work is done.
+    force.heat += 0.5 * (memory.stick - k) * dot(away, before);
+  }
   memory.pull = force.pull;
   memory.stick = k;
   memory.stick_energy = 0.5 * k * dot(left, left);

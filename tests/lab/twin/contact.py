@@ -231,8 +231,10 @@ def friction(law, area, t, c, memory, away, normal, press, dt, account):
     slips = k * length > most
     kept = np.where(slips, most / np.maximum(k * length, 1e-300), 1.0)
     drag = np.zeros_like(away)
+    before = np.where(memory.stick[c, None] > 0, -memory.pull[c] / np.maximum(memory.stick[c, None], 1e-300), 0.0)
+    if dt > 0.0:  # a spring that gets softer does no work
+        account.heat += float((0.5 * (memory.stick[c] - k) * (away * before).sum(1)).sum())
     if dt > 0.0 and law.eta > 0.0:
-        before = np.where(memory.stick[c, None] > 0, -memory.pull[c] / np.maximum(memory.stick[c, None], 1e-300), 0.0)
         rate = (away - before) / dt
         unit = normal / steep[:, None]
         rate -= (rate * unit).sum(1)[:, None] * unit
