@@ -25,10 +25,6 @@ void ContactWorld::take(std::vector<ContactObject> now, std::vector<char> moves)
     number_of[all[n].id] = static_cast<int>(n);
     spacing = std::max(spacing, all[n].body->spacing());
   }
-  for (auto field = fields.begin(); field != fields.end();)
-    field = number_of.count(field->first.first) && number_of.count(field->first.second) ? std::next(field) : fields.erase(field);
-  for (auto field = plane_fields.begin(); field != plane_fields.end();)
-    field = number_of.count(field->first.first) ? std::next(field) : plane_fields.erase(field);
 }
 
 // --- laws ---
@@ -216,18 +212,17 @@ Vec3 ContactWorld::force_on_planes() const
 
 // --- state ---
 
-std::map<ContactWorld::PairKey, std::pair<std::vector<FieldContact>, std::vector<FieldContact>>>
-ContactWorld::pair_contacts() const
+ContactWorld::PairContacts ContactWorld::pair_contacts() const
 {
-  std::map<PairKey, std::pair<std::vector<FieldContact>, std::vector<FieldContact>>> found;
+  PairContacts found;
   for (const auto &[key, both] : fields)
     if (!both.lower.is_idle() || !both.higher.is_idle()) found[key] = {both.lower.touching(), both.higher.touching()};
   return found;
 }
 
-std::map<int, std::vector<PlaneContact>> ContactWorld::plane_contacts() const
+ContactWorld::PlaneContacts ContactWorld::plane_contacts() const
 {
-  std::map<int, std::vector<PlaneContact>> found;
+  PlaneContacts found;
   for (const auto &[key, field] : plane_fields)
     if (!field.touching().empty()) {
       auto &rows = found[key.first];
@@ -236,8 +231,7 @@ std::map<int, std::vector<PlaneContact>> ContactWorld::plane_contacts() const
   return found;
 }
 
-void ContactWorld::restore(const std::map<PairKey, std::pair<std::vector<FieldContact>, std::vector<FieldContact>>> &pairs,
-                           const std::map<int, std::vector<PlaneContact>> &planes)
+void ContactWorld::restore(const PairContacts &pairs, const PlaneContacts &planes)
 {
   fields.clear();
   plane_fields.clear();

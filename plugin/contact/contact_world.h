@@ -73,13 +73,15 @@ class ContactWorld {
   ContactAccount account;
   Vec3 force_on_planes() const;
 
+  // Contacts of two objects by their ids, those of points of the lower one first, and of an object with all planes; only of those
+  // that have any.
   using PairKey = std::pair<int, int>;
-  // Contacts of two objects, points of the lower one first, and of an object with all planes; only of those that have any.
-  std::map<PairKey, std::pair<std::vector<FieldContact>, std::vector<FieldContact>>> pair_contacts() const;
-  std::map<int, std::vector<PlaneContact>> plane_contacts() const;
+  using PairContacts = std::map<PairKey, std::pair<std::vector<FieldContact>, std::vector<FieldContact>>>;
+  using PlaneContacts = std::map<int, std::vector<PlaneContact>>;
+  PairContacts pair_contacts() const;
+  PlaneContacts plane_contacts() const;
   // Makes these all that there are.
-  void restore(const std::map<PairKey, std::pair<std::vector<FieldContact>, std::vector<FieldContact>>> &pairs,
-               const std::map<int, std::vector<PlaneContact>> &planes);
+  void restore(const PairContacts &pairs, const PlaneContacts &planes);
   std::size_t bytes() const;
 
  private:

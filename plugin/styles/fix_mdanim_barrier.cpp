@@ -8,6 +8,8 @@
 #include "engine/contact_search.h"
 #include "engine/stopwatch.h"
 #include "laws/barrier.h"
+#include "styles/object_box.h"
+#include "styles/rank_gather.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -86,16 +88,8 @@ int FixMdanimBarrier::setmask() { return POST_NEIGHBOR | POST_FORCE; }
 void FixMdanimBarrier::init()
 {
   const auto refuse = [this](const char *why) { error->all(FLERR, "fix {} mdanim/barrier: {}", id, why); };
-  if (utils::strmatch(update->integrate_style, "^respa")) refuse("run_style respa is not supported; use run_style verlet");
-  if (domain->dimension != 3) refuse("the box has 2 dimensions, 3 are needed; use 'dimension 3'");
-  if (domain->triclinic) refuse("the box is triclinic; use an orthogonal one");
-  if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
-    refuse("the box is periodic; put 'boundary s s s' (or f) before the box is made");
-  if (!atom->molecule_flag)
-    refuse("objects are told apart by molecule IDs; use 'atom_style bond' or 'fix ID all property/atom mol'");
+  need_objects_in_open_box(this, lmp, "a pair may come into reach");
   if (atom->map_style == Atom::MAP_NONE) refuse("needs an atom map; put 'atom_modify map array' before the box is made");
-  if (neighbor->every != 1 || neighbor->delay != 0 || neighbor->build_once)
-    refuse("a pair may come into reach between two rebuilds; use 'neigh_modify every 1 delay 0 check yes once no'");
   if (damping > 0.0 && comm->nprocs > 1 && !comm->ghost_velocity)
     refuse("damp needs the velocities of particles of other ranks; use 'comm_modify vel yes'");
   stiffness.init(lmp);
@@ -165,14 +159,7 @@ std::vector<tagint> FixMdanimBarrier::find_objects() const
   for (int i = 0; i < atom->nlocal; ++i)
     if (role(i) != NONE && (here.empty() || here.back() != atom->molecule[i])) here.push_back(atom->molecule[i]);
   make_unique(here);
-  if (comm->nprocs == 1) return here;
-
-  const int size = static_cast<int>(here.size());
-  std::vector<int> sizes(comm->nprocs), begin(comm->nprocs + 1, 0);
-  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
-  std::partial_sum(sizes.begin(), sizes.end(), begin.begin() + 1);
-  std::vector<tagint> all(begin.back());
-  MPI_Allgatherv(here.data(), size, MPI_LMP_TAGINT, all.data(), sizes.data(), begin.data(), MPI_LMP_TAGINT, world);
+  std::vector<tagint> all = gather(world, here);
   make_unique(all);
   return all;
 }

@@ -8,10 +8,11 @@
 
 #include "contact/bodies_file.h"
 #include "engine/stopwatch.h"
+#include "styles/object_box.h"
+#include "styles/rank_gather.h"
 
 #include "atom.h"
 #include "comm.h"
-#include "domain.h"
 #include "error.h"
 #include "group.h"
 #include "neighbor.h"
@@ -162,16 +163,7 @@ void FixMdanimContact::take_body(int number, const ContactBodyArrays &arrays)
 
 void FixMdanimContact::init()
 {
-  const auto refuse = [this](const char *why) { error->all(FLERR, "fix {} mdanim/contact: {}", id, why); };
-  if (utils::strmatch(update->integrate_style, "^respa")) refuse("run_style respa is not supported; use run_style verlet");
-  if (domain->dimension != 3) refuse("the box has 2 dimensions, 3 are needed; use 'dimension 3'");
-  if (domain->triclinic) refuse("the box is triclinic; use an orthogonal one");
-  if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
-    refuse("the box is periodic; put 'boundary s s s' (or f) before the box is made");
-  if (!atom->molecule_flag)
-    refuse("objects are told apart by molecule IDs; use 'atom_style bond' or 'fix ID all property/atom mol'");
-  if (neighbor->every != 1 || neighbor->delay != 0 || neighbor->build_once)
-    refuse("surfaces may meet between two rebuilds; use 'neigh_modify every 1 delay 0 check yes once no'");
+  need_objects_in_open_box(this, lmp, "surfaces may meet");
   world_of_contact.use(nullptr);    // until passes tell those of their instructions
 }
 
@@ -197,23 +189,15 @@ std::vector<FixMdanimContact::Known> FixMdanimContact::survey() const
   }
   std::vector<Known> mine_only;
   for (const auto &[object_id, one] : here) mine_only.push_back(one);
-  if (comm->nprocs == 1) return mine_only;
-
-  const int bytes = static_cast<int>(mine_only.size() * sizeof(Known));
-  std::vector<int> sizes(comm->nprocs), begin(comm->nprocs + 1, 0);
-  MPI_Allgather(&bytes, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
-  std::partial_sum(sizes.begin(), sizes.end(), begin.begin() + 1);
-  std::vector<Known> all(begin.back() / sizeof(Known));
-  MPI_Allgatherv(mine_only.data(), bytes, MPI_BYTE, all.data(), sizes.data(), begin.data(), MPI_BYTE, world);
   std::map<int, Known> joined;
-  for (const Known &one : all) {
+  for (const Known &one : gather(world, mine_only)) {
     Known &total = joined.emplace(one.id, Known{one.id, 0, MAXTAGINT, 0, 0, 0, 0, 0}).first->second;
     const long long particles = total.particles + one.particles;
     const int moves = total.moves | one.moves;
     if (one.lowest < total.lowest) total = one;
     total.particles = particles, total.moves = moves;
   }
-  all.clear();
+  std::vector<Known> all;
   for (const auto &[object_id, one] : joined) all.push_back(one);
   return all;
 }
@@ -225,7 +209,7 @@ void FixMdanimContact::take_objects()
   friction.init(lmp);
   std::vector<ContactObject> objects;
   std::vector<char> moves;
-  lowest.clear();
+  ids.clear(), lowest.clear();
   for (const Known &one : survey()) {
     const auto found = bodies.find(static_cast<int>(one.kind));
     if (found == bodies.end())
@@ -242,6 +226,7 @@ void FixMdanimContact::take_objects()
     objects.push_back(
         {one.id, &body, one.young, one.friction, one.mass / (volume * body.cells_around(0) / 8.0), {}, {}, 0, 0, {}, {}, 0.0});
     moves.push_back(static_cast<char>(one.moves));
+    ids.push_back(one.id);
     lowest.push_back(one.lowest);
   }
   world_of_contact.take(std::move(objects), std::move(moves));
@@ -274,14 +259,8 @@ void FixMdanimContact::list()
   int last = 0;
   for (int i = 0; i < nlocal; ++i) {
     if (!(atom->mask[i] & among_bit) || atom->molecule[i] <= 0) continue;
-    if (world_of_contact.object(last).id != atom->molecule[i]) {
-      int low = 0, high = objects;
-      while (low < high) {
-        const int middle = (low + high) / 2;
-        (world_of_contact.object(middle).id < atom->molecule[i] ? low = middle + 1 : high = middle);
-      }
-      last = low;
-    }
+    if (ids[last] != atom->molecule[i])
+      last = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), atom->molecule[i]) - ids.begin());
     object[i] = last;
     here[last].include(atom->x[i]);
   }
@@ -299,25 +278,16 @@ void FixMdanimContact::list()
   std::vector<Vec3> places;
   for (const int i : mine) places.push_back(vec3(atom->x[i]));
 
+  // Of the numbers that ranks send in every step, three for each particle.
   counts.assign(comm->nprocs, 0);
-  starts.assign(comm->nprocs + 1, 0);
-  const int own = static_cast<int>(mine.size());
-  MPI_Allgather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-  std::partial_sum(counts.begin(), counts.end(), starts.begin() + 1);
-  const int total = starts.back(), first = starts[comm->me];
-  for (int r = 0; r < comm->nprocs; ++r) counts[r] *= 3;
-  std::vector<int> starts3;
-  for (int r = 0; r < comm->nprocs; ++r) starts3.push_back(3 * starts[r]);
-  if (comm->nprocs > 1) {
-    std::vector<int> two = counts, begin = starts3;
-    for (int r = 0; r < comm->nprocs; ++r) two[r] = two[r] / 3 * 2, begin[r] = begin[r] / 3 * 2;
-    std::vector<ContactParticle> all(total);
-    std::vector<Vec3> all_places(total);
-    MPI_Allgatherv(particles.data(), 2 * own, MPI_INT, all.data(), two.data(), begin.data(), MPI_INT, world);
-    MPI_Allgatherv(places.data(), 3 * own, MPI_DOUBLE, all_places.data(), counts.data(), starts3.data(), MPI_DOUBLE, world);
-    particles = std::move(all), places = std::move(all_places);
-  }
-  starts = std::move(starts3);
+  starts.assign(comm->nprocs, 0);
+  const int own = static_cast<int>(mine.size()), numbers = 3 * own;
+  MPI_Allgather(&numbers, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+  std::exclusive_scan(counts.begin(), counts.end(), starts.begin(), 0);
+  const int first = starts[comm->me] / 3;
+  particles = gather(world, particles);
+  places = gather(world, places);
+  const int total = static_cast<int>(particles.size());
   received.resize(3 * static_cast<std::size_t>(total));
   sent.resize(3 * static_cast<std::size_t>(own));
 
@@ -360,22 +330,22 @@ template <class PlaceOf> void FixMdanimContact::step(const PlaceOf &place_of, do
   world_of_contact.step(dt);
 }
 
-void FixMdanimContact::setup(int)
+// With particles where LAMMPS has them.
+void FixMdanimContact::push(double dt)
 {
   const Lap lap(seconds);
-  world_of_contact.account.deepest = 0.0;
-  step([this](std::size_t n) { return vec3(atom->x[mine[n]]); }, 0.0);
+  step([this](std::size_t n) { return vec3(atom->x[mine[n]]); }, dt);
   for (std::size_t n = 0; n < mine.size(); ++n)
     if (atom->mask[mine[n]] & groupbit) add_to(atom->f[mine[n]], world_of_contact.forces()[my_slot[n]]);
 }
 
-void FixMdanimContact::post_force(int)
+void FixMdanimContact::setup(int)
 {
-  const Lap lap(seconds);
-  step([this](std::size_t n) { return vec3(atom->x[mine[n]]); }, update->dt);
-  for (std::size_t n = 0; n < mine.size(); ++n)
-    if (atom->mask[mine[n]] & groupbit) add_to(atom->f[mine[n]], world_of_contact.forces()[my_slot[n]]);
+  world_of_contact.account.deepest = 0.0;
+  push(0.0);
 }
+
+void FixMdanimContact::post_force(int) { push(update->dt); }
 
 void FixMdanimContact::append_required_atoms(std::vector<int> &particles) const
 { particles.insert(particles.end(), mine.begin(), mine.end()); }

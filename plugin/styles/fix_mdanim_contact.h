@@ -60,15 +60,15 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
   void take_objects();
   void list();
   template <class PlaceOf> void step(const PlaceOf &place_of, double dt);
+  void push(double dt);
 
   mdanim::ParticleValue kind, young, friction;
   int among_bit = 1;
-  bool has_damping = false;
   std::map<int, mdanim::ContactBody> bodies;
   std::optional<mdanim::StateRecords> restarted;    // of a restart file, until bodies are there
   mdanim::ContactWorld world_of_contact;
 
-  std::vector<tagint> lowest;         // tags, of objects
+  std::vector<tagint> ids, lowest;    // of objects: molecule IDs, ascending, and lowest tags
   std::vector<int> object;            // of local particles when lists were made, -1 for none
   std::vector<int> mine;              // local particles with a part in contacts
   std::vector<int> my_slot;           // and where they are in the world

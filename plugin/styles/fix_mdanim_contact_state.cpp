@@ -82,8 +82,8 @@ void FixMdanimContact::unpack(const StateRecords &records)
   const auto is_point = [&](int object_id, int point) {
     return point >= 0 && point < static_cast<int>(body_of.at(object_id)->points().size());
   };
-  std::map<ContactWorld::PairKey, std::pair<std::vector<FieldContact>, std::vector<FieldContact>>> pairs;
-  std::map<int, std::vector<PlaneContact>> planes;
+  ContactWorld::PairContacts pairs;
+  ContactWorld::PlaneContacts planes;
   for (const auto &[key, bytes] : records) {
     const std::string what = key.b ? fmt::format("objects {} and {}", key.a, key.b) : fmt::format("object {}", key.a);
     const auto bad = [&](const char *why) { throw std::runtime_error(fmt::format("the record of {} {}", what, why)); };

@@ -3,6 +3,8 @@
 
 #include "styles/stateful.h"
 
+#include "styles/rank_gather.h"
+
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
@@ -29,25 +31,6 @@ constexpr std::int64_t RESTART_VERSION = 1;
 struct RestartHead {
   std::int64_t version, records, bytes;
 };
-
-// What all ranks have of something, one rank after the other.
-template <class T> std::vector<T> gather(const LAMMPS *lmp, const std::vector<T> &here)
-{
-  const int ranks = lmp->comm->nprocs;
-  const double most = [&] {
-    double all = 0.0, own = static_cast<double>(here.size() * sizeof(T));
-    MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
-    return all;
-  }();
-  if (most > INT_MAX) fail("a state of {:.3g} bytes is too large to be gathered from ranks", most);
-  const int size = static_cast<int>(here.size() * sizeof(T));
-  std::vector<int> sizes(ranks), starts(ranks);
-  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, lmp->world);
-  std::exclusive_scan(sizes.begin(), sizes.end(), starts.begin(), 0);
-  std::vector<T> all((starts.back() + sizes.back()) / sizeof(T));
-  MPI_Allgatherv(here.data(), size, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE, lmp->world);
-  return all;
-}
 
 template <class T> void append(Bytes &bytes, const T &value)
 {
@@ -160,7 +143,7 @@ ParticleRows::ParticleRows(LAMMPS *lmp, std::int64_t version, int width) : lmp(l
     if (here.empty() || here.back().id != atom.molecule[i]) here.push_back({static_cast<int>(atom.molecule[i]), atom.tag[i]});
     here.back().lowest = std::min(here.back().lowest, atom.tag[i]);
   }
-  objects = gather(lmp, here);
+  objects = gather(lmp->world, here);
   std::sort(objects.begin(), objects.end(),
             [](const Object &p, const Object &q) { return std::tie(p.id, p.lowest) < std::tie(q.id, q.lowest); });
   const auto last = std::unique(objects.begin(), objects.end(), [](const Object &p, const Object &q) { return p.id == q.id; });
@@ -185,8 +168,8 @@ void ParticleRows::add(int i, const void *from)
 
 void ParticleRows::pack(StateRecords &into) const
 {
-  const std::vector<Row> all = gather(lmp, rows);
-  const Bytes all_values = gather(lmp, values);
+  const std::vector<Row> all = gather(lmp->world, rows);
+  const Bytes all_values = gather(lmp->world, values);
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) { return all[p] < all[q]; });

@@ -20,6 +20,16 @@ from mdanim_lammps.scene.shapes import Box
 
 ARRAYS = ("count", "edge", "node", "filled", "cell", "at", "centre", "normal", "area", "kind", "depth")
 COLUMNS = ("body", "young", "friction", "moves")
+MEMORY = [
+    ("offset", "f8"),
+    ("depth", "f8"),
+    ("pull", "f8", 3),
+    ("stick", "f8"),
+    ("stick_energy", "f8"),
+    ("damping", "f8"),
+    ("drag", "f8", 3),
+]
+"""ContactMemory in plugin/laws/contact.h."""
 FIELD = np.dtype(
     [
         ("point", "i4"),
@@ -29,33 +39,14 @@ FIELD = np.dtype(
         ("X", "f8", 3),
         ("change", "f8", 3),
         ("anchor", "f8", 3),
-        ("offset", "f8"),
-        ("depth", "f8"),
-        ("pull", "f8", 3),
-        ("stick", "f8"),
-        ("stick_energy", "f8"),
-        ("damping", "f8"),
-        ("drag", "f8", 3),
+        *MEMORY,
         ("force", "f8", 3),
         ("moved", "f8", 3),
         ("energy", "f8"),
     ]
 )
 """FieldContact in plugin/contact/contact_field.h."""
-PLANE = np.dtype(
-    [
-        ("point", "i4"),
-        ("plane", "i4"),
-        ("anchor", "f8", 3),
-        ("offset", "f8"),
-        ("depth", "f8"),
-        ("pull", "f8", 3),
-        ("stick", "f8"),
-        ("stick_energy", "f8"),
-        ("damping", "f8"),
-        ("drag", "f8", 3),
-    ]
-)
+PLANE = np.dtype([("point", "i4"), ("plane", "i4"), ("anchor", "f8", 3), *MEMORY])
 """PlaneContact in plugin/contact/plane_field.h."""
 
 
