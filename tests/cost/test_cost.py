@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from mdanim_lammps.cost import calibration as calibrating
 from mdanim_lammps.cost.calibration import RATES, calibration, stored_at
-from mdanim_lammps.cost.forecast import fastest, forecast, rebuilds
+from mdanim_lammps.cost.forecast import fastest, forecast, moves, rebuilds
+from mdanim_lammps.cost.meetings import meetings
 from mdanim_lammps.effects import EFFECTS, springs
 from mdanim_lammps.effects.springs import fullness
 from mdanim_lammps.report import check_json, cost_line, forecast_line
@@ -194,6 +195,62 @@ def test_speeds_come_from_falls(prepared):
     )
     assert fastest(prepared(text.format("ground z 0"))) == pytest.approx(2.5 * (2 * 9.81) ** 0.5)
     assert fastest(prepared(text.format(""))) == pytest.approx(0.5 * 9.81, rel=1e-3)
+
+
+STACK = """gravity (0, 0, -9.81)
+ground z 0
+repeat k in 0 .. 2 {{
+  object cube[k] {{
+    shape {shape}
+    position ({apart}*k, 0, 0.1 + {step}*k)
+    density 1000
+    elasticity 1 MPa
+  }}
+}}
+control {{ time {time} resolution 5 cm friction 0.5 }}
+"""
+BOX, BALL = "box (0.2, 0.2, 0.2)", "sphere 0.1"
+
+
+def surfaces(prepared, **text):
+    """What is near in a stack of three, and the forecast with a rate of 1 for everything."""
+    ready = prepared(STACK.format(**{"shape": BOX, "apart": 0.0, "step": 0.2, "time": 1} | text))
+    return meetings(ready), forecast(ready, RATE), ready
+
+
+def test_what_lies_on_another_touches(prepared):
+    """Count a side of both for each pair of cubes that lie on each other, and one for the plane; count particles once."""
+    met, _, _ = surfaces(prepared)
+    side = 6 * 5**2 / 6
+    assert met["contact"].touching == pytest.approx(4 * side)
+    assert met["ground"].touching == pytest.approx(side)
+    assert met["contact"].handed == 3 * 125
+    assert 0.5 * 6 * 150 < met["contact"].near <= 6 * 150
+    balls, _, _ = surfaces(prepared, shape=BALL)
+    assert balls["contact"].touching < 0.3 * balls["contact"].near
+
+
+def test_what_is_far_away_is_not_watched(prepared):
+    """Watch nothing where gaps are ten spacings; expect that two sides touch for a fifth of the time nevertheless."""
+    met, _, _ = surfaces(prepared, step=0.7, time=0.3)
+    assert met["contact"].touching == pytest.approx(0.2 * 2 * 2 * 25)
+    near, _, _ = surfaces(prepared, step=0.3, time=0.3)
+    assert met["contact"].near < 0.1 * near["contact"].near
+    assert met["contact"].handed < 3 * 125
+
+
+def test_forecast_of_surfaces_counts_what_is_near(prepared):
+    """Multiply what touches and what is handed by steps, and what is near by how far objects move."""
+    met, told, ready = surfaces(prepared)
+    steps, m = ready.certificate.steps, met["ground"]
+    assert told.effects["ground"].seconds == pytest.approx(steps * (m.touching + m.handed) + moves(ready) * m.near)
+    assert forecast(ready, RATE | {"near point": 2.0}).effects["contact"].seconds - told.effects["contact"].seconds == (
+        pytest.approx(moves(ready) * met["contact"].near)
+    )
+    assert (
+        meetings(prepared(STACK.replace("friction 0.5", "contact-model paper").format(shape=BOX, apart=0, step=0.23, time=1)))
+        == {}
+    )
 
 
 def test_forecast_is_printed(pond):

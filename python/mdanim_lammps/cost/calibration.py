@@ -43,6 +43,11 @@ RATES = {
     "contact": "looking for objects that meet, per particle and rebuild [s]",
     "pair": "a step of a pair of particles within reach [s]",
     "wall": "finding particles near a wall, per particle and rebuild [s]",
+    "handed": "a step of a particle that is handed to contact at surfaces [s]",
+    "touching point": "a step of a point of a surface that touches another object [s]",
+    "on plane": "a step of a point that touches a plane [s]",
+    "near point": "watching a point near another object from one rebuild of lists to the next [s]",
+    "near plane": "the same of a point near a plane [s]",
     "coupling": "a step of a particle in a liquid [s]",
     "cell": "a sweep of a cell of a liquid, with levelling [s]",
     "solid": "looking where a lattice cell of a solid is in a liquid [s]",
@@ -51,7 +56,7 @@ RATES = {
     "immersed": "measuring for a frame how much of a lattice cell is immersed [s]",
 }
 """What is measured, and in which unit."""
-METHOD = 3
+METHOD = 4
 """To be counted up whenever a rate gets another meaning, or the plugin another speed: stored ones are then measured again."""
 WIDE = frozenset({"avx512f", "avx512vl", "avx512dq"})
 """What a processor must have for the widest vectors of the plugin (has_avx512 in plugin/engine/blocks.cpp)."""
@@ -175,6 +180,44 @@ control {{
   contact-model paper
 }}
 """
+SLABS = """
+gravity (0, 0, -{g})
+ground z 0
+repeat k in 0 .. {last} {{
+  object slab[k] {{
+    shape box (13, 13, 4) cm
+    position (0, 0, 4*k + 2 + {gap}) cm
+    density 1000
+    elasticity 1 MPa
+  }}
+}}
+control {{
+  time 1 s
+  resolution 1 cm
+  friction 0.5
+}}
+"""
+BALLS = """
+ground z 0
+object lower {{
+  shape sphere 3 cm
+  position (0, 0, 4) cm
+  density 1000
+  elasticity 1 MPa
+  spin ({v}/0.03, 0, 0) rad/s
+}}
+object upper {{
+  shape sphere 3 cm
+  position (0, 0, 11) cm
+  density 1000
+  elasticity 1 MPa
+}}
+control {{
+  time 1 s
+  resolution 1 cm
+  friction 0.5
+}}
+"""
 POOL = """
 gravity (0, 0, -9.81)
 liquid water {
@@ -235,6 +278,7 @@ def measure() -> dict[str, float]:
     rates["rebuild"] = max(1e-9, EVERY * (moving["rest"] - large["rest"]) / large["particles"])
     rates["contact"], rates["wall"] = (max(1e-10, EVERY * moving[k] / large["particles"]) for k in ("contact", "ground"))
     rates["pair"] = _pairs(Instance)
+    rates |= _surfaces(Instance)
     rates |= _pool(Instance)
     rates["lone particle"] = max(1e-11, rates["lone particle"] - rates["particle"])
     rates["frame"], rates["byte"] = _frames()
@@ -307,6 +351,43 @@ def _pairs(Instance) -> float:
             instance.run(TOUCH)
             found.append((instance.fix_seconds("contact") - before) / (TOUCH * pairs))
         return max(1e-10, min(found))
+
+
+def _surfaces(Instance) -> dict[str, float]:
+    """Contact at surfaces: a slab over the ground, two that lie on it, and a ball that turns between the ground and another."""
+    from ..effects.contact_surface import SECONDS, TOUCHING
+    from .meetings import facing
+
+    def clocks(instance, *fixes: str) -> dict[str, Callable[[], float]]:
+        return {fix: (lambda fix=fix: instance.fix_value(fix, SECONDS)) for fix in fixes}
+
+    ready = _prepare(SLABS.format(g=1e-6, last=0, gap=1))
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        handed = _least(instance, clocks(instance, "ground"))["ground"] / ready.system.particles
+    ready = _prepare(SLABS.format(g=9.81, last=1, gap=0))
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(TOUCH)
+        step = _least(instance, clocks(instance, "contact", "ground"))
+        touching = {fix: instance.fix_value(fix, TOUCHING) for fix in ("contact", "ground")}
+    lying = ready.system.particles / 2
+    timestep = ready.certificate.timestep
+    ready = _prepare(BALLS.format(v=0.5 * SKIN * 0.01 / (EVERY * timestep)))
+    each = EVERY * timestep / ready.certificate.timestep  # steps from one rebuild to the next
+    ball = ready.system.particles / 2
+    points = len(ready.system.contact_bodies[0].at) * facing(1.0)
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        turning = _least(instance, clocks(instance, "contact", "ground"))
+    found = {
+        "handed": handed,
+        "touching point": (step["contact"] - 2 * lying * handed) / touching["contact"],
+        "on plane": (step["ground"] - lying * handed) / touching["ground"],
+        "near point": each * (turning["contact"] - 2 * ball * handed) / (2 * points),
+        "near plane": each * (turning["ground"] - ball * handed) / points,
+    }
+    return {name: max(1e-10, seconds) for name, seconds in found.items()}
 
 
 def _pool(Instance) -> dict[str, float]:

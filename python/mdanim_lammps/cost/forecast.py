@@ -15,6 +15,7 @@ from ..results.expect import recorded
 from ..results.trajectory_file import trajectory_bytes
 from ..run.prepare import Prepared
 from .calibration import lanes
+from .meetings import meetings
 
 RINGING = 2.5
 """Mean speed of the fastest particle over the speed of an impact, where nothing damps what the impact sets off."""
@@ -38,6 +39,8 @@ def forecast(ready: Prepared, rates: dict[str, float], *, setup: float | None = 
         c.steps,
         rebuilds(ready),
         fullness(system.spring, lanes(ready.plan.damped)),
+        moves(ready),
+        meetings(ready),
     )
     alone = load.mobile if "buoyancy" in load.on else 0
     effects = {}
@@ -65,8 +68,21 @@ def forecast(ready: Prepared, rates: dict[str, float], *, setup: float | None = 
 
 def rebuilds(ready: Prepared) -> float:
     """How often LAMMPS will rebuild its lists: whenever the fastest particle has moved by half the skin, at most every step."""
-    c, way = ready.certificate, 0.5 * SKIN * float(ready.system.spacing.max())
-    return min(float(c.steps), fastest(ready) * ready.scene.control.time / way)
+    return min(float(ready.certificate.steps), fastest(ready) * ready.scene.control.time / _half_skin(ready))
+
+
+def moves(ready: Prepared) -> float:
+    """How often an object moves by half the skin: vibrations that only single particles have are no way."""
+    return CALMED * float(_reachable(ready).max()) * ready.scene.control.time / _half_skin(ready)
+
+
+def _half_skin(ready: Prepared) -> float:
+    return 0.5 * SKIN * float(ready.system.spacing.max())
+
+
+def _reachable(ready: Prepared) -> np.ndarray:
+    """Speed that each solid may reach by its start and its fall [m/s], shape (M,)."""
+    return Envelope(ready.resolved, ready.system, {}, ready.certificate.timestep).speed
 
 
 def fastest(ready: Prepared) -> float:
@@ -75,7 +91,7 @@ def fastest(ready: Prepared) -> float:
     scene, system, on = ready.scene, ready.system, {e.name for e in ready.plan.effects}
     if on & {"contact", "ground", "walls", "basin"}:
         usual = WET if "buoyancy" in on else CALMED if on & {"damping", "air-drag"} else RINGING
-        return usual * float(Envelope(ready.resolved, system, {}, ready.certificate.timestep).speed.max())
+        return usual * float(_reachable(ready).max())
     free = ~np.logical_or.reduceat(system.held, system.first[:-1])[system.object]
     gained = scene.control.time * np.array(scene.gravity) * ("gravity" in on)
     ends = [np.linalg.norm(system.velocity[free] + gain, axis=1).max(initial=0.0) for gain in (0.0, gained)]

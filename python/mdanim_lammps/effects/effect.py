@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -31,6 +31,18 @@ class Verdict:
 
 
 @dataclass(frozen=True, slots=True)
+class Meeting:
+    """What contact at surfaces has to do, in the mean of a run."""
+
+    near: float
+    """Points that are watched because another object, or a plane, is near, counted for each of them."""
+    handed: float
+    """Particles around them."""
+    touching: float
+    """Points that touch."""
+
+
+@dataclass(frozen=True, slots=True)
 class Load:
     """How much work a run will be, as far as that can be told before it."""
 
@@ -43,6 +55,10 @@ class Load:
     """How often neighbour lists will be rebuilt."""
     fullness: float = 1.0
     """How well springs fill the lanes of the vector unit (springs.py)."""
+    moves: float = 0.0
+    """How often an object that has come to its speed will have moved by half the skin of lists."""
+    meetings: Mapping[str, Meeting] = field(default_factory=dict)
+    """Of every effect that acts at surfaces, by its name."""
 
     @property
     def mobile(self) -> int:
