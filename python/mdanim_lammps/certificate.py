@@ -22,6 +22,7 @@ from .effects import Effect, Resolved
 from .effects.envelope import Envelope
 from .effects.margin import Margin
 from .effects.resting import frictionless, slopes
+from .effects.standing import towers
 from .errors import Problem, RefusedError, SceneError, Span
 from .model.system import System
 from .scene.formatting import estimate, number, say
@@ -254,10 +255,10 @@ def _margins(resolved: Resolved, envelope: Envelope, limit: np.ndarray) -> list[
 
 
 def _notes(envelope: Envelope) -> list[Problem]:
-    """Those of the effects, and what slides."""
+    """Those of the effects, what slides, and what will not stand."""
     if not envelope.moving.any():
         return []
-    return [*(n for e in envelope.on for n in e.notes(envelope)), *frictionless(envelope), *slopes(envelope)]
+    return [*(n for e in envelope.on for n in e.notes(envelope)), *frictionless(envelope), *slopes(envelope), *towers(envelope)]
 
 
 def _bounds(env: Envelope, limit: np.ndarray) -> list[Margin]:

@@ -8,6 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..errors import Problem
+from ..model.model import Layer
 from ..model.sweep import closest
 from ..model.system import System
 from ..model.touching import REACH, THIN, WAY_NAMES, touching
@@ -49,14 +50,12 @@ def plane_stiffness(reach: float) -> float:
     return float(np.linalg.eigvalsh(hessian)[:, -1].max())
 
 
-def barrier(fix: str, system: System, own_thin: bool = True) -> list[str]:
-    """Commands for a barrier of this name, with the columns ``stiffness`` and ``reach``; ``own_thin``: whether what has no inner
-    particles is its own barrier."""
-    groups = ["group inner type 1 2 5 6", "group boundary type 3 4 7 8"]
+def barrier(fix: str, system: System, thin: tuple[str, ...] = ("group thin type 4 8",)) -> list[str]:
+    """Commands for a barrier of this name, with the columns ``stiffness`` and ``reach``; ``thin`` make the group of what is a
+    barrier itself, as nothing is inside."""
+    groups = ["group inner type 1 2 5 6", "group boundary type 3 4 7 8", *thin]
     words = f"fix {fix} mobile mdanim/barrier boundary inner d_stiffness d_reach"
-    if not own_thin:
-        return [*groups, words]
-    return [*groups, "group thin type 4 8", f"{words} thin thin {THIN!r}" if (system.layer == 4).any() else words]
+    return [*groups, f"{words} thin thin {THIN!r}" if (system.layer == Layer.THIN).any() else words]
 
 
 def barrier_rate(system: System, s: np.ndarray, reach: float) -> np.ndarray:
@@ -79,7 +78,6 @@ def closing_speeds(system: System, g: float, fall: np.ndarray) -> np.ndarray:
 class Contact(Effect):
     name = "contact"
     fix = "contact"
-    tunnel = TUNNEL
     ledger = "contact"
     keeps_apart = True
     if_off = "objects pass through each other"
@@ -118,12 +116,16 @@ class Contact(Effect):
     def margins(self, envelope):
         return [*envelope.own_step("contact", envelope.rates[self.name]), self._closing_speed(envelope)]
 
+    def tunnelling(self, envelope: Envelope) -> np.ndarray:
+        """Closing speed over the wave speed from which each solid is passed through, shape (M,)."""
+        return np.array(TUNNEL)[np.clip(np.rint(envelope.cells).astype(int), 1, len(TUNNEL)) - 1]
+
     def _closing_speed(self, envelope: Envelope) -> Margin:
         """Speed at which each solid may meet another."""
         system = envelope.system
         closing = closing_speeds(system, envelope.g, envelope.fall())
         # A held partner may be met at full speed, the softer of two is the one that is passed through.
-        limit = np.array(self.tunnel)[np.clip(np.rint(envelope.cells).astype(int), 1, len(self.tunnel)) - 1] * envelope.wave
+        limit = self.tunnelling(envelope) * envelope.wave
         soft = system.contact_factor < 1.0
         limit *= system.contact_factor**SOFTER if soft else 1.0
         weakest = int(limit.argmin())

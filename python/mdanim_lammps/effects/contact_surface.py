@@ -10,14 +10,17 @@ from itertools import product
 import numpy as np
 
 from ..errors import Problem
+from ..model.boxes import box_pairs
 from ..model.contact_body import ContactBody
+from ..model.model import Layer
+from ..model.overlap import BORN_AT_REST
 from ..model.planes import AXES, scene_planes
 from ..model.sweep import on
 from ..model.system import System
 from ..scene.contact_pairs import USUAL_DAMPING, damping, frictions, pair_rules
 from ..scene.scene import Box, Scene
 from .boundaries import Boundary, GroundPlane, WallPlanes
-from .contact import TUNNEL, Contact, barrier, barrier_rate, closing_speeds, largest_of_others
+from .contact import Contact, barrier, barrier_rate, closing_speeds, largest_of_others
 from .effect import Effect
 from .envelope import heights, wave_speed
 from .liquid import Basin
@@ -30,6 +33,11 @@ SPARE = 1.6
 one direction at once, and what `rate` counts too much covers the usual damping."""
 SLOW = 0.3
 """Closing speed over the wave speed up to which a short barrier stops all that meets."""
+SLOW_NEEDLE = 0.1
+"""The same of what is one cell across along two axes."""
+UNGUARDED, NEEDLE = 0.35, 0.2
+"""Closing speed over the wave speed from which something passes what is one cell thin and no barrier (`guards`), and what is one
+cell across along two axes (bench/contact.py)."""
 HEAT, DAMPED, LET_GO = "friction_heat", "contact_damping_loss", "let_go"
 """Columns of the ledger."""
 TAKEN = {HEAT: 1, DAMPED: 2, LET_GO: 3}
@@ -118,8 +126,7 @@ class SurfaceContact(OnSurfaces, Contact):
 
     rates = ("near point", "touching point")
     behind = "barrier"
-    """ID of the barrier's fix. What has no inner particles is no barrier of its own: its faces coincide with what it touches."""
-    tunnel = (0.35, *TUNNEL[1:])
+    """ID of the barrier's fix."""
 
     @property
     def fixes(self):
@@ -128,7 +135,20 @@ class SurfaceContact(OnSurfaces, Contact):
     def columns(self, scene, system):
         own = super().columns(scene, system)
         reach = self.barrier_reach(scene, system)[system.object]
-        return {**own, "stiffness": self.barrier_stiffness(scene, system), "reach": reach}
+        own |= {"stiffness": self.barrier_stiffness(scene, system), "reach": reach}
+        thin = system.layer == Layer.THIN
+        return {**own, "thin": (thin & self.guards(scene, system)[system.object]).astype(float)} if thin.any() else own
+
+    def guards(self, scene: Scene, system: System) -> np.ndarray:
+        """Solids whose surface is a barrier where nothing is inside, bool, shape (M,): those that may be met fast. The faces of
+        what touches at the start coincide."""
+        found = fast(scene, system)
+        if found.any():
+            low, high = system.bounds(system.position)
+            gap = 0.5 * BORN_AT_REST * system.spacing.max()
+            for i, j in box_pairs(low - gap, high + gap):
+                found[i] = found[j] = False
+        return found
 
     def barrier_stiffness(self, scene: Scene, system: System) -> np.ndarray:
         """Of each particle [N/m], shape (N,); 0 without a barrier.
@@ -145,7 +165,16 @@ class SurfaceContact(OnSurfaces, Contact):
 
     def commands(self, scene, system):
         rules = [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for i, j, mu, beta in pair_rules(scene, system.names)]
-        return [*self.law(scene, " ".join(["objects", *rules])), *barrier(self.behind, system, own_thin=False)]
+        return [*self.law(scene, " ".join(["objects", *rules])), *barrier(self.behind, system, self.thin(system))]
+
+    def tunnelling(self, envelope):
+        found, system = super().tunnelling(envelope), envelope.system
+        bare = (envelope.cells < 1.5) & ~self.guards(envelope.scene, system)
+        return np.minimum(found, np.where(needles(system), NEEDLE, np.where(bare, UNGUARDED, np.inf)))
+
+    def thin(self, system: System) -> tuple[str, ...]:
+        """Commands that make the group of `guards`."""
+        return ("variable thin atom d_thin", "group thin variable thin") if (system.layer == Layer.THIN).any() else ()
 
     def rate(self, scene, system):
         """A contact is a spring along one direction, kappa w G G^T with node weights whose sum is 2: those of the point and those
@@ -282,4 +311,10 @@ def fast(scene: Scene, system: System) -> np.ndarray:
     """Solids that may meet others at more than SLOW of the wave speed of the softest, as if through air, bool, shape (M,)."""
     g = max(0.0, -scene.gravity[2]) * on(scene, "gravity")
     bottom, floor = heights(system, [p for p in scene_planes(scene) if on(scene, p.effect)])
-    return closing_speeds(system, g, bottom - floor) > SLOW * float(wave_speed(system).min())
+    slow = np.where(needles(system), SLOW_NEEDLE, SLOW)
+    return closing_speeds(system, g, bottom - floor) > slow * float(wave_speed(system).min())
+
+
+def needles(system: System) -> np.ndarray:
+    """Solids that are one cell across along two axes, bool, shape (M,)."""
+    return np.array([np.sort(frame.cells.count)[1] == 1 for frame in system.frames])[system.contact_kind]

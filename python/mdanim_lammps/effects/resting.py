@@ -29,7 +29,7 @@ def frictionless(envelope: Envelope) -> list[Problem]:
     if any_friction(scene) or envelope.g <= 0.0 or not envelope.moving.any():
         return []
     sinks = (envelope.moving & (envelope.weight_left() > 0.0)).any()
-    if not any(sinks or p.effect != "basin" for p in _floors(envelope)):
+    if not any(sinks or p.effect != "basin" for p in floors(envelope)):
         low, high = system.bounds(system.position)
         holding = np.logical_or.reduceat(system.held, system.first[:-1])
         met = any(e.keeps_apart for e in envelope.on) and holding.any()
@@ -51,7 +51,7 @@ def slopes(envelope: Envelope) -> list[Problem]:
     if envelope.g <= 0.0 or not envelope.moving.any():
         return []
     found, own = _Slopes(envelope), np.array(frictions(envelope.scene))
-    steep = [row for row in (*found.on_floors(), *found.on_solids(own)) if row[0] > row[1]]
+    steep = [row for row in (*found.onfloors(), *found.on_solids(own)) if row[0] > row[1]]
     if not steep:
         return []
     tangent, mu, m, word, slope = max(steep, key=lambda row: row[0] / row[1])
@@ -66,7 +66,7 @@ def slopes(envelope: Envelope) -> list[Problem]:
     ]
 
 
-def _floors(envelope: Envelope) -> list[Plane]:
+def floors(envelope: Envelope) -> list[Plane]:
     """Planes that objects may lie on."""
     return [p for p in envelope.planes if p.axis == 2 and p.sign > 0]
 
@@ -80,9 +80,9 @@ class _Slopes:
         rolling = np.array([isinstance(s.shape, ROLLING) for s in self.scene.solids])
         self.sliding = envelope.moving & ~rolling
 
-    def on_floors(self) -> Iterator[Row]:
+    def onfloors(self) -> Iterator[Row]:
         tangent = math.hypot(*self.gravity[:2]) / -self.gravity[2]
-        for plane in _floors(self.envelope) if tangent > LEVEL else ():
+        for plane in floors(self.envelope) if tangent > LEVEL else ():
             yield from self._worst(tangent, np.array(frictions(self.scene, plane.effect)), self.sliding, plane.effect, plane.name)
 
     def on_solids(self, own: np.ndarray) -> Iterator[Row]:
