@@ -28,6 +28,7 @@ ROOMS = [
     "report",
     "api",
     "terminal",
+    "view",
     "command_steps",
     "cli",
     "__main__",

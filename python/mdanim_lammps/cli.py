@@ -9,6 +9,7 @@ import re
 import shlex
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -28,6 +29,7 @@ from .command_steps import (
     print_warnings,
     seconds_of,
     settle,
+    show_address,
     simulate_and_draw,
     with_accuracy,
 )
@@ -264,6 +266,33 @@ def render(
     draw_movie(folder, record, path, quiet=quiet, size=size, fps=fps, frames=folder / "frames" if frames else None)
     if not quiet:
         print(f"movie    {path}" + (f"   pictures in {folder / 'frames'}" if frames else ""))
+
+
+@app.command
+def view(
+    folder: Path,
+    /,
+    *,
+    port: Annotated[int, Parameter(converter=_whole_number)] = 0,
+    open_: Annotated[bool, Parameter(name="--open", negative="--no-open")] = True,
+) -> None:
+    """Look at a run in a browser: one that goes on, with its controls, or one that has ended. Ctrl-C ends it.
+
+    Parameters
+    ----------
+    folder
+        The output folder of a run.
+    port
+        Port of this machine on which the page is served; a free one unless it is given.
+    open
+        Open a browser where there is a display.
+    """
+    from .view.__main__ import serve
+
+    if not 0 <= port <= 65535:
+        raise UsageError(f"--port {port}: must be between 0 (any that is free) and 65535")
+    with suppress(KeyboardInterrupt):
+        serve(folder, port=port, on_address=lambda address, once: show_address(address, once if open_ else None))
 
 
 @app.command

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
 import shutil
@@ -162,6 +163,15 @@ def simulate_and_draw(ready, folder: Path, *, quiet: bool, movie: bool, **option
         print(f"movie    {file}" if movie else f"output   {folder}")
     if result.missed:
         raise SystemExit(ExitCode.DIVERGED)
+
+
+def show_address(address: str, once: str | None) -> None:
+    """Print where a view is to be seen; where there is a display, open a browser with the address that is good once."""
+    import webbrowser
+
+    print(f"view     {address}", flush=True)
+    if once and (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        webbrowser.open(once)
 
 
 def draw_movie(folder: Path, scene, path: Path, *, quiet: bool, **options) -> None:

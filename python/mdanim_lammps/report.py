@@ -113,6 +113,8 @@ def effect_line(verdict: Verdict) -> str:
 
 def progress_line(p: Progress) -> str:
     """The moving line of a run."""
+    if p.paused:
+        return f"t={p.time:.2f} s  paused; goes on when {p.paused} is deleted"
     each = p.seconds / max(1, p.step - p.first_step)
     left = each * (p.steps - p.step)
     liquid = "" if p.gained is None else f"liquid residual {p.gained}  "

@@ -42,6 +42,7 @@ def test_output_folder_is_complete(fall):
         "ledger.csv",
         "cost.json",
         "summary.json",
+        "progress.jsonl",
     } == names
 
 

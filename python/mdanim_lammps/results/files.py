@@ -24,6 +24,8 @@ PROGRAM = "mdanim-lammps"
 """Only a folder whose manifest says that this program made it is emptied by ``--force``."""
 STOP = "stop"
 """A file of this name in the run's folder stops the run as Ctrl-C does."""
+PAUSE = "pause"
+"""While a file of this name is in the run's folder, the run begins no further frame."""
 JOB = ".ranks-"
 """What the name of the file begins with by which a run is handed to its ranks, readable for its owner alone. The supervising rank
 empties the file when it has read it; the process that has started the ranks deletes it when it has the result."""

@@ -18,6 +18,9 @@ from ..results.checkpoint import Checkpoint
 from .energy import energies
 from .guard import fastest
 
+COST_SECONDS = 0.25
+"""Wall time between two words on what a run has cost so far."""
+
 
 @dataclass(frozen=True)
 class LiquidFrame:
@@ -67,6 +70,14 @@ class Account:
         for clock, seconds in clocks.items():
             mine[clock] = mine.get(clock, 0.0) + share * seconds
 
+    def add_all(self, other: Account, share: float = 1.0) -> None:
+        """Add a share of all that another account says."""
+        self.leapfrog += share * other.leapfrog
+        for effect, clocks in other.effects.items():
+            self.add(effect, clocks, share)
+        for kind, seconds in other.other.items():
+            self.other[kind] = self.other.get(kind, 0.0) + share * seconds
+
 
 class LammpsFailure(Exception):
     """LAMMPS has ended a run by itself; the guard says why."""
@@ -81,6 +92,9 @@ class LammpsFailure(Exception):
 class FrameSource(Protocol):
     """Gives the frames of a run in order. A context manager."""
 
+    executors: int
+    """Processes that simulate."""
+
     def begin(self, resume: Checkpoint | None) -> Frame | None:
         """Take up the start, and give frame 0; or the state of a checkpoint, and give nothing."""
 
@@ -94,11 +108,19 @@ class FrameSource(Protocol):
         """All that later steps depend on, at the last frame."""
 
     def account(self) -> Account:
-        """Where the time went."""
+        """Where the time went, at the end."""
+
+    def account_so_far(self) -> Account | None:
+        """Where the time went up to about now; None where that is not known yet. Does not wait."""
+
+    def new_owners(self) -> list[tuple[int, int]]:
+        """(object, executor) of objects that belong to another executor than at the frame before the last one."""
 
 
 class Sequential:
     """All objects in one LAMMPS instance in this process: Wcislo 1999, fig. 11."""
+
+    executors = 1
 
     def __init__(self, plan: Plan):
         self.plan = plan
@@ -131,6 +153,12 @@ class Sequential:
         account = Account()
         add_clocks(account, self.instance)
         return account
+
+    def account_so_far(self):
+        return self.account()
+
+    def new_owners(self):
+        return []
 
     def _frame(self) -> Frame:
         instance = self.instance

@@ -22,19 +22,22 @@ from ..errors import DivergedError, ExitCode, MdanimError, OutputError, Problem
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
 from ..results.expect import Measured, Outcome, evaluate, record, recorded
-from ..results.files import CHECKPOINT, STOP, disk_errors, write_json, write_whole
+from ..results.files import CHECKPOINT, PAUSE, STOP, disk_errors, write_json, write_whole
 from ..results.ledger import Ledger
+from ..results.progress import ProgressLog
 from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
 from ..scene.formatting import number
 from ..scene.meshes import mesh_files
 from .energy import ledger_terms, loss_terms, rounding_energy
-from .frame_source import Account, Frame, FrameSource, LammpsFailure, Sequential
+from .frame_source import COST_SECONDS, Account, Frame, FrameSource, LammpsFailure, Sequential
 from .guard import Guard
 from .prepare import Prepared
 
 CHECKPOINT_SECONDS = 10.0
 """Wall time between checkpoints: a killed run loses at most this much, and a fast one does not write all the time."""
+NAP = 0.01
+"""How long a paused run sleeps before it looks again whether to go on [s]."""
 
 
 @dataclass
@@ -54,6 +57,8 @@ class Progress:
     """Step from which these seconds count: not 0 after a resume."""
     gained: int | None = None
     """Whole cells of liquid more than at the start; None without a liquid."""
+    paused: str = ""
+    """The file that holds a paused run: it goes on when this is deleted. Empty while the run goes on."""
 
 
 @dataclass
@@ -109,7 +114,7 @@ def simulate(
     ``started`` is what ``time.perf_counter()`` gave when the work for this run began, so that loading and modelling are in its
     cost; None is now. ``source`` gives the frames; None is one LAMMPS instance in this process. Raises DivergedError with the
     last good frame kept, Interrupted after Ctrl-C or when a file ``stop`` appears in the folder,
-    OutputError when the disk is full.
+    OutputError when the disk is full. While a file ``pause`` is in the folder no frame is begun.
     """
     run = _Run(ready, folder, resume, time.perf_counter() if started is None else started, source or Sequential(ready.plan))
     return run.go(on_progress or (lambda progress: None))
@@ -165,59 +170,96 @@ class _Run:
     # --- the order of things ----------------------------------------------------------------------------------------
 
     def go(self, on_progress: Callable[[Progress], None]) -> Result:
+        ledger, resumed = self.ledger, self.resume.frame if self.resume else None
+        energies, frames = len(ledger.terms), len(self.certificate.lengths) + 1
+        with disk_errors(self.folder):
+            (self.folder / PAUSE).unlink(missing_ok=True)  # of a run that was killed while it was paused
+        with ProgressLog(
+            self.folder,
+            columns=ledger.columns,
+            energies=energies,
+            frames=frames,
+            executors=self.source.executors,
+            resumed=resumed,
+        ) as log:
+            return self._finish(self._frames(on_progress, log))
+
+    def _frames(self, on_progress: Callable[[Progress], None], log: ProgressLog) -> Account:
         c = self.certificate
         lengths = c.lengths
         frame, last = self.resume.frame if self.resume else 0, len(lengths)
         with self.source, _Stop(self.folder) as stop, self._open_trajectory() as out:
-            start = self.source.begin(self.resume)
+            now = self.source.begin(self.resume)
             if self.resume:
                 self._reread_ledger(frame)
             else:
-                self._record(out, start)
+                self._record(out, log, frame, now)
             self.seconds["setup"] = time.perf_counter() - self.started
-            if start:
+            if now:
                 with self._clock("output"):
-                    self._save(out, 0, start)
-            saved = time.perf_counter()
+                    self._save(out, 0, now)
+            saved = told = time.perf_counter()
             try:
                 while frame < last:
+                    if (self.folder / PAUSE).exists():
+                        if now and now.kept:
+                            self._save(out, frame, now)
+                        self._pause(stop, log, lambda at=frame: on_progress(self._progress(at)))
                     frame += 1
                     with self._clock("simulation"):
                         now = self._advance(frame, lengths[frame - 1])
                     with self._clock("guard"):
                         self.guard.check(now.step, now.x, now.v)
                     with self._clock("output"):
-                        row = self._record(out, now)
-                        on_progress(
-                            Progress(
-                                frame,
-                                len(lengths),
-                                now.step,
-                                c.steps,
-                                row["time"],
-                                row["residual"],
-                                self.seconds["simulation"],
-                                self.first_step,
-                                self._gained(),
-                            )
-                        )
+                        self._record(out, log, frame, now)
+                        on_progress(self._progress(frame))
                         if stop.is_set():
                             last = self.source.stop(frame)
                         if now.kept and (frame == last or time.perf_counter() - saved > CHECKPOINT_SECONDS):
                             self._save(out, frame, now)
                             saved = time.perf_counter()
+                        if time.perf_counter() - told > COST_SECONDS and (so_far := self.source.account_so_far()):
+                            log.cost(self._cost(so_far).parts)
+                            told = time.perf_counter()
             except BaseException:
                 self._write_ledger()  # without an error the last frame has done so
                 raise
             if last < len(lengths):
                 insist = " --allow-unstable" if c.fraction > 1.0 else ""
+                when = self.ledger.rows[-1]["time"]
                 raise Interrupted(
-                    f"interrupted at t = {number(row['time'], 4)} s; go on with: mdanim-lammps resume {self.folder}{insist}"
+                    f"interrupted at t = {number(when, 4)} s; go on with: mdanim-lammps resume {self.folder}{insist}"
                 )
             account = self.source.account()
             closing = time.perf_counter()
         self.seconds["output"] += time.perf_counter() - closing
-        return self._finish(account)
+        return account
+
+    def _progress(self, frame: int) -> Progress:
+        c, row = self.certificate, self.ledger.rows[-1]
+        step = min(frame * c.steps_per_frame, c.steps)
+        seconds, paused = self.seconds["simulation"], self.folder / PAUSE
+        return Progress(
+            frame,
+            len(c.lengths),
+            step,
+            c.steps,
+            row["time"],
+            row["residual"],
+            seconds,
+            self.first_step,
+            self._gained(),
+            str(paused) if paused.exists() else "",
+        )
+
+    def _pause(self, stop: _Stop, log: ProgressLog, tell: Callable[[], None]) -> None:
+        """Sleep until the file ``pause`` is gone, or a stop is asked for."""
+        log.state("paused")
+        tell()
+        with self._clock("paused"):
+            while (self.folder / PAUSE).exists() and not stop.is_set():
+                time.sleep(NAP)
+        log.state("running")
 
     def _advance(self, frame: int, steps: int) -> Frame:
         try:
@@ -308,8 +350,9 @@ class _Run:
             grid=self.grid,
         )
 
-    def _record(self, out: TrajectoryWriter, now: Frame) -> dict[str, float]:
-        """Check the state, then append it to ledger and trajectory. Raises DivergedError before anything bad is written."""
+    def _record(self, out: TrajectoryWriter, log: ProgressLog, frame: int, now: Frame) -> None:
+        """Check the state, then append it to ledger and trajectory, and tell of it. Raises DivergedError before anything bad is
+        written."""
         system, when, pool = self.ready.system, now.step * self.certificate.timestep, now.pool
         extras = {
             column: record(quantity, system, self.ready.models[system.names.index(name)], now.x, pool and pool.heights[0])
@@ -329,7 +372,7 @@ class _Run:
         self.ledger.rows.append(row)
         self.penetration = max(self.penetration, now.penetration)
         out.write(now.step, when, now.x, now.v, pool and pool.heights)
-        return row
+        log.frame(frame, row, self.seconds["simulation"], self.source.new_owners())
 
     def _gained(self) -> int | None:
         """Whole cells of liquid more than at the start: 0, or something is wrong; None without a liquid."""
@@ -367,13 +410,17 @@ class _Run:
         return _Clock(self.seconds, what)
 
     def _cost(self, account: Account) -> Cost:
-        """The account of the whole run, to be asked for at its end."""
+        """The account of the run so far."""
         parts = {}
         for effect in self.effects:
             span, clocks = self.ready.verdicts[effect.name].span, account.effects.get(effect.name, {})
             parts[effect.name] = CostShare(sum(clocks.values()), str(span) if span else None, clocks if len(clocks) > 1 else {})
         known = sum(p.seconds for p in parts.values()) + account.leapfrog + sum(account.other.values())
         other = {name: s for name, s in self.seconds.items() if name != "simulation"}
+        other |= {kind: s for kind, s in account.other.items() if kind not in other}
+        if "held" in other and "paused" in other:  # executors of a paused run are held
+            other["held"] = max(0.0, other["held"] - other["paused"])
+            known -= account.other["held"] - other["held"]
         beside = max(0.0, known - self.seconds["simulation"])
         for name in ("output", "guard"):  # what executors did meanwhile is theirs: these tell what the run has waited for
             spared = min(beside, other.get(name, 0.0))
@@ -383,12 +430,7 @@ class _Run:
             steps=self.certificate.steps,
             particles=self.ready.system.particles,
             effects=parts,
-            other={
-                LEAPFROG: account.leapfrog,
-                "rest of the step": max(0.0, self.seconds["simulation"] - known),
-                **account.other,
-                **other,
-            },
+            other={LEAPFROG: account.leapfrog, "rest of the step": max(0.0, self.seconds["simulation"] - known), **other},
         )
 
 

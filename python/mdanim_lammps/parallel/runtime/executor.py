@@ -18,7 +18,7 @@ from ...engine.state import Records, State, StateRecords, join_all
 from ...engine.sub_plan import SubPlans
 from ...errors import MdanimError
 from ...run.energy import stored
-from ...run.frame_source import Account, LammpsFailure, add_clocks, penetration, pool
+from ...run.frame_source import COST_SECONDS, Account, LammpsFailure, add_clocks, penetration, pool
 from ..plan.orders import Order, Report
 from .bundle import Bundle, Wanted, wanted_bundles
 from .control import Controller, make_control
@@ -83,6 +83,9 @@ class Executor:
         """What it is to follow in the next window."""
         self.teams: dict[tuple[int, ...], MPI.Comm] = {}
         self.account = Account()
+        self.told = 0.0
+        """When it last told of its account, as ``time.perf_counter()``; 0 until it first waits for leave to simulate: what came
+        before is no part of the account."""
         self.moves = self.retries = 0
         self.led: set[tuple[int, ...]] = set()
         """Teams that it has led since the frame before."""
@@ -338,12 +341,24 @@ class Executor:
                 self.moves,
                 self.retries,
                 tuple(sorted(self.led)),
+                self._account_so_far(),
             ),
         )
         self.moves, self.energies = 0, {}
         self.led.clear()
         if keep:
             self._keep()
+
+    def _account_so_far(self) -> Account | None:
+        """With what its live instances have taken; None where it has told not long ago."""
+        now = time.perf_counter()
+        if not 0.0 < self.told < now - COST_SECONDS:
+            return None
+        so_far, self.told = Account(), now
+        so_far.add_all(self.account)
+        for bundle in self.bundles:
+            add_clocks(so_far, bundle.instance)
+        return so_far
 
     def _keep(self) -> None:
         """What a checkpoint needs besides."""
@@ -357,6 +372,11 @@ class Executor:
     @contextmanager
     def _span(self, kind: str):
         """Take note of what it does from when to when."""
-        begin = time.perf_counter() - self.origin
+        begin = time.perf_counter()
+        if kind == "held" and not self.told:
+            self.told = begin
         yield
-        self.spans.append((kind, self.frame + 1, begin, time.perf_counter() - self.origin))
+        end = time.perf_counter()
+        self.spans.append((kind, self.frame + 1, begin - self.origin, end - self.origin))
+        if kind != "simulating" and self.told:
+            self.account.other[kind] = self.account.other.get(kind, 0.0) + end - begin

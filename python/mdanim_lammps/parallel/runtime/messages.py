@@ -107,6 +107,8 @@ class Share:
     """How often windows were begun again on the way to this frame."""
     teams: tuple[tuple[int, ...], ...] = ()
     """Executors of the teams that it has led on the way, each once."""
+    account: Account | None = None
+    """Where its time went so far, every now and then."""
 
 
 @dataclass(frozen=True)

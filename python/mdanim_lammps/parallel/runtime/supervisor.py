@@ -9,6 +9,8 @@ from __future__ import annotations
 import queue
 import threading
 import time
+from bisect import bisect_left
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -47,6 +49,8 @@ class Distributed:
         self.pending: dict[int, PendingFrame] = {}
         self.messages: MessageThread | None = None
         """From the beginning of the run on."""
+        self.told: dict[int, Account] = {}
+        """Where the time of executors went, as they last told."""
         self.ended: dict[int, Ended] = {}
         self.gone: set[int] = set()
         """Executors that have said their last word."""
@@ -98,15 +102,21 @@ class Distributed:
         """Where the executors' time went, the mean of all."""
         while len(self.ended) < self.executors:
             self._take()
+        return self._mean([ended.account for ended in self.ended.values()])
+
+    def account_so_far(self):
+        """The same, where all executors have told of theirs."""
+        return self._mean(self.told.values()) if len(self.told) == self.executors else None
+
+    def new_owners(self):
+        owners, frame = self.timeline.owners, self.timeline.frames[-1]
+        first = bisect_left(owners, frame, key=lambda change: change[0])
+        return [(m, executor) for _, m, executor in owners[first:]]
+
+    def _mean(self, accounts: Iterable[Account]) -> Account:
         mean = Account()
-        for ended in self.ended.values():
-            mean.leapfrog += ended.account.leapfrog / self.executors
-            for name, clocks in ended.account.effects.items():
-                mean.add(name, clocks, 1.0 / self.executors)
-            begun = next((begin for kind, _, begin, _ in ended.spans if kind == "held"), 0.0)
-            for kind, _, begin, end in ended.spans:
-                if kind != "simulating" and begin >= begun:
-                    mean.other[kind] = mean.other.get(kind, 0.0) + (end - begin) / self.executors
+        for account in accounts:
+            mean.add_all(account, 1.0 / self.executors)
         return mean
 
     def __exit__(self, kind, *_) -> None:
@@ -192,6 +202,8 @@ class Distributed:
         if isinstance(message, Share):
             pending = self._pending(message.frame)
             pending.shares[executor] = message
+            if message.account:
+                self.told[executor] = message.account
             scatter(message.places, (pending.x, message.x), (pending.v, message.v))
         elif isinstance(message, Kept):
             if message.frame <= self.taken and self.last:  # sent a second time, by an end after a frame that was kept anyway

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""``python -m mdanim_lammps.view DIR``: the process behind ``mdanim-lammps SCENE --view`` and ``mdanim-lammps view DIR``."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ..terminal import documented_exit, open_streams, stop_on_sigterm
+
+
+def serve(folder: Path, *, port: int = 0, linger: float | None = None, on_address=lambda address, once: None) -> None:
+    """Serve the view of an output folder until Ctrl-C, or for ``linger`` seconds after the run's end without a page.
+
+    ``on_address`` is called with the address of the page, and with one that is good once. Raises OutputError, UsageError.
+    """
+    from ..errors import UsageError
+    from .server import View
+    from .tail import Tail
+
+    with Tail(folder) as tail:
+        try:
+            view = View(tail, port=port, linger=linger)
+        except OSError as error:
+            raise UsageError(f"--port {port}: {error.strerror}; leave it out, and a free one is taken") from error
+        try:
+            on_address(view.address, view.address_once())
+            view.wait()
+        finally:
+            view.end()
+
+
+def main() -> None:
+    """Serve; the first line on stdout has the address of the page, and one that is good once."""
+    open_streams()
+    stop_on_sigterm()
+    parser = argparse.ArgumentParser(prog="python -m mdanim_lammps.view")
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--port", type=int, default=0)
+    parser.add_argument("--linger", type=float)
+    given = parser.parse_args()
+    with documented_exit(debug=False):
+        serve(given.folder, port=given.port, linger=given.linger, on_address=lambda *addresses: print(*addresses, flush=True))
+
+
+if __name__ == "__main__":
+    main()

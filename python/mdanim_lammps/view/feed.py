@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What a page is sent of a run, as bytes: the scene once, and frames.
+
+All numbers are little endian, and every array is padded to a multiple of four bytes. Both messages begin with eight bytes:
+
+    scene  "MDS1", u32 length of the header in bytes; the header, JSON (`Feed.head`); the arrays that it lists as "buffers"
+    frame  "MDF1", u32 frame; f64 time [s], u32 layers, u32 vertices V, u32 objects O, u32 columns C of liquid
+           f32 (O, 12): corner and size of each object's box [m], its centre of mass [m], the velocity of that [m/s]
+           u16 (V, 3): vertices within the box of their object
+           u16 (C), u8 (C): heights of the liquid within its basin, and `OPEN`, `HIDDEN` or `DRY`
+           u8 (V): strain, 255 is `MOST_STRAIN`, where asked for; f32 (N, 3): particles [m], where asked for
+"""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import OutputError
+from ..picture.camera import FIELD_OF_VIEW, Action, CameraPath, action_of, automatic_view
+from ..picture.liquid import Sheet, kept_dry
+from ..picture.palette import LIQUID, background_colors, is_dark, object_colors, rgb
+from ..picture.render import LAMP, grid_spacing
+from ..picture.surfaces import shaded_mesh
+from ..results.trajectory import Trajectory
+from ..results.trajectory_file import LIQUID as LIQUID_TABLES
+from ..results.written_frames import WrittenFrames
+from ..scene.scene import Render
+
+STRAIN, PARTICLES = 1, 2
+LAYERS = STRAIN | PARTICLES
+"""Layers of a frame beside the surfaces and the liquid: bits, and all of them."""
+OPEN, HIDDEN, DRY = 0, 1, 2
+"""States of a column of liquid: seen from above, below a solid, kept dry by one as by a hull."""
+STEPS = 65535
+"""Of a 16-bit number."""
+MOST_STRAIN = 0.2
+"""Strain that is drawn in the last colour [-]."""
+ASPECT = 16 / 9
+"""Width over height of the picture for which the first camera is chosen."""
+
+
+class Feed:
+    """Scene and frames of one run as bytes; may be used by several threads.
+
+    Args:
+        folder: output folder of the run.
+        title: of the page.
+        render: the scene's ``render`` block.
+        finished: whether all frames are there: the camera is then the movie's.
+
+    Raises:
+        OutputError: no trajectory there, or a damaged one.
+    """
+
+    def __init__(self, folder: Path, title: str = "", render: Render = Render(), *, finished: bool = False):
+        self.frames, self.title, self.render, self.finished = WrittenFrames(folder), title, render, finished
+        m = self.metadata = self.frames.metadata
+        self.mesh = shaded_mesh(m, self.frames.value("position", 0))
+        of = self.mesh.object_of_vertex
+        order = np.argsort(of, kind="stable")
+        if not (order == np.arange(len(of))).all():  # doubled vertices come last: each object's are to lie together
+            rank = np.argsort(order)
+            self._carry, self.triangle, of = self.mesh.carry[order], rank[self.mesh.triangle], of[order]
+        else:
+            self._carry, self.triangle = self.mesh.carry, self.mesh.triangle
+        self.object_of_vertex = of
+        self.first = np.searchsorted(of, np.arange(len(m.names)))
+        self.count = np.diff(np.append(self.first, len(of)))
+
+    def close(self) -> None:
+        """Close the trajectory."""
+        self.frames.close()
+
+    def vertices(self, position: np.ndarray) -> np.ndarray:
+        """Vertices of all surfaces [m], shape (V, 3), for stored particles [m], shape (N, 3)."""
+        return self._carry @ np.asarray(position, np.float64)
+
+    # --- the scene ----------------------------------------------------------------------------------------------
+
+    def scene(self) -> bytes:
+        """What does not change."""
+        return packed(self.head(), self.buffers())
+
+    def head(self) -> dict:
+        """What does not change, without arrays; lengths [m], times [s], masses [kg], colours ``[r, g, b]`` of 0 to 255."""
+        m, action = self.metadata, self.action
+        view = self._view()
+        low, high = background_colors(self.render.background)
+        size = max(action.size, np.finfo(np.float32).tiny)
+        floor = None if action.escaped else float(action.bounds[0][2])
+        if m.ground is not None:
+            floor = min(m.ground, m.liquid.low[2]) if m.liquid else m.ground
+        elif m.liquid:
+            floor = min(float(action.bounds[0][2]), m.liquid.low[2])
+        colors = object_colors(m.colors, m.still)
+        liquid = None
+        if m.liquid:
+            color = (255 * rgb(m.liquid.color or LIQUID)).round().tolist()
+            liquid = {"name": m.liquid.name, "low": m.liquid.low, "high": m.liquid.high, "shape": m.liquid.shape, "color": color}
+        return {
+            "title": self.title,
+            "frames": self.frames.total,
+            "frameTime": self.frames.dt * self.frames.steps_per_frame,
+            "particles": len(m.id),
+            "springs": len(m.bond),
+            "mostStrain": MOST_STRAIN,
+            "bounds": [b.tolist() for b in action.bounds],
+            "size": float(size),
+            "floor": floor,
+            "grid": grid_spacing(size),
+            "lamp": LAMP.tolist(),
+            "walls": m.walls,
+            "background": [(255 * c).round().tolist() for c in (low, high)],
+            "dark": is_dark(low),
+            "fieldOfView": FIELD_OF_VIEW,
+            "view": {"eye": view.eye.tolist(), "look": view.look.tolist(), "up": view.up.tolist()},
+            "objects": [
+                {"name": name, "mass": mass, "color": color, "still": still, "first": first, "count": count}
+                for name, mass, color, still, first, count in zip(
+                    m.names, m.object_mass.tolist(), colors.tolist(), m.still.tolist(), self.first.tolist(), self.count.tolist()
+                )
+            ],
+            "liquid": liquid,
+        }
+
+    def buffers(self) -> dict[str, np.ndarray]:
+        """Arrays that do not change: ``triangle``, ``object`` of vertices; of a liquid ``sheet`` and ``rim``."""
+        found = {"triangle": self.triangle.astype("<u4"), "object": self.object_of_vertex.astype("<u4")}
+        if self.metadata.liquid:
+            sheet = Sheet(self.metadata.liquid.grid)
+            found |= {"sheet": sheet.triangle.astype("<u4"), "rim": sheet.rim.astype("<u4")}
+        return found
+
+    def springs(self) -> bytes:
+        """The same form as `scene`: ``bond``, pairs of stored particles."""
+        return packed({"springs": len(self.bond)}, {"bond": self.bond.astype("<u4")})
+
+    @cached_property
+    def bond(self) -> np.ndarray:
+        """Springs as pairs of stored particles, shape (B, 2)."""
+        return np.searchsorted(self.metadata.id, self.metadata.bond)
+
+    @cached_property
+    def action(self) -> Action:
+        """Where things happen: known for a finished run, guessed from frame 0 for others."""
+        if self.finished:
+            with Trajectory(self.frames.path) as trajectory:
+                return action_of(trajectory)
+        return first_action(self.metadata, *self._boxes(self.vertices(self.frames.value("position", 0))))
+
+    def _view(self):
+        m = self.metadata
+        if self.render.camera and self.finished:
+            with Trajectory(self.frames.path) as trajectory:
+                return CameraPath(self.render.camera, trajectory).at(0.0)
+        basin = (m.liquid.low, m.liquid.high) if m.liquid else None
+        return automatic_view(self.action, ASPECT, m.walls, basin)
+
+    def _boxes(self, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Lower corner and size of each object's box [m], each of shape (O, 3)."""
+        low = np.minimum.reduceat(vertices, self.first)
+        return low, np.maximum.reduceat(vertices, self.first) - low
+
+    # --- a frame ------------------------------------------------------------------------------------------------
+
+    def frame(self, n: int, layers: int = 0) -> bytes:
+        """A frame. Raises OutputError where it is not there or damaged, IndexError."""
+        frames = self.frames
+        x, center, speed = (frames.value(name, n) for name in ("position", "center_of_mass", "center_of_mass_velocity"))
+        vertices = self.vertices(x)
+        if not np.isfinite(vertices).all():
+            raise OutputError(f"{frames.path}: frame {n} is damaged: positions are NaN or infinite")
+        low, size = self._boxes(vertices)
+        scale = np.divide(STEPS, size, out=np.zeros_like(size), where=size > 0.0)
+        within = (vertices - np.repeat(low, self.count, axis=0)) * np.repeat(scale, self.count, axis=0)
+        liquid = self._liquid(n)
+        columns = len(liquid[0]) if liquid else 0
+        parts = [
+            b"MDF1",
+            struct.pack("<IdIIII", n, frames.time(n), layers, len(vertices), len(low), columns),
+            padded(np.hstack([low, size, center, speed]).astype("<f4")),
+            padded(np.rint(within).astype("<u2")),
+            *map(padded, liquid or ()),
+        ]
+        if layers & STRAIN:
+            parts.append(padded(self._strain(x)))
+        if layers & PARTICLES:
+            parts.append(padded(x.astype("<f4")))
+        return b"".join(parts)
+
+    def _liquid(self, n: int) -> tuple[np.ndarray, np.ndarray] | None:
+        if self.metadata.liquid is None:
+            return None
+        smooth, raw = (self.frames.value(name, n) for name in LIQUID_TABLES)
+        low, high = self.metadata.liquid.low[2], self.metadata.liquid.high[2]
+        height = np.rint(np.clip((smooth - low) / (high - low), 0.0, 1.0) * STEPS).astype("<u2")
+        state = np.where(kept_dry(raw), DRY, np.where(np.isfinite(raw), OPEN, HIDDEN)).astype("u1")
+        return height.ravel(), state.ravel()
+
+    @cached_property
+    def _springs(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lengths of the springs in frame 0 [m], shape (B,), and how many each particle has, at least 1, shape (N,)."""
+        x, bond = self.frames.value("position", 0), self.bond
+        length = np.linalg.norm(x[bond[:, 0]] - x[bond[:, 1]], axis=1)
+        return np.maximum(length, np.finfo(float).tiny), np.maximum(np.bincount(bond.ravel(), minlength=len(x)), 1)
+
+    def _strain(self, x: np.ndarray) -> np.ndarray:
+        """Mean of |strain| over the springs of a particle, carried to vertices, u8, shape (V,)."""
+        bond, (length, springs) = self.bond, self._springs
+        strain = np.abs(np.linalg.norm(x[bond[:, 0]] - x[bond[:, 1]], axis=1) / length - 1.0)
+        mean = (np.bincount(bond[:, 0], strain, len(x)) + np.bincount(bond[:, 1], strain, len(x))) / springs
+        return np.clip(np.rint(self._carry @ mean * (255.0 / MOST_STRAIN)), 0, 255).astype("u1")
+
+
+def first_action(metadata, low: np.ndarray, size: np.ndarray) -> Action:
+    """Where things will probably happen, from the boxes of frame 0 [m], each of shape (O, 3): from there down to the ground,
+    and a little to all sides."""
+    least, most = low.min(axis=0), (low + size).max(axis=0)
+    room = 0.15 * float(np.linalg.norm(most - least))
+    bounds = least - room * np.array([1.0, 1.0, 0.0]), most + room * np.array([1.0, 1.0, 0.3])
+    if metadata.liquid is not None:
+        bounds = np.minimum(bounds[0], metadata.liquid.low), np.maximum(bounds[1], metadata.liquid.high)
+    if metadata.ground is not None:
+        bounds[0][2] = min(bounds[0][2], max(metadata.ground, least[2] - 4.0 * float(np.linalg.norm(most - least))))
+    corners = np.stack([bounds[0], bounds[1]])[:, None]
+    return Action(corners[:1], corners[1:], bounds, metadata.ground is None and metadata.liquid is None)
+
+
+def packed(head: dict, buffers: Mapping[str, np.ndarray]) -> bytes:
+    """A message of a header and arrays."""
+    table, parts, at = {}, [], 0
+    for name, array in buffers.items():
+        part = padded(array)
+        table[name] = [array.dtype.str[1:], at, array.size]
+        parts.append(part)
+        at += len(part)
+    text = json.dumps(head | {"buffers": table}, allow_nan=False).encode()
+    text += b" " * (-len(text) % 4)
+    return b"".join([b"MDS1", struct.pack("<I", len(text)), text, *parts])
+
+
+def padded(array: np.ndarray) -> bytes:
+    """The bytes of an array, and zeros up to a multiple of four."""
+    data = array.tobytes()
+    return data + bytes(-len(data) % 4)

@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Follows the output folder of a run: how far it is, what it says of itself, its trajectory."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import threading
+import time
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..api import stored_scene
+from ..errors import MdanimError, OutputError, SceneError
+from ..results.files import IN_USE, NO_LOCKS, read_json
+from ..results.ledger import Ledger
+from ..results.progress import ENDED, ProgressTail
+from ..results.timeline import Timeline
+from ..results.trajectory_file import find_trajectory
+from ..scene.scene import Render
+from .feed import Feed
+
+LOOK = 0.05
+"""Wall time between two looks at the folder [s]."""
+LOOK_FOR_LIFE = 1.0
+"""The same between two looks whether the processes of a run are alive [s]."""
+MOST_ROWS = 2000
+"""Rows of the ledger in one message: of more, every n-th is sent."""
+LIVE = ("preparing", "running", "paused")
+"""States in which a run has not ended."""
+
+
+@dataclass
+class Known:
+    """How much of a run a page has been told."""
+
+    lives: int = -1
+    rows: int = 0
+    owners: int = 0
+    last: dict | None = None
+
+
+class Tail:
+    """What is known of a run, kept up to date by a thread. All public methods may be called by several threads.
+
+    Args:
+        folder: output folder, where a run is going on, has ended or is about to begin.
+
+    Raises:
+        OutputError: there is no run.
+    """
+
+    def __init__(self, folder: Path):
+        self.folder = folder
+        self.title, self.render = self._stored()
+        self.changed = threading.Condition()
+        """Notified whenever there is something new."""
+        self._progress = ProgressTail(folder)
+        self._feed: Feed | None = None
+        self._files = 0
+        self._state = "preparing"
+        self._message = ""
+        self._facts: dict = {}
+        self._looked = -LOOK_FOR_LIFE
+        self._closing = threading.Event()
+        self._look()
+        self._thread = threading.Thread(target=self._follow, daemon=True)
+
+    def __enter__(self) -> Tail:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._closing.set()
+        self._thread.join()
+        self._progress.close()
+        if self._feed:
+            self._feed.close()
+
+    @property
+    def live(self) -> bool:
+        """Whether the run has not ended."""
+        return self._state in LIVE
+
+    def feed(self) -> Feed:
+        """Scene and frames. Raises OutputError as long as there are none."""
+        with self.changed:
+            if self._feed is None:
+                find_trajectory(self.folder)
+                self._feed = Feed(self.folder, self.title, self.render, finished=self._state == "done")
+            elif self._state == "done" and not self._feed.finished:
+                self._feed.finished = True
+                self._feed.__dict__.pop("action", None)
+            return self._feed
+
+    @property
+    def count(self) -> int:
+        """Frames that can be asked for."""
+        return self._progress.count
+
+    def news(self, known: Known) -> dict:
+        """What a page does not know yet, which is then known; empty where there is nothing."""
+        with self.changed:
+            p, told = self._progress, {}
+            if known.lives != p.lives:
+                known.lives, known.rows, known.owners = p.lives, min(known.rows, p.keep), 0
+                told |= {"columns": p.columns, "energies": p.energies, "executors": p.executors, "keep": known.rows}
+            width, new = len(p.columns), p.count - known.rows
+            if new:
+                step = -(-new // MOST_ROWS)
+                told["rows"] = [p.rows[r * width : (r + 1) * width].tolist() for r in range(known.rows, p.count, step)]
+                known.rows = p.count
+            if len(p.owners) > known.owners:
+                told["owners"] = p.owners[known.owners :]
+                known.owners = len(p.owners)
+            last = {
+                "file": self._files,
+                "count": p.count,
+                "total": p.total,
+                "seconds": p.seconds,
+                "state": self._state,
+                "message": self._message,
+                "cost": p.cost,
+                "facts": self._facts,
+            }
+            told |= {key: value for key, value in last.items() if known.last is None or known.last[key] != value}
+            known.last = last
+            return told
+
+    # --- the thread -----------------------------------------------------------------------------------------------
+
+    def _follow(self) -> None:
+        while not self._closing.wait(LOOK):
+            with suppress(OSError, MdanimError):  # the folder may be emptied or deleted while it is looked at
+                self._look()
+
+    def _look(self) -> None:
+        with self.changed:
+            before = (self._progress.count, self._progress.lives, self._state)
+            if self._progress.read() or (self._feed and not self._is_there(self._feed)):
+                self._begin_anew()
+            state = self._progress.state
+            if not self._progress.lives:
+                self._take_old()
+            elif state in ENDED:
+                self._set(state, self._progress.message)
+            elif time.monotonic() - self._looked > LOOK_FOR_LIFE or state != self._state:
+                self._looked = time.monotonic()
+                self._set(*((state, self._progress.message) if in_use(self.folder) else ("killed", "")))
+            if before != (self._progress.count, self._progress.lives, self._state):
+                self.changed.notify_all()
+
+    def _is_there(self, feed: Feed) -> bool:
+        try:
+            return feed.frames.is_at(find_trajectory(self.folder))
+        except OutputError:
+            return False
+
+    def _begin_anew(self) -> None:
+        if self._feed:
+            self._feed.close()
+        self._feed, self._files, self._facts = None, self._files + 1, {}
+        with suppress(MdanimError):
+            self.title, self.render = self._stored()
+
+    def _set(self, state: str, message: str) -> None:
+        if state != self._state and state == "done":
+            self._facts = self._read_facts()
+        self._state, self._message = state, message
+
+    def _take_old(self) -> None:
+        """A run of a version that has left no progress.jsonl, or one that has not begun to write it."""
+        if in_use(self.folder) or self._progress.count:
+            return
+        with suppress(OutputError):
+            frames, ledger = self.feed().frames.on_disk(), Ledger.read(self.folder / "ledger.csv")
+            p, rows = self._progress, ledger.rows[:frames]
+            p.columns, p.energies, p.total = list(ledger.columns), len(ledger.terms), self.feed().frames.total
+            p.rows.extend(row[column] for row in rows for column in ledger.columns)
+            p.count, p.lives = len(rows), 1
+            if timeline := Timeline.left_in(self.folder):
+                p.owners, p.executors = timeline.owners, timeline.executors
+            p.state = "done" if (self.folder / "summary.json").exists() else "stopped"
+
+    def _read_facts(self) -> dict:
+        facts = {}
+        for name in ("cost", "summary", "certificate"):
+            with suppress(OutputError):
+                facts[name] = read_json(self.folder / f"{name}.json")
+        return facts
+
+    def _stored(self) -> tuple[str, Render]:
+        """Title, or name, and ``render`` block of the scene."""
+        try:
+            scene = stored_scene(self.folder)
+            return scene.title or scene.name, scene.render
+        except SceneError:
+            return self.folder.stem, Render()  # a scene of an older version of the language can be seen all the same
+
+
+def in_use(folder: Path) -> bool:
+    """Whether processes of a run are alive that write into a folder; False on file systems without locks."""
+    try:
+        descriptor = os.open(folder / IN_USE, os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC)
+    except OSError:
+        return False
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError as error:
+        if error.errno not in NO_LOCKS:
+            raise
+    finally:
+        os.close(descriptor)
+    return False

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// What is drawn beside the objects: boxes of objects and walls, particles, springs.
+import {
+  Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, LineBasicMaterial, LineSegments, Points, PointsMaterial, Vector3,
+} from "./vendor.js";
+
+const EDGES = [0, 1, 1, 3, 3, 2, 2, 0, 4, 5, 5, 7, 7, 6, 6, 4, 0, 4, 1, 5, 2, 6, 3, 7];
+
+export class Extras {
+  constructor(world, scene) {
+    const ink = scene.dark ? 0xc8d2da : 0x44525e, soft = scene.dark ? 0x8fa0ad : 0x7f93a3, O = scene.objects.length;
+    this.corners = new Float32Array(24 * O);
+    const index = Uint32Array.from({ length: 24 * O }, (_, i) => 8 * Math.floor(i / 24) + EDGES[i % 24]);
+    this.boxes = lines(this.corners, index, new LineBasicMaterial({ color: ink }));
+    this.spots = new Float32Array(3 * scene.particles);
+    this.springs = lines(this.spots, new Uint32Array(0), new LineBasicMaterial({ color: ink, transparent: true, opacity: 0.35 }));
+    const cloud = new BufferGeometry().setAttribute("position", this.springs.geometry.attributes.position);
+    this.particles = new Points(cloud, new PointsMaterial({ size: 4, sizeAttenuation: false, color: scene.dark ? 0xe8eef2 : 0x20384a }));
+    for (const part of [this.boxes, this.springs, this.particles]) {
+      part.visible = part.frustumCulled = false;
+      world.add(part);
+    }
+    this.walls = box(scene.walls, soft);
+    if (this.walls) world.add(this.walls);
+  }
+
+  show(frame) {
+    if (this.boxes.visible) {
+      for (let k = 0, at = 0; k < frame.object.length; k += 12) {
+        for (let c = 0; c < 8; c++) {
+          for (let d = 0; d < 3; d++) this.corners[at++] = frame.object[k + d] + ((c >> d) & 1) * frame.object[k + 3 + d];
+        }
+      }
+      this.boxes.geometry.attributes.position.needsUpdate = true;
+    }
+    if (frame.particles) {
+      this.spots.set(frame.particles);
+      this.springs.geometry.attributes.position.needsUpdate = true;
+    }
+  }
+
+  join(bond) {
+    this.springs.geometry.setIndex(new BufferAttribute(bond, 1));
+  }
+}
+
+function lines(points, index, material) {
+  const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(points, 3).setUsage(DynamicDrawUsage));
+  return new LineSegments(geometry.setIndex(new BufferAttribute(index, 1)), material);
+}
+
+// The edges of a box, or null where there is none.
+export function box(corners, color) {
+  if (!corners) return null;
+  const { min, max } = new Box3(new Vector3(...corners[0]), new Vector3(...corners[1]));
+  const points = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((c) => [c & 1 ? max.x : min.x, c & 2 ? max.y : min.y, c & 4 ? max.z : min.z]);
+  return lines(new Float32Array(points), new Uint32Array(EDGES), new LineBasicMaterial({ color }));
+}

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Puts the parts together: what is heard, what is seen, what is pressed.
+import { STRAIN, PARTICLES, cameraLine, number, ownersAt } from "./message.js";
+import { Energies, byId, element, executorColor, roundStrain, showCost, showExpects, showLegend, showObject, strainColor, table } from "./panel.js";
+import { Cache, Player, SPEEDS } from "./player.js";
+import { Embedded, Socket } from "./source.js";
+import { Stage } from "./stage.js";
+
+const SLOW = 60, REST = 350; // milliseconds: of a picture that is too slow, and without motion before one in full
+const LIVE = ["preparing", "running", "paused"];
+const KEYS = [
+  ["drag, wheel, right drag", "turn, zoom, move"], ["click", "pick an object; Esc lets it go"], ["Space", "play or hold the film"], ["Shift+Space", "pause the run, or let it go on"],
+  ["← →", "a frame, with Shift ten"], ["Home, End", "first frame, newest frame"], ["1 … 7", "what is shown"], ["F", "see all, or the picked object"],
+  ["C", "copy the camera line"], ["P", "save a screenshot"], ["?", "this list"],
+];
+const run = { file: 0, count: 0, total: 0, executors: 1, state: "", message: "", seconds: 0, cost: {}, facts: {}, owners: [] };
+const energies = new Energies(), cache = new Cache();
+const report = byId("replay"); // in a report: the block of data
+let source, scene, stage, player, shown = null, shownKey = "", picked = null, ease = 0, slow = 0, drawnAt = 0, rested = true, failedAt = 0, range = 0.002, lastTick = 0;
+
+async function start() {
+  Object.assign(byId("speed"), { innerHTML: "" }).append(...SPEEDS.map((x) => element("option", { value: x, textContent: `${x} ×`, selected: x === 1 })));
+  byId("keys").querySelector("table").append(...table(KEYS).children);
+  if (!report) history.replaceState(null, "", "/");
+  source = await (report ? new Embedded(report) : new Socket()).open();
+  source.lost = () => say("lost", "The server has ended: frames that are not here yet cannot be shown. View the folder again with: mdanim-lammps view DIR");
+  source.listen(hear);
+  while (!(scene = await source.scene().catch(() => null))) await new Promise((done) => setTimeout(done, 200)); // until the run has made its folder
+  document.title = byId("title").textContent = scene.title || "mdanim-lammps";
+  document.body.classList.toggle("dark", scene.dark);
+  document.body.style.setProperty("--low-sky", `rgb(${scene.background[0]})`);
+  document.body.style.setProperty("--high-sky", `rgb(${scene.background[1]})`);
+  if (scene.floor !== null) byId("scale").textContent = `grid ${number(scene.grid)} m`;
+  player = new Player(scene.frameTime);
+  stage = new Stage(byId("stage"), scene);
+  for (const [id, on] of [["liquid", scene.liquid], ["walls", scene.walls], ["springs", scene.springs && !report], ["particles", !report]]) byId(`show-${id}`).parentElement.hidden = !on;
+  byId("colour").querySelector('[value="strain"]').disabled = Boolean(report) || !scene.springs;
+  controls();
+  refresh();
+  player.play(true);
+  requestAnimationFrame(tick);
+}
+
+// --- what is heard ----------------------------------------------------------------------------------------------------
+
+function hear({ columns, keep, rows, owners, ...news }) {
+  if (news.file > run.file) return location.reload(); // another run in the same folder
+  Object.assign(run, news);
+  if (columns) {
+    energies.begin(columns, news.energies ?? 0, keep);
+    run.owners = [];
+    cache.clear();
+  }
+  if (rows) energies.add(rows);
+  if (owners) run.owners.push(...owners);
+  refresh();
+}
+
+function refresh() {
+  const live = LIVE.includes(run.state), share = run.total ? run.count / run.total : 0;
+  say(run.state, run.message);
+  if (player) Object.assign(player, { count: run.count, live });
+  byId("slider").max = Math.max(run.total, 1) - 1;
+  byId("ready").style.width = `${100 * share}%`;
+  byId("pause").hidden = byId("stop").hidden = byId("newest").hidden = !live;
+  byId("pause").textContent = run.state === "paused" ? "go on" : "pause run";
+  byId("pause").disabled = run.state === "preparing";
+  const words = live && run.total ? [`${Math.floor(100 * share)} %`] : [];
+  if (live && run.seconds && scene) words.push(`${number((run.count * scene.frameTime) / run.seconds, 2)} s of film per second`, `${number(run.seconds * (1 / share - 1), 2)} s left`);
+  if (energies.rows.length) words.push(`energy residual ${number(energies.residual, 2)}`);
+  byId("progress").textContent = words.join("   ");
+  byId("colour").querySelector('[value="executor"]').disabled = run.executors < 2;
+  showCost(run.cost, run.facts);
+  showExpects(run.facts);
+}
+
+function say(state, message) {
+  byId("state").textContent = state || "connecting";
+  byId("state").className = `pill ${state}`;
+  const more = { killed: "The run was killed; what it has written can be seen. It goes on from its last checkpoint with: mdanim-lammps resume DIR" }[state];
+  byId("message").hidden = !(message || more);
+  byId("message").textContent = message || more || "";
+  byId("message").classList.toggle("bad", ["failed", "lost", "killed"].includes(state));
+}
+
+// --- what is seen -----------------------------------------------------------------------------------------------------
+
+const checked = (id) => byId(`show-${id}`).checked;
+const layers = () => (byId("colour").value === "strain" ? STRAIN : 0) | (checked("particles") || checked("springs") ? PARTICLES : 0);
+
+function tick(now) {
+  requestAnimationFrame(tick);
+  player.tick(Math.min(0.25, (now - lastTick) / 1000));
+  lastTick = now;
+  const bits = layers(), credits = player.newest ? 1 : 4;
+  if (now - failedAt > 500) {
+    for (const n of player.wanted()) {
+      cache.ask(`${n}/${bits}`, () => source.frame(n, bits).catch((error) => { failedAt = performance.now(); say(run.state, error.message); throw error; }), credits);
+    }
+  }
+  const key = `${player.frame}/${bits}`, frame = cache.get(key);
+  if (frame && key !== shownKey) show(frame, key);
+  byId("play").classList.toggle("on", player.playing && !player.newest);
+  byId("newest").setAttribute("aria-pressed", String(player.newest));
+  if (stage.changed && shown) draw(now, 0);
+  else if (!rested && !player.playing && now - drawnAt > REST) draw(now, 1);
+}
+
+function show(frame, key) {
+  [shown, shownKey] = [frame, key];
+  stage.show(frame);
+  if (frame.strain) paintStrain(frame.strain);
+  else if (byId("colour").value === "executor") stage.paint([...ownersAt(run.owners, frame.frame, scene.objects.length)].map(executorColor));
+  byId("slider").value = frame.frame;
+  byId("clock").textContent = `frame ${frame.frame}/${Math.max(run.total, 1) - 1}   t = ${frame.time.toFixed(3)} s`;
+  energies.at(frame.time);
+  about();
+}
+
+function paintStrain(strain) {
+  const most = strain.reduce((a, b) => Math.max(a, b), 0) / 255;
+  range = Math.max(range, roundStrain(most * scene.mostStrain, scene.mostStrain));
+  const colors = Array.from({ length: 256 }, (_, k) => strainColor(((k / 255) * scene.mostStrain) / range));
+  stage.paint(null, (i) => colors[strain[i]]);
+  showLegend("strain", range);
+}
+
+function about() {
+  const owner = run.executors > 1 && shown && picked !== null ? ownersAt(run.owners, shown.frame, scene.objects.length)[picked] : null;
+  showObject(scene, shown, picked, owner);
+}
+
+// Pictures that are slow are made with fewer pixels while something moves, and in full at rest.
+function draw(now, full) {
+  const gap = now - drawnAt;
+  if (!full && gap < 1000 && (player.playing || stage.moving)) slow = 0.7 * slow + 0.3 * gap;
+  if (slow > SLOW && ease < 2 && !full) [ease, slow] = [ease + 1, 0];
+  stage.quality(full ? 0 : ease);
+  stage.draw();
+  rested = full || !ease;
+  drawnAt = now;
+  page.drawn++;
+  byId("camera").textContent = cameraWords();
+}
+
+function cameraWords() {
+  const name = picked === null ? null : scene.objects[picked].name, there = /^[A-Za-z_][A-Za-z0-9_.\-]*(\[\d+\])*$/.test(name ?? "");
+  return cameraLine(shown?.time ?? 0, stage.camera.position.toArray(), there ? name : stage.orbit.target.toArray());
+}
+
+// --- what is pressed --------------------------------------------------------------------------------------------------
+
+function controls() {
+  const press = (id, act) => (byId(id).onclick = (event) => { if (event.detail) byId(id).blur(); act(); }), step = (n) => player.go(player.frame + n);
+  press("play", () => player.play());
+  press("first", () => player.go(0));
+  press("back", () => step(-1));
+  press("next", () => step(1));
+  press("newest", () => player.follow());
+  press("pause", () => source.tell(run.state === "paused" ? "go" : "pause"));
+  press("stop", () => source.tell("stop"));
+  press("see", see);
+  press("home", () => stage.seeStart());
+  press("copy", copy);
+  press("shot", screenshot);
+  press("help", () => byId("keys").showModal());
+  byId("slider").oninput = (event) => player.go(Number(event.target.value));
+  byId("speed").onchange = (event) => (player.speed = Number(event.target.value));
+  byId("colour").onchange = () => { stage.paint(scene.objects.map(({ color }) => color)); showLegend(byId("colour").value, range, run.executors); shownKey = ""; };
+  const toggle = (id, act) => (byId(`show-${id}`).onchange = (event) => { act(event.target.checked); shownKey = ""; stage.changed = true; });
+  toggle("surface", (on) => (stage.surface.visible = on));
+  toggle("shadows", (on) => (stage.sun.castShadow = on));
+  toggle("liquid", (on) => (stage.liquid.visible = on));
+  toggle("particles", (on) => (stage.extras.particles.visible = on));
+  toggle("springs", async (on) => { stage.extras.springs.visible = on; if (on && !run.bond) stage.extras.join((run.bond = await source.springs())); stage.changed = true; });
+  toggle("boxes", (on) => (stage.extras.boxes.visible = on));
+  toggle("walls", (on) => (stage.extras.walls.visible = on));
+  addEventListener("resize", () => stage.resize());
+  stage.orbit.addEventListener("start", () => (stage.moving = true));
+  stage.orbit.addEventListener("end", () => (stage.moving = false));
+  pointer(byId("stage"));
+  addEventListener("keydown", keyboard);
+}
+
+function pointer(canvas) {
+  const at = (event) => { const box = canvas.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
+  let down = [0, 0], looked = 0;
+  canvas.addEventListener("pointerdown", (event) => (down = at(event)));
+  canvas.addEventListener("pointerup", (event) => {
+    const [x, y] = at(event);
+    if (event.button === 0 && Math.hypot(x - down[0], y - down[1]) < 4) choose(stage.pick(x, y)?.object ?? null);
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    const now = performance.now(), [x, y] = at(event);
+    if (now - looked < 80) return;
+    looked = now;
+    const found = event.buttons ? null : stage.pick(x, y);
+    byId("hint").hidden = !found;
+    if (found) Object.assign(byId("hint"), { textContent: scene.objects[found.object].name }).style.cssText = `left: ${x}px; top: ${y}px`;
+  });
+  canvas.addEventListener("pointerleave", () => (byId("hint").hidden = true));
+}
+
+function choose(k) {
+  picked = k;
+  byId("see").textContent = k === null ? "see all" : "see it";
+  byId("camera").textContent = cameraWords();
+  about();
+}
+
+function see() {
+  const box = (k) => shown.object.subarray(12 * k, 12 * k + 6);
+  if (shown) stage.see(picked === null ? scene.objects.map((_, k) => box(k)) : [box(picked)]);
+}
+
+async function copy() {
+  await navigator.clipboard.writeText(cameraWords()).then(() => (byId("copy").textContent = "copied"), () => getSelection().selectAllChildren(byId("camera")));
+  setTimeout(() => (byId("copy").textContent = "copy line"), 1500);
+}
+
+// The picture in full, on its background.
+function screenshot() {
+  stage.quality(0);
+  stage.draw();
+  const { width, height } = stage.renderer.domElement, paper = Object.assign(document.createElement("canvas"), { width, height }), pen = paper.getContext("2d");
+  const sky = pen.createLinearGradient(0, 0, 0, height);
+  scene.background.forEach((color, k) => sky.addColorStop(1 - k, `rgb(${color})`));
+  pen.fillStyle = sky;
+  pen.fillRect(0, 0, width, height);
+  pen.drawImage(stage.renderer.domElement, 0, 0);
+  paper.toBlob((file) => {
+    const link = element("a", { href: URL.createObjectURL(file), download: `frame-${shown.frame}.png` });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+  });
+}
+
+// Whether a key belongs to what has the focus.
+function typing({ target, key }) {
+  if (target.matches("textarea, select, input:not([type=range], [type=checkbox])")) return true;
+  return target.matches("button, summary, input[type=checkbox]") && [" ", "Enter"].includes(key);
+}
+
+const SWITCHES = ["surface", "shadows", "liquid", "particles", "springs", "boxes", "walls"];
+
+function keyboard(event) {
+  if (event.ctrlKey || event.metaKey || event.altKey || byId("keys").open || typing(event)) return;
+  const many = event.shiftKey ? 10 : 1, act = {
+    " ": () => (event.shiftKey ? !byId("pause").hidden && byId("pause").click() : player.play()),
+    ArrowRight: () => player.go(player.frame + many), ArrowLeft: () => player.go(player.frame - many), Home: () => player.go(0),
+    End: () => (player.live ? player.follow(true) : player.go(player.last)), f: see, c: copy, p: screenshot, Escape: () => choose(null), "?": () => byId("keys").showModal(),
+  }[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+  const number_ = SWITCHES[Number(event.key) - 1], box = number_ && byId(`show-${number_}`);
+  if (!act && (!box || box.parentElement.hidden)) return;
+  event.preventDefault();
+  act ? act() : box.click();
+}
+
+// For tests: what the page knows.
+const page = (window.mdanim = { run, drawn: 0, get shown() { return shown; }, get player() { return player; }, get stage() { return stage; }, get scene() { return scene; }, get ease() { return ease; }, cache });
+
+start().catch((error) => say("lost", `The page cannot be shown: ${error.message}`));

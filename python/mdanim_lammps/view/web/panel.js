@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The panels beside the picture. Text from scenes is set as text, never as HTML.
+import { Plot } from "./vendor.js";
+import { number } from "./message.js";
+
+const INK = ["#e8743b", "#3b8fc4", "#4fae7b", "#d99a1c", "#d3557a", "#7a6fc9", "#2fa39d", "#b5654f", "#7f9c2e"];
+export const byId = (id) => document.getElementById(id);
+
+// An element with properties and children.
+export function element(name, properties = {}, ...children) {
+  const made = Object.assign(document.createElement(name), properties);
+  made.append(...children);
+  return made;
+}
+
+export function table(rows) {
+  return element("table", {}, ...rows.map((cells) => element("tr", {}, ...cells.map((cell) => element("td", { textContent: cell })))));
+}
+
+// What is known of the picked object at a frame.
+export function showObject(scene, frame, k, owner) {
+  const place = byId("object");
+  place.classList.toggle("faint", k === null);
+  if (k === null) return place.replaceChildren("click an object in the picture");
+  const { name, mass, still } = scene.objects[k], at = frame.object.subarray(12 * k, 12 * k + 12), point = (p) => [...p].map((x) => number(x)).join(", ");
+  const rows = [["name", name], ["mass", `${number(mass, 4)} kg`], ["centre", `${point(at.subarray(6, 9))} m`], ["velocity", `${point(at.subarray(9, 12))} m/s`],
+    ["speed", `${number(Math.hypot(at[9], at[10], at[11]))} m/s`], ["size", `${point(at.subarray(3, 6))} m`]];
+  if (still) rows.push(["", "is held and never moves"]);
+  else if (owner !== null) rows.push(["executor", owner < 0 ? "none" : String(owner)]);
+  return place.replaceChildren(table(rows));
+}
+
+// The ledger as lines over time, with a cursor at the frame that is seen.
+export class Energies {
+  constructor() {
+    this.rows = [];
+    this.line = document.createElement("div");
+  }
+
+  begin(columns, energies, keep) {
+    this.names = columns.slice(1, 1 + energies);
+    this.rows = this.rows.slice(0, keep);
+    this.plot?.destroy();
+    this.plot = null;
+  }
+
+  add(rows) {
+    this.rows.push(...rows);
+    if (this.rows.length > 8000) this.rows = this.rows.filter((_, k) => k % 2 === 0);
+    if (this.names.length) this.due ??= setTimeout(() => this.draw(), 200);
+  }
+
+  // The largest so far: its column follows those of the energies.
+  get residual() {
+    return this.rows.reduce((most, row) => Math.max(most, Math.abs(row[1 + this.names.length])), 0);
+  }
+
+  draw() {
+    this.due = undefined;
+    const data = [0, ...this.names.map((_, k) => k + 1)].map((k) => this.rows.map((row) => row[k]));
+    if (this.plot) this.plot.setData(data);
+    else {
+      const ink = getComputedStyle(document.body).getPropertyValue("--faint"), axis = { stroke: ink, font: "10px sans-serif", grid: { stroke: ink + "30" }, ticks: { show: false } };
+      const series = [{}, ...this.names.map((label, k) => ({ label, stroke: INK[k % INK.length], width: 1.5 }))];
+      const place = byId("energies"), keys = element("div", { className: "keys" }, ...this.names.map((name, k) => {
+        const mark = element("i");
+        mark.style.background = INK[k % INK.length];
+        return element("span", {}, mark, name.replaceAll("_", " "));
+      }));
+      const figure = element("div");
+      place.replaceChildren(keys, figure);
+      const values = (_, ticks) => ticks.map((x) => number(x, 4));
+      this.plot = new Plot({ width: 272, height: 150, scales: { x: { time: false } }, legend: { show: false }, cursor: { show: false }, padding: [6, 8, 0, 0],
+        axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((x) => `${number(x)} s`) }, { ...axis, size: 46, values }], series }, data, figure);
+      this.line = element("div", { id: "now" });
+      this.plot.over.append(this.line);
+      Object.assign(this.line.style, { position: "absolute", top: "0", bottom: "0", width: "1px", background: ink });
+    }
+  }
+
+  at(time) {
+    if (this.plot) this.line.style.left = `${this.plot.valToPos(time, "x")}px`;
+  }
+}
+
+// Seconds of each effect as bars; with the line of the scene that called for it, where that is known.
+export function showCost(cost, facts) {
+  const parts = Object.entries(cost).sort((a, b) => b[1] - a[1]).slice(0, 7).filter(([, seconds], _, [[, most]]) => seconds > 0.01 * most), most = parts[0]?.[1];
+  byId("cost-panel").hidden = !parts.length;
+  byId("cost").replaceChildren(...parts.map(([name, seconds]) => {
+    const bar = element("b"), place = facts?.cost?.effects?.[name]?.place;
+    bar.style.width = `${(100 * seconds) / most}%`;
+    return element("div", { className: "bar", title: place ? `${name}: asked for at ${place}` : name }, element("span", { textContent: name }), bar, element("em", { textContent: `${number(seconds, 2)} s` }));
+  }));
+}
+
+// Expected against found.
+export function showExpects(facts) {
+  const expects = facts?.summary?.expect ?? [], old = byId("expects");
+  old?.remove();
+  if (!expects.length) return;
+  const rows = expects.map((e) => [e.met ? "met" : "MISSED", `${e.what} = ${number(e.found, 5)}`]);
+  byId("more").prepend(element("details", { id: "expects", open: true }, element("summary", { textContent: "Expected" }), table(rows)));
+}
+
+// Colours of strain, from none to the most: dark blue, green, yellow, red.
+const RAMP = [[38, 70, 140], [40, 150, 160], [110, 190, 90], [245, 205, 60], [215, 50, 40]];
+
+export function strainColor(share) {
+  const x = Math.max(0, Math.min(0.999999, share)) * (RAMP.length - 1), k = Math.floor(x);
+  return RAMP[k].map((c, d) => c + (x - k) * (RAMP[k + 1][d] - c));
+}
+
+// The next of 1, 2, 5, 10, ... per cent above a strain.
+export function roundStrain(strain, most) {
+  return [0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2].find((edge) => strain <= edge && edge <= most) ?? most;
+}
+
+export const executorColor = (executor) => {
+  const hex = executor < 0 ? 0xa3a9b0 : parseInt(INK[executor % INK.length].slice(1), 16);
+  return [hex >> 16, (hex >> 8) & 255, hex & 255];
+};
+
+export function showLegend(kind, range, executors) {
+  const place = byId("legend"), swatch = (color) => {
+    const mark = element("i", { className: "key" });
+    mark.style.background = `rgb(${color.map(Math.round)})`;
+    return mark;
+  };
+  place.hidden = kind === "object";
+  if (kind === "strain") {
+    const ramp = element("i");
+    ramp.style.background = `linear-gradient(90deg, ${RAMP.map((c) => `rgb(${c})`)})`;
+    place.replaceChildren("strain 0", ramp, `${number(100 * range)} %`);
+  } else if (kind === "executor") {
+    const keys = Array.from({ length: Math.min(executors, INK.length) }, (_, e) => element("span", {}, swatch(executorColor(e)), ` ${e}`));
+    place.replaceChildren("executor", ...keys, element("span", {}, swatch(executorColor(-1)), " none"));
+  }
+}

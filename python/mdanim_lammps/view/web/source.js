@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Where scene and frames come from: the server of a run, or the block of data in a report.
+import { readFrame, readScene, undoDifferences } from "./message.js";
+
+// Answers come in the order in which they were asked for.
+export class Socket {
+  constructor() {
+    this.waiting = [];
+    this.heard = () => {};
+    this.lost = () => {};
+    this.early = [];
+  }
+
+  open() {
+    return new Promise((done, failed) => {
+      this.socket = new WebSocket(`ws://${location.host}/socket`);
+      this.socket.binaryType = "arraybuffer";
+      this.socket.onopen = () => done(this);
+      this.socket.onmessage = ({ data }) => this.take(data);
+      this.socket.onclose = () => {
+        this.waiting.splice(0).forEach(({ failed: give_up }) => give_up(new Error("the server has ended")));
+        this.lost();
+        failed(new Error("the server does not answer"));
+      };
+    });
+  }
+
+  take(data) {
+    if (typeof data !== "string") return this.waiting.shift().done(data);
+    const said = JSON.parse(data);
+    if (said.error) return this.waiting.shift().failed(new Error(said.error));
+    if (said.news) return this.heard(said.news);
+    return this.waiting.shift().done(said);
+  }
+
+  ask(what) {
+    return new Promise((done, failed) => {
+      this.waiting.push({ done, failed });
+      this.socket.send(JSON.stringify(what));
+    });
+  }
+
+  listen(heard) {
+    this.heard = heard;
+  }
+
+  async scene() {
+    return readScene(await this.ask({ scene: 1 }));
+  }
+
+  async springs() {
+    return readScene(await this.ask({ springs: 1 })).data.bond;
+  }
+
+  async frame(frame, layers) {
+    return readFrame(await this.ask({ get: frame, layers }));
+  }
+
+  tell(what) {
+    this.socket.send(JSON.stringify({ do: what }));
+  }
+}
+
+// A block of gzip in base64 that export.py has made.
+export class Embedded {
+  constructor(element) {
+    this.element = element;
+  }
+
+  async open() {
+    const packed = Uint8Array.from(atob(this.element.textContent.trim()), (sign) => sign.charCodeAt(0));
+    const plain = await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+    const size = new DataView(plain).getUint32(0, true);
+    this.head = readScene(plain.slice(4, 4 + size));
+    const { frames: F, vertices: V, columns: C } = this.head.replay, O = this.head.objects.length;
+    let at = 4 + size;
+    const next = (bytes) => plain.slice(at, (at += bytes));
+    this.times = new Float64Array(next(8 * F));
+    this.objects = new Float32Array(next(48 * O * F));
+    this.positions = undoDifferences(new Uint8Array(next(6 * V * F)), 3 * V, F);
+    if (C) [this.heights, this.states] = [undoDifferences(new Uint8Array(next(2 * C * F)), C, F), new Uint8Array(next(C * F))];
+    Object.assign(this, { O, V, C });
+    return this;
+  }
+
+  listen(heard) {
+    heard(this.head.replay.news);
+  }
+
+  async scene() {
+    return this.head;
+  }
+
+  async frame(frame) {
+    const { O, V, C } = this, part = (array, size) => array.subarray(size * frame, size * (frame + 1));
+    const found = { frame, time: this.times[frame], layers: 0, bytes: 0, object: part(this.objects, 12 * O), position: part(this.positions, 3 * V) };
+    return C ? { ...found, liquid: part(this.heights, C), columns: part(this.states, C) } : found;
+  }
+}

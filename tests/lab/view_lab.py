@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A view of a folder, served by a thread of this process, and plain requests to it."""
+
+from __future__ import annotations
+
+import http.client
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from urllib.parse import parse_qs, urlsplit
+
+from mdanim_lammps.view.server import View
+from mdanim_lammps.view.tail import Tail
+from websockets.sync.client import ClientConnection, connect
+
+
+@contextmanager
+def served(folder: Path, **options) -> Iterator[View]:
+    """The view of a folder."""
+    with Tail(folder) as tail:
+        view = View(tail, **options)
+        try:
+            yield view
+        finally:
+            view.end()
+
+
+def token(view: View) -> str:
+    """The secret of an address."""
+    return parse_qs(urlsplit(view.address).query)["t"][0]
+
+
+def ask(view: View, path: str = "/", *, secret: bool = True, cookie: str = "", **headers: str) -> http.client.HTTPResponse:
+    """The answer to a GET, read; header names with _ for -. ``Host`` is right unless given."""
+    link = http.client.HTTPConnection("127.0.0.1", view.port, timeout=10)
+    link.putrequest("GET", path + (f"?t={token(view)}" if secret else ""), skip_host=True)
+    sent = {"Host": f"127.0.0.1:{view.port}"} | {name.replace("_", "-"): value for name, value in headers.items()}
+    if cookie:
+        sent["Cookie"] = cookie
+    for name, value in sent.items():
+        if value:
+            link.putheader(name, value)
+    link.endheaders()
+    answer = link.getresponse()
+    answer.body = answer.read() if answer.status != 101 else b""
+    link.close()
+    return answer
+
+
+def page(view: View, **options) -> ClientConnection:
+    """A socket as the page opens it."""
+    origin = options.pop("origin", f"http://127.0.0.1:{view.port}")
+    return connect(f"ws://127.0.0.1:{view.port}/socket?t={token(view)}", origin=origin, compression=None, **options)

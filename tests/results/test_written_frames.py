@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Frames are read as soon as they are written, and only where they are whole."""
+
+import os
+
+import h5py
+import numpy as np
+import pytest
+from mdanim_lammps import Trajectory
+from mdanim_lammps.errors import OutputError
+from mdanim_lammps.results.trajectory_file import part_of
+from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
+from mdanim_lammps.results.written_frames import WrittenFrames
+from picture_samples import flat, pool_scene, raw_of, wet_frames, write
+
+FRAMES = 4
+
+
+@pytest.fixture(scope="module")
+def pool():
+    """A scene with a liquid, its models, frames and grid."""
+    scene, models, grid = pool_scene()
+    levels = [flat(grid, 0.4 + 0.05 * k) for k in range(FRAMES)]
+    return scene, models, list(wet_frames(models, *((level, raw_of(grid, level, models)) for level in levels))), grid
+
+
+def test_frames_are_read_before_they_are_on_the_disk(tmp_path, pool):
+    """What is written and not flushed is there to the bit, also once the file is renamed; what is not written is refused."""
+    scene, models, frames, grid = pool
+    path = tmp_path / "trajectory.h5"
+    with TrajectoryWriter(path, scene, models, frames=FRAMES, dt=0.01, steps_per_frame=10, grid=grid) as out:
+        out.write(*frames[0])
+        out.write(*frames[1])
+        early = WrittenFrames(tmp_path)
+        assert early.total == FRAMES and early.on_disk() == 0
+        seen = [{name: early.value(name, n) for name in ("position", "velocity", "center_of_mass", "liquid/raw")} for n in (0, 1)]
+        assert early.time(1) == frames[1][1]
+        with pytest.raises(OutputError, match="frame 2 is damaged or not there"):
+            early.value("position", 2)
+        for bad in (-1, FRAMES):
+            with pytest.raises(IndexError):
+                early.value("position", bad)
+        out.write(*frames[2])
+        out.write(*frames[3])
+    assert early.is_at(path) and not early.is_at(part_of(path)) and early.on_disk() == FRAMES
+    with Trajectory(path) as whole, early:
+        for n in (0, 1):
+            np.testing.assert_array_equal(seen[n]["position"], whole.position(n))
+            np.testing.assert_array_equal(seen[n]["velocity"], whole.velocity(n))
+            np.testing.assert_array_equal(seen[n]["center_of_mass"], whole.centers[n])
+            np.testing.assert_array_equal(seen[n]["liquid/raw"], whole.liquid_raw(n))
+        np.testing.assert_array_equal(early.value("position", 3), whole.position(3))
+
+
+def test_a_damaged_frame_is_refused(tmp_path, pool):
+    """One bit that has changed on the disk is noticed; other frames are read."""
+    scene, models, frames, grid = pool
+    path = write(tmp_path / "trajectory.h5", scene, models, frames, grid)
+    with h5py.File(path) as file:
+        value = file["particles/all/position/value"]
+        place = value.id.get_offset() + 2 * value[0].nbytes + 5
+    with open(path, "r+b") as file:
+        byte = os.pread(file.fileno(), 1, place)[0]
+        os.pwrite(file.fileno(), bytes([byte ^ 1]), place)
+    with WrittenFrames(tmp_path) as found:
+        with pytest.raises(OutputError, match=r"frame 2 .* position"):
+            found.value("position", 2)
+        found.value("position", 1)
+        found.value("velocity", 2)
+
+
+def test_older_formats_are_refused(tmp_path, pool):
+    """A file without checksums is named, with a way out."""
+    scene, models, frames, grid = pool
+    with h5py.File(write(tmp_path / "trajectory.h5", scene, models, frames, grid), "r+") as file:
+        del file["parameters/mdanim/checksum"]
+        file["parameters/mdanim"].attrs["format"] = 2
+    with pytest.raises(OutputError, match="mdanim-lammps render"):
+        WrittenFrames(tmp_path)

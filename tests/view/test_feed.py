@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What a page is sent holds what the trajectory holds."""
+
+import json
+import struct
+
+import numpy as np
+import pytest
+from mdanim_lammps import Trajectory
+from mdanim_lammps.errors import OutputError
+from mdanim_lammps.picture.camera import action_of, automatic_view
+from mdanim_lammps.picture.surfaces import shaded_mesh
+from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
+from mdanim_lammps.scene.scene import Camera, Render
+from mdanim_lammps.view.feed import ASPECT, DRY, HIDDEN, MOST_STRAIN, OPEN, PARTICLES, STRAIN, Feed, first_action
+from picture_samples import falling, flat, pool_scene, raw_of, slab_scene, wet_frames, write
+
+HEAD = 32
+
+
+def unpacked(message: bytes) -> tuple[dict, dict[str, np.ndarray]]:
+    """Header and arrays of a scene."""
+    assert message[:4] == b"MDS1"
+    size = struct.unpack_from("<I", message, 4)[0]
+    head = json.loads(message[8 : 8 + size])
+    arrays = {
+        name: np.frombuffer(message, "<" + kind, count, 8 + size + at) for name, (kind, at, count) in head["buffers"].items()
+    }
+    return head, arrays
+
+
+def parts(message: bytes) -> tuple:
+    """Numbers of the header of a frame, and the rest as bytes."""
+    assert message[:4] == b"MDF1" and len(message) % 4 == 0
+    return struct.unpack_from("<IdIIII", message, 4), message[HEAD:]
+
+
+@pytest.fixture(scope="module")
+def slab(tmp_path_factory):
+    """A folder with a held slab, a cube and a ball in six frames, and a feed of it."""
+    folder = tmp_path_factory.mktemp("slab")
+    scene, models = slab_scene()
+    write(folder / "trajectory.h5", scene, models, falling(models, 6))
+    feed = Feed(folder, "slab", finished=True)
+    yield folder, feed
+    feed.close()
+
+
+def test_vertices_are_where_the_surfaces_are(slab):
+    """Within half a step of 65 535 of each object's box in every frame, with centres and velocities."""
+    folder, feed = slab
+    _, arrays = unpacked(feed.scene())
+    of = arrays["object"]
+    with Trajectory(folder) as t:
+        mesh = shaded_mesh(t.metadata, t.position(0))
+        for n in range(len(t)):
+            (frame, time, layers, V, count, C), data = parts(feed.frame(n))
+            assert (frame, time, layers, V, count, C) == (n, t.times[n], 0, len(of), 3, 0)
+            objects = np.frombuffer(data, "<f4", 12 * count).reshape(count, 12)
+            within = np.frombuffer(data, "<u2", 3 * V, 48 * count).reshape(V, 3)
+            at = objects[of, :3] + within * (objects[of, 3:6] / 65535.0)
+            wanted = mesh.vertices(t.position(n))
+            order = np.argsort(mesh.object_of_vertex, kind="stable")
+            assert (np.abs(at - wanted[order]) <= 0.51 * objects[of, 3:6] / 65535.0 + 1e-6).all()
+            np.testing.assert_allclose(objects[:, 6:9], t.centers[n], rtol=1e-6, atol=1e-7)
+            np.testing.assert_allclose(objects[:, 9:], t.center_velocities[n], rtol=1e-6, atol=1e-7)
+
+
+def test_every_object_has_its_own_vertices(slab):
+    """Side by side, and triangles use those of one object."""
+    head, arrays = unpacked(slab[1].scene())
+    triangle = arrays["triangle"].reshape(-1, 3)
+    assert (np.diff(arrays["object"].astype(int)) >= 0).all()
+    for k, found in enumerate(head["objects"]):
+        assert (arrays["object"][found["first"] : found["first"] + found["count"]] == k).all()
+    of = arrays["object"][triangle]
+    assert (of == of[:, :1]).all()
+
+
+def test_the_scene_tells_what_is_there(slab):
+    """Names, masses, what is held, the floor, and the camera of the movie."""
+    folder, feed = slab
+    head = unpacked(feed.scene())[0]
+    with Trajectory(folder) as t:
+        assert [o["name"] for o in head["objects"]] == list(t.names)
+        assert [o["mass"] for o in head["objects"]] == t.metadata.object_mass.tolist()
+        view = automatic_view(action_of(t), ASPECT)
+    assert [o["still"] for o in head["objects"]] == [True, False, False]
+    assert head["floor"] == 0.0 and head["frames"] == 6 and head["frameTime"] == pytest.approx(0.1)
+    np.testing.assert_allclose(head["view"]["eye"], view.eye)
+    np.testing.assert_allclose(head["view"]["look"], view.look)
+
+
+def test_the_camera_of_the_scene_comes_first(slab):
+    """A finished run is seen from where its scene says."""
+    camera = Camera(eye=(1.0, -3.0, 2.0), look="ball", time=0.0)
+    feed = Feed(slab[0], "", Render(camera=(camera,)), finished=True)
+    assert feed.head()["view"]["eye"] == [1.0, -3.0, 2.0]
+    feed.close()
+
+
+def test_a_run_that_has_begun_has_room_below(slab):
+    """The picture of a run that goes on holds its first frame and the ground."""
+    folder, _ = slab
+    feed = Feed(folder)
+    low, high = np.array(feed.head()["bounds"])
+    vertices = feed.vertices(feed.frames.value("position", 0))
+    assert low[2] == 0.0 and (low <= vertices.min(axis=0)).all() and (high >= vertices.max(axis=0)).all()
+    assert not first_action(feed.metadata, *feed._boxes(vertices)).escaped
+    feed.close()
+
+
+def test_strain_is_that_of_the_springs(slab):
+    """None in frame 0; later the mean of |strain| of a particle's springs, as a twin in a plain loop finds it."""
+    folder, feed = slab
+    _, arrays = unpacked(feed.springs())
+    bond = arrays["bond"].reshape(-1, 2)
+    with Trajectory(folder) as t:
+        np.testing.assert_array_equal(t.metadata.id[bond], t.metadata.bond)
+        x0, x = t.position(0), t.position(3)
+        mesh = shaded_mesh(t.metadata, x0)
+    strain = [[] for _ in x]
+    for a, b in bond:
+        found = abs(np.linalg.norm(x[a] - x[b]) / np.linalg.norm(x0[a] - x0[b]) - 1.0)
+        strain[a].append(found)
+        strain[b].append(found)
+    order = np.argsort(mesh.object_of_vertex, kind="stable")
+    wanted = np.clip((mesh.carry @ np.array([np.mean(s) if s else 0.0 for s in strain]))[order] * 255 / MOST_STRAIN, 0, 255)
+    V = len(wanted)
+    for n, expected in ((0, np.zeros(V)), (3, wanted)):
+        (*_, layers, _, count, _), data = parts(feed.frame(n, STRAIN))
+        found = np.frombuffer(data, "u1", V, 48 * count + (6 * V + 3) // 4 * 4)
+        assert layers == STRAIN and np.abs(found - expected).max() <= 0.51
+    assert wanted.max() > 20
+
+
+def test_particles_are_sent_when_asked_for(slab):
+    """All stored ones, in single precision, at the end of the frame."""
+    folder, feed = slab
+    plain, message = feed.frame(2), feed.frame(2, PARTICLES)
+    with Trajectory(folder) as t:
+        x = t.position(2).astype("<f4")
+    assert len(message) == len(plain) + x.nbytes and message.endswith(x.tobytes())
+
+
+def test_liquid(tmp_path):
+    """Heights within half a step of the basin's height; where a body hides the liquid and where a hull keeps it dry."""
+    scene, models, grid = pool_scene()
+    smooth = flat(grid, 0.45)
+    raw = raw_of(grid, smooth, models[:1])
+    raw[3:5, 30:33] = -np.inf
+    write(tmp_path / "trajectory.h5", scene, models, wet_frames(models, (smooth, raw), (smooth, raw)), grid)
+    feed = Feed(tmp_path)
+    head, arrays = unpacked(feed.scene())
+    (_, _, _, V, count, C), data = parts(feed.frame(1))
+    at = 48 * count + (6 * V + 3) // 4 * 4
+    height = np.frombuffer(data, "<u2", C, at) / 65535.0
+    state = np.frombuffer(data, "u1", C, at + (2 * C + 3) // 4 * 4).reshape(raw.shape)
+    assert grid.shape[0] * grid.shape[1] == C and np.abs(height - 0.45).max() <= 0.51 / 65535
+    assert (state[3:5, 30:33] == DRY).all() and (state[np.isnan(raw)] == HIDDEN).all() and state[0, 0] == OPEN
+    assert head["liquid"]["shape"] == list(grid.shape) and arrays["sheet"].max() < len(head["buffers"]) + 10 * C
+    feed.close()
+
+
+def test_frames_that_are_not_there(tmp_path):
+    """Neither one that is not written, nor one beyond the end."""
+    scene, models = slab_scene()
+    with TrajectoryWriter(tmp_path / "trajectory.h5", scene, models, frames=2, dt=0.01, steps_per_frame=10) as out:
+        frames = list(falling(models, 2))
+        out.write(*frames[0])
+        feed = Feed(tmp_path)
+        with pytest.raises(OutputError, match="not there"):
+            feed.frame(1)
+        with pytest.raises(IndexError):
+            feed.frame(2)
+        out.write(*frames[1])
+        feed.frame(1)
+        feed.close()
