@@ -46,6 +46,7 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
   if (given.depth) {
     need(are_finite(given.depth, coefficients), "a depth is no number");
     depth_grid.assign(given.depth, given.depth + coefficients);
+    depth_grid.push_back(0.0);    // kernels read three and one more
   } else {
     need(given.particles == static_cast<int>(nodes), "a cuboid has a particle in each place");
     need(std::find(filled.begin(), filled.end(), 0) == filled.end(), "a cuboid has no empty cells");
@@ -99,7 +100,7 @@ int ContactBody::cells_around(int node) const
 
 Lattice ContactBody::lattice() const
 {
-  return {{cells[0], cells[1], cells[2]},           {edges[0], edges[1], edges[2]}, mean_edge, row(), layer(),
+  return {{cells[0], cells[1], cells[2]},           filled.data(), {edges[0], edges[1], edges[2]}, mean_edge, row(), layer(),
           is_cuboid() ? nullptr : depth_grid.data()};
 }
 
@@ -116,7 +117,7 @@ Depth<double> ContactBody::depth(int side, const Vec3 &X) const
     weights[d] = depth_weights<double>(x, middle);
     first += (middle - 1) * step[d];
   }
-  return depth_by_splines(weights, [&](int i, int j, int k) { return first[i + nx * (j + ny * k)]; });
+  return depth_by_splines(weights, [&](int j, int k) { return vec3(first + nx * (j + ny * k)); });
 }
 
 std::size_t ContactBody::bytes() const

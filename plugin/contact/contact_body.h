@@ -62,11 +62,7 @@ class ContactBody {
   int place(int i, int j, int k) const { return i + row() * j + layer() * k; }
   int place_of(int node) const { return place_of_node[node]; }
 
-  bool is_filled(int i, int j, int k) const
-  {
-    return i >= 0 && j >= 0 && k >= 0 && i < cells[0] && j < cells[1] && k < cells[2] &&
-           filled[i + static_cast<std::size_t>(cells[0]) * (j + static_cast<std::size_t>(cells[1]) * k)];
-  }
+  bool is_filled(int i, int j, int k) const { return mdanim::is_filled(lattice(), i, j, k); }
   bool is_outer(int i, int j, int k) const;    // filled, and some neighbour across a face is not
   int cells_around(int node) const;            // filled ones, of 8
 

@@ -57,7 +57,7 @@ void ContactField::list(ContactObject &points_of, ContactObject &host_now, const
     // Points of a cuboid are a cell apart, too few for what is curved: its own points are dense.
     if (owner->body->points()[p].kind != PointKind::DENSE && !host->body->is_cuboid()) continue;
     if (!near.add(*owner, p)) continue;
-    const double out = outside(host_box, near.place(near.size() - 1, arrays.place.data())) - stands_out;
+    const double out = outside(host_box, near.place(near.size() - 1, arrays.place())) - stands_out;
     const bool known = before < points_before.size() && points_before[before] == p;
     if (!touches && out > reach) {
       near.drop_last();
@@ -114,7 +114,7 @@ bool ContactField::find(std::size_t q, const Vec3 &x, const Placed &at, Spot<dou
 
 bool ContactField::world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const
 {
-  const Placed own = {*owner->body, owner->slot.data(), arrays.place.data()};
+  const Placed own = {*owner->body, owner->slot.data(), arrays.place()};
   const std::array<int, 3> cell = {point.cell[0], point.cell[1], point.cell[2]};
   Spot<double> spot;
   if (!evaluate(own, trilinear({cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}, cell, *owner->body), spot)) return false;
@@ -143,7 +143,7 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
 {
   Watch &known = watch[q];
   const SurfacePoint &point = surface_point(q);
-  const Vec3 x = near.place(q, arrays.place.data());
+  const Vec3 x = near.place(q, arrays.place());
   const double h = host->body->spacing();
   const Placed at = placed(arrays);
   const auto lost = [&] {
@@ -169,7 +169,7 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
   Spot<double> spot;
   Vec3 X, normal;
   if (!find(q, x, at, spot, X) || !world_normal(point, arrays, normal)) return lost();
-  const Vec3 X_centre = X + spot.to_material(near.shift(q, arrays.place.data()));
+  const Vec3 X_centre = X + spot.to_material(near.shift(q, arrays.place()));
 
   const Lattice grid = host->body->lattice();
   const Ramps near_edges = ramps(point.kind);
@@ -218,9 +218,9 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
   contact.point = near.point(q);
   contact.side = side;
   for (int d = 0; d < 3; ++d) contact.cell[d] = known.cell[d];
-  contact.X = contact.anchor = X;
-  contact.memory.depth = of_side[side].value;
-  contact.memory.offset = was_open >> side & 1 ? of_side[side].value : 0.0;
+  contact.state.X = contact.state.anchor = X;
+  contact.state.memory.depth = of_side[side].value;
+  contact.state.memory.offset = was_open >> side & 1 ? of_side[side].value : 0.0;
   const auto where = std::lower_bound(of_contact.begin(), of_contact.end(), q);
   contacts.insert(contacts.begin() + (where - of_contact.begin()), contact);
   of_contact.insert(where, q);
@@ -234,18 +234,12 @@ PushTask ContactField::task(PointKind kind, const ContactArrays &arrays, double 
 {
   const ContactBody &body = *host->body;
   const double longest = std::max({body.count(0) * body.edge(0), body.count(1) * body.edge(1), body.count(2) * body.edge(2)});
-  return {law,
-          dt,
-          body.lattice(),
-          host->slot.data(),
-          arrays.place.data(),
-          2.0 * body.spacing() + longest,
-          ramps(kind),
-          is_smooth(kind)};
+  return {
+      law, dt, body.lattice(), host->slot.data(), arrays.place(), 2.0 * body.spacing() + longest, ramps(kind), is_smooth(kind)};
 }
 
 PointNow ContactField::point_now(std::size_t q, const ContactArrays &arrays) const
-{ return {near.place(q, arrays.place.data()), near.shift(q, arrays.place.data()), surface_point(q).area}; }
+{ return {near.place(q, arrays.place()), near.shift(q, arrays.place()), surface_point(q).area}; }
 
 // X of the point is that of the weights plus `off`, about which everything is linear. False when it cannot be found.
 bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec3 &x, MapWeights &weights, Spot<double> &spot,
@@ -255,7 +249,7 @@ bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec
   const Placed at = {*host->body, task.slot, task.place};
   const MaterialSearch search(at);
   std::array<int, 3> cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
-  Vec3 X = contact.X + contact.change;
+  Vec3 X = contact.state.X + contact.state.change;
   bool again = true;
   for (int step = 0; again; ++step) {
     if (step == MOST) return false;
@@ -264,7 +258,7 @@ bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec
     if (!evaluate(at, weights, spot)) return false;
     if (search.is_collapsed(spot)) {    // from the last place, then from the cells around
       if (task.is_smooth) return false;
-      Vec3 from = contact.X;
+      Vec3 from = contact.state.X;
       cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
       if (step > 0 || !(search.solve(x, cell, from) || search.solve_around(x, cell, from))) return false;
       X = from, again = true;
@@ -282,8 +276,8 @@ bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec
   }
   for (int d = 0; d < 3; ++d) contact.cell[d] = cell[d];
   X += off;
-  contact.change = X - contact.X;
-  contact.X = X;
+  contact.state.change = X - contact.state.X;
+  contact.state.X = X;
   return true;
 }
 
@@ -295,24 +289,22 @@ ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, cons
   Vec3 off, part_slope;
   if (!follow(contact, task, now.x, weights, spot, off)) return Fate::LOST;
   const Vec3 shift = spot.to_material(now.shift);
-  const Depth<double> below = host->body->depth(contact.side, contact.X);
+  const Depth<double> below = host->body->depth(contact.side, contact.state.X);
   double part = 1.0;
   if (host->body->is_cuboid())
-    part = part_that_counts<double>(task.ramps, task.host, contact.X + shift, contact.side / 2, part_slope);
+    part = part_that_counts<double>(task.ramps, task.host, contact.state.X + shift, contact.side / 2, part_slope);
   if (!(below.value > 0.0 && part > 0.0 && below.value <= task.longest)) {
-    if (task.dt > 0.0) account.damped += last_damping_work(contact.memory, below.value);
+    if (task.dt > 0.0) account.damped += last_damping_work(contact.state.memory, below.value);
     return Fate::OUT;
   }
 
-  ContactState<double> state = {contact.X, contact.change, contact.anchor, contact.memory};
-  const ContactPush<double> push = contact_push(task.law, task.dt, now.area, part, part_slope, below, spot, off, shift, state);
-  contact.anchor = state.anchor;
-  contact.memory = state.memory;
+  const ContactPush<double> push =
+      contact_push(task.law, task.dt, now.area, part, part_slope, below, spot, off, shift, contact.state);
   contact.force = push.on_point;
   contact.moved = push.moved;
   contact.energy = push.energy;
 
-  Vec3 *on = arrays.force.data();
+  Row *on = arrays.force();
   near.add_force(q, push.on_point, on);
   if (part_slope.x != 0.0 || part_slope.y != 0.0 || part_slope.z != 0.0) near.add_force_at_centre(q, push.at_centre, on);
   spread({*host->body, task.slot, task.place}, weights, -1.0 * push.both,
@@ -325,38 +317,27 @@ ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, cons
 void ContactField::take(FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,
                         ContactAccount &account) const
 {
-  contact.X = pushed.X.of(lane);
-  contact.change = pushed.change.of(lane);
-  contact.anchor = pushed.anchor.of(lane);
-  contact.memory = {pushed.offset[lane],       pushed.depth[lane],   pushed.pull.of(lane), pushed.stick[lane],
-                    pushed.stick_energy[lane], pushed.damping[lane], pushed.drag.of(lane)};
-  contact.force = pushed.force.of(lane);
-  contact.moved = pushed.moved.of(lane);
-  contact.energy = pushed.energy[lane];
+  const PushedContact<double> &found = pushed.contact[lane];
+  for (int d = 0; d < 3; ++d) contact.cell[d] = pushed.cell[lane][d];
+  contact.state = found.state;
+  contact.force = found.force;
+  contact.moved = found.moved;
+  contact.energy = found.energy;
 
-  Vec3 *on = arrays.force.data();
+  Row *on = arrays.force();
   near.add_force(q, contact.force, on);
-  if (pushed.on_ramp >> lane & 1) near.add_force_at_centre(q, pushed.at_centre.of(lane), on);
-  for (int n = 0; n < pushed.nodes; ++n) on[pushed.slot[n][lane]] += pushed.on_node[n].of(lane);
-  count(contact, pushed.heat[lane], pushed.damped[lane], account);
-}
-
-// Whether the kernel's numbers are not those of push(), which goes on to another cell or another guess, or ends the contact.
-bool ContactField::is_hard(const FieldContact &contact, const PushedBlock &pushed, int lane, const PushTask &task) const
-{
-  if (pushed.hard >> lane & 1) return true;
-  if (!(pushed.outside >> lane & 1)) return false;
-  std::array<int, 3> cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
-  return MaterialSearch({*host->body, task.slot, task.place}).step_to_neighbour(cell, pushed.X.of(lane), LEFT);
+  if (pushed.on_ramp >> lane & 1) near.add_force_at_centre(q, found.at_centre, on);
+  arrays.kernels->add_to_nodes(pushed, lane, on);
+  count(contact, found.heat, found.damped, account);
 }
 
 void ContactField::count(const FieldContact &contact, double heat, double damped, ContactAccount &account) const
 {
   account.energy += contact.energy;
-  account.stick_energy += contact.memory.stick_energy;
+  account.stick_energy += contact.state.memory.stick_energy;
   account.heat += heat;
   account.damped += damped;
-  account.deepest = std::max(account.deepest, contact.memory.depth);
+  account.deepest = std::max(account.deepest, contact.state.memory.depth);
   ++account.touching;
 }
 
@@ -364,7 +345,7 @@ void ContactField::count(const FieldContact &contact, double heat, double damped
 void ContactField::end(const FieldContact &contact, std::size_t q, Fate fate, const ContactArrays &arrays,
                        ContactAccount &account)
 {
-  account.heat += contact.memory.stick_energy;
+  account.heat += contact.state.memory.stick_energy;
   if (fate == Fate::LOST) {
     // The last force still did work in half of the last step, as leap-frog counts it.
     account.let_go += contact.energy - 0.5 * dot(contact.force, contact.moved);
@@ -372,7 +353,7 @@ void ContactField::end(const FieldContact &contact, std::size_t q, Fate fate, co
     wake[q] = AT_ONCE;
   } else {
     watch[q].cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
-    watch[q].X = contact.X;
+    watch[q].X = contact.state.X;
     look(q, arrays, false);
   }
 }
@@ -396,7 +377,7 @@ void ContactField::add_forces(ContactArrays &arrays, double nearer, double dt, C
     else
       for (std::size_t c = first; c < end; ++c) {    // what is known stays as it is
         FieldContact copy = contacts[c];
-        copy.change = {};
+        copy.state.change = {};
         push(copy, of_contact[c], law_of_kind, now[c], arrays, account);
       }
   }
@@ -409,14 +390,14 @@ void ContactField::push_run(std::size_t first, std::size_t end, std::size_t &lef
 {
   PushedBlock pushed;
   for (std::size_t c = first; c < end; ++c) {
-    const int lane = static_cast<int>((c - first) % CONTACT_LANES);
+    const std::size_t lane = (c - first) % CONTACT_LANES;
     if (lane == 0 && arrays.kernels)
       arrays.kernels->push(task, &contacts[c], &now[c], static_cast<int>(std::min<std::size_t>(CONTACT_LANES, end - c)), pushed);
     Fate fate = Fate::STAYS;
-    if (!arrays.kernels || is_hard(contacts[c], pushed, lane, task))
+    if (!arrays.kernels || pushed.hard >> lane & 1)
       fate = push(contacts[c], of_contact[c], task, now[c], arrays, account);
     else
-      take(contacts[c], of_contact[c], pushed, lane, arrays, account);
+      take(contacts[c], of_contact[c], pushed, static_cast<int>(lane), arrays, account);
     if (fate != Fate::STAYS) {
       this->end(contacts[c], of_contact[c], fate, arrays, account);
       continue;

@@ -42,7 +42,7 @@ class ContactField {
     std::uint8_t open = 0;    // sides in which the point would have had a potential when it was looked at last
   };
 
-  Placed placed(const ContactArrays &arrays) const { return {*host->body, host->slot.data(), arrays.place.data()}; }
+  Placed placed(const ContactArrays &arrays) const { return {*host->body, host->slot.data(), arrays.place()}; }
   const SurfacePoint &surface_point(std::size_t q) const { return owner->body->points()[near.point(q)]; }
   bool is_smooth(PointKind kind) const { return kind != PointKind::FLAT && host->body->is_cuboid(); }
   bool look(std::size_t q, const ContactArrays &arrays, bool may_begin);
@@ -59,7 +59,6 @@ class ContactField {
             ContactAccount &account) const;
   void take(FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,
             ContactAccount &account) const;
-  bool is_hard(const FieldContact &contact, const PushedBlock &pushed, int lane, const PushTask &task) const;
   void count(const FieldContact &contact, double heat, double damped, ContactAccount &account) const;
   void push_run(std::size_t first, std::size_t end, std::size_t &left, const PushTask &task, ContactArrays &arrays,
                 ContactAccount &account);

@@ -7,6 +7,7 @@
 
 #include "contact/contact_push.h"
 #include "contact/field_contact.h"
+#include "contact/row.h"
 
 namespace mdanim {
 
@@ -14,42 +15,49 @@ namespace mdanim {
 constexpr int CONTACT_LANES = 4;
 
 // The point of a contact as it is now.
-struct PointNow {
-  Vec3 x, shift;    // in space; from the point to the centre of its area
-  double area;
+template <class Real> struct PointOf {
+  Vec<Real> x, shift;    // in space; from the point to the centre of its area
+  Real area;
 };
+using PointNow = PointOf<double>;
 
 struct PushTask {
   ContactLaw law;
   double dt;
   Lattice host;
-  const int *slot;    // of the host's particles by their places in the grid
-  const Vec3 *place;
-  double longest;    // depth beyond which a contact is over [m]
+  const int *slot;     // of the host's particles by their places in the grid
+  const Row *place;    // as that of Placed
+  double longest;      // depth beyond which a contact is over [m]
   Ramps ramps;
   bool is_smooth;    // the map
 };
 
-struct VecLanes {
-  double x[CONTACT_LANES], y[CONTACT_LANES], z[CONTACT_LANES];
-  MDANIM_ALWAYS_INLINE Vec3 of(int lane) const { return {x[lane], y[lane], z[lane]}; }
+// What a contact comes to in a step.
+template <class Real> struct PushedContact {
+  ContactState<Real> state;
+  Vec<Real> force, moved;    // as those of FieldContact
+  Real energy;
+  Vec<Real> at_centre;    // force there
+  Real heat, damped;      // [J]
 };
 
 // Of up to four contacts. What is told of a lane in `hard` is wrong: its contact is over, or needs a search.
 struct PushedBlock {
-  int hard, outside, on_ramp;    // one bit for each lane; X is out of its cell; there is a force at the centre
-  VecLanes X, change, anchor, pull, drag, force, moved, at_centre;
-  double offset[CONTACT_LANES], depth[CONTACT_LANES], stick[CONTACT_LANES], stick_energy[CONTACT_LANES], energy[CONTACT_LANES],
-      heat[CONTACT_LANES], damped[CONTACT_LANES], damping[CONTACT_LANES];
-  int nodes;    // of the host
-  int slot[27][CONTACT_LANES];
-  VecLanes on_node[27];
+  int hard, on_ramp;    // one bit for each lane; there is a force at the centre
+  PushedContact<double> contact[CONTACT_LANES];
+  int cell[CONTACT_LANES][3];
+  const int *slots[CONTACT_LANES];    // of the host's nodes, from the first on
+  int nodes;
+  long step[27];    // from the first node to this one
+  Row on_node[27][CONTACT_LANES];
 };
 
 struct ContactKernels {
   const char *name;    // as those of engine/kernels.h
   // The first `n` of the contacts from `first` on, all of points of one kind.
   void (*push)(const PushTask &, const FieldContact *first, const PointNow *now, int n, PushedBlock &pushed);
+  // The forces of a lane on the host's nodes.
+  void (*add_to_nodes)(const PushedBlock &pushed, int lane, Row *on);
 };
 
 // Those of a set of instructions that runs here; those of all processors for a name that is not known.

@@ -14,27 +14,51 @@ namespace {
 
 constexpr int LANES = CONTACT_LANES;
 static_assert(LANES == 4, "a row is gathered from four");
+constexpr int ALL = (1 << LANES) - 1;
 
-// What is told of each lane, as one vector: number(lane) for four lanes.
+// What is told of each lane, as one vector.
 template <class Number> MDANIM_ALWAYS_INLINE Four gather(const Number &number)
-{ return Four{number(0), number(1), number(2), number(3)}; }
-
-template <class Place> MDANIM_ALWAYS_INLINE Vec<Four> gather_vec(const Place &place)
 {
-  const Vec3 &a = place(0), &b = place(1), &c = place(2), &d = place(3);
-  return {Four{a.x, b.x, c.x, d.x}, Four{a.y, b.y, c.y, d.y}, Four{a.z, b.z, c.z, d.z}};
+  Four all;
+#pragma GCC unroll 8
+  for (int lane = 0; lane < LANES; ++lane) all[lane] = number(lane);
+  return all;
 }
 
-MDANIM_ALWAYS_INLINE void store(VecLanes &to, const Vec<Four> &value)
+// The same of rows, or of three numbers with one more after them.
+template <class OfLane> MDANIM_ALWAYS_INLINE Vec<Four> gather_rows(const OfLane &row)
 {
-  store(to.x, value.x);
-  store(to.y, value.y);
-  store(to.z, value.z);
+  Four column[4];
+  load_columns(row, column);
+  return {column[0], column[1], column[2]};
+}
+
+// Records of doubles, one of each lane, as one of vectors, and the other way round.
+template <class Vectors, class OfLane> MDANIM_ALWAYS_INLINE Vectors gather_record(const OfLane &record)
+{
+  constexpr int N = sizeof(Vectors) / sizeof(Four);
+  static_assert(sizeof(*record(0)) == N * sizeof(double), "they have the same members");
+  struct {
+    Four column[N];
+  } all;
+  load_columns([&](int lane) { return reinterpret_cast<const double *>(record(lane)); }, all.column);
+  return __builtin_bit_cast(Vectors, all);
+}
+
+template <class Vectors, class OfLane> MDANIM_ALWAYS_INLINE void scatter_record(const Vectors &vectors, const OfLane &record)
+{
+  constexpr int N = sizeof(Vectors) / sizeof(Four);
+  static_assert(sizeof(*record(0)) == N * sizeof(double), "they have the same members");
+  struct All {
+    Four column[N];
+  };
+  store_columns(__builtin_bit_cast(All, vectors).column, [&](int lane) { return reinterpret_cast<double *>(record(lane)); });
 }
 
 // Nodes of the smooth map, or of a depth, around X along an axis: the middle ones as numbers, and in lanes.
 MDANIM_ALWAYS_INLINE Four middle_nodes(const Four &x, int cells, int (&middle)[LANES])
 {
+#pragma GCC unroll 8
   for (int lane = 0; lane < LANES; ++lane) middle[lane] = middle_node(x[lane], cells);
   return gather([&](int lane) { return static_cast<double>(middle[lane]); });
 }
@@ -45,14 +69,95 @@ MDANIM_ALWAYS_INLINE Depth<Four> depth_by_splines(const Lattice &host, const Vec
   const double *first[LANES];
   for (const double *&own : first) own = host.depth;
   Weights<Four> weights;
+#pragma GCC unroll 3
   for (int d = 0; d < 3; ++d) {
     const Four x = component(X, d) + static_cast<double>(DEPTH_MARGIN);
     int middle[LANES];
     weights[d] = depth_weights(x, middle_nodes(x, depth_row(host, d) - 1, middle));
+#pragma GCC unroll 8
     for (int lane = 0; lane < LANES; ++lane) first[lane] += (middle[lane] - 1) * (d == 0 ? 1 : d == 1 ? row : layer);
   }
-  return depth_by_splines(
-      weights, [&](int i, int j, int k) { return gather([&](int lane) { return first[lane][i + row * j + layer * k]; }); });
+  return depth_by_splines(weights,
+                          [&](int j, int k) { return gather_rows([&](int lane) { return first[lane] + row * j + layer * k; }); });
+}
+
+// Where the points of contacts are in the host: about X = `guess`, from which they are `off`, everything is linear.
+struct Followed {
+  Vec<Four> guess, off;
+  Weights<Four> weights;
+  Spot<Four> spot;
+  int cell[LANES][3];
+  const int *slots[LANES];    // of the host's nodes, from the first on
+  int lost;                   // one bit for each lane that is not found
+};
+
+// As ContactField::follow() does, all lanes at once: a lane that has its place repeats the same numbers.
+template <bool SMOOTH> MDANIM_ALWAYS_INLINE void follow(const PushTask &task, const Vec<Four> &x, Followed &found)
+{
+  constexpr int MOST = 4;
+  const Lattice &host = task.host;
+  found.lost = 0;
+  int again = ALL;
+  for (int round = 0; again; ++round) {
+    Four cell[3];
+#pragma GCC unroll 8
+    for (int lane = 0; lane < LANES; ++lane) found.slots[lane] = task.slot;
+#pragma GCC unroll 3
+    for (int d = 0; d < 3; ++d) {
+      const int step = d == 0 ? 1 : d == 1 ? host.row : host.layer;
+      if (SMOOTH) {
+        int middle[LANES];
+        cell[d] = middle_nodes(component(found.guess, d), host.cells[d], middle);
+        found.weights[d] = smooth_weights(component(found.guess, d), cell[d], host.cells[d]);
+#pragma GCC unroll 8
+        for (int lane = 0; lane < LANES; ++lane) found.slots[lane] += (middle[lane] - 1) * step;
+      } else {
+        cell[d] = gather([&](int lane) { return static_cast<double>(found.cell[lane][d]); });
+        found.weights[d] = linear_weights(component(found.guess, d), cell[d]);
+#pragma GCC unroll 8
+        for (int lane = 0; lane < LANES; ++lane) found.slots[lane] += found.cell[lane][d] * step;
+      }
+    }
+    long missing[LANES] = {};
+    evaluate_nodes<SMOOTH>(
+        found.weights,
+        [&](int i, int j, int k) {
+          const long step = i + host.row * j + host.layer * k;
+          return gather_rows([&](int lane) {
+            const long slot = found.slots[lane][step];
+            missing[lane] |= slot;
+            return &task.place[slot].value.x;
+          });
+        },
+        found.spot);
+    found.off = found.spot.to_material(x - found.spot.x);
+    found.lost |= ALL & ~bits(found.spot.det > smallest_volume(host.spacing));
+#pragma GCC unroll 8
+    for (int lane = 0; lane < LANES; ++lane) found.lost |= (missing[lane] < 0) << lane;
+
+    const Four square = dot(found.off, found.off);
+    const auto is_far = square > SAME_PLACE * SAME_PLACE;
+    const int far = bits(is_far);
+    again = far;
+    if (!SMOOTH) {
+      const Vec<Four> X = found.guess + found.off;
+      Four out{};
+#pragma GCC unroll 3
+      for (int d = 0; d < 3; ++d) out = larger(out, larger(cell[d] - component(X, d), component(X, d) - (cell[d] + 1.0)));
+      const int outside = bits(out > LEFT) & ~far & ~found.lost;
+      for (int lane = 0; outside >> lane; ++lane)
+        if (outside >> lane & 1 && step_to_neighbour(host, found.cell[lane], {X.x[lane], X.y[lane], X.z[lane]}, LEFT))
+          again |= 1 << lane;
+    }
+    again &= ~found.lost;
+    if (round == MOST) found.lost |= again, again = 0;
+    if (!again) break;
+    const Four whole = constant<Four>(1.0), short_of = pick(square > 1.0, 1.0 / root(square), whole);
+    const auto goes_on = gather([&](int lane) { return static_cast<double>(again >> lane & 1); }) > 0.0;
+    const Vec<Four> next = found.guess + short_of * found.off;
+    found.guess = {pick(goes_on, next.x, found.guess.x), pick(goes_on, next.y, found.guess.y),
+                   pick(goes_on, next.z, found.guess.z)};
+  }
 }
 
 template <bool SMOOTH, bool CUBOID>
@@ -61,106 +166,67 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, const FieldContact *f
 {
   const Lattice &host = task.host;
   int number[LANES];    // lanes without a contact repeat the last one
+#pragma GCC unroll 8
   for (int lane = 0; lane < LANES; ++lane) number[lane] = lane < n ? lane : n - 1;
   const auto contact = [&](int lane) -> const FieldContact & { return first[number[lane]]; };
 
-  ContactState<Four> state;
-  state.change = gather_vec([&](int lane) -> const Vec3 & { return contact(lane).change; });
-  const Vec<Four> X_before = gather_vec([&](int lane) -> const Vec3 & { return contact(lane).X; });
-  const Vec<Four> guess = X_before + state.change;
+  Followed found;
+  found.guess = gather_rows([&](int lane) { return &contact(lane).state.X.x; }) +
+                gather_rows([&](int lane) { return &contact(lane).state.change.x; });
+#pragma GCC unroll 8
+  for (int lane = 0; lane < LANES; ++lane)
+#pragma GCC unroll 3
+    for (int d = 0; d < 3; ++d) found.cell[lane][d] = contact(lane).cell[d];
+  follow<SMOOTH>(task, gather_rows([&](int lane) { return &now[number[lane]].x.x; }), found);
+  const PointOf<Four> point = gather_record<PointOf<Four>>([&](int lane) { return &now[number[lane]]; });
+  ContactState<Four> state = gather_record<ContactState<Four>>([&](int lane) { return &contact(lane).state; });
+  const Vec<Four> X = found.guess + found.off;
+  state.change = X - state.X;
+  state.X = X;
 
-  Weights<Four> weights;
-  Four cell[3];
-  const int *slots[LANES];    // of the base
-  for (int lane = 0; lane < LANES; ++lane) slots[lane] = task.slot;
-  for (int d = 0; d < 3; ++d) {
-    const int step = d == 0 ? 1 : d == 1 ? host.row : host.layer;
-    if (SMOOTH) {
-      int middle[LANES];
-      cell[d] = middle_nodes(component(guess, d), host.cells[d], middle);
-      weights[d] = smooth_weights(component(guess, d), cell[d], host.cells[d]);
-      for (int lane = 0; lane < LANES; ++lane) slots[lane] += (middle[lane] - 1) * step;
-    } else {
-      cell[d] = gather([&](int lane) { return static_cast<double>(contact(lane).cell[d]); });
-      weights[d] = linear_weights(component(guess, d), cell[d]);
-      for (int lane = 0; lane < LANES; ++lane) slots[lane] += contact(lane).cell[d] * step;
-    }
-  }
-
-  int missing[LANES] = {};
-  Spot<Four> spot;
-  evaluate_nodes<SMOOTH>(
-      weights,
-      [&](int i, int j, int k) {
-        const long step = i + host.row * j + host.layer * k;
-        return gather_vec([&](int lane) -> const Vec3 & {
-          const int slot = slots[lane][step];
-          missing[lane] |= slot;
-          return task.place[slot < 0 ? 0 : slot];
-        });
-      },
-      spot);
-  const Vec<Four> x = gather_vec([&](int lane) -> const Vec3 & { return now[number[lane]].x; });
-  const Vec<Four> off = spot.to_material(x - spot.x);
-  state.X = guess + off;
-  state.change = state.X - X_before;
-  const auto found = (spot.det > smallest_volume(host.spacing)) & (dot(off, off) <= SAME_PLACE * SAME_PLACE);
-  Four out{};
-  if (!SMOOTH)
-    for (int d = 0; d < 3; ++d)
-      out = larger(out, larger(cell[d] - component(state.X, d), component(state.X, d) - (cell[d] + 1.0)));
-
-  const Vec<Four> shift = spot.to_material(gather_vec([&](int lane) -> const Vec3 & { return now[number[lane]].shift; }));
+  const Vec<Four> shift = found.spot.to_material(point.shift);
   Depth<Four> below;
   Vec<Four> part_slope;
   Four part = constant<Four>(1.0);
   if (CUBOID) {
     const Side<Four> side = {gather([&](int lane) { return static_cast<double>(contact(lane).side >> 1); }),
                              gather([&](int lane) { return static_cast<double>(contact(lane).side & 1); })};
-    below = depth_below(side, host, state.X);
-    part = part_that_counts(task.ramps, host, state.X + shift, side.axis, part_slope);
+    below = depth_below(side, host, X);
+    part = part_that_counts(task.ramps, host, X + shift, side.axis, part_slope);
   } else {
-    below = depth_by_splines(host, state.X);
+    below = depth_by_splines(host, X);
   }
   const auto stays = (below.value > 0.0) & (part > 0.0) & (below.value <= task.longest);
 
-  state.anchor = gather_vec([&](int lane) -> const Vec3 & { return contact(lane).anchor; });
-  state.memory.offset = gather([&](int lane) { return contact(lane).memory.offset; });
-  state.memory.depth = gather([&](int lane) { return contact(lane).memory.depth; });
-  state.memory.pull = gather_vec([&](int lane) -> const Vec3 & { return contact(lane).memory.pull; });
-  state.memory.stick = gather([&](int lane) { return contact(lane).memory.stick; });
-  state.memory.damping = gather([&](int lane) { return contact(lane).memory.damping; });
-  state.memory.drag = gather_vec([&](int lane) -> const Vec3 & { return contact(lane).memory.drag; });
-  const Four area = gather([&](int lane) { return now[number[lane]].area; });
-  const ContactPush<Four> push = contact_push(task.law, task.dt, area, part, part_slope, below, spot, off, shift, state);
-
+  const ContactPush<Four> push =
+      contact_push(task.law, task.dt, point.area, part, part_slope, below, found.spot, found.off, shift, state);
   pushed.nodes = 0;
-  spread_to_nodes<SMOOTH>(weights, -1.0 * push.both, {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]},
+  spread_to_nodes<SMOOTH>(found.weights, -1.0 * push.both, {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]},
                           [&](int i, int j, int k, const Vec<Four> &force) {
-                            const long step = i + host.row * j + host.layer * k;
-                            for (int lane = 0; lane < LANES; ++lane) pushed.slot[pushed.nodes][lane] = slots[lane][step];
-                            store(pushed.on_node[pushed.nodes++], force);
+                            pushed.step[pushed.nodes] = i + host.row * j + host.layer * k;
+                            Row(&row)[LANES] = pushed.on_node[pushed.nodes++];
+                            const Four column[4] = {force.x, force.y, force.z, Four{}};
+                            store_columns(column, [&](int lane) { return &row[lane].value.x; });
                           });
-  pushed.hard = ~bits(found & stays) & ((1 << n) - 1);
-  for (int lane = 0; lane < n; ++lane) pushed.hard |= (missing[lane] < 0) << lane;
-  pushed.outside = bits(out > LEFT);
+  pushed.hard = (found.lost | ~bits(stays)) & ((1 << n) - 1);
   pushed.on_ramp = bits((part_slope.x != 0.0) | (part_slope.y != 0.0) | (part_slope.z != 0.0));
-  store(pushed.X, state.X);
-  store(pushed.change, state.change);
-  store(pushed.anchor, state.anchor);
-  store(pushed.pull, state.memory.pull);
-  store(pushed.force, push.on_point);
-  store(pushed.moved, push.moved);
-  store(pushed.at_centre, push.at_centre);
-  store(pushed.offset, state.memory.offset);
-  store(pushed.depth, state.memory.depth);
-  store(pushed.stick, state.memory.stick);
-  store(pushed.stick_energy, state.memory.stick_energy);
-  store(pushed.damping, state.memory.damping);
-  store(pushed.drag, state.memory.drag);
-  store(pushed.energy, push.energy);
-  store(pushed.heat, push.heat);
-  store(pushed.damped, push.damped);
+#pragma GCC unroll 8
+  for (int lane = 0; lane < LANES; ++lane) {
+    pushed.slots[lane] = found.slots[lane];
+#pragma GCC unroll 3
+    for (int d = 0; d < 3; ++d) pushed.cell[lane][d] = found.cell[lane][d];
+  }
+  const PushedContact<Four> result = {state, push.on_point, push.moved, push.energy, push.at_centre, push.heat, push.damped};
+  scatter_record(result, [&](int lane) { return &pushed.contact[lane]; });
+}
+
+void add_to_nodes(const PushedBlock &pushed, int lane, Row *on)
+{
+  const int *slots = pushed.slots[lane];
+  for (int n = 0; n < pushed.nodes; ++n) {
+    double *to = &on[slots[pushed.step[n]]].value.x;
+    store(to, load<Four>(to) + load<Four>(&pushed.on_node[n][lane].value.x));
+  }
 }
 
 void push(const PushTask &task, const FieldContact *first, const PointNow *now, int n, PushedBlock &pushed)
@@ -176,6 +242,6 @@ void push(const PushTask &task, const FieldContact *first, const PointNow *now, 
 }    // namespace
 
 extern const ContactKernels MDANIM_KERNELS(MDANIM_SET);
-const ContactKernels MDANIM_KERNELS(MDANIM_SET) = {MDANIM_NAME(MDANIM_SET), push};
+const ContactKernels MDANIM_KERNELS(MDANIM_SET) = {MDANIM_NAME(MDANIM_SET), push, add_to_nodes};
 
 }    // namespace mdanim

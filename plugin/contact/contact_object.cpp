@@ -46,7 +46,7 @@ PointFinder::PointFinder(const ContactObject &owner, const ContactArrays &arrays
     one.clear();
     if (!one.add(owner, p)) continue;
     number.push_back(p);
-    place.push_back(one.place(0, arrays.place.data()));
+    place.push_back(one.place(0, arrays.place()));
   }
   grid = Grid([this](int n) { return &place[n].x; }, static_cast<int>(place.size()), 2.0 * owner.body->spacing());
 }
@@ -72,7 +72,7 @@ OuterCells::OuterCells(const ContactObject &owner, const ContactArrays &arrays)
         const int low = owner.slot[body.place(i, j, k)], high = owner.slot[body.place(i + 1, j + 1, k + 1)];
         if (low < 0 || high < 0) continue;
         cell.push_back({i, j, k});
-        middle.push_back(0.5 * (arrays.place[low] + arrays.place[high]));
+        middle.push_back(0.5 * (arrays.place()[low].value + arrays.place()[high].value));
       }
   grid = Grid([this](int n) { return &middle[n].x; }, static_cast<int>(middle.size()), SEARCHED * body.spacing());
 }

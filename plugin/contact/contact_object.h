@@ -6,8 +6,10 @@
 
 #include "contact/contact_body.h"
 #include "contact/material_map.h"
+#include "contact/row.h"
 #include "engine/boxes.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -45,9 +47,21 @@ struct ContactAccount {
 };
 
 // Positions and forces of all particles that contacts may need, by slots.
-struct ContactArrays {
-  std::vector<Vec3> place, force;
+class ContactArrays {
+ public:
   const ContactKernels *kernels = nullptr;    // null: contacts one at a time, with the same bits
+
+  void resize(std::size_t particles) { place_rows.resize(particles + 1), force_rows.resize(particles); }
+  std::size_t size() const { return force_rows.size(); }
+  void clear_forces() { std::fill(force_rows.begin(), force_rows.end(), Row{}); }
+  Row *place() { return place_rows.data() + 1; }    // slot -1, of what is not there, may be read
+  const Row *place() const { return place_rows.data() + 1; }
+  Row *force() { return force_rows.data(); }
+  const Row *force() const { return force_rows.data(); }
+  std::size_t bytes() const { return (place_rows.capacity() + force_rows.capacity()) * sizeof(Row); }
+
+ private:
+  std::vector<Row> place_rows = std::vector<Row>(1), force_rows;
 };
 
 // A particle's part in a point.
@@ -76,29 +90,30 @@ class NearPoints {
   int point(std::size_t q) const { return near[q].point; }
   std::size_t bytes() const { return near.capacity() * sizeof(Near) + carriers.capacity() * sizeof(Carrier); }
 
-  Vec3 place(std::size_t q, const Vec3 *at) const { return sum(near[q].first, near[q].middle, at); }
+  Vec3 place(std::size_t q, const Row *at) const { return sum(near[q].first, near[q].middle, at); }
   // From the point to the centre of its area.
-  Vec3 shift(std::size_t q, const Vec3 *at) const
+  Vec3 shift(std::size_t q, const Row *at) const
   {
     const Near &n = near[q];
     return n.middle == n.last ? Vec3{} : sum(n.middle, n.last, at) - sum(n.first, n.middle, at);
   }
-  void add_force(std::size_t q, const Vec3 &force, Vec3 *on) const
+  void add_force(std::size_t q, const Vec3 &force, Row *on) const
   {
-    for (int c = near[q].first; c < near[q].middle; ++c) on[carriers[c].slot] += carriers[c].weight * force;
+    for (int c = near[q].first; c < near[q].middle; ++c) on[carriers[c].slot].value += carriers[c].weight * force;
   }
-  void add_force_at_centre(std::size_t q, const Vec3 &force, Vec3 *on) const
+  void add_force_at_centre(std::size_t q, const Vec3 &force, Row *on) const
   {
     const Near &n = near[q];
     const bool own = n.middle < n.last;
-    for (int c = own ? n.middle : n.first; c < (own ? n.last : n.middle); ++c) on[carriers[c].slot] += carriers[c].weight * force;
+    for (int c = own ? n.middle : n.first; c < (own ? n.last : n.middle); ++c)
+      on[carriers[c].slot].value += carriers[c].weight * force;
   }
 
  private:
-  Vec3 sum(int first, int last, const Vec3 *at) const
+  Vec3 sum(int first, int last, const Row *at) const
   {
-    Vec3 x = carriers[first].weight * at[carriers[first].slot];
-    for (int c = first + 1; c < last; ++c) x += carriers[c].weight * at[carriers[c].slot];
+    Vec3 x = carriers[first].weight * at[carriers[first].slot].value;
+    for (int c = first + 1; c < last; ++c) x += carriers[c].weight * at[carriers[c].slot].value;
     return x;
   }
   bool add_carriers(const ContactObject &owner, const SurfacePoint &point, const Vec3 &X);

@@ -34,6 +34,7 @@ MDANIM_ALWAYS_INLINE Depth<Real> depth_below(const Side<Real> &side, const Latti
   Depth<Real> found;
   Real slope[3];
   const auto high = side.is_high > 0.0;
+#pragma GCC unroll 3
   for (int d = 0; d < 3; ++d) {
     const Real at = component(X, d), edge = constant<Real>(host.edge[d]);
     const auto across = side.axis == static_cast<double>(d);
@@ -53,19 +54,21 @@ template <class Real> MDANIM_ALWAYS_INLINE AxisWeights<Real> depth_weights(const
 
 MDANIM_ALWAYS_INLINE int depth_row(const Lattice &host, int axis) { return host.cells[axis] + 1 + 2 * DEPTH_MARGIN; }
 
-// coefficient(i, j, k): so many nodes from the first of the three along each axis.
-template <class Real, class Coefficient>
-MDANIM_ALWAYS_INLINE Depth<Real> depth_by_splines(const Weights<Real> &weights, const Coefficient &coefficient)
+// line(j, k): the three coefficients of a line along x, so many nodes from the first along y and z.
+template <class Real, class Line>
+MDANIM_ALWAYS_INLINE Depth<Real> depth_by_splines(const Weights<Real> &weights, const Line &line_at)
 {
   const AxisWeights<Real> &ax = weights[0], &ay = weights[1], &az = weights[2];
   Depth<Real> found;
+#pragma GCC unroll 3
   for (int k = 0; k < 3; ++k) {
     Real sum{}, sum_x{}, sum_y{};
+#pragma GCC unroll 3
     for (int j = 0; j < 3; ++j) {
-      const Real c0 = coefficient(0, j, k), c1 = coefficient(1, j, k), c2 = coefficient(2, j, k);
-      const Real line = (ax.w[0] * c0 + ax.w[1] * c1) + ax.w[2] * c2;
+      const Vec<Real> c = line_at(j, k);
+      const Real line = (ax.w[0] * c.x + ax.w[1] * c.y) + ax.w[2] * c.z;
       sum += ay.w[j] * line;
-      sum_x += ay.w[j] * ((ax.slope[0] * c0 + ax.slope[1] * c1) + ax.slope[2] * c2);
+      sum_x += ay.w[j] * ((ax.slope[0] * c.x + ax.slope[1] * c.y) + ax.slope[2] * c.z);
       sum_y += ay.slope[j] * line;
     }
     found.value += az.w[k] * sum;
@@ -86,12 +89,14 @@ MDANIM_ALWAYS_INLINE Real part_that_counts(const Ramps &ramps, const Lattice &ho
                                            Vec<Real> &slope)
 {
   Real inside = constant<Real>(RAMPS_END), t[3], dt[3];    // cells from the nearest edge
+#pragma GCC unroll 3
   for (int d = 0; d < 3; ++d) {
     const Real nearest = smaller(component(X, d), host.cells[d] - component(X, d));
     inside = smaller(inside, pick(axis == static_cast<double>(d), inside, nearest));
   }
   slope = Vec<Real>{};
   if (!any(inside < RAMPS_END)) return constant<Real>(1.0);
+#pragma GCC unroll 3
   for (int d = 0; d < 3; ++d) {
     const auto across = axis == static_cast<double>(d);
     const Ramp<Real> low(component(X, d), ramps.from[d], ramps.width[d], ramps.bend),
@@ -103,7 +108,8 @@ MDANIM_ALWAYS_INLINE Real part_that_counts(const Ramps &ramps, const Lattice &ho
   return t[0] * t[1] * t[2];
 }
 
-// What a contact brings from the step before, and what changes in it.
+// What a contact brings from the step before, and what changes in it: X of the point, its change from the step before, and X of
+// the anchor of friction, in the host's lattice coordinates.
 template <class Real> struct ContactState {
   Vec<Real> X, change, anchor;
   ContactMemory<Real> memory;
@@ -137,6 +143,7 @@ MDANIM_ALWAYS_INLINE ContactPush<Real> contact_push(const ContactLaw &law, doubl
   push.on_point = -force.press * normal + force.pull + force.drag;
   push.at_centre = -force.surface_energy * spot.gradient(part_slope);
   push.both = push.on_point + push.at_centre;
+#pragma GCC unroll 3
   for (int d = 0; d < 3; ++d)
     push.moment[d] = component(off, d) * push.both + component(shift, d) * push.at_centre + component(lean, d) * force.pull;
   push.moved = spot.to_space(state.change);

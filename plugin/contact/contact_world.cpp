@@ -116,12 +116,12 @@ void ContactWorld::forget()
   for (auto &[key, field] : plane_fields) field.forget();
 }
 
-void ContactWorld::list(const std::vector<ContactParticle> &particles, const std::vector<Vec3> &places)
+static Vec3 place(const Coordinates &places, std::size_t slot) { return {places[0][slot], places[1][slot], places[2][slot]}; }
+
+void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coordinates &places)
 {
-  arrays.place = places;
-  arrays.force.assign(places.size(), {});
-  before = places;
-  is_new = true;
+  arrays.resize(particles.size());
+  for (std::size_t slot = 0; slot < particles.size(); ++slot) arrays.place()[slot].value = place(places, slot);
   std::size_t from = 0;
   for (int n = 0; n < objects(); ++n) {
     ContactObject &one = all[n];
@@ -163,29 +163,29 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const std
 
 // --- steps ---
 
-void ContactWorld::measure_motion()
+void ContactWorld::move_to(const Coordinates &places)
 {
   for (ContactObject &one : all) {
     one.stir = 0.0;
     one.way = {};
-    if (one.first_slot == one.last_slot || is_new) continue;
-    one.way = arrays.place[one.first_slot] - before[one.first_slot];
+    if (one.first_slot == one.last_slot) continue;
+    one.way = place(places, one.first_slot) - arrays.place()[one.first_slot].value;
     double most = 0.0;
     for (int s = one.first_slot; s < one.last_slot; ++s) {
-      const Vec3 off = (arrays.place[s] - before[s]) - one.way;
+      const Vec3 x = place(places, s), off = (x - arrays.place()[s].value) - one.way;
       most = std::max(most, dot(off, off));
+      arrays.place()[s].value = x;
     }
     one.stir = std::sqrt(most);
   }
-  before = arrays.place;
 }
 
-void ContactWorld::step(double dt)
+void ContactWorld::step(const Coordinates &places, double dt)
 {
   account.begin_step();
-  if (arrays.place.empty()) return;
-  measure_motion();
-  std::fill(arrays.force.begin(), arrays.force.end(), Vec3{});
+  if (arrays.size() == 0) return;
+  move_to(places);
+  arrays.clear_forces();
   for (auto &[key, both] : fields) {
     const ContactObject &a = all[number_of[key.first]], &b = all[number_of[key.second]];
     const Vec3 together = a.way - b.way;
@@ -200,7 +200,6 @@ void ContactWorld::step(double dt)
     if (dt == 0.0) field.settle(arrays);
     field.add_forces(arrays, std::sqrt(dot(one.way, one.way)) + one.stir, dt, account);
   }
-  is_new = false;
 }
 
 Vec3 ContactWorld::force_on_planes() const
@@ -256,7 +255,7 @@ void ContactWorld::restore(const PairContacts &pairs, const PlaneContacts &plane
 
 std::size_t ContactWorld::bytes() const
 {
-  std::size_t sum = (arrays.place.capacity() + arrays.force.capacity() + before.capacity()) * sizeof(Vec3);
+  std::size_t sum = arrays.bytes();
   for (const ContactObject &one : all)
     sum += sizeof one + one.slot.capacity() * sizeof(int) + (one.outer ? one.outer->bytes() : 0);
   for (const auto &[key, both] : fields) sum += sizeof both + both.lower.bytes() + both.higher.bytes();

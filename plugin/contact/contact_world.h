@@ -10,6 +10,7 @@
 #include "contact/plane_field.h"
 #include "engine/boxes.h"
 
+#include <array>
 #include <map>
 #include <memory>
 #include <utility>
@@ -37,6 +38,9 @@ struct ContactParticle {
   { return object != other.object ? object < other.object : node < other.node; }
 };
 
+// Of particles: all x, all y, all z.
+using Coordinates = std::array<const double *, 3>;
+
 class ContactWorld {
  public:
   ContactSettings settings;
@@ -58,17 +62,16 @@ class ContactWorld {
   // Whether a particle of an object may have a part in contacts.
   bool needs(int object, const double *x) const;
   // The particles that may, ascending, and where they are.
-  void list(const std::vector<ContactParticle> &particles, const std::vector<Vec3> &places);
+  void list(const std::vector<ContactParticle> &particles, const Coordinates &places);
   // Nothing is known of points but of those in contact: to be called before list() at the setup of a run.
   void forget();
 
   // --- steps ---
   // Null: contacts one at a time, with the same bits.
   void use(const ContactKernels *kernels) { arrays.kernels = kernels; }
-  std::vector<Vec3> &places() { return arrays.place; }
-  const std::vector<Vec3> &forces() const { return arrays.force; }
-  // The forces with all particles at places(). dt = 0 at the setup of a run: nothing changes.
-  void step(double dt);
+  // The forces with all particles at these places. dt = 0 at the setup of a run: nothing changes.
+  void step(const Coordinates &places, double dt);
+  const Row *forces() const { return arrays.force(); }
 
   ContactAccount account;
   Vec3 force_on_planes() const;
@@ -93,7 +96,7 @@ class ContactWorld {
   PlaneField new_plane(int n, int plane);
   bool can_touch(int a, int b) const { return movable[a] || movable[b]; }
   bool near_plane(const Box &box, const ContactPlane &plane, double gap) const;
-  void measure_motion();
+  void move_to(const Coordinates &places);
 
   std::vector<ContactObject> all;
   std::vector<char> movable;
@@ -105,8 +108,6 @@ class ContactWorld {
   std::map<PairKey, Both> fields;                            // by ids
   std::map<std::pair<int, int>, PlaneField> plane_fields;    // by id and plane
   ContactArrays arrays;
-  std::vector<Vec3> before;
-  bool is_new = true;    // lists: nothing has moved since
 };
 
 }    // namespace mdanim

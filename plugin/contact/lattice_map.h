@@ -10,6 +10,9 @@
 
 #include "laws/vec3.h"
 
+#include <cstddef>
+#include <cstdint>
+
 namespace mdanim {
 
 template <class Real> MDANIM_ALWAYS_INLINE const Real &component(const Vec<Real> &a, int axis)
@@ -18,11 +21,34 @@ template <class Real> MDANIM_ALWAYS_INLINE const Real &component(const Vec<Real>
 // The grid of a body's cells, and its depth.
 struct Lattice {
   int cells[3];
-  double edge[3], spacing;    // [m]
-  int row, layer;             // places to the next one along y and z
-  const double *depth;        // coefficients of quadratic B-splines on nodes -DEPTH_MARGIN to n + DEPTH_MARGIN; null for a cuboid
+  const std::uint8_t *filled;    // whether a cell is, x fastest
+  double edge[3], spacing;       // [m]
+  int row, layer;                // places to the next one along y and z
+  const double *depth;    // coefficients of quadratic B-splines on nodes -DEPTH_MARGIN to n + DEPTH_MARGIN; null for a cuboid
 };
 constexpr int DEPTH_MARGIN = 2;
+
+MDANIM_ALWAYS_INLINE bool is_filled(const Lattice &grid, int i, int j, int k)
+{
+  return i >= 0 && j >= 0 && k >= 0 && i < grid.cells[0] && j < grid.cells[1] && k < grid.cells[2] &&
+         grid.filled[i + grid.cells[0] * (j + static_cast<std::size_t>(grid.cells[1]) * k)];
+}
+
+// From a cell to its neighbour that X lies in, if there is one: to the filled one across the face that X stands out of most, and
+// by more than so many cells.
+MDANIM_ALWAYS_INLINE bool step_to_neighbour(const Lattice &grid, int (&cell)[3], const Vec3 &X, double over)
+{
+  int axis = -1, way = 0;
+  for (int d = 0; d < 3; ++d) {
+    const double at = component(X, d), below = cell[d] - at, above = at - (cell[d] + 1), out = below < above ? above : below;
+    const int to = at < cell[d] ? -1 : 1;
+    if (out > over && is_filled(grid, cell[0] + (d == 0) * to, cell[1] + (d == 1) * to, cell[2] + (d == 2) * to))
+      over = out, axis = d, way = to;
+  }
+  if (axis < 0) return false;
+  cell[axis] += way;
+  return true;
+}
 
 // Factors of the weights along an axis, for three nodes from the base on; one that is not used in any lane has no weight.
 template <class Real> struct AxisWeights {
@@ -95,12 +121,15 @@ MDANIM_ALWAYS_INLINE void evaluate_nodes(const Weights<Real> &weights, const Pla
 {
   const AxisWeights<Real> &ax = weights[0], &ay = weights[1], &az = weights[2];
   spot.x = spot.J[0] = spot.J[1] = spot.J[2] = Vec<Real>{};
+#pragma GCC unroll 3
   for (int k = 0; k < 3; ++k) {
     if (!uses<SMOOTH>(az, k)) continue;
     Vec<Real> s, sx, sy;
+#pragma GCC unroll 3
     for (int j = 0; j < 3; ++j) {
       if (!uses<SMOOTH>(ay, j)) continue;
       Vec<Real> t, tx;
+#pragma GCC unroll 3
       for (int i = 0; i < 3; ++i) {
         if (!uses<SMOOTH>(ax, i)) continue;
         const Vec<Real> x = place(i, j, k);
@@ -125,12 +154,15 @@ MDANIM_ALWAYS_INLINE void spread_to_nodes(const Weights<Real> &weights, const Ve
                                           const On &on)
 {
   const AxisWeights<Real> &ax = weights[0], &ay = weights[1], &az = weights[2];
+#pragma GCC unroll 3
   for (int k = 0; k < 3; ++k) {
     if (!uses<SMOOTH>(az, k)) continue;
     const Vec<Real> fz = az.w[k] * force + az.slope[k] * moment[2], zx = az.w[k] * moment[0], zy = az.w[k] * moment[1];
+#pragma GCC unroll 3
     for (int j = 0; j < 3; ++j) {
       if (!uses<SMOOTH>(ay, j)) continue;
       const Vec<Real> fy = ay.w[j] * fz + ay.slope[j] * zy, yx = ay.w[j] * zx;
+#pragma GCC unroll 3
       for (int i = 0; i < 3; ++i)
         if (uses<SMOOTH>(ax, i)) on(i, j, k, ax.w[i] * fy + ax.slope[i] * yx);
     }

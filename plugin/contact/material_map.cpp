@@ -19,16 +19,9 @@ bool MaterialSearch::is_collapsed(const Spot<double> &spot) const { return !(spo
 
 bool MaterialSearch::step_to_neighbour(std::array<int, 3> &cell, const Vec3 &X, double over) const
 {
-  const double at[3] = {X.x, X.y, X.z};
-  int best = -1;
-  for (int d = 0; d < 3; ++d) {
-    const double out = std::max(cell[d] - at[d], at[d] - (cell[d] + 1));
-    std::array<int, 3> next = cell;
-    next[d] += at[d] < cell[d] ? -1 : 1;
-    if (out > over && host.body.is_filled(next[0], next[1], next[2])) over = out, best = d;
-  }
-  if (best < 0) return false;
-  cell[best] += at[best] < cell[best] ? -1 : 1;
+  int next[3] = {cell[0], cell[1], cell[2]};
+  if (!mdanim::step_to_neighbour(host.body.lattice(), next, X, over)) return false;
+  cell = {next[0], next[1], next[2]};
   return true;
 }
 

@@ -6,17 +6,19 @@
 
 #include "contact/contact_body.h"
 #include "contact/lattice_map.h"
+#include "contact/row.h"
 
 #include <algorithm>
 #include <array>
 
 namespace mdanim {
 
-// Where the particles of a body are: `slot` numbers them by their place in the grid, -1 for one that is not there.
+// Where the particles of a body are: `slot` numbers them by their place in the grid, -1 for one that is not there, whose place
+// may be read.
 struct Placed {
   const ContactBody &body;
   const int *slot;
-  const Vec3 *place;
+  const Row *place;
 };
 
 // Of the particles around a point, from the place `base` in the grid on.
@@ -50,17 +52,17 @@ inline bool evaluate(const Placed &host, const MapWeights &weights, Spot<double>
   const auto place = [&](int i, int j, int k) {
     const int slot = slots[i + row * j + layer * k];
     missing |= slot;
-    return host.place[std::max(slot, 0)];
+    return host.place[slot].value;
   };
   weights.is_smooth ? evaluate_nodes<true>(weights.axis, place, spot) : evaluate_nodes<false>(weights.axis, place, spot);
   return missing >= 0;
 }
 
 // Adds force N_b + dN_b/dX . moment to every particle b.
-inline void spread(const Placed &host, const MapWeights &weights, const Vec3 &force, const Vec3 (&moment)[3], Vec3 *on)
+inline void spread(const Placed &host, const MapWeights &weights, const Vec3 &force, const Vec3 (&moment)[3], Row *on)
 {
   const int row = host.body.row(), layer = host.body.layer(), *const slots = host.slot + weights.base;
-  const auto add = [&](int i, int j, int k, const Vec3 &part) { on[slots[i + row * j + layer * k]] += part; };
+  const auto add = [&](int i, int j, int k, const Vec3 &part) { on[slots[i + row * j + layer * k]].value += part; };
   weights.is_smooth ? spread_to_nodes<true>(weights.axis, force, moment, add)
                     : spread_to_nodes<false>(weights.axis, force, moment, add);
 }

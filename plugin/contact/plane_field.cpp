@@ -25,7 +25,7 @@ void PlaneField::list(ContactObject &points_of, const ContactArrays &arrays, dou
     const bool touches = contact < contacts.size() && contacts[contact].point == p;
     while (before < points_before.size() && points_before[before] < p) ++before;
     if (!near.add(*owner, p)) continue;
-    const double above = -plane.depth(near.place(near.size() - 1, arrays.place.data()));
+    const double above = -plane.depth(near.place(near.size() - 1, arrays.place()));
     if (!touches && above > reach) {
       near.drop_last();
       continue;
@@ -50,7 +50,7 @@ void PlaneField::settle(const ContactArrays &arrays)
 
 bool PlaneField::look(std::size_t q, const ContactArrays &arrays, bool may_begin)
 {
-  const Vec3 x = near.place(q, arrays.place.data());
+  const Vec3 x = near.place(q, arrays.place());
   const double depth = plane.depth(x);
   const bool was = was_below[q];
   was_below[q] = depth > 0.0;
@@ -84,7 +84,7 @@ void PlaneField::add_forces(ContactArrays &arrays, double nearer, double dt, Con
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     PlaneContact contact = contacts[c];
     const std::size_t q = of_contact[c];
-    const Vec3 x = near.place(q, arrays.place.data());
+    const Vec3 x = near.place(q, arrays.place());
     const double depth = plane.depth(x);
     if (depth <= 0.0) {
       if (!moves) continue;
@@ -103,7 +103,7 @@ void PlaneField::add_forces(ContactArrays &arrays, double nearer, double dt, Con
       contact.anchor = x - force.kept * away;
     }
     const Vec3 on_point = -force.press * downward + force.pull + force.drag;
-    near.add_force(q, on_point, arrays.force.data());
+    near.add_force(q, on_point, arrays.force());
     on_plane -= on_point;
     account.energy += force.surface_energy;
     account.stick_energy += contact.memory.stick_energy;

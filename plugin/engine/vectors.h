@@ -31,6 +31,46 @@ template <class Vector> MDANIM_ALWAYS_INLINE Vector load(const double *from)
 template <class Vector> MDANIM_ALWAYS_INLINE void store(double *to, const Vector &value)
 { reinterpret_cast<Unaligned<Vector> *>(to)->value = value; }
 
+// Elements of two vectors, those of the second numbered on.
+#if defined(__clang__) || __GNUC__ >= 12
+#define MDANIM_SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#else
+#define MDANIM_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, FourPlaces{__VA_ARGS__})
+typedef long long FourPlaces __attribute__((vector_size(32)));
+#endif
+
+// Rows become columns.
+MDANIM_ALWAYS_INLINE void transpose(Four &a, Four &b, Four &c, Four &d)
+{
+  const Four p = MDANIM_SHUFFLE(a, b, 0, 4, 2, 6), q = MDANIM_SHUFFLE(a, b, 1, 5, 3, 7);
+  const Four r = MDANIM_SHUFFLE(c, d, 0, 4, 2, 6), s = MDANIM_SHUFFLE(c, d, 1, 5, 3, 7);
+  a = MDANIM_SHUFFLE(p, r, 0, 1, 4, 5), b = MDANIM_SHUFFLE(q, s, 0, 1, 4, 5);
+  c = MDANIM_SHUFFLE(p, r, 2, 3, 6, 7), d = MDANIM_SHUFFLE(q, s, 2, 3, 6, 7);
+}
+
+// Four records of N numbers become a record of N vectors, and the other way round. row(lane) is the first number of a record.
+template <int N, class Row> MDANIM_ALWAYS_INLINE void load_columns(const Row &row, Four (&column)[N])
+{
+#pragma GCC unroll 16
+  for (int next = 0; next < N; next += 4) {
+    const int n = next + 4 <= N ? next : N - 4;
+    Four a = load<Four>(row(0) + n), b = load<Four>(row(1) + n), c = load<Four>(row(2) + n), d = load<Four>(row(3) + n);
+    transpose(a, b, c, d);
+    column[n] = a, column[n + 1] = b, column[n + 2] = c, column[n + 3] = d;
+  }
+}
+
+template <int N, class Row> MDANIM_ALWAYS_INLINE void store_columns(const Four (&column)[N], const Row &row)
+{
+#pragma GCC unroll 16
+  for (int next = 0; next < N; next += 4) {
+    const int n = next + 4 <= N ? next : N - 4;
+    Four a = column[n], b = column[n + 1], c = column[n + 2], d = column[n + 3];
+    transpose(a, b, c, d);
+    store(row(0) + n, a), store(row(1) + n, b), store(row(2) + n, c), store(row(3) + n, d);
+  }
+}
+
 // Arrays of all x, all y, all z, at place i.
 template <class Vector, class Array> MDANIM_ALWAYS_INLINE Vec<Vector> load(const Array *const *from, long i)
 { return {load<Vector>(from[0] + i), load<Vector>(from[1] + i), load<Vector>(from[2] + i)}; }

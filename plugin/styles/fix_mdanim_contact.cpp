@@ -267,76 +267,81 @@ void FixMdanimContact::list()
   MPI_Allreduce(here.data(), boxes.data(), 6 * objects, MPI_DOUBLE, MPI_MIN, world);
   world_of_contact.look_ahead(boxes, neighbor->skin);
 
-  mine.clear();
-  std::vector<ContactParticle> particles;
+  std::vector<std::pair<ContactParticle, int>> needed;    // and local numbers
   if (!world_of_contact.is_idle())
     for (int i = 0; i < nlocal; ++i)
-      if (object[i] >= 0 && world_of_contact.needs(object[i], atom->x[i])) {
-        mine.push_back(i);
-        particles.push_back({object[i], static_cast<int>(atom->tag[i] - lowest[object[i]])});
-      }
-  std::vector<Vec3> places;
-  for (const int i : mine) places.push_back(vec3(atom->x[i]));
+      if (object[i] >= 0 && world_of_contact.needs(object[i], atom->x[i]))
+        needed.push_back({{object[i], static_cast<int>(atom->tag[i] - lowest[object[i]])}, i});
+  std::sort(needed.begin(), needed.end());
+  std::vector<ContactParticle> particles;
+  mine.clear();
+  for (const auto &[particle, i] : needed) {
+    particles.push_back(particle);
+    mine.push_back(i);
+  }
 
   // Of the numbers that ranks send in every step, three for each particle.
   counts.assign(comm->nprocs, 0);
   starts.assign(comm->nprocs, 0);
-  const int own = static_cast<int>(mine.size()), numbers = 3 * own;
+  const int numbers = 3 * static_cast<int>(mine.size());
   MPI_Allgather(&numbers, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
   std::exclusive_scan(counts.begin(), counts.end(), starts.begin(), 0);
-  const int first = starts[comm->me] / 3;
+  first_entry = starts[comm->me] / 3;
   particles = gather(world, particles);
-  places = gather(world, places);
-  const int total = static_cast<int>(particles.size());
-  received.resize(3 * static_cast<std::size_t>(total));
-  sent.resize(3 * static_cast<std::size_t>(own));
-
-  std::vector<int> order(total);
+  std::vector<int> order(particles.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](int p, int q) { return particles[p] < particles[q]; });
-  slot_of_entry.resize(total);
-  std::vector<ContactParticle> sorted;
-  std::vector<Vec3> sorted_places;
-  for (int slot = 0; slot < total; ++slot) {
-    slot_of_entry[order[slot]] = slot;
-    sorted.push_back(particles[order[slot]]);
-    sorted_places.push_back(places[order[slot]]);
-  }
-  my_slot.assign(slot_of_entry.begin() + first, slot_of_entry.begin() + first + own);
-  for (const ContactParticle &one : sorted)
+  slot.resize(order.size());
+  for (std::size_t n = 0; n < order.size(); ++n) slot[order[n]] = static_cast<int>(n);
+  std::sort(particles.begin(), particles.end());
+  for (const ContactParticle &one : particles)
     if (one.node < 0 || one.node >= world_of_contact.object(one.object).body->particles())
       error->all(FLERR, "fix {} mdanim/contact: tags of object {} (molecule ID) do not follow each other", id,
                  world_of_contact.object(one.object).id);
-  world_of_contact.list(sorted, sorted_places);
+  world_of_contact.list(particles, places_now());
 }
 
 // --- forces ---
 
-// place_of(n) is where the n-th of `mine` is.
-template <class PlaceOf> void FixMdanimContact::step(const PlaceOf &place_of, double dt)
+// Of all ranks, as LAMMPS has them.
+Coordinates FixMdanimContact::places_now()
 {
-  std::vector<Vec3> &places = world_of_contact.places();
-  if (comm->nprocs > 1) {
-    for (std::size_t n = 0; n < mine.size(); ++n) {
-      const Vec3 x = place_of(n);
-      sent[3 * n] = x.x, sent[3 * n + 1] = x.y, sent[3 * n + 2] = x.z;
-    }
-    MPI_Allgatherv(sent.data(), static_cast<int>(sent.size()), MPI_DOUBLE, received.data(), counts.data(), starts.data(),
-                   MPI_DOUBLE, world);
-    for (std::size_t n = 0; n < slot_of_entry.size(); ++n) places[slot_of_entry[n]] = vec3(&received[3 * n]);
-  } else {
-    for (std::size_t n = 0; n < mine.size(); ++n) places[my_slot[n]] = place_of(n);
+  my_places.make_room(mine.size());
+  for (std::size_t n = 0; n < mine.size(); ++n) my_places.put(n, atom->x[mine[n]]);
+  return places_of_all(my_places.all());
+}
+
+// From those of this rank's particles.
+Coordinates FixMdanimContact::places_of_all(const Coordinates &of_mine)
+{
+  if (comm->nprocs == 1) return of_mine;
+  sent.resize(3 * mine.size());
+  received.resize(3 * slot.size());
+  for (std::size_t n = 0; n < mine.size(); ++n)
+    for (int d = 0; d < 3; ++d) sent[3 * n + d] = of_mine[d][n];
+  MPI_Allgatherv(sent.data(), static_cast<int>(sent.size()), MPI_DOUBLE, received.data(), counts.data(), starts.data(),
+                 MPI_DOUBLE, world);
+  all_places.make_room(slot.size());
+  for (std::size_t n = 0; n < slot.size(); ++n) all_places.put(slot[n], &received[3 * n]);
+  return all_places.all();
+}
+
+// add(n, force) on those of `mine` that may move.
+template <class Add> void FixMdanimContact::give_forces(const Add &add) const
+{
+  const Row *forces = world_of_contact.forces();
+  for (std::size_t n = 0; n < mine.size(); ++n) {
+    const Vec3 &force = forces[slot[first_entry + n]].value;
+    if ((force.x != 0.0 || force.y != 0.0 || force.z != 0.0) && atom->mask[mine[n]] & groupbit) add(n, force);
   }
-  world_of_contact.step(dt);
 }
 
 // With particles where LAMMPS has them.
 void FixMdanimContact::push(double dt)
 {
   const Lap lap(seconds);
-  step([this](std::size_t n) { return vec3(atom->x[mine[n]]); }, dt);
-  for (std::size_t n = 0; n < mine.size(); ++n)
-    if (atom->mask[mine[n]] & groupbit) add_to(atom->f[mine[n]], world_of_contact.forces()[my_slot[n]]);
+  world_of_contact.step(places_now(), dt);
+  give_forces([this](std::size_t n, const Vec3 &force) { add_to(atom->f[mine[n]], force); });
 }
 
 void FixMdanimContact::setup(int)
@@ -353,9 +358,8 @@ void FixMdanimContact::append_required_atoms(std::vector<int> &particles) const
 void FixMdanimContact::add_forces(const Positions &place, const ForceSums &force)
 {
   const Lap lap(seconds);
-  step([&](std::size_t n) { return place[n]; }, update->dt);
-  for (std::size_t n = 0; n < mine.size(); ++n)
-    if (atom->mask[mine[n]] & groupbit) force.add(n, world_of_contact.forces()[my_slot[n]]);
+  world_of_contact.step(places_of_all(place.all()), update->dt);
+  give_forces([&force](std::size_t n, const Vec3 &one) { force.add(n, one); });
 }
 
 // --- what it tells ---
@@ -397,8 +401,8 @@ double FixMdanimContact::compute_vector(int n)
 
 double FixMdanimContact::memory_usage()
 {
-  double sum = static_cast<double>(world_of_contact.bytes()) +
-               static_cast<double>((mine.capacity() + my_slot.capacity() + slot_of_entry.capacity()) * sizeof(int));
+  double sum = static_cast<double>(world_of_contact.bytes() + my_places.bytes() + all_places.bytes()) +
+               static_cast<double>((mine.capacity() + slot.capacity()) * sizeof(int));
   for (const auto &[number, body] : bodies) sum += static_cast<double>(body.bytes());
   return sum;
 }

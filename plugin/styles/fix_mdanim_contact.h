@@ -59,7 +59,9 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
   std::vector<Known> survey() const;
   void take_objects();
   void list();
-  template <class PlaceOf> void step(const PlaceOf &place_of, double dt);
+  mdanim::Coordinates places_now();
+  mdanim::Coordinates places_of_all(const mdanim::Coordinates &of_mine);
+  template <class Add> void give_forces(const Add &add) const;
   void push(double dt);
 
   mdanim::ParticleValue kind, young, friction;
@@ -70,11 +72,12 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
 
   std::vector<tagint> ids, lowest;    // of objects: molecule IDs, ascending, and lowest tags
   std::vector<int> object;            // of local particles when lists were made, -1 for none
-  std::vector<int> mine;              // local particles with a part in contacts
-  std::vector<int> my_slot;           // and where they are in the world
-  std::vector<int> slot_of_entry;     // of particles of all ranks, rank by rank
+  std::vector<int> mine;              // local particles with a part in contacts, in the order of the world of contact
+  std::vector<int> slot;              // in that world, of the particles of all ranks, rank by rank
+  int first_entry = 0;                // of this rank's
   std::vector<int> counts, starts;    // of the numbers that ranks send, three for each particle
   std::vector<double> sent, received;
+  mdanim::Positions my_places, all_places;
   double seconds = 0.0;
 };
 

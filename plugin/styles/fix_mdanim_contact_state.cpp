@@ -104,7 +104,7 @@ void FixMdanimContact::unpack(const StateRecords &records)
               !body_of[host]->is_filled(row.cell[0], row.cell[1], row.cell[2]))
             bad("has points that there are not");
           if (row.point <= before) bad("has points that do not ascend");
-          if (!has_numbers(row, offsetof(FieldContact, X))) bad("has what is no number");
+          if (!has_numbers(row, offsetof(FieldContact, state))) bad("has what is no number");
           before = row.point;
         }
       };

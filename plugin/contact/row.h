@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// A place of a particle or a force on it, as wide as a vector, which the kernels read and write at once. Plain data, for the
+// reason told in engine/kernels_of_set.cpp.
+
+#ifndef MDANIM_ROW_H
+#define MDANIM_ROW_H
+
+#include "laws/vec3.h"
+
+namespace mdanim {
+
+struct alignas(4 * sizeof(double)) Row {
+  Vec3 value;
+  double unused = 0.0;
+};
+
+}    // namespace mdanim
+
+#endif
