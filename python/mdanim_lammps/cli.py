@@ -18,6 +18,7 @@ from cyclopts import App, CycloptsError, Parameter
 from . import __version__
 from .command_steps import (
     STARTED,
+    Viewer,
     announce,
     check_executors,
     draw_movie,
@@ -72,6 +73,7 @@ Control = Annotated[
     Literal["central", "peers"] | None,
     Parameter(help="What assigns objects to executors: the supervisor, or each executor alike."),
 ]
+View = Annotated[bool, Parameter(name="--view", negative=(), help="Show the run in a browser while it goes on.")]
 Force = Annotated[bool, Parameter(negative=(), help="Overwrite an output folder of an earlier run.")]
 
 
@@ -88,6 +90,7 @@ def run(
     set_: Set = (),
     force: Force = False,
     movie: bool = True,
+    view: View = False,
     allow_unstable: AllowUnstable = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -113,7 +116,8 @@ def run(
     announce(ready, quiet, verbose, executors, control)
     if executors > 1 and not quiet:
         print("\n".join(prospect_lines(forecast_speedup(ready, executors))), flush=True)
-    with open_run(ready, out, force=force) as folder:
+    with Viewer(view) as viewer, open_run(ready, out, force=force) as folder:
+        viewer.start(folder)
         simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control)
 
 
@@ -198,6 +202,7 @@ def resume(
     executors: Executors = 1,
     control: Control = None,
     movie: bool = True,
+    view: View = False,
     allow_unstable: AllowUnstable = False,
     quiet: Quiet = False,
 ) -> None:
@@ -216,12 +221,13 @@ def resume(
 
     check_executors(executors)
     scene = stored_scene(folder)
-    with claimed(folder):
+    with Viewer(view) as viewer, claimed(folder):
         if (folder / "summary.json").exists():
             raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
         checkpoint = Checkpoint.read(folder / CHECKPOINT)
         ready = prepare(scene, allow_unstable=allow_unstable)
         announce(ready, quiet, False, executors, control)
+        viewer.start(folder)
         simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control, resume=checkpoint)
 
 

@@ -7,16 +7,21 @@ import os
 import re
 import shlex
 import shutil
+import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
 
-from .errors import DivergedError, ExitCode, OutputError, UsageError
-from .terminal import PROGRAM, progress_bar
+from .errors import DivergedError, ExitCode, MdanimError, OutputError, UsageError
+from .terminal import PROGRAM, error_line, progress_bar
 
 STARTED = time.perf_counter()
 """When this process began to work: reading and modelling are part of what a run costs."""
+
+LINGER = 60.0
+"""Seconds for which the view of a run waits for a page when the run is over and no page is open."""
 
 
 def load(path: Path, overrides: tuple[str, ...], *, strict: bool = False):
@@ -163,6 +168,55 @@ def simulate_and_draw(ready, folder: Path, *, quiet: bool, movie: bool, **option
         print(f"movie    {file}" if movie else f"output   {folder}")
     if result.missed:
         raise SystemExit(ExitCode.DIVERGED)
+
+
+class Viewer:
+    """The server of a view beside a run, in a process of its own; a context manager around the run.
+
+    At the end it waits until the view is no longer needed: until a minute has passed without a page, or Ctrl-C. An error of the
+    run is printed before that.
+    """
+
+    def __init__(self, wanted: bool):
+        self._wanted = wanted
+        self._process: subprocess.Popen | None = None
+
+    def start(self, folder: Path) -> None:
+        """Serve the folder of a run that begins, if that is wanted; returns at once."""
+        if not self._wanted:
+            return
+        command = [sys.executable, "-m", "mdanim_lammps.view", str(folder), "--linger", f"{LINGER:g}"]
+        # In a session of its own: the Ctrl-C that stops the run is not for the view.
+        self._process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, start_new_session=True
+        )
+        threading.Thread(target=self._announce, args=(self._process,), daemon=True).start()
+
+    def __enter__(self) -> Viewer:
+        return self
+
+    def __exit__(self, kind, error, traceback) -> None:
+        process = self._process
+        if process is None:
+            return
+        try:
+            if isinstance(error, MdanimError):
+                print(error_line(error), file=sys.stderr, flush=True)
+            if (error is None or isinstance(error, (MdanimError, SystemExit))) and process.poll() is None:
+                print("view     stays until its pages are closed; Ctrl-C ends it", flush=True)
+                process.wait()
+        except KeyboardInterrupt:
+            pass
+        finally:
+            process.terminate()
+            process.wait()
+        if isinstance(error, MdanimError):
+            raise SystemExit(error.exit_code) from error
+
+    @staticmethod
+    def _announce(process: subprocess.Popen) -> None:
+        if line := process.stdout.readline():
+            show_address(*line.split())
 
 
 def show_address(address: str, once: str | None) -> None:

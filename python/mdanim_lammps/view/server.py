@@ -34,7 +34,7 @@ LONGEST_MESSAGE = 4096
 """Bytes of a message from a page at most."""
 TICKET = 30.0
 """Seconds within which the address that a browser is started with must be used."""
-LOT = 0.1
+LOT = 0.05
 """Wall time between two lots of news for a page [s]."""
 POLICY = (
     "default-src 'none'; script-src 'self'; connect-src 'self'; img-src 'self' blob: data:; style-src 'self'; "
@@ -163,11 +163,12 @@ class View:
         known = Known()
         with suppress(ConnectionClosed):
             while not gone.is_set():
+                seen = self.tail.changes
                 if news := self.tail.news(known):
                     page.send(json.dumps({"news": news}))
                     gone.wait(LOT)
                 with self.tail.changed:
-                    self.tail.changed.wait(1.0)
+                    self.tail.changed.wait_for(lambda seen=seen: self.tail.changes != seen, 1.0)
 
     def _obey(self, page: ServerConnection, text: str | bytes) -> None:
         """One message of a page; a wrong one closes the page."""

@@ -21,7 +21,7 @@ from ..results.trajectory_file import find_trajectory
 from ..scene.scene import Render
 from .feed import Feed
 
-LOOK = 0.05
+LOOK = 0.02
 """Wall time between two looks at the folder [s]."""
 LOOK_FOR_LIFE = 1.0
 """The same between two looks whether the processes of a run are alive [s]."""
@@ -56,6 +56,8 @@ class Tail:
         self.title, self.render = self._stored()
         self.changed = threading.Condition()
         """Notified whenever there is something new."""
+        self.changes = 0
+        """How often there was something new."""
         self._progress = ProgressTail(folder)
         self._feed: Feed | None = None
         self._files = 0
@@ -149,6 +151,7 @@ class Tail:
                 self._looked = time.monotonic()
                 self._set(*((state, self._progress.message) if in_use(self.folder) else ("killed", "")))
             if before != (self._progress.count, self._progress.lives, self._state):
+                self.changes += 1
                 self.changed.notify_all()
 
     def _is_there(self, feed: Feed) -> bool:
