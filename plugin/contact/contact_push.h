@@ -133,9 +133,9 @@ MDANIM_ALWAYS_INLINE ContactPush<Real> contact_push(const ContactLaw &law, doubl
   ContactPush<Real> push;
   Vec<Real> lean;
   if (law.friction > 0.0) {
-    // At the same depth as the point.
+    // At the same depth as the point, by a way along the normal in space, along which the stick spring does no work.
     lean = state.anchor - state.X;
-    lean -= (dot(lean, below.slope) / dot(below.slope, below.slope)) * below.slope;
+    lean -= (dot(lean, below.slope) / dot(normal, normal)) * spot.to_material(normal);
     contact_friction(law, area, part, -1.0 * spot.to_space(lean), normal, dt, state.memory, force);
     lean = force.kept * lean;
     state.anchor = state.X + lean;

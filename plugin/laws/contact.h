@@ -109,7 +109,7 @@ MDANIM_ALWAYS_INLINE void contact_friction(const ContactLaw &law, const Real &ar
   if (dt > 0.0) {
     force.heat = pick(slips, -0.5 * dot(force.pull + memory.pull, away - left), Real{});
     // Where less of the point counts than before the spring is softer, and no work is done.
-    force.heat += 0.5 * (memory.stick - k) * dot(away, before);
+    force.heat += 0.5 * (memory.stick - k) * dot(left, before);
   }
   memory.pull = force.pull;
   memory.stick = k;

@@ -232,8 +232,6 @@ def friction(law, area, t, c, memory, away, normal, press, dt, account):
     kept = np.where(slips, most / np.maximum(k * length, 1e-300), 1.0)
     drag = np.zeros_like(away)
     before = np.where(memory.stick[c, None] > 0, -memory.pull[c] / np.maximum(memory.stick[c, None], 1e-300), 0.0)
-    if dt > 0.0:  # a spring that gets softer does no work
-        account.heat += float((0.5 * (memory.stick[c] - k) * (away * before).sum(1)).sum())
     if dt > 0.0 and law.eta > 0.0:
         rate = (away - before) / dt
         unit = normal / steep[:, None]
@@ -246,6 +244,8 @@ def friction(law, area, t, c, memory, away, normal, press, dt, account):
     pull = -k[:, None] * left
     if dt > 0.0:
         account.heat += float((np.where(slips, -0.5, 0.0) * ((pull + memory.pull[c]) * (away - left)).sum(1)).sum())
+        # A spring that gets softer does no work.
+        account.heat += float((0.5 * (memory.stick[c] - k) * (left * before).sum(1)).sum())
     memory.pull[c], memory.stick[c] = pull, k
     memory.stick_energy[c] = 0.5 * k * (left**2).sum(1)
     return pull, drag, kept
@@ -419,7 +419,7 @@ class Twin:
         pull = drag = lean = np.zeros((len(c), 3))
         if law.friction > 0.0:
             lean = memory.anchor[n] - X[c]  # to the anchor, at the depth of the point
-            lean = lean - ((lean * slopes[side]).sum(1) / (slopes[side] ** 2).sum(1))[:, None] * slopes[side]
+            lean = lean - ((lean * slopes[side]).sum(1) / (grad**2).sum(1))[:, None] * spot.to_material(grad)
             way = -np.einsum("pca,pa->pc", spot.J, lean)
             pull, drag, kept = friction(law, area[n], t_c, n, memory, way, grad, press, dt, account)
             lean = kept[:, None] * lean
