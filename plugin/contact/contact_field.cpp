@@ -126,15 +126,15 @@ bool ContactField::world_normal(const SurfacePoint &point, const ContactArrays &
   return true;
 }
 
-// Flat points count from one cell inside of an edge on, fully from two; others about the edge.
+// Half of a flat point counts a cell and a half inside of an edge, half of others on the edge.
 Ramps ContactField::ramps(PointKind kind) const
 {
   Ramps ramps;
   for (int d = 0; d < 3; ++d) {
-    ramps.width[d] = kind == PointKind::FLAT ? std::min(1.0, 0.25 * host->body->count(d)) : 0.5;
-    ramps.from[d] = kind == PointKind::FLAT ? ramps.width[d] : -0.25;
+    const double rise = kind == PointKind::FLAT ? std::min(1.0, 0.25 * host->body->count(d)) : 0.5;
+    ramps.width[d] = rise / (1.0 - Ramp<double>::ROUND);
+    ramps.from[d] = (kind == PointKind::FLAT ? 1.5 * rise : 0.0) - 0.5 * ramps.width[d];
   }
-  ramps.bend = kind == PointKind::DENSE;
   return ramps;
 }
 

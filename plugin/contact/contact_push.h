@@ -12,7 +12,7 @@ namespace mdanim {
 
 constexpr double SAME_PLACE = 1e-3;    // cells that X may be off its guess without a second evaluation
 constexpr double LEFT = 1e-9;          // cells that X may stand out of its own
-constexpr double RAMPS_END = 2.0;      // cells from an edge from which on all of any point counts
+constexpr double RAMPS_END = 2.125;    // cells from an edge from which on all of any point counts
 
 // Volume of a cell that is not believed to be turned over.
 MDANIM_ALWAYS_INLINE double smallest_volume(double spacing) { return 0.02 * spacing * spacing * spacing; }
@@ -80,7 +80,6 @@ MDANIM_ALWAYS_INLINE Depth<Real> depth_by_splines(const Weights<Real> &weights, 
 // The ramps near sharp edges of a host, of points of one kind: along each axis, in cells.
 struct Ramps {
   double from[3], width[3];
-  bool bend;    // without kinks, for points so many that they need not add up to a straight line
 };
 
 // t(X) over a side of a cuboid, and its gradient by X: the product of ramps about all edges of that side.
@@ -99,8 +98,8 @@ MDANIM_ALWAYS_INLINE Real part_that_counts(const Ramps &ramps, const Lattice &ho
 #pragma GCC unroll 3
   for (int d = 0; d < 3; ++d) {
     const auto across = axis == static_cast<double>(d);
-    const Ramp<Real> low(component(X, d), ramps.from[d], ramps.width[d], ramps.bend),
-        high(host.cells[d] - component(X, d), ramps.from[d], ramps.width[d], ramps.bend);
+    const Ramp<Real> low(component(X, d), ramps.from[d], ramps.width[d]),
+        high(host.cells[d] - component(X, d), ramps.from[d], ramps.width[d]);
     t[d] = pick(across, constant<Real>(1.0), low.value * high.value);
     dt[d] = pick(across, Real{}, low.slope * high.value - high.slope * low.value);
   }

@@ -117,14 +117,18 @@ MDANIM_ALWAYS_INLINE void contact_friction(const ContactLaw &law, const Real &ar
 }
 
 // Part of a point that counts near a sharp edge of the other body, `inside` cells from it: 0 before `from`, 1 a `width` later.
+// The slope rises and falls evenly over ROUND of the width each, as a kink is a force that sets in at once. Ramps of points that
+// are (1 - ROUND) width apart add up to a straight line.
 template <class Real> struct Ramp {
+  static constexpr double ROUND = 0.2;
   Real value, slope;
-  // `bends`: without kinks.
-  MDANIM_ALWAYS_INLINE Ramp(const Real &inside, double from, double width, bool bends)
+  MDANIM_ALWAYS_INLINE Ramp(const Real &inside, double from, double width)
   {
     const Real r = smaller(larger((inside - from) / width, Real{}), constant<Real>(1.0));
-    value = bends ? r * r * (3.0 - 2.0 * r) : r;
-    slope = bends ? 6.0 * r * (1.0 - r) / width : pick((r > 0.0) & (r < 1.0), constant<Real>(1.0 / width), Real{});
+    const Real first = smaller(r, constant<Real>(ROUND)), last = larger(r - (1.0 - ROUND), Real{});
+    value = (r - first + (first * first - last * last) / (2.0 * ROUND)) / (1.0 - ROUND);
+    value = pick(r < 1.0, value, constant<Real>(1.0));    // exactly, as where there is no ramp
+    slope = (first - last) / (ROUND * (1.0 - ROUND) * width);
   }
 };
 

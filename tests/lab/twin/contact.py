@@ -142,12 +142,24 @@ def depths(count, edge, X):
 
 def ramps(count, is_flat, X):
     """What of a point counts across each axis (P, 3), the slope of that, and cells that are missing to the first of it."""
-    width = np.where(is_flat[:, None], np.minimum(1.0, 0.25 * np.array(count)), 0.5)
-    start = np.where(is_flat[:, None], width, -0.25)
-    low, high = (X - start) / width, (count - X - start) / width
-    t = np.clip(low, 0, 1) * np.clip(high, 0, 1)
-    on = lambda r: ((r > 0.0) & (r < 1.0)) / width
-    return t, on(low) * np.clip(high, 0, 1) - on(high) * np.clip(low, 0, 1), start - np.minimum(X, count - X)
+    rise = np.where(is_flat[:, None], np.minimum(1.0, 0.25 * np.array(count)), 0.5)
+    middle = np.where(is_flat[:, None], 1.5 * rise, 0.0)
+    rounded = 0.2  # of the width at either end, where the slope rises and falls evenly
+    width = rise / (1.0 - rounded)
+    start = middle - 0.5 * width
+
+    def ramp(inside):
+        r = (inside - start) / width
+        slope = np.interp(r, [0.0, rounded, 1.0 - rounded, 1.0], [0.0, 1.0, 1.0, 0.0])
+        value = np.select(
+            [r <= 0.0, r < rounded, r < 1.0 - rounded, r < 1.0],
+            [0.0, r**2 / (2 * rounded), r - rounded / 2, 1.0 - rounded - (1.0 - r) ** 2 / (2 * rounded)],
+            1.0 - rounded,
+        )
+        return value / (1.0 - rounded), slope / (1.0 - rounded) / width
+
+    (low, low_slope), (high, high_slope) = ramp(X), ramp(count - X)
+    return low * high, low_slope * high - high_slope * low, start - np.minimum(X, count - X)
 
 
 def onset(d, eps):
