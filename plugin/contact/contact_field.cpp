@@ -241,16 +241,18 @@ PushTask ContactField::task(PointKind kind, const ContactArrays &arrays, double 
 PointNow ContactField::point_now(std::size_t q, const ContactArrays &arrays) const
 { return {near.place(q, arrays.place()), near.shift(q, arrays.place()), surface_point(q).area}; }
 
-// X of the point is that of the weights plus `off`, about which everything is linear. False when it cannot be found.
+// X of the point is that of the weights plus `off`, about which everything is linear; `jump` is how far X is moved by going on
+// to another cell. False when X cannot be found.
 bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec3 &x, MapWeights &weights, Spot<double> &spot,
-                          Vec3 &off) const
+                          Vec3 &off, Vec3 &jump) const
 {
   constexpr int MOST = 12;
   const Placed at = {*host->body, task.slot, task.place};
   const MaterialSearch search(at);
   std::array<int, 3> cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
-  Vec3 X = contact.state.X + contact.state.change;
-  bool again = true;
+  Vec3 X = contact.state.X + contact.state.change, left_at;
+  bool again = true, has_left = false;
+  jump = {};
   for (int step = 0; again; ++step) {
     if (step == MOST) return false;
     again = false;
@@ -269,8 +271,13 @@ bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec
     if (square > SAME_PLACE * SAME_PLACE) {
       X += (square > 1.0 ? 1.0 / std::sqrt(square) : 1.0) * off;
       again = true;
-    } else if (!task.is_smooth && search.step_to_neighbour(cell, X + off, LEFT)) {
+      continue;
+    }
+    if (has_left) jump += (X + off) - left_at;
+    has_left = !task.is_smooth && search.step_to_neighbour(cell, X + off, LEFT);
+    if (has_left) {
       X += off;
+      left_at = X;
       again = true;
     }
   }
@@ -281,19 +288,32 @@ bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec
   return true;
 }
 
+// Beyond the filled cells of a round host X is not continuous from cell to cell. The contact goes on as if it were: a jump of
+// its depth would be energy out of nothing.
+void ContactField::go_on(FieldContact &contact, const Vec3 &jump) const
+{
+  const double deeper =
+      host->body->depth(contact.side, contact.state.X).value - host->body->depth(contact.side, contact.state.X - jump).value;
+  contact.state.memory.offset += deeper;
+  contact.state.memory.depth += deeper;
+  contact.state.anchor += jump;
+  contact.state.change -= jump;
+}
+
 ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now,
                                       ContactArrays &arrays, ContactAccount &account) const
 {
   MapWeights weights;
   Spot<double> spot;
-  Vec3 off, part_slope;
-  if (!follow(contact, task, now.x, weights, spot, off)) return Fate::LOST;
+  Vec3 off, jump, part_slope;
+  if (!follow(contact, task, now.x, weights, spot, off, jump)) return Fate::LOST;
+  if (!host->body->is_cuboid() && dot(jump, jump) > 0.0) go_on(contact, jump);
   const Vec3 shift = spot.to_material(now.shift);
   const Depth<double> below = host->body->depth(contact.side, contact.state.X);
   double part = 1.0;
   if (host->body->is_cuboid())
     part = part_that_counts<double>(task.ramps, task.host, contact.state.X + shift, contact.side / 2, part_slope);
-  if (!(below.value > 0.0 && part > 0.0 && below.value <= task.longest)) {
+  if (!(below.value > std::min(contact.state.memory.offset, 0.0) && part > 0.0 && below.value <= task.longest)) {
     if (task.dt > 0.0) account.damped += last_damping_work(contact.state.memory, below.value);
     return Fate::OUT;
   }

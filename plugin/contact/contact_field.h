@@ -53,8 +53,9 @@ class ContactField {
   enum class Fate { STAYS, OUT, LOST };
   PushTask task(PointKind kind, const ContactArrays &arrays, double dt) const;
   PointNow point_now(std::size_t q, const ContactArrays &arrays) const;
-  bool follow(FieldContact &contact, const PushTask &task, const Vec3 &x, MapWeights &weights, Spot<double> &spot,
-              Vec3 &off) const;
+  bool follow(FieldContact &contact, const PushTask &task, const Vec3 &x, MapWeights &weights, Spot<double> &spot, Vec3 &off,
+              Vec3 &jump) const;
+  void go_on(FieldContact &contact, const Vec3 &jump) const;
   Fate push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now, ContactArrays &arrays,
             ContactAccount &account) const;
   void take(FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,

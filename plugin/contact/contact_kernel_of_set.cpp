@@ -145,9 +145,11 @@ template <bool SMOOTH> MDANIM_ALWAYS_INLINE void follow(const PushTask &task, co
 #pragma GCC unroll 3
       for (int d = 0; d < 3; ++d) out = larger(out, larger(cell[d] - component(X, d), component(X, d) - (cell[d] + 1.0)));
       const int outside = bits(out > LEFT) & ~far & ~found.lost;
+      int leaves = 0;
       for (int lane = 0; outside >> lane; ++lane)
         if (outside >> lane & 1 && step_to_neighbour(host, found.cell[lane], {X.x[lane], X.y[lane], X.z[lane]}, LEFT))
-          again |= 1 << lane;
+          leaves |= 1 << lane;
+      (host.depth ? found.lost : again) |= leaves;    // in a round host X may jump, which ContactField::go_on() sees to
     }
     again &= ~found.lost;
     if (round == MOST) found.lost |= again, again = 0;
