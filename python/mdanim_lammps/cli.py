@@ -35,7 +35,7 @@ from .command_steps import (
     with_accuracy,
 )
 from .errors import ExitCode, RefusedError, UsageError
-from .terminal import PROGRAM, documented_exit, open_streams, stop_on_sigterm
+from .terminal import PROGRAM, documented_exit, open_streams, progress_bar, stop_on_sigterm
 
 app = App(
     name=PROGRAM,
@@ -299,6 +299,35 @@ def view(
         raise UsageError(f"--port {port}: must be between 0 (any that is free) and 65535")
     with suppress(KeyboardInterrupt):
         serve(folder, port=port, on_address=lambda address, once: show_address(address, once if open_ else None))
+
+
+@app.command
+def report(
+    folder: Path,
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
+    exact: Annotated[bool, Parameter(negative=())] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Write a run as one HTML file: replay, energies, cost, certificate, effects, scene. It opens from disk, without a network.
+
+    Parameters
+    ----------
+    folder
+        The output folder of a run that has ended.
+    out
+        The file; default report.html in the folder.
+    exact
+        Positions in 16 bits instead of 12.
+    """
+    from .view.export import write_report
+
+    path = folder / "report.html" if out is None else picture_file(out, ".html")
+    with progress_bar("report", quiet=quiet) as bar:
+        every = write_report(folder, path, exact=exact, on_progress=lambda done, total: bar(done, total, ""))
+    if not quiet:
+        print(f"report   {path}   {path.stat().st_size / 1e6:.1f} MB" + (f"   one of {every} frames" if every > 1 else ""))
 
 
 @app.command

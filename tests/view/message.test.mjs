@@ -88,6 +88,15 @@ test("differences are undone, also across 16 bits", () => {
   assert.deepEqual([...m.undoDifferences(bytes, 2, 3)], rows.flat());
 });
 
+test("places in a box that goes with the object become those in the box of the frame", () => {
+  const objects = [{ first: 0, count: 2 }, { first: 2, count: 1 }], boxes = Float32Array.of(-1, -1, 0, 2, 4, 0, 0, 0, 0, 1, 1, 1);
+  const places = Uint16Array.of(1000, 0, 0, 3000, 2000, 0, 4000, 4000, 4000), moving = Float32Array.of(10, 20, 30, 1, 2, 3, 0, 0, 5, 0, 0, 0);
+  const found = m.inOwnBoxes(objects, places, 4000, boxes, moving);
+  assert.deepEqual([...found.object.slice(0, 12)], [9.5, 19, 30, 1, 2, 0, 10, 20, 30, 1, 2, 3]);
+  assert.deepEqual([...found.object.slice(12, 18)], [1, 1, 6, 0, 0, 0]);
+  assert.deepEqual([...found.position], [0, 0, 0, 65535, 65535, 0, 0, 0, 0]);
+});
+
 test("numbers are for people", () => {
   assert.deepEqual([0, 1234.5, 0.01234, 1.5e-7, 3e8, null, NaN].map((x) => m.number(x)), ["0", "1230", "0.0123", "1.50e-7", "3.00e+8", "–", "–"]);
 });

@@ -179,7 +179,7 @@ class Feed:
         low, size = self._boxes(vertices)
         scale = np.divide(STEPS, size, out=np.zeros_like(size), where=size > 0.0)
         within = (vertices - np.repeat(low, self.count, axis=0)) * np.repeat(scale, self.count, axis=0)
-        liquid = self._liquid(n)
+        liquid = self.liquid(n)
         columns = len(liquid[0]) if liquid else 0
         parts = [
             b"MDF1",
@@ -194,7 +194,8 @@ class Feed:
             parts.append(padded(x.astype("<f4")))
         return b"".join(parts)
 
-    def _liquid(self, n: int) -> tuple[np.ndarray, np.ndarray] | None:
+    def liquid(self, n: int) -> tuple[np.ndarray, np.ndarray] | None:
+        """Heights, u16, and states, u8, of the columns of a frame, each of shape (C,); None without a liquid."""
         if self.metadata.liquid is None:
             return None
         smooth, raw = (self.frames.value(name, n) for name in LIQUID_TABLES)

@@ -19,7 +19,7 @@ const report = byId("replay"); // in a report: the block of data
 let source, scene, stage, player, shown = null, shownKey = "", picked = null, ease = 0, slow = 0, drawnAt = 0, rested = true, failedAt = 0, range = 0.002, lastTick = 0;
 
 async function start() {
-  Object.assign(byId("speed"), { innerHTML: "" }).append(...SPEEDS.map((x) => element("option", { value: x, textContent: `${x} ×`, selected: x === 1 })));
+  byId("speed").append(...SPEEDS.map((x) => element("option", { value: x, textContent: `${x} ×`, selected: x === 1 })));
   byId("keys").querySelector("table").append(...table(KEYS).children);
   if (!report) history.replaceState(null, "", "/");
   source = await (report ? new Embedded(report) : new Socket()).open();

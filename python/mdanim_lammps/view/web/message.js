@@ -113,6 +113,25 @@ export function undoDifferences(bytes, row, rows) {
   return out;
 }
 
+// A frame of a report as the server would send it: places are whole numbers up to "steps" in one box of each object, which goes
+// with its centre of mass ("boxes": corner and size, "moving": centre and velocity); they become those within the box of this frame.
+export function inOwnBoxes(objects, places, steps, boxes, moving) {
+  const object = new Float32Array(12 * objects.length), position = new Uint16Array(places.length);
+  objects.forEach(({ first, count }, k) => {
+    for (let d = 0; d < 3; d++) {
+      let low = steps, high = 0;
+      const from = 3 * first + d, end = 3 * (first + count);
+      for (let i = from; i < end; i += 3) { low = Math.min(low, places[i]); high = Math.max(high, places[i]); }
+      const scale = high > low ? 65535 / (high - low) : 0, unit = boxes[6 * k + 3 + d] / steps;
+      for (let i = from; i < end; i += 3) position[i] = Math.round((places[i] - low) * scale);
+      object[12 * k + d] = moving[6 * k + d] + boxes[6 * k + d] + low * unit;
+      object[12 * k + 3 + d] = (high - low) * unit;
+    }
+    object.set(moving.subarray(6 * k, 6 * k + 6), 12 * k + 6);
+  });
+  return { object, position };
+}
+
 // A number for people: so many digits that count, no exponent where it can be helped.
 export function number(value, digits = 3) {
   if (value === null || !Number.isFinite(value)) return "–";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Where scene and frames come from: the server of a run, or the block of data in a report.
-import { readFrame, readScene, undoDifferences } from "./message.js";
+import { inOwnBoxes, readFrame, readScene, undoDifferences } from "./message.js";
 
 // Answers come in the order in which they were asked for.
 export class Socket {
@@ -72,12 +72,12 @@ export class Embedded {
     const plain = await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
     const size = new DataView(plain).getUint32(0, true);
     this.head = readScene(plain.slice(4, 4 + size));
-    const { frames: F, vertices: V, columns: C } = this.head.replay, O = this.head.objects.length;
+    const { vertices: V, columns: C } = this.head.replay, F = this.head.frames, O = this.head.objects.length;
     let at = 4 + size;
     const next = (bytes) => plain.slice(at, (at += bytes));
     this.times = new Float64Array(next(8 * F));
-    this.objects = new Float32Array(next(48 * O * F));
-    this.positions = undoDifferences(new Uint8Array(next(6 * V * F)), 3 * V, F);
+    this.moving = new Float32Array(next(24 * O * F));
+    this.places = undoDifferences(new Uint8Array(next(6 * V * F)), 3 * V, F);
     if (C) [this.heights, this.states] = [undoDifferences(new Uint8Array(next(2 * C * F)), C, F), new Uint8Array(next(C * F))];
     Object.assign(this, { O, V, C });
     return this;
@@ -92,8 +92,9 @@ export class Embedded {
   }
 
   async frame(frame) {
-    const { O, V, C } = this, part = (array, size) => array.subarray(size * frame, size * (frame + 1));
-    const found = { frame, time: this.times[frame], layers: 0, bytes: 0, object: part(this.objects, 12 * O), position: part(this.positions, 3 * V) };
+    const { O, V, C, head } = this, part = (array, size) => array.subarray(size * frame, size * (frame + 1));
+    const solids = inOwnBoxes(head.objects, part(this.places, 3 * V), head.replay.steps, head.data.boxes, part(this.moving, 6 * O));
+    const found = { frame, time: this.times[frame], layers: 0, bytes: 0, ...solids };
     return C ? { ...found, liquid: part(this.heights, C), columns: part(this.states, C) } : found;
   }
 }
