@@ -23,7 +23,7 @@ def settled_motion(trial: Trial, name: str, settle: float) -> float:
 @pytest.mark.soak
 @pytest.mark.timeout(3000)
 def test_a_tower_stands_for_a_million_steps():
-    """Six cubes face on face, 333 s: the top moves by less than 1 % of a side (measured: 0.4 %), and the ledger closes to 1e-3."""
+    """Six cubes, 333 s: the top moves by less than 1 % of a side (measured: 0.4 %), and the ledger closes to 1e-3."""
     cubes = "\n".join(
         f"object c{k} {{ shape box (20, 20, 20) cm  position (0, 0, {20 * k + 10}) cm  {STUFF} }}" for k in range(6)
     )
