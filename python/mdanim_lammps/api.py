@@ -11,20 +11,23 @@ from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from .certificate import Certificate
 from .effects import Verdict
 from .errors import OutputError
 from .parallel.limits import check_executors
 from .parallel.runtime.launch import simulate_on
+from .picture.marks import Marks
 from .results.checkpoint import Checkpoint
 from .results.files import MARK, open_folder, read_json, write_json
 from .results.untrusted import check_folder, check_plain
-from .run.loop import Progress, Result, simulate, write_inputs
+from .run.loop import Progress, Result, simulate, write_inputs, write_start
 from .run.manifest import manifest
 from .run.prepare import Prepared, prepare
 from .scene.meshes import mesh_files
 from .scene.parse import load_scene
+from .scene.scene import Accuracy, Save
 from .scene.scene import Scene as SceneRecord
 from .study.bench import BUDGET
 from .study.study import Study, run_study
@@ -111,6 +114,37 @@ class Scene:
         """
         study = output_folder(self.record, folder) / STUDY
         return run_study(self.record, study, budget=budget, only=ladders, force=force, watch=on_progress)
+
+
+def draw_picture(
+    record: SceneRecord,
+    path: Path,
+    *,
+    at: float = 0.0,
+    size: tuple[int, int] | None = None,
+    marks: Marks = Marks(),
+    on_progress: Callable[[Progress], None] | None = None,
+) -> Path:
+    """Draw a scene before it is run: its start, or what a quick preview run comes to at the time ``at`` [s].
+
+    The preview is coarse: ``accuracy preview``, whatever spacing and time step the scene asks for. The camera is that of the
+    scene; without one it is chosen from what the preview run has seen. Raises SceneError, RefusedError, DivergedError,
+    SetupError, OutputError, and UsageError for marks that the scene cannot have.
+    """
+    from .picture.movie import render_still
+
+    # Pictures need every spring, and no frame between the start and the end.
+    control = replace(record.control, save=Save.ALL)
+    if at > 0.0:
+        frames = max(record.control.frames, 1.0 / at)
+        control = replace(control, time=at, frames=frames, accuracy=Accuracy.PREVIEW, resolution=None, timestep=None)
+    with TemporaryDirectory(prefix="mdanim-picture-") as name:
+        folder, ready = Path(name), prepare(replace(record, control=control, expects=()))
+        if at > 0.0:
+            simulate(ready, folder, on_progress=on_progress)
+        else:
+            write_start(ready, folder)
+        return render_still(folder, -1, path, record.render, size=size, marks=marks)
 
 
 def output_folder(record: SceneRecord, out: str | Path | None = None) -> Path:

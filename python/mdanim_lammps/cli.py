@@ -21,6 +21,7 @@ from .command_steps import (
     Viewer,
     announce,
     check_executors,
+    check_size,
     draw_movie,
     lmp_command,
     load,
@@ -162,6 +163,60 @@ def check(
 
 
 @app.command
+def picture(
+    scene: Path,
+    /,
+    *,
+    at: str | None = None,
+    out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
+    size: tuple[int, int] | None = None,
+    names: Annotated[bool, Parameter(negative=())] = False,
+    springs: Annotated[bool, Parameter(negative=())] = False,
+    boxes: Annotated[bool, Parameter(negative=())] = False,
+    set_: Set = (),
+    quiet: Quiet = False,
+) -> None:
+    """Draw a scene before it is run, with the scene's camera.
+
+    Parameters
+    ----------
+    scene
+        The scene file.
+    at
+        The moment that is drawn, e.g. "0.8 s": a quick, coarse preview run goes there first.
+    out
+        The picture; default SCENE.png beside the scene.
+    size
+        Width and height in pixels.
+    names
+        Write each object's name above it.
+    springs
+        Draw the springs of the particle models instead of the surfaces.
+    boxes
+        Draw the bounding box of each object.
+    """
+    from .api import draw_picture
+    from .picture.marks import Marks
+    from .report import progress_line
+
+    check_size(size)
+    time = 0.0 if at is None else seconds_of("--at", at)
+    record = load(scene, set_)
+    path = picture_file(scene.with_suffix(".png") if out is None else out, ".png")
+    with progress_bar("preview", quiet=quiet or not time) as bar:
+        draw_picture(
+            record,
+            path,
+            at=time,
+            size=size,
+            marks=Marks(names, springs, boxes),
+            on_progress=lambda p: bar(p.frame, p.frames, progress_line(p)),
+        )
+    if not quiet:
+        print(f"picture  {path}")
+
+
+@app.command
 def build(
     scene: Path,
     /,
@@ -260,8 +315,7 @@ def render(
     scene
         Take the render block (camera, background) of this scene file instead.
     """
-    if size is not None and not all(2 <= n <= 8192 for n in size):
-        raise UsageError(f"--size {size[0]} {size[1]}: width and height must lie between 2 and 8192, e.g. --size 1280 720")
+    check_size(size)
     if fps is not None and not 0.0 < fps <= 1000.0:
         raise UsageError(f"--fps {fps:g}: must be above 0 and at most 1000, e.g. --fps 30")
     from .api import movie_file, stored_scene

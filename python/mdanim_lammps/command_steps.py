@@ -88,6 +88,12 @@ def check_executors(executors: int) -> None:
     limits.check_executors(executors)
 
 
+def check_size(size: tuple[int, int] | None) -> None:
+    """Raises UsageError for a picture that is too small or too large."""
+    if size is not None and not all(2 <= n <= 8192 for n in size):
+        raise UsageError(f"--size {size[0]} {size[1]}: width and height must lie between 2 and 8192, e.g. --size 1280 720")
+
+
 def seconds_of(option: str, text: str) -> float:
     """A duration such as "2 min" in seconds."""
     from .scene.units import DimensionError, unit

@@ -229,3 +229,9 @@ def write(path, scene, models, frames, grid=None):
         for frame in frames:
             out.write(*frame)
     return path
+
+
+def read_png(path):
+    from PIL import Image
+
+    return np.asarray(Image.open(path))

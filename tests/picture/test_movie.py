@@ -18,7 +18,7 @@ from mdanim_lammps.picture.movie import movie_frames, render_movie, render_still
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
 from mdanim_lammps.scene.scene import Camera, Render
-from picture_samples import falling, slab_scene, write
+from picture_samples import falling, read_png, slab_scene, write
 
 SMALL = Render(size=(160, 90))
 
@@ -63,12 +63,6 @@ def test_movie_shows_every_frame_in_turn(short, tmp_path, processes):
     assert np.argmin(distance, axis=1).tolist() == list(range(6))
     assert np.diag(distance).max() < 3.0  # of 255: what the coding loses
     np.testing.assert_array_equal(stills[4], read_png(render_still(short, 4, tmp_path / "s.png", SMALL)))
-
-
-def read_png(path):
-    from PIL import Image
-
-    return np.asarray(Image.open(path))
 
 
 def test_lasts_as_long_as_it_shows(short, tmp_path):

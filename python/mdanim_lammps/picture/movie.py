@@ -24,6 +24,7 @@ from ..errors import OutputError, SetupError, UsageError
 from ..results.files import disk_errors, sync, write_whole
 from ..results.trajectory import Trajectory
 from ..scene.scene import Render
+from .marks import Marks
 
 CODING = {
     "codec": "libx264",
@@ -48,6 +49,7 @@ def render_still(
     render: Render = Render(),
     *,
     size: tuple[int, int] | None = None,
+    marks: Marks = Marks(),
 ) -> Path:
     """Draw one frame as a PNG file.
 
@@ -57,19 +59,21 @@ def render_still(
         path: file to write.
         render: the scene's ``render`` block.
         size: width and height in pixels, instead of ``render.size``.
+        marks: what is shown beside the surfaces.
 
     Raises:
         SetupError: this host cannot draw off screen.
         OutputError: the file cannot be written.
+        UsageError: marks that this trajectory cannot have.
     """
     from .render import Painter
 
     if not isinstance(trajectory, Trajectory):
         with Trajectory(trajectory) as opened:
-            return render_still(opened, frame, path, render, size=size)
+            return render_still(opened, frame, path, render, size=size, marks=marks)
     if not -len(trajectory) <= frame < len(trajectory):
         raise OutputError(f"{trajectory.path}: holds {len(trajectory)} frames, there is no frame {frame}")
-    with Painter(trajectory, render, size=size) as painter:
+    with Painter(trajectory, render, size=size, marks=marks) as painter:
         _save_png(painter.frame(range(len(trajectory))[frame]), Path(path))
     return Path(path)
 

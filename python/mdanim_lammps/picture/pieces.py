@@ -174,12 +174,47 @@ def box_edges(low, high, grey: float, opacity: float = 0.45, width: float = 1.5)
     return actor
 
 
-def cells(triangle: np.ndarray):
-    """Triangles, shape (T, 3), as ``vtkCellArray``."""
+class MovingLines:
+    """Straight lines between points that move.
+
+    Args:
+        points: how many.
+        ends: numbers of the two points of each line, shape (L, 2).
+        grey: 0 to 1.
+        width: in pixels.
+    """
+
+    def __init__(self, points: int, ends: np.ndarray, grey: float, width: float):
+        from vtkmodules.vtkCommonCore import vtkPoints
+        from vtkmodules.vtkCommonDataModel import vtkPolyData
+        from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
+
+        self._data, self._points = vtkPolyData(), vtkPoints()
+        self._points.SetNumberOfPoints(points)
+        self._data.SetPoints(self._points)
+        self._data.SetLines(cells(ends))
+        mapper, self.actor = vtkPolyDataMapper(), vtkActor()
+        mapper.SetInputData(self._data)
+        self.actor.SetMapper(mapper)
+        look = self.actor.GetProperty()
+        look.LightingOff()
+        look.SetColor(grey, grey, grey)
+        look.SetLineWidth(width)
+
+    def move(self, position: np.ndarray) -> None:
+        """Take places [m], shape (points, 3)."""
+        from vtkmodules.util.numpy_support import numpy_to_vtk
+
+        self._points.SetData(numpy_to_vtk(np.ascontiguousarray(position, dtype=np.float64), deep=1))
+        self._data.Modified()
+
+
+def cells(corners: np.ndarray):
+    """Triangles, shape (T, 3), or lines, shape (L, 2), as ``vtkCellArray``."""
     from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
     cells = vtkCellArray()
-    flat = np.ascontiguousarray(triangle, dtype=np.int64).ravel()
-    cells.SetData(3, numpy_to_vtkIdTypeArray(flat, deep=1))
+    flat = np.ascontiguousarray(corners, dtype=np.int64).ravel()
+    cells.SetData(corners.shape[1], numpy_to_vtkIdTypeArray(flat, deep=1))
     return cells

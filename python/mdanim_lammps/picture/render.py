@@ -12,6 +12,7 @@ from ..results.trajectory import Trajectory
 from ..scene.scene import Render
 from . import shading
 from .camera import FIELD_OF_VIEW, Action, CameraPath, View, action_of, automatic_view
+from .marks import MarkActors, Marks
 from .palette import background_colors, is_dark, object_colors
 from .pieces import Field, MovingMesh, box_edges, lit_actor, plane
 from .surfaces import shaded_mesh
@@ -34,9 +35,11 @@ class Painter:
         render: the scene's ``render`` block; ``Render()`` chooses everything.
         size: width and height in pixels; None takes that of ``render``.
         action: bounds over all frames, if known already; None finds them.
+        marks: what is shown beside the surfaces.
 
     Raises:
         SetupError: this host cannot draw off screen.
+        UsageError: marks that this trajectory cannot have.
     """
 
     def __init__(
@@ -46,6 +49,7 @@ class Painter:
         *,
         size: tuple[int, int] | None = None,
         action: Action | None = None,
+        marks: Marks = Marks(),
     ):
         self.trajectory = trajectory
         self.size = tuple(size or render.size)
@@ -56,7 +60,7 @@ class Painter:
         aspect = self.size[0] / self.size[1]
         self._still = None if self._path else automatic_view(self.action, aspect, walls, basin)
         self._mesh = shaded_mesh(trajectory.metadata, trajectory.position(0), self._pixel())
-        self._build(render)
+        self._build(render, marks)
 
     def _pixel(self) -> np.ndarray:
         """What a pixel covers of each object where it comes nearest to the camera [m], shape (M,)."""
@@ -81,6 +85,7 @@ class Painter:
         self._surface.move(vertices, self._mesh.normals(vertices, position))
         if self._tank:
             self._tank.show(index, position)
+        self._marks.show(position)
         self._stamp.SetInput(f"t = {time:.2f} s")
         self._aim(self.view(time))
         self._cast_shadow()
@@ -100,7 +105,7 @@ class Painter:
 
     # --- the stage -----------------------------------------------------------------------------------------
 
-    def _build(self, render: Render) -> None:
+    def _build(self, render: Render, marks: Marks) -> None:
         import vtkmodules.vtkInteractionStyle
         import vtkmodules.vtkRenderingFreeType
         import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
@@ -123,6 +128,7 @@ class Painter:
         self._surface = MovingMesh(self._mesh.carry.shape[0], self._mesh.triangle)
         self._surface.paint(object_colors(metadata.colors, metadata.still)[self._mesh.object_of_vertex])
         self._actors = [lit_actor(self._surface.data, shading.FRAGMENT_SOLID, bool(self._tank))]
+        self._actors[0].SetVisibility(not marks.springs)
         # Objects are closed, so their inner faces are never visible, and drawing these takes time.
         self._actors[0].GetProperty().BackfaceCullingOn()
         if self._tank:
@@ -140,6 +146,9 @@ class Painter:
             self._actors += self._tank.skin
             self._tank.colour_through(self._actors)
             self._tank.stand_on(0.0 if floor is None else floor, (x, y, 0.0 if floor is None else reach))
+        self._marks = MarkActors(marks, metadata, dark, self.size[1])
+        for actor in self._marks.actors:
+            self._renderer.AddViewProp(actor)
         self._write(render, low)
 
         with _silent():

@@ -120,6 +120,29 @@ def simulate(
     return run.go(on_progress or (lambda progress: None))
 
 
+def write_start(ready: Prepared, folder: Path) -> Path:
+    """Write a trajectory of the first frame alone, before any step; returns its file. Raises OutputError."""
+    with Sequential(ready.plan) as source, trajectory_writer(ready, folder, frames=1) as out:
+        now = source.begin(None)
+        out.write(now.step, 0.0, now.x, now.v, now.pool and now.pool.heights)
+        out.flush()
+        return out.close()
+
+
+def trajectory_writer(ready: Prepared, folder: Path, frames: int) -> TrajectoryWriter:
+    """A new trajectory in a folder. Raises OutputError."""
+    return TrajectoryWriter(
+        folder / "trajectory.h5",
+        ready.scene,
+        ready.models,
+        frames=frames,
+        dt=ready.certificate.timestep,
+        steps_per_frame=ready.certificate.steps_per_frame,
+        scene_text=ready.lock,
+        grid=ready.plan.grid,
+    )
+
+
 def run_id(ready: Prepared) -> str:
     """A word that is the same only for the same scene, models, time step and version of this program."""
     digest = hashlib.sha256(ready.lock.encode())
@@ -336,19 +359,10 @@ class _Run:
     # --- recording --------------------------------------------------------------------------------------------------
 
     def _open_trajectory(self) -> TrajectoryWriter:
-        path, c = self.folder / "trajectory.h5", self.certificate
-        if self.resume:
-            return TrajectoryWriter.append(path, self.ready.scene, self.ready.models, after_step=self.resume.step, grid=self.grid)
-        return TrajectoryWriter(
-            path,
-            self.ready.scene,
-            self.ready.models,
-            frames=len(c.lengths) + 1,
-            dt=c.timestep,
-            steps_per_frame=c.steps_per_frame,
-            scene_text=self.ready.lock,
-            grid=self.grid,
-        )
+        if not self.resume:
+            return trajectory_writer(self.ready, self.folder, frames=len(self.certificate.lengths) + 1)
+        path = self.folder / "trajectory.h5"
+        return TrajectoryWriter.append(path, self.ready.scene, self.ready.models, after_step=self.resume.step, grid=self.grid)
 
     def _record(self, out: TrajectoryWriter, log: ProgressLog, frame: int, now: Frame) -> None:
         """Check the state, then append it to ledger and trajectory, and tell of it. Raises DivergedError before anything bad is
