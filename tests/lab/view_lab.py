@@ -1,17 +1,59 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""A view of a folder, served by a thread of this process, and plain requests to it."""
+"""A run that pauses itself; a view of a folder, served by a thread of this process, and plain requests to it."""
 
 from __future__ import annotations
 
 import http.client
+import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
 
+from mdanim_lammps import Scene
+from mdanim_lammps.results.files import PAUSE
+from mdanim_lammps.results.progress import ProgressTail
+from mdanim_lammps.run.loop import Interrupted
 from mdanim_lammps.view.server import View
 from mdanim_lammps.view.tail import Tail
 from websockets.sync.client import ClientConnection, connect
+
+HOLD = 5
+"""Frame after which a `Held` run pauses."""
+
+
+class Held:
+    """A run in a thread that pauses itself after frame `HOLD`."""
+
+    def __init__(self, scene: Path, folder: Path, **options):
+        self.folder, self.words, self.error = folder, [], None
+
+        def at(progress):
+            self.words.append(progress)
+            if progress.frame == HOLD and not progress.paused:
+                (folder / PAUSE).touch()
+
+        def run():
+            try:
+                Scene.load(scene).run(folder, on_progress=at, **options)
+            except Interrupted as error:
+                self.error = error
+
+        self.thread = threading.Thread(target=run)
+        self.thread.start()
+
+    def wait_for(self, state: str) -> ProgressTail:
+        """What progress.jsonl says when it says this."""
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline:
+            tail = ProgressTail(self.folder)
+            tail.read()
+            tail.close()
+            if tail.state == state:
+                return tail
+            time.sleep(0.01)
+        raise TimeoutError(state)
 
 
 @contextmanager

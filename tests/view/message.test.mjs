@@ -97,6 +97,11 @@ test("places in a box that goes with the object become those in the box of the f
   assert.deepEqual([...found.position], [0, 0, 0, 65535, 65535, 0, 0, 0, 0]);
 });
 
+test("a few outliers do not set a scale", () => {
+  assert.equal(m.nearlyMost(Uint8Array.from({ length: 100 }, (_, k) => (k < 2 ? 250 : k < 5 ? 90 : 10))), 90);
+  assert.equal(m.nearlyMost(new Uint8Array(50)), 0);
+});
+
 test("numbers are for people", () => {
   assert.deepEqual([0, 1234.5, 0.01234, 1.5e-7, 3e8, null, NaN].map((x) => m.number(x)), ["0", "1230", "0.0123", "1.50e-7", "3.00e+8", "–", "–"]);
 });

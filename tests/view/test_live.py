@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
 from pathlib import Path
 
@@ -16,51 +15,14 @@ from mdanim_lammps import Scene
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.files import PAUSE, STOP
 from mdanim_lammps.results.progress import ProgressTail
-from mdanim_lammps.run.loop import Interrupted
 from scene_texts import FALL, MEETING
-from view_lab import page, served
-
-HOLD = 5
-"""Frame after which a test pauses its run."""
+from view_lab import HOLD, Held, page, served
 
 
 @pytest.fixture
 def scene(tmp_path) -> Path:
     (tmp_path / "fall.txt").write_text(FALL)
     return tmp_path / "fall.txt"
-
-
-class Held:
-    """A run in a thread that pauses itself after frame `HOLD`."""
-
-    def __init__(self, scene: Path, folder: Path, **options):
-        self.folder, self.words, self.error = folder, [], None
-
-        def at(progress):
-            self.words.append(progress)
-            if progress.frame == HOLD and not progress.paused:
-                (folder / PAUSE).touch()
-
-        def run():
-            try:
-                Scene.load(scene).run(folder, on_progress=at, **options)
-            except Interrupted as error:
-                self.error = error
-
-        self.thread = threading.Thread(target=run)
-        self.thread.start()
-
-    def wait_for(self, state: str) -> ProgressTail:
-        """What progress.jsonl says when it says this."""
-        deadline = time.monotonic() + 60
-        while time.monotonic() < deadline:
-            tail = ProgressTail(self.folder)
-            tail.read()
-            tail.close()
-            if tail.state == state:
-                return tail
-            time.sleep(0.01)
-        raise TimeoutError(state)
 
 
 def told(link, wanted) -> dict:

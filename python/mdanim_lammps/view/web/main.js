@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Puts the parts together: what is heard, what is seen, what is pressed.
-import { STRAIN, PARTICLES, cameraLine, number, ownersAt } from "./message.js";
+import { STRAIN, PARTICLES, cameraLine, nearlyMost, number, ownersAt } from "./message.js";
 import { Energies, byId, element, executorColor, roundStrain, showCost, showExpects, showLegend, showObject, strainColor, table } from "./panel.js";
 import { Cache, Player, SPEEDS } from "./player.js";
 import { Embedded, Socket } from "./source.js";
@@ -118,8 +118,7 @@ function show(frame, key) {
 }
 
 function paintStrain(strain) {
-  const most = strain.reduce((a, b) => Math.max(a, b), 0) / 255;
-  range = Math.max(range, roundStrain(most * scene.mostStrain, scene.mostStrain));
+  range = Math.max(range, roundStrain((nearlyMost(strain) / 255) * scene.mostStrain, scene.mostStrain));
   const colors = Array.from({ length: 256 }, (_, k) => strainColor(((k / 255) * scene.mostStrain) / range));
   stage.paint(null, (i) => colors[strain[i]]);
   showLegend("strain", range);
@@ -171,8 +170,8 @@ function controls() {
   toggle("surface", (on) => (stage.surface.visible = on));
   toggle("shadows", (on) => (stage.sun.castShadow = on));
   toggle("liquid", (on) => (stage.liquid.visible = on));
-  toggle("particles", (on) => (stage.extras.particles.visible = on));
-  toggle("springs", async (on) => { stage.extras.springs.visible = on; if (on && !run.bond) stage.extras.join((run.bond = await source.springs())); stage.changed = true; });
+  toggle("particles", (on) => { stage.extras.particles.visible = on; stage.seeInside(on || checked("springs")); });
+  toggle("springs", async (on) => { stage.extras.springs.visible = on; stage.seeInside(on || checked("particles")); if (on && !run.bond) stage.extras.join((run.bond = await source.springs())); stage.changed = true; });
   toggle("boxes", (on) => (stage.extras.boxes.visible = on));
   toggle("walls", (on) => (stage.extras.walls.visible = on));
   addEventListener("resize", () => stage.resize());

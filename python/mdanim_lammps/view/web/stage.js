@@ -106,6 +106,11 @@ export class Stage {
     this.changed = true;
   }
 
+  // Let what is inside of objects be seen through their surfaces.
+  seeInside(on) {
+    Object.assign(this.surface.material, { transparent: on, opacity: on ? 0.3 : 1, depthWrite: !on, needsUpdate: true });
+  }
+
   show(frame) {
     this.frame = frame;
     placeVertices(this.scene.objects, frame, this.at);

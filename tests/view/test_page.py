@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The page in a real browser: what is seen, pressed and said. Without Chromium these tests are skipped, or fail where the
+environment says MDANIM_BROWSER=required."""
+
+import io
+import os
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from browser import Browser, missing
+from mdanim_lammps import Scene
+from mdanim_lammps.results.compare import compare
+from mdanim_lammps.results.progress import PROGRESS
+from mdanim_lammps.scene.parse import load_scene
+from mdanim_lammps.view.export import write_report
+from PIL import Image
+from scene_texts import FALL, MEETING
+from view_lab import HOLD, Held, served
+
+pytestmark = pytest.mark.timeout(240)
+SHOWN = "window.mdanim && mdanim.shown"
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """One browser for all tests of this file."""
+    if why := missing():
+        assert os.environ.get("MDANIM_BROWSER") != "required", why
+        pytest.skip(why)
+    opened = Browser(1000, 640)
+    yield opened
+    opened.close()
+
+
+@pytest.fixture(autouse=True)
+def quiet(browser):
+    """No error in the console, no breach of the page's policy."""
+    yield
+    assert not [message for message in browser.messages() if "404" not in message]
+
+
+@pytest.fixture(scope="module")
+def beam(scenes, tmp_path_factory):
+    """The run of scenes/beam.txt."""
+    return Scene.load(scenes / "beam.txt").run(tmp_path_factory.mktemp("beam") / "beam.out").folder
+
+
+def open_page(browser, address: str) -> None:
+    """Load a page and wait for its first picture, with the film at rest."""
+    browser.go(address)
+    browser.until(SHOWN)
+    show(browser, 0)
+
+
+def show(browser, frame: int) -> None:
+    """See a frame, drawn in full."""
+    browser.js("mdanim.player.go(arguments[0])", frame)
+    browser.until(f"mdanim.shown.frame == {frame} && !mdanim.stage.changed && mdanim.stage.level == 0")
+
+
+def colors(browser) -> np.ndarray:
+    """Pixels of the canvas, shape (height, width, 3)."""
+    box = browser.js(
+        "const b = document.getElementById('stage').getBoundingClientRect(); return [b.left, b.top, b.right, b.bottom]"
+    )
+    picture = Image.open(io.BytesIO(browser.picture())).convert("RGB").crop([round(x) for x in box])
+    return np.asarray(picture).astype(int)
+
+
+def center_of(browser, k: int) -> tuple[float, float]:
+    """Where on the page the centre of an object is seen."""
+    return browser.js(
+        """const o = mdanim.shown.object.subarray(12 * arguments[0] + 6), stage = mdanim.stage, c = stage.renderer.domElement,
+        p = stage.camera.position.clone().set(o[0], o[1], o[2]).project(stage.camera), b = c.getBoundingClientRect();
+        return [b.left + (p.x + 1) / 2 * b.width, b.top + (1 - p.y) / 2 * b.height];""",
+        k,
+    )
+
+
+def text(browser, name: str) -> str:
+    return browser.js("return document.getElementById(arguments[0]).innerText", name)
+
+
+def press(browser, name: str) -> None:
+    browser.js("document.getElementById(arguments[0]).click()", name)
+
+
+def choose(browser, name: str, value: str) -> None:
+    browser.js(
+        "const e = document.getElementById(arguments[0]); e.value = arguments[1]; e.dispatchEvent(new Event('change'))",
+        name,
+        value,
+    )
+
+
+def test_a_finished_run(browser, beam):
+    """Both objects in their colours; frames differ; slider, keys, picking, camera line, energies, cost, expectations, strain."""
+    with served(beam) as view:
+        open_page(browser, view.address)
+        assert "?" not in browser.js("return location.href") and text(browser, "state") == "done"
+        show(browser, 19)
+        seen = colors(browser)
+        orange = (seen[..., 0] - seen[..., 2] > 90).mean()
+        blue = (seen[..., 2] - seen[..., 0] > 60).mean()
+        assert orange > 0.03 and blue > 0.02 and orange + blue < 0.5
+
+        browser.press("Right")
+        browser.until("mdanim.shown.frame == 20")
+        browser.press("Home")
+        browser.until("mdanim.shown.frame == 0")
+        browser.js("const s = document.getElementById('slider'); s.value = 29; s.dispatchEvent(new Event('input'))")
+        browser.until("mdanim.shown.frame == 29")
+        assert text(browser, "clock").startswith("frame 29/90")
+        show(browser, 29)
+        assert (np.abs(colors(browser) - seen).sum(axis=2) > 60).mean() > 0.01
+
+        browser.click(*center_of(browser, 1))
+        browser.until("document.getElementById('object').innerText.includes('cube')")
+        assert "8 kg" in text(browser, "object") and "look cube" in text(browser, "camera")
+        browser.press("Escape")
+        browser.until("document.getElementById('object').innerText.includes('click')")
+        assert browser.js("return document.querySelectorAll('#energies canvas').length") == 1
+        assert "springs" in text(browser, "cost") and text(browser, "expects").count("met") == 5
+
+        choose(browser, "colour", "strain")
+        browser.until("mdanim.shown.strain")
+        assert "%" in text(browser, "legend")
+        press(browser, "show-springs")
+        browser.until("mdanim.shown.particles && mdanim.run.bond && mdanim.run.bond.length == 2 * mdanim.scene.springs")
+
+        browser.js("mdanim.player.play(true)")
+        browser.until("mdanim.shown.frame > 35")
+        browser.press(" ")
+        browser.until("!mdanim.player.playing")
+
+
+def test_the_camera_line_is_of_the_language(browser, beam, tmp_path):
+    """After the camera was moved, the line in a scene's render block gives the same eye and look."""
+    with served(beam) as view:
+        open_page(browser, view.address)
+        browser.drag(300, 250, 60, -30)
+        line = text(browser, "camera")
+        eye = browser.js("return mdanim.stage.camera.position.toArray()")
+    scene = tmp_path / "scene.txt"
+    scene.write_text(f"{FALL}\nrender {{\n  {line}\n}}\n")
+    (camera,) = load_scene(scene).render.camera
+    np.testing.assert_allclose(camera.eye, eye, atol=1e-4)
+
+
+def test_liquid_is_seen_through(browser, scenes, tmp_path):
+    """What lies behind it turns blue; without the liquid it does not."""
+    (tmp_path / "float.txt").write_text((scenes / "float.txt").read_text().replace("time       6 s", "time 0.2 s"))
+    folder = Scene.load(tmp_path / "float.txt").run().folder
+    with served(folder) as view:
+        open_page(browser, view.address)
+        wet = colors(browser)
+        press(browser, "show-liquid")
+        browser.until("!mdanim.stage.changed && mdanim.stage.level == 0")
+        dry = colors(browser)
+    changed = np.abs(wet - dry).sum(axis=2) > 30
+    assert 0.1 < changed.mean() < 0.8
+    assert ((wet - dry)[changed] @ [-1, 0, 1]).mean() > 20
+
+
+def test_a_live_run_is_let_go_and_stopped(browser, tmp_path):
+    """The page shows a paused run and lets it go; it stops another, which goes on later with the bits of a run left alone."""
+    (tmp_path / "fall.txt").write_text(FALL)
+    Scene.load(tmp_path / "fall.txt").run(tmp_path / "alone")
+    run = Held(tmp_path / "fall.txt", tmp_path / "go")
+    run.wait_for("paused")
+    with served(tmp_path / "go") as view:
+        browser.go(view.address)
+        browser.until(SHOWN)
+        browser.until("document.getElementById('state').innerText == 'paused'")
+        assert browser.js("return mdanim.run.count") == HOLD + 1 and text(browser, "pause") == "go on"
+        press(browser, "pause")
+        browser.until("document.getElementById('state').innerText == 'done'")
+        browser.until("mdanim.shown.frame == 15 && document.getElementById('pause').hidden")
+    run.thread.join()
+    assert compare(tmp_path / "alone", tmp_path / "go").equal
+    run = Held(tmp_path / "fall.txt", tmp_path / "stop")
+    run.wait_for("paused")
+    with served(tmp_path / "stop") as view:
+        browser.go(view.address)
+        browser.until(SHOWN)
+        press(browser, "stop")
+        browser.until("document.getElementById('state').innerText == 'stopped'")
+        assert "mdanim-lammps resume" in text(browser, "message")
+        run.thread.join()
+        command = [sys.executable, "-m", "mdanim_lammps", "resume", str(tmp_path / "stop"), "--no-movie", "-q"]
+        assert subprocess.run(command, timeout=100).returncode == 0
+        browser.until("document.getElementById('state').innerText == 'done' && mdanim.run.count == 16")
+    assert compare(tmp_path / "alone", tmp_path / "stop").equal
+
+
+@pytest.mark.mpi
+def test_executors_have_their_colours(browser, tmp_path):
+    """By executor, objects of two executors have two colours, and what never moves is grey."""
+    (tmp_path / "meeting.txt").write_text(MEETING)
+    folder = Scene.load(tmp_path / "meeting.txt").run(tmp_path / "two", executors=2).folder
+    with served(folder) as view:
+        open_page(browser, view.address)
+        before = browser.js(
+            "return [...mdanim.scene.objects.keys()].map(k => mdanim.stage.tint[3 * mdanim.scene.objects[k].first])"
+        )
+        choose(browser, "colour", "executor")
+        browser.until("document.getElementById('legend').innerText.includes('executor')")
+        show(browser, 1)
+        code = "return mdanim.scene.objects.map(({ first }) => [...mdanim.stage.tint.subarray(3 * first, 3 * first + 3)].join())"
+        assert len(set(browser.js(code))) == len({executor for _, _, executor in view.tail._progress.owners})
+        choose(browser, "colour", "object")
+        show(browser, 2)
+        assert browser.js("return mdanim.scene.objects.map(({ first }) => mdanim.stage.tint[3 * first])") == before
+
+
+def test_a_killed_run(browser, beam, tmp_path):
+    """The page says that it was killed and how to go on; its frames stay."""
+    folder = tmp_path / "killed.out"
+    shutil.copytree(beam, folder)
+    text_of_run = (folder / PROGRESS).read_text()
+    (folder / PROGRESS).write_text(text_of_run[: text_of_run.index('{"frame": 25,')])
+    (folder / "summary.json").unlink()
+    with served(folder) as view:
+        open_page(browser, view.address)
+        assert text(browser, "state") == "killed" and "resume" in text(browser, "message")
+        show(browser, 20)
+
+
+def test_a_server_that_ends(browser, beam):
+    """The page says so; what it has stays."""
+    with served(beam) as view:
+        open_page(browser, view.address)
+    browser.until("document.getElementById('message').innerText.includes('The server has ended')")
+    assert browser.js("return mdanim.shown.frame") == 0
+
+
+def test_a_report_from_disk(browser, beam, tmp_path):
+    """At most 2 MB; opened as a file it replays, picks and tells, and asks for nothing."""
+    write_report(beam, tmp_path / "beam.html")
+    assert (tmp_path / "beam.html").stat().st_size <= 2_000_000
+    open_page(browser, f"file://{tmp_path / 'beam.html'}")
+    show(browser, 40)
+    browser.click(*center_of(browser, 1))
+    browser.until("document.getElementById('object').innerText.includes('8 kg')")
+    assert browser.js("return document.querySelector('article').innerText").count("met") >= 5
+    requests = browser.js("return performance.getEntriesByType('resource').map((entry) => entry.name)")
+    assert not [name for name in requests if not name.startswith(("blob:", "data:"))]
+
+
+def test_the_picture_can_be_saved(browser, beam):
+    """The screenshot is a PNG of the canvas with its background."""
+    with served(beam) as view:
+        open_page(browser, view.address)
+        browser.js("HTMLAnchorElement.prototype.click = function () { window.saved = [this.href, this.download]; }")
+        press(browser, "shot")
+        name = browser.until("window.saved")[1]
+        size = browser.js(
+            """const image = new Image(); image.src = saved[0]; await image.decode();
+            const c = Object.assign(document.createElement('canvas'), { width: image.width, height: image.height });
+            c.getContext('2d').drawImage(image, 0, 0);
+            return [image.width, image.height, [...c.getContext('2d').getImageData(0, 0, 1, 1).data]]"""
+        )
+        assert name == "frame-0.png" and size[:2] == browser.js(
+            "const c = mdanim.stage.renderer.domElement; return [c.width, c.height]"
+        )
+        assert size[2][3] == 255
