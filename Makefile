@@ -2,7 +2,7 @@
 # make test   set up .venv, run the tests
 # make develop  set up .venv, build the plugin into the working tree: PYTHONPATH=python .venv/bin/python -m pytest tests/scene/test_units.py
 # make soak   set up .venv, run the long form of the hard cases (all tests marked soak)
-# make sanitize  set up .venv, build the plugin with sanitizers, run its tests and four scenes under them (tests/sanitize.py)
+# make sanitize  set up .venv, build the plugin with sanitizers, run its tests and six scenes under them (tests/sanitize.py)
 # make bench  set up .venv, measure all of docs/performance.md (ten minutes; python bench/all.py --quick takes one)
 # make bench-peers  set up .venv and .venv-peers, measure other programs on the same scenes (docs/performance.md)
 # make clean  forget everything that was built

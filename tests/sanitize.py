@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The plugin under the address and the undefined-behaviour sanitizer: its tests, and four scenes on one and two ranks.
+"""The plugin under the address and the undefined-behaviour sanitizer: its tests, and scenes on one and two ranks.
 
 ``make sanitize`` runs it. Exit code 0 means that both sanitizers report a planted error, that all tests and scenes pass, and that
 no process has reported anything else. Reports lie in build/sanitize/reports.
@@ -35,6 +35,21 @@ object a {{ shape sphere 4 cm position (0, 0, 4) cm {SOLID} }}
 object b {{ shape box (5, 5, 5) cm position (1, 0, 12) cm {SOLID} velocity (0, 0, -1) }}
 object c {{ shape box (6, 6, 1) cm position (-9, 0, 3) cm {SOLID} velocity (1, 0, 0) }}
 """,
+    # Friction, the planes, sharp points on a cuboid and round ones on a mesh of cells; all with dashpots.
+    "friction": f"""
+gravity (0.5, 0, -9.81)
+ground z 0 m
+object a {{ shape box (6, 6, 3) cm position (0, 0, 1.5) cm {SOLID} }}
+object b {{ shape box (4, 4, 4) cm position (1, 0.5, 5.02) cm {SOLID} velocity (0.3, 0, -0.5) spin (0, 0, 3) }}
+object c {{ shape sphere 3 cm position (-7, 0, 3) cm {SOLID} velocity (1, 0, 0) spin (0, 20, 0) }}
+object d {{ shape cylinder 3 cm 2 cm position (-7.5, 0.5, 7.1) cm {SOLID} velocity (1, 0, -0.5) }}
+""",
+    "surface": f"""
+walls from (-8, -8, -8) cm to (14, 8, 12) cm
+object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOLID} velocity (2, 0, -2) }}
+object b {{ shape box (5, 5, 1) cm position (6.5, 0, 2) cm orientation euler (20, 40, 0) deg {SOLID} velocity (-3, 0, 0) }}
+object c {{ shape torus 3 cm 1.2 cm position (1, 0, 7) cm {SOLID} velocity (0, 1, -2) }}
+""",
     "liquid": """
 gravity (0, 0, -9.81)
 liquid w { basin from (-10, -10, 0) cm to (10, 10, 20) cm density 1000 level 8 cm drag 4 }
@@ -53,7 +68,9 @@ object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOLID} velocity (2, 0, -2
 object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}
 """,
 }
-END = "control { time 0.2 s frames 50 fps resolution 1 cm }\n"
+END = "control {{ time 0.2 s frames 50 fps resolution 1 cm  {} }}\n"
+WORDS = {"friction": "friction 0.4", "surface": "contact-model surface"}
+"""Of control, of those of TEXT that need more; the others are under the paper's own law of contact."""
 
 
 def library(name: str) -> str:
@@ -132,11 +149,11 @@ def run_tests() -> bool:
 
 
 def run_scenes() -> bool:
-    """Four scenes: in one process, on two executors, and by LAMMPS alone on two ranks."""
+    """All scenes: in one process, on two executors, and by LAMMPS alone on two ranks."""
     done = True
     lmp = (BIN / "mpiexec", "-n", 2, BIN / "lmp", "-log", "none", "-screen", "none", "-in")
     for name, text in TEXT.items():
-        (SCENES / f"{name}.txt").write_text(text + END)
+        (SCENES / f"{name}.txt").write_text(text + END.format(WORDS.get(name, "contact-model paper")))
         scene = (sys.executable, "-m", "mdanim_lammps", f"{name}.txt", "--no-movie", "--force", "-q")
         done = done and run(*scene, "-n", 1) and run(*scene, "-n", 2)
         done = done and run(*lmp, f"in.{name}", folder=SCENES / f"{name}.out")

@@ -18,6 +18,8 @@ static constexpr double LOST = 0.02;      // cells to go before a point that was
 static constexpr double PRESSED = 0.5;    // cells are taken to be pressed to half at most: motion in space over that in X
 static constexpr double NEAREST = 2.2;    // cells from the middle of a cell on the surface beyond which there is no contact
 static constexpr std::uint8_t EVERY_SIDE = 63;
+static constexpr int MOST_GUESSES = 3;
+static constexpr double NEAR_PLACE = 0.1;    // cells that a guess may be off its last one
 
 static double outside(const Box &box, const Vec3 &x)
 {
@@ -91,6 +93,42 @@ void ContactField::settle(const ContactArrays &arrays)
 
 // --- points without a contact ---
 
+// Of a cuboid.
+std::array<int, 3> ContactField::cell_of(const Vec3 &X) const
+{
+  const auto along = [&](double at, int axis) {
+    return std::clamp(static_cast<int>(std::floor(at + LEFT)), 0, host->body->count(axis) - 1);
+  };
+  return {along(X.x, 0), along(X.y, 1), along(X.z, 2)};
+}
+
+// X of a point at x by one step of Newton's method from where it was found last; `off`: how far that is in cells, 1 and more
+// where the step says nothing. A small part of the work of find().
+void ContactField::guess(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X, double &off)
+{
+  constexpr double HEALTHY = 0.7, NEARBY = 3.0;    // volume over that of a cell; cells from the middle of one
+  Watch &known = watch[q];
+  const bool by_splines = is_smooth(surface_point(q).kind);
+  const double h = host->body->spacing();
+  off = NEVER;
+  if (!evaluate(at, by_splines ? smooth(known.X, at.body) : trilinear(known.X, known.cell, at.body), spot)) return;
+  if (!(spot.det > HEALTHY * h * h * h)) return;
+  const Vec3 change = spot.to_material(x - spot.x);
+  X = known.X + change;
+  const double square = dot(change, change);
+  if (!(square < 1.0)) return;
+  std::array<int, 3> cell = known.cell;
+  bool is_there = true;
+  if (by_splines)
+    cell = cell_of(X);
+  else
+    is_there = !MaterialSearch(at).step_to_neighbour(cell, X, LEFT);
+  const Vec3 away = X - Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
+  if (dot(away, away) > NEARBY * NEARBY) return;
+  known.cell = cell, known.X = X;
+  off = is_there ? std::sqrt(square) : 1.0;
+}
+
 // X of a point at x, the same bits whatever was known of it: the last search begins in the middle of the cell that X lies in.
 bool ContactField::find(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X)
 {
@@ -99,12 +137,7 @@ bool ContactField::find(std::size_t q, const Vec3 &x, const Placed &at, Spot<dou
   std::array<int, 3> cell = known.cell;
   X = known.X;
   if (!search.solve(x, cell, X)) return false;
-  if (host->body->is_cuboid()) {
-    const auto inside = [&](double at_axis, int axis) {
-      return std::clamp(static_cast<int>(std::floor(at_axis + LEFT)), 0, host->body->count(axis) - 1);
-    };
-    cell = {inside(X.x, 0), inside(X.y, 1), inside(X.z, 2)};
-  }
+  if (host->body->is_cuboid()) cell = cell_of(X);
   X = {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
   if (!search.solve(x, cell, X, false)) return false;
   known.cell = cell, known.X = X;
@@ -138,6 +171,55 @@ Ramps ContactField::ramps(PointKind kind) const
   return ramps;
 }
 
+ContactField::Verdict ContactField::judge(const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre,
+                                          const Spot<double> &spot, const Vec3 &normal, double off) const
+{
+  const double far = 1e-5 + off * off, turn = 1e-3 + 0.5 * off;    // that a depth and a cosine of a guess may be wrong, in cells
+  const Lattice grid = host->body->lattice();
+  const Ramps near_edges = ramps(point.kind);
+  const double h = host->body->spacing();
+  int side = -1;
+  bool is_shut = false, is_surely_shut = false, may_face = false;
+  double best = NEVER, until = 0.0, slack = NEVER;
+  Verdict verdict;
+  for (int s = 0; s < host->body->sides(); ++s) {
+    const Depth<double> below = host->body->depth(s, X);
+    const double depth = below.value / h;    // in cells
+    const Vec3 inward = spot.gradient(below.slope);
+    const double cosine = dot(normal, inward) / std::sqrt(dot(inward, inward));
+    // What must change before the side can begin a contact, in cells: the largest of these three.
+    double apart = -depth;
+    const double turned = PRESSED * (LEAST_COSINE - cosine);
+    if (host->body->is_cuboid())
+      for (int d = 0; d < 3; ++d) {
+        if (d == s / 2) continue;
+        const double inside = std::min(component(X_centre, d), grid.cells[d] - component(X_centre, d));
+        apart = std::max(apart, near_edges.from[d] - inside);
+      }
+    if (apart <= 0.0 || turned > apart) verdict.open |= static_cast<std::uint8_t>(1u << s);
+    verdict.is_sure &= std::fabs(apart - std::max(0.0, turned)) > (turned > 0.0 ? turn : far);
+    is_surely_shut |= turned < -turn && depth < -far;
+    may_face |= turned < turn && depth > -far;
+    slack = std::min(slack, PRESSED * h * std::max({apart, turned, depth - DEEPEST_BIRTH}));
+    if (cosine < LEAST_COSINE) continue;
+    if (depth <= 0.0) {
+      is_shut = true;
+      until = std::max(until, std::min(-PRESSED * depth * h, 0.5 * PRESSED * h * (cosine - LEAST_COSINE)));
+    } else if (depth / cosine < best) {
+      best = depth / cosine, side = s;
+      verdict.depth = below.value;
+    }
+  }
+  verdict.is_sure &= is_surely_shut || !may_face;
+  verdict.slack = is_shut ? std::max(slack, until) : slack;
+  const auto counts = [&] {
+    Vec3 slope;
+    return !host->body->is_cuboid() || part_that_counts<double>(near_edges, grid, X_centre, side / 2, slope) > 0.0;
+  };
+  if (!is_shut && side >= 0 && verdict.depth <= DEEPEST_BIRTH * h && counts()) verdict.side = side;
+  return verdict;
+}
+
 // Whether a contact begins; else when to look again.
 bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_begin)
 {
@@ -168,59 +250,33 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
   }
   Spot<double> spot;
   Vec3 X, normal;
-  if (!find(q, x, at, spot, X) || !world_normal(point, arrays, normal)) return lost();
-  const Vec3 X_centre = X + spot.to_material(near.shift(q, arrays.place()));
-
-  const Lattice grid = host->body->lattice();
-  const Ramps near_edges = ramps(point.kind);
-  int side = -1;
-  bool is_shut = false;
-  double best = NEVER, until = 0.0, slack = NEVER;
-  std::uint8_t open = 0;
-  Depth<double> of_side[6];
-  for (int s = 0; s < host->body->sides(); ++s) {
-    of_side[s] = host->body->depth(s, X);
-    const double depth = of_side[s].value / h;    // in cells
-    const Vec3 inward = spot.gradient(of_side[s].slope);
-    const double cosine = dot(normal, inward) / std::sqrt(dot(inward, inward));
-    // What must change before the side can begin a contact, in cells: the largest of these three.
-    double apart = -depth;
-    const double turned = PRESSED * (LEAST_COSINE - cosine);
-    if (host->body->is_cuboid())
-      for (int d = 0; d < 3; ++d) {
-        if (d == s / 2) continue;
-        const double inside = std::min(component(X_centre, d), grid.cells[d] - component(X_centre, d));
-        apart = std::max(apart, near_edges.from[d] - inside);
-      }
-    if (apart <= 0.0 || turned > apart) open |= static_cast<std::uint8_t>(1u << s);
-    slack = std::min(slack, PRESSED * h * std::max({apart, turned, depth - DEEPEST_BIRTH}));
-    if (cosine < LEAST_COSINE) continue;
-    if (depth <= 0.0) {
-      is_shut = true;
-      until = std::max(until, std::min(-PRESSED * depth * h, 0.5 * PRESSED * h * (cosine - LEAST_COSINE)));
-    } else if (depth / cosine < best) {
-      best = depth / cosine, side = s;
-    }
-  }
-  if (is_shut) slack = std::max(slack, until);
+  const Vec3 shift = near.shift(q, arrays.place());
+  if (!world_normal(point, arrays, normal)) return lost();
   const std::uint8_t was_open = known.open;
-  known.open = open;
-  const auto counts = [&] {
-    Vec3 slope;
-    return !host->body->is_cuboid() || part_that_counts<double>(near_edges, grid, X_centre, side / 2, slope) > 0.0;
-  };
-  if (!may_begin || is_shut || side < 0 || of_side[side].value > DEEPEST_BIRTH * h || !counts()) {
-    wake[q] = budget + std::max(0.0, slack);
+  Verdict verdict;
+  verdict.is_sure = false;
+  double off = 1.0;
+  for (int step = 0; step < MOST_GUESSES && !verdict.is_sure && off > SAME_PLACE && off < NEVER; ++step) {
+    guess(q, x, at, spot, X, off);
+    if (off < NEAR_PLACE) verdict = judge(point, X, X + spot.to_material(shift), spot, normal, off);
+  }
+  if (!verdict.is_sure) {
+    if (!find(q, x, at, spot, X)) return lost();
+    verdict = judge(point, X, X + spot.to_material(shift), spot, normal, 0.0);
+  }
+  known.open = verdict.open;
+  if (!may_begin || verdict.side < 0) {
+    wake[q] = budget + std::max(0.0, verdict.slack);
     return false;
   }
 
   FieldContact contact{};
   contact.point = near.point(q);
-  contact.side = side;
+  contact.side = verdict.side;
   for (int d = 0; d < 3; ++d) contact.cell[d] = known.cell[d];
   contact.state.X = contact.state.anchor = X;
-  contact.state.memory.depth = of_side[side].value;
-  contact.state.memory.offset = was_open >> side & 1 ? of_side[side].value : 0.0;
+  contact.state.memory.depth = verdict.depth;
+  contact.state.memory.offset = was_open >> verdict.side & 1 ? verdict.depth : 0.0;
   const auto where = std::lower_bound(of_contact.begin(), of_contact.end(), q);
   contacts.insert(contacts.begin() + (where - of_contact.begin()), contact);
   of_contact.insert(where, q);

@@ -42,11 +42,24 @@ class ContactField {
     std::uint8_t open = 0;    // sides in which the point would have had a potential when it was looked at last
   };
 
+  // What a look at a point comes to.
+  struct Verdict {
+    int side = -1;    // of the contact that begins; -1 for none
+    double depth = 0.0;
+    std::uint8_t open = 0;    // as that of Watch
+    double slack = 0.0;       // a motion that cannot yet begin a contact [m]
+    bool is_sure = true;      // no contact, and open is right, though the place of the point is guessed
+  };
+
   Placed placed(const ContactArrays &arrays) const { return {*host->body, host->slot.data(), arrays.place()}; }
   const SurfacePoint &surface_point(std::size_t q) const { return owner->body->points()[near.point(q)]; }
   bool is_smooth(PointKind kind) const { return kind != PointKind::FLAT && host->body->is_cuboid(); }
   bool look(std::size_t q, const ContactArrays &arrays, bool may_begin);
   bool find(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X);
+  void guess(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X, double &off);
+  std::array<int, 3> cell_of(const Vec3 &X) const;
+  Verdict judge(const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre, const Spot<double> &spot, const Vec3 &normal,
+                double off) const;
   bool world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const;
   Ramps ramps(PointKind kind) const;
 
