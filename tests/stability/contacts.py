@@ -94,18 +94,20 @@ TUNNELS = [
 ]
 
 
-def tunnelling_speed(cells: int, offset, step: float = 0.05, fastest: float = 3.0) -> float:
+def tunnelling_speed(cells: int, offset, model: str = "paper", step: float = 0.05, fastest: float = 3.0) -> float:
     """Lowest closing speed over C, in multiples of ``step``, at which two cubes do not part again (scan upward)."""
     for n in range(1, int(fastest / step) + 1):
-        if collide(head_on(n * step, cells, offset), False)["speed lost"] >= 1.0:
+        text = head_on(n * step, cells, offset).replace("contact-model paper", f"contact-model {model}")
+        if collide(text, False)["speed lost"] >= 1.0:
             return n * step
     return np.inf
 
 
-def plate_tunnelling_speed(cells: int, offset, step: float = 0.05, fastest: float = 3.0) -> float:
+def plate_tunnelling_speed(cells: int, offset, model: str = "paper", step: float = 0.05, fastest: float = 3.0) -> float:
     """The same for a block on a clamped plate."""
     for n in range(1, int(fastest / step) + 1):
-        if dropped("plate")(onto_plate(n * step, cells, offset), False)["passed"]:
+        text = onto_plate(n * step, cells, offset).replace("contact-model paper", f"contact-model {model}")
+        if dropped("plate")(text, False)["passed"]:
             return n * step
     return np.inf
 

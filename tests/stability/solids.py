@@ -290,7 +290,8 @@ def rotate(text: str, long: bool) -> dict[str, float]:
         axis = random.normal(size=3)
         axis, angle = tuple((axis / np.linalg.norm(axis)).tolist()), random.uniform(0.0, 2.0 * np.pi)
         rotation = np.array(rotation_about(axis, angle))
-        with Trial(meeting(rotation, f"orientation axis {axis!r} angle {angle!r} rad")) as t:
+        turned = meeting(rotation, f"orientation axis {axis!r} angle {angle!r} rad")
+        with Trial(turned.replace(CONTROL, text[text.index("control") :])) as t:
             t.run_for(200.0)
             off.append(np.abs(t.x @ rotation - straight).max())
     return {"positions / h": max(off)}

@@ -4,6 +4,7 @@
 import math
 
 import pytest
+import surfaces
 from case import Case, broken
 from cases import CASES
 from contacts import IMPACTS, PLATES
@@ -14,6 +15,12 @@ every_case = pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 @every_case
 def test_hard_case(case):
     """Measure no more than what the case allows."""
+    assert not broken(case, case.measure())
+
+
+@pytest.mark.parametrize("case", surfaces.CASES, ids=lambda case: case.name)
+def test_hard_case_at_surfaces(case):
+    """The same with contact at the surfaces, for all in which something touches."""
     assert not broken(case, case.measure())
 
 

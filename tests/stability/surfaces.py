@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The hard cases in which something touches, with ``contact-model surface``: the same scenes, and limits but for those here."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import contacts
+import solids
+from case import Case
+
+TOUCHING = [*contacts.CASES, *(c for c in solids.CASES if c.name.startswith("weight")), solids.ROTATED]
+CHANGED: dict[str, tuple[dict[str, float], str]] = {
+    "impact at 0.2 c": ({"overlap of the surfaces / h": 0.25}, "a surface is softer at first than the full reach of a barrier"),
+    "impact at 0.5 c": (
+        {"energy drift": 2e-3},
+        "all points of two equal faces meet in one step: a force that sets in so is followed to 2e-3",
+    ),
+    "touching at t = 0": (
+        {"parting speed / c": 1e-12, "still within reach / h": 0.6 + 1e-9},
+        "what touches has no stress, and stays",
+    ),
+    "corner on corner at 0.05 c": (
+        {"energy drift": 5e-3},
+        "the force of a ramp leaves out how the map bends about a point: the books are off while corners "
+        "touch, and hold to 5e-7 afterwards",
+    ),
+    "corner on corner at 0.2 c": (
+        {"energy drift": 1e-2, "not handed over": 0.25},
+        "corners that are exactly on one line turn their own cells over; what is let go then is told, but lost to the motion",
+    ),
+    "weight of 0.05 E on its foot": (
+        {"below the ground / h": 0.08},
+        "ground gives way by load times h and by the onset of 0.025 h",
+    ),
+    "weight of 0.5 E on its foot": (
+        {"below the ground / h": 2.5},
+        "beyond 0.2 E a lattice is crushed, and deeper here; told before the run",
+    ),
+}
+"""Other limits, and why."""
+FRICTION = ("tower of 3",)
+"""Cases that need friction: cubes that slide do not stand on each other."""
+STANDING = {"overlap of the surfaces / h": 0.05}
+HEAVY = "1000 times as dense, at rest, 0.02 E"
+HEAVY_BOTTOM = 3.93
+"""Height of its bottom on the surface, which is not that over a barrier."""
+
+
+def at_surfaces(case: Case) -> Case:
+    """The case with the other law of contact."""
+    words = "contact-model surface friction 0.5" if case.name.startswith(FRICTION) else "contact-model surface"
+    most, why = CHANGED.get(case.name, ({}, case.why))
+    if case.name.startswith(FRICTION):
+        most, why = STANDING, "friction holds it; surfaces touch"
+    return replace(case, scene=case.scene.replace("contact-model paper", words), most={**case.most, **most}, why=why)
+
+
+CASES = [at_surfaces(contacts.heavy_on_slab(0.02, HEAVY_BOTTOM) if case.name == HEAVY else case) for case in TOUCHING]
