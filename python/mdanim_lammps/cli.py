@@ -75,6 +75,7 @@ Control = Annotated[
     Parameter(help="What assigns objects to executors: the supervisor, or each executor alike."),
 ]
 View = Annotated[bool, Parameter(name="--view", negative=(), help="Show the run in a browser while it goes on.")]
+Edit = Annotated[bool, Parameter(negative=(), help="Let the page change the scene's text and run it again; implies --view.")]
 Force = Annotated[bool, Parameter(negative=(), help="Overwrite an output folder of an earlier run.")]
 
 
@@ -92,6 +93,7 @@ def run(
     force: Force = False,
     movie: bool = True,
     view: View = False,
+    edit: Edit = False,
     allow_unstable: AllowUnstable = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -117,7 +119,7 @@ def run(
     announce(ready, quiet, verbose, executors, control)
     if executors > 1 and not quiet:
         print("\n".join(prospect_lines(forecast_speedup(ready, executors))), flush=True)
-    with Viewer(view) as viewer, open_run(ready, out, force=force) as folder:
+    with Viewer(view, scene if edit else None) as viewer, open_run(ready, out, force=force) as folder:
         viewer.start(folder)
         simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control)
 
@@ -335,6 +337,7 @@ def view(
     *,
     port: Annotated[int, Parameter(converter=_whole_number)] = 0,
     open_: Annotated[bool, Parameter(name="--open", negative="--no-open")] = True,
+    edit: Annotated[bool, Parameter(negative=(), help="Let the page change the scene's text and run it again.")] = False,
 ) -> None:
     """Look at a run in a browser: one that goes on, with its controls, or one that has ended. Ctrl-C ends it.
 
@@ -352,7 +355,7 @@ def view(
     if not 0 <= port <= 65535:
         raise UsageError(f"--port {port}: must be between 0 (any that is free) and 65535")
     with suppress(KeyboardInterrupt):
-        serve(folder, port=port, on_address=lambda address, once: show_address(address, once if open_ else None))
+        serve(folder, port=port, edit=edit, on_address=lambda address, once: show_address(address, once if open_ else None))
 
 
 @app.command

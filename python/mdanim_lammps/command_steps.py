@@ -180,11 +180,11 @@ class Viewer:
     """The server of a view beside a run, in a process of its own; a context manager around the run.
 
     At the end it waits until the view is no longer needed: until a minute has passed without a page, or Ctrl-C. An error of the
-    run is printed before that.
+    run is printed before that. ``edit`` is the file of the scene if pages may edit it.
     """
 
-    def __init__(self, wanted: bool):
-        self._wanted = wanted
+    def __init__(self, wanted: bool, edit: Path | None = None):
+        self._wanted, self._edit = wanted or edit is not None, edit
         self._process: subprocess.Popen | None = None
 
     def start(self, folder: Path) -> None:
@@ -192,6 +192,8 @@ class Viewer:
         if not self._wanted:
             return
         command = [sys.executable, "-m", "mdanim_lammps.view", str(folder), "--linger", f"{LINGER:g}"]
+        if self._edit:
+            command += ["--edit", "--scene", str(self._edit)]
         # In a session of its own: the Ctrl-C that stops the run is not for the view.
         self._process = subprocess.Popen(
             command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, start_new_session=True

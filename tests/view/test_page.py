@@ -15,6 +15,7 @@ from mdanim_lammps import Scene
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.progress import PROGRESS
 from mdanim_lammps.scene.parse import load_scene
+from mdanim_lammps.view.edit import Editor
 from mdanim_lammps.view.export import write_report
 from PIL import Image
 from scene_texts import FALL, MEETING
@@ -267,3 +268,43 @@ def test_the_picture_can_be_saved(browser, beam):
             "const c = mdanim.stage.renderer.domElement; return [c.width, c.height]"
         )
         assert size[2][3] == 255
+
+
+def test_a_text_is_edited_and_run(browser, tmp_path):
+    """A problem is shown at its line and nothing can be run; mended, the run is seen in the page, with its text."""
+    (tmp_path / "fall.txt").write_text(FALL)
+    folder = Scene.load(tmp_path / "fall.txt").run().folder
+    write = "const t = document.querySelector('#editor textarea'); t.value = arguments[0]; t.dispatchEvent(new Event('input'))"
+    with served(folder, editor=Editor(folder, tmp_path / "fall.txt")) as view:
+        open_page(browser, view.address)
+        assert browser.until("document.querySelector('#editor textarea').value") == FALL
+        browser.js(write, FALL.replace("frames", "fraems"))
+        browser.until("document.getElementById('again').disabled")
+        assert "line 7" in text(browser, "problems") and "did you mean 'frames'?" in text(browser, "problems")
+        browser.js("document.querySelector('#problems button').click()")
+        marked = "const t = document.querySelector('#editor textarea'); return t.value.slice(t.selectionStart, t.selectionEnd)"
+        assert browser.js(marked) == "  fraems 50 fps"
+        shorter = FALL.replace("time 0.3 s", "time 0.1 s").split("expect")[0]
+        browser.js(write, shorter)
+        browser.until("!document.getElementById('again').disabled")
+        browser.js("mdanim.before = true")
+        press(browser, "again")
+        browser.until("window.mdanim && !mdanim.before && mdanim.shown && mdanim.run.state == 'done' && mdanim.run.count == 6")
+        assert browser.until("document.querySelector('#editor textarea').value") == shorter
+        show(browser, 5)
+
+
+def test_a_run_begun_anew_is_shown_anew(browser, tmp_path):
+    """Where --force has replaced the run, the page loads the new one, once."""
+    (tmp_path / "fall.txt").write_text(FALL)
+    scene = Scene.load(tmp_path / "fall.txt")
+    folder = scene.run().folder
+    with served(folder) as view:
+        open_page(browser, view.address)
+        browser.js("mdanim.before = true")
+        (tmp_path / "fall.txt").write_text(FALL.replace("time 0.3 s", "time 0.1 s").split("expect")[0])
+        Scene.load(tmp_path / "fall.txt").run(force=True)
+        browser.until("window.mdanim && !mdanim.before && mdanim.shown && mdanim.run.state == 'done' && mdanim.run.count == 6")
+        browser.js("mdanim.once = true")
+        show(browser, 5)
+        assert browser.js("return mdanim.once")

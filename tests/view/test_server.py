@@ -3,6 +3,7 @@
 
 import json
 import re
+import shutil
 import socket
 import subprocess
 import sys
@@ -107,10 +108,22 @@ def test_long_runs_are_told_in_part(tmp_path, folder):
     assert len(rows) <= MOST_ROWS and rows[1][0] == 3.0 and "rows" not in tail.news(known)
 
 
+def test_a_run_begun_anew_is_told_anew(folder, tmp_path):
+    """Of another file of the same name, everything is told again, also where it has fewer frames; the number of files goes up."""
+    again = tmp_path / "again.out"
+    shutil.copytree(folder, again)
+    tail, known = Tail(again), Known()
+    first = tail.news(known)
+    lines = (again / PROGRESS).read_text().splitlines(keepends=True)
+    (again / PROGRESS).unlink()
+    (again / PROGRESS).write_text("".join(line for line in lines if json.loads(line).get("frame", 0) < 3))
+    tail._look()
+    told = tail.news(known)
+    assert told["file"] == first["file"] + 1 and told["rows"] == first["rows"][:3] and told["count"] == 3 and told["keep"] == 0
+
+
 def test_runs_of_older_versions(folder, tmp_path):
     """A folder without progress.jsonl is told from its ledger."""
-    import shutil
-
     old = tmp_path / "old.out"
     shutil.copytree(folder, old)
     (old / PROGRESS).unlink()
@@ -279,8 +292,6 @@ def test_strangers_do_not_hang_it(view):
 @pytest.mark.parametrize("make", [lambda path: path.symlink_to("/etc/passwd"), lambda path: __import__("os").mkfifo(path)])
 def test_folders_of_strangers(folder, tmp_path, make):
     """A folder with a link or a pipe in it is not served."""
-    import shutil
-
     bad = tmp_path / "bad.out"
     shutil.copytree(folder, bad)
     make(bad / "movie.mp4")
@@ -305,8 +316,6 @@ def test_a_run_that_has_ended_is_not_commanded(view, folder):
 
 def test_a_killed_run_is_told_from_one_that_goes_on(tmp_path, folder):
     """By the lock that its processes hold, not by what it said last."""
-    import shutil
-
     killed = tmp_path / "killed.out"
     shutil.copytree(folder, killed)
     lines = (killed / PROGRESS).read_text().splitlines(keepends=True)

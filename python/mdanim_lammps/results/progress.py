@@ -136,6 +136,13 @@ class ProgressTail:
                 self._take(line)
         return anew
 
+    def is_at(self, file: os.stat_result) -> bool:
+        """Whether the folder's file is this one."""
+        try:
+            return os.path.samestat(os.lstat(self.path), file)
+        except FileNotFoundError:
+            return False
+
     def close(self) -> None:
         """Close the file."""
         if self._file is not None:

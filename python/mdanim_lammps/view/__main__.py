@@ -9,18 +9,28 @@ from pathlib import Path
 from ..terminal import documented_exit, open_streams, stop_on_sigterm
 
 
-def serve(folder: Path, *, port: int = 0, linger: float | None = None, on_address=lambda address, once: None) -> None:
+def serve(
+    folder: Path,
+    *,
+    port: int = 0,
+    linger: float | None = None,
+    edit: bool = False,
+    scene: Path | None = None,
+    on_address=lambda address, once: None,
+) -> None:
     """Serve the view of an output folder until Ctrl-C, or for ``linger`` seconds after the run's end without a page.
 
+    With ``edit`` pages may change the text, that of ``scene`` or of the folder's scene.lock.txt, and run it again.
     ``on_address`` is called with the address of the page, and with one that is good once. Raises OutputError, UsageError.
     """
     from ..errors import UsageError
+    from .edit import Editor
     from .server import View
     from .tail import Tail
 
     with Tail(folder) as tail:
         try:
-            view = View(tail, port=port, linger=linger)
+            view = View(tail, port=port, linger=linger, editor=Editor(folder, scene) if edit else None)
         except OSError as error:
             raise UsageError(f"--port {port}: {error.strerror}; leave it out, and a free one is taken") from error
         try:
@@ -38,9 +48,12 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--port", type=int, default=0)
     parser.add_argument("--linger", type=float)
+    parser.add_argument("--edit", action="store_true")
+    parser.add_argument("--scene", type=Path)
     given = parser.parse_args()
     with documented_exit(debug=False):
-        serve(given.folder, port=given.port, linger=given.linger, on_address=lambda *addresses: print(*addresses, flush=True))
+        options = {"port": given.port, "linger": given.linger, "edit": given.edit, "scene": given.scene}
+        serve(given.folder, **options, on_address=lambda *addresses: print(*addresses, flush=True))
 
 
 if __name__ == "__main__":

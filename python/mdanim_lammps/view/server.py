@@ -23,6 +23,7 @@ from websockets.sync.server import Server, ServerConnection, serve
 
 from ..errors import MdanimError
 from .control import COMMANDS, command
+from .edit import LONGEST_TEXT, Editor
 from .feed import LAYERS
 from .tail import Known, Tail
 
@@ -48,11 +49,12 @@ class View:
     Args:
         tail: of the folder.
         port: 0 takes a free one.
+        editor: of the scene's text, where pages may edit it and run it again; None where they may not.
         linger: seconds that the server waits for a page once the run has ended and no page is open; None waits for ever.
     """
 
-    def __init__(self, tail: Tail, *, port: int = 0, linger: float | None = None):
-        self.tail, self.linger = tail, linger
+    def __init__(self, tail: Tail, *, port: int = 0, linger: float | None = None, editor: Editor | None = None):
+        self.tail, self.linger, self.editor = tail, linger, editor
         self.token = secrets.token_urlsafe(24)
         self._tickets: dict[str, float] = {}
         self.files = packaged_files()
@@ -65,7 +67,7 @@ class View:
             port,
             process_request=self._gate,
             compression=None,
-            max_size=LONGEST_MESSAGE,
+            max_size=LONGEST_TEXT if editor else LONGEST_MESSAGE,
             server_header=None,
             open_timeout=5.0,
             logger=_quiet(),
@@ -108,6 +110,8 @@ class View:
             for page in self._pages.copy():
                 with suppress(OSError):
                     page.close(1001, "the server ends")
+            if self.editor:
+                self.editor.end()
 
     # --- requests -------------------------------------------------------------------------------------------------
 
@@ -165,6 +169,7 @@ class View:
             while not gone.is_set():
                 seen = self.tail.changes
                 if news := self.tail.news(known):
+                    news["edit"] = self.editor is not None
                     page.send(json.dumps({"news": news}))
                     gone.wait(LOT)
                 with self.tail.changed:
@@ -173,10 +178,12 @@ class View:
     def _obey(self, page: ServerConnection, text: str | bytes) -> None:
         """One message of a page; a wrong one closes the page."""
         try:
-            if len(text) > LONGEST_MESSAGE:
-                raise ValueError("too long")
             asked = json.loads(text)
-            if "get" in asked:
+            if self.editor and "edit" in asked:
+                page.send(json.dumps(self._edit(asked)))
+            elif len(text) > LONGEST_MESSAGE:
+                raise ValueError("too long")
+            elif "get" in asked:
                 page.send(self.tail.feed().frame(whole(asked["get"], self.tail.count), whole(asked["layers"], LAYERS + 1)))
             elif "scene" in asked:
                 page.send(self.tail.feed().scene())
@@ -191,6 +198,19 @@ class View:
             page.send(json.dumps({"error": str(error)}))
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
             page.close(1008, "what a page sends is JSON that asks for what there is")
+
+    def _edit(self, asked: dict) -> dict:
+        """The answer to a page that edits: the text, its problems; without any, a run may begin."""
+        if asked["edit"] is None:
+            return {"text": self.editor.text}
+        if not isinstance(asked["edit"], str):
+            raise ValueError("no text")
+        problems = self.editor.problems(asked["edit"])
+        started = asked.get("run") is True and not [p for p in problems if p["severity"] == "error"]
+        if started:
+            self.editor.run(asked["edit"], self.tail.say)
+            self.tail.turn_to(self.editor.out)
+        return {"problems": problems, "started": started}
 
 
 def whole(value: object, below: int) -> int:

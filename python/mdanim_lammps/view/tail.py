@@ -35,7 +35,8 @@ LIVE = ("preparing", "running", "paused")
 class Known:
     """How much of a run a page has been told."""
 
-    lives: int = -1
+    life: tuple[int, int] = (-1, -1)
+    """Which files, and which life of their run."""
     rows: int = 0
     owners: int = 0
     last: dict | None = None
@@ -53,7 +54,7 @@ class Tail:
 
     def __init__(self, folder: Path):
         self.folder = folder
-        self.title, self.render = self._stored()
+        self._stored()
         self.changed = threading.Condition()
         """Notified whenever there is something new."""
         self.changes = 0
@@ -63,6 +64,8 @@ class Tail:
         self._files = 0
         self._state = "preparing"
         self._message = ""
+        self._before: os.stat_result | None = None
+        """The progress.jsonl of an earlier run, which the one that is about to begin will replace."""
         self._facts: dict = {}
         self._looked = -LOOK_FOR_LIFE
         self._closing = threading.Event()
@@ -80,6 +83,26 @@ class Tail:
         if self._feed:
             self._feed.close()
 
+    def turn_to(self, folder: Path) -> None:
+        """Follow another folder from now on, in which a run is about to begin; all pages are told."""
+        with self.changed:
+            self._progress.close()
+            self.folder, self._progress = folder, ProgressTail(folder)
+            self._begin_anew()
+            self._state, self._message = "preparing", ""
+            with suppress(OSError):
+                self._before = os.lstat(self._progress.path)
+            self.changes += 1
+            self.changed.notify_all()
+
+    def say(self, message: str) -> None:
+        """Tell all pages that the run which was about to begin has failed."""
+        with self.changed:
+            if self._state == "preparing":
+                self._state, self._message = "failed", message
+                self.changes += 1
+                self.changed.notify_all()
+
     @property
     def live(self) -> bool:
         """Whether the run has not ended."""
@@ -90,7 +113,7 @@ class Tail:
         with self.changed:
             if self._feed is None:
                 find_trajectory(self.folder)
-                self._feed = Feed(self.folder, self.title, self.render, finished=self._state == "done")
+                self._feed = Feed(self.folder, *self._stored(), finished=self._state == "done")
             elif self._state == "done" and not self._feed.finished:
                 self._feed.finished = True
                 self._feed.__dict__.pop("action", None)
@@ -105,8 +128,9 @@ class Tail:
         """What a page does not know yet, which is then known; empty where there is nothing."""
         with self.changed:
             p, told = self._progress, {}
-            if known.lives != p.lives:
-                known.lives, known.rows, known.owners = p.lives, min(known.rows, p.keep), 0
+            if known.life != (life := (self._files, p.lives)):
+                kept = min(known.rows, p.keep) if known.life[0] == self._files else 0
+                known.life, known.rows, known.owners = life, kept, 0
                 told |= {"columns": p.columns, "energies": p.energies, "executors": p.executors, "keep": known.rows}
             width, new = len(p.columns), p.count - known.rows
             if new:
@@ -139,6 +163,9 @@ class Tail:
 
     def _look(self) -> None:
         with self.changed:
+            if self._before and self._progress.is_at(self._before):
+                return
+            self._before = None
             before = (self._progress.count, self._progress.lives, self._state)
             if self._progress.read() or (self._feed and not self._is_there(self._feed)):
                 self._begin_anew()
@@ -164,8 +191,6 @@ class Tail:
         if self._feed:
             self._feed.close()
         self._feed, self._files, self._facts = None, self._files + 1, {}
-        with suppress(MdanimError):
-            self.title, self.render = self._stored()
 
     def _set(self, state: str, message: str) -> None:
         if state != self._state and state == "done":

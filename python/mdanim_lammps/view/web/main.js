@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Puts the parts together: what is heard, what is seen, what is pressed.
+import { offerEditing } from "./edit.js";
 import { STRAIN, PARTICLES, cameraLine, nearlyMost, number, ownersAt } from "./message.js";
 import { Energies, byId, element, executorColor, roundStrain, showCost, showExpects, showLegend, showObject, strainColor, table } from "./panel.js";
 import { Cache, Player, SPEEDS } from "./player.js";
@@ -13,7 +14,7 @@ const KEYS = [
   ["← →", "a frame, with Shift ten"], ["Home, End", "first frame, newest frame"], ["1 … 7", "what is shown"], ["F", "see all, or the picked object"],
   ["C", "copy the camera line"], ["P", "save a screenshot"], ["?", "this list"],
 ];
-const run = { file: 0, count: 0, total: 0, executors: 1, state: "", message: "", seconds: 0, cost: {}, facts: {}, owners: [] };
+const run = { file: null, count: 0, total: 0, executors: 1, state: "", message: "", seconds: 0, cost: {}, facts: {}, owners: [] };
 const energies = new Energies(), cache = new Cache();
 const report = byId("replay"); // in a report: the block of data
 let source, scene, stage, player, shown = null, shownKey = "", picked = null, ease = 0, slow = 0, drawnAt = 0, rested = true, failedAt = 0, range = 0.002, lastTick = 0;
@@ -44,7 +45,7 @@ async function start() {
 // --- what is heard ----------------------------------------------------------------------------------------------------
 
 function hear({ columns, keep, rows, owners, ...news }) {
-  if (news.file > run.file) return location.reload(); // another run in the same folder
+  if (run.file !== null && news.file > run.file) return location.reload(); // another run in the same folder
   Object.assign(run, news);
   if (columns) {
     energies.begin(columns, news.energies ?? 0, keep);
@@ -59,6 +60,7 @@ function hear({ columns, keep, rows, owners, ...news }) {
 function refresh() {
   const live = LIVE.includes(run.state), share = run.total ? run.count / run.total : 0;
   say(run.state, run.message);
+  if (run.edit) offerEditing(source);
   if (player) Object.assign(player, { count: run.count, live });
   byId("slider").max = Math.max(run.total, 1) - 1;
   byId("ready").style.width = `${100 * share}%`;

@@ -56,6 +56,11 @@ export class Socket {
     return readFrame(await this.ask({ get: frame, layers }));
   }
 
+  // Without a text: the text that is there. Else its problems, and whether a run of it has begun.
+  edit(text = null, run = false) {
+    return this.ask({ edit: text, run });
+  }
+
   tell(what) {
     this.socket.send(JSON.stringify({ do: what }));
   }
