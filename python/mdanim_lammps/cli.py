@@ -10,6 +10,7 @@ import shlex
 import sys
 import time
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -315,15 +316,16 @@ def render(
     frames
         Write every picture to frames/ in the folder too.
     scene
-        Take the render block (camera, background) of this scene file instead.
+        Take the render block (camera, background, speed) of this file instead; it need hold nothing else.
     """
     check_size(size)
     if fps is not None and not 0.0 < fps <= 1000.0:
         raise UsageError(f"--fps {fps:g}: must be above 0 and at most 1000, e.g. --fps 30")
     from .api import movie_file, stored_scene
+    from .scene.parse import load_render
 
     stored = stored_scene(folder)
-    record = stored if scene is None else load(scene, ())
+    record = stored if scene is None else replace(stored, render=load_render(scene, [solid.name for solid in stored.solids]))
     path = movie_file(folder, record) if out is None else picture_file(out, ".mp4")
     draw_movie(folder, record, path, quiet=quiet, size=size, fps=fps, frames=folder / "frames" if frames else None)
     if not quiet:

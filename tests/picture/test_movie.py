@@ -65,6 +65,20 @@ def test_movie_shows_every_frame_in_turn(short, tmp_path, processes):
     np.testing.assert_array_equal(stills[4], read_png(render_still(short, 4, tmp_path / "s.png", SMALL)))
 
 
+@pytest.mark.parametrize(
+    "speed, fps, frames, rate",
+    [
+        pytest.param(0.5, None, [0, 1, 2, 3, 4, 5], 5, id="slow motion has every frame"),
+        pytest.param(0.5, 10.0, [0, 0, 1, 2, 2, 2, 3, 4, 4, 4, 5], 10, id="the nearest at another rate"),
+        pytest.param(20.0, None, [0, 3], 60, id="a time lapse leaves frames out"),
+    ],
+)
+def test_frames_of_another_speed(short, speed, fps, frames, rate):
+    """Slow motion shows frames longer, a time lapse has no more pictures a second than a film needs."""
+    shown, found = movie_frames(short, fps, speed)
+    assert (shown.tolist(), found) == (frames, rate)
+
+
 def test_lasts_as_long_as_it_shows(short, tmp_path):
     """Another rate shows more or fewer pictures in the same time."""
     for fps, expected in ((20.0, 11), (4.0, 3)):

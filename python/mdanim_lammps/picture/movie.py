@@ -38,6 +38,8 @@ CODING = {
 }
 """H.264 that browsers and slides play."""
 MOST_PICTURES = 10_000_000
+FASTEST = 60.0
+"""Pictures per second of a time lapse; a movie at the speed of the simulated time has all of its frames."""
 FRAMES_PER_PROCESS = 40
 """A process takes about two seconds to start; with fewer frames than this it does not pay."""
 
@@ -89,7 +91,7 @@ def render_movie(
     frames: str | Path | None = None,
     on_progress: Callable[[int, int], None] | None = None,
 ) -> Path:
-    """Draw all frames as an H.264 movie (mp4, yuv420p) that runs at the speed of the simulated time.
+    """Draw all frames as an H.264 movie (mp4, yuv420p) that runs at ``render.speed`` times the speed of the simulated time.
 
     Args:
         trajectory: an open trajectory, or the folder of a run.
@@ -112,7 +114,7 @@ def render_movie(
             )
     width, height = size or render.size
     size = (width + width % 2, height + height % 2)
-    shown, rate = movie_frames(trajectory, fps)
+    shown, rate = movie_frames(trajectory, fps, render.speed)
     processes = processes or max(1, min(_cores(), len(shown) // FRAMES_PER_PROCESS))
     pictures = _draw_here if processes == 1 else _draw_apart
     with _encoder(Path(path), size, rate, len(shown)) as encode:
@@ -125,12 +127,13 @@ def render_movie(
     return Path(path)
 
 
-def movie_frames(trajectory: Trajectory, fps: float | None = None) -> tuple[np.ndarray, Fraction]:
+def movie_frames(trajectory: Trajectory, fps: float | None = None, speed: float = 1.0) -> tuple[np.ndarray, Fraction]:
     """Which frames a movie shows, one after the other, and how many a second.
 
     Args:
         trajectory: with at least one frame.
-        fps: pictures per second; None takes every frame of the trajectory.
+        fps: pictures per second; None takes every frame of the trajectory, but no more than FASTEST a second.
+        speed: simulated time over the movie's.
 
     Raises:
         OutputError: the trajectory is empty.
@@ -140,16 +143,16 @@ def movie_frames(trajectory: Trajectory, fps: float | None = None) -> tuple[np.n
         raise OutputError(f"{trajectory.path}: holds no frame, nothing can be drawn; resume the run first")
     if len(times) == 1:
         return np.zeros(1, dtype=int), _rate(fps or 30.0)
-    own = (len(times) - 1) / (times[-1] - times[0])
-    if (times[-1] - times[0]) * (fps or 0.0) > MOST_PICTURES:
-        raise UsageError(
-            f"{fps:g} pictures per second for {times[-1] - times[0]:g} s are too many; the limit is {MOST_PICTURES:,}"
-        )
-    if fps is None:
+    seconds = (times[-1] - times[0]) / speed
+    own = (len(times) - 1) / seconds
+    if fps is None and (speed == 1.0 or own <= FASTEST):
         return np.arange(len(times)), _rate(own)
+    fps = fps or FASTEST
+    if seconds * fps > MOST_PICTURES:
+        raise UsageError(f"{fps:g} pictures per second for {seconds:g} s are too many; the limit is {MOST_PICTURES:,}")
     # A picture that falls on the last frame but for rounding is shown.
-    wanted = times[0] + np.arange(int((times[-1] - times[0]) * fps + 1e-6) + 1) / fps
-    return np.clip(np.rint((wanted - times[0]) * own), 0, len(times) - 1).astype(int), _rate(fps)
+    wanted = np.arange(int(seconds * fps + 1e-6) + 1) / fps
+    return np.clip(np.rint(wanted * own), 0, len(times) - 1).astype(int), _rate(fps)
 
 
 def _cores() -> int:

@@ -76,6 +76,7 @@ MOST_PAIRS = 10**5
 """Pairs of objects that all contact blocks of a scene name together."""
 SWEEPS = Limit("sweeps", 4096, way_out="write sweeps auto, which takes 8 for each cell that the fastest solid travels")
 """What fix mdanim/liquid takes."""
+SPEED = Limit("speed", 1e4, 1e-4, "speed 0.1 shows a second of the scene in ten seconds, speed 10 ten seconds in one")
 PIXELS = Limit("the size of a picture", 16384, way_out="the most is 16384 along a side")
 MOST_FRAMES = 10**7
 """Frames of a run."""

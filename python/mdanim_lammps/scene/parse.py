@@ -4,17 +4,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ..errors import Problem, SceneError, Span
 from .expand import Expander
 from .limits import MOST_BYTES, MOST_BYTES_OF_LOCK
 from .lock import LOCK
-from .scene import Scene
+from .scene import Render, Scene
 from .source import Problems, SceneFile, UnreadableFile, read_text
 from .statements import parse
-from .validate import validate
+from .validate import validate, validate_render
 
 Overrides = Mapping[str, str | float]
 
@@ -25,6 +25,30 @@ def load_scene(path: str | os.PathLike, overrides: Overrides | None = None, stri
     ``overrides`` are the values of ``--set name=value``: numbers, or text such as ``"12 cm"``. ``strict``
     refuses numbers that have a dimension but no unit. Raises SceneError with every problem of the file.
     """
+    source = _file(path)
+    return _scene(source, Path(source.name).stem, overrides, strict)
+
+
+def load_render(path: str | os.PathLike, names: Sequence[str]) -> Render:
+    """The ``render`` block of a file, which may be all that it has, for a scene with objects of these names.
+
+    Raises SceneError with every problem of the file, and for one that has no such block.
+    """
+    source = _file(path)
+    problems = Problems()
+    problems.begin(source)
+    body, shared = parse(source, problems)
+    out = Expander(shared, None, False).scene(body)
+    if out is None or any(block.block != "render" for block in out.blocks):
+        return _scene(source, Path(source.name).stem, None, False).render
+    render = validate_render(out, problems, names, source)
+    if render is None and not problems.errors:
+        problems.add(Span(source.name, 1, 1), "the file has no render block", "write render { camera from ... look ... }")
+    problems.stop()
+    return render
+
+
+def _file(path: str | os.PathLike) -> SceneFile:
     shown = os.fspath(path)
     try:
         file = Path(shown).absolute()
@@ -33,7 +57,7 @@ def load_scene(path: str | os.PathLike, overrides: Overrides | None = None, stri
         raise SceneError([Problem(e.span, f"{shown} {e}")]) from None
     except OSError as e:
         raise SceneError([Problem(None, f"{shown} cannot be read: {e.strerror}")]) from None
-    return _scene(SceneFile(shown, text, Path(os.path.realpath(file))), Path(shown).stem, overrides, strict)
+    return SceneFile(shown, text, Path(os.path.realpath(file)))
 
 
 def parse_scene(

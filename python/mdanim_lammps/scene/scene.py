@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 
 from ..errors import Span
 from .formatting import vector
-from .limits import CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, FRICTION, PIXELS, SWEEPS
+from .limits import CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, FRICTION, PIXELS, SPEED, SWEEPS
 from .rotation import IDENTITY, departure, rotation_about, rotation_euler
 from .schema import Codec, Keyword, OneOf, Rule, Vector, Words, setting
 from .shapes import (
@@ -375,6 +375,11 @@ class Render:
     movie: str | None = setting(
         '<"file.mp4">', "Name of the movie inside the output folder. Absent: `movie.mp4`.",
         '"ball.mp4"', default=None, codec=MovieName())  # fmt: skip
+    speed: float = setting(
+        "<factor>",
+        "Speed of the movie: `0.25` is slow motion, `10` a time lapse. Below 1, and without `frames` in control, there are 30 "
+        "frames for each second of the movie.",
+        "0.25", Rule.POSITIVE, default=1.0, limit=SPEED)  # fmt: skip
     background: str | None = setting("<color>", f"Background: {COLOR}", "white", default=None)
     liquid: str = setting(
         "<smooth|cells>",

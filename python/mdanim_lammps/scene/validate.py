@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -27,17 +28,26 @@ def validate(out: EvaluatedBlock, problems: Problems, name: str, source: SceneFi
     return Validator(out, problems, Span(source.name, 1, 1)).scene(name, source.path)
 
 
+def validate_render(out: EvaluatedBlock, problems: Problems, names: Sequence[str], source: SceneFile) -> records.Render | None:
+    """The render block of a file for a scene with objects of these names; None after an error."""
+    return Validator(out, problems, Span(source.name, 1, 1), names).render()
+
+
+SMOOTH_RATE, LEAST_RATE = 30.0, 15.0
+"""Pictures per second of a movie, and below how many it jerks."""
+
+
 class Validator:
     """Makes the records of one scene; every ``problem`` has a place."""
 
-    def __init__(self, out: EvaluatedBlock, problems: Problems, top: Span):
+    def __init__(self, out: EvaluatedBlock, problems: Problems, top: Span, names: Sequence[str] = ()):
         self.out, self.problems = out, problems
         self.top = top
         """The beginning of the scene, for problems of the scene as a whole."""
         self.by_kind: dict[str, list[EvaluatedBlock]] = {}
         for block in out.blocks:
             self.by_kind.setdefault(block.block, []).append(block)
-        self.names = dict.fromkeys(b.name for b in self.blocks("object"))
+        self.names = dict.fromkeys((*names, *(b.name for b in self.blocks("object"))))
         """Names of all objects, in the order of the scene."""
         self.paired: dict[tuple[int | str, int], Span] = {}
         """Places of the contact blocks, by the pairs that they are of."""
@@ -67,6 +77,7 @@ class Validator:
             self.corners(self.out.first("walls"), "the space between the walls")
             self.inside_walls(held["solids"], top["walls"])
         held["control"] = control = self.contact_model(control, held["solids"])
+        held["control"] = control = self.slow_motion(control, held["render"])
         self.cameras(control)
         top["expects"] = self.expects(control)
         if not held["solids"] and not self.blocks("liquid") and not self.out.excused("object") and not self.problems.errors:
@@ -79,6 +90,13 @@ class Validator:
             spans |= {f"effects.{w}": found[0].span() for w, found in block.settings.items()}
         held = {field: value for field, value in held.items() if value is not None}
         return keywords.SCENE(name=name, path=path, spans=spans, warnings=tuple(self.problems.ordered()), **held, **top)
+
+    def render(self) -> records.Render | None:
+        """The render block alone; None after an error."""
+        self.one_of_each()
+        found = self.records(BLOCKS["render"])
+        self.cameras(None)
+        return found
 
     # -- from settings to records
 
@@ -218,6 +236,20 @@ class Validator:
             what, span = asked[0]
             cause = f"{what} needs contact-model surface; the contact of the paper has no friction"
             self.problem(span, cause, "take contact-model paper out of control", key="contact-model")
+        return control
+
+    def slow_motion(self, control: records.Control | None, render: records.Render | None) -> records.Control | None:
+        """Control with as many frames as slow motion asks for, unless it says how many: then few ones are told of."""
+        if control is None or render is None or render.speed >= 1.0:
+            return control
+        smooth = SMOOTH_RATE / render.speed
+        if "frames" not in control.spans:
+            return self.check_control(self.blocks("control")[0], replace(control, frames=smooth))
+        if control.frames * render.speed < LEAST_RATE:
+            shown = number(control.frames * render.speed, 3)
+            cause = f"at speed {number(render.speed)} the movie shows {shown} pictures a second"
+            way_out = f"for smooth motion write frames {number(smooth)} fps in control, or leave frames out"
+            self.problem(control.spans["frames"], cause, way_out, severity="warning")
         return control
 
     # -- helpers for one block
