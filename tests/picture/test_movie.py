@@ -66,7 +66,7 @@ def test_movie_shows_every_frame_in_turn(short, tmp_path, processes):
 
 
 @pytest.mark.parametrize(
-    "speed, fps, frames, rate",
+    ("speed", "fps", "frames", "rate"),
     [
         pytest.param(0.5, None, [0, 1, 2, 3, 4, 5], 5, id="slow motion has every frame"),
         pytest.param(0.5, 10.0, [0, 0, 1, 2, 2, 2, 3, 4, 4, 4, 5], 10, id="the nearest at another rate"),
