@@ -29,6 +29,7 @@ ROOMS = [
     "api",
     "terminal",
     "view",
+    "command_options",
     "command_steps",
     "cli",
     "__main__",

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import difflib
 import json
-import re
 import shlex
 import sys
 import time
@@ -17,6 +16,21 @@ from typing import Annotated, Literal
 from cyclopts import App, CycloptsError, Parameter
 
 from . import __version__
+from .command_options import (
+    Accuracy,
+    AllowUnstable,
+    Control,
+    Edit,
+    Executors,
+    Force,
+    Out,
+    Quiet,
+    Set,
+    Strict,
+    Verbose,
+    View,
+    whole_number,
+)
 from .command_steps import (
     STARTED,
     Viewer,
@@ -46,38 +60,6 @@ app = App(
     version_flags=["--version"],
     suppress_keyboard_interrupt=False,
 )
-
-Set = Annotated[
-    tuple[str, ...], Parameter(name="--set", help="Override a 'let': --set NAME=VALUE.", negative=(), consume_multiple=False)
-]
-Accuracy = Annotated[
-    Literal["preview", "balanced", "reference"] | None,
-    Parameter(help="Cells across the thinnest part: 2, 4, 8; time step 0.7, 0.5, 0.25 of the bound."),
-]
-Strict = Annotated[bool, Parameter(negative=(), help="Bare numbers need a unit.")]
-AllowUnstable = Annotated[bool, Parameter(negative=(), help="Insist on a time step above the certified bound.")]
-Quiet = Annotated[bool, Parameter(name=["-q", "--quiet"], negative=(), help="Print errors only.")]
-Verbose = Annotated[bool, Parameter(name=["-v", "--verbose"], negative=(), help="Print every effect with its reason.")]
-Out = Annotated[Path | None, Parameter(name=["-o", "--out"], help="Output folder; default SCENE.out beside the scene.")]
-
-
-def _whole_number(_, tokens) -> int:
-    """cyclopts would round a number with a point."""
-    if not re.fullmatch(r"[+-]?[0-9]+", tokens[0].value):
-        raise ValueError(f"{tokens[0].value} is no whole number")
-    return int(tokens[0].value)
-
-
-Executors = Annotated[
-    int, Parameter(name=["-n", "--executors"], converter=_whole_number, help="Processes that simulate; one more supervises them.")
-]
-Control = Annotated[
-    Literal["central", "peers"] | None,
-    Parameter(help="What assigns objects to executors: the supervisor, or each executor alike."),
-]
-View = Annotated[bool, Parameter(name="--view", negative=(), help="Show the run in a browser while it goes on.")]
-Edit = Annotated[bool, Parameter(negative=(), help="Let the page change the scene's text and run it again; implies --view.")]
-Force = Annotated[bool, Parameter(negative=(), help="Overwrite an output folder of an earlier run.")]
 
 
 @app.command(name="run")
@@ -337,7 +319,7 @@ def view(
     folder: Path,
     /,
     *,
-    port: Annotated[int, Parameter(converter=_whole_number)] = 0,
+    port: Annotated[int, Parameter(converter=whole_number)] = 0,
     open_: Annotated[bool, Parameter(name="--open", negative="--no-open")] = True,
     edit: Annotated[bool, Parameter(negative=(), help="Let the page change the scene's text and run it again.")] = False,
 ) -> None:
