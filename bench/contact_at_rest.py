@@ -28,9 +28,14 @@ HERTZ_LOAD = 0.003
 
 def rest() -> tuple[list[str], list[list]]:
     """The deepest point below a surface at rest on a held body [h], at two loads; under the paper's law the gap on a cube."""
-    rows = [[below, *(" / ".join(f"{sunk(below, above, load):.3f}" for load in LOADS) for above in SHAPES)] for below in SHAPES]
+    rows = [[below, *(" / ".join(told(sunk(below, above, load)) for load in LOADS) for above in SHAPES)] for below in SHAPES]
     rows.append(["cube, paper's law", *(f"{-sunk('cube', above, LOADS[0], 'paper'):.2f}" for above in SHAPES)])
     return ["lies on", *SHAPES], rows
+
+
+def told(depth: float) -> str:
+    """Nothing where it has fallen off."""
+    return f"{depth:.3f}" if depth > 0.0 else "-"
 
 
 def sunk(below: str, above: str, load: float, model: str = "surface") -> float:

@@ -56,7 +56,7 @@ RATES = {
     "immersed": "measuring for a frame how much of a lattice cell is immersed [s]",
 }
 """What is measured, and in which unit."""
-METHOD = 4
+METHOD = 5
 """To be counted up whenever a rate gets another meaning, or the plugin another speed: stored ones are then measured again."""
 WIDE = frozenset({"avx512f", "avx512vl", "avx512dq"})
 """What a processor must have for the widest vectors of the plugin (has_avx512 in plugin/engine/blocks.cpp)."""
