@@ -238,7 +238,7 @@ def test_a_file_named_stop_stops_the_run(tmp_path):
         if progress.frame == 2:
             (folder / "stop").touch()
 
-    with pytest.raises(Interrupted, match="resume"):
+    with pytest.raises(Interrupted, match=rf"resume {folder}\n.* render {folder}$"):
         Scene.load(tmp_path / "fall.txt").run(folder, on_progress=watch)
     assert Checkpoint.read(folder / "checkpoint").frame == 2
     assert not (folder / "stop").exists()

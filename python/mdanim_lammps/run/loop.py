@@ -251,7 +251,8 @@ class _Run:
                 insist = " --allow-unstable" if c.fraction > 1.0 else ""
                 when = self.ledger.rows[-1]["time"]
                 raise Interrupted(
-                    f"interrupted at t = {number(when, 4)} s; go on with: mdanim-lammps resume {self.folder}{insist}"
+                    f"interrupted at t = {number(when, 4)} s; go on with: mdanim-lammps resume {self.folder}{insist}\n"
+                    f"  draw what is there with: mdanim-lammps render {self.folder}"
                 )
             account = self.source.account()
             closing = time.perf_counter()
