@@ -9,6 +9,7 @@ from mdanim_lammps.errors import SceneError
 from mdanim_lammps.model import build_models, plan_spacing, shapes, spacing
 from mdanim_lammps.model.cells import _without_nubs, box_counts, fill_cells
 from mdanim_lammps.model.springs import MAX_ASPECT
+from mdanim_lammps.scene.parse import parse_scene
 from mdanim_lammps.scene.scene import Accuracy, Box, Cone, Cylinder, HoldAll, Liquid, Mesh, Sphere
 from model_samples import MESHES, SHAPES, model, scene, shape_id, solid
 
@@ -63,6 +64,20 @@ def test_a_solid_thinner_than_the_resolution_is_refused():
     assert "resolution 5 cm" in beam.hint and "resolution 2.5 cm" in disc.hint
     assert beam.span is thin[0].spans["shape"]
     assert len(build_models(scene(*thin, resolution=0.025))) == 3
+
+
+def test_thin_objects_of_a_repeat_are_one_problem():
+    """They stand at one place of the text; another shape is a problem of its own."""
+    text = "repeat i in 1 .. 20 { object b[i] { shape box (SIDES) m position (3*i, 0, 0) m mass 1 kg elasticity 1 MPa } }\n"
+    scenes = [
+        parse_scene(text.replace("SIDES", s) + "control { time 1 s resolution 1 m }") for s in ("1, 1, 0.1", "1, 1, 0.01*i")
+    ]
+    found = []
+    for one in scenes:
+        with pytest.raises(SceneError) as caught:
+            plan_spacing(one)
+        found.append([p.message.split(":")[0] for p in caught.value.problems])
+    assert found == [["b[1] and 19 more"], [f"b[{i}]" for i in range(1, 21)]]
 
 
 def test_what_does_not_fit_in_memory_is_refused(monkeypatch):

@@ -406,6 +406,7 @@ MISTAKES = [
     ("two units", text("let a = 1 m\n", shape="sphere a m"), 3, 18, "the value has a unit already",
      "leave out 'm'"),
     ("calculating behind a unit", text(mass="2 kg * 3"), 4, 15, "a unit is expected after '*'", "brackets"),
+    ("a function behind a unit", text(mass="2 kg*sqrt(2)"), 4, 13, "'sqrt' is not a unit", "brackets"),
     ("units side by side", text(mass="2 kg m"), 4, 13, "the unit 'm' follows another unit", "kg*m"),
     ("unknown name", text("let rho = 1\n", mass="roh kg"), 5, 8, "'roh' has no value", "did you mean 'rho'?"),
     ("name before its let", text(mass="a kg") + "let a = 3\n", 4, 8, "'a' is used before its let", "line 8"),

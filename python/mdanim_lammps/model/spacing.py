@@ -51,15 +51,19 @@ def plan_spacing(scene: Scene) -> Spacing:
     """
     h, set_by, thin = choose_spacing(scene)
     problems = check_places(scene, h)
+    too_thin: dict[tuple, list[str]] = {}  # objects of a repeat are one problem
     for solid, t in zip(scene.solids, thin):
         if h > t * (1 + 1e-9):
-            problems.append(
-                Problem(
-                    _span(solid),
-                    f"{solid.name}: thinner than the spacing allows, {say(t, 'm')} at its thinnest, spacing {say(h, 'm')}",
-                    f"write resolution {say(t / 2, 'm')} in control, or make it thicker",
-                )
+            too_thin.setdefault((_span(solid), t), []).append(solid.name)
+    for (span, t), names in too_thin.items():
+        more = f" and {whole(len(names) - 1)} more" if len(names) > 1 else ""
+        problems.append(
+            Problem(
+                span,
+                f"{names[0]}{more}: thinner than the spacing allows, {say(t, 'm')} at its thinnest, spacing {say(h, 'm')}",
+                f"write resolution {say(t / 2, 'm')} in control, or make it thicker",
             )
+        )
     if problems:
         raise SceneError(problems)
     particles = tuple(estimate_particles(solid.shape, h) for solid in scene.solids)

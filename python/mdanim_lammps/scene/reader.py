@@ -257,9 +257,10 @@ class Reader:
         t = self.peek
         if t.type == "NAME" and (str(t) in units.UNITS or (t == "h" and operator.type == "SLASH")):
             return t
-        if t.type == "NAME":
-            raise Fault(t, f"'{t}' is not a unit", units.suggest_unit(str(t)))
         hint = "put the value with its unit in brackets to go on calculating: (2 m) * 3"
+        if t.type == "NAME":
+            goes_on = str(t) in self.names or str(t) in units.FUNCTIONS or str(t) in ("rand", "pi")
+            raise Fault(t, f"'{t}' is not a unit", hint if goes_on else units.suggest_unit(str(t)))
         raise Fault(t, f"a unit is expected after '{operator}', found {t.found()}", hint)
 
     def _no_value(self, t: Token) -> Fault:
