@@ -23,7 +23,7 @@ namespace {
 struct Model {
   long long count;
   const long long *first_particle;
-  const unsigned char *boundary;    // whether a particle is on the surface, (N)
+  const unsigned char *boundary;    // whether a particle is on the surface, and not outside the drawn one, (N)
   const long long *first_cell;
   const int *corner;             // VTK order, (C, 8)
   const unsigned char *deep;     // whether a cell has no corner on the surface, (C)

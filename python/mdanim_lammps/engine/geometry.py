@@ -58,8 +58,9 @@ class Geometry:
     def sunk(self, x: np.ndarray) -> tuple[int, int] | None:
         """Two solids of which the first is inside the second, deeper than contact ever lets it; None where there are none.
 
-        Boundary particles of the first are below the outermost layer of cells of the second, or the centre of the first is in the
-        body of both. Solids that are held entirely may be in each other. Raises MemoryError.
+        Boundary particles of the first are below the outermost layer of cells of the second, but not those that stand out of the
+        first one's drawn surface; or the centre of the first is in the body of both. Solids that are held entirely may be in each
+        other. Raises MemoryError.
         """
         library, model, *_ = self._own
         pair = np.zeros(2, np.int32)
@@ -78,11 +79,12 @@ class Geometry:
     def _own(self) -> tuple[ctypes.CDLL, object, dict[str, np.ndarray], np.ndarray, int]:
         """The plugin, the system as it takes it, the arrays of that, and room for reaches with its address."""
         system = self.system
+        drawn = np.concatenate([system.frames[kind].drawn for kind in system.contact_kind.tolist()])
         arrays = {
             name: np.ascontiguousarray(array, kind)
             for name, array, kind in (
                 ("first_particle", system.first, np.int64),
-                ("boundary", system.boundary, np.uint8),
+                ("boundary", system.boundary & drawn, np.uint8),
                 ("first_cell", self.first_cell, np.int64),
                 ("corner", system.hexahedron, np.int32),
                 ("deep", ~system.boundary[system.hexahedron].any(1), np.uint8),

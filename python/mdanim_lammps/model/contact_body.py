@@ -13,6 +13,7 @@ from ..scene.scene import Box, Shape
 from .distance import distance
 from .embed import nearest_cell
 from .lattice import Cells, any_corner, cells_around
+from .shapes import contains
 from .spread import spread
 
 FLAT, SHARP, DENSE = 0, 1, 2
@@ -72,6 +73,18 @@ class BodyFrame:
     def contact(self) -> ContactBody:
         """The same object at every call."""
         return make_contact_body(self.shape, self.cells)
+
+    @cached_property
+    def drawn(self) -> np.ndarray:
+        """Which particles lie inside the shape or on it, bool, shape (N,): corners of cells stand out of what is no cuboid."""
+        z, y, x = np.nonzero(self.cells.filled)
+        cell = np.stack([x, y, z], axis=1)
+        corner = cell[:, None] + np.array(list(product((0, 1), repeat=3)))
+        # What is on the surface is asked for a twentieth of a cell towards the middle of a cell.
+        place = np.zeros((*(self.cells.count + 1)[::-1], 3))
+        place[tuple(np.moveaxis(corner, -1, 0)[::-1])] = 0.9 * corner + 0.1 * (cell[:, None] + 0.5)
+        place = place[cells_around(self.cells.filled) > 0]
+        return contains(self.shape, self.cells.low + place * self.cells.edge)
 
 
 def make_contact_body(shape: Shape, cells: Cells) -> ContactBody:
