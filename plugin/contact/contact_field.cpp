@@ -70,13 +70,7 @@ void ContactField::list(ContactObject &points_of, ContactObject &host_now, const
     // How far all has gone in this step is not known: what is not far away is looked at.
     wake.push_back(touches ? NEVER : std::max(out, AT_ONCE));
   }
-  if (of_contact.size() < contacts.size()) {    // of a point whose particles are not there
-    std::vector<FieldContact> kept;
-    for (const std::size_t q : of_contact)
-      kept.push_back(*std::lower_bound(contacts.begin(), contacts.end(), near.point(q),
-                                       [](const FieldContact &one, int point) { return one.point < point; }));
-    contacts = std::move(kept);
-  }
+  keep_near(contacts, of_contact, near);
 }
 
 void ContactField::forget()
@@ -102,6 +96,29 @@ std::array<int, 3> ContactField::cell_of(const Vec3 &X) const
   return {along(X.x, 0), along(X.y, 1), along(X.z, 2)};
 }
 
+// Of another shape, for a point at x whose X was found from `cell`: where X is beyond all filled cells it depends on the cell, so
+// that is the one whose middle is nearest, wherever the search came from.
+std::array<int, 3> ContactField::cell_beyond(const Vec3 &x, const Vec3 &X, std::array<int, 3> cell, const Placed &at) const
+{
+  const Vec3 off = X - Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
+  if (std::max({std::fabs(off.x), std::fabs(off.y), std::fabs(off.z)}) <= 0.5 + LEFT) return cell;
+  for (;;) {
+    std::array<int, 3> best = cell;
+    double least = NEVER;
+    for (int k = cell[2] - 1; k <= cell[2] + 1; ++k)
+      for (int j = cell[1] - 1; j <= cell[1] + 1; ++j)
+        for (int i = cell[0] - 1; i <= cell[0] + 1; ++i) {
+          if (!at.body.is_filled(i, j, k)) continue;
+          const int low = at.slot[at.body.place(i, j, k)], high = at.slot[at.body.place(i + 1, j + 1, k + 1)];
+          if (low < 0 || high < 0) continue;
+          const Vec3 away = 0.5 * (at.place[low].value + at.place[high].value) - x;
+          if (dot(away, away) < least) least = dot(away, away), best = {i, j, k};
+        }
+    if (best == cell) return cell;
+    cell = best;
+  }
+}
+
 // X of a point at x by one step of Newton's method from where it was found last; `off`: how far that is in cells, 1 and more
 // where the step says nothing. A small part of the work of find().
 void ContactField::guess(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X, double &off)
@@ -123,6 +140,7 @@ void ContactField::guess(std::size_t q, const Vec3 &x, const Placed &at, Spot<do
     cell = cell_of(X);
   else
     is_there = !MaterialSearch(at).step_to_neighbour(cell, X, LEFT);
+  if (!at.body.is_cuboid() && cell_beyond(x, X, cell, at) != cell) return;
   const Vec3 away = X - Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
   if (dot(away, away) > NEARBY * NEARBY) return;
   known.cell = cell, known.X = X;
@@ -137,7 +155,7 @@ bool ContactField::find(std::size_t q, const Vec3 &x, const Placed &at, Spot<dou
   std::array<int, 3> cell = known.cell;
   X = known.X;
   if (!search.solve(x, cell, X)) return false;
-  if (host->body->is_cuboid()) cell = cell_of(X);
+  cell = host->body->is_cuboid() ? cell_of(X) : cell_beyond(x, X, cell, at);
   X = {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
   if (!search.solve(x, cell, X, false)) return false;
   known.cell = cell, known.X = X;

@@ -150,6 +150,19 @@ class OuterCells {
   Grid grid;
 };
 
+// Ends contacts with points whose particles are not there; `of_contact` numbers those that are among the points near by.
+template <class Contact>
+void keep_near(std::vector<Contact> &contacts, const std::vector<std::size_t> &of_contact, const NearPoints &near)
+{
+  if (of_contact.size() == contacts.size()) return;
+  std::size_t left = 0, n = 0;
+  for (const std::size_t q : of_contact) {
+    while (contacts[n].point != near.point(q)) ++n;
+    contacts[left++] = contacts[n];
+  }
+  contacts.resize(left);
+}
+
 // Rows of a record as bytes.
 template <class Row> void append_rows(std::vector<std::uint8_t> &bytes, const Row *rows, std::size_t n)
 {

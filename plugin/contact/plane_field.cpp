@@ -34,6 +34,7 @@ void PlaneField::list(ContactObject &points_of, const ContactArrays &arrays, dou
     was_below.push_back(before < points_before.size() && points_before[before] == p ? below_before[before] : 0);
     wake.push_back(touches ? NEVER : std::max(above, AT_ONCE));
   }
+  keep_near(contacts, of_contact, near);
 }
 
 void PlaneField::forget()
