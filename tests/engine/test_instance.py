@@ -13,6 +13,7 @@ from mdanim_lammps.engine.data_file import data_text, write_data
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.plan import both_ends
 from mdanim_lammps.errors import SetupError
+from mdanim_lammps.run.loop import write_inputs
 from mdanim_lammps.run.prepare import Prepared
 from scene_texts import MEETING, SPLASH
 from twin import world
@@ -51,12 +52,6 @@ def run_lmp(directory: Path, script: str, ranks: int = 1):
     """Run LAMMPS by hand, as a user would."""
     done = plugin_path.lmp(directory / script, ranks, "-screen", "none", timeout=240)
     assert done.returncode == 0, done.stdout + done.stderr
-
-
-def write_files(ready: Prepared, directory: Path):
-    """Write the two files of ``build``."""
-    write_data(ready.plan, directory / f"data.{ready.plan.name}")
-    (directory / f"in.{ready.plan.name}").write_text(input_script(ready.plan))
 
 
 def test_harmonic_coeff_is_half_of_k():
@@ -109,8 +104,9 @@ def test_lammps_reads_back_our_data_file(prepared, tmp_path, text):
 @pytest.mark.parametrize("factor", [1.0, 3.0])
 def test_a_scene_agrees_with_its_naive_twin(prepared, factor):
     """Follow slab, cube and plate through contact, ground and drag up to the moment of impact
-    beside a NumPy twin of every law."""
-    ready = prepared(MEETING.replace("control {", f"control {{ contact-stiffness {factor}"))
+    beside a NumPy twin of every law, the contact of the paper among them."""
+    paper = MEETING.replace("control {", "control { contact-model paper ")
+    ready = prepared(paper.replace("control {", f"control {{ contact-stiffness {factor}"))
     system, c = ready.system, ready.certificate
     bulk = (system.young * np.cbrt(system.cell_volume))[system.object]
     s, reach = factor * bulk * np.minimum(1.0, 2.0 * system.share), 1.6 * system.spacing[system.object]
@@ -126,7 +122,7 @@ def test_a_scene_agrees_with_its_naive_twin(prepared, factor):
             + world.ground_forces(x, 0.0, s)[0]
         )
 
-    steps = round(48 * prepared(MEETING).certificate.timestep / c.timestep)  # cube on slab and plate on ground, pressed in
+    steps = round(48 * prepared(paper).certificate.timestep / c.timestep)  # cube on slab and plate on ground, pressed in
     x, v = world.leapfrog(system.position, system.velocity, force, system.mass, drag, c.timestep, steps, ~system.held)
     with Instance(ready.plan) as instance:
         instance.setup()
@@ -218,7 +214,7 @@ def test_lmp_gives_the_bits_of_the_driver(prepared, tmp_path, text, ranks):
     """Run the built input by hand on 1, 2 and 4 ranks and get the driver's frames bit for bit."""
     ready = prepared(text)
     film = run_frames(ready, ready.certificate.frames)
-    write_files(ready, tmp_path)
+    write_inputs(ready, tmp_path)
     run_lmp(tmp_path, "in.small", ranks)
     assert np.array_equal(read_dump(tmp_path / "small.lammpstrj", ready.system.particles), film)
 
@@ -229,7 +225,7 @@ def test_the_other_models_of_the_liquid_give_the_same_bits(prepared, tmp_path, m
     """Two ranks share the faces that liquid presses on, or the cells around particles; frames stay the driver's."""
     ready = prepared(SPLASH.replace("volume 45 l", f"volume 45 l model {model}"))
     film = run_frames(ready, ready.certificate.frames)
-    write_files(ready, tmp_path)
+    write_inputs(ready, tmp_path)
     run_lmp(tmp_path, "in.small", 2)
     assert np.array_equal(read_dump(tmp_path / "small.lammpstrj", ready.system.particles), film)
 
@@ -241,7 +237,7 @@ def test_shuffled_atoms_give_the_same_bits(prepared, tmp_path, text, ranks):
     """Shuffle atoms and bonds of the data file and get the driver's frames bit for bit."""
     ready = prepared(text)
     film = run_frames(ready, ready.certificate.frames)
-    write_files(ready, tmp_path)
+    write_inputs(ready, tmp_path)
     path = tmp_path / "data.small"
     path.write_text(shuffle_sections(path.read_text(), seed=3))
     run_lmp(tmp_path, "in.small", ranks)
@@ -273,7 +269,7 @@ def test_last_short_frame_is_dumped(prepared, tmp_path):
     ready = prepared(MEETING.replace("time 40 ms", "time 25 ms"))
     c = ready.certificate
     assert c.last_steps and c.steps * c.timestep == pytest.approx(0.025, rel=1e-12)
-    write_files(ready, tmp_path)
+    write_inputs(ready, tmp_path)
     run_lmp(tmp_path, "in.small")
     text = (tmp_path / "small.lammpstrj").read_text().split("ITEM: TIMESTEP\n")[1:]
     assert [int(block.split("\n")[0]) for block in text] == [0, c.steps_per_frame, 2 * c.steps_per_frame, c.steps]
