@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What the view costs a run, and how soon it answers: python bench/view.py [scene ...]
 
-Processor time of the run's own process, with a page that asks for every frame and without one, the least of several runs each;
-what progress.jsonl takes of it; time from a page's "pause" to the page's knowing.
+Processor time of the run's own process, the least of several runs each: alone, while a page asks for all frames of another run
+(what another process on the same cores costs anyway), and while the page asks for this run's; what progress.jsonl takes of it;
+time from a page's "pause" to the page's knowing.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import sys
 import tempfile
 import threading
 import time
+from contextlib import suppress
 from pathlib import Path
 
 from websockets.sync.client import connect
@@ -51,24 +53,22 @@ def started(folder: Path) -> tuple[subprocess.Popen, object]:
     return server, connect(f"{origin.replace('http', 'ws')}/socket?t={secret}", origin=origin, max_size=None).__enter__()
 
 
-def watch(folder: Path, seen: list[int]) -> None:
-    """Ask for every frame as soon as it is there, until the run has ended."""
-    while not (folder / "trajectory.h5.part").exists():
+def watch(folder: Path, ended: threading.Event, seen: list[int]) -> None:
+    """Ask for all frames that are there, 30 a second, again and again until the run has ended."""
+    while not (folder / "progress.jsonl").exists():
         time.sleep(0.01)
     server, page = started(folder)
     asked = count = 0
     try:
-        while True:
-            said = page.recv()
-            if isinstance(said, bytes):
+        while not ended.is_set():
+            with suppress(TimeoutError):
+                while isinstance(said := page.recv(0), str):
+                    count = json.loads(said)["news"].get("count", count)
                 seen[0] += 1
-            elif news := json.loads(said).get("news"):
-                count = news.get("count", count)
-                if news.get("state") in ("done", "killed", "failed"):
-                    return
-            if asked < count and asked <= seen[0]:
-                page.send(json.dumps({"get": asked, "layers": 0}))
+            if count:
+                page.send(json.dumps({"get": asked % count, "layers": 0}))
                 asked += 1
+            time.sleep(1 / 30)
     finally:
         page.close()
         server.terminate()
@@ -76,22 +76,28 @@ def watch(folder: Path, seen: list[int]) -> None:
 
 
 def cost_of_watching(scene: Path) -> None:
-    alone, watched, lines, seen = [], [], [], [0]
-    for turn in range(2 * RUNS):
-        with tempfile.TemporaryDirectory() as place:
-            folder = Path(place) / "out"
-            looker = threading.Thread(target=watch, args=(folder, seen)) if turn % 2 else None
+    kinds, lines, seen = {"alone": [], "other": [], "watched": []}, [], {"other": [0], "watched": [0]}
+    with tempfile.TemporaryDirectory() as place:
+        other = Path(place) / "other"
+        subprocess.run([sys.executable, "-c", RUN, str(scene), str(other)], stdout=subprocess.PIPE, check=True)
+        for turn in range(3 * RUNS):
+            kind = list(kinds)[turn % 3]
+            folder, ended = Path(place) / f"out{turn}", threading.Event()
+            target = other if kind == "other" else folder
+            looker = None if kind == "alone" else threading.Thread(target=watch, args=(target, ended, seen[kind]))
             process = subprocess.Popen([sys.executable, "-c", RUN, str(scene), str(folder)], stdout=subprocess.PIPE, text=True)
             if looker:
                 looker.start()
             total, spent = map(float, process.communicate()[0].split())
-            (watched if turn % 2 else alone).append(total)
+            kinds[kind].append(total)
             lines.append(spent / total)
+            ended.set()
             if looker:
                 looker.join()
-    a, w = min(alone), min(watched)
+    alone, elsewhere, watched = (min(times) for times in kinds.values())
     print(
-        f"{scene.stem:<10} alone {a:.3f} s, watched {w:.3f} s ({100 * (w / a - 1):+.1f} %), {seen[0] / RUNS:.0f} frames seen; "
+        f"{scene.stem:<10} alone {alone:.3f} s, page at another run {elsewhere:.3f} s, watched {watched:.3f} s "
+        f"({100 * (watched / elsewhere - 1):+.1f} %), {seen['watched'][0] / RUNS:.0f} frames seen; "
         f"progress.jsonl {100 * min(lines):.2f} % of it",
         flush=True,
     )

@@ -138,6 +138,10 @@ def test_compare_and_render_use_an_output_folder(scene):
         pytest.param(["cube.txt", "-n", "1.5"], 2, ["1.5 is no whole number"], id="part of an executor"),
         pytest.param(["study", "cube.txt", "--budget", "soon"], 2, ["--budget soon", "expected a time above 0"], id="study"),
         pytest.param(["render", "nowhere.out", "--size", "0", "0"], 2, ["between 2 and 8192"], id="no size"),
+        pytest.param(["view", "nowhere.out"], 7, ["nowhere.out does not exist"], id="nothing to view"),
+        pytest.param(["view", "nowhere.out", "--port", "70000"], 2, ["--port 70000", "65535"], id="no port"),
+        pytest.param(["report", "nowhere.out"], 7, ["nowhere.out does not exist"], id="nothing to report"),
+        pytest.param(["report", "nowhere.out", "-o", "x.pdf"], 2, ["written as .html"], id="no report"),
         pytest.param(["render", "nowhere.out", "--fps", "-3"], 2, ["--fps -3", "above 0"], id="no rate"),
         pytest.param(
             ["resume", "nowhere.out"], 7, ["error: nowhere.out does not exist; name the folder"], id="nothing to resume"

@@ -343,6 +343,24 @@ def test_it_ends_when_nothing_needs_it(folder):
         assert not waiting.is_alive()
 
 
+def test_a_folder_without_a_run(folder, tmp_path):
+    """While a run is about to begin in it the page waits; if none does, it says so, and the server ends."""
+    (tmp_path / "built.out").mkdir()
+    for name in ("manifest.json", "scene.lock.txt"):
+        shutil.copy(folder / name, tmp_path / "built.out")
+    with claimed(tmp_path / "built.out"):
+        assert Tail(tmp_path / "built.out").news(Known())["state"] == "preparing"
+        with served(tmp_path / "built.out", linger=0.2) as view, page(view) as link:
+            assert news(link)["state"] == "preparing"
+            link.send('{"scene": 1}')
+            assert "no such trajectory" in receive_text(link)["error"]
+    with served(tmp_path / "built.out", linger=0.2) as view:
+        with page(view) as link:
+            told = news(link)
+            assert told["state"] == "failed" and "no such trajectory" in told["message"]
+        view.wait()
+
+
 def test_no_thread_stays_behind(folder):
     """Neither of the server nor of its pages."""
     before = threading.active_count()

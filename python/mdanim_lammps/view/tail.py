@@ -64,6 +64,8 @@ class Tail:
         self._files = 0
         self._state = "preparing"
         self._message = ""
+        self._awaited = False
+        """Whether a run is about to begin whose processes have not claimed the folder yet."""
         self._before: os.stat_result | None = None
         """The progress.jsonl of an earlier run, which the one that is about to begin will replace."""
         self._facts: dict = {}
@@ -89,7 +91,7 @@ class Tail:
             self._progress.close()
             self.folder, self._progress = folder, ProgressTail(folder)
             self._begin_anew()
-            self._state, self._message = "preparing", ""
+            self._state, self._message, self._awaited = "preparing", "", True
             with suppress(OSError):
                 self._before = os.lstat(self._progress.path)
             self.changes += 1
@@ -199,9 +201,9 @@ class Tail:
 
     def _take_old(self) -> None:
         """A run of a version that has left no progress.jsonl, or one that has not begun to write it."""
-        if in_use(self.folder) or self._progress.count:
+        if self._awaited or in_use(self.folder):
             return
-        with suppress(OutputError):
+        try:
             frames, ledger = self.feed().frames.on_disk(), Ledger.read(self.folder / "ledger.csv")
             p, rows = self._progress, ledger.rows[:frames]
             p.columns, p.energies, p.total = list(ledger.columns), len(ledger.terms), self.feed().frames.total
@@ -210,6 +212,8 @@ class Tail:
             if timeline := Timeline.left_in(self.folder):
                 p.owners, p.executors = timeline.owners, timeline.executors
             p.state = "done" if (self.folder / "summary.json").exists() else "stopped"
+        except OutputError as error:
+            self._set("failed", str(error))
 
     def _read_facts(self) -> dict:
         facts = {}
