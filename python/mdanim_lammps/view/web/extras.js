@@ -9,14 +9,15 @@ const EDGES = [0, 1, 1, 3, 3, 2, 2, 0, 4, 5, 5, 7, 7, 6, 6, 4, 0, 4, 1, 5, 2, 6,
 export class Extras {
   constructor(world, scene) {
     const ink = scene.dark ? 0xc8d2da : 0x44525e, soft = scene.dark ? 0x8fa0ad : 0x7f93a3, O = scene.objects.length;
-    this.corners = new Float32Array(24 * O);
     const index = Uint32Array.from({ length: 24 * O }, (_, i) => 8 * Math.floor(i / 24) + EDGES[i % 24]);
-    this.boxes = lines(this.corners, index, new LineBasicMaterial({ color: ink }));
+    this.boxes = lines(new Float32Array(24 * O), index, new LineBasicMaterial({ color: ink }));
+    this.picked = null; // object whose box is drawn alone
+    this.mark = lines(new Float32Array(24), new Uint32Array(EDGES), new LineBasicMaterial({ color: ink }));
     this.spots = new Float32Array(3 * scene.particles);
     this.springs = lines(this.spots, new Uint32Array(0), new LineBasicMaterial({ color: ink, transparent: true, opacity: 0.35 }));
     const cloud = new BufferGeometry().setAttribute("position", this.springs.geometry.attributes.position);
     this.particles = new Points(cloud, new PointsMaterial({ size: 4, sizeAttenuation: false, color: scene.dark ? 0xe8eef2 : 0x20384a }));
-    for (const part of [this.boxes, this.springs, this.particles]) {
+    for (const part of [this.boxes, this.mark, this.springs, this.particles]) {
       part.visible = part.frustumCulled = false;
       world.add(part);
     }
@@ -25,14 +26,9 @@ export class Extras {
   }
 
   show(frame) {
-    if (this.boxes.visible) {
-      for (let k = 0, at = 0; k < frame.object.length; k += 12) {
-        for (let c = 0; c < 8; c++) {
-          for (let d = 0; d < 3; d++) this.corners[at++] = frame.object[k + d] + ((c >> d) & 1) * frame.object[k + 3 + d];
-        }
-      }
-      this.boxes.geometry.attributes.position.needsUpdate = true;
-    }
+    if (this.boxes.visible) placeBoxes(this.boxes, frame.object);
+    this.mark.visible = this.picked !== null;
+    if (this.picked !== null) placeBoxes(this.mark, frame.object.subarray(12 * this.picked, 12 * this.picked + 12));
     if (frame.particles) {
       this.spots.set(frame.particles);
       this.springs.geometry.attributes.position.needsUpdate = true;
@@ -42,6 +38,15 @@ export class Extras {
   join(bond) {
     this.springs.geometry.setIndex(new BufferAttribute(bond, 1));
   }
+}
+
+// Move the edges of boxes to those of objects (corner and size).
+function placeBoxes(part, object) {
+  const { position } = part.geometry.attributes;
+  for (let k = 0, at = 0; k < object.length; k += 12) {
+    for (let c = 0; c < 8; c++) for (let d = 0; d < 3; d++) position.array[at++] = object[k + d] + ((c >> d) & 1) * object[k + 3 + d];
+  }
+  position.needsUpdate = true;
 }
 
 function lines(points, index, material) {

@@ -203,7 +203,8 @@ function pointer(canvas) {
 }
 
 function choose(k) {
-  picked = k;
+  picked = stage.extras.picked = k;
+  shownKey = "";
   byId("see").textContent = k === null ? "see all" : "see it";
   byId("camera").textContent = cameraWords();
   about();

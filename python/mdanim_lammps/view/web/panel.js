@@ -24,7 +24,7 @@ export function showObject(scene, frame, k, owner) {
   if (k === null) return place.replaceChildren("click an object in the picture");
   const { name, mass, still } = scene.objects[k], at = frame.object.subarray(12 * k, 12 * k + 12), point = (p) => [...p].map((x) => number(x)).join(", ");
   const rows = [["name", name], ["mass", `${number(mass, 4)} kg`], ["centre", `${point(at.subarray(6, 9))} m`], ["velocity", `${point(at.subarray(9, 12))} m/s`],
-    ["speed", `${number(Math.hypot(at[9], at[10], at[11]))} m/s`], ["size", `${point(at.subarray(3, 6))} m`]];
+    ["speed", `${number(Math.hypot(at[9], at[10], at[11]))} m/s`], ["box", `${point(at.subarray(3, 6))} m`]];
   if (still) rows.push(["", "is held and never moves"]);
   else if (owner !== null) rows.push(["executor", owner < 0 ? "none" : String(owner)]);
   return place.replaceChildren(table(rows));
