@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What effects cost: ``python bench/effects.py added|shares|forecast [rounds]`` prints a table in Markdown (docs/cost.md).
+"""What effects cost: ``python bench/effects.py added|shares [rounds]``, ``... forecast [scene ...]`` prints a table in Markdown
+(docs/cost.md).
 
 ``added``: one scene with its effects added one by one. ``shares``: parts of clocks that several effects share, as they are to be
 set in effects/*.py and, of a pass, in plugin/engine/pass_run.cpp. ``forecast``: expected and measured cost of every scene of
-scenes/ (runs them all). Variants take turns, so that all of them see the same machine; figures are medians of processor time, or
+scenes/ (runs them all), or of those named.
+ Variants take turns, so that all of them see the same machine; figures are medians of processor time, or
 of the styles' own clocks; for ``shares`` minima of short rounds, because those clocks run on while others have the processor.
 What effects cost that are on and have nothing to do: bench/sleeping.py.
 """
@@ -203,7 +205,7 @@ def shares(rounds: int) -> None:
     print(f"PRESSING  {coupling['pressure 4'] / coupling['surface 4']:.2f}   times the coupling by volumes")
 
 
-def forecasts(_: int) -> None:
+def forecasts(*names: str) -> None:
     """Expected and measured cost of all scenes; measured in processor time, which others on the machine do not stretch."""
     from mdanim_lammps.cost.calibration import calibration
     from mdanim_lammps.cost.forecast import forecast
@@ -216,8 +218,8 @@ def forecasts(_: int) -> None:
         "| scene | expected | measured | expected / measured | largest parts, expected and measured [s] |\n|---|---|---|---|---|"
     )
     for path in sorted(SCENES.glob("*.txt")):
-        if path.stem == "rubber":
-            continue  # a fragment that another scene includes
+        if path.stem == "rubber" or (names and path.stem not in names):
+            continue  # the first is a fragment that another scene includes
         start = time.process_time()
         ready = prepare(load_scene(path))
         setup = time.process_time() - start
@@ -239,4 +241,7 @@ if __name__ == "__main__":
     what = {"added": added, "shares": shares, "forecast": forecasts}
     if len(sys.argv) < 2 or sys.argv[1] not in what:
         sys.exit(__doc__)
-    what[sys.argv[1]](int(sys.argv[2]) if len(sys.argv) > 2 else ROUNDS)
+    if sys.argv[1] == "forecast":
+        forecasts(*sys.argv[2:])
+    else:
+        what[sys.argv[1]](int(sys.argv[2]) if len(sys.argv) > 2 else ROUNDS)

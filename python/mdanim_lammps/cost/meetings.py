@@ -11,6 +11,7 @@ from ..engine.commands import SKIN
 from ..model.boxes import box_pairs
 from ..model.planes import Plane
 from ..run.prepare import Prepared
+from ..scene.scene import Box, Cone, Cylinder
 from .flight import Flight
 
 AHEAD = 3.0
@@ -24,7 +25,8 @@ HANDED = SKIN + 3.0
 TOUCHING = 0.05
 """Spacings between boxes that touch: rounding, and the depth of what lies there."""
 SIDE, PATCH = 1.0 / 6.0, 1.0 / 40.0
-"""Part of its points with which a cuboid touches, and a round shape."""
+"""Part of its points with which what has faces touches, and any other shape."""
+FACED = (Box, Cylinder, Cone)
 OFTEN = 0.2
 """Part of the time for which all but the largest object touch another one, and all a plane, in the mean of scenes/."""
 
@@ -64,7 +66,8 @@ class _Bodies:
         kinds = [system.contact_bodies[k] for k in system.contact_kind.tolist()]
         self.spacing = float(system.spacing.max())
         self.points = np.array([len(body.at) for body in kinds])
-        self.side = self.points * np.array([SIDE if body.depth is None else PATCH for body in kinds])
+        shapes = [system.frames[k].shape for k in system.contact_kind.tolist()]
+        self.side = self.points * np.array([SIDE if isinstance(shape, FACED) else PATCH for shape in shapes])
         self.particles = np.diff(system.first)
         self.moves = ~system.still
 
