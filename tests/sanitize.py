@@ -46,9 +46,9 @@ object d {{ shape cylinder 3 cm 2 cm position (-7.5, 0.5, 7.1) cm {SOLID} veloci
 """,
     "surface": f"""
 walls from (-8, -8, -8) cm to (14, 8, 12) cm
-object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOLID} velocity (2, 0, -2) }}
-object b {{ shape box (5, 5, 1) cm position (6.5, 0, 2) cm orientation euler (20, 40, 0) deg {SOLID} velocity (-3, 0, 0) }}
-object c {{ shape torus 3 cm 1.2 cm position (1, 0, 7) cm {SOLID} velocity (0, 1, -2) }}
+object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOLID} velocity (1, 0, -1) }}
+object b {{ shape box (5, 5, 1) cm position (6.5, 0, 2) cm orientation euler (20, 40, 0) deg {SOLID} velocity (-1, 0, 0) }}
+object c {{ shape torus 3 cm 1.2 cm position (1, 0, 7) cm {SOLID} velocity (0, 0.5, -1) }}
 """,
     "liquid": """
 gravity (0, 0, -9.81)
