@@ -12,7 +12,7 @@ namespace mdanim {
 
 constexpr double SAME_PLACE = 1e-3;    // cells that X may be off its guess without a second evaluation
 constexpr double LEFT = 1e-9;          // cells that X may stand out of its own
-constexpr double RAMPS_END = 2.125;    // cells from an edge from which on all of any point counts
+constexpr double RAMPS_END = 2.05;     // cells from an edge from which on all of any point counts
 
 // Volume of a cell that is not believed to be turned over.
 MDANIM_ALWAYS_INLINE double smallest_volume(double spacing) { return 0.02 * spacing * spacing * spacing; }

@@ -120,7 +120,7 @@ MDANIM_ALWAYS_INLINE void contact_friction(const ContactLaw &law, const Real &ar
 // The slope rises and falls evenly over ROUND of the width each, as a kink is a force that sets in at once. Ramps of points that
 // are (1 - ROUND) width apart add up to a straight line.
 template <class Real> struct Ramp {
-  static constexpr double ROUND = 0.2;
+  static constexpr double ROUND = 0.05;
   Real value, slope;
   MDANIM_ALWAYS_INLINE Ramp(const Real &inside, double from, double width)
   {

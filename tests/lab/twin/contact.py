@@ -144,7 +144,7 @@ def ramps(count, is_flat, X):
     """What of a point counts across each axis (P, 3), the slope of that, and cells that are missing to the first of it."""
     rise = np.where(is_flat[:, None], np.minimum(1.0, 0.25 * np.array(count)), 0.5)
     middle = np.where(is_flat[:, None], 1.5 * rise, 0.0)
-    rounded = 0.2  # of the width at either end, where the slope rises and falls evenly
+    rounded = 0.05  # of the width at either end, where the slope rises and falls evenly
     width = rise / (1.0 - rounded)
     start = middle - 0.5 * width
 
