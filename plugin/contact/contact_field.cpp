@@ -315,9 +315,10 @@ PushTask ContactField::task(PointKind kind, const ContactArrays &arrays, double 
 PointNow ContactField::point_now(std::size_t q, const ContactArrays &arrays) const
 { return {near.place(q, arrays.place()), near.shift(q, arrays.place()), surface_point(q).area}; }
 
-// X of the point is that of the weights plus `off`, about which everything is linear. False when it cannot be found.
+// X of the point is that of the weights plus `off`, about which everything is linear; `jump` is how far X is moved by going on
+// to another cell. False when X cannot be found.
 bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec3 &x, MapWeights &weights, Spot<double> &spot,
-                          Vec3 &off, Hop &hop) const
+                          Vec3 &off, Vec3 &jump) const
 {
   constexpr int MOST = 12;
   const Placed at = {*host->body, task.slot, task.place};
@@ -325,7 +326,7 @@ bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec
   std::array<int, 3> cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
   Vec3 X = contact.state.X + contact.state.change, left_at;
   bool again = true, has_left = false;
-  hop = {};
+  jump = {};
   for (int step = 0; again; ++step) {
     if (step == MOST) return false;
     again = false;
@@ -346,11 +347,10 @@ bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec
       again = true;
       continue;
     }
-    if (has_left) hop.jump += (X + off) - left_at;
+    if (has_left) jump += (X + off) - left_at;
     has_left = !task.is_smooth && search.step_to_neighbour(cell, X + off, LEFT);
     if (has_left) {
       X += off;
-      if (!hop.happened) hop = {true, spot.to_space(X - contact.state.X), {}};
       left_at = X;
       again = true;
     }
@@ -363,19 +363,15 @@ bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec
 }
 
 // Beyond the filled cells of a round host X is not continuous from cell to cell. The contact goes on as if it were: a jump of
-// its depth would be energy out of nothing. The mean force of leap-frog acts half along the normal of the cell that is left, half
-// along that of the new one, and so does the depth grow in this step.
-void ContactField::go_on(FieldContact &contact, const Hop &hop, const Spot<double> &spot) const
+// its depth would be energy out of nothing.
+void ContactField::go_on(FieldContact &contact, const Vec3 &jump) const
 {
-  ContactState<double> &state = contact.state;
-  const Depth<double> here = host->body->depth(contact.side, state.X);
-  const double grown = host->body->depth(contact.side, state.X - hop.jump).value - state.memory.depth;
-  const double grown_here = dot(spot.to_material(hop.moved), here.slope);
-  const double deeper = here.value - (state.memory.depth + 0.5 * (grown + grown_here));
-  state.memory.offset += deeper;
-  state.memory.depth += deeper;
-  state.anchor += hop.jump;
-  state.change -= hop.jump;
+  const double deeper =
+      host->body->depth(contact.side, contact.state.X).value - host->body->depth(contact.side, contact.state.X - jump).value;
+  contact.state.memory.offset += deeper;
+  contact.state.memory.depth += deeper;
+  contact.state.anchor += jump;
+  contact.state.change -= jump;
 }
 
 ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now,
@@ -383,10 +379,9 @@ ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, cons
 {
   MapWeights weights;
   Spot<double> spot;
-  Vec3 off, part_slope;
-  Hop hop;
-  if (!follow(contact, task, now.x, weights, spot, off, hop)) return Fate::LOST;
-  if (!host->body->is_cuboid() && hop.happened) go_on(contact, hop, spot);
+  Vec3 off, jump, part_slope;
+  if (!follow(contact, task, now.x, weights, spot, off, jump)) return Fate::LOST;
+  if (!host->body->is_cuboid() && dot(jump, jump) > 0.0) go_on(contact, jump);
   const Vec3 shift = spot.to_material(now.shift);
   const Depth<double> below = host->body->depth(contact.side, contact.state.X);
   double part = 1.0;

@@ -65,17 +65,11 @@ class ContactField {
   Ramps ramps(PointKind kind) const;
 
   enum class Fate { STAYS, OUT, LOST };
-  // A contact that goes on to another cell in a step: how far the point has moved against the host in the cell that it leaves
-  // [m], and how far X is from where it would be there.
-  struct Hop {
-    bool happened = false;
-    Vec3 moved, jump;
-  };
   PushTask task(PointKind kind, const ContactArrays &arrays, double dt) const;
   PointNow point_now(std::size_t q, const ContactArrays &arrays) const;
   bool follow(FieldContact &contact, const PushTask &task, const Vec3 &x, MapWeights &weights, Spot<double> &spot, Vec3 &off,
-              Hop &hop) const;
-  void go_on(FieldContact &contact, const Hop &hop, const Spot<double> &spot) const;
+              Vec3 &jump) const;
+  void go_on(FieldContact &contact, const Vec3 &jump) const;
   Fate push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now, ContactArrays &arrays,
             ContactAccount &account) const;
   void take(FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,
