@@ -350,9 +350,10 @@ class Executor:
             self._keep()
 
     def _account_so_far(self) -> Account | None:
-        """With what its live instances have taken; None where it has told not long ago."""
+        """With what its live instances have taken; None where it has told not long ago, and while it is in a team."""
         now = time.perf_counter()
-        if not 0.0 < self.told < now - COST_SECONDS:
+        # The clocks of a team are read by all its members together, which are not here at the same time.
+        if not 0.0 < self.told < now - COST_SECONDS or any(bundle.comm is not None for bundle in self.bundles):
             return None
         so_far, self.told = Account(), now
         so_far.add_all(self.account)
