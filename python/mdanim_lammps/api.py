@@ -133,7 +133,7 @@ def draw_picture(
     """
     from .picture.movie import render_still
 
-    # Pictures need every spring, and no frame between the start and the end.
+    # Springs are drawn between all particles, whatever the scene stores.
     control = replace(record.control, save=Save.ALL)
     if at > 0.0:
         frames = max(record.control.frames, 1.0 / at)

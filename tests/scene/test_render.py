@@ -24,6 +24,14 @@ def test_slow_motion_has_frames_for_a_smooth_movie():
     assert replace(parse_scene(lock_text(slow), slow.name), warnings=()) == slow
 
 
+def test_a_moment_in_slow_motion_has_frames():
+    """What is shorter than a frame of a movie at its own speed is long enough for one in slow motion."""
+    moment = text().replace("time 3 s", "time 0.02 s")
+    assert parse_scene(moment + "render { speed 0.1 }\n").control.frames == 300.0
+    with pytest.raises(SceneError, match="not one frame of 1/30 s"):
+        parse_scene(moment)
+
+
 def test_slow_motion_that_jerks_is_told_of():
     """Below 15 pictures a second, at the frames of the scene, with the number that is smooth."""
     assert not film("0.25", "frames 60 fps").warnings and not film("0.25").warnings

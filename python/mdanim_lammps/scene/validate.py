@@ -77,7 +77,7 @@ class Validator:
             self.corners(self.out.first("walls"), "the space between the walls")
             self.inside_walls(held["solids"], top["walls"])
         held["control"] = control = self.contact_model(control, held["solids"])
-        held["control"] = control = self.slow_motion(control, held["render"])
+        held["control"] = control = self.frames(control, held["render"])
         self.cameras(control)
         top["expects"] = self.expects(control)
         if not held["solids"] and not self.blocks("liquid") and not self.out.excused("object") and not self.problems.errors:
@@ -238,18 +238,25 @@ class Validator:
             self.problem(span, cause, "take contact-model paper out of control", key="contact-model")
         return control
 
-    def slow_motion(self, control: records.Control | None, render: records.Render | None) -> records.Control | None:
-        """Control with as many frames as slow motion asks for, unless it says how many: then few ones are told of."""
-        if control is None or render is None or render.speed >= 1.0:
-            return control
-        smooth = SMOOTH_RATE / render.speed
-        if "frames" not in control.spans:
-            return self.check_control(self.blocks("control")[0], replace(control, frames=smooth))
-        if control.frames * render.speed < LEAST_RATE:
+    def frames(self, control: records.Control | None, render: records.Render | None) -> records.Control | None:
+        """Control with as many frames as slow motion asks for, unless it says how many: at least one, and not too many."""
+        if control is None:
+            return None
+        slow = render is not None and render.speed < 1.0
+        if slow and "frames" not in control.spans:
+            control = replace(control, frames=SMOOTH_RATE / render.speed)
+        elif slow and control.frames * render.speed < LEAST_RATE:
             shown = number(control.frames * render.speed, 3)
             cause = f"at speed {number(render.speed)} the movie shows {shown} pictures a second"
-            way_out = f"for smooth motion write frames {number(smooth)} fps in control, or leave frames out"
+            way_out = f"for smooth motion write frames {number(SMOOTH_RATE / render.speed)} fps in control, or leave frames out"
             self.problem(control.spans["frames"], cause, way_out, severity="warning")
+        frames, rate = control.time * control.frames, f"1/{number(control.frames, 6)} s"
+        if frames < 1.0:
+            cause = f"in {number(control.time, 6)} s there is not one frame of {rate}"
+            self.problem(control.spans["time"], cause, "a longer time, or more frames per second")
+        if frames > MOST_FRAMES:
+            cause = f"{number(control.time, 6)} s have {number(frames)} frames of {rate}; the most is {whole(MOST_FRAMES)}"
+            self.problem(control.spans["time"], cause, "a shorter time, or fewer frames per second")
         return control
 
     # -- helpers for one block
@@ -400,17 +407,6 @@ class Validator:
                 severity="warning",
             )
         return liquid
-
-    def check_control(self, block: EvaluatedBlock, control: records.Control) -> records.Control:
-        """At least one frame, and not too many."""
-        frames, rate = control.time * control.frames, f"1/{number(control.frames, 6)} s"
-        if frames < 1.0:
-            cause = f"in {number(control.time, 6)} s there is not one frame of {rate}"
-            self.problem(block.first("time").span(0), cause, "a longer time, or more frames per second")
-        if frames > MOST_FRAMES:
-            cause = f"{number(control.time, 6)} s have {number(frames)} frames of {rate}; the most is {whole(MOST_FRAMES)}"
-            self.problem(block.first("time").span(0), cause, "a shorter time, or fewer frames per second")
-        return control
 
     def cameras(self, control: records.Control | None) -> None:
         """Cameras look at something; several are points of one path, each with a time of its own, in order."""
