@@ -98,12 +98,6 @@ int ContactBody::cells_around(int node) const
   return sum;
 }
 
-Lattice ContactBody::lattice() const
-{
-  return {{cells[0], cells[1], cells[2]},           filled.data(), {edges[0], edges[1], edges[2]}, mean_edge, row(), layer(),
-          is_cuboid() ? nullptr : depth_grid.data()};
-}
-
 Depth<double> ContactBody::depth(int side, const Vec3 &X) const
 {
   const Lattice grid = lattice();

@@ -52,7 +52,12 @@ class ContactBody {
   double edge(int axis) const { return edges[axis]; }
   double spacing() const { return mean_edge; }    // cube root of a cell's volume [m]
   int particles() const { return static_cast<int>(place_of_node.size()); }
-  Lattice lattice() const;
+  // Inline, so that a look that asks for one of its fields does not fill the others.
+  Lattice lattice() const
+  {
+    return {{cells[0], cells[1], cells[2]},           filled.data(), {edges[0], edges[1], edges[2]}, mean_edge, row(), layer(),
+            is_cuboid() ? nullptr : depth_grid.data()};
+  }
   const std::vector<SurfacePoint> &points() const { return surface; }
 
   // Places of the grid, x fastest, and the number of the particle there, -1 for none.
