@@ -363,7 +363,7 @@ def test_a_folder_without_a_run(folder, tmp_path):
 
 def test_no_thread_stays_behind(folder):
     """Neither of the server nor of its pages."""
-    before = threading.active_count()
+    before = set(threading.enumerate())
     with served(folder) as view, page(view) as link:
         news(link)
         ask(view)
@@ -371,6 +371,6 @@ def test_no_thread_stays_behind(folder):
         with pytest.raises(ConnectionClosed):
             link.recv(10)
     deadline = time.monotonic() + 10
-    while threading.active_count() > before and time.monotonic() < deadline:
+    while set(threading.enumerate()) - before and time.monotonic() < deadline:
         time.sleep(0.05)
-    assert threading.active_count() == before
+    assert not set(threading.enumerate()) - before
