@@ -17,6 +17,7 @@ static constexpr double NEVER = std::numeric_limits<double>::infinity();
 static constexpr double LOST = 0.02;      // cells to go before a point that was not found is looked for again
 static constexpr double PRESSED = 0.5;    // cells are taken to be pressed to half at most: motion in space over that in X
 static constexpr double NEAREST = 2.2;    // cells from the middle of a cell on the surface beyond which there is no contact
+static constexpr double JUMP = 0.25;      // cells that X may jump between cells of a round host
 static constexpr std::uint8_t EVERY_SIDE = 63;
 static constexpr int MOST_GUESSES = 3;
 static constexpr double NEAR_PLACE = 0.1;    // cells that a guess may be off its last one
@@ -97,14 +98,19 @@ std::array<int, 3> ContactField::cell_of(const Vec3 &X) const
 }
 
 // Of another shape, for a point at x whose X was found from `cell`: where X is beyond all filled cells it depends on the cell, so
-// that is the one whose middle is nearest, wherever the search came from.
-std::array<int, 3> ContactField::cell_beyond(const Vec3 &x, const Vec3 &X, std::array<int, 3> cell, const Placed &at) const
+// that is the one whose middle is nearest, wherever the search came from. `room`: a motion that cannot change the cell [m].
+std::array<int, 3> ContactField::cell_beyond(const Vec3 &x, const Vec3 &X, std::array<int, 3> cell, const Placed &at,
+                                             double &room) const
 {
   const Vec3 off = X - Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
-  if (std::max({std::fabs(off.x), std::fabs(off.y), std::fabs(off.z)}) <= 0.5 + LEFT) return cell;
+  const double inside = 0.5 - std::max({std::fabs(off.x), std::fabs(off.y), std::fabs(off.z)});
+  if (inside >= -LEFT) {
+    room = PRESSED * std::max(inside, 0.0) * host->body->spacing();
+    return cell;
+  }
   for (;;) {
     std::array<int, 3> best = cell;
-    double least = NEVER;
+    double least = NEVER, second = NEVER;
     for (int k = cell[2] - 1; k <= cell[2] + 1; ++k)
       for (int j = cell[1] - 1; j <= cell[1] + 1; ++j)
         for (int i = cell[0] - 1; i <= cell[0] + 1; ++i) {
@@ -112,9 +118,14 @@ std::array<int, 3> ContactField::cell_beyond(const Vec3 &x, const Vec3 &X, std::
           const int low = at.slot[at.body.place(i, j, k)], high = at.slot[at.body.place(i + 1, j + 1, k + 1)];
           if (low < 0 || high < 0) continue;
           const Vec3 away = 0.5 * (at.place[low].value + at.place[high].value) - x;
-          if (dot(away, away) < least) least = dot(away, away), best = {i, j, k};
+          const double square = dot(away, away);
+          second = std::min(second, std::max(square, least));
+          if (square < least) least = square, best = {i, j, k};
         }
-    if (best == cell) return cell;
+    if (best == cell) {
+      room = PRESSED * (std::sqrt(second) - std::sqrt(least));    // each of the two distances grows and shrinks as much at most
+      return cell;
+    }
     cell = best;
   }
 }
@@ -140,10 +151,11 @@ void ContactField::guess(std::size_t q, const Vec3 &x, const Placed &at, Spot<do
     cell = cell_of(X);
   else
     is_there = !MaterialSearch(at).step_to_neighbour(cell, X, LEFT);
-  if (!at.body.is_cuboid() && cell_beyond(x, X, cell, at) != cell) return;
+  double room = NEVER;
+  if (!at.body.is_cuboid() && cell_beyond(x, X, cell, at, room) != cell) return;
   const Vec3 away = X - Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
   if (dot(away, away) > NEARBY * NEARBY) return;
-  known.cell = cell, known.X = X;
+  known.cell = cell, known.X = X, known.room = room;
   off = is_there ? std::sqrt(square) : 1.0;
 }
 
@@ -155,7 +167,8 @@ bool ContactField::find(std::size_t q, const Vec3 &x, const Placed &at, Spot<dou
   std::array<int, 3> cell = known.cell;
   X = known.X;
   if (!search.solve(x, cell, X)) return false;
-  cell = host->body->is_cuboid() ? cell_of(X) : cell_beyond(x, X, cell, at);
+  known.room = NEVER;
+  cell = host->body->is_cuboid() ? cell_of(X) : cell_beyond(x, X, cell, at, known.room);
   X = {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
   if (!search.solve(x, cell, X, false)) return false;
   known.cell = cell, known.X = X;
@@ -284,7 +297,9 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
   }
   known.open = verdict.open;
   if (!may_begin || verdict.side < 0) {
-    wake[q] = budget + std::max(0.0, verdict.slack);
+    // In another cell the depth may be another one.
+    const double slack = std::min(verdict.slack, std::max(known.room, verdict.slack - PRESSED * JUMP * h));
+    wake[q] = budget + std::max(0.0, slack);
     return false;
   }
 
@@ -315,10 +330,9 @@ PushTask ContactField::task(PointKind kind, const ContactArrays &arrays, double 
 PointNow ContactField::point_now(std::size_t q, const ContactArrays &arrays) const
 { return {near.place(q, arrays.place()), near.shift(q, arrays.place()), surface_point(q).area}; }
 
-// X of the point is that of the weights plus `off`, about which everything is linear; `jump` is how far X is moved by going on
-// to another cell. False when X cannot be found.
+// X of the point is that of the weights plus `off`, about which everything is linear. False when it cannot be found.
 bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec3 &x, MapWeights &weights, Spot<double> &spot,
-                          Vec3 &off, Vec3 &jump) const
+                          Vec3 &off, Hop &hop) const
 {
   constexpr int MOST = 12;
   const Placed at = {*host->body, task.slot, task.place};
@@ -326,7 +340,7 @@ bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec
   std::array<int, 3> cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
   Vec3 X = contact.state.X + contact.state.change, left_at;
   bool again = true, has_left = false;
-  jump = {};
+  hop = {};
   for (int step = 0; again; ++step) {
     if (step == MOST) return false;
     again = false;
@@ -347,10 +361,11 @@ bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec
       again = true;
       continue;
     }
-    if (has_left) jump += (X + off) - left_at;
+    if (has_left) hop.jump += (X + off) - left_at;
     has_left = !task.is_smooth && search.step_to_neighbour(cell, X + off, LEFT);
     if (has_left) {
       X += off;
+      if (!hop.happened) hop = {true, spot.to_space(X - contact.state.X), {}};
       left_at = X;
       again = true;
     }
@@ -363,15 +378,19 @@ bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec
 }
 
 // Beyond the filled cells of a round host X is not continuous from cell to cell. The contact goes on as if it were: a jump of
-// its depth would be energy out of nothing.
-void ContactField::go_on(FieldContact &contact, const Vec3 &jump) const
+// its depth would be energy out of nothing. The mean force of leap-frog acts half along the normal of the cell that is left, half
+// along that of the new one, and so does the depth grow in this step.
+void ContactField::go_on(FieldContact &contact, const Hop &hop, const Spot<double> &spot) const
 {
-  const double deeper =
-      host->body->depth(contact.side, contact.state.X).value - host->body->depth(contact.side, contact.state.X - jump).value;
-  contact.state.memory.offset += deeper;
-  contact.state.memory.depth += deeper;
-  contact.state.anchor += jump;
-  contact.state.change -= jump;
+  ContactState<double> &state = contact.state;
+  const Depth<double> here = host->body->depth(contact.side, state.X);
+  const double grown = host->body->depth(contact.side, state.X - hop.jump).value - state.memory.depth;
+  const double grown_here = dot(spot.to_material(hop.moved), here.slope);
+  const double deeper = here.value - (state.memory.depth + 0.5 * (grown + grown_here));
+  state.memory.offset += deeper;
+  state.memory.depth += deeper;
+  state.anchor += hop.jump;
+  state.change -= hop.jump;
 }
 
 ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now,
@@ -379,9 +398,10 @@ ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, cons
 {
   MapWeights weights;
   Spot<double> spot;
-  Vec3 off, jump, part_slope;
-  if (!follow(contact, task, now.x, weights, spot, off, jump)) return Fate::LOST;
-  if (!host->body->is_cuboid() && dot(jump, jump) > 0.0) go_on(contact, jump);
+  Vec3 off, part_slope;
+  Hop hop;
+  if (!follow(contact, task, now.x, weights, spot, off, hop)) return Fate::LOST;
+  if (!host->body->is_cuboid() && hop.happened) go_on(contact, hop, spot);
   const Vec3 shift = spot.to_material(now.shift);
   const Depth<double> below = host->body->depth(contact.side, contact.state.X);
   double part = 1.0;

@@ -39,6 +39,7 @@ class ContactField {
   struct Watch {
     std::array<int, 3> cell = {-1, -1, -1};    // where it was found last, -1 for nowhere
     Vec3 X;
+    double room = 0.0;        // a motion that leaves it in this cell [m]
     std::uint8_t open = 0;    // sides in which the point would have had a potential when it was looked at last
   };
 
@@ -58,18 +59,24 @@ class ContactField {
   bool find(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X);
   void guess(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X, double &off);
   std::array<int, 3> cell_of(const Vec3 &X) const;
-  std::array<int, 3> cell_beyond(const Vec3 &x, const Vec3 &X, std::array<int, 3> cell, const Placed &at) const;
+  std::array<int, 3> cell_beyond(const Vec3 &x, const Vec3 &X, std::array<int, 3> cell, const Placed &at, double &room) const;
   Verdict judge(const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre, const Spot<double> &spot, const Vec3 &normal,
                 double off) const;
   bool world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const;
   Ramps ramps(PointKind kind) const;
 
   enum class Fate { STAYS, OUT, LOST };
+  // A contact that goes on to another cell in a step: how far the point has moved against the host in the cell that it leaves
+  // [m], and how far X is from where it would be there.
+  struct Hop {
+    bool happened = false;
+    Vec3 moved, jump;
+  };
   PushTask task(PointKind kind, const ContactArrays &arrays, double dt) const;
   PointNow point_now(std::size_t q, const ContactArrays &arrays) const;
   bool follow(FieldContact &contact, const PushTask &task, const Vec3 &x, MapWeights &weights, Spot<double> &spot, Vec3 &off,
-              Vec3 &jump) const;
-  void go_on(FieldContact &contact, const Vec3 &jump) const;
+              Hop &hop) const;
+  void go_on(FieldContact &contact, const Hop &hop, const Spot<double> &spot) const;
   Fate push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now, ContactArrays &arrays,
             ContactAccount &account) const;
   void take(FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,

@@ -159,11 +159,11 @@ control { time 0.04 s  frames 50 fps  resolution 4 cm  contact-model surface }
 """
 
 
-@pytest.mark.parametrize(("text", "most"), [(STRUCK, 5e-5), (EGGS, 3e-3)], ids=["sheared", "round"])
+@pytest.mark.parametrize(("text", "most"), [(STRUCK, 5e-5), (EGGS, 5e-4)], ids=["sheared", "round"])
 def test_a_blow_adds_no_energy(prepared, tmp_path, text, most):
     """Where friction shears the host, and where points go from cell to cell beyond the filled ones.
 
-    Measured: 8e-6 and 1.4e-3, falling with the square of the step. With the anchor moved along an axis of the material 1.5e-4;
-    with a depth that jumps from cell to cell 3.7e-2.
+    Measured: 8e-6 and 1.5e-4. With the anchor moved along an axis of the material 1.5e-4; with a depth that jumps from cell to
+    cell 3.7e-2, and 1.4e-3 with one that grows along the normal of the cell that is left alone.
     """
     assert simulate(prepared(text), tmp_path).ledger.residual < most
