@@ -14,6 +14,7 @@ static constexpr double STANDS_OUT = 2.5;    // spacings by which two drawn surf
 static constexpr double AROUND = 3.0;        // spacings around a contact in which particles may have a part in it
 static constexpr double MOST_SKINS = 32.0;
 static constexpr double ONSET = 0.05;    // eps over the spacing
+static constexpr double ALONE = 2.0;     // stiffness where only the dense points of one act, over that of points of both
 
 void ContactWorld::take(std::vector<ContactObject> now, std::vector<char> moves)
 {
@@ -39,7 +40,9 @@ ContactWorld::Both ContactWorld::new_pair(int a, int b)
 {
   ContactObject &lower = all[a], &higher = all[b];
   const double h = std::max(lower.body->spacing(), higher.body->spacing());
-  const double kappa = settings.stiffness * 2.0 * lower.young * higher.young / (lower.young + higher.young) / h;
+  const bool both = lower.body->is_cuboid() == higher.body->is_cuboid();
+  const double kappa =
+      (both ? 1.0 : ALONE) * settings.stiffness * 2.0 * lower.young * higher.young / (lower.young + higher.young) / h;
   double friction = std::sqrt(lower.friction * higher.friction), damping = friction > 0.0 ? settings.damping : 0.0;
   if (const auto own = settings.pairs.find({lower.id, higher.id}); own != settings.pairs.end())
     friction = own->second.friction, damping = own->second.damping;
@@ -49,7 +52,7 @@ ContactWorld::Both ContactWorld::new_pair(int a, int b)
 PlaneField ContactWorld::new_plane(int n, int plane)
 {
   ContactObject &one = all[n];
-  const double kappa = settings.stiffness * one.young / one.body->spacing();
+  const double kappa = (one.body->is_cuboid() ? 1.0 : ALONE) * settings.stiffness * one.young / one.body->spacing();
   return {one, plane, settings.planes[plane], law(one, kappa, one.friction, one.friction > 0.0 ? settings.damping : 0.0)};
 }
 

@@ -102,7 +102,13 @@ def test_a_ball_rolls_by_its_own_inertia(scene, floor):
 
 @pytest.mark.parametrize(
     ("shape", "height"),
-    [("box (20, 20, 20) cm", 10.0), ("cylinder 8 cm 12 cm", 6.0), ("cone 10 cm 16 cm", 4.0), ("torus 10 cm 4 cm", 4.0)],
+    [
+        ("box (20, 20, 20) cm", 10.0),
+        ("sphere 10 cm", 10.0),
+        ("cylinder 8 cm 12 cm", 6.0),
+        ("cone 10 cm 16 cm", 4.0),
+        ("torus 10 cm 4 cm", 4.0),
+    ],
 )
 def test_what_rests_leaves_no_gap(scene, shape, height):
     """Put down where it touches it stays there: its lowest point is less than 0.05 spacings off the slab; measured: 0.025."""
@@ -117,6 +123,26 @@ def test_what_rests_leaves_no_gap(scene, shape, height):
     h = one.ready.system.spacing[-1]
     assert -0.05 * h < surface[:, 2].min() < 0.01 * h
     assert np.abs(one.mean("x") - place)[:2].max() < 0.01 * h
+
+
+@pytest.mark.parametrize(
+    "below", ["ground z 0", f"object low {{ shape box (30, 30, 10) cm  position (0, 0, -5) cm  {STUFF}  hold all }}"]
+)
+def test_hertz(scene, below):
+    """The weight of a ball on a rigid plane is Hertz's force for the way of its centre, within 5 %; nu = 1/4.
+
+    Measured with 6 cells across the radius: 0.976 on both; with half the stiffness, where its points act alone, 0.82.
+    """
+    radius, young = 0.1, 1e6
+    one = scene(
+        f"gravity (0, 0, -30)\n{below}\nobject c {{ shape sphere 10 cm  position (0, 0, 10) cm  {STUFF}  drag 180 N*s/m }}",
+        "resolution 1.6667 cm  contact-model surface",
+    )
+    one.run(0.4)
+    way = radius - one.mean("x")[2]
+    hertz = 4.0 / 3.0 * young / (1.0 - 0.25**2) * math.sqrt(radius) * way**1.5
+    assert one.mass.sum() * 30.0 == pytest.approx(hertz, rel=0.05)
+    assert np.abs(one.mean("v")).max() < 1e-3
 
 
 def test_a_touching_tower_stands(scene):

@@ -31,6 +31,8 @@ objects which meet others faster than SLOW."""
 SPARE = 1.6
 """What a share of critical damping above USUAL_DAMPING counts in the bound: both sides of a body and the barrier never act along
 one direction at once, and what `rate` counts too much covers the usual damping."""
+ALONE = 2.0
+"""kappa where only the dense points of one act, over that where both have points."""
 SLOW = 0.3
 """Closing speed over the wave speed up to which a short barrier stops all that meets."""
 SLOW_NEEDLE = 0.1
@@ -156,8 +158,7 @@ class SurfaceContact(OnSurfaces, Contact):
         The cells of what is no cuboid stand out of its drawn surface: a barrier would bear it on their corners, so that balls do
         not roll. The surface alone stops it up to SLOW.
         """
-        cuboid = np.array([isinstance(frame.shape, Box) for frame in system.frames])[system.contact_kind]
-        return np.where((cuboid | fast(scene, system))[system.object], system.contact_stiffness, 0.0)
+        return np.where((~are_dense(system) | fast(scene, system))[system.object], system.contact_stiffness, 0.0)
 
     def barrier_reach(self, scene: Scene, system: System) -> np.ndarray:
         """Reach of the barrier of each object [m], shape (M,)."""
@@ -182,12 +183,17 @@ class SurfaceContact(OnSurfaces, Contact):
 
             a_i = 2 kappa (w_i + s_i) / m_i,    w_i = sum over the points q of the own body of w_q |W_qi| sum_a |W_qa|
 
-        with s_i the area of another body that a particle may bear: h^2 within a face, h^2/2 on an edge, h^2/4 in a corner. The
-        barrier behind is added. The stick spring of friction, 0.8 kappa along the surface, adds nothing to the norm of a
+        with s_i the area of another body that a particle may bear: h^2 within a face, h^2/2 on an edge, h^2/4 in a corner.
+        Between a cuboid and another shape only the points of the other one act, with ALONE kappa: 2 w_i or 2 s_i stand for the
+        sum where they are larger. The barrier behind is added. The stick spring of friction, 0.8 kappa along the surface, adds nothing to the norm of a
         contact. No strict bound: the gradient of depth grows in pressed cells, and a folded sheet bears more than one layer.
         """
         kappa = self.stiffness(scene, system)[system.object]
-        surface = 2.0 * kappa * (own_area(system) + borne_area(system)) / system.mass
+        own, borne, dense = own_area(system), borne_area(system), are_dense(system)
+        area = own + borne
+        if dense.any() and not dense.all():
+            area = np.maximum(area, ALONE * np.where(dense[system.object], own, borne))
+        surface = 2.0 * kappa * area / system.mass
         return surface + barrier_rate(
             system, self.barrier_stiffness(scene, system), float(self.barrier_reach(scene, system).max())
         )
@@ -253,11 +259,15 @@ class SurfacePlanes(OnSurfaces, Boundary):
 
     def rate(self, scene, system):
         """a_i = kappa w_i / m_i with w_i as in `SurfaceContact.rate`: the plane does not move, so there is no factor 2."""
-        rate = surface_stiffness(scene, system)[system.object] * own_area(system) / system.mass
+        rate = self.stiffness(scene, system)[system.object] * own_area(system) / system.mass
         return np.where(system.held, 0.0, rate)
 
     def drag_rate(self, scene, system):
-        return self.dashpots(scene, system, surface_stiffness(scene, system))
+        return self.dashpots(scene, system, self.stiffness(scene, system))
+
+    def stiffness(self, scene: Scene, system: System) -> np.ndarray:
+        """kappa of the surface of each solid against a plane, which has no points of its own [N/m^3], shape (M,)."""
+        return surface_stiffness(scene, system, np.where(are_dense(system), ALONE, 1.0))
 
 
 class SurfaceGround(SurfacePlanes, GroundPlane):
@@ -278,6 +288,11 @@ def surface_stiffness(scene: Scene, system: System, share: np.ndarray | float = 
     Between two solids kappa = f 2 E_A E_B/(E_A + E_B)/max(h_A, h_B): the share is 2 E_B/(E_A + E_B).
     """
     return scene.control.contact_stiffness * system.young * share / np.cbrt(system.cell_volume)
+
+
+def are_dense(system: System) -> np.ndarray:
+    """Solids that are no cuboids, with dense points on their surfaces, bool, shape (M,)."""
+    return np.array([not isinstance(frame.shape, Box) for frame in system.frames])[system.contact_kind]
 
 
 def own_area(system: System) -> np.ndarray:
