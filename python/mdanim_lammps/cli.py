@@ -24,8 +24,10 @@ from .command_options import (
     Executors,
     Force,
     Out,
+    Quality,
     Quiet,
     Set,
+    Size,
     Strict,
     Verbose,
     View,
@@ -49,6 +51,7 @@ from .command_steps import (
     show_address,
     simulate_and_draw,
     with_accuracy,
+    with_quality,
 )
 from .errors import ExitCode, RefusedError, UsageError
 from .terminal import PROGRAM, documented_exit, open_streams, progress_bar, stop_on_sigterm
@@ -154,7 +157,8 @@ def picture(
     *,
     at: str | None = None,
     out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
-    size: tuple[int, int] | None = None,
+    size: Size = None,
+    quality: Quality = None,
     names: Annotated[bool, Parameter(negative=())] = False,
     springs: Annotated[bool, Parameter(negative=())] = False,
     boxes: Annotated[bool, Parameter(negative=())] = False,
@@ -171,8 +175,6 @@ def picture(
         The moment that is drawn, e.g. "0.8 s": a quick, coarse preview run goes there first.
     out
         The picture; default SCENE.png beside the scene.
-    size
-        Width and height in pixels.
     names
         Write each object's name above it.
     springs
@@ -190,7 +192,7 @@ def picture(
     path = picture_file(scene.with_suffix(".png") if out is None else out, ".png")
     with progress_bar("preview", quiet=quiet or not time) as bar:
         draw_picture(
-            record,
+            with_quality(record, quality),
             path,
             at=time,
             size=size,
@@ -276,7 +278,8 @@ def render(
     folder: Path,
     /,
     *,
-    size: tuple[int, int] | None = None,
+    size: Size = None,
+    quality: Quality = None,
     fps: float | None = None,
     out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
     frames: Annotated[bool, Parameter(negative=())] = False,
@@ -289,8 +292,6 @@ def render(
     ----------
     folder
         The output folder of a run.
-    size
-        Width and height in pixels.
     fps
         Pictures per second of the movie.
     out
@@ -308,6 +309,7 @@ def render(
 
     stored = stored_scene(folder)
     record = stored if scene is None else replace(stored, render=load_render(scene, [solid.name for solid in stored.solids]))
+    record = with_quality(record, quality)
     path = movie_file(folder, record) if out is None else picture_file(out, ".mp4")
     draw_movie(folder, record, path, quiet=quiet, size=size, fps=fps, frames=folder / "frames" if frames else None)
     if not quiet:

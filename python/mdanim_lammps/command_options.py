@@ -37,6 +37,11 @@ Control = Annotated[
     Literal["central", "peers"] | None,
     Parameter(help="What assigns objects to executors: the supervisor, or each executor alike."),
 ]
+Size = Annotated[tuple[int, int] | None, Parameter(help="Width and height in pixels.")]
+Quality = Annotated[
+    Literal["draft", "final"] | None,
+    Parameter(help="draft is fast; final has smooth edges and ambient occlusion. Default: that of the scene."),
+]
 View = Annotated[bool, Parameter(name="--view", negative=(), help="Show the run in a browser while it goes on.")]
 Edit = Annotated[bool, Parameter(negative=(), help="Let the page change the scene's text and run it again; implies --view.")]
 Force = Annotated[bool, Parameter(negative=(), help="Overwrite an output folder of an earlier run.")]

@@ -47,6 +47,15 @@ def with_accuracy(scene, accuracy: str | None):
     return replace(scene, control=replace(scene.control, accuracy=AccuracyClass(accuracy)))
 
 
+def with_quality(scene, quality: str | None):
+    """The scene with a quality of pictures from the command line."""
+    from dataclasses import replace
+
+    from .scene.render import Quality
+
+    return scene if quality is None else replace(scene, render=replace(scene.render, quality=Quality(quality)))
+
+
 def settle(scene, *, make: bool, quiet: bool = False, out: Path | None = None):
     """The scene with a setting for its target error, and a line that says where it comes from."""
     from .api import STUDY, default_folder

@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mdanim_lammps.picture import render as drawing
+from mdanim_lammps.picture import light as lighting
+from mdanim_lammps.picture.light import nearest_around
 from mdanim_lammps.picture.palette import LOW, OBJECTS, STILL, object_colors
-from mdanim_lammps.picture.render import Painter, grid_spacing, nearest_around
+from mdanim_lammps.picture.render import Painter, grid_spacing
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.scene import Camera, Control, Render, Scene, Walls
 from picture_measures import hue_mask
@@ -72,7 +73,7 @@ def test_picture_has_no_holes(tmp_path):
 
 def test_shadow_lies_on_the_floor_and_on_objects(tmp_path):
     """The point straight down the lamp's ray is darker than the floor beside it, and so is a slab's top."""
-    from mdanim_lammps.picture.render import LAMP
+    from mdanim_lammps.picture.rays import LAMP
 
     cube = box("cube", (0.3,) * 3, (2,) * 3, (0, 0, 0.9))
     slab = box("slab", (1.6, 1.6, 0.1), (8, 8, 1), (0, 0, 0.15), held=np.ones(9 * 9 * 2, bool))
@@ -106,8 +107,8 @@ def test_shadows_are_the_same_without_the_short_cut(tmp_path, monkeypatch):
     scene, models = slab_scene()
     with Trajectory(write(tmp_path / "t.h5", scene, models, falling(models, 2))) as t:
         quick = picture(t, frame=1)
-        always = np.zeros((drawing.SHADOW_PIXELS // drawing.SHADOW_BLOCK,) * 2)
-        monkeypatch.setattr(drawing, "nearest_around", lambda depth, block: always)
+        always = np.zeros((lighting.PIXELS // lighting.BLOCK,) * 2)
+        monkeypatch.setattr(lighting, "nearest_around", lambda depth, block: always)
         np.testing.assert_array_equal(picture(t, frame=1), quick)
 
 
@@ -124,7 +125,7 @@ def test_nearest_around_is_that_of_nine_blocks():
 
 def test_a_ball_darkens_evenly(tmp_path):
     """From where the lamp stands overhead to where it grazes, a ball grows darker without stripes."""
-    from mdanim_lammps.picture.render import LAMP
+    from mdanim_lammps.picture.rays import LAMP
 
     models = [ball("ball", 0.5, 0.125, (0, 0, 0.5), rings=48)]
     with trajectory(tmp_path, models) as t, Painter(t, size=SIZE) as painter:

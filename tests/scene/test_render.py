@@ -7,6 +7,7 @@ import pytest
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import load_render, parse_scene
+from mdanim_lammps.scene.render import Floor, Quality
 from scene_parts import text
 
 
@@ -62,6 +63,38 @@ def test_a_file_with_a_render_block_alone(file):
     )
     assert (found.background, found.speed, found.camera[0].look, found.camera[0].eye) == ("#000000", 0.5, "b[2]", (2.0, 0.0, 1.0))
     assert load_render(file(text() + "render { speed 2 }\n"), []).speed == 2.0
+
+
+def test_words_of_a_film(file):
+    """Light, shadows, floor and quality are read, written into a lock, and read again."""
+    scene = parse_scene(text() + "render { light from (1, -1, 2)  shadows 0.5  floor checker  quality final }\n")
+    render = scene.render
+    assert (render.light, render.shadows, render.floor, render.quality) == ((1.0, -1.0, 2.0), 0.5, Floor.CHECKER, Quality.FINAL)
+    assert replace(parse_scene(lock_text(scene), scene.name), warnings=()) == scene
+    plain = parse_scene(text()).render
+    assert (plain.shadows, plain.floor, plain.quality) == (1.0, Floor.GRID, Quality.DRAFT)
+
+
+@pytest.mark.parametrize(
+    ("line", "column", "cause", "hint"),
+    [
+        ("render { light from (1, 0, -1) }", 21, "at least 5 degrees above the floor, found (1, 0, -1)", "from (-1, -1, 2)"),
+        ("render { light from (0, 0, 0) }", 21, "at least 5 degrees", "z is up"),
+        ("render { light from (1, 0, 0.08) }", 21, "at least 5 degrees", "z is up"),
+        ("render { light (1, 0, 1) }", 16, "cannot be followed by '('", "light from (1, -1, 2)"),
+        ("render { shadows 1.5 }", 18, "shadows is too large", "1 is the darkest"),
+        ("render { shadows -1 }", 18, "must be >= 0", ""),
+        ("render { floor tiles }", 16, "'tiles' is not one of the choices of floor", "grid, plain, checker, none"),
+        ("render { quality fine }", 18, "'fine' is not one of the choices of quality", "final"),
+    ],
+)
+def test_words_of_a_film_that_cannot_be(line, column, cause, hint):
+    """Each at its value, with a way out."""
+    with pytest.raises(SceneError) as error:
+        parse_scene(text() + line + "\n")
+    (problem,) = error.value.problems
+    assert (problem.span.line, problem.span.column) == (8, column)
+    assert cause in problem.message and hint in problem.hint
 
 
 @pytest.mark.parametrize(

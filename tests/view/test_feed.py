@@ -3,6 +3,7 @@
 
 import json
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from mdanim_lammps.errors import OutputError
 from mdanim_lammps.picture.camera import action_of, automatic_view
 from mdanim_lammps.picture.surfaces import shaded_mesh
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
+from mdanim_lammps.scene.render import Floor
 from mdanim_lammps.scene.scene import Camera, Render
 from mdanim_lammps.view.feed import ASPECT, DRY, HIDDEN, MOST_STRAIN, OPEN, PARTICLES, STRAIN, Feed, first_action
 from picture_samples import falling, flat, pool_scene, raw_of, slab_scene, wet_frames, write
@@ -89,6 +91,17 @@ def test_the_scene_tells_what_is_there(slab):
     assert head["floor"] == 0.0 and head["frames"] == 6 and head["frameTime"] == pytest.approx(0.1)
     np.testing.assert_allclose(head["view"]["eye"], view.eye)
     np.testing.assert_allclose(head["view"]["look"], view.look)
+
+
+def test_light_and_floor_are_those_of_the_scene(slab):
+    """The page follows the words of the render block that it can follow."""
+    render = Render(light=(0.0, -3.0, 4.0), shadows=0.25, floor=Floor.CHECKER)
+    for block, floor in ((render, 0.0), (replace(render, floor=Floor.NONE), None)):
+        feed = Feed(slab[0], "", block, finished=True)
+        head = feed.head()
+        assert (head["floor"], head["shadows"]) == (floor, 0.25) and (floor is None or head["pattern"] == "checker")
+        np.testing.assert_allclose(head["lamp"], [0.0, -0.6, 0.8])
+        feed.close()
 
 
 def test_the_camera_of_the_scene_comes_first(slab):

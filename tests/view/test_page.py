@@ -97,6 +97,19 @@ def choose(browser, name: str, value: str) -> None:
     )
 
 
+@pytest.mark.parametrize("floor", ["plain", "checker", "none"])
+def test_the_floor_of_the_scene(browser, tmp_path, floor):
+    """Squares of two shades, one shade, or none, and no shadow where the scene asks for none."""
+    path = tmp_path / "fall.txt"
+    path.write_text(FALL + f"render {{ floor {floor}  shadows 0  light from (1, 0, 1) }}\n")
+    with served(Scene.load(path).run(tmp_path / "fall.out").folder) as view:
+        open_page(browser, view.address)
+        low = colors(browser)[-120:, 200:-200].mean(axis=2)
+        assert (np.ptp(low) > 15) == (floor == "checker")
+        assert browser.js("return mdanim.stage.sun.shadow.intensity") == 0
+        assert text(browser, "scale").startswith("checker" if floor == "checker" else "")
+
+
 def test_a_finished_run(browser, beam):
     """Both objects in their colours; frames differ; slider, keys, picking, camera line, energies, cost, expectations, strain."""
     with served(beam) as view:

@@ -115,13 +115,14 @@ class Field:
         self._image.Modified()
 
 
-def lit_actor(data, light: str, liquid: bool):
+def lit_actor(data, light: str, *, liquid: bool, sky: bool):
     """An actor for a mesh, lit by one of the shaders of ``shading``.
 
     Args:
         data: ``vtkPolyData``.
         light: the shader.
         liquid: whether it may be seen through liquid.
+        sky: whether it is darker where objects hide the sky.
     """
     from vtkmodules.vtkRenderingCore import vtkActor
     from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
@@ -135,7 +136,7 @@ def lit_actor(data, light: str, liquid: bool):
     shader = actor.GetShaderProperty()
     for mark, code in shading.VERTEX.items():
         shader.AddVertexShaderReplacement(mark, True, code, False)
-    for mark, code in shading.fragment_head(liquid).items():
+    for mark, code in shading.fragment_head(liquid, sky).items():
         shader.AddFragmentShaderReplacement(mark, True, code, False)
     shader.AddFragmentShaderReplacement("//VTK::Light::Impl", True, light, False)
     return actor

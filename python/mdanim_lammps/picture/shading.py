@@ -3,8 +3,13 @@
 
 VTK builds its shaders from a template; the pieces below replace marks in it. VTK's own shadow maps have hard
 edges and leave much of the floor dark under a parallel lamp, so the shadow is looked up here, in a depth
-picture taken from the lamp (render.py).
+picture taken from the lamp (light.py).
 """
+
+from .rays import FAR, NEAR, ROOM, SKY_PIXELS, SKY_SIDE, sky_axes
+
+HIDDEN = 0.75
+"""Share of the light that is missing where nothing is seen of the sky; the rest is thrown back by what hides it."""
 
 VERTEX = {
     "//VTK::PositionVC::Dec": """//VTK::PositionVC::Dec
@@ -18,7 +23,7 @@ worldNormal = normalMC;
 }
 
 
-def fragment_head(liquid: bool) -> dict[str, str]:
+def fragment_head(liquid: bool, sky: bool) -> dict[str, str]:
     """Declarations and functions that every fragment shader below uses, by VTK's mark."""
     return {
         "//VTK::PositionVC::Dec": """//VTK::PositionVC::Dec
@@ -26,25 +31,28 @@ in vec3 worldPosition;
 in vec3 worldNormal;
 """,
         # The first mark after VTK's own declaration of the texture.
-        "//VTK::Picking::Dec": "//VTK::Picking::Dec\n" + SHADOW + (THROUGH_LIQUID if liquid else THROUGH_AIR),
+        "//VTK::Picking::Dec": "//VTK::Picking::Dec\n"
+        + SHADOW
+        + (sky_looked_at() if sky else SKY_NOT_LOOKED_AT)
+        + (THROUGH_LIQUID if liquid else THROUGH_AIR),
     }
 
 
 SHADOW = """
 // Share of the lamp that is seen from here: the mean over a square four depth pixels wide that slides
 // smoothly over them, so that the edge of a shadow is soft and has no steps however near the camera comes.
-float shadow(vec3 where, vec3 normal)
+// `touch`, in depth pixels: what is farther from the lamp than this point by less shades it too.
+float lampSeen(vec3 where, float touch)
 {
-  // The test starts off the surface, which would shade itself otherwise: part of the square is nearer to the lamp.
-  float lean = length(cross(normal, normalize(lamp)));
-  vec3 p = (lampMatrix * vec4(where + normal * lampTexel * (1.0 + 3.0 * lean), 1.0)).xyz;
+  vec3 p = (lampMatrix * vec4(where, 1.0)).xyz;
   if (any(lessThan(p.xy, vec2(0.0))) || any(greaterThan(p.xy, vec2(1.0)))) return 1.0;
   vec2 texel = p.xy * lampPixels - 0.5;
   ivec2 corner = ivec2(floor(texel));
   vec2 part = texel - floor(texel);
+  float slack = touch * lampSlope / lampPixels;
   // Most lit points have no object between them and the lamp, nor near that line.
   ivec2 block = clamp(corner, ivec2(0), ivec2(lampPixels) - 1) / lampBlock;
-  if (texelFetch(lampNearest, block, 0).r >= p.z - lampBias) return 1.0;
+  if (texelFetch(lampNearest, block, 0).r > p.z + slack) return 1.0;
   float lit = 0.0;
   for (int j = -1; j <= 3; j++) {
     float row = j == -1 ? 1.0 - part.y : j == 3 ? part.y : 1.0;
@@ -52,14 +60,60 @@ float shadow(vec3 where, vec3 normal)
       float column = i == -1 ? 1.0 - part.x : i == 3 ? part.x : 1.0;
       ivec2 pixel = clamp(corner + ivec2(i - 1, j - 1), ivec2(0), ivec2(lampPixels) - 1);
       float depth = texelFetch(lampDepth, pixel, 0).r;
-      lit += row * column * ((depth >= 1.0 || depth >= p.z - lampBias) ? 1.0 : 0.0);
+      lit += row * column * ((depth >= 1.0 || depth > p.z + slack) ? 1.0 : 0.0);
     }
   }
   return lit / 16.0;
 }
 
+float shadow(vec3 where, float touch)
+{
+  return mix(1.0, lampSeen(where, touch), shadowDarkness);
+}
+
 vec3 linear(vec3 c) { return c * c; }
 """
+
+SKY_NOT_LOOKED_AT = """
+float skySeen(vec3 where, vec3 normal, float touch) { return 1.0; }
+"""
+
+SKY_LOOKED_AT = """
+// How much light comes from the sky above this surface and from what stands around it: the mean over directions, each weighted by
+// how much light it brings. A pixel that is drawn looks into every fourth direction, so one that is shown has looked into all.
+float skySeen(vec3 where, vec3 normal, float touch)
+{
+  const float pixel = 2.0 * SKY_ROOM / SKY_PIXELS;
+  // Off a surface that would hide the sky from itself, and a little aside, differently for each pixel: depth pixels do not show.
+  vec3 p = (where - skyCentre) / skyRadius;
+  vec2 aside = fract(vec2(52.98, 31.17) * fract(dot(gl_FragCoord.xy, vec2(0.0671, 0.0058))));
+  float hidden = 0.0, all = 0.0;
+  for (int k = (int(gl_FragCoord.x) & 1) + 2 * (int(gl_FragCoord.y) & 1); k < SKY_SIDE * SKY_SIDE; k += 4) {
+    float facing = dot(normal, skyToward[k]);
+    if (facing <= 0.0) continue;
+    all += facing;
+    vec2 across = vec2(dot(p, skyRight[k]), dot(p, skyUp[k])) / pixel;
+    ivec2 texel = ivec2(floor(across + 0.5 * float(SKY_PIXELS) + aside - 0.5));
+    if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(SKY_PIXELS)))) continue;
+    float there = texelFetch(skyDepth, texel + SKY_PIXELS * ivec2(k % SKY_SIDE, k / SKY_SIDE), 0).r;
+    float nearer = (2.0 - SKY_NEAR - dot(p, skyToward[k])) - (SKY_FAR - SKY_NEAR) * there + touch * pixel;
+    // What is far away hides nothing: it throws back about as much light as the sky behind it.
+    if (there < 1.0 && nearer > 0.0) hidden += facing * max(0.0, 1.0 - nearer * skyRadius / skyReach);
+  }
+  return all > 0.0 ? 1.0 - SKY_HIDDEN * hidden / all : 1.0;
+}
+"""
+
+
+def sky_looked_at() -> str:
+    """The function above with its numbers and directions."""
+    numbers = {"SIDE": SKY_SIDE, "PIXELS": SKY_PIXELS, "ROOM": ROOM, "NEAR": NEAR, "FAR": FAR, "HIDDEN": HIDDEN}
+    lines = [f"#define SKY_{name} {value}" for name, value in numbers.items()]
+    for name, vectors in zip(("Right", "Up", "Toward"), sky_axes().transpose(1, 0, 2)):
+        values = ", ".join(f"vec3({x:.7f}, {y:.7f}, {z:.7f})" for x, y, z in vectors)
+        lines.append(f"const vec3 sky{name}[{len(vectors)}] = vec3[]({values});")
+    return "\n".join(["", *lines, SKY_LOOKED_AT])
+
 
 THROUGH_AIR = """
 vec3 seen(vec3 color, vec3 where) { return color; }
@@ -115,10 +169,10 @@ FRAGMENT_SOLID = """//VTK::Light::Impl
   vec3 toEye = normalize(eye - worldPosition);
   vec3 toLamp = normalize(lamp);
   float facing = max(dot(n, toLamp), 0.0);
-  float lit = facing > 0.0 ? shadow(worldPosition, n) : 0.0;
+  float lit = facing > 0.0 ? shadow(worldPosition, -1.0) : 0.0;
   vec3 base = linear(diffuseColor);
   // Light from the sky above, a little thrown back from the floor below, and from behind the camera.
-  vec3 sky = mix(vec3(0.20, 0.19, 0.18), vec3(0.50, 0.54, 0.60), 0.5 + 0.5 * n.z);
+  vec3 sky = mix(vec3(0.20, 0.19, 0.18), vec3(0.50, 0.54, 0.60), 0.5 + 0.5 * n.z) * skySeen(worldPosition, n, -1.0);
   float fill = 0.16 * max(dot(n, toEye), 0.0);
   vec3 color = base * (sky + fill + vec3(0.86, 0.83, 0.78) * facing * lit);
   vec3 halfway = normalize(toLamp + toEye);
@@ -127,19 +181,42 @@ FRAGMENT_SOLID = """//VTK::Light::Impl
 }
 """
 
-FRAGMENT_FLOOR = """//VTK::Light::Impl
-{
-  float lit = shadow(worldPosition, vec3(0.0, 0.0, 1.0));
-  // Lines as wide as a pixel and a half, whatever the distance; they fade where they would crowd.
+# Lines as wide as a pixel and a half, whatever the distance; they fade where they would crowd.
+GRID = """
   vec2 fine = worldPosition.xy / gridSpacing;
   vec2 coarse = fine / 5.0;
-  vec2 w = fwidth(fine);
+  vec2 w = fwidth(fine) * linePixels;
   vec2 f = abs(fract(fine - 0.5) - 0.5) / w;
   vec2 c = abs(fract(coarse - 0.5) - 0.5) / (w / 5.0);
   float thin = (1.0 - smoothstep(0.3, 1.2, min(f.x, f.y))) * (1.0 - smoothstep(0.1, 0.4, max(w.x, w.y)));
   float bold = (1.0 - smoothstep(0.5, 1.5, min(c.x, c.y))) * (1.0 - smoothstep(0.5, 2.0, max(w.x, w.y)));
-  vec3 color = floorColor * mix(vec3(0.58, 0.62, 0.68), vec3(1.0), lit);
-  color = mix(color, gridColor, max(0.22 * thin, 0.55 * bold));
+  float marked = max(0.22 * thin, 0.55 * bold);
+"""
+# Squares as wide as five lines are apart; each pixel has the mean over the part of the floor that it shows.
+CHECKER = """
+  vec2 square = worldPosition.xy / (5.0 * gridSpacing);
+  vec2 w = max(fwidth(square), vec2(1e-6));
+  vec2 edge = 2.0 * (abs(fract((square - 0.5 * w) * 0.5) - 0.5) - abs(fract((square + 0.5 * w) * 0.5) - 0.5)) / w;
+  float marked = 0.3 * (0.5 - 0.5 * edge.x * edge.y);
+"""
+PATTERN = {"plain": "  float marked = 0.0;\n", "grid": GRID, "checker": CHECKER}
+"""By ``render { floor ... }``."""
+
+
+def fragment_floor(pattern: str) -> str:
+    """The shader of a floor with one of `PATTERN`."""
+    return FLOOR.replace("PATTERN", PATTERN[pattern])
+
+
+# The floor hides nothing, so depth pictures do not hold it, and what touches it shades it from the first point on.
+FLOOR = """//VTK::Light::Impl
+{
+  const float TOUCH = 4.0;
+  vec3 up = vec3(0.0, 0.0, 1.0);
+  float lit = shadow(worldPosition, TOUCH);
+PATTERN
+  vec3 sky = vec3(0.58, 0.62, 0.68) * skySeen(worldPosition, up, TOUCH);
+  vec3 color = mix(floorColor, gridColor, marked) * (sky + (vec3(1.0) - vec3(0.58, 0.62, 0.68)) * lit);
   float away = length(worldPosition.xy - floorCentre.xy) / floorCentre.z;
   vec3 behind = mix(lowColor, highColor, clamp(gl_FragCoord.y / pictureHeight, 0.0, 1.0));
   fragOutput0 = vec4(seen(mix(color, behind, smoothstep(0.25, 1.0, away)), worldPosition), 1.0);
@@ -162,7 +239,7 @@ FRAGMENT_LIQUID = """//VTK::Light::Impl
   if (film <= 0.0) discard;
   bool inner = dot(n, toEye) < 0.0;
   if (inner) n = -n;
-  float lit = inner ? 0.0 : shadow(worldPosition, n);
+  float lit = inner ? 0.0 : shadow(worldPosition, -1.0);
   float graze = pow(1.0 - max(dot(n, toEye), 0.0), 3.0);
   vec3 mirrored = reflect(-toEye, n);
   // Bright towards the horizon, blue above: what a slope mirrors tells how it leans.

@@ -32,9 +32,10 @@ class Tank:
         trajectory: one with a liquid.
         look: ``smooth`` for the surface that objects feel, ``cells`` for the raw columns.
         dark: whether the background is.
+        sky: whether its floor is darker where objects hide the sky.
     """
 
-    def __init__(self, trajectory: Trajectory, look: str, dark: bool):
+    def __init__(self, trajectory: Trajectory, look: str, dark: bool, sky: bool):
         pool = trajectory.liquid
         self._trajectory, self._look = trajectory, look
         self._low, self._high = np.array(pool.low), np.array(pool.high)
@@ -43,11 +44,11 @@ class Tank:
         self._heights = Field(*pool.shape[:2], smooth=look == "smooth")
         vertices = self._form.mesh(np.full(pool.shape[1::-1], pool.low[2]))[0]
         self._mesh = MovingMesh(len(vertices), self._form.triangle)
-        self.plate = lit_actor(plane(self._low, self._high, pool.low[2]), shading.FRAGMENT_SOLID, True)
+        self.plate = lit_actor(plane(self._low, self._high, pool.low[2]), shading.FRAGMENT_SOLID, liquid=True, sky=sky)
         """The tank's floor, opaque."""
         self.plate.GetProperty().SetColor((0.28, 0.33, 0.37) if dark else (0.74, 0.78, 0.81))
         # Behind, then in front: a ray meets the inner faces before the outer ones.
-        inner, outer = (lit_actor(self._mesh.data, shading.FRAGMENT_LIQUID, True) for _ in range(2))
+        inner, outer = (lit_actor(self._mesh.data, shading.FRAGMENT_LIQUID, liquid=True, sky=False) for _ in range(2))
         inner.GetProperty().FrontfaceCullingOn()
         outer.GetProperty().BackfaceCullingOn()
         for actor in (inner, outer):

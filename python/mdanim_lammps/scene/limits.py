@@ -77,6 +77,7 @@ MOST_PAIRS = 10**5
 SWEEPS = Limit("sweeps", 4096, way_out="write sweeps auto, which takes 8 for each cell that the fastest solid travels")
 """What fix mdanim/liquid takes."""
 SPEED = Limit("speed", 1e4, 1e-4, "speed 0.1 shows a second of the scene in ten seconds, speed 10 ten seconds in one")
+SHADOWS = Limit("shadows", 1.0, way_out="1 is the darkest: nothing of the lamp is left in a shadow")
 PIXELS = Limit("the size of a picture", 16384, way_out="the most is 16384 along a side")
 MOST_FRAMES = 10**7
 """Frames of a run."""

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,7 +14,8 @@ from typing import Any, ClassVar
 
 from ..errors import Span
 from .formatting import vector
-from .limits import CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, FRICTION, PIXELS, SPEED, SWEEPS
+from .limits import CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, FRICTION, SWEEPS
+from .render import COLOR, Camera, Render  # noqa: F401
 from .rotation import IDENTITY, departure, rotation_about, rotation_euler
 from .schema import Codec, Keyword, OneOf, Rule, Vector, Words, setting
 from .shapes import (
@@ -38,7 +38,6 @@ from .shapes import (
 
 BOX = "from <(x0, y0, z0):m> to <(x1, y1, z1):m>"
 """Two corners of a box of the world, the lower one first."""
-COLOR = 'a CSS name or "#rrggbb". Absent: chosen automatically.'
 
 
 # --- objects ----------------------------------------------------------------------------------------------
@@ -333,66 +332,6 @@ class Control:
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
-class Camera:
-    """One point of the camera's path."""
-
-    FORMS: ClassVar = ("[<T:s>] from <(x, y, z):m> look <(x, y, z):m or NAME> [up <(x, y, z)>]",)
-    ORDER: ClassVar = ("time", "eye", "look", "up")
-    eye: Vector
-    """[m]"""
-    look: Vector | str
-    """A point [m], or the name of an object that the camera follows."""
-    time: float | None = None
-    """[s]; None for a camera that stands still."""
-    up: Vector = (0.0, 0.0, 1.0)
-
-
-class MovieName(Codec):
-    """A file below the output folder, and none of the run's own."""
-
-    def read(self, k: Keyword, choice: int, values: tuple) -> str:
-        (name,), path, cause = values, Path(values[0]), ""
-        if not name.isprintable():
-            cause = "the name of a movie holds no characters that cannot be printed"
-        elif path.is_absolute() or ".." in path.parts:
-            cause = "the movie lies outside of the output folder"
-        elif path.suffix.lower() != ".mp4" or max(len(os.fsencode(part)) for part in path.parts) > 255:
-            cause = "a movie is written as .mp4"
-        if cause:
-            shown = "".join(c if c.isprintable() else "?" for c in name)
-            raise ValueError(f"{cause}: '{shown}'", 'write a name inside it, e.g. movie "ball.mp4"', 0)
-        return name
-
-
-@dataclass(frozen=True, slots=True)
-class Render:
-    """How the pictures look; every None is chosen automatically."""
-
-    size: tuple[int, int] = setting(
-        "<(w, h)>", "Width and height of the pictures in pixels.",
-        "(1920, 1080)", Rule.COUNT, default=(1280, 720), limit=PIXELS)  # fmt: skip
-    movie: str | None = setting(
-        '<"file.mp4">', "Name of the movie inside the output folder. Absent: `movie.mp4`.",
-        '"ball.mp4"', default=None, codec=MovieName())  # fmt: skip
-    speed: float = setting(
-        "<factor>",
-        "Speed of the movie: `0.25` is slow motion, `10` a time lapse. Below 1, and without `frames` in control, there are 30 "
-        "frames for each second of the movie.",
-        "0.25", Rule.POSITIVE, default=1.0, limit=SPEED)  # fmt: skip
-    background: str | None = setting("<color>", f"Background: {COLOR}", "white", default=None)
-    liquid: str = setting(
-        "<smooth|cells>",
-        "`smooth`: the surface of the liquid as a smooth sheet. `cells`: the columns of the automaton as they are.",
-        "cells", default="smooth")  # fmt: skip
-    camera: tuple[Camera, ...] = setting(
-        None,
-        "Where the camera stands and what it looks at; several lines with times T make a smooth path. `look NAME` follows an "
-        "object. Absent: chosen so that everything is seen.",
-        "from (4, -4, 2) m look (0, 0, 0.5) m", default=(), many=True, codec=OneOf(Camera))  # fmt: skip
-    spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
-
-
 QUANTITIES = {
     **{
         ("NAME", f"{what}.{axis}"): (u, f"{about}, {axis}")
@@ -471,7 +410,7 @@ class Scene:
         "from (-2, -2, 0) m to (2, 2, 3) m", default=None, codec=OneOf(Walls))  # fmt: skip
     effects: Mapping[str, Switch] = field(default_factory=dict)
     """Only what ``effects { }`` says; everything else is ``auto``."""
-    render: Render = Render()
+    render: Render = field(default_factory=Render)
     expects: tuple[Expect, ...] = setting(
         "<NAME.QUANTITY> [at <T:s>] = <value:?> [+- <tolerance:?>]",
         "A self-check, evaluated after the run; a miss is exit code 6. Without `at`: the end of the run, and the whole run for "

@@ -25,11 +25,13 @@ from ..errors import OutputError
 from ..picture.camera import FIELD_OF_VIEW, Action, CameraPath, action_of, automatic_view
 from ..picture.liquid import Sheet, kept_dry
 from ..picture.palette import LIQUID, background_colors, is_dark, object_colors, rgb
-from ..picture.render import LAMP, grid_spacing
+from ..picture.rays import direction
+from ..picture.render import grid_spacing
 from ..picture.surfaces import shaded_mesh
 from ..results.trajectory import Trajectory
 from ..results.trajectory_file import LIQUID as LIQUID_TABLES
 from ..results.written_frames import WrittenFrames
+from ..scene.render import Floor
 from ..scene.scene import Render
 
 STRAIN, PARTICLES = 1, 2
@@ -98,6 +100,8 @@ class Feed:
             floor = min(m.ground, m.liquid.low[2]) if m.liquid else m.ground
         elif m.liquid:
             floor = min(float(action.bounds[0][2]), m.liquid.low[2])
+        if self.render.floor is Floor.NONE:
+            floor = None
         colors = object_colors(m.colors, m.still)
         liquid = None
         if m.liquid:
@@ -113,8 +117,10 @@ class Feed:
             "bounds": [b.tolist() for b in action.bounds],
             "size": float(size),
             "floor": floor,
+            "pattern": self.render.floor.value,
+            "shadows": self.render.shadows,
             "grid": grid_spacing(size),
-            "lamp": LAMP.tolist(),
+            "lamp": direction(self.render.light).tolist(),
             "walls": m.walls,
             "background": [(255 * c).round().tolist() for c in (low, high)],
             "dark": is_dark(low),

@@ -31,7 +31,8 @@ async function start() {
   document.body.classList.toggle("dark", scene.dark);
   document.body.style.setProperty("--low-sky", `rgb(${scene.background[0]})`);
   document.body.style.setProperty("--high-sky", `rgb(${scene.background[1]})`);
-  if (scene.floor !== null) byId("scale").textContent = `grid ${number(scene.grid)} m`;
+  const width = { grid: scene.grid, checker: 5 * scene.grid }[scene.floor === null ? "" : scene.pattern];
+  if (width) byId("scale").textContent = `${scene.pattern} ${number(width)} m`;
   player = new Player(scene.frameTime);
   stage = new Stage(byId("stage"), scene);
   for (const [id, on] of [["liquid", scene.liquid], ["walls", scene.walls], ["springs", scene.springs && !report], ["particles", !report]]) byId(`show-${id}`).parentElement.hidden = !on;

@@ -11,12 +11,21 @@ import { pick, placeVertices, sumNormals } from "./message.js";
 const SHADOWS = [2048, 1024, 512], PIXELS = [1, 0.7, 0.5]; // by level of quality
 const FLOOR = 5; // half side of the floor, in sizes of the scene
 
-const GRID = `
+const PATTERN = { // of `render { floor ... }`: how much of the colour of the lines is seen
+  plain: "float marked = 0.0;",
+  grid: `
   vec2 fine = place.xy / gridStep, coarse = fine / 5.0, w = fwidth(fine);
   vec2 f = abs(fract(fine - 0.5) - 0.5) / w, c = abs(fract(coarse - 0.5) - 0.5) / (w / 5.0);
   float thin = (1.0 - smoothstep(0.3, 1.2, min(f.x, f.y))) * (1.0 - smoothstep(0.1, 0.4, max(w.x, w.y)));
   float bold = (1.0 - smoothstep(0.5, 1.5, min(c.x, c.y))) * (1.0 - smoothstep(0.5, 2.0, max(w.x, w.y)));
-  gl_FragColor.rgb = mix(gl_FragColor.rgb, gridColor, max(0.22 * thin, 0.5 * bold));
+  float marked = max(0.22 * thin, 0.5 * bold);`,
+  checker: `
+  vec2 square = place.xy / (5.0 * gridStep), w = max(fwidth(square), vec2(1e-6));
+  vec2 edge = 2.0 * (abs(fract((square - 0.5 * w) * 0.5) - 0.5) - abs(fract((square + 0.5 * w) * 0.5) - 0.5)) / w;
+  float marked = 0.3 * (0.5 - 0.5 * edge.x * edge.y);`,
+};
+const FLOOR_COLOR = `
+  gl_FragColor.rgb = mix(gl_FragColor.rgb, gridColor, marked);
   gl_FragColor.a = 1.0 - smoothstep(0.25, 1.0, distance(place.xy, gridMiddle) / gridReach);
   gl_FragColor.rgb *= gl_FragColor.a;`;
 
@@ -51,6 +60,7 @@ export class Stage {
     sun.position.copy(middle).addScaledVector(new Vector3(...lamp), 2 * size);
     sun.target.position.copy(middle);
     sun.castShadow = true;
+    sun.shadow.intensity = this.scene.shadows;
     sun.shadow.mapSize.set(SHADOWS[0], SHADOWS[0]);
     sun.shadow.bias = -4e-4;
     sun.shadow.normalBias = 0.0015 * size;
@@ -75,7 +85,7 @@ export class Stage {
   }
 
   floor() {
-    const { floor, size, grid, dark, background } = this.scene, reach = FLOOR * size;
+    const { floor, size, grid, pattern, dark, background } = this.scene, reach = FLOOR * size;
     const base = new Color(...background[0].map((c) => (c / 255) ** 2.2));
     const material = new MeshLambertMaterial({ color: dark ? base.clone().multiplyScalar(2).addScalar(0.02) : base, transparent: true, premultipliedAlpha: true });
     material.customProgramCacheKey = () => "floor";
@@ -86,7 +96,7 @@ export class Stage {
       });
       shader.vertexShader = "varying vec3 place;\n" + shader.vertexShader.replace("#include <begin_vertex>", "#include <begin_vertex>\nplace = (modelMatrix * vec4(position, 1.0)).xyz;");
       shader.fragmentShader = "varying vec3 place; uniform float gridStep, gridReach; uniform vec2 gridMiddle; uniform vec3 gridColor;\n" +
-        shader.fragmentShader.replace("#include <premultiplied_alpha_fragment>", GRID);
+        shader.fragmentShader.replace("#include <premultiplied_alpha_fragment>", PATTERN[pattern] + FLOOR_COLOR);
     };
     const plane = new Mesh(new PlaneGeometry(2 * reach, 2 * reach), material);
     plane.position.set(this.middle.x, this.middle.y, floor - 1e-4 * size);

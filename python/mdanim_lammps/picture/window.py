@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Windows that are never on a screen, and the pixels in them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+
+import numpy as np
+
+from ..errors import SetupError
+
+
+def off_screen_window(renderers: Iterable, size: tuple[int, int], samples: int):
+    """A window of so many pixels, each with so many samples. Raises SetupError with what is missing."""
+    from vtkmodules.vtkRenderingCore import vtkRenderWindow
+
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetSize(*size)
+    window.SetMultiSamples(samples)
+    # Pictures are read from the buffer that is drawn into; the other one is not used.
+    window.SwapBuffersOff()
+    for renderer in renderers:
+        window.AddRenderer(renderer)
+    window.Initialize()
+    if not window.SupportsOpenGL():
+        raise SetupError(
+            f"pictures need OpenGL 3.2, and {window.GetClassName()} found none on this host; install Mesa "
+            "(Debian: apt install libegl1 libosmesa6), or run with --no-movie and render the folder elsewhere"
+        )
+    return window
+
+
+def pixels(window) -> np.ndarray:
+    """What was drawn, uint8 RGB, shape (height, width, 3), first row on top."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
+
+    width, height = window.GetSize()
+    data = vtkUnsignedCharArray()
+    window.GetPixelData(0, 0, width - 1, height - 1, 0, data, 0)
+    return vtk_to_numpy(data).reshape(height, width, 3)[::-1]
+
+
+def fewer_pixels(picture: np.ndarray, by: int) -> np.ndarray:
+    """One pixel for each ``by`` x ``by`` of them, their mean; uint8 RGB as `pixels` gives it."""
+    if by == 1:
+        return picture.copy()
+    height, width, _ = picture.shape
+    total = np.full((height // by, width // by, 3), by * by // 2, dtype=np.uint16)
+    for row in range(by):
+        for column in range(by):
+            total += picture[row::by, column::by]
+    return (total // (by * by)).astype(np.uint8)
+
+
+@contextmanager
+def silent() -> Iterator[None]:
+    """Silence VTK's message that there is no X server, which off-screen drawing does not need."""
+    from vtkmodules.vtkCommonCore import vtkLogger
+
+    before = vtkLogger.GetCurrentVerbosityCutoff()
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    try:
+        yield
+    finally:
+        vtkLogger.SetStderrVerbosity(before)

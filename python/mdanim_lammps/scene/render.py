@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The ``render`` block: how pictures look."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from pathlib import Path
+from typing import ClassVar
+
+from ..errors import Span
+from .formatting import vector
+from .limits import PIXELS, SHADOWS, SPEED
+from .schema import Codec, Keyword, OneOf, Rule, Vector, Words, setting
+
+COLOR = 'a CSS name or "#rrggbb". Absent: chosen automatically.'
+LOWEST_LAMP = math.sin(math.radians(5.0))
+"""Height of a lamp over its distance; shadows of a lower one are longer than any picture."""
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """One point of the camera's path."""
+
+    FORMS: ClassVar = ("[<T:s>] from <(x, y, z):m> look <(x, y, z):m or NAME> [up <(x, y, z)>]",)
+    ORDER: ClassVar = ("time", "eye", "look", "up")
+    eye: Vector
+    """[m]"""
+    look: Vector | str
+    """A point [m], or the name of an object that the camera follows."""
+    time: float | None = None
+    """[s]; None for a camera that stands still."""
+    up: Vector = (0.0, 0.0, 1.0)
+
+
+class MovieName(Codec):
+    """A file below the output folder, and none of the run's own."""
+
+    def read(self, k: Keyword, choice: int, values: tuple) -> str:
+        (name,), path, cause = values, Path(values[0]), ""
+        if not name.isprintable():
+            cause = "the name of a movie holds no characters that cannot be printed"
+        elif path.is_absolute() or ".." in path.parts:
+            cause = "the movie lies outside of the output folder"
+        elif path.suffix.lower() != ".mp4" or max(len(os.fsencode(part)) for part in path.parts) > 255:
+            cause = "a movie is written as .mp4"
+        if cause:
+            shown = "".join(c if c.isprintable() else "?" for c in name)
+            raise ValueError(f"{cause}: '{shown}'", 'write a name inside it, e.g. movie "ball.mp4"', 0)
+        return name
+
+
+class Quality(Enum):
+    DRAFT = "draft"
+    FINAL = "final"
+
+
+class Floor(Enum):
+    GRID = "grid"
+    PLAIN = "plain"
+    CHECKER = "checker"
+    NONE = "none"
+
+
+class LampDirection(Codec):
+    """A direction that points upward."""
+
+    def read(self, k: Keyword, choice: int, values: tuple) -> Vector:
+        (toward,) = values
+        length = math.hypot(*toward)
+        if not length or toward[2] < LOWEST_LAMP * length:
+            cause = f"the lamp must stand at least 5 degrees above the floor, found {vector(toward)}"
+            raise ValueError(cause, "light from (x, y, z) is where the lamp is seen; z is up, e.g. light from (-1, -1, 2)", 0)
+        return toward
+
+
+@dataclass(frozen=True, slots=True)
+class Render:
+    """How the pictures look; every None is chosen automatically."""
+
+    size: tuple[int, int] = setting(
+        "<(w, h)>", "Width and height of the pictures in pixels.",
+        "(1920, 1080)", Rule.COUNT, default=(1280, 720), limit=PIXELS)  # fmt: skip
+    movie: str | None = setting(
+        '<"file.mp4">', "Name of the movie inside the output folder. Absent: `movie.mp4`.",
+        '"ball.mp4"', default=None, codec=MovieName())  # fmt: skip
+    speed: float = setting(
+        "<factor>",
+        "Speed of the movie: `0.25` is slow motion, `10` a time lapse. Below 1, and without `frames` in control, there are 30 "
+        "frames for each second of the movie.",
+        "0.25", Rule.POSITIVE, default=1.0, limit=SPEED)  # fmt: skip
+    quality: Quality = setting(
+        None,
+        "`draft` is fast. `final` has smooth edges, finer shadows, and corners that are darker because less of the sky is seen "
+        "from there; a picture takes several times as long.",
+        "final", default=Quality.DRAFT, codec=Words(Quality))  # fmt: skip
+    light: Vector = setting(
+        "from <(x, y, z)>", "Where the lamp is, seen from the scene: a direction, z is up. Shadows fall to the other side.",
+        "from (1, -1, 2)", default=(-0.45, -0.55, 1.15), codec=LampDirection())  # fmt: skip
+    shadows: float = setting(
+        "<share>", "Share of the lamp's light that shadows are without: `0` for no shadows, `1` for the darkest.",
+        "0.5", Rule.NOT_NEGATIVE, default=1.0, limit=SHADOWS)  # fmt: skip
+    floor: Floor = setting(
+        None,
+        "What is drawn on the floor: lines that tell sizes, nothing, squares, or no floor at all.",
+        "checker", default=Floor.GRID, codec=Words(Floor))  # fmt: skip
+    background: str | None = setting("<color>", f"Background: {COLOR}", "white", default=None)
+    liquid: str = setting(
+        "<smooth|cells>",
+        "`smooth`: the surface of the liquid as a smooth sheet. `cells`: the columns of the automaton as they are.",
+        "cells", default="smooth")  # fmt: skip
+    camera: tuple[Camera, ...] = setting(
+        None,
+        "Where the camera stands and what it looks at; several lines with times T make a smooth path. `look NAME` follows an "
+        "object. Absent: chosen so that everything is seen.",
+        "from (4, -4, 2) m look (0, 0, 0.5) m", default=(), many=True, codec=OneOf(Camera))  # fmt: skip
+    spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
