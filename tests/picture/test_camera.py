@@ -120,3 +120,46 @@ def test_a_crowd_is_not_ruled_by_a_runaway(tmp_path, count, followed):
     frames = [tuple((4.0 * k if i == 0 else 0.0, 0, 0) for i in range(count)) for k in range(2)]
     with moving(tmp_path, models, frames) as t:
         assert action_of(t).bounds[1][0] == pytest.approx(4.05 if followed else models[-1].position[:, 0].max())
+
+
+def row_with_a_flier(tmp_path, flight, frames=60):
+    """Eight boxes stand in a row; ``flight`` says where the ninth is in each frame."""
+    models = [box(f"b[{i}]", (0.1, 0.2, 0.4), (1, 1, 1), (0.3 * i, 0, 0.2)) for i in range(8)]
+    models.append(box("flier", (0.1, 0.1, 0.1), (1, 1, 1), (0, 0, 0)))
+    return moving(tmp_path, models, [((0, 0, 0),) * 8 + (flight(k),) for k in range(frames)])
+
+
+def inside(t, view):
+    """Whether each object is wholly in the picture in each frame, bool, shape (F, O)."""
+    skin, found = t.metadata.skin, []
+    for i in range(len(t)):
+        seen, depth = project(view, skin.vertices(t.position(i)), 16 / 9)
+        out = (np.abs(seen).max(axis=1) > 1.0) | (depth <= 0.0)
+        found.append(np.bincount(skin.object_of_vertex, out) == 0)
+    return np.array(found)
+
+
+def test_a_last_flier_does_not_shrink_the_rest(tmp_path):
+    """One of nine flies off at the end of the run: the row is seen nearly as large as without it, and always whole."""
+    with row_with_a_flier(tmp_path, lambda k: (2.5 + 0.2 * max(0, k - 45), 0, 0.5)) as t:
+        view = automatic_view(action_of(t), 16 / 9)
+        seen = inside(t, view)
+    with row_with_a_flier(tmp_path, lambda k: (2.5, 0, 0.5)) as t:
+        near = automatic_view(action_of(t), 16 / 9)
+    assert seen[:, :8].all() and seen[:46].all() and not seen[-1, 8]
+    assert view.eye[1] > 1.4 * near.eye[1]  # the eye is on the negative side: 1.4 times as far away
+
+
+def test_what_comes_is_seen_before_it_arrives(tmp_path):
+    """A ball that flies in from afar is not followed from the start, but for a moment before it is there."""
+    with row_with_a_flier(tmp_path, lambda k: (-0.2 - 0.3 * max(0, 15 - k), 0, 0.3)) as t:
+        seen = inside(t, automatic_view(action_of(t), 16 / 9))
+    assert seen[:, :8].all() and not seen[0, 8] and seen[13:, 8].all()
+
+
+def test_most_of_what_moves_is_seen_at_any_time(tmp_path):
+    """Half of the objects come from afar: the picture holds them all, however large it would be without them."""
+    models = [box(f"b[{i}]", (0.1, 0.1, 0.1), (1, 1, 1), (0.2 * i, 0, 0.05)) for i in range(4)]
+    frames = [tuple((max(0, 5 - k) * (i % 2), 0, 0) for i in range(4)) for k in range(100)]
+    with moving(tmp_path, models, frames) as t:
+        assert inside(t, automatic_view(action_of(t), 16 / 9)).all()

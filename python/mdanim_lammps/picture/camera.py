@@ -19,6 +19,14 @@ MARGIN = 0.88
 """Share of the picture, across, that the action may fill."""
 FALL, FAR = 0.25, 4.0
 """How far an object may fall, and go, before it leaves the picture, in sizes of the scene at its start."""
+LARGER = 0.35
+"""What a larger picture is worth: one that shows all 10 % larger may lose this much of 10 % of what happens."""
+LEAST = 0.6
+"""Share of the objects that move which is seen at any time."""
+TRIED = (0.995, 0.98, 0.95, 0.9, 0.8)
+"""Shares of what is seen that are tried as the next to be kept."""
+MOMENT = 0.03
+"""Share of the run for which the picture follows what comes and goes beyond where it is worth it."""
 _BOXES = 50_000
 
 
@@ -46,6 +54,8 @@ class Action:
     """Corners of the box that the picture shows [m]; objects that fly far off are left out of it."""
     escaped: bool
     """Whether some object falls out of it, there being no ground."""
+    free: np.ndarray
+    """Objects that are not held as a whole, bool, shape (O,)."""
 
     @property
     def size(self) -> float:
@@ -107,11 +117,13 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
         bounds = np.minimum(bounds[0], metadata.liquid.low), np.maximum(bounds[1], metadata.liquid.high)
     if metadata.ground is not None:
         bounds[0][2] = min(bounds[0][2], max(metadata.ground, start_low[2] - FAR * size))
-    return Action(low, high, bounds, bool(gone.any()))
+    return Action(low, high, bounds, bool(gone.any()), ~metadata.still)
 
 
 def automatic_view(action: Action, aspect: float, walls=None, basin=None) -> View:
-    """A three-quarter view from slightly above that holds the whole action; the same for all frames.
+    """A three-quarter view from slightly above that shows what happens as large as it can be; the same for all frames.
+
+    What few objects do for a short time is left out where all else becomes much larger by that (`LARGER`, `LEAST`).
 
     Args:
         action: what must be seen.
@@ -126,12 +138,55 @@ def automatic_view(action: Action, aspect: float, walls=None, basin=None) -> Vie
     # The longer horizontal side lies across the picture.
     turn = np.radians(-65.0 if extent[0] >= extent[1] else -25.0)
     back = np.array([np.cos(elevation) * np.cos(turn), np.cos(elevation) * np.sin(turn), np.sin(elevation)])
-    points = _corners(np.clip(action.low, low, high), np.clip(action.high, low, high))
+    boxes = np.clip(action.low, low, high), np.clip(action.high, low, high)
+    fixed = [np.zeros((0, 3))]
     if walls is not None and np.linalg.norm(np.subtract(*walls)) < 2.0 * action.size:
-        points = np.concatenate([points, _corners(*np.array(walls, dtype=float)[:, None])])
+        fixed.append(_corners(*np.array(walls, dtype=float)))
     if basin is not None:
-        points = np.concatenate([points, _corners(*np.array(basin, dtype=float)[:, None])])
-    return fit_view(points, -back, aspect)
+        fixed.append(_corners(*np.array(basin, dtype=float)))
+    fixed = np.concatenate(fixed)
+    kept = worth_seeing(*boxes, action.free, fixed, -back, aspect)
+    return fit_view(np.concatenate([_corners(boxes[0][kept], boxes[1][kept]), fixed]), -back, aspect)
+
+
+def worth_seeing(low, high, free, fixed: np.ndarray, forward: np.ndarray, aspect: float) -> np.ndarray:
+    """Which boxes a picture should hold so that it shows much of what happens, and shows it large; bool, shape (W, O).
+
+    The score is the share of boxes that are inside times the size at which they are seen to the power of `LARGER`. From each of its
+    four sides the picture is made smaller as long as the score grows.
+
+    Then what comes and goes is followed for a `MOMENT` more.
+
+    Args:
+        low, high: corners of each object in each stretch of frames [m], shape (W, O, 3).
+        free: objects that move, bool, shape (O,).
+        fixed: points that are inside in any case [m], shape (P, 3).
+        forward: direction of view, unit length, not vertical.
+        aspect: width over height.
+    """
+    from scipy.ndimage import maximum_filter1d
+
+    right, up, tangent = _screen(forward, aspect)
+    side = _sides(_corners(low, high), right, up, forward, tangent).reshape(8, *low.shape[:2], 4).max(axis=0)
+    fixed_side = _sides(fixed, right, up, forward, tangent).max(axis=0, initial=-np.inf)
+    middle = float(((low + high) / 2 @ forward).mean())
+
+    def score(kept: np.ndarray) -> float:
+        if free.any() and kept[:, free].mean(axis=1).min() < LEAST:
+            return -np.inf
+        most = np.maximum(side[kept].max(axis=0), fixed_side)
+        away = middle + ((most[:2] + most[2:]) / (2 * tangent)).max()
+        return float(np.log(kept.mean()) - LARGER * np.log(max(away, np.finfo(float).tiny)))
+
+    kept = np.ones(low.shape[:2], dtype=bool)
+    best = score(kept)
+    while True:
+        smaller = [kept & (side[..., k] <= np.quantile(side[kept, k], share)) for k in range(4) for share in TRIED]
+        scores = [score(s) for s in smaller]
+        if max(scores) <= best + 1e-9:
+            break
+        best, kept = max(scores), smaller[int(np.argmax(scores))]
+    return maximum_filter1d(kept, 2 * round(MOMENT * len(kept)) + 1, axis=0)
 
 
 def fit_view(points: np.ndarray, forward: np.ndarray, aspect: float) -> View:
@@ -145,20 +200,30 @@ def fit_view(points: np.ndarray, forward: np.ndarray, aspect: float) -> View:
         forward: direction of view, unit length, not vertical.
         aspect: width over height.
     """
-    right = np.cross(forward, [0.0, 0.0, 1.0])
-    right /= np.linalg.norm(right)
-    up = np.cross(right, forward)
-    tangent = MARGIN * np.tan(np.radians(FIELD_OF_VIEW / 2)) * np.array([aspect, 1.0])
-    a, c = points @ np.stack([right, up], axis=1), points @ forward
-    plus = (a - tangent * c[:, None]).max(axis=0)
-    minus = (-a - tangent * c[:, None]).max(axis=0)
-    across = (plus - minus) / 2
-    depth = (-(plus + minus) / (2 * tangent)).min()
-    middle = (c.min() + c.max()) / 2
+    right, up, tangent = _screen(forward, aspect)
+    most = _sides(points, right, up, forward, tangent).max(axis=0)
+    along = points @ forward
+    across = (most[:2] - most[2:]) / 2
+    depth = (-(most[:2] + most[2:]) / (2 * tangent)).min()
+    middle = (along.min() + along.max()) / 2
     # A single point has no size to stand back from.
     depth = min(depth, middle - 1e-3)
     eye = across[0] * right + across[1] * up + depth * forward
     return View(eye, eye + (middle - depth) * forward, np.array([0.0, 0.0, 1.0]))
+
+
+def _screen(forward: np.ndarray, aspect: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Right and up of a picture, and tangents of half its angles of view within the margin, shape (2,)."""
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    tangent = MARGIN * np.tan(np.radians(FIELD_OF_VIEW / 2)) * np.array([aspect, 1.0])
+    return right, np.cross(right, forward), tangent
+
+
+def _sides(points: np.ndarray, right, up, forward, tangent) -> np.ndarray:
+    """How far points push the right, upper, left and lower side of the picture out, a - tx c and so on [m], shape (P, 4)."""
+    across, along = points @ np.stack([right, up], axis=1), (points @ forward)[:, None]
+    return np.concatenate([across - tangent * along, -across - tangent * along], axis=1)
 
 
 class CameraPath:
