@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from mdanim_lammps.picture.camera import MARGIN, CameraPath, action_of, automatic_view, fit_view, hermite_weights
 from mdanim_lammps.results.trajectory import Trajectory
-from mdanim_lammps.scene.scene import Camera, Control, Scene
+from mdanim_lammps.scene.render import Camera
+from mdanim_lammps.scene.scene import Control, Scene
 from picture_measures import project
 from picture_samples import box, falling, slab_scene, solid, write
 

@@ -13,7 +13,7 @@ from mdanim_lammps.model.basin import Grid
 from mdanim_lammps.picture.liquid import Blocks, kept_dry, undersides
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.results.trajectory import Trajectory
-from mdanim_lammps.scene.scene import Camera, Render
+from mdanim_lammps.scene.render import Camera, Render
 from picture_measures import SIZE, dry, spot
 from picture_samples import box, column_centres, flat, pool_scene, raw_of, wet_frames, write
 

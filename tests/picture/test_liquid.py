@@ -13,7 +13,7 @@ from mdanim_lammps.picture.camera import action_of
 from mdanim_lammps.picture.liquid import Blocks, Sheet
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.results.trajectory import Trajectory
-from mdanim_lammps.scene.scene import Camera, Render
+from mdanim_lammps.scene.render import Camera, Render
 from picture_measures import SIZE, dry, hue_mask, project, spot
 from picture_samples import box, column_centres, dam, flat, pool_scene, raw_of, splash, wet_frames, write
 

@@ -17,7 +17,7 @@ from mdanim_lammps.picture import movie
 from mdanim_lammps.picture.movie import movie_frames, render_movie, render_still
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
-from mdanim_lammps.scene.scene import Camera, Render
+from mdanim_lammps.scene.render import Camera, Render
 from picture_samples import falling, read_png, slab_scene, write
 
 SMALL = Render(size=(160, 90))
@@ -181,7 +181,7 @@ def test_a_script_without_a_guard_may_draw(short, tmp_path):
     script.write_text(
         "print('begun', flush=True)\n"
         "from mdanim_lammps.picture.movie import render_movie\n"
-        "from mdanim_lammps.scene.scene import Render\n"
+        "from mdanim_lammps.scene.render import Render\n"
         f"render_movie({str(tmp_path / 'run')!r}, Render(size=(160, 90)), {str(tmp_path / 'movie.mp4')!r}, processes=2)\n"
     )
     done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=100)

@@ -12,7 +12,8 @@ from mdanim_lammps.picture.light import nearest_around
 from mdanim_lammps.picture.palette import LOW, OBJECTS, STILL, object_colors
 from mdanim_lammps.picture.render import Painter, grid_spacing
 from mdanim_lammps.results.trajectory import Trajectory
-from mdanim_lammps.scene.scene import Camera, Control, Render, Scene, Walls
+from mdanim_lammps.scene.render import Camera, Render
+from mdanim_lammps.scene.scene import Control, Scene, Walls
 from picture_measures import hue_mask
 from picture_samples import ball, box, falling, slab_scene, solid, write
 

@@ -12,8 +12,7 @@ from mdanim_lammps.errors import OutputError
 from mdanim_lammps.picture.camera import action_of, automatic_view
 from mdanim_lammps.picture.surfaces import shaded_mesh
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
-from mdanim_lammps.scene.render import Floor
-from mdanim_lammps.scene.scene import Camera, Render
+from mdanim_lammps.scene.render import Camera, Floor, Render
 from mdanim_lammps.view.feed import ASPECT, DRY, HIDDEN, MOST_STRAIN, OPEN, PARTICLES, STRAIN, Feed, first_action
 from picture_samples import falling, flat, pool_scene, raw_of, slab_scene, wet_frames, write
 

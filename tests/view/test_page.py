@@ -104,8 +104,8 @@ def test_the_floor_of_the_scene(browser, tmp_path, floor):
     path.write_text(FALL + f"render {{ floor {floor}  shadows 0  light from (1, 0, 1) }}\n")
     with served(Scene.load(path).run(tmp_path / "fall.out").folder) as view:
         open_page(browser, view.address)
-        low = colors(browser)[-120:, 200:-200].mean(axis=2)
-        assert (np.ptp(low) > 15) == (floor == "checker")
+        beside = colors(browser)[-150:-50, 20:200].mean(axis=2)
+        assert (np.ptp(beside) > 15) == (floor == "checker")
         assert browser.js("return mdanim.stage.sun.shadow.intensity") == 0
         assert text(browser, "scale").startswith("checker" if floor == "checker" else "")
 

@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import OutputError, UsageError
 from ..results.trajectory import Trajectory
 from ..scene.keywords import did_you_mean
-from ..scene.scene import Camera
+from ..scene.render import Camera
 
 FIELD_OF_VIEW = 30.0
 """Vertical angle of view [degrees]."""
@@ -152,8 +152,8 @@ def automatic_view(action: Action, aspect: float, walls=None, basin=None) -> Vie
 def worth_seeing(low, high, free, fixed: np.ndarray, forward: np.ndarray, aspect: float) -> np.ndarray:
     """Which boxes a picture should hold so that it shows much of what happens, and shows it large; bool, shape (W, O).
 
-    The score is the share of boxes that are inside times the size at which they are seen to the power of `LARGER`. From each of its
-    four sides the picture is made smaller as long as the score grows.
+    The score is the share of boxes that are inside times the size at which they are seen to the power of `LARGER`. From each
+    of its four sides the picture is made smaller as long as the score grows.
 
     Then what comes and goes is followed for a `MOMENT` more.
 

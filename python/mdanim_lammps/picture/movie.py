@@ -23,7 +23,7 @@ import numpy as np
 from ..errors import OutputError, SetupError, UsageError
 from ..results.files import disk_errors, sync, write_whole
 from ..results.trajectory import Trajectory
-from ..scene.scene import Render
+from ..scene.render import Render
 from .marks import Marks
 
 CODING = {

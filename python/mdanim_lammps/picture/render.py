@@ -7,8 +7,7 @@ import numpy as np
 
 from ..errors import UsageError
 from ..results.trajectory import Trajectory
-from ..scene.render import Floor, Quality
-from ..scene.scene import Render
+from ..scene.render import Floor, Quality, Render
 from . import shading
 from .camera import FIELD_OF_VIEW, Action, CameraPath, View, action_of, automatic_view
 from .light import Light

@@ -14,7 +14,8 @@ from ..run.prepare import Prepared, prepare
 from ..scene.limits import CONTACT_STIFFNESS
 from ..scene.lock import lock_text
 from ..scene.meshes import mesh_files
-from ..scene.scene import Accuracy, Render, Save, Scene
+from ..scene.render import Render
+from ..scene.scene import Accuracy, Save, Scene
 
 LADDERS = ("time step", "resolution", "sweeps", "contact")
 LARGEST = 0.9

@@ -31,8 +31,7 @@ from ..picture.surfaces import shaded_mesh
 from ..results.trajectory import Trajectory
 from ..results.trajectory_file import LIQUID as LIQUID_TABLES
 from ..results.written_frames import WrittenFrames
-from ..scene.render import Floor
-from ..scene.scene import Render
+from ..scene.render import Floor, Render
 
 STRAIN, PARTICLES = 1, 2
 LAYERS = STRAIN | PARTICLES

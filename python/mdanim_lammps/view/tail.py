@@ -18,7 +18,7 @@ from ..results.ledger import Ledger
 from ..results.progress import ENDED, ProgressTail
 from ..results.timeline import Timeline
 from ..results.trajectory_file import find_trajectory
-from ..scene.scene import Render
+from ..scene.render import Render
 from .feed import Feed
 
 LOOK = 0.02
