@@ -61,6 +61,21 @@ def test_contributing_names_files_that_are_there():
     ]
 
 
+def test_architecture_names_modules_that_are_there():
+    """Every module and folder that the table of rooms names lies in its room."""
+    table = re.findall(r"^\| ((?:`[\w./]+` )+)(?:\(C\+\+\) )?\| (.*) \|$", text_of(ROOT / "docs" / "architecture.md"), flags=re.M)
+    bases = [ROOT, ROOT / "python" / "mdanim_lammps"]
+    named = 0
+    for rooms, about in table:
+        rooms = re.findall(r"`([^`]+)`", rooms)
+        assert all(any((base / room).exists() for base in bases) for room in rooms), rooms
+        homes = [*bases, *(base / room for base in bases for room in rooms if room.endswith("/"))]
+        for name in re.findall(r"`([\w./]+(?:/|\.py|\.js|\.txt))`", about):
+            named += 1
+            assert any((home / name).exists() for home in homes), f"{rooms}: {name}"
+    assert len(table) > 15 and named > 50
+
+
 def test_every_page_is_found():
     """Every page of the docs can be reached from docs/index.md by links."""
     index = ROOT / "docs" / "index.md"
