@@ -76,7 +76,7 @@ control {{
 }}
 effects {{ {off} }}
 """
-SEA = "liquid water {{ basin from (-50, -50, 0) cm to (50, 50, 60) cm density 1000 level 30 cm drag {drag} model {model} }}"
+SEA = "liquid water {{ basin from (-50, -50, 0) cm to (50, 50, 60) cm density 1000 level 30 cm drag {drag} }}"
 
 
 class Runner:
@@ -191,29 +191,25 @@ def shares(rounds: int) -> None:
     bare = {k: found[k]["leapfrog"] for k in found}
     print(f"DASHPOTS  {1 - found['plain']['bonds'] / found['damped']['bonds']:.2f}   of the springs' clock")
     print(f"SLOWING   {1 - bare['plain'] / bare['drag']:.2f}   of the leap-frog's clock")
-    print(f"PULL      {found['plain']['gravity'] / bare['plain']:.2f}   of the leap-frog's clock without drag")
     wet = {
-        f"{m} {d}": FLIGHT.format(more=SEA.format(drag=d, model=m), v=0, off="")
+        f"drag {d}": FLIGHT.format(more=SEA.format(drag=d), v=0, off="")
         .replace("50) m", "0.3) m")
         .replace("density 1000\n  elas", "density 500\n  elas")
-        for m in ("surface", "pressure")
         for d in (0, 4)
     }
-    found = measure(wet, rounds, min)
-    coupling = {k: f["coupling"] for k, f in found.items()}
-    print(f"DRAGGING  {1 - coupling['surface 0'] / coupling['surface 4']:.2f}   of the coupling's clock")
-    print(f"PRESSING  {coupling['pressure 4'] / coupling['surface 4']:.2f}   times the coupling by volumes")
+    coupling = {k: f["coupling"] for k, f in measure(wet, rounds, min).items()}
+    print(f"DRAGGING  {1 - coupling['drag 0'] / coupling['drag 4']:.2f}   of the coupling's clock")
 
 
 def forecasts(*names: str) -> None:
-    """Expected and measured cost of all scenes; measured in processor time, which others on the machine do not stretch."""
-    from mdanim_lammps.cost.calibration import calibration
-    from mdanim_lammps.cost.forecast import forecast
+    """Expected and measured cost of all scenes, both in processor time, which others on the machine do not stretch."""
+    from mdanim_lammps.cost.forecast import extrapolate
+    from mdanim_lammps.engine.plugin import open_lammps
     from mdanim_lammps.run.loop import simulate
     from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import load_scene
 
-    rates = calibration(print).rates
+    open_lammps()[0].close()
     print(
         "| scene | expected | measured | expected / measured | largest parts, expected and measured [s] |\n|---|---|---|---|---|"
     )
@@ -223,7 +219,7 @@ def forecasts(*names: str) -> None:
         start = time.process_time()
         ready = prepare(load_scene(path))
         setup = time.process_time() - start
-        told = forecast(ready, rates | {"load": 0.0}, setup=setup)  # all is loaded by now
+        told = extrapolate(ready, setup=setup)
         with tempfile.TemporaryDirectory() as folder:
             began = time.perf_counter()
             cost = simulate(ready, Path(folder)).cost

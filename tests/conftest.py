@@ -9,12 +9,6 @@ import pytest
 SCENES = Path(__file__).parent.parent / "scenes"
 
 
-@pytest.fixture(scope="session", autouse=True)
-def cache(tmp_path_factory):
-    """Keep what is stored per machine out of the user's own cache, in this process and in those that it starts."""
-    os.environ["XDG_CACHE_HOME"] = str(tmp_path_factory.getbasetemp().parent / "cache")
-
-
 @pytest.fixture(scope="session")
 def scenes() -> Path:
     """The folder of scenes."""

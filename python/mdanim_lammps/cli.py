@@ -122,7 +122,7 @@ def check(
     allow_unstable: AllowUnstable = False,
     format: Literal["text", "json"] = "text",
 ) -> None:
-    """List the effects of a scene with reasons and certify its time step; nothing is run.
+    """List the effects of a scene with reasons and certify its time step; of the run only some first steps, which tell its cost.
 
     Parameters
     ----------
@@ -131,7 +131,6 @@ def check(
     format
         Text for people, JSON for programs.
     """
-    from .cost.calibration import calibration
     from .cost.forecast import forecast
     from .cost.speedup_forecast import forecast_speedup
     from .report import check_json, check_lines
@@ -140,8 +139,7 @@ def check(
     record = with_accuracy(load(scene, set_, strict=strict), accuracy)
     ready = prepare(settle(record, make=False, quiet=format == "json"), allow_unstable=allow_unstable)
     setup = time.perf_counter() - STARTED
-    rates = calibration(lambda line: print(line, file=sys.stderr, flush=True)).rates
-    cost = forecast(ready, rates, setup=setup)
+    cost = forecast(ready, setup=setup)
     spread = forecast_speedup(ready, executors) if executors > 1 else None
     if format == "json":
         print(json.dumps(check_json(ready, cost, spread), indent=1))

@@ -172,8 +172,10 @@ def spread_line(timeline: Timeline, folder: Path) -> str:
     )
 
 
-def forecast_line(cost: Cost) -> str:
+def forecast_line(cost: Cost | None) -> str:
     """One line of ``check``: what a run will cost on this machine, and most of it."""
+    if cost is None:
+        return "cost     not known: the first steps of the run diverge, or take longer than half a minute"
     parts = sorted(cost.parts.items(), key=lambda item: -item[1])
     largest = ", ".join(f"{name} {_about(s)}" for name, s in parts if s >= 0.05 * cost.total)
     return f"cost     about {_about(cost.total)} here: {largest}"
@@ -187,7 +189,7 @@ def _about(seconds: float) -> str:
     return f"{float(f'{seconds / size:.{digits}g}'):g} {unit}"
 
 
-def check_lines(ready: Prepared, forecast: Cost, prospect: SpeedupForecast | None = None) -> list[str]:
+def check_lines(ready: Prepared, forecast: Cost | None, prospect: SpeedupForecast | None = None) -> list[str]:
     """What ``check`` prints: scene, certificate, limits, output, cost, what executors gain, and every effect."""
     return [
         *scene_lines(ready),

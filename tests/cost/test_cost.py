@@ -1,19 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a run cost, by effect and scene line; what it will cost, told before; and the calibration that this needs."""
+"""What a run cost, by effect and scene line, and what it will cost, told before."""
 
 import json
+import os
 import time
 from dataclasses import replace
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
-from mdanim_lammps.cost import calibration as calibrating
-from mdanim_lammps.cost.calibration import RATES, calibration, stored_at
-from mdanim_lammps.cost.forecast import fastest, forecast, moves, rebuilds
-from mdanim_lammps.cost.meetings import meetings
-from mdanim_lammps.effects import EFFECTS, springs
-from mdanim_lammps.effects.springs import fullness
+from mdanim_lammps.cost.forecast import extrapolate, forecast
+from mdanim_lammps.effects import EFFECTS
+from mdanim_lammps.errors import DivergedError, SetupError
 from mdanim_lammps.report import check_json, cost_line, forecast_line
 from mdanim_lammps.results.cost import Cost, CostShare
 from mdanim_lammps.run.frame_source import Account, add_clocks
@@ -47,7 +44,6 @@ control {
   resolution 5 cm
 }
 """
-RATE = dict.fromkeys(RATES, 1.0)
 
 
 @pytest.fixture(scope="module")
@@ -131,126 +127,115 @@ def test_cost_line_has_the_largest_first():
 def test_a_forecast_has_the_parts_of_a_cost(pond):
     """Name the same effects and lines as the run does, and work of the same names, with the same steps and particles."""
     ready, result = pond
-    told = forecast(ready, RATE)
+    told = forecast(ready)
     assert list(told.effects) == list(result.cost.effects)
     assert {"leap-frog", "rest of the step", "setup", "output"} == set(told.other) <= set(result.cost.other)
     assert [p.place for p in told.effects.values()] == [p.place for p in result.cost.effects.values()]
     assert (told.steps, told.particles) == (result.cost.steps, result.cost.particles)
-    assert told.covered == pytest.approx(1.0) and min(told.parts.values()) > 0.0
+    assert told.covered == pytest.approx(1.0) and min(told.parts.values()) >= 0.0
+    assert told.effects["springs"].seconds > 0.0
 
 
-def test_a_forecast_counts_the_work(pond):
-    """Take steps times springs, steps times particles, and frames; twice the time is twice the work."""
+@pytest.fixture
+def clockwork(monkeypatch):
+    """Runs that take 1 ms for a step, half of it for springs, 20 ms for a frame, 3 s for their start and 5 s for their end, on a
+    processor of which other programs have a quarter; returns what is run: frames, and the certificate."""
+    from mdanim_lammps.cost import forecast as forecasting
+    from mdanim_lammps.run import loop
+
+    clock, seen = SimpleNamespace(now=0.0), []
+
+    def simulate(ready, folder, *, on_progress):
+        c = ready.certificate
+        clock.now += 3.0
+        for frame in range(1, c.frames + 1):
+            clock.now += 1e-3 * c.steps_per_frame + 0.02
+            on_progress(SimpleNamespace(seconds=1e-3 * c.steps_per_frame * frame))
+            if (folder / "stop").exists():
+                break
+        clock.now += 5.0
+        steps = frame * c.steps_per_frame
+        effects = {"springs": CostShare(0.5e-3 * steps, "here", {"a": 1.0})}
+        other = {"leap-frog": 0.3e-3 * steps, "rest of the step": 0.2e-3 * steps, "setup": 3.0, "output": 9.0, "guard": 9.0}
+        cost = Cost(99.0, steps, 250, effects, other)
+        seen.append((frame, c))
+        if frame == c.frames:
+            return SimpleNamespace(cost=cost)
+        stopped = loop.Interrupted("enough")
+        stopped.cost = cost
+        raise stopped
+
+    monkeypatch.setattr(loop, "simulate", simulate)
+    times = SimpleNamespace(perf_counter=lambda: clock.now, process_time=lambda: 0.75 * clock.now)
+    monkeypatch.setattr(forecasting, "time", times)
+    return seen
+
+
+def test_a_forecast_takes_what_is_later_for_as_long(pond, clockwork):
+    """Take every step and every frame as those that were run, and what comes once as it was; twice the time is twice the work."""
     ready, _ = pond
-    told, steps = forecast(ready, RATE, setup=7.0), ready.certificate.steps
-    full = fullness(ready.system.spring, calibrating.lanes(damped=True))  # one of the two objects is
-    assert told.effects["springs"].seconds == steps * len(ready.system.spring) / full
-    assert told.effects["damping"].seconds == steps * 0.5 * len(ready.system.spring) / full
-    assert told.other["leap-frog"] == steps * 250
-    assert forecast(ready, RATE | {"lone leap-frog": 2.0}).other["leap-frog"] == 2 * steps * 250  # all of it may get wet
-    assert forecast(ready, RATE | {"leap-frog": 2.0}).other["leap-frog"] == steps * 250
-    assert told.other["setup"] == 7.0 + 1.0 + 250
-    assert forecast(ready, RATE | {"spring": 3.0}).effects["springs"].seconds == 3 * told.effects["springs"].seconds
-    assert forecast(ready, RATE | {"frame": 11.0}).other["output"] - told.other["output"] == pytest.approx(10 * 7)
-    long = replace(ready.scene, control=replace(ready.scene.control, time=6.0))
-    twice = replace(ready, scene=long, certificate=replace(ready.certificate, frames=12))
-    assert rebuilds(twice) == pytest.approx(2 * rebuilds(ready))
-    assert forecast(twice, RATE).effects["buoyancy"].seconds == 2 * told.effects["buoyancy"].seconds
-    assert forecast(twice, RATE).effects["liquid"].seconds == pytest.approx(2 * told.effects["liquid"].seconds)
-
-
-def test_lanes_have_work_where_springs_are_alike():
-    """Count vectors of springs: two for each block, and one for each length of springs in it."""
-    chain = np.stack([np.arange(7), np.arange(1, 8)], axis=1)
-    assert fullness(chain, 4) == 7 / (4 * (2 * 2 + 2))
-    uneven = np.array([[0, 1], [1, 3], [2, 5], [3, 7]])  # each of another length
-    assert fullness(uneven, 4) == 4 / (4 * (2 + 4))
-    assert fullness(np.zeros((0, 2), np.int32), 4) == 1.0
-
-
-def test_balls_leave_lanes_idle(prepared):
-    """Expect more of each spring of a ball than of a cube, and more again where vectors are wide."""
-    text = "object a {{ shape {} position (0, 0, 0) mass 1 elasticity 1e6 }}\ncontrol {{ time 1 s resolution 4 cm }}\n"
-    cube, ball = (prepared(text.format(shape)).system.spring for shape in ("box (0.6, 0.6, 0.6)", "sphere 20 cm"))
-    assert fullness(ball, 8) < fullness(ball, 4) < 0.9 * fullness(cube, 4)
-
-
-def test_some_of_many_springs_tell_of_all(monkeypatch):
-    """Find in stretches of a long body what all of it would tell, within a hundredth, though it changes along the way."""
-    first = np.repeat(np.arange(200_000), 3)
-    length = np.tile([1, 20, 400], 200_000) + (first > 120_000) * (first % 3)
-    many = np.stack([first, first + length], axis=1).astype(np.int32)
-    assert len(many) > springs.SAMPLE
-    found = fullness(many, 4)
-    monkeypatch.setattr(springs, "SAMPLE", len(many))
-    assert found == pytest.approx(fullness(many, 4), rel=0.01)
-    assert fullness(many[:300_000], 4) > 1.2 * fullness(many[-200_000:], 4)
-
-
-def test_speeds_come_from_falls(prepared):
-    """Take the fall to the ground for the speed that rebuilds lists, and the mean of the free flight where there is none."""
-    text = (
-        "gravity (0, 0, -9.81)\n{}\nobject a {{ shape box (0.1, 0.1, 0.1) position (0, 0, 1.05) mass 1 elasticity 1e6 }}\n"
-        "control {{ time 1 }}\n"
+    told, steps = extrapolate(ready, setup=7.0), ready.certificate.steps
+    assert told.effects == {"springs": CostShare(pytest.approx(0.75 * 0.5e-3 * steps), "here")}
+    assert told.other == pytest.approx(
+        {"leap-frog": 0.75 * 0.3e-3 * steps, "rest of the step": 0.75 * 0.2e-3 * steps, "setup": 7.0 + 2.25, "output": 7 * 0.015}
     )
-    assert fastest(prepared(text.format("ground z 0"))) == pytest.approx(2.5 * (2 * 9.81) ** 0.5)
-    assert fastest(prepared(text.format(""))) == pytest.approx(0.5 * 9.81, rel=1e-3)
+    assert told.wall == pytest.approx(sum(told.parts.values()))
+    twice = extrapolate(replace(ready, certificate=replace(ready.certificate, frames=12)))
+    assert twice.effects["springs"].seconds == pytest.approx(2 * told.effects["springs"].seconds)
+    assert twice.other["output"] == pytest.approx(13 * 0.015)
 
 
-STACK = """gravity (0, 0, -9.81)
-ground z 0
-repeat k in 0 .. 2 {{
-  object cube[k] {{
-    shape {shape}
-    position ({apart}*k, 0, 0.1 + {step}*k)
-    density 1000
-    elasticity 1 MPa
-  }}
-}}
-control {{ time {time} resolution 5 cm friction 0.5 }}
-"""
-BOX, BALL = "box (0.2, 0.2, 0.2)", "sphere 0.1"
+@pytest.mark.parametrize(
+    ("particles", "per_frame", "frames", "steps"),
+    [
+        pytest.param(250, 10, 19, 10, id="until it is enough"),
+        pytest.param(250, 1, 27, 1, id="until it is enough, frames of a step"),
+        pytest.param(250, 400, 3, 400, id="no fewer frames"),
+        pytest.param(5000, 2000, 6, 100, id="parts of frames"),
+        pytest.param(10_000_000, 2000, 19, 10, id="no fewer steps"),
+    ],
+)
+def test_a_forecast_takes_tenths_of_a_second(pond, clockwork, particles, per_frame, frames, steps):
+    """Run frames of some hundred thousand particle-steps until 0.4 s of processor time are over, and few at least."""
+    ready = pond[0]
+    many = SimpleNamespace(particles=particles)
+    extrapolate(replace(ready, system=many, certificate=replace(ready.certificate, steps_per_frame=per_frame, frames=1000)))
+    run, certificate = clockwork[0]
+    assert (run, certificate.steps_per_frame, certificate.last_steps) == (frames, steps, 0)
 
 
-def surfaces(prepared, **text):
-    """What is near in a stack of three, and the forecast with a rate of 1 for everything."""
-    ready = prepared(STACK.format(**{"shape": BOX, "apart": 0.0, "step": 0.2, "time": 1} | text))
-    return meetings(ready), forecast(ready, RATE), ready
+def test_a_forecast_runs_no_more_than_the_run(pond, clockwork):
+    """Run all frames of a short scene, and three where it has fewer."""
+    for frames, run in ((4, 4), (1, 3)):
+        extrapolate(replace(pond[0], certificate=replace(pond[0].certificate, steps_per_frame=1, frames=frames)))
+        assert clockwork[-1][0] == run
 
 
-def test_what_lies_on_another_touches(prepared):
-    """Count a side of both for each pair of cubes that lie on each other, and one for the plane; count particles once."""
-    met, _, _ = surfaces(prepared)
-    side = 6 * 5**2 / 6
-    assert met["contact"].touching == pytest.approx(4 * side)
-    assert met["ground"].touching == pytest.approx(side)
-    assert met["contact"].handed == 3 * 125
-    assert 0.5 * 6 * 150 < met["contact"].near <= 6 * 150
-    balls, _, _ = surfaces(prepared, shape=BALL)
-    assert balls["contact"].touching < 0.3 * balls["contact"].near
+def test_first_steps_that_end_badly(pond, monkeypatch):
+    """Tell nothing where they diverge or take too long, pass on that LAMMPS cannot be used, and outlive an end of the process."""
+    from mdanim_lammps.cost import forecast as forecasting
 
+    def ends(what):
+        monkeypatch.setattr(forecasting, "extrapolate", what)
+        return forecast(pond[0])
 
-def test_what_is_far_away_is_not_watched(prepared):
-    """Watch nothing where gaps are ten spacings; expect that two sides touch for a fifth of the time nevertheless."""
-    met, _, _ = surfaces(prepared, step=0.7, time=0.3)
-    assert met["contact"].touching == pytest.approx(0.2 * 2 * 2 * 25)
-    near, _, _ = surfaces(prepared, step=0.3, time=0.3)
-    assert met["contact"].near < 0.1 * near["contact"].near
-    assert met["contact"].handed < 3 * 125
+    def fail(error):
+        def run(ready, setup):
+            raise error
 
+        return run
 
-def test_forecast_of_surfaces_counts_what_is_near(prepared):
-    """Multiply what touches and what is handed by steps, and what is near by how far objects move."""
-    met, told, ready = surfaces(prepared)
-    steps, m = ready.certificate.steps, met["ground"]
-    assert told.effects["ground"].seconds == pytest.approx(steps * (m.touching + m.handed) + moves(ready) * m.near)
-    assert forecast(ready, RATE | {"near point": 2.0}).effects["contact"].seconds - told.effects["contact"].seconds == (
-        pytest.approx(moves(ready) * met["contact"].near)
-    )
-    assert (
-        meetings(prepared(STACK.replace("friction 0.5", "contact-model paper").format(shape=BOX, apart=0, step=0.23, time=1)))
-        == {}
-    )
+    assert ends(fail(DivergedError("particles are lost"))) is None
+    with pytest.raises(SetupError, match="no plugin"):
+        ends(fail(SetupError("no plugin")))
+    with pytest.raises(SetupError, match="ended the process"):
+        ends(lambda ready, setup: os._exit(1))
+    monkeypatch.setattr(forecasting, "PATIENCE", 0.2)
+    start = time.perf_counter()
+    assert ends(lambda ready, setup: time.sleep(60)) is None
+    assert time.perf_counter() - start < 30.0
+    assert forecast_line(None).startswith("cost     not known")
+    assert check_json(pond[0], None)["cost"] is None
 
 
 def test_forecast_is_printed(pond):
@@ -260,72 +245,3 @@ def test_forecast_is_printed(pond):
     assert forecast_line(replace(cost, wall=7300.0, effects={}, other={})) == "cost     about 2 h here: "
     assert check_json(pond[0], cost)["cost"]["wall"] == 12.4
     assert check_json(pond[0])["cost"] is None
-
-
-# --- calibration --------------------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def machine(monkeypatch, tmp_path):
-    """A machine that can be calibrated in no time; returns how often that was done, and what was told."""
-    seen = SimpleNamespace(measured=0, told=[])
-
-    class Measured:
-        def __call__(self):
-            seen.measured += 1
-            return dict.fromkeys(RATES, 0.5)
-
-        def cache_info(self):
-            return SimpleNamespace(currsize=0)
-
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setattr(calibrating, "_rates_here", Measured())
-    seen.ask = lambda: calibration(seen.told.append)
-    return seen
-
-
-def test_a_machine_is_calibrated_once(machine):
-    """Measure at first need, say so, keep it with the processor's name, and be silent from then on."""
-    assert machine.ask().rates == dict.fromkeys(RATES, 0.5)
-    assert machine.ask().stored and machine.measured == 1
-    assert len(machine.told) == 1 and "calibrating" in machine.told[0]
-    assert json.loads(stored_at().read_text())["processor"] == calibrating.processor()
-
-
-@pytest.mark.parametrize(
-    "spoil",
-    [
-        pytest.param(lambda d: "{ not json", id="broken"),
-        pytest.param(lambda d: json.dumps(d | {"processor": "another"}), id="of another processor"),
-        pytest.param(lambda d: json.dumps(d | {"skin": 0.75}), id="with another skin of lists"),
-        pytest.param(lambda d: json.dumps(d | {"method": calibrating.METHOD - 1}), id="measured in another way"),
-        pytest.param(lambda d: json.dumps({k: d[k] for k in ("processor", "rates")}), id="of a time when none of this was kept"),
-        pytest.param(lambda d: json.dumps(d | {"rates": {"spring": 1e-9}}), id="a rate is missing"),
-        pytest.param(lambda d: json.dumps(d | {"rates": d["rates"] | {"spring": 0.0}}), id="a rate is nothing"),
-        pytest.param(lambda d: json.dumps(d | {"rates": d["rates"] | {"spring": float("nan")}}), id="a rate is no number"),
-        pytest.param(lambda d: json.dumps([1, 2]), id="something else"),
-    ],
-)
-def test_a_file_that_will_not_do_is_measured_again(machine, spoil):
-    """Replace what is broken or foreign."""
-    machine.ask()
-    stored_at().write_text(spoil(json.loads(stored_at().read_text())))
-    assert machine.ask().rates == dict.fromkeys(RATES, 0.5) and machine.measured == 2
-    assert machine.ask().stored and machine.measured == 2
-
-
-def test_where_nothing_can_be_written(machine, tmp_path):
-    """Calibrate for this time only, and say why."""
-    (tmp_path / "cache").write_text("a file where a folder should be")
-    found = machine.ask()
-    assert not found.stored and found.rates["spring"] == 0.5
-    assert "cannot be kept" in machine.told[-1] and "XDG_CACHE_HOME" in machine.told[-1]
-
-
-def test_a_real_calibration(monkeypatch, tmp_path):
-    """Measure every rate of this machine: all positive and below seconds, most above the least that is taken for one."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    rates = calibration().rates
-    assert list(rates) == list(RATES)
-    assert all(0.0 < r < 5.0 for r in rates.values())
-    assert np.median(list(rates.values())) > 1e-9, "a busy machine may hide one, not half of them"

@@ -60,9 +60,6 @@ class Wind(effects.Effect):
     def warnings(self, scene, system):
         return [Problem(None, "sails are up", "haul them down", severity="warning")]
 
-    def forecast(self, load, rate):
-        return 7.0
-
 
 @pytest.fixture
 def windy(monkeypatch, prepared):

@@ -1,98 +1,98 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a run will cost, told before it: the work that every effect expects, times what this machine needs for it."""
+"""What a run will cost, told before it: its first steps are run, and all others are taken to cost as much."""
 
 from __future__ import annotations
 
-import numpy as np
+import tempfile
+import time
+from dataclasses import replace
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from pathlib import Path
 
-from ..effects import Load
-from ..effects.air_drag import LEAPFROG, leapfrog_rate
-from ..effects.envelope import Envelope
-from ..effects.springs import fullness
-from ..engine.commands import SKIN
-from ..results.cost import Cost, CostShare
-from ..results.expect import recorded
-from ..results.trajectory_file import trajectory_bytes
+from ..effects.air_drag import LEAPFROG
+from ..errors import DivergedError, MdanimError, SetupError
+from ..results.cost import Cost
+from ..results.files import STOP
 from ..run.prepare import Prepared
-from .calibration import lanes
-from .meetings import meetings
 
-RINGING = 2.5
-"""Mean speed of the fastest particle over the speed of an impact, where nothing damps what the impact sets off."""
-CALMED = 0.6
-"""The same where something damps it."""
-WET = 0.12
-"""The same where all that moves is in a liquid."""
+REST = "rest of the step"
+ENOUGH = 0.4
+"""Seconds of processor time after which no more frames are run."""
+FRAMES = 3, 30
+"""Fewest and most frames that are run."""
+PARTICLE_STEPS, STEPS = 500_000, 10
+"""Most work of a frame, and its fewest steps: the energies of a frame take as long as one more."""
+PATIENCE = 30.0
+"""Seconds after which a forecast is given up."""
 
 
-def forecast(ready: Prepared, rates: dict[str, float], *, setup: float | None = None) -> Cost:
-    """The expected cost of a run; ``rates`` as in cost/calibration.py.
+def forecast(ready: Prepared, *, setup: float = 0.0) -> Cost | None:
+    """The expected cost of a run; ``setup`` is what loading and modelling have taken already [s].
 
-    ``setup`` is what loading and modelling have taken already [s]; None estimates that too.
+    The steps are run in a process of their own, so that the caller's neither loads LAMMPS nor ends with it. None where they end
+    in a divergence or take longer than PATIENCE. Raises SetupError when LAMMPS or the plugin cannot be used, OutputError when the
+    folder for temporary files is full.
     """
-    scene, system, c = ready.scene, ready.system, ready.certificate
-    n, control = system.particles, scene.control
-    load = Load(
-        scene,
-        system,
-        frozenset(e.name for e in ready.plan.effects),
-        c.steps,
-        rebuilds(ready),
-        fullness(system.spring, lanes(ready.plan.damped)),
-        moves(ready),
-        meetings(ready),
-    )
-    alone = load.mobile if "buoyancy" in load.on else 0
-    effects = {}
-    for effect in ready.plan.effects:
-        span = ready.verdicts[effect.name].span
-        effects[effect.name] = CostShare(effect.forecast(load, rates), str(span) if span else None)
-    frames = 1 + len(c.lengths)
-    size = trajectory_bytes(ready.models, frames, control.save, control.single, ready.plan.grid)
-    looked_at = sum(
-        len(ready.models[system.names.index(name)].hexahedron)
-        for name, quantity in recorded(scene.expects)
-        if quantity == "immersed"
-    )
-    modelled = rates["model"] * n if setup is None else setup
+    context = get_context("fork")
+    answer, send = context.Pipe(duplex=False)
+    child = context.Process(target=_tell, args=(send, ready, setup), daemon=True)
+    child.start()
+    send.close()
+    try:
+        found = answer.recv() if answer.poll(PATIENCE) else None
+    except EOFError:
+        raise SetupError("the first steps cannot be run: LAMMPS ended the process") from None
+    finally:
+        child.kill()
+        child.join()
+    if isinstance(found, MdanimError):
+        raise found
+    return found
+
+
+def _tell(send: Connection, ready: Prepared, setup: float) -> None:
+    """Send the cost, None or the error through a pipe."""
+    try:
+        found: Cost | MdanimError | None = extrapolate(ready, setup=setup)
+    except DivergedError:
+        found = None
+    except MdanimError as error:
+        found = error
+    send.send(found)
+
+
+def extrapolate(ready: Prepared, *, setup: float = 0.0) -> Cost:
+    """Run the first steps in this process; arguments and errors as of `forecast`. Raises DivergedError too."""
+    from ..run.loop import Interrupted, Progress, simulate
+
+    c, particles = ready.certificate, ready.system.particles
+    steps = min(max(PARTICLE_STEPS // particles, STEPS), c.steps_per_frame)
+    frames = min(max(c.steps // steps, FRAMES[0]), FRAMES[1])
+    marks: list[tuple[float, float, float]] = []
+
+    def mark(progress: Progress) -> None:
+        marks.append((time.perf_counter(), time.process_time(), progress.seconds))
+        if len(marks) >= FRAMES[0] and marks[-1][1] - marks[0][1] > ENOUGH:
+            (folder / STOP).touch()
+
+    with tempfile.TemporaryDirectory(prefix="mdanim-") as temporary:
+        folder = Path(temporary)
+        short = replace(ready, certificate=replace(c, steps_per_frame=steps, frames=frames, last_steps=0))
+        try:
+            cost = simulate(short, folder, on_progress=mark).cost
+        except Interrupted as stopped:
+            cost = stopped.cost
+    assert cost is not None, "a run that has ended or stopped has a cost"
+    # What a run does once, before its first frame and after its last one, is not in these differences.
+    wall, own, simulated = (last - first for first, last in zip(marks[0], marks[-1]))
+    share = own / wall  # what other programs have of the processor is not part of a run
+    counted = sum(part.seconds for part in cost.effects.values()) + cost.other[LEAPFROG] + cost.other[REST]
+    of_step = share * simulated / ((len(marks) - 1) * steps) * c.steps / counted
+    effects = {name: replace(part, seconds=of_step * part.seconds, clocks={}) for name, part in cost.effects.items()}
     other = {
-        LEAPFROG: c.steps * load.mobile * leapfrog_rate(load, rates),
-        "rest of the step": c.steps * (rates["step"] + n * rates["particle"] + alone * rates["lone particle"])
-        + load.rebuilds * n * rates["rebuild"],
-        "setup": modelled + rates["load"] + n * rates["insert"],
-        "output": frames * (rates["frame"] + looked_at * rates["immersed"]) + size * rates["byte"],
+        **{name: of_step * cost.other[name] for name in (LEAPFROG, REST)},
+        "setup": setup + share * cost.other["setup"],
+        "output": share * (wall - simulated) / (len(marks) - 1) * (1 + len(c.lengths)),
     }
-    wall = sum(other.values()) + sum(part.seconds for part in effects.values())
-    return Cost(wall, c.steps, n, effects, other)
-
-
-def rebuilds(ready: Prepared) -> float:
-    """How often LAMMPS will rebuild its lists: whenever the fastest particle has moved by half the skin, at most every step."""
-    return min(float(ready.certificate.steps), fastest(ready) * ready.scene.control.time / _half_skin(ready))
-
-
-def moves(ready: Prepared) -> float:
-    """How often an object moves by half the skin: vibrations that only single particles have are no way."""
-    return CALMED * float(_reachable(ready).max()) * ready.scene.control.time / _half_skin(ready)
-
-
-def _half_skin(ready: Prepared) -> float:
-    return 0.5 * SKIN * float(ready.system.spacing.max())
-
-
-def _reachable(ready: Prepared) -> np.ndarray:
-    """Speed that each solid may reach by its start and its fall [m/s], shape (M,)."""
-    return Envelope(ready.resolved, ready.system, {}, ready.certificate.timestep).speed
-
-
-def fastest(ready: Prepared) -> float:
-    """Mean speed of the fastest particle over the whole run [m/s], roughly: of flights the mean of their ends, else what it may
-    reach by start and fall, times what that is on average."""
-    scene, system, on = ready.scene, ready.system, {e.name for e in ready.plan.effects}
-    if on & {"contact", "ground", "walls", "basin"}:
-        usual = WET if "buoyancy" in on else CALMED if on & {"damping", "air-drag"} else RINGING
-        return usual * float(_reachable(ready).max())
-    free = ~np.logical_or.reduceat(system.held, system.first[:-1])[system.object]
-    gained = scene.control.time * np.array(scene.gravity) * ("gravity" in on)
-    ends = [np.linalg.norm(system.velocity[free] + gain, axis=1).max(initial=0.0) for gain in (0.0, gained)]
-    return 0.5 * float(sum(ends))
+    return Cost(sum(part.seconds for part in effects.values()) + sum(other.values()), c.steps, particles, effects, other)

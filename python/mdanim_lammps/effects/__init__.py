@@ -6,7 +6,7 @@ from .boundaries import GroundPlane, WallPlanes
 from .contact import Contact
 from .contact_surface import SurfaceBasin, SurfaceContact, SurfaceGround, SurfaceWalls
 from .damping import Damping
-from .effect import Effect, Load, Meeting, Resolved, Verdict, decide, resolve
+from .effect import Effect, Resolved, Verdict, decide, resolve
 from .gravity import Gravity
 from .liquid import Basin, Buoyancy, LiquidAutomaton, LiquidDrag
 from .springs import Springs
@@ -25,4 +25,4 @@ EFFECTS: tuple[Effect, ...] = (
     LiquidDrag(),
 )
 
-__all__ = ["EFFECTS", "Effect", "Load", "Meeting", "Resolved", "Verdict", "decide", "resolve"]
+__all__ = ["EFFECTS", "Effect", "Resolved", "Verdict", "decide", "resolve"]

@@ -32,17 +32,6 @@ def slowed_share(instance) -> float:
     return more / (1.0 + more)
 
 
-def leapfrog_rate(load, rate) -> float:
-    """Seconds of the leap-frog for a particle in a step, without drag: in a liquid, whose forces come after all others, a
-    particle is moved by itself rather than in a block of many."""
-    return rate["lone leap-frog" if "buoyancy" in load.on else "leap-frog"]
-
-
-def drag_forecast(load, rate, particles: int) -> float:
-    """Seconds that drag, of air or liquid, of so many particles adds to the leap-frog."""
-    return load.steps * particles * leapfrog_rate(load, rate) * SLOWING / (1.0 - SLOWING)
-
-
 class AirDrag(Effect):
     name = "air-drag"
     if_off = "nothing slows down in air"
@@ -61,9 +50,6 @@ class AirDrag(Effect):
 
     def clocks(self, instance):
         return {LEAPFROG: slowed_share(instance) * instance.fix_seconds("leapfrog")}
-
-    def forecast(self, load, rate):
-        return drag_forecast(load, rate, np.count_nonzero(load.system.drag[~load.system.held]))
 
     def losses(self, scene):
         return (DRAG_LOSS,)

@@ -59,9 +59,6 @@ class Boundary(Effect):
     def energy(self, instance, scene, system):
         return instance.fix_scalar(self.fix)
 
-    def forecast(self, load, rate):
-        return load.rebuilds * load.mobile * rate["wall"]
-
     def penetration(self, instance, system):
         return instance.fix_value(self.fix, 4)
 

@@ -24,8 +24,6 @@ TUNNEL = (0.5, 0.65, 0.8)
 cells (docs/stability.md)."""
 SOFTER = 2.0 / 3.0
 """With contact softer than its standard that speed falls with this power of ``contact-stiffness`` (docs/physics-contact.md)."""
-PARTNERS = 34
-"""Pairs that a particle on a surface in touch is tried with: within reach and skin, 3.1 spacings."""
 
 
 @lru_cache(maxsize=16)
@@ -172,14 +170,6 @@ class Contact(Effect):
 
     def energy(self, instance, scene, system):
         return instance.fix_scalar(self.fix)
-
-    def forecast(self, load, rate):
-        # The surface of all but the largest object may be in touch, a ninth of it, a fifth of the time: in scenes/ it is from
-        # 1/6 in the mean (two bodies that come to rest) to 1/370 (balls that fall from high up).
-        system = load.system
-        surface = np.add.reduceat(system.boundary.astype(int), system.first[:-1])
-        touching = float(surface.sum() - surface.max()) / 45.0
-        return load.rebuilds * system.particles * rate["contact"] + load.steps * touching * PARTNERS * rate["pair"]
 
     def penetration(self, instance, system):
         # A guard lies one spacing below its surface, so r = h means that surfaces touch; between lattice points, and for

@@ -44,15 +44,12 @@ HEAT, DAMPED, LET_GO = "friction_heat", "contact_damping_loss", "let_go"
 """Columns of the ledger."""
 TAKEN = {HEAT: 1, DAMPED: 2, LET_GO: 3}
 """Their entries of the fix's vector, from 0."""
-DEEPEST, TOUCHING, SECONDS = 4, 5, 7
-"""In the fix's vector: the deepest point below a surface in this run [m], points that touch now, and wall seconds."""
+DEEPEST, SECONDS = 4, 7
+"""In the fix's vector: the deepest point below a surface in this run [m], and wall seconds."""
 
 
 class OnSurfaces(Effect):
     """What objects and planes have in common: bodies, friction, the law ``fix mdanim/contact``."""
-
-    rates = ("near plane", "on plane")
-    """What a point that is near costs, and one that touches, as in cost/calibration.py."""
 
     def columns(self, scene, system):
         return {
@@ -113,12 +110,6 @@ class OnSurfaces(Effect):
     def clocks(self, instance):
         return {self.fix: instance.fix_value(self.fix, SECONDS)}
 
-    def forecast(self, load, rate):
-        met = load.meetings[self.name]
-        listed, touched = self.rates
-        step = met.touching * rate[touched] + met.handed * rate["handed"]
-        return load.steps * step + load.moves * met.near * rate[listed]
-
     def penetration(self, instance, system):
         return instance.fix_value(self.fix, DEEPEST)
 
@@ -126,7 +117,6 @@ class OnSurfaces(Effect):
 class SurfaceContact(OnSurfaces, Contact):
     """Points of each drawn surface against the depth below that of the other body, and a short barrier behind it."""
 
-    rates = ("near point", "touching point")
     behind = "barrier"
     """ID of the barrier's fix."""
 
@@ -232,9 +222,6 @@ class SurfaceContact(OnSurfaces, Contact):
 
     def losses(self, scene):
         return (*super().losses(scene), LET_GO)
-
-    def forecast(self, load, rate):
-        return super().forecast(load, rate) + load.rebuilds * load.system.particles * rate["contact"]  # of the barrier
 
     def energy(self, instance, scene, system):
         return instance.fix_scalar(self.fix) + instance.fix_scalar(self.behind)

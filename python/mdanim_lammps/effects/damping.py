@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from .effect import Effect, Verdict
 from .springs import all_held, spring_norm, time_of_dashpots
 
@@ -29,9 +27,6 @@ class Damping(Effect):
     def clocks(self, instance):
         more = time_of_dashpots(instance.plan.system)
         return {"springs": instance.bond_seconds() * more / (1.0 + more)}
-
-    def forecast(self, load, rate):
-        return load.steps * np.count_nonzero(load.system.damping) * rate["dashpot"] / load.fullness
 
     def drag_rate(self, scene, system):
         if system.damping is None:  # all damped solids are held as a whole by boxes, and have no springs

@@ -6,8 +6,7 @@ it adds to the ledger and to the bound.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -28,47 +27,6 @@ class Verdict:
     on: bool
     reason: str
     span: Span | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Meeting:
-    """What contact at surfaces has to do, in the mean of a run."""
-
-    near: float
-    """Points that are watched because another object, or a plane, is near, counted for each of them."""
-    handed: float
-    """Particles around them."""
-    touching: float
-    """Points that touch."""
-
-
-@dataclass(frozen=True, slots=True)
-class Load:
-    """How much work a run will be, as far as that can be told before it."""
-
-    scene: Scene
-    system: System
-    on: frozenset[str]
-    """Effects that are on."""
-    steps: int
-    rebuilds: float
-    """How often neighbour lists will be rebuilt."""
-    fullness: float = 1.0
-    """How well springs fill the lanes of the vector unit (springs.py)."""
-    moves: float = 0.0
-    """How often an object that has come to its speed will have moved by half the skin of lists."""
-    meetings: Mapping[str, Meeting] = field(default_factory=dict)
-    """Of every effect that acts at surfaces, by its name."""
-
-    @property
-    def mobile(self) -> int:
-        """Particles that can move."""
-        return self.system.particles - int(self.system.held.sum())
-
-    @property
-    def time(self) -> float:
-        """Simulated [s]."""
-        return self.scene.control.time
 
 
 @dataclass(frozen=True)
@@ -216,11 +174,6 @@ class Effect:
         What runs under the clock of another style has its part of that clock, as ``python bench/effects.py shares`` measures it.
         """
         return {self.fix: instance.fix_seconds(self.fix)} if self.fix else {}
-
-    def forecast(self, load: Load, rate: Mapping[str, float]) -> float:
-        """Seconds that it will take; ``rate`` holds what this machine needs for one of each kind of work
-        (cost/calibration.py)."""
-        return 0.0
 
     def penetration(self, instance, system: System) -> float:
         """Deepest that something has been where it should not be, in this run [m]."""

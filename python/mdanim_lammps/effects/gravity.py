@@ -7,9 +7,6 @@ import numpy as np
 
 from .effect import Effect, Verdict
 
-PULL = 0.03
-"""Time of gravity over that of the leap-frog without drag, in a pass over blocks (bench/effects.py shares)."""
-
 
 class Gravity(Effect):
     name = fix = "gravity"
@@ -29,9 +26,6 @@ class Gravity(Effect):
 
     def pull(self, scene):
         return max(0.0, -scene.gravity[2])
-
-    def forecast(self, load, rate):
-        return load.steps * load.mobile * PULL * rate["leap-frog"]
 
     def potential(self, scene, mass, x):
         # No matrix product: the threads that it may start cost more than it. Axis by axis einsum is four times as fast.

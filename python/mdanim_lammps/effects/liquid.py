@@ -26,21 +26,10 @@ PERIOD = 0.06
 """Time between updates of a liquid that is not level, over sqrt(cell/g)."""
 NEAR = 8.0
 """Cells above the liquid up to which the motion of solids counts for it; as in the fix."""
-SWEPT, AUTOMATON, OCCUPANCY, COUPLING = 4, 7, 8, 9
-"""In the fix's vector: sweeps so far, and three clocks."""
+AUTOMATON, OCCUPANCY, COUPLING = 7, 8, 9
+"""In the fix's vector: three clocks."""
 DRAGGING = 0.07
 """Part of the coupling's time that drag takes (bench/effects.py shares)."""
-
-PRESSING = 2.2
-"""Time of the coupling by pressure on faces over that by immersed volumes: 1.8 for a cube (bench/effects.py shares),
-2.4 for a hull."""
-SWEEPS_PER_UPDATE = 8.0 * STRIDE
-"""8 sweeps for each cell that bodies travel."""
-STIR = 2.0
-"""Sweeps a second times the cell [m/s]: 8 for every cell that bodies travel, at a mean of 0.25 m/s. In the scenes of scenes/ it
-is 1.3 to 3.3, 2.0 in the mean."""
-
-
 SWEEPS = 4
 """Fewest sweeps of the automaton for each cell that the fastest solid travels; 8 are better (docs/physics-liquid.md)."""
 
@@ -125,12 +114,6 @@ class LiquidAutomaton(Effect):
     def clocks(self, instance):
         return {"automaton": instance.fix_value(self.fix, AUTOMATON), "occupancy": instance.fix_value(self.fix, OCCUPANCY)}
 
-    def forecast(self, load, rate):
-        grid = load.system.grid
-        sweeps = STIR * load.time / min(grid.cell)
-        solid = np.count_nonzero(~load.system.held[load.system.hexahedron].all(axis=1))
-        return sweeps * (grid.cells * rate["cell"] + solid / SWEEPS_PER_UPDATE * rate["solid"])
-
     def max_timestep(self, scene, system):
         return PERIOD / EVERY * math.sqrt(min(system.grid.cell) / -scene.gravity[2])
 
@@ -199,10 +182,6 @@ class Buoyancy(Effect):
         drag = any(e.name == LiquidDrag.name for e in instance.plan.effects)
         return {"coupling": instance.fix_value(LiquidAutomaton.fix, COUPLING) * (1.0 - DRAGGING * drag)}
 
-    def forecast(self, load, rate):
-        pressure = load.scene.liquid.model is LiquidModel.PRESSURE
-        return load.steps * load.mobile * rate["coupling"] * (PRESSING if pressure else 1.0)
-
 
 class LiquidDrag(Effect):
     """-gamma rho_l V_i s_i v on the immersed part of a particle, taken by the leap-frog with the drag of air."""
@@ -243,10 +222,6 @@ class LiquidDrag(Effect):
         if any(e.name == air_drag.AirDrag.name for e in instance.plan.effects):
             return coupling
         return coupling | {air_drag.LEAPFROG: air_drag.slowed_share(instance) * instance.fix_seconds("leapfrog")}
-
-    def forecast(self, load, rate):
-        coupling = load.steps * load.mobile * rate["coupling"] * DRAGGING
-        return coupling if air_drag.AirDrag.name in load.on else coupling + air_drag.drag_forecast(load, rate, load.mobile)
 
 
 def gamma(scene, system: System) -> np.ndarray:

@@ -20,36 +20,6 @@ def time_of_dashpots(system) -> float:
     return DASHPOTS / (1.0 - DASHPOTS) * np.count_nonzero(system.damping) / len(system.spring)
 
 
-SAMPLE, STRETCHES = 1 << 17, 16
-"""Springs at most that `fullness` looks at, and stretches of them."""
-OVERHEAD = 2
-"""What a block costs besides its springs, in vectors of springs; as in plugin/engine/blocks.cpp."""
-
-
-def fullness(spring: np.ndarray, lanes: int) -> float:
-    """Springs for each lane of the vectors that a step takes [-], 0 < f < 1: 1 where no lane ever waited.
-
-    ``spring`` pairs i < j in the order of i, shape (S, 2); ``lanes`` numbers in a vector. The plugin cuts particles into blocks
-    of neighbouring numbers (plugin/engine/simd_blocks.cpp) and computes together the springs of a block that lead equally far,
-    j - i; a lane whose particle has none of that length waits. f = S / (lanes (E + OVERHEAD B)), B blocks, E distinct pairs
-    (block, j - i):
-    0.76 in a cuboid, where neighbours have springs alike, 0.6 in small balls with 4 lanes, 0.5 with 8. Here all blocks are of
-    ``lanes`` particles; the plugin's cut is the best one, which wins a tenth at most (8 lanes, small ball). Of many springs only
-    stretches are looked at, spread evenly.
-    """
-    if not len(spring):
-        return 1.0
-    if len(spring) > SAMPLE:
-        each = SAMPLE // STRETCHES
-        starts = np.linspace(0, len(spring) - each, STRETCHES).astype(np.int64)
-        spring = np.concatenate([spring[start : start + each] for start in starts])
-    first, second = spring.T.astype(np.int64)
-    block = first // lanes
-    entry = np.sort(block * (1 + int(second.max())) + (second - first))
-    entries, blocks = (1 + np.count_nonzero(np.diff(a)) for a in (entry, block))
-    return len(spring) / (lanes * (entries + OVERHEAD * blocks))
-
-
 def all_held(solid) -> bool:
     """Whether no particle of the solid ever moves."""
     return any(isinstance(h, HoldAll) for h in solid.hold)
@@ -97,9 +67,6 @@ class Springs(Effect):
         # A system has dashpots even where damping is switched off.
         more = time_of_dashpots(instance.plan.system) if instance.plan.damped else 0.0
         return {"springs": instance.bond_seconds() / (1.0 + more)}
-
-    def forecast(self, load, rate):
-        return load.steps * len(load.system.spring) * rate["spring"] / load.fullness
 
 
 def spring_norm(system, weight: np.ndarray) -> np.ndarray:

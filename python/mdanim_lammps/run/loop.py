@@ -79,9 +79,11 @@ class Result:
 
 
 class Interrupted(MdanimError):
-    """Ctrl-C: the frame was finished and a checkpoint written."""
+    """Ctrl-C, or the file ``stop``: the frame was finished and a checkpoint written."""
 
     exit_code = ExitCode.INTERRUPTED
+    cost: Cost | None = None
+    """Of the frames that were run; None where that is not known."""
 
 
 def write_inputs(ready: Prepared, folder: Path) -> None:
@@ -250,10 +252,12 @@ class _Run:
             if last < len(lengths):
                 insist = " --allow-unstable" if c.fraction > 1.0 else ""
                 when = self.ledger.rows[-1]["time"]
-                raise Interrupted(
+                stopped = Interrupted(
                     f"interrupted at t = {number(when, 4)} s; go on with: mdanim-lammps resume {self.folder}{insist}\n"
                     f"  draw what is there with: mdanim-lammps render {self.folder}"
                 )
+                stopped.cost = self._cost(self.source.account())
+                raise stopped
             account = self.source.account()
             closing = time.perf_counter()
         self.seconds["output"] += time.perf_counter() - closing
