@@ -1,17 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the plan of a frame costs, and how much it moves: ``python bench/planning.py [times|crowd]``.
+"""What the plan of a frame costs, and how much it moves: ``python bench/planning.py [times|crowd|gains]``.
 
 times: for random boxes as in a loose pile; milliseconds, the least of some rounds. The parts are measured alone.
 crowd: objects that fly about in a box and bounce off its sides, for 100 frames; means over the frames but the first.
+gains: the same for 40 frames with one mechanism of the plan left out, and how much faster executors are forecast to be without
+short windows and without teams. Nothing is timed, so other programs on the machine change nothing.
 """
 
 import sys
 import time
+from contextlib import nullcontext
+from unittest import mock
 
 import numpy as np
+import scaling
+from mdanim_lammps.cost.speedup_forecast import forecast_speedup
+from mdanim_lammps.parallel.plan import assign as assigning
 from mdanim_lammps.parallel.plan import frame_plan as planning
 from mdanim_lammps.parallel.plan import islands
 from mdanim_lammps.parallel.plan.assign import assign
+from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions
 
 EXECUTORS = 8
 
@@ -35,7 +43,7 @@ def pile(count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
 def times() -> None:
     """One row for every number of boxes."""
     print(
-        f"{'boxes':>7} {'pairs':>7} {'islands':>7} | {'all pairs':>9} {'grid':>7} {'islands':>8} {'assign':>7} {'bundles':>8} "
+        f"{'boxes':>7} {'pairs':>7} {'islands':>7} | {'pairs':>7} {'islands':>8} {'assign':>7} {'bundles':>8} "
         f"{'order':>6} | {'first plan':>10} {'next':>7} {'balanced':>9}  [ms]"
     )
     for count in (10, 64, 1_000, 10_000, 100_000):
@@ -52,9 +60,8 @@ def times() -> None:
         met = islands.pairs(*reserved)
         order = planning.z_order(low, high)
         uneven = np.where(first.owner == 0, 3 * particles, 2 * particles)
-        naive = f"{least(lambda: islands._all_pairs(*reserved)):9.2f}" if count <= 10_000 else f"{'-':>9}"
         print(
-            f"{count:7} {len(met):7} {first.label.max() + 1:7} | {naive} {least(lambda: islands._grid_pairs(*reserved)):7.2f} "
+            f"{count:7} {len(met):7} {first.label.max() + 1:7} | {least(lambda: islands.pairs(*reserved)):7.2f} "
             f"{least(lambda: islands.components(count, met, still)):8.2f} "
             f"{least(lambda: assign(first.label, 2 * particles, nobody, EXECUTORS, particles=particles, order=order)):7.2f} "
             f"{least(lambda: planning.bundles(first.label, first.owner, particles, first.teams, order=order)):8.2f} "
@@ -81,6 +88,32 @@ def crowd() -> None:
         (10_000, 8, 30.0),
     ):
         print(f"{count:6} objects, one in {volume:.0f}, {executors} executors: " + _fly(count, executors, volume))
+
+
+LEFT_OUT = {
+    "nothing": None,
+    "islands stay at home": (assigning, "_fitting", lambda weight, home, room: np.zeros(len(weight), bool)),
+    "islands are dealt out along a curve": (planning, "z_order", lambda low, high: np.arange(len(low))),
+    "large islands are packed anew": (assigning, "_pack", lambda weight, home, *rest: assigning._unload(weight, home, *rest)),
+    "thin bundles are put together": (planning, "_thin_out", lambda *arguments: None),
+}
+
+
+def gains() -> None:
+    """One row for every mechanism that is left out."""
+    for count, executors, volume in ((24, 4, 30.0), (1_000, 2, 30.0), (1_000, 8, 10.0)):
+        print(f"{count} objects, one in {volume:.0f}, {executors} executors (columns as of crowd), without:")
+        for name, patch in LEFT_OUT.items():
+            with mock.patch.object(*patch) if patch else nullcontext():
+                print(f"  {name:36} {_fly(count, executors, volume, 40)}")
+    print("times as fast as one executor, forecast: all; windows of a frame only; no teams")
+    for scene, executors in (("crowd", 2), ("crowd", 8), ("hail", 2), ("hail", 4), ("hail", 8), ("one", 2), ("one", 4)):
+        ready = scaling.load(scene, 50)
+        found = (
+            forecast_speedup(ready, executors, options).faster
+            for options in (PlannerOptions(), PlannerOptions(finest=1), PlannerOptions(least=10**9))
+        )
+        print(f"  {scene}, {executors} executors: " + "; ".join(f"{x:.2f}" for x in found))
 
 
 def _fly(count: int, executors: int, volume: float, frames: int = 100) -> str:
@@ -126,4 +159,4 @@ def _fly(count: int, executors: int, volume: float, frames: int = 100) -> str:
 
 if __name__ == "__main__":
     for part in sys.argv[1:] or ("times", "crowd"):
-        {"times": times, "crowd": crowd}[part]()
+        {"times": times, "crowd": crowd, "gains": gains}[part]()

@@ -3,6 +3,8 @@
 
 from itertools import product
 
+import numpy as np
+
 
 def pairs(low, high, gap):
     """All (a, b), a < b, of boxes that meet, eq. (3.15)."""
@@ -11,6 +13,13 @@ def pairs(low, high, gap):
         return all(low[a][k] - high[b][k] <= gap and low[b][k] - high[a][k] <= gap for k in range(3))
 
     return [(a, b) for a in range(len(low)) for b in range(a + 1, len(low)) if meet(a, b)]
+
+
+def all_pairs(low, high, gap):
+    """The same of arrays (M, 3), all pairs at once; int64, shape (P, 2)."""
+    a, b = np.triu_indices(len(low), 1)
+    meet = ((low[a] - high[b] <= gap) & (low[b] - high[a] <= gap)).all(axis=1)
+    return np.stack([a[meet], b[meet]], axis=1)
 
 
 def components(count, pairs, still):

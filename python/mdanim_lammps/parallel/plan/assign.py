@@ -212,15 +212,14 @@ def _level(load: np.ndarray, amount: int) -> int:
 
 
 def _pack(weight, home, base, cap, mean, rank) -> tuple[np.ndarray, np.ndarray]:
-    """Large islands anew, each to the executor that has least, the largest first, and some exchanged; then executors that do
-    nothing else are named after the homes of what they have. The other islands as before.
+    """Large islands anew, each to the executor that has least, the largest first; then executors that do nothing else are named
+    after the homes of what they have. The other islands as before.
     """
     place, load = np.full(len(weight), -1), base.copy()
     large = np.flatnonzero(weight * CRUMB > mean)
     for i in large[np.argsort(-weight[large], kind="stable")]:
         place[i] = load.argmin()
         load[place[i]] += weight[i]
-    _exchange(weight, place, load, large, cap)
     idle = np.flatnonzero(base == 0)
     both = large[np.isin(place[large], idle) & np.isin(home[large], idle)]
     common = np.zeros((len(base), len(base)), np.int64)
@@ -238,24 +237,3 @@ def _pack(weight, home, base, cap, mean, rank) -> tuple[np.ndarray, np.ndarray]:
     place[small] = np.where(_fitting(weight[small], home[small], cap - renamed), home[small], -1)
     load = base + total(place[place >= 0], weight[place >= 0], len(base))
     return _deal(weight, place, home, load, cap, mean, rank)
-
-
-def _exchange(weight, place, load, large, cap) -> None:
-    """While the busiest is above the cap: it gives one of the large islands away, or for a smaller one, whichever evens most."""
-    executors = np.arange(len(load))
-    for _ in range(2 * len(load)):
-        busy = int(load.argmax())
-        mine, others = large[place[large] == busy], large[place[large] != busy]
-        if load[busy] <= cap or not len(mine):
-            return
-        to = np.concatenate([place[others], executors])
-        given = weight[mine][:, None] - np.concatenate([weight[others], np.zeros_like(load)])
-        after = np.maximum(load[busy] - given, load[to] + given)
-        i, k = np.unravel_index(after.argmin(), after.shape)
-        if after[i, k] >= load[busy]:
-            return
-        load[busy] -= given[i, k]
-        load[to[k]] += given[i, k]
-        if k < len(others):
-            place[others[k]] = busy
-        place[mine[i]] = to[k]

@@ -9,12 +9,9 @@ that all of them find the same. Wcislo 1999, eq. (3.14), (3.15), (6.17).
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import lru_cache
 
 import numpy as np
 
-FEW = 200
-"""Boxes up to which every pair is tried."""
 LARGE = 4.0
 """Edges above this many times the median are not sorted into the same grid."""
 BLOCK = 1 << 20
@@ -51,31 +48,17 @@ def boxes(low: np.ndarray, high: np.ndarray, d: np.ndarray) -> tuple[np.ndarray,
 def pairs(low: np.ndarray, high: np.ndarray, gap: float) -> np.ndarray:
     """All pairs a < b of boxes that meet, eq. (3.15), when each is grown by half of ``gap`` [m]; sorted, int64, shape (P, 2).
 
-    Boxes are ``low``, ``high`` (M, 3) [m]. Every pair up to `FEW` boxes; then grids, O(M log M + pairs that are near). Raises
-    ValueError where a number is not finite, a box is turned inside out or the gap is negative.
+    Boxes are ``low``, ``high`` (M, 3) [m]. O(M log M + pairs that are near). Raises ValueError where a number is not finite, a
+    box is turned inside out or the gap is negative.
+
+    Boxes of similar size are sorted into a grid by their lower corners, cells as wide as the widest and the gap: what meets a
+    box lies in the 27 cells around it. Larger ones come in rounds of their own, against themselves and all smaller ones; a round
+    takes half of those that are left at least. Sorts need not be stable: what is found is sorted.
     """
     if not (np.isfinite(low).all() and np.isfinite(high).all() and np.isfinite(gap)):
         raise ValueError("a box is not finite")
     if (low > high).any() or gap < 0.0:
         raise ValueError("a box is turned inside out, or the gap is negative")
-    return (_all_pairs if len(low) <= FEW else _grid_pairs)(low, high, gap)
-
-
-def _all_pairs(low: np.ndarray, high: np.ndarray, gap: float) -> np.ndarray:
-    return np.column_stack(_meeting((low.T, high.T), (low.T, high.T), *_every_pair(len(low)), gap))
-
-
-@lru_cache(maxsize=2)
-def _every_pair(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """All a < b, twice as long in the making as in the looking at."""
-    return np.triu_indices(count, 1)
-
-
-def _grid_pairs(low: np.ndarray, high: np.ndarray, gap: float) -> np.ndarray:
-    """Boxes of similar size are sorted into a grid by their lower corners, cells as wide as the widest and the gap: what meets a
-    box lies in the 27 cells around it. Larger ones come in rounds of their own, against themselves and all smaller ones; a round
-    takes half of those that are left at least. Sorts need not be stable: what is found is sorted.
-    """
     count = len(low)
     low, high = np.ascontiguousarray(low.T), np.ascontiguousarray(high.T)
     edge = (high - low).max(axis=0)
