@@ -33,7 +33,7 @@ def many(shape, step, count=10_000):
 COSTS = {
     "one box, 99^3 cells": lambda: ([solid(Box((0.99, 0.99, 0.99)))], 0.01),
     "one ball of 10^6 particles": lambda: ([solid(Sphere(0.615))], 0.01),
-    "duck of 6.6 10^5 particles": lambda: ([solid(Mesh(ROOT / "scenes/meshes/duck.stl", 0.01))], 0.0008),
+    "duck of 6.6 10^5 particles": lambda: ([solid(Mesh(ROOT / "scenes/meshes/duck.ply", 0.01))], 0.0008),
     "10 000 boxes of 27 particles": lambda: (many(Box((0.2, 0.2, 0.2)), 0.25), 0.1),
     "10 000 balls of 6 cells across": lambda: (many(Sphere(0.12), 0.25), 0.04),
 }

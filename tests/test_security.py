@@ -253,6 +253,19 @@ def virtual(file):
 
 
 OWN = "parameters/mdanim/"
+
+
+def painted(colors):
+    """A change of a file: all surfaces are said to have colours."""
+
+    def change(file):
+        surfaces = file[OWN + "surface"]
+        surfaces["painted"] = np.ones(len(surfaces["shape"]), np.uint8)
+        surfaces["color"] = colors
+
+    return change
+
+
 CRAFTED = {
     "external link": linked("particles/all/mass", "/etc/passwd"),
     "external data": put("particles/all/mass", None, shape=(9,), dtype="u1", external=[("/etc/passwd", 0, 9)]),
@@ -265,6 +278,9 @@ CRAFTED = {
     "a high particle": edited(OWN + "surface/index", setitem(0, 2**30)),
     "a particle below 0": edited(OWN + "surface/index", setitem(0, -1)),
     "no weight": edited(OWN + "surface/weight", setitem(0, np.nan)),
+    "few colours": painted(np.zeros(6, np.uint8)),
+    "parts of colours": painted(np.zeros(7, np.uint8)),
+    "colours that are none": painted(np.full(10**5, np.nan)),
     "a surface that is not there": edited(OWN + "surface_of", setitem(0, 5)),
     "particles of others": edited(OWN + "first", setitem(1, 10**9)),
     "a spring to nowhere": edited("connectivity/bonds", setitem((0, 0), 2**30)),

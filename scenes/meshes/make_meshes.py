@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Make the meshes of the scenes: duck.stl, a plump bath duck of smoothly joined ellipsoids, and boat.stl, an open hull;
+"""Make the meshes of the scenes: duck.ply, a plump bath duck of smoothly joined ellipsoids, and boat.stl, an open hull;
 contoured and thinned out to small closed meshes.
 
 Run ``python make_meshes.py`` in this folder; needs only what mdanim-lammps needs. Units are centimetres.
@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pyvista
+from mdanim_lammps.model.tessellate import revolve
 
 PARTS = (
     # centre (x, y, z) [cm], half axes [cm]; the duck looks along +x and is 12 cm long
@@ -23,6 +24,15 @@ PARTS = (
 BLEND = 0.35
 """Width of the fillet between two parts [cm]."""
 TRIANGLES = 4000
+YELLOW, ORANGE, WHITE, BLACK = (255, 205, 30), (240, 110, 20), (255, 255, 255), (20, 20, 25)
+PAINT = (
+    # centre (x, y, z) [cm], half axes [cm], colour; the later one covers
+    ((5.35, 0.0, 4.05), (1.45, 1.6, 0.95), ORANGE),
+    *(((4.35, side * 1.45, 5.35), (0.75, 0.75, 0.85), WHITE) for side in (-1, 1)),
+    *(((4.5, side * 1.55, 5.4), (0.5, 0.5, 0.55), BLACK) for side in (-1, 1)),
+)
+RING = 0.08
+"""Width within which one colour becomes another [cm]."""
 
 
 def duck() -> pyvista.PolyData:
@@ -34,30 +44,48 @@ def duck() -> pyvista.PolyData:
     # Smooth minimum of all distances: -w log sum exp(-d / w).
     grid["distance"] = -BLEND * np.log(np.exp(-np.stack(distance) / BLEND).sum(axis=0))
     surface = grid.contour([0.0], scalars="distance").triangulate().clean()
-    return surface.decimate(1 - TRIANGLES / surface.n_cells, volume_preservation=True).clean()
+    surface = surface.decimate(1 - TRIANGLES / surface.n_cells, volume_preservation=True).clean()
+    return painted(surface)
+
+
+def painted(surface: pyvista.PolyData) -> pyvista.PolyData:
+    """The same surface with a colour at each point, cut on both sides of where colours meet."""
+    for centre, half, _ in PAINT:
+        for outer in (-2 * RING, 0.0, RING):
+            surface["way"] = _distance(surface.points, np.array(centre), np.array(half)) - outer
+            inside = surface.clip_scalar(scalars="way", value=0.0, both=True)
+            surface = inside[0].append_polydata(inside[1]).triangulate().clean(tolerance=1e-6, absolute=True)
+    color = np.tile(np.array(YELLOW, dtype=np.uint8), (surface.n_points, 1))
+    for centre, half, found in PAINT:
+        color[_distance(surface.points, np.array(centre), np.array(half)) < 0.5 * RING] = found
+    surface.clear_data()
+    surface["RGB"] = color
+    return surface
 
 
 HULL = np.array([60.0, 26.0, 30.0])
 """Half length, half width and depth of the boat [cm]; it points along x and its rim lies at z = 0."""
 THICK = 7.0
 """Thickness of its planks [cm]: two cells and more of the boat's scene."""
+FULL = 2.5
+"""Exponent of its outlines: 2 is an ellipse, more is fuller."""
+RINGS, FACETS = 14, 80
+"""Of points from the keel to the rim, and points of each."""
 
 
 def boat() -> pyvista.PolyData:
-    """The boat as a closed triangle mesh [cm]: the lower half of a full-bodied ellipsoid, less a smaller one."""
-    step, low, high = 1.0, np.array([-63.0, -29.0, -33.0]), np.array([63.0, 29.0, 3.0])
-    counts = ((high - low) / step).astype(int) + 1
-    grid = pyvista.ImageData(dimensions=counts, spacing=(step,) * 3, origin=low)
-    outer, inner = (_superellipsoid(grid.points, half) for half in (HULL, HULL - THICK))
-    grid["distance"] = np.max([outer, -inner, grid.points[:, 2]], axis=0)
-    surface = grid.contour([0.0], scalars="distance").triangulate().clean()
-    return surface.decimate(1 - TRIANGLES / surface.n_cells, volume_preservation=True).clean()
+    """The boat as a closed triangle mesh [cm]: the lower half of a full-bodied ellipsoid, less a smaller one.
 
-
-def _superellipsoid(points: np.ndarray, half: np.ndarray) -> np.ndarray:
-    """About the distance to the surface |x/a|^2.5 + |y/b|^2.5 + |z/c|^2.5 = 1: fuller than an ellipsoid."""
-    f = (np.abs(points / half) ** 2.5).sum(axis=1) ** 0.4
-    return (f - 1) * half.min()
+    Rings of points from the keel up to the rim, across it, and down inside: the rim is as smooth as its ring.
+    """
+    down = np.linspace(-np.pi / 2, 0.0, RINGS)
+    outer, inner = np.stack([np.cos(down), np.sin(down)], axis=1), np.stack([np.cos(down), np.sin(down)], axis=1)[::-1]
+    points, triangles = revolve(np.concatenate([outer, inner]), FACETS)
+    half = np.repeat([HULL, HULL - THICK], [(RINGS - 1) * FACETS] * 2, axis=0)
+    half = np.concatenate([half, [HULL, HULL - THICK]])  # the poles come last
+    # Along each ray of an ellipsoid with these half axes, out to the fuller surface |x/a|^2.5 + |y/b|^2.5 + |z/c|^2.5 = 1.
+    points /= (np.abs(points) ** FULL).sum(axis=1, keepdims=True) ** (1 / FULL)
+    return pyvista.PolyData.from_regular_faces(points * half, triangles)
 
 
 def _distance(points: np.ndarray, centre: np.ndarray, half: np.ndarray) -> np.ndarray:
@@ -70,7 +98,8 @@ def _distance(points: np.ndarray, centre: np.ndarray, half: np.ndarray) -> np.nd
 if __name__ == "__main__":
     for make in (duck, boat):
         mesh = make()
-        path = Path(__file__).with_name(f"{make.__name__}.stl")
-        mesh.save(path, binary=True)
+        colored = "RGB" in mesh.point_data
+        path = Path(__file__).with_name(make.__name__ + (".ply" if colored else ".stl"))
+        mesh.save(path, binary=True, texture="RGB" if colored else None)
         size = path.stat().st_size
         print(f"{path.name}: {mesh.n_cells} triangles, open edges {mesh.n_open_edges}, {size} bytes")

@@ -240,7 +240,7 @@ def test_an_open_hull_is_told():
     assert warning.severity == "warning" and "boat is open and hollow" in warning.message
     assert "model pressure" in warning.hint
     assert not told(BOAT, model=LiquidModel.PRESSURE)
-    assert not told(Mesh(BOAT.path.with_name("duck.stl"), 0.03))
+    assert not told(Mesh(BOAT.path.with_name("duck.ply"), 0.03))
 
 
 def test_what_a_hull_encloses():

@@ -257,7 +257,7 @@ def test_distance_is_that_of_the_nearest_of_many_points(shape):
 
 
 @pytest.mark.parametrize(
-    "shape", [Mesh(MESHES / "knot.ply", 0.01), Mesh(SCENES / "meshes" / "duck.stl", 0.03)], ids=["knot", "duck"]
+    "shape", [Mesh(MESHES / "knot.ply", 0.01), Mesh(SCENES / "meshes" / "duck.ply", 0.03)], ids=["knot", "duck"]
 )
 def test_distance_to_a_mesh_is_that_of_vtk(shape):
     """By the triangles of the nearest samples, the same as by a search among all triangles; less exact far away."""

@@ -9,6 +9,8 @@ from mdanim_lammps.model import mesh, shapes
 from mdanim_lammps.scene.scene import Box, Mesh, Sphere, Torus
 from model_samples import MESHES, assert_closed, enclosed_volume
 
+SCENES = MESHES.parents[2] / "scenes"
+
 
 def written(tmp_path, shape, size=0.1, suffix=".stl"):
     """A shape's surface as a mesh file."""
@@ -110,6 +112,50 @@ def test_an_undamaged_file_of_that_kind_is_read(tmp_path):
     """The tetrahedron that the damaged files above are made from."""
     (tmp_path / "whole.ply").write_bytes(ply(4, 4, CORNERS + FACES))
     assert mesh.load(Mesh(tmp_path / "whole.ply")).volume == pytest.approx(1 / 6)
+
+
+@pytest.mark.parametrize("channels", [0, 3, 4])
+def test_a_file_may_have_colours(tmp_path, channels):
+    """Those of its points, with or without opacity; new points take that of the nearest one, and a file without has none."""
+    import pyvista
+
+    points, triangles = shapes.surface(Sphere(0.1), 0.02)
+    body, given = pyvista.PolyData.from_regular_faces(points, triangles), np.full((len(points), channels or 3), 7, np.uint8)
+    given[points[:, 0] > 0.0, :3] = (200, 100, 50)
+    body["paint"] = given
+    body.save(tmp_path / "ball.ply", texture="paint" if channels else None)
+    read = mesh.load(Mesh(tmp_path / "ball.ply"))
+    where = np.array([[0.09, 0.0, 0.01], [-0.09, 0.0, 0.01]])
+    found = mesh.colors_at(read, where)
+    if channels == 0:
+        assert read.color is None and found is None
+    else:
+        assert found.tolist() == [[200, 100, 50], [7, 7, 7]]
+        np.testing.assert_array_equal(read.color[:, 0] == 200, read.points[:, 0] > 0.0)
+
+
+def test_the_rim_of_the_boat_is_smooth():
+    """Two level rings of points, inside and outside of the planks, that turn by a few degrees at each."""
+    points = mesh.load(Mesh(SCENES / "meshes" / "boat.stl")).points
+    rim = points[points[:, 2] > points[:, 2].max() - 1e-3]
+    outside = np.hypot(rim[:, 0] / 60.0, rim[:, 1] / 26.0) > 0.93
+    for ring in (rim[outside], rim[~outside]):
+        ring = ring[np.argsort(np.arctan2(ring[:, 1], ring[:, 0]))][:, :2]
+        step = np.roll(ring, -1, axis=0) - ring
+        heading = np.arctan2(step[:, 1], step[:, 0])
+        turn = np.degrees((np.roll(heading, -1) - heading + np.pi) % (2 * np.pi) - np.pi)
+        assert len(ring) == 80 and turn.min() > 0.0 and turn.max() < 20.0
+
+
+def test_the_duck_has_a_face():
+    """A beak in front, and two eyes with dark pupils at either side above it."""
+    duck = mesh.load(Mesh(SCENES / "meshes" / "duck.ply"))
+    red, green, blue = duck.color.astype(int).T
+    beak, dark, white = (duck.points[m] for m in ((green < 150) & (red > 200), red < 60, blue > 200))
+    for side in (-1, 1):
+        eye, pupil = (part[side * part[:, 1] > 0.5].mean(axis=0) for part in (white, dark))
+        assert eye[2] > beak[:, 2].mean() + 0.5 and eye[0] < beak[:, 0].max() and np.linalg.norm(eye - pupil) < 0.5
+    assert len(white) > 50 and len(dark) > 40 and abs(beak[:, 1].mean()) < 0.2
 
 
 def test_large_and_irregular_files_are_not_opened(tmp_path):

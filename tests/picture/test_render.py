@@ -57,6 +57,22 @@ def test_objects_are_seen_where_they_are(tmp_path):
             assert len(rows) > 0.5 * np.ptp(corners[:, 0]) * np.ptp(corners[:, 1])
 
 
+def test_a_mesh_file_has_its_colours(tmp_path):
+    """A ball painted in halves is seen so, unless its object has a colour; equal ones that are not painted stay apart."""
+    models = [ball(name, 0.3, 0.1, (x, 0, 0.3), rings=24) for name, x in (("painted", -0.8), ("chosen", 0.0), ("plain", 0.8))]
+    for m in models[:2]:
+        skin = m.surface.vertices(m.position)
+        color = np.where(skin[:, 2:] > 0.3, np.array([[208, 32, 32]]), np.array([[32, 160, 32]])).astype(np.uint8)
+        object.__setattr__(m, "surface", replace(m.surface, color=color))
+    with trajectory(tmp_path, models, colors=[None, "#3050d0", "#3050d0"]) as t:
+        assert len(t.metadata.surfaces) == 2
+        image = picture(t)
+    red, green, blue = (np.nonzero(hue_mask(image, c)) for c in ("#d02020", "#20a020", "#3050d0"))
+    assert min(len(red[0]), len(green[0])) > 200 and red[0].mean() < green[0].mean() - 8
+    # The others are blue, and to the right.
+    assert max(red[1].max(), green[1].max()) < 120 and len(blue[0]) > 1.5 * (len(red[0]) + len(green[0]))
+
+
 def test_picture_has_no_holes(tmp_path):
     """Inside the outline of a box bent upward at its ends every pixel is box: no column has a gap."""
     model = box("box", (0.6, 0.4, 0.4), (6, 4, 4), (0, 0, 0.6))

@@ -92,6 +92,30 @@ def test_the_scene_tells_what_is_there(slab):
     np.testing.assert_allclose(head["view"]["look"], view.look)
 
 
+def test_colours_of_a_mesh_file_go_with_its_vertices(tmp_path):
+    """Beside objects that have one colour, in the order of the vertices; without such a file there are none."""
+    scene, models = slab_scene()
+    ball = models[2]
+    assert ball.name == "ball"
+    up = ball.surface.vertices(ball.position)[:, 2] > 1.0
+    color = np.where(up[:, None], np.uint8(200), np.uint8([1, 2, 3]))
+    models[2] = replace(ball, surface=replace(ball.surface, color=color))
+    write(tmp_path / "trajectory.h5", scene, models, falling(models, 1))
+    feed = Feed(tmp_path)
+    head, arrays = unpacked(feed.scene())
+    tint, of = arrays["tint"].reshape(-1, 3), arrays["object"]
+    assert [tint[of == k][0].tolist() for k in (0, 1)] == [o["color"] for o in head["objects"][:2]]
+    assert {tuple(c) for c in tint[of == 2].tolist()} == {(200, 200, 200), (1, 2, 3)}
+    vertices = feed.vertices(models_at(models))[of == 2]
+    np.testing.assert_array_equal(tint[of == 2][:, 0] == 200, vertices[:, 2] > 1.0)
+    feed.close()
+
+
+def models_at(models):
+    """Particles of all models [m]."""
+    return np.concatenate([m.position for m in models])
+
+
 def test_light_and_floor_are_those_of_the_scene(slab):
     """The page follows the words of the render block that it can follow."""
     render = Render(light=(0.0, -3.0, 4.0), shadows=0.25, floor=Floor.CHECKER)

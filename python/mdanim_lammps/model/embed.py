@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from ..scene.scene import Box, Shape
-from . import shapes
+from ..scene.scene import Box, Mesh, Shape
+from . import mesh, shapes
 from .lattice import CORNERS, Lattice
 from .model import Surface
 
@@ -19,7 +21,8 @@ def make_surface(shape: Shape, lattice: Lattice) -> Surface:
     if isinstance(shape, Box):
         return _faces(lattice)
     points, triangles = shapes.surface(shape, float(lattice.cells.edge.min()))
-    return _embedded(points, triangles, lattice)
+    color = mesh.colors_at(mesh.load(shape), points) if isinstance(shape, Mesh) else None
+    return replace(_embedded(points, triangles, lattice), color=color)
 
 
 def _faces(lattice: Lattice) -> Surface:

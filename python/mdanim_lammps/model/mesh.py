@@ -42,6 +42,8 @@ class Triangles:
     """[m^3]"""
     thickness: float
     """Thickness of the thinnest part, an estimate [m]."""
+    color: np.ndarray | None = None
+    """RGB of the points, uint8, shape (V, 3); None where the file has none."""
 
     @property
     def area(self) -> float:
@@ -64,7 +66,7 @@ def load(shape: Mesh) -> Triangles:
 
 @lru_cache(maxsize=64)
 def _load(path: Path, scale: float, changed: int, size: int) -> Triangles:
-    points, triangles = _read(path)
+    points, triangles, color = _read(path)
     triangles = _outward(points, triangles, path.name)
     volume, centre = _volume_and_centre(points, triangles)
     size = float(np.ptp(points, axis=0).max()) * scale
@@ -75,18 +77,21 @@ def _load(path: Path, scale: float, changed: int, size: int) -> Triangles:
             "'scale' is the length of a unit of the file; is an exponent wrong?",
         )
     points = (points - centre) * scale
-    return Triangles(points, triangles, volume * scale**3, _thickness(points, triangles, volume * scale**3))
+    return Triangles(points, triangles, volume * scale**3, _thickness(points, triangles, volume * scale**3), color)
 
 
-def _read(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Points in units of the file (V, 3), equal ones merged, and triangles (T, 3)."""
+def _read(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    """Points in units of the file (V, 3), equal ones merged, triangles (T, 3), and colours of points (V, 3) if it has any."""
     import pyvista
 
     try:
-        polygons, faces = read_polygons(path)
+        polygons, faces, color = read_polygons(path)
     except (OSError, UnreadableMesh) as error:
         raise MeshError(f"mesh {path.name}: {error}", "export it again as STL, OBJ or PLY") from None
-    surface = pyvista.PolyData(polygons, faces=faces).triangulate().clean(tolerance=1e-7, absolute=False)
+    surface = pyvista.PolyData(polygons, faces=faces)
+    if len(color):
+        surface.point_data["color"] = color
+    surface = surface.triangulate().clean(tolerance=1e-7, absolute=False)
     triangles = np.asarray(surface.faces).reshape(-1, 4)[:, 1:].astype(np.int32)
     points = np.asarray(surface.points, float)
     corners = np.sort(triangles, axis=1)
@@ -95,7 +100,7 @@ def _read(path: Path) -> tuple[np.ndarray, np.ndarray]:
         raise MeshError(f"mesh {path.name}: holds no triangle", "export a surface, not points or lines")
     if not np.isfinite(points).all():
         raise MeshError(f"mesh {path.name}: holds coordinates that are not finite", "export it again")
-    return points, triangles
+    return points, triangles, np.asarray(surface.point_data["color"]) if len(color) else None
 
 
 def _edges(triangles: np.ndarray) -> np.ndarray:
@@ -309,6 +314,15 @@ def _spots(corners: np.ndarray) -> np.ndarray:
     u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
     a, b, c = np.moveaxis(corners, 1, 0)
     return a + u[:, None] * (b - a) + v[:, None] * (c - a)
+
+
+def colors_at(mesh: Triangles, points: np.ndarray) -> np.ndarray | None:
+    """Colours of the points of the file that are nearest to these [m], shape (N, 3): uint8, (N, 3); None where it has none."""
+    if mesh.color is None:
+        return None
+    from scipy.spatial import cKDTree
+
+    return mesh.color[cKDTree(mesh.points).query(points)[1]]
 
 
 def refined_surface(mesh: Triangles, size: float) -> tuple[np.ndarray, np.ndarray]:

@@ -24,8 +24,9 @@ class UnreadableMesh(Exception):
     """A file that is no mesh; the message says why."""
 
 
-def read_polygons(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Points, shape (V, 3), in units of the file, and faces as VTK lists them, (count, index, index, ...) one after the other.
+def read_polygons(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points, shape (V, 3), in units of the file, faces as VTK lists them, (count, index, index, ...) one after the other, and
+    colours of points, uint8 RGB, shape (V, 3), or (0, 3) where the file has none.
 
     Every index is that of a point. Raises UnreadableMesh, and OSError for a file that is not there.
     """
@@ -43,10 +44,10 @@ def read_polygons(path: Path) -> tuple[np.ndarray, np.ndarray]:
     if done.returncode:
         raise UnreadableMesh("is damaged, cut short, or no mesh at all")
     arrays = io.BytesIO(done.stdout)
-    return np.load(arrays), np.load(arrays)
+    return np.load(arrays), np.load(arrays), np.load(arrays)
 
 
-def _read(path: str) -> tuple[np.ndarray, np.ndarray]:
+def _read(path: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkObject
     from vtkmodules.vtkIOGeometry import vtkOBJReader, vtkSTLReader
@@ -63,11 +64,13 @@ def _read(path: str) -> tuple[np.ndarray, np.ndarray]:
     first, index = vtk_to_numpy(cells.GetOffsetsArray()), vtk_to_numpy(cells.GetConnectivityArray())
     if len(index) and (index.min() < 0 or index.max() >= len(points)):
         raise UnreadableMesh("a face names a point that is not there")
-    return points, np.insert(index, first[:-1], np.diff(first))
+    found = next((a for name in ("RGB", "RGBA") if (a := surface.GetPointData().GetArray(name)) is not None), None)
+    color = vtk_to_numpy(found)[:, :3] if found is not None else np.zeros((0, 3), dtype=np.uint8)
+    return points, np.insert(index, first[:-1], np.diff(first)), np.ascontiguousarray(color, dtype=np.uint8)
 
 
 def main() -> None:
-    """Write the contents of a file to the standard output, as two arrays."""
+    """Write the contents of a file to the standard output, as three arrays."""
     for limit, most in ((resource.RLIMIT_AS, MEMORY), (resource.RLIMIT_CORE, 0)):
         hard = resource.getrlimit(limit)[1]
         resource.setrlimit(limit, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))

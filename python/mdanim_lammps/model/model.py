@@ -36,6 +36,8 @@ class Surface:
     """Particles of which a vertex is the sum, int32, shape (V, K); K is 1 for boxes, 8 for embedded surfaces."""
     weight: np.ndarray
     """Their weights, rows sum to 1, shape (V, K)."""
+    color: np.ndarray | None = None
+    """RGB of the vertices, uint8, shape (V, 3); None where a mesh file has none, and for all other shapes."""
 
     def vertices(self, position: np.ndarray) -> np.ndarray:
         """Vertex positions [m], shape (V, 3), for particle positions [m], shape (N, 3)."""

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..results.trajectory_metadata import TrajectoryMetadata
+
 # Twelve colours of one family: bold enough to tell apart, light enough to show shading.
 OBJECTS = (
     "#e8743b",
@@ -44,6 +46,15 @@ def object_colors(chosen: Sequence[str], still: np.ndarray) -> np.ndarray:
     free = np.cumsum(~np.asarray(still, dtype=bool)) - 1
     names = [color or (STILL if held else OBJECTS[index % len(OBJECTS)]) for color, held, index in zip(chosen, still, free)]
     return np.array([np.round(255 * rgb(name)) for name in names], dtype=np.uint8).reshape(-1, 3)
+
+
+def vertex_colors(metadata: TrajectoryMetadata) -> np.ndarray:
+    """Colour of each vertex of the skin, uint8, shape (V, 3): its object's, or else that of the mesh file."""
+    skin = metadata.skin
+    color = object_colors(metadata.colors, metadata.still)[skin.object_of_vertex]
+    chosen = np.array([bool(name) for name in metadata.colors])[skin.object_of_vertex]
+    color[skin.painted & ~chosen] = skin.paint[~chosen[skin.painted]]
+    return color
 
 
 def background_colors(chosen: str | None) -> tuple[np.ndarray, np.ndarray]:

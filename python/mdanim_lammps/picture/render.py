@@ -12,7 +12,7 @@ from . import shading
 from .camera import FIELD_OF_VIEW, Action, CameraPath, View, action_of, automatic_view
 from .light import Light
 from .marks import MarkActors, Marks
-from .palette import background_colors, is_dark, object_colors
+from .palette import background_colors, is_dark, vertex_colors
 from .pieces import MovingMesh, box_edges, lit_actor, plane
 from .surfaces import shaded_mesh
 from .tank import Tank
@@ -135,7 +135,7 @@ class Painter:
         floor = None if render.floor is Floor.NONE else self._floor_height()
         (x, y, _), reach = self.action.centre, FLOOR * self.action.size
         self._surface = MovingMesh(self._mesh.carry.shape[0], self._mesh.triangle)
-        self._surface.paint(object_colors(metadata.colors, metadata.still)[self._mesh.object_of_vertex])
+        self._surface.paint(vertex_colors(metadata)[self._mesh.of_skin])
         self._actors = [lit_actor(self._surface.data, shading.FRAGMENT_SOLID, liquid=bool(self._tank), sky=sky)]
         self._actors[0].SetVisibility(not marks.springs)
         # Objects are closed, so their inner faces are never visible, and drawing these takes time.

@@ -32,6 +32,8 @@ class ShadedMesh:
     """Ones where a triangle touches a vertex, ``scipy.sparse.csr_array``, shape (V, T)."""
     object_of_vertex: np.ndarray
     """int32, shape (V,)."""
+    of_skin: np.ndarray
+    """Vertex of the skin that each one was, int64, shape (V,)."""
     coarse: np.ndarray
     """Vertices of objects whose triangles were made fewer, shape (C,)."""
     tangent: tuple
@@ -71,6 +73,8 @@ def shaded_mesh(metadata: TrajectoryMetadata, rest: np.ndarray, pixel: np.ndarra
     corner = _split_at_creases(vertices, triangle)
     fewer = np.zeros(0, dtype=np.int64)
     if pixel is not None and corner.size:
+        # Colours of vertices stay as fine as they are.
+        pixel = np.where(np.bincount(skin.object_of_vertex, skin.painted, len(pixel)) > 0, 0.0, pixel)
         triangle, corner, fewer = _fewer(vertices, triangle, corner, skin.object_of_vertex, pixel)
     count = int(corner.max()) + 1 if corner.size else 0
     # Any corner that became the new vertex tells which old vertex it was.
@@ -80,7 +84,8 @@ def shaded_mesh(metadata: TrajectoryMetadata, rest: np.ndarray, pixel: np.ndarra
     gather = csr_array((np.ones(corner.size), (corner.ravel(), triangles)), shape=(count, len(corner)))
     coarse = np.flatnonzero(np.isin(skin.object_of_vertex[old], fewer))
     tangent = _tangents(vertices, skin.triangle, old[coarse])
-    return ShadedMesh(skin.carry[old], corner, gather, skin.object_of_vertex[old], coarse, tuple(t @ skin.carry for t in tangent))
+    carried = tuple(t @ skin.carry for t in tangent)
+    return ShadedMesh(skin.carry[old], corner, gather, skin.object_of_vertex[old], old, coarse, carried)
 
 
 def _tangents(vertices: np.ndarray, triangle: np.ndarray, at: np.ndarray) -> tuple:

@@ -185,7 +185,7 @@ def _quantities(metadata: TrajectoryMetadata) -> Iterator[tuple[str, str, tuple[
 
 def _fixed_bytes(particles: int, springs: int, surfaces: Sequence[Surface]) -> int:
     """What the file holds beside the frames, before packing."""
-    per_surface = (s.triangle.nbytes + s.index.nbytes + s.weight.nbytes for s in surfaces)
+    per_surface = (s.triangle.nbytes + s.index.nbytes + s.weight.nbytes + 3 * len(s.index) for s in surfaces)
     return 22 * particles + 8 * springs + sum(per_surface)
 
 
@@ -320,6 +320,9 @@ def _write_metadata(group: h5py.Group, metadata: TrajectoryMetadata, dt: float, 
         none = np.zeros(0, np.int32 if name != "weight" else np.float64)
         flat = np.concatenate([none, *(getattr(s, name).ravel() for s in metadata.surfaces)])
         _table(surfaces, name, flat, packed=True)
+    if painted := [s.color.ravel() for s in metadata.surfaces if s.color is not None]:
+        _table(surfaces, "painted", np.array([s.color is not None for s in metadata.surfaces], dtype=np.uint8))
+        _table(surfaces, "color", np.concatenate(painted), packed=True)
 
 
 def read_metadata(file: h5py.File) -> TrajectoryMetadata:
@@ -355,14 +358,17 @@ def read_metadata(file: h5py.File) -> TrajectoryMetadata:
 def _read_surfaces(group: Mapping[str, h5py.Dataset]) -> tuple[Surface, ...]:
     flat = {name: group[name][:] for name in ("triangle", "index", "weight")}
     shapes = group["shape"][:]
-    ends = np.cumsum(np.stack([3 * shapes[:, 0], shapes[:, 1] * shapes[:, 2]], axis=1), axis=0)
+    painted = group["painted"][:].astype(bool) if "painted" in group else np.zeros(len(shapes), dtype=bool)
+    colors = group["color"][:].reshape(-1, 3) if "painted" in group else np.zeros((0, 3), dtype=np.uint8)
+    counts = np.stack([3 * shapes[:, 0], shapes[:, 1] * shapes[:, 2], shapes[:, 1] * painted], axis=1)
     return tuple(
         Surface(
             triangle=flat["triangle"][t - 3 * triangles : t].reshape(-1, 3),
             index=flat["index"][v - vertices * corners : v].reshape(-1, corners),
             weight=flat["weight"][v - vertices * corners : v].reshape(-1, corners),
+            color=colors[c - vertices : c] if has else None,
         )
-        for (triangles, vertices, corners), (t, v) in zip(shapes, ends)
+        for (triangles, vertices, corners), (t, v, c), has in zip(shapes, np.cumsum(counts, axis=0), painted, strict=True)
     )
 
 

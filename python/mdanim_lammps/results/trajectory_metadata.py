@@ -102,6 +102,10 @@ class Skin:
     """int32, shape (T,)."""
     object_of_vertex: np.ndarray
     """int32, shape (V,)."""
+    painted: np.ndarray
+    """Vertices that have a colour of their own, bool, shape (V,)."""
+    paint: np.ndarray
+    """These colours, uint8 RGB, shape (painted.sum(), 3)."""
 
     def vertices(self, position: np.ndarray) -> np.ndarray:
         """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3)."""
@@ -205,6 +209,8 @@ def merge_surfaces(metadata: TrajectoryMetadata) -> Skin:
         triangle=np.concatenate([np.zeros((0, 3), np.int32), *triangle]).astype(np.int32),
         object_of_triangle=np.repeat(objects, triangles),
         object_of_vertex=np.repeat(objects, vertices),
+        painted=np.repeat([surface.color is not None for surface in used], vertices),
+        paint=np.concatenate([np.zeros((0, 3), np.uint8), *(s.color for s in used if s.color is not None)]),
     )
 
 
@@ -216,6 +222,7 @@ def _within(surface: Surface, kept: np.ndarray) -> Surface:
         triangle=np.ascontiguousarray(surface.triangle, dtype=np.int32),
         index=index.astype(np.int32),
         weight=np.ascontiguousarray(surface.weight, dtype=np.float64),
+        color=surface.color,
     )
 
 
@@ -223,7 +230,8 @@ def _fingerprint(surface: Surface) -> bytes:
     import hashlib
 
     digest = hashlib.blake2b(digest_size=16)
-    for array in (surface.triangle, surface.index, surface.weight):
+    color = [] if surface.color is None else [np.ascontiguousarray(surface.color)]
+    for array in (surface.triangle, surface.index, surface.weight, *color):
         digest.update(str(array.shape).encode())
         digest.update(array)
     return digest.digest()

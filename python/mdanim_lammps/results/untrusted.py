@@ -112,6 +112,8 @@ def check_metadata(path: Path, m: TrajectoryMetadata) -> None:
         must(((surface.index >= 0) & (surface.index < size)).all(), "a surface hangs on a particle that its object does not have")
         must(((surface.triangle >= 0) & (surface.triangle < vertices)).all(), "a triangle has a vertex that is not there")
         must(np.isfinite(surface.weight).all(), "a weight of a surface is NaN or infinite")
+        color = surface.color
+        must(color is None or (color.shape == (vertices, 3) and color.dtype == np.uint8), "a vertex has no colour")
     must(np.isfinite(m.object_mass).all() and np.isfinite(m.mass).all(), "a mass is NaN or infinite")
     must(m.ground is None or np.isfinite(m.ground), "the ground is NaN or infinite")
     must(m.walls is None or np.isfinite(m.walls).all(), "the walls are NaN or infinite")

@@ -73,7 +73,8 @@ class Solid:
     shape: Shape = setting(
         None,
         "Form of the object in its own frame: edge lengths, radii, heights along z. A mesh is a closed STL, OBJ or PLY file, "
-        "beside the scene file; `scale` is metres per unit of the file, default 1.",
+        "beside the scene file; `scale` is metres per unit of the file, default 1. Colours of the points of a PLY file are drawn "
+        "where the object has no `color`.",
         "sphere 10 cm", Rule.POSITIVE, codec=OneOf(Box, Sphere, Ellipsoid, Cylinder, Cone, Torus, Mesh))  # fmt: skip
     position: Vector = setting("<(x, y, z):m>", "Centre of mass.", "(0, 0, 1) m")
     """[m]"""

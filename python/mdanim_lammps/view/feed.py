@@ -24,7 +24,7 @@ import numpy as np
 from ..errors import OutputError
 from ..picture.camera import FIELD_OF_VIEW, Action, CameraPath, action_of, automatic_view
 from ..picture.liquid import Sheet, kept_dry
-from ..picture.palette import LIQUID, background_colors, is_dark, object_colors, rgb
+from ..picture.palette import LIQUID, background_colors, is_dark, object_colors, rgb, vertex_colors
 from ..picture.rays import direction
 from ..picture.render import grid_spacing
 from ..picture.surfaces import shaded_mesh
@@ -70,6 +70,7 @@ class Feed:
             self._carry, self.triangle, of = self.mesh.carry[order], rank[self.mesh.triangle], of[order]
         else:
             self._carry, self.triangle = self.mesh.carry, self.mesh.triangle
+        self._of_skin = self.mesh.of_skin[order]
         self.object_of_vertex = of
         self.first = np.searchsorted(of, np.arange(len(m.names)))
         self.count = np.diff(np.append(self.first, len(of)))
@@ -135,8 +136,11 @@ class Feed:
         }
 
     def buffers(self) -> dict[str, np.ndarray]:
-        """Arrays that do not change: ``triangle``, ``object`` of vertices; of a liquid ``sheet`` and ``rim``."""
+        """Arrays that do not change: ``triangle``, ``object`` of vertices, their ``tint`` where mesh files have colours; of a
+        liquid ``sheet`` and ``rim``."""
         found = {"triangle": self.triangle.astype("<u4"), "object": self.object_of_vertex.astype("<u4")}
+        if self.metadata.skin.painted.any():
+            found["tint"] = vertex_colors(self.metadata)[self._of_skin].ravel()
         if self.metadata.liquid:
             sheet = Sheet(self.metadata.liquid.grid)
             found |= {"sheet": sheet.triangle.astype("<u4"), "rim": sheet.rim.astype("<u4")}

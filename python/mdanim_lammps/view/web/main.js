@@ -168,7 +168,7 @@ function controls() {
   press("help", () => byId("keys").showModal());
   byId("slider").oninput = (event) => player.go(Number(event.target.value));
   byId("speed").onchange = (event) => (player.speed = Number(event.target.value));
-  byId("colour").onchange = () => { stage.paint(scene.objects.map(({ color }) => color)); showLegend(byId("colour").value, range, run.executors); shownKey = ""; };
+  byId("colour").onchange = () => { stage.paintOwn(); showLegend(byId("colour").value, range, run.executors); shownKey = ""; };
   const toggle = (id, act) => (byId(`show-${id}`).onchange = (event) => { act(event.target.checked); shownKey = ""; stage.changed = true; });
   toggle("surface", (on) => (stage.surface.visible = on));
   toggle("shadows", (on) => (stage.sun.castShadow = on));

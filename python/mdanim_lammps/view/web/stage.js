@@ -81,7 +81,7 @@ export class Stage {
     this.surface.castShadow = this.surface.receiveShadow = true;
     this.surface.frustumCulled = false;
     this.world.add(this.surface);
-    this.paint(objects.map(({ color }) => color));
+    this.paintOwn();
   }
 
   floor() {
@@ -103,6 +103,13 @@ export class Stage {
     plane.receiveShadow = true;
     plane.renderOrder = -1;
     this.world.add(plane);
+  }
+
+  // The colours of the scene: of objects, or of vertices where a mesh file has them.
+  paintOwn() {
+    const { data: { tint }, objects } = this.scene;
+    if (tint) this.paint(null, (i) => tint.subarray(3 * i, 3 * i + 3));
+    else this.paint(objects.map(({ color }) => color));
   }
 
   // Colours [r, g, b] of 0 to 255, one per object; or of vertices, by a function of the vertex.
