@@ -116,6 +116,17 @@ def models_at(models):
     return np.concatenate([m.position for m in models])
 
 
+def test_heights_are_those_of_the_centre_of_mass(slab, monkeypatch):
+    """Of all frames that there are, or of fewer of them from the first to the last."""
+    folder, feed = slab
+    with Trajectory(folder) as t:
+        heights = t.objects["ball"].center_of_mass[:, 2]
+        np.testing.assert_array_equal(feed.heights(2, len(t)), [t.times, heights])
+        np.testing.assert_array_equal(feed.heights(2, 2), [t.times[:2], heights[:2]])
+        monkeypatch.setattr("mdanim_lammps.view.feed.MOST_POINTS", 3)
+        np.testing.assert_array_equal(feed.heights(2, len(t))[0], t.times[[0, 2, 5]])
+
+
 def test_light_and_floor_are_those_of_the_scene(slab):
     """The page follows the words of the render block that it can follow."""
     render = Render(light=(0.0, -3.0, 4.0), shadows=0.25, floor=Floor.CHECKER)

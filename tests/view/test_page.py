@@ -134,8 +134,11 @@ def test_a_finished_run(browser, beam):
         browser.click(*center_of(browser, 1))
         browser.until("document.getElementById('object').innerText.includes('cube')")
         assert "8 kg" in text(browser, "object") and "look cube" in text(browser, "camera")
+        browser.until("document.querySelector('#height-line canvas')")
+        assert "height of the centre" in text(browser, "height")
         browser.press("Escape")
         browser.until("document.getElementById('object').innerText.includes('click')")
+        assert browser.js("return document.getElementById('height').hidden && !document.querySelector('#height-line canvas')")
         assert browser.js("return document.querySelectorAll('#energies canvas').length") == 1
         assert "springs" in text(browser, "cost") and text(browser, "expects").count("met") == 5
 
@@ -259,6 +262,7 @@ def test_a_report_from_disk(browser, beam, tmp_path):
     show(browser, 40)
     browser.click(*center_of(browser, 1))
     browser.until("document.getElementById('object').innerText.includes('8 kg')")
+    browser.until("document.querySelector('#height-line canvas')")
     assert browser.js("return document.querySelector('article').innerText").count("met") >= 5
     requests = browser.js("return performance.getEntriesByType('resource').map((entry) => entry.name)")
     assert not [name for name in requests if not name.startswith(("blob:", "data:"))]

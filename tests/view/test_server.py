@@ -84,6 +84,8 @@ def test_a_page_is_told_all_and_gets_scene_and_frames(view, folder):
         assert link.recv(10) == view.tail.feed().scene()
         link.send('{"get": 7, "layers": 3}')
         assert link.recv(10) == view.tail.feed().frame(7, 3)
+        link.send('{"heights": 0}')
+        assert json.loads(link.recv(10)) == {"heights": [*map(list, view.tail.feed().heights(0, view.tail.count))]}
         link.send('{"springs": 1}')
         assert link.recv(10) == view.tail.feed().springs()
 
@@ -256,7 +258,7 @@ def test_paths_lead_nowhere(view, path):
 
 WRONG = ["", "null", "[]", "{", "[" * 4000, b"\x00\x01", "x" * (LONGEST_MESSAGE + 1), '{"do": "rm"}', '{"do": "pause/../x"}']
 WRONG += [f'{{"get": {n}, "layers": 0}}' for n in ("-1", "16", "1.5", "true", '"1"', "1e999")]
-WRONG += ['{"get": 1}', '{"get": 1, "layers": 4}']
+WRONG += ['{"get": 1}', '{"get": 1, "layers": 4}', '{"heights": 99}', '{"heights": -1}', '{"heights": null}']
 
 
 @pytest.mark.parametrize("text", WRONG, ids=lambda text: repr(text)[:30])

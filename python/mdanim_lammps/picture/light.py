@@ -112,8 +112,8 @@ class Light:
             uniforms.SetUniformMatrix("lampMatrix", matrix)
             uniforms.SetUniformf("lampPixels", float(self._pixels))
             uniforms.SetUniformi("lampBlock", BLOCK)
-            # A slope of 1 in the lamp's picture, as a change of depth over one of place.
-            uniforms.SetUniformf("lampSlope", 2.0 * ROOM / (FAR - NEAR))
+            # As much depth as a pixel is wide.
+            uniforms.SetUniformf("lampTouch", 2.0 * ROOM / (FAR - NEAR) / self._pixels)
             uniforms.SetUniformf("shadowDarkness", self._darkness)
             uniforms.SetUniform3f("lamp", list(self._toward))
             uniforms.SetUniform3f("eye", [0.0, 0.0, 0.0])

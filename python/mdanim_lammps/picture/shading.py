@@ -41,7 +41,8 @@ in vec3 worldNormal;
 SHADOW = """
 // Share of the lamp that is seen from here: the mean over a square four depth pixels wide that slides
 // smoothly over them, so that the edge of a shadow is soft and has no steps however near the camera comes.
-// `touch`, in depth pixels: what is farther from the lamp than this point by less shades it too.
+// `touch`, in depth pixels: what is farther from the lamp than this point by less shades it too; below 0, what is nearer by less
+// does not.
 float lampSeen(vec3 where, float touch)
 {
   vec3 p = (lampMatrix * vec4(where, 1.0)).xyz;
@@ -49,7 +50,7 @@ float lampSeen(vec3 where, float touch)
   vec2 texel = p.xy * lampPixels - 0.5;
   ivec2 corner = ivec2(floor(texel));
   vec2 part = texel - floor(texel);
-  float slack = touch * lampSlope / lampPixels;
+  float slack = touch * lampTouch;
   // Most lit points have no object between them and the lamp, nor near that line.
   ivec2 block = clamp(corner, ivec2(0), ivec2(lampPixels) - 1) / lampBlock;
   if (texelFetch(lampNearest, block, 0).r > p.z + slack) return 1.0;
@@ -81,11 +82,12 @@ float skySeen(vec3 where, vec3 normal, float touch) { return 1.0; }
 SKY_LOOKED_AT = """
 // How much light comes from the sky above this surface and from what stands around it: the mean over directions, each weighted by
 // how much light it brings. A pixel that is drawn looks into every fourth direction, so one that is shown has looked into all.
+// `touch` is as above.
 float skySeen(vec3 where, vec3 normal, float touch)
 {
   const float pixel = 2.0 * SKY_ROOM / SKY_PIXELS;
-  // Off a surface that would hide the sky from itself, and a little aside, differently for each pixel: depth pixels do not show.
   vec3 p = (where - skyCentre) / skyRadius;
+  // A little aside, differently for each pixel, so that depth pixels do not show.
   vec2 aside = fract(vec2(52.98, 31.17) * fract(dot(gl_FragCoord.xy, vec2(0.0671, 0.0058))));
   float hidden = 0.0, all = 0.0;
   for (int k = (int(gl_FragCoord.x) & 1) + 2 * (int(gl_FragCoord.y) & 1); k < SKY_SIDE * SKY_SIDE; k += 4) {

@@ -42,6 +42,8 @@ STEPS = 65535
 """Of a 16-bit number."""
 MOST_STRAIN = 0.2
 """Strain that is drawn in the last colour [-]."""
+MOST_POINTS = 1000
+"""Of a line over time in the page."""
 ASPECT = 16 / 9
 """Width over height of the picture for which the first camera is chosen."""
 
@@ -212,6 +214,12 @@ class Feed:
         height = np.rint(np.clip((smooth - low) / (high - low), 0.0, 1.0) * STEPS).astype("<u2")
         state = np.where(kept_dry(raw), DRY, np.where(np.isfinite(raw), OPEN, HIDDEN)).astype("u1")
         return height.ravel(), state.ravel()
+
+    def heights(self, k: int, count: int) -> tuple[list[float], list[float]]:
+        """Times [s] and heights of an object's centre of mass [m], in at most `MOST_POINTS` of the first ``count`` frames."""
+        shown = np.unique(np.linspace(0, count - 1, min(count, MOST_POINTS)).astype(int)).tolist()
+        frames = self.frames
+        return [frames.time(n) for n in shown], [float(frames.value("center_of_mass", n)[k, 2]) for n in shown]
 
     @cached_property
     def _springs(self) -> tuple[np.ndarray, np.ndarray]:

@@ -189,6 +189,9 @@ class View:
                 page.send(self.tail.feed().scene())
             elif "springs" in asked:
                 page.send(self.tail.feed().springs())
+            elif "heights" in asked:
+                feed = self.tail.feed()
+                page.send(json.dumps({"heights": feed.heights(whole(asked["heights"], len(feed.first)), self.tail.count)}))
             elif asked.get("do") in COMMANDS:
                 if self.tail.live:
                     command(self.tail.folder, asked["do"])

@@ -2,7 +2,7 @@
 // Puts the parts together: what is heard, what is seen, what is pressed.
 import { offerEditing } from "./edit.js";
 import { STRAIN, PARTICLES, cameraLine, nearlyMost, number, ownersAt } from "./message.js";
-import { Energies, byId, element, executorColor, roundStrain, showCost, showExpects, showLegend, showObject, strainColor, table } from "./panel.js";
+import { Energies, Height, byId, element, executorColor, roundStrain, showCost, showExpects, showLegend, showObject, strainColor, table } from "./panel.js";
 import { Cache, Player, SPEEDS } from "./player.js";
 import { Embedded, Socket } from "./source.js";
 import { Stage } from "./stage.js";
@@ -15,9 +15,9 @@ const KEYS = [
   ["C", "copy the camera line"], ["P", "save a screenshot"], ["?", "this list"],
 ];
 const run = { file: null, count: 0, total: 0, executors: 1, state: "", message: "", seconds: 0, cost: {}, facts: {}, owners: [] };
-const energies = new Energies(), cache = new Cache();
+const energies = new Energies(), height = new Height(), cache = new Cache();
 const report = byId("replay"); // in a report: the block of data
-let source, scene, stage, player, shown = null, shownKey = "", picked = null, ease = 0, slow = 0, drawnAt = 0, rested = true, failedAt = 0, range = 0.002, lastTick = 0;
+let source, scene, stage, player, shown = null, shownKey = "", picked = null, heightAt = 0, ease = 0, slow = 0, drawnAt = 0, rested = true, failedAt = 0, range = 0.002, lastTick = 0;
 
 async function start() {
   byId("speed").append(...SPEEDS.map((x) => element("option", { value: x, textContent: `${x} ×`, selected: x === 1 })));
@@ -73,6 +73,7 @@ function refresh() {
   if (energies.rows.length) words.push(`energy residual ${number(energies.residual, 2)}`);
   byId("progress").textContent = words.join("   ");
   byId("colour").querySelector('[value="executor"]').disabled = run.executors < 2;
+  if (picked !== null && live && performance.now() - heightAt > 1000) showHeight();
   showCost(run.cost, run.facts);
   showExpects(run.facts);
 }
@@ -117,6 +118,7 @@ function show(frame, key) {
   byId("slider").value = frame.frame;
   byId("clock").textContent = `frame ${frame.frame}/${Math.max(run.total, 1) - 1}   t = ${frame.time.toFixed(3)} s`;
   energies.at(frame.time);
+  height.at(frame.time);
   about();
 }
 
@@ -209,6 +211,16 @@ function choose(k) {
   byId("see").textContent = k === null ? "see all" : "see it";
   byId("camera").textContent = cameraWords();
   about();
+  height.show(null);
+  if (k !== null) showHeight();
+}
+
+async function showHeight() {
+  heightAt = performance.now();
+  const k = picked, points = await source.heights(k).catch(() => null);
+  if (k !== picked || !points) return;
+  height.show(points);
+  if (shown) height.at(shown.time);
 }
 
 function see() {

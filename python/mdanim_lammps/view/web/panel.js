@@ -30,18 +30,55 @@ export function showObject(scene, frame, k, owner) {
   return place.replaceChildren(table(rows));
 }
 
-// The ledger as lines over time, with a cursor at the frame that is seen.
-export class Energies {
+// Lines over time, with a cursor at the frame that is seen.
+class Lines {
   constructor() {
-    this.rows = [];
     this.line = document.createElement("div");
+  }
+
+  clear() {
+    this.plot?.destroy();
+    this.plot = null;
+  }
+
+  // Times and one array of values for each name.
+  set(place, names, data, height) {
+    if (this.plot) return this.plot.setData(data);
+    const ink = getComputedStyle(document.body).getPropertyValue("--faint"), axis = { stroke: ink, font: "10px sans-serif", grid: { stroke: ink + "30" }, ticks: { show: false } };
+    const series = [{}, ...names.map((label, k) => ({ label, stroke: INK[k % INK.length], width: 1.5 }))];
+    const values = (_, ticks) => ticks.map((x) => number(x, 4));
+    this.plot = new Plot({ width: 272, height, scales: { x: { time: false } }, legend: { show: false }, cursor: { show: false }, padding: [6, 8, 0, 0],
+      axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((x) => `${number(x)} s`) }, { ...axis, size: 46, values }], series }, data, place);
+    this.line = element("div", { className: "now" });
+    this.plot.over.append(this.line);
+    Object.assign(this.line.style, { position: "absolute", top: "0", bottom: "0", width: "1px", background: ink });
+  }
+
+  at(time) {
+    if (this.plot) this.line.style.left = `${this.plot.valToPos(time, "x")}px`;
+  }
+}
+
+// How high the centre of the picked object is.
+export class Height extends Lines {
+  show(points) {
+    byId("height").hidden = points === null;
+    if (points === null) return this.clear();
+    return this.set(byId("height-line"), ["height"], points, 110);
+  }
+}
+
+// The ledger.
+export class Energies extends Lines {
+  constructor() {
+    super();
+    this.rows = [];
   }
 
   begin(columns, energies, keep) {
     this.names = columns.slice(1, 1 + energies);
     this.rows = this.rows.slice(0, keep);
-    this.plot?.destroy();
-    this.plot = null;
+    this.clear();
   }
 
   add(rows) {
@@ -58,28 +95,16 @@ export class Energies {
   draw() {
     this.due = undefined;
     const data = [0, ...this.names.map((_, k) => k + 1)].map((k) => this.rows.map((row) => row[k]));
-    if (this.plot) this.plot.setData(data);
-    else {
-      const ink = getComputedStyle(document.body).getPropertyValue("--faint"), axis = { stroke: ink, font: "10px sans-serif", grid: { stroke: ink + "30" }, ticks: { show: false } };
-      const series = [{}, ...this.names.map((label, k) => ({ label, stroke: INK[k % INK.length], width: 1.5 }))];
-      const place = byId("energies"), keys = element("div", { className: "keys" }, ...this.names.map((name, k) => {
+    if (!this.plot) {
+      const keys = element("div", { className: "keys" }, ...this.names.map((name, k) => {
         const mark = element("i");
         mark.style.background = INK[k % INK.length];
         return element("span", {}, mark, name.replaceAll("_", " "));
       }));
-      const figure = element("div");
-      place.replaceChildren(keys, figure);
-      const values = (_, ticks) => ticks.map((x) => number(x, 4));
-      this.plot = new Plot({ width: 272, height: 150, scales: { x: { time: false } }, legend: { show: false }, cursor: { show: false }, padding: [6, 8, 0, 0],
-        axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((x) => `${number(x)} s`) }, { ...axis, size: 46, values }], series }, data, figure);
-      this.line = element("div", { id: "now" });
-      this.plot.over.append(this.line);
-      Object.assign(this.line.style, { position: "absolute", top: "0", bottom: "0", width: "1px", background: ink });
+      this.figure = element("div");
+      byId("energies").replaceChildren(keys, this.figure);
     }
-  }
-
-  at(time) {
-    if (this.plot) this.line.style.left = `${this.plot.valToPos(time, "x")}px`;
+    this.set(this.figure, this.names, data, 150);
   }
 }
 

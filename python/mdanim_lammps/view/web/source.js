@@ -52,6 +52,11 @@ export class Socket {
     return readScene(await this.ask({ springs: 1 })).data.bond;
   }
 
+  // Times and heights of an object, one array each.
+  async heights(k) {
+    return (await this.ask({ heights: k })).heights;
+  }
+
   async frame(frame, layers) {
     return readFrame(await this.ask({ get: frame, layers }));
   }
@@ -94,6 +99,10 @@ export class Embedded {
 
   async scene() {
     return this.head;
+  }
+
+  async heights(k) {
+    return [[...this.times], Array.from(this.times, (_, f) => this.moving[6 * (this.O * f + k) + 2])];
   }
 
   async frame(frame) {
