@@ -3,17 +3,20 @@
 
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 from mdanim_lammps import Scene, Trajectory
 from mdanim_lammps.picture.movie import render_still
+from mdanim_lammps.scene.render import Quality
+from PIL import Image
 
 HERE = Path(__file__).parent
 SCENES = HERE.parent.parent / "scenes"
 PICTURES = {
     "beam": 0.33,
     "drop": 0.5,
-    "duck": 0.6,
+    "duck": 0.3,
     "crowd": 0.48,
     "float": 5.0,
     "densities": 5.0,
@@ -44,8 +47,10 @@ def main(names: list[str]) -> None:
             scene.run(folder, force=True)
             with Trajectory(folder) as trajectory:
                 frame = int(abs(trajectory.times - PICTURES[name]).argmin())
-                render_still(trajectory, frame, HERE / f"{name}.png", scene.record.render, size=SIZE)
-        print(HERE / f"{name}.png")
+                render = replace(scene.record.render, quality=Quality.FINAL)
+                path = render_still(trajectory, frame, HERE / f"{name}.png", render, size=SIZE)
+        Image.open(path).save(path, optimize=True)
+        print(path)
 
 
 if __name__ == "__main__":
