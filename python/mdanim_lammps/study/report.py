@@ -46,19 +46,7 @@ def write_report(study: Study, store: Store, budget: float) -> None:
                 }
                 for name, c in a.ladders.items()
             },
-            "points": {
-                key: {
-                    "seconds": r.seconds.middle,
-                    "seconds_spread": r.seconds.spread,
-                    "error": r.error.middle,
-                    "error_spread": r.error.spread,
-                    "expect_error": r.closed,
-                    "energy_drift": max(r.point.drift),
-                    "penetration": max(r.point.penetration),
-                    "pareto": r.front,
-                }
-                for key, r in a.rated.items()
-            },
+            "points": {key: _figures(r) for key, r in a.rated.items()},
         }
     )
     write_whole(store.folder / "study.csv", lambda part: _write_csv(study, part))
@@ -69,55 +57,44 @@ def _finite(x: float) -> float | None:
     return x if math.isfinite(x) else None
 
 
+def _figures(r: Rated) -> dict[str, float | bool | None]:
+    """Of a point, for study.json and study.csv."""
+    return {
+        "seconds": r.seconds.middle,
+        "seconds_spread": r.seconds.spread,
+        "error": r.error.middle,
+        "error_spread": r.error.spread,
+        "expect_error": r.closed,
+        "energy_drift": max(r.point.drift),
+        "penetration": max(r.point.penetration),
+        "pareto": r.front,
+    }
+
+
 def _write_csv(study: Study, path: Path) -> None:
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        out = csv.writer(file)
-        out.writerow(
-            [
-                "setting",
-                "ladders",
-                "cells",
-                "fraction",
-                "sweeps",
-                "contact",
-                "timestep",
-                "particles",
-                "steps",
-                "runs",
-                "seconds",
-                "seconds_spread",
-                "error",
-                "error_spread",
-                "expect_error",
-                "energy_drift",
-                "penetration",
-                "pareto",
-            ]
+    rows = []
+    for key, r in study.analysis.rated.items():
+        s, p = r.point.setting, r.point
+        rows.append(
+            {
+                "setting": key,
+                "ladders": " + ".join(_where(study, r)),
+                "cells": s.cells,
+                "fraction": s.fraction,
+                "sweeps": "auto" if s.sweeps is None else s.sweeps,
+                "contact": s.contact,
+                "timestep": p.timestep,
+                "particles": p.particles,
+                "steps": p.steps,
+                "runs": len(p.seconds),
+                **_figures(r),
+                "pareto": int(r.front),
+            }
         )
-        for key, r in study.analysis.rated.items():
-            s, p = r.point.setting, r.point
-            out.writerow(
-                [
-                    key,
-                    " + ".join(_where(study, r)),
-                    s.cells,
-                    s.fraction,
-                    "auto" if s.sweeps is None else s.sweeps,
-                    s.contact,
-                    p.timestep,
-                    p.particles,
-                    p.steps,
-                    len(p.seconds),
-                    r.seconds.middle,
-                    r.seconds.spread,
-                    r.error.middle,
-                    r.error.spread,
-                    "" if r.closed is None else r.closed,
-                    max(p.drift),
-                    max(p.penetration),
-                    int(r.front),
-                ]
-            )
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        out = csv.DictWriter(file, rows[0])
+        out.writeheader()
+        out.writerows(rows)
 
 
 def _where(study: Study, r: Rated) -> list[str]:
@@ -135,37 +112,27 @@ def table(study: Study) -> Table:
     swept = any(r.point.setting.sweeps is not None for r in a.rated.values())
     touched = any(r.point.setting.contact != 1.0 for r in a.rated.values())
     out = Table(box=SIMPLE_HEAD, pad_edge=False)
-    for name in (
-        "",
-        "cells",
-        "step/bound",
-        *(["sweeps"] if swept else []),
-        *(["contact"] if touched else []),
-        "particles",
-        "seconds",
-        "error",
-        *(["off expect"] if closed else []),
-        "energy drift",
-        *(["sunk in"] if touched else []),
-        "ladder",
-    ):
-        out.add_column(name, justify="left" if name in ("", "ladder") else "right")
     for r in a.rated.values():
         s = r.point.setting
-        out.add_row(
-            "*" if r.front else "",
-            f"{s.cells:g}",
-            f"{s.fraction:.2f}" if s.fraction else "auto",
-            *(["auto" if s.sweeps is None else str(s.sweeps)] if swept else []),
-            *([f"{s.contact:g}"] if touched else []),
-            f"{r.point.particles}",
-            _spread(r.seconds.middle, r.seconds.spread, len(r.point.seconds)),
-            f"{number(100 * r.error.middle)} %",
-            *([_off(r.closed)] if closed else []),
-            number(max(r.point.drift), 2),
-            *([say(max(r.point.penetration), "m")] if touched else []),
-            " + ".join(_where(study, r)) + (", own" if s == a.own else ""),
-        )
+        cells = {
+            "": "*" if r.front else "",
+            "cells": f"{s.cells:g}",
+            "step/bound": f"{s.fraction:.2f}" if s.fraction else "auto",
+            "sweeps": ("auto" if s.sweeps is None else str(s.sweeps)) if swept else None,
+            "contact": f"{s.contact:g}" if touched else None,
+            "particles": f"{r.point.particles}",
+            "seconds": _spread(r.seconds.middle, r.seconds.spread, len(r.point.seconds)),
+            "error": f"{number(100 * r.error.middle)} %",
+            "off expect": _off(r.closed) if closed else None,
+            "energy drift": number(max(r.point.drift), 2),
+            "sunk in": say(max(r.point.penetration), "m") if touched else None,
+            "ladder": " + ".join(_where(study, r)) + (", own" if s == a.own else ""),
+        }
+        shown = {name: text for name, text in cells.items() if text is not None}
+        if not out.columns:
+            for name in shown:
+                out.add_column(name, justify="left" if name in ("", "ladder") else "right")
+        out.add_row(*shown.values())
     return out
 
 
