@@ -15,6 +15,10 @@ OR_ON_SURFACES = "or write contact-model surface in control, where what touches 
 """The other way out of a start within the reach of the paper's contact."""
 
 
+DEEPEST = 4
+"""In the vector of fix mdanim/wall: the deepest particle behind the region in this run [m]."""
+
+
 class Boundary(Effect):
     """What ground, walls and basins have in common: a region, and a fix that pushes back whatever leaves it."""
 
@@ -60,7 +64,7 @@ class Boundary(Effect):
         return instance.fix_scalar(self.fix)
 
     def penetration(self, instance, system):
-        return instance.fix_value(self.fix, 4)
+        return instance.fix_value(self.fix, DEEPEST)
 
     def rate(self, scene, system):
         # A wall does not move, so D_i alone bounds it, without the factor 2 of a pair.

@@ -22,6 +22,8 @@ from .springs import all_held
 TUNNEL = (0.5, 0.65, 0.8)
 """Closing speed over the wave speed from which a block goes through a clamped plate of 1, 2, 3 and more
 cells (docs/stability.md)."""
+NEAREST = 3
+"""In the vector of fix mdanim/barrier: the smallest distance of a pair over its reach in this run [-]."""
 SOFTER = 2.0 / 3.0
 """With contact softer than its standard that speed falls with this power of ``contact-stiffness`` (docs/physics-contact.md)."""
 
@@ -174,8 +176,8 @@ class Contact(Effect):
     def penetration(self, instance, system):
         # A guard lies one spacing below its surface, so r = h means that surfaces touch; between lattice points, and for
         # thin objects, this says rather too much.
-        smallest = instance.fix_value(self.fix, 3)
-        return max(0.0, (1.0 / REACH - smallest) * REACH * float(system.spacing.max()))
+        nearest = instance.fix_value(self.fix, NEAREST)
+        return max(0.0, (1.0 / REACH - nearest) * REACH * float(system.spacing.max()))
 
 
 def largest_of_others(values: np.ndarray) -> np.ndarray:

@@ -26,8 +26,8 @@ PERIOD = 0.06
 """Time between updates of a liquid that is not level, over sqrt(cell/g)."""
 NEAR = 8.0
 """Cells above the liquid up to which the motion of solids counts for it; as in the fix."""
-AUTOMATON, OCCUPANCY, COUPLING = 7, 8, 9
-"""In the fix's vector: three clocks."""
+CELLS, CELLS_AT_START, AUTOMATON, OCCUPANCY, COUPLING = 0, 1, 7, 8, 9
+"""In the fix's vector: whole cells of liquid now and before step 0, and three clocks [s]."""
 DRAGGING = 0.07
 """Part of the coupling's time that drag takes (bench/effects.py shares)."""
 SWEEPS = 4

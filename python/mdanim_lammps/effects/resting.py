@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,8 +20,18 @@ LEVEL = 1e-6
 """Tangent of a slope that is nothing but rounding."""
 ROLLING = (Sphere, Ellipsoid, Torus)
 """Shapes that roll down a slope before they slide."""
-Row = tuple[float, float, int, str, str]
-"""Tangent, friction, object, and what a contact block and a message call the slope."""
+
+
+class Slope(NamedTuple):
+    """What may slide, and on what."""
+
+    tangent: float
+    friction: float
+    object: int
+    word: str
+    """What a contact block calls the slope."""
+    name: str
+    """What a message calls it."""
 
 
 def frictionless(envelope: Envelope) -> list[Problem]:
@@ -51,16 +62,18 @@ def slopes(envelope: Envelope) -> list[Problem]:
     if envelope.g <= 0.0 or not envelope.moving.any():
         return []
     found, own = _Slopes(envelope), np.array(frictions(envelope.scene))
-    steep = [row for row in (*found.onfloors(), *found.on_solids(own)) if row[0] > row[1]]
+    steep = [s for s in (*found.onfloors(), *found.on_solids(own)) if s.tangent > s.friction]
     if not steep:
         return []
-    tangent, mu, m, word, slope = max(steep, key=lambda row: row[0] / row[1])
-    name = envelope.system.names[m]
+    worst = max(steep, key=lambda s: s.tangent / s.friction)
+    name = envelope.system.names[worst.object]
     return [
         Problem(
-            envelope.place(m, "friction", "object"),
-            f"{name} will slide on {slope}: its slope has a tangent of {number(tangent, 2)}, friction is {number(mu, 2)}",
-            f"write contact {word} {name} {{ friction {number(math.ceil(11.0 * tangent) / 10.0, 2)} }} where it is to stay",
+            envelope.place(worst.object, "friction", "object"),
+            f"{name} will slide on {worst.name}: its slope has a tangent of {number(worst.tangent, 2)}, "
+            f"friction is {number(worst.friction, 2)}",
+            f"write contact {worst.word} {name} {{ friction {number(math.ceil(11.0 * worst.tangent) / 10.0, 2)} }} "
+            "where it is to stay",
             severity="note",
         )
     ]
@@ -72,7 +85,7 @@ def floors(envelope: Envelope) -> list[Plane]:
 
 
 class _Slopes:
-    """Finds the row of every slope, for the object there that has the least friction above 0."""
+    """Finds every slope, for the object there that has the least friction above 0."""
 
     def __init__(self, envelope: Envelope):
         self.envelope, self.scene = envelope, envelope.scene
@@ -80,12 +93,12 @@ class _Slopes:
         rolling = np.array([isinstance(s.shape, ROLLING) for s in self.scene.solids])
         self.sliding = envelope.moving & ~rolling
 
-    def onfloors(self) -> Iterator[Row]:
+    def onfloors(self) -> Iterator[Slope]:
         tangent = math.hypot(*self.gravity[:2]) / -self.gravity[2]
         for plane in floors(self.envelope) if tangent > LEVEL else ():
             yield from self._worst(tangent, np.array(frictions(self.scene, plane.effect)), self.sliding, plane.effect, plane.name)
 
-    def on_solids(self, own: np.ndarray) -> Iterator[Row]:
+    def on_solids(self, own: np.ndarray) -> Iterator[Slope]:
         """Cuboids that never move, and what is above each at the start; ``own`` friction of each object, shape (M,)."""
         system = self.envelope.system
         if not any(e.keeps_apart for e in self.envelope.on):
@@ -109,8 +122,8 @@ class _Slopes:
                 mu[other] = of_pair
             yield from self._worst(tangent, mu, above, solid.name, solid.name)
 
-    def _worst(self, tangent: float, mu: np.ndarray, among: np.ndarray, *names: str) -> Iterator[Row]:
+    def _worst(self, tangent: float, mu: np.ndarray, among: np.ndarray, *names: str) -> Iterator[Slope]:
         mu = np.where(among & (mu > 0.0), mu, np.inf)
         m = int(mu.argmin())
         if mu[m] < np.inf:
-            yield (tangent, float(mu[m]), m, *names)
+            yield Slope(tangent, float(mu[m]), m, *names)

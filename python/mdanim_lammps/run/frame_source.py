@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from ..effects.air_drag import LEAPFROG
+from ..effects.liquid import CELLS, CELLS_AT_START, LiquidAutomaton
 from ..engine.instance import Instance
 from ..engine.plan import Plan
 from ..engine.state import State
@@ -184,7 +185,8 @@ def pool(instance: Instance) -> LiquidFrame | None:
     """The liquid now."""
     if instance.plan.grid is None:
         return None
-    return LiquidFrame(instance.liquid_heights(), *(int(instance.fix_value("liquid", n)) for n in (0, 1)))
+    cells, start = (int(instance.fix_value(LiquidAutomaton.fix, n)) for n in (CELLS, CELLS_AT_START))
+    return LiquidFrame(instance.liquid_heights(), cells, start)
 
 
 def add_clocks(account: Account, instance: Instance) -> None:
