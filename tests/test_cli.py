@@ -109,8 +109,11 @@ def test_compare_and_render_use_an_output_folder(scene):
     path = scene()
     folder = path.parent / "cube.out"
     assert run(path, "--no-movie", "-q").returncode == 0
-    assert run("render", folder, "--size", 320, 180, "-q").returncode == 0
+    assert run("render", folder, "--size", 320, 180, "-q", "--frames", "--fps", 1).returncode == 0
     assert (folder / "movie.mp4").exists()
+    draft = (folder / "frames" / "frame-00000.png").read_bytes()
+    assert run("render", folder, "--size", 320, 180, "-q", "--frames", "--fps", 1, "--quality", "final").returncode == 0
+    assert (folder / "frames" / "frame-00000.png").read_bytes() != draft
     assert run("compare", folder, folder).stdout.startswith("equal")
     assert run(path, "--no-movie", "-q", "-o", path.parent / "b.out").returncode == 0
     assert run("compare", folder, path.parent / "b.out").returncode == 0
@@ -142,6 +145,7 @@ def test_compare_and_render_use_an_output_folder(scene):
         pytest.param(["view", "nowhere.out", "--port", "70000"], 2, ["--port 70000", "65535"], id="no port"),
         pytest.param(["report", "nowhere.out"], 7, ["nowhere.out does not exist"], id="nothing to report"),
         pytest.param(["report", "nowhere.out", "-o", "x.pdf"], 2, ["written as .html"], id="no report"),
+        pytest.param(["render", "nowhere.out", "--quality", "best"], 2, ['"best"', '"draft", "final"'], id="no quality"),
         pytest.param(["render", "nowhere.out", "--fps", "-3"], 2, ["--fps -3", "above 0"], id="no rate"),
         pytest.param(
             ["resume", "nowhere.out"], 7, ["error: nowhere.out does not exist; name the folder"], id="nothing to resume"

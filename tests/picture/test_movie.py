@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,7 @@ from mdanim_lammps.picture import movie
 from mdanim_lammps.picture.movie import movie_frames, render_movie, render_still
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
-from mdanim_lammps.scene.render import Camera, Render
+from mdanim_lammps.scene.render import Camera, Quality, Render
 from picture_samples import falling, read_png, slab_scene, write
 
 SMALL = Render(size=(160, 90))
@@ -42,13 +43,13 @@ def read_movie(path, size):
     return np.array([np.frombuffer(f, np.uint8).reshape(size[1], size[0], 3) for f in reader]), about["fps"]
 
 
-@pytest.mark.parametrize("processes", [1, 2])
-def test_movie_shows_every_frame_in_turn(short, tmp_path, processes):
-    """Frames of the movie are the stills of the trajectory, in order, at its rate, on one process or two."""
-    seen = []
+@pytest.mark.parametrize(("processes", "quality"), [(1, Quality.DRAFT), (2, Quality.DRAFT), (2, Quality.FINAL)])
+def test_movie_shows_every_frame_in_turn(short, tmp_path, processes, quality):
+    """Frames of the movie are the stills of the trajectory, in order, at its rate, on one process or two, in both qualities."""
+    seen, render = [], replace(SMALL, quality=quality)
     path = render_movie(
         short,
-        SMALL,
+        render,
         tmp_path / "movie.mp4",
         processes=processes,
         frames=tmp_path / "frames",
@@ -62,7 +63,7 @@ def test_movie_shows_every_frame_in_turn(short, tmp_path, processes):
     distance = [[np.abs(p.astype(float) - s).mean() for s in stills] for p in pictures]
     assert np.argmin(distance, axis=1).tolist() == list(range(6))
     assert np.diag(distance).max() < 3.0  # of 255: what the coding loses
-    np.testing.assert_array_equal(stills[4], read_png(render_still(short, 4, tmp_path / "s.png", SMALL)))
+    np.testing.assert_array_equal(stills[4], read_png(render_still(short, 4, tmp_path / "s.png", render)))
 
 
 @pytest.mark.parametrize(
