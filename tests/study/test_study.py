@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What accuracy costs: errors and orders of ladders, studies that stop and go on, and the setting that meets a target."""
+"""Studies: what they leave, how they stop and go on, and what they promise of the program."""
 
 import io
 import json
@@ -13,37 +13,16 @@ import numpy as np
 import pytest
 from mdanim_lammps import Scene
 from mdanim_lammps.errors import DivergedError, OutputError, RefusedError, UsageError
-from mdanim_lammps.model import lattice
 from mdanim_lammps.run.loop import Interrupted
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.scene.scene import Accuracy
 from mdanim_lammps.study import bench
-from mdanim_lammps.study.analysis import Measurement, advice, analyse, pareto, sharp
-from mdanim_lammps.study.error import converge, distance, extent, growth, order_until
 from mdanim_lammps.study.measure import Sample, TooLong, measure
-from mdanim_lammps.study.setting import Ladder, Setting, ladders, own_setting, scene_hash, with_setting
-from mdanim_lammps.study.store import Point, Store
+from mdanim_lammps.study.setting import Setting, ladders, own_setting, scene_hash, with_setting
+from mdanim_lammps.study.store import Store
 from mdanim_lammps.study.study import run_study
-from mdanim_lammps.study.target import choice_file, find_choice, settle, stored_choice, with_choice
-from paths import REPOSITORY
-
-BAR = """
-gravity (0, 0, -9.81) m/s^2
-object bar {
-  shape box (40, 10, 10) cm
-  position (0, 0, 1)
-  density 1000
-  elasticity 2 MPa
-  hold face -x
-}
-control {
-  time 0.2 s
-  frames 100 fps
-}
-expect bar.position.y at 0.2 s = 0 +- 1e-6 m
-"""
-"""Runs in hundredths of a second at 2 to 4 cells."""
+from study_lab import BAR, TIMES, track
 
 BLOCKS = """
 object a {{ shape box (10, 10, 10) cm  position (-8, 0, 0) cm   density 1000  elasticity 1 MPa  velocity ({v}, 0, 0) }}
@@ -65,145 +44,6 @@ def bar_file(tmp_path_factory):
 def bar_study(bar_file):
     """A study of the bar, with every point within its budget."""
     return Scene.load(bar_file).study(budget=30.0)
-
-
-# --- errors and orders, on tracks made by hand ------------------------------------------------------------------------
-
-TIMES = np.linspace(0.0, 1.0, 41)
-
-
-def track(amplitude: float = 1.0, phase: float = 0.0) -> np.ndarray:
-    """One object that swings, and one that never moves."""
-    out = np.zeros((len(TIMES), 2, 3))
-    out[:, 0, 2] = amplitude * (1.0 - np.cos(6.0 * TIMES + phase))
-    out[:, 0, 2] -= out[0, 0, 2]
-    return out
-
-
-def test_distance_leaves_out_what_never_moves():
-    """Take the mean over frames and moving objects only: 3 and 4 in two axes are 5 apart."""
-    a = track()
-    b = a.copy()
-    b[1:, 0] += (3.0, 4.0, 0.0)
-    assert distance(a, b) == pytest.approx(5.0 * math.sqrt(40 / 41), rel=1e-12)
-    assert extent(a) == pytest.approx(2.0, rel=1e-3)
-
-
-@pytest.mark.parametrize("order", [1.0, 2.0, 3.0])
-def test_order_of_a_made_up_ladder(order):
-    """Find the exponent that errors were made with, and the limit, from steps that are not evenly spaced."""
-    steps = [0.2, 0.14, 0.1, 0.07, 0.05]
-    found = converge(steps, [track(1.0 + s**order, 0.3 * s**order) for s in steps], 2.0)
-    # Higher powers of the error, the phase's, leave 5 % in the exponent at the largest step.
-    assert found.order == pytest.approx(order, abs=0.05 * order)
-    assert distance(found.limit, track()) < 0.1 * distance(track(1.0 + steps[-1] ** order, 0.3 * steps[-1] ** order), track())
-    assert found.doubt == 0.0
-
-
-def test_a_reference_does_not_flatter_its_neighbour():
-    """Keep order 2 where a fit against the finest run would say much more: that one's own error is taken off all others."""
-    steps = [0.2, 0.14, 0.1]
-    tracks = [track(1.0 + s**2) for s in steps]
-    plain = [distance(t, tracks[-1]) for t in tracks[:-1]]
-    assert math.log(plain[0] / plain[1]) / math.log(steps[0] / steps[1]) > 2.8
-    assert converge(steps, tracks, 2.0).order == pytest.approx(2.0, abs=0.01)
-
-
-@pytest.mark.parametrize(
-    ("sizes", "why"),
-    [
-        pytest.param([0.0, 0.0, 0.0], "round-off", id="all the same"),
-        pytest.param([0.1, 0.1, 0.0], "runs converge", id="no nearer from step to step"),
-        pytest.param([0.9, -0.9, 0.8, -0.7], "runs converge", id="as far apart as can be"),
-        pytest.param([0.1, 0.0], "three runs", id="two runs"),
-    ],
-)
-def test_no_order_where_there_is_none(sizes, why):
-    """Say why instead of giving a number, and doubt the finest run by as much as it is from the one before it."""
-    steps = [0.2, 0.1, 0.05, 0.025][: len(sizes)]
-    tracks = [track(1.0 + x) for x in sizes]
-    found = converge(steps, tracks, 2.0)
-    assert found.order is None
-    assert why in found.why
-    assert found.doubt == pytest.approx(distance(tracks[-2], tracks[-1]) / 2.0 if "round-off" not in why else 0.0)
-
-
-def test_order_is_lost_at_a_blow():
-    """Find the order that holds up to a blow whose outcome follows no power of the spacing, and the time of the blow."""
-    steps, blow = [1 / 2, 1 / 3, 1 / 4, 1 / 6, 1 / 8], TIMES >= 0.4
-    tracks = [track(1.0 + 0.1 * s**2) for s in steps]
-    for t, aside in zip(tracks, (0.3, -0.4, 0.35, -0.2, 0.25)):
-        t[blow, 0, 1] += aside * (TIMES[blow] - 0.39)
-    assert converge(steps, tracks, 2.0).order is None
-    time, order = order_until(TIMES, steps, tracks, 2.0)
-    assert 0.35 < time < 0.45 and order == pytest.approx(2.0, abs=0.1)
-    assert order_until(TIMES, steps, [t[::-1] for t in tracks], 2.0) is None
-
-    own = Setting(4, 0.5)
-    ladder = Ladder("resolution", tuple(replace(own, cells=round(1 / s)) for s in steps))
-    points = {s.key: Point(s, 1e-3, 100, 10, [1.0], [1.0], [1e-5], [0.0], [()], [t]) for s, t in zip(ladder.settings, tracks)}
-    said = "most of the error from the resolution, which has order 2 up to t = 0.4 s and none from then on"
-    for touching, why in ((True, ": which particles meet in a blow"), (False, ".")):
-        assert said + why in advice(analyse(points, [ladder], own, TIMES, (), ["a", "b"], touching=touching))
-
-
-def test_growth_of_what_parts():
-    """Measure the e-folding time of a difference that grows, and when it passes a hundredth of the motion."""
-    a, b = track(), track()
-    b[:, 0, 0] = 2e-6 * np.exp(TIMES / 0.08)
-    found = growth(TIMES, a, b, 2.0)
-    assert found.folding == pytest.approx(0.08, rel=0.02)  # the one frame beyond the mark counts too
-    assert found.parted == pytest.approx(0.08 * math.log(1e4), abs=TIMES[1])
-    assert growth(TIMES, a, a, 2.0).parted is None
-
-
-def test_not_ranked_what_differs_less_than_the_spread():
-    """Call less only what is less by both half spreads, and keep both on the front."""
-    a, b, c = Measurement(1.0, 0.3), Measurement(1.2, 0.3), Measurement(2.0, 0.1)
-    assert not a.below(b) and not b.below(a)
-    assert a.below(c) and not c.below(a)
-    same = Measurement(0.1, 0.0)
-    assert pareto({"a": (a, same), "b": (b, same), "c": (c, same)}) == {"a", "b"}
-    assert pareto(
-        {"cheap": (a, Measurement(0.2, 0.0)), "good": (c, Measurement(0.1, 0.0)), "bad": (c, Measurement(0.3, 0.0))}
-    ) == {"cheap", "good"}
-
-
-def test_closed_forms_are_sharp_expects():
-    """Measure errors by what a line states as the truth, not by bounds and not by vague lines."""
-    scene = parse_scene(
-        BAR
-        + """
-expect bar.position.z at 0.1 s = 0.9 +- 0.05 m
-expect bar.position.z at 0.1 s = 0.9 +- 0.5 m
-expect bar.velocity.z at 0.1 s = -1 +- 0.1 m/s
-expect energy.residual = 0 +- 1e-3
-"""
-    )
-    swing = track()[:, :1]
-    found = sharp(scene.expects, ["bar"], swing, TIMES)
-    assert found == {0: extent(swing), 1: extent(swing), 3: pytest.approx(12.0 / 2, rel=0.03)}  # a speed of 6, by differences
-    short = sharp(scene.expects, ["bar"], 0.4 * swing, TIMES)
-    assert short[0] == short[1] == 0.9  # the truth goes farther than the run
-    assert sharp(scene.expects, ["bar"], 0.1 * swing, TIMES)[1] == 0.9
-
-
-def test_advice_for_a_scene_without_order():
-    """Say that runs part and name no best setting."""
-    own = Setting(4, 0.5)
-    ladder = Ladder("time step", tuple(Setting(4, f) for f in (0.7, 0.5, 0.35, 0.25)))
-    points = {}
-    for k, s in enumerate(ladder.settings):
-        wild = track()
-        wild[:, 0, 0] = (-1) ** k * np.minimum(0.7, 1e-6 * (1 + k) * np.exp(TIMES / 0.06))
-        points[s.key] = Point(s, 1e-3, 100, 10, [1.0], [1.0], [1e-5], [0.0], [()], [wild])
-    found = analyse(points, [ladder], own, TIMES, (), ["a", "b"])
-    assert found.chaotic
-    assert "forgets how it began" in advice(found)
-    assert "e-fold every 0.06" in advice(found)
-
-
-# --- studies ----------------------------------------------------------------------------------------------------------
 
 
 def test_study_leaves_its_files(bar_study, bar_file):
@@ -522,166 +362,6 @@ def test_energy_drift_of_scenes(name, accuracy, scenes, tmp_path):
     assert drift(scene, accuracy, tmp_path) <= DRIFT[accuracy]
 
 
-# --- accuracy error p % -----------------------------------------------------------------------------------------------
-
-TARGET = BAR.replace("frames 100 fps", 'frames 100 fps\n  accuracy "error 8 %"')
-
-
-@pytest.fixture
-def stiff_in_bending(monkeypatch):
-    """A lattice whose surface cells move nothing inward, so that a bar needs more than two cells and
-    there is something to look for."""
-    monkeypatch.setattr(lattice, "INWARD", dict.fromkeys(lattice.INWARD, 0.0))
-
-
-@pytest.fixture
-def target_file(tmp_path, stiff_in_bending):
-    """A bar that aims at 8 %."""
-    path = tmp_path / "goal.txt"
-    path.write_text(TARGET)
-    return path
-
-
-def test_target_is_found_stored_and_used_again(target_file, monkeypatch):
-    """Take the cheapest setting that meets the target, keep it beside the scene, and look no more."""
-    scene = load_scene(target_file)
-    told = []
-    first = settle(scene, make=True, budget=30.0, watch=told.append)
-    assert told and first.warning is None
-    choice = stored_choice(scene)
-    assert choice.met and choice.reached <= 0.08
-    assert first.scene.control.resolution == pytest.approx(0.1 / choice.cells, rel=1e-12)
-    monkeypatch.setattr(bench, "measure", None)
-    second = settle(scene, make=True)
-    assert second.scene == first.scene
-    assert "from goal.accuracy.json" in second.line and "found now" in first.line
-
-
-def test_target_is_met_by_the_cheapest(target_file):
-    """Miss the target with one cell less, or with so much less that it costs half: what is chosen is not too fine."""
-    scene = load_scene(target_file)
-    choice = find_choice(scene, budget=30.0)
-    truth = measure(scene, Setting(12, choice.fraction), target_file.parent)
-    errors = {}
-    for n in {choice.cells, math.floor(0.8 * choice.cells)}:
-        track = measure(scene, Setting(n, choice.fraction), target_file.parent).center
-        errors[n] = distance(track, truth.center) / extent(truth.center)
-    assert errors.pop(choice.cells) <= 0.08
-    assert errors.popitem()[1] > 0.08
-
-
-def test_target_steps_back_from_an_overshoot(target_file, monkeypatch):
-    """Try fewer cells when the first runs made it look harder than it is."""
-    errors = {2: 0.5, 3: 0.2, 4: 0.12}  # and from 5 cells on next to nothing, which no power of the spacing tells
-    seen = []
-
-    def made_up(scene, setting, *_, **__):
-        seen.append(setting.cells)
-        work = setting.cells**4 / setting.fraction
-        return Sample(
-            setting,
-            1e-3,
-            100,
-            round(work),
-            work,
-            work * 1e-6,
-            0.0,
-            0.0,
-            (0.0,),
-            TIMES,
-            track(1.0 + errors.get(setting.cells, 1e-3 / setting.cells)),
-        )
-
-    monkeypatch.setattr(bench, "measure", made_up)
-    target_file.write_text(TARGET.replace("8 %", "1 %"))
-    choice = find_choice(load_scene(target_file), budget=30.0)
-    assert choice.cells == 5
-    assert max(seen) > 5
-
-
-@pytest.mark.parametrize(
-    ("error", "fraction"),
-    [
-        pytest.param(0.005, 0.7, id="small: the longest step"),
-        pytest.param(0.012, 0.5, id="no more than a quarter of 1 %"),
-        pytest.param(0.05, 0.25, id="large"),
-    ],
-)
-def test_target_chooses_a_time_step(error, fraction, target_file, monkeypatch):
-    """Give a quarter of the target to the time step, and count what it adds."""
-
-    def made_up(scene, s, *_, **__):
-        work = s.cells**4 / s.fraction
-        return Sample(
-            s, 1e-3, 100, 10, work, work * 1e-6, 0.0, 0.0, (0.0,), TIMES, track(1.0 + 0.08 * s.cells**-2 + error * s.fraction**2)
-        )
-
-    monkeypatch.setattr(bench, "measure", made_up)
-    target_file.write_text(TARGET.replace("8 %", "1 %"))
-    choice = find_choice(load_scene(target_file), budget=30.0)
-    assert choice.fraction == fraction
-    swing = distance(np.zeros_like(track()), track()) / extent(track())  # rms over the extent
-    assert choice.reached == pytest.approx(
-        swing * (0.08 / choice.cells**2 + error * fraction**2 * (2.0 / choice.cells) ** 2), rel=0.05
-    )
-
-
-def test_stored_target_of_another_scene_is_not_used(target_file):
-    """Look again when scene or target have changed."""
-    settle(load_scene(target_file), make=True, budget=30.0)
-    target_file.write_text(TARGET.replace("2 MPa", "3 MPa"))
-    assert stored_choice(load_scene(target_file)) is None
-    target_file.write_text(TARGET.replace("8 %", "9 %"))
-    assert stored_choice(load_scene(target_file)) is None
-    for fixed in ("resolution 2.5 cm", "timestep 0.1 ms"):  # then something else is to be chosen
-        target_file.write_text(TARGET.replace("frames 100 fps", f"frames 100 fps\n  {fixed}"))
-        assert stored_choice(load_scene(target_file)) is None
-    target_file.write_text(TARGET + "# a word\n")
-    assert stored_choice(load_scene(target_file)) is not None
-    choice_file(load_scene(target_file)).write_text("{}")
-    with pytest.raises(OutputError, match="delete it"):
-        stored_choice(load_scene(target_file))
-
-
-def test_target_out_of_reach_is_told(target_file):
-    """Run with the best there is and say by how much it misses, instead of meeting the target by word."""
-    target_file.write_text(TARGET.replace("8 %", "0.001 %"))
-    found = settle(load_scene(target_file), make=True, budget=4.0)
-    assert "is not reached" in found.warning.message
-    assert found.scene.control.resolution is not None
-
-
-def test_time_step_is_chosen_where_the_resolution_is_given(target_file):
-    """Leave what the scene fixes, and find the other."""
-    target_file.write_text(TARGET.replace("frames 100 fps", "frames 100 fps\n resolution 5 cm").replace("8 %", "1e-3 %"))
-    choice = find_choice(load_scene(target_file), budget=30.0)
-    assert choice.cells == 2 and choice.met
-    control = with_choice(load_scene(target_file), replace(choice, resolution=1.0)).control
-    assert (control.resolution, control.timestep) == (0.05, choice.timestep)
-    target_file.write_text(TARGET.replace("frames 100 fps", "frames 100 fps\n resolution 5 cm\n timestep 0.1 ms"))
-    assert settle(load_scene(target_file), make=True).line == ""
-
-
-def test_check_says_that_a_run_will_look(target_file, capsys):
-    """Run nothing in check: name the setting that is stored, or that there is none yet."""
-    from mdanim_lammps.cli import main
-
-    def check():
-        with pytest.raises(SystemExit) as stopped:
-            main(["check", str(target_file)])
-        assert not stopped.value.code
-        return capsys.readouterr()
-
-    before = check()
-    assert "no setting is known yet" in before.out and "'balanced' is shown" in before.err
-    assert not choice_file(load_scene(target_file)).exists()
-    choice = find_choice(load_scene(target_file), budget=10.0)
-    from mdanim_lammps.study.target import store_choice
-
-    store_choice(load_scene(target_file), choice)
-    assert "from goal.accuracy.json" in check().out
-
-
 def test_study_command(bar_study, bar_file, capsys, monkeypatch):
     """Print table, orders and advice; refuse a budget that is no time."""
     from mdanim_lammps.cli import main
@@ -697,33 +377,3 @@ def test_study_command(bar_study, bar_file, capsys, monkeypatch):
             main(["study", str(bar_file), f"--budget={wrong}"])
         assert stopped.value.code == 2
         assert "expected a time above 0" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("percent", [12.0, 8.0, 5.0])
-def test_a_target_that_takes_many_cells_is_met_at_fair_cost(percent, stiff_in_bending, monkeypatch):
-    """Look up the ladder of a lattice that takes 4, 5 and 7 cells."""
-    monkeypatch.syspath_prepend(REPOSITORY / "bench")
-    from accuracy import target
-
-    choice, rows = target(percent=percent, budget=60.0)
-    _meets_at_fair_cost(choice, rows, percent / 100.0)
-
-
-def test_cantilever_follows_timoshenko_to_two_percent(monkeypatch):
-    """Meet 2 % against the closed form in every eighth of a period, at no more than twice the cost of the best there is."""
-    monkeypatch.syspath_prepend(REPOSITORY / "bench")
-    from accuracy import target
-
-    choice, rows = target(percent=2.0, budget=60.0)
-    _meets_at_fair_cost(choice, rows, 0.02)
-
-
-def _meets_at_fair_cost(choice, rows, target: float) -> None:
-    """The chosen point meets the target by the closed form, and none that does takes less than half its particle-steps."""
-    chosen = next((p, off) for p, off in rows if (p.setting.cells, p.setting.fraction) == (choice.cells, choice.fraction))
-    assert chosen[1] <= target and choice.met
-    assert {(n, f) for n in range(2, int(choice.cells) + 1) for f in (0.9, 0.7)} <= {
-        (p.setting.cells, p.setting.fraction) for p, _ in rows
-    }, "not every cheaper point was measured"
-    best = min(p.work for p, off in rows if off <= target)
-    assert chosen[0].work <= 2.0 * best

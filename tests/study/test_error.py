@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Errors, orders and advice, on tracks made by hand."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from mdanim_lammps.scene.parse import parse_scene
+from mdanim_lammps.study.analysis import Measurement, advice, analyse, pareto, sharp
+from mdanim_lammps.study.error import converge, distance, extent, growth, order_until
+from mdanim_lammps.study.setting import Ladder, Setting
+from mdanim_lammps.study.store import Point
+from study_lab import BAR, TIMES, track
+
+
+def test_distance_leaves_out_what_never_moves():
+    """Take the mean over frames and moving objects only: 3 and 4 in two axes are 5 apart."""
+    a = track()
+    b = a.copy()
+    b[1:, 0] += (3.0, 4.0, 0.0)
+    assert distance(a, b) == pytest.approx(5.0 * math.sqrt(40 / 41), rel=1e-12)
+    assert extent(a) == pytest.approx(2.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0, 3.0])
+def test_order_of_a_made_up_ladder(order):
+    """Find the exponent that errors were made with, and the limit, from steps that are not evenly spaced."""
+    steps = [0.2, 0.14, 0.1, 0.07, 0.05]
+    found = converge(steps, [track(1.0 + s**order, 0.3 * s**order) for s in steps], 2.0)
+    # Higher powers of the error, the phase's, leave 5 % in the exponent at the largest step.
+    assert found.order == pytest.approx(order, abs=0.05 * order)
+    assert distance(found.limit, track()) < 0.1 * distance(track(1.0 + steps[-1] ** order, 0.3 * steps[-1] ** order), track())
+    assert found.doubt == 0.0
+
+
+def test_a_reference_does_not_flatter_its_neighbour():
+    """Keep order 2 where a fit against the finest run would say much more: that one's own error is taken off all others."""
+    steps = [0.2, 0.14, 0.1]
+    tracks = [track(1.0 + s**2) for s in steps]
+    plain = [distance(t, tracks[-1]) for t in tracks[:-1]]
+    assert math.log(plain[0] / plain[1]) / math.log(steps[0] / steps[1]) > 2.8
+    assert converge(steps, tracks, 2.0).order == pytest.approx(2.0, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("sizes", "why"),
+    [
+        pytest.param([0.0, 0.0, 0.0], "round-off", id="all the same"),
+        pytest.param([0.1, 0.1, 0.0], "runs converge", id="no nearer from step to step"),
+        pytest.param([0.9, -0.9, 0.8, -0.7], "runs converge", id="as far apart as can be"),
+        pytest.param([0.1, 0.0], "three runs", id="two runs"),
+    ],
+)
+def test_no_order_where_there_is_none(sizes, why):
+    """Say why instead of giving a number, and doubt the finest run by as much as it is from the one before it."""
+    steps = [0.2, 0.1, 0.05, 0.025][: len(sizes)]
+    tracks = [track(1.0 + x) for x in sizes]
+    found = converge(steps, tracks, 2.0)
+    assert found.order is None
+    assert why in found.why
+    assert found.doubt == pytest.approx(distance(tracks[-2], tracks[-1]) / 2.0 if "round-off" not in why else 0.0)
+
+
+def test_order_is_lost_at_a_blow():
+    """Find the order that holds up to a blow whose outcome follows no power of the spacing, and the time of the blow."""
+    steps, blow = [1 / 2, 1 / 3, 1 / 4, 1 / 6, 1 / 8], TIMES >= 0.4
+    tracks = [track(1.0 + 0.1 * s**2) for s in steps]
+    for t, aside in zip(tracks, (0.3, -0.4, 0.35, -0.2, 0.25)):
+        t[blow, 0, 1] += aside * (TIMES[blow] - 0.39)
+    assert converge(steps, tracks, 2.0).order is None
+    time, order = order_until(TIMES, steps, tracks, 2.0)
+    assert 0.35 < time < 0.45 and order == pytest.approx(2.0, abs=0.1)
+    assert order_until(TIMES, steps, [t[::-1] for t in tracks], 2.0) is None
+
+    own = Setting(4, 0.5)
+    ladder = Ladder("resolution", tuple(replace(own, cells=round(1 / s)) for s in steps))
+    points = {s.key: Point(s, 1e-3, 100, 10, [1.0], [1.0], [1e-5], [0.0], [()], [t]) for s, t in zip(ladder.settings, tracks)}
+    said = "most of the error from the resolution, which has order 2 up to t = 0.4 s and none from then on"
+    for touching, why in ((True, ": which particles meet in a blow"), (False, ".")):
+        assert said + why in advice(analyse(points, [ladder], own, TIMES, (), ["a", "b"], touching=touching))
+
+
+def test_growth_of_what_parts():
+    """Measure the e-folding time of a difference that grows, and when it passes a hundredth of the motion."""
+    a, b = track(), track()
+    b[:, 0, 0] = 2e-6 * np.exp(TIMES / 0.08)
+    found = growth(TIMES, a, b, 2.0)
+    assert found.folding == pytest.approx(0.08, rel=0.02)  # the one frame beyond the mark counts too
+    assert found.parted == pytest.approx(0.08 * math.log(1e4), abs=TIMES[1])
+    assert growth(TIMES, a, a, 2.0).parted is None
+
+
+def test_not_ranked_what_differs_less_than_the_spread():
+    """Call less only what is less by both half spreads, and keep both on the front."""
+    a, b, c = Measurement(1.0, 0.3), Measurement(1.2, 0.3), Measurement(2.0, 0.1)
+    assert not a.below(b) and not b.below(a)
+    assert a.below(c) and not c.below(a)
+    same = Measurement(0.1, 0.0)
+    assert pareto({"a": (a, same), "b": (b, same), "c": (c, same)}) == {"a", "b"}
+    assert pareto(
+        {"cheap": (a, Measurement(0.2, 0.0)), "good": (c, Measurement(0.1, 0.0)), "bad": (c, Measurement(0.3, 0.0))}
+    ) == {"cheap", "good"}
+
+
+def test_closed_forms_are_sharp_expects():
+    """Measure errors by what a line states as the truth, not by bounds and not by vague lines."""
+    scene = parse_scene(
+        BAR
+        + """
+expect bar.position.z at 0.1 s = 0.9 +- 0.05 m
+expect bar.position.z at 0.1 s = 0.9 +- 0.5 m
+expect bar.velocity.z at 0.1 s = -1 +- 0.1 m/s
+expect energy.residual = 0 +- 1e-3
+"""
+    )
+    swing = track()[:, :1]
+    found = sharp(scene.expects, ["bar"], swing, TIMES)
+    assert found == {0: extent(swing), 1: extent(swing), 3: pytest.approx(12.0 / 2, rel=0.03)}  # a speed of 6, by differences
+    short = sharp(scene.expects, ["bar"], 0.4 * swing, TIMES)
+    assert short[0] == short[1] == 0.9  # the truth goes farther than the run
+    assert sharp(scene.expects, ["bar"], 0.1 * swing, TIMES)[1] == 0.9
+
+
+def test_advice_for_a_scene_without_order():
+    """Say that runs part and name no best setting."""
+    own = Setting(4, 0.5)
+    ladder = Ladder("time step", tuple(Setting(4, f) for f in (0.7, 0.5, 0.35, 0.25)))
+    points = {}
+    for k, s in enumerate(ladder.settings):
+        wild = track()
+        wild[:, 0, 0] = (-1) ** k * np.minimum(0.7, 1e-6 * (1 + k) * np.exp(TIMES / 0.06))
+        points[s.key] = Point(s, 1e-3, 100, 10, [1.0], [1.0], [1e-5], [0.0], [()], [wild])
+    found = analyse(points, [ladder], own, TIMES, (), ["a", "b"])
+    assert found.chaotic
+    assert "forgets how it began" in advice(found)
+    assert "e-fold every 0.06" in advice(found)
