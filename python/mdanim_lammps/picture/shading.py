@@ -217,8 +217,9 @@ FLOOR = """//VTK::Light::Impl
   vec3 up = vec3(0.0, 0.0, 1.0);
   float lit = shadow(worldPosition, TOUCH);
 PATTERN
-  vec3 sky = vec3(0.58, 0.62, 0.68) * skySeen(worldPosition, up, TOUCH);
-  vec3 color = mix(floorColor, gridColor, marked) * (sky + (vec3(1.0) - vec3(0.58, 0.62, 0.68)) * lit);
+  // What hides the sky throws back some of the lamp's warmer light: in all, grey is missing.
+  vec3 light = mix(vec3(0.58, 0.62, 0.68), vec3(1.0), lit) - 0.62 * (1.0 - skySeen(worldPosition, up, TOUCH));
+  vec3 color = mix(floorColor, gridColor, marked) * light;
   float away = length(worldPosition.xy - floorCentre.xy) / floorCentre.z;
   vec3 behind = mix(lowColor, highColor, clamp(gl_FragCoord.y / pictureHeight, 0.0, 1.0));
   fragOutput0 = vec4(seen(mix(color, behind, smoothstep(0.25, 1.0, away)), worldPosition), 1.0);
