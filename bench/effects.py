@@ -219,8 +219,8 @@ def forecasts(*names: str) -> None:
         start = time.process_time()
         ready = prepare(load_scene(path))
         setup = time.process_time() - start
-        told = extrapolate(ready, setup=setup)
-        with tempfile.TemporaryDirectory() as folder:
+        with tempfile.TemporaryDirectory() as first, tempfile.TemporaryDirectory() as folder:
+            told = extrapolate(ready, Path(first), setup=setup)
             began = time.perf_counter()
             cost = simulate(ready, Path(folder)).cost
             wall = time.perf_counter() - began

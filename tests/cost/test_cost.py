@@ -3,6 +3,7 @@
 
 import json
 import os
+import tempfile
 import time
 from dataclasses import replace
 from types import SimpleNamespace
@@ -171,16 +172,22 @@ def clockwork(monkeypatch):
     return seen
 
 
-def test_a_forecast_takes_what_is_later_for_as_long(pond, clockwork):
+@pytest.fixture
+def fresh(tmp_path_factory):
+    """Make an empty folder."""
+    return lambda: tmp_path_factory.mktemp("steps")
+
+
+def test_a_forecast_takes_what_is_later_for_as_long(pond, clockwork, fresh):
     """Take every step and every frame as those that were run, and what comes once as it was; twice the time is twice the work."""
     ready, _ = pond
-    told, steps = extrapolate(ready, setup=7.0), ready.certificate.steps
+    told, steps = extrapolate(ready, fresh(), setup=7.0), ready.certificate.steps
     assert told.effects == {"springs": CostShare(pytest.approx(0.75 * 0.5e-3 * steps), "here")}
     assert told.other == pytest.approx(
         {"leap-frog": 0.75 * 0.3e-3 * steps, "rest of the step": 0.75 * 0.2e-3 * steps, "setup": 7.0 + 2.25, "output": 7 * 0.015}
     )
     assert told.wall == pytest.approx(sum(told.parts.values()))
-    twice = extrapolate(replace(ready, certificate=replace(ready.certificate, frames=12)))
+    twice = extrapolate(replace(ready, certificate=replace(ready.certificate, frames=12)), fresh())
     assert twice.effects["springs"].seconds == pytest.approx(2 * told.effects["springs"].seconds)
     assert twice.other["output"] == pytest.approx(13 * 0.015)
 
@@ -195,32 +202,37 @@ def test_a_forecast_takes_what_is_later_for_as_long(pond, clockwork):
         pytest.param(10_000_000, 2000, 19, 10, id="no fewer steps"),
     ],
 )
-def test_a_forecast_takes_tenths_of_a_second(pond, clockwork, particles, per_frame, frames, steps):
+def test_a_forecast_takes_tenths_of_a_second(pond, clockwork, fresh, particles, per_frame, frames, steps):
     """Run frames of some hundred thousand particle-steps until 0.4 s of processor time are over, and few at least."""
     ready = pond[0]
     many = SimpleNamespace(particles=particles)
-    extrapolate(replace(ready, system=many, certificate=replace(ready.certificate, steps_per_frame=per_frame, frames=1000)))
+    extrapolate(
+        replace(ready, system=many, certificate=replace(ready.certificate, steps_per_frame=per_frame, frames=1000)), fresh()
+    )
     run, certificate = clockwork[0]
     assert (run, certificate.steps_per_frame, certificate.last_steps) == (frames, steps, 0)
 
 
-def test_a_forecast_runs_no_more_than_the_run(pond, clockwork):
+def test_a_forecast_runs_no_more_than_the_run(pond, clockwork, fresh):
     """Run all frames of a short scene, and three where it has fewer."""
     for frames, run in ((4, 4), (1, 3)):
-        extrapolate(replace(pond[0], certificate=replace(pond[0].certificate, steps_per_frame=1, frames=frames)))
+        extrapolate(replace(pond[0], certificate=replace(pond[0].certificate, steps_per_frame=1, frames=frames)), fresh())
         assert clockwork[-1][0] == run
 
 
-def test_first_steps_that_end_badly(pond, monkeypatch):
-    """Tell nothing where they diverge or take too long, pass on that LAMMPS cannot be used, and outlive an end of the process."""
+def test_first_steps_that_end_badly(pond, monkeypatch, tmp_path):
+    """Tell nothing where they diverge or take too long, pass on that LAMMPS cannot be used, and outlive an end of the process.
+    No file stays."""
     from mdanim_lammps.cost import forecast as forecasting
+
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
 
     def ends(what):
         monkeypatch.setattr(forecasting, "extrapolate", what)
         return forecast(pond[0])
 
     def fail(error):
-        def run(ready, setup):
+        def run(ready, folder, setup):
             raise error
 
         return run
@@ -229,11 +241,12 @@ def test_first_steps_that_end_badly(pond, monkeypatch):
     with pytest.raises(SetupError, match="no plugin"):
         ends(fail(SetupError("no plugin")))
     with pytest.raises(SetupError, match="ended the process"):
-        ends(lambda ready, setup: os._exit(1))
-    monkeypatch.setattr(forecasting, "PATIENCE", 0.2)
+        ends(lambda ready, folder, setup: os._exit(1))
+    monkeypatch.setattr(forecasting, "PATIENCE", 0.5)
     start = time.perf_counter()
-    assert ends(lambda ready, setup: time.sleep(60)) is None
+    assert ends(lambda ready, folder, setup: ((folder / "trajectory.h5").write_text("half"), time.sleep(60))) is None
     assert time.perf_counter() - start < 30.0
+    assert not list(tmp_path.iterdir())
     assert forecast_line(None).startswith("cost     not known")
     assert check_json(pond[0], None)["cost"] is None
 

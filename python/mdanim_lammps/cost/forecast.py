@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import signal
 import tempfile
 import time
 from dataclasses import replace
@@ -36,25 +37,27 @@ def forecast(ready: Prepared, *, setup: float = 0.0) -> Cost | None:
     """
     context = get_context("fork")
     answer, send = context.Pipe(duplex=False)
-    child = context.Process(target=_tell, args=(send, ready, setup), daemon=True)
-    child.start()
-    send.close()
-    try:
-        found = answer.recv() if answer.poll(PATIENCE) else None
-    except EOFError:
-        raise SetupError("the first steps cannot be run: LAMMPS ended the process") from None
-    finally:
-        child.kill()
-        child.join()
+    with tempfile.TemporaryDirectory(prefix="mdanim-") as folder:
+        child = context.Process(target=_tell, args=(send, ready, Path(folder), setup), daemon=True)
+        child.start()
+        send.close()
+        try:
+            found = answer.recv() if answer.poll(PATIENCE) else None
+        except EOFError:
+            raise SetupError("the first steps cannot be run: LAMMPS ended the process") from None
+        finally:
+            child.kill()
+            child.join()
     if isinstance(found, MdanimError):
         raise found
     return found
 
 
-def _tell(send: Connection, ready: Prepared, setup: float) -> None:
+def _tell(send: Connection, ready: Prepared, folder: Path, setup: float) -> None:
     """Send the cost, None or the error through a pipe."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the caller's, which ends this process
     try:
-        found: Cost | MdanimError | None = extrapolate(ready, setup=setup)
+        found: Cost | MdanimError | None = extrapolate(ready, folder, setup=setup)
     except DivergedError:
         found = None
     except MdanimError as error:
@@ -62,8 +65,9 @@ def _tell(send: Connection, ready: Prepared, setup: float) -> None:
     send.send(found)
 
 
-def extrapolate(ready: Prepared, *, setup: float = 0.0) -> Cost:
-    """Run the first steps in this process; arguments and errors as of `forecast`. Raises DivergedError too."""
+def extrapolate(ready: Prepared, folder: Path, *, setup: float = 0.0) -> Cost:
+    """Run the first steps in this process and in an empty folder; arguments and errors as of `forecast`. Raises DivergedError
+    too."""
     from ..run.loop import Interrupted, Progress, simulate
 
     c, particles = ready.certificate, ready.system.particles
@@ -76,13 +80,13 @@ def extrapolate(ready: Prepared, *, setup: float = 0.0) -> Cost:
         if len(marks) >= FRAMES[0] and marks[-1][1] - marks[0][1] > ENOUGH:
             (folder / STOP).touch()
 
-    with tempfile.TemporaryDirectory(prefix="mdanim-") as temporary:
-        folder = Path(temporary)
-        short = replace(ready, certificate=replace(c, steps_per_frame=steps, frames=frames, last_steps=0))
-        try:
-            cost = simulate(short, folder, on_progress=mark).cost
-        except Interrupted as stopped:
-            cost = stopped.cost
+    short = replace(ready, certificate=replace(c, steps_per_frame=steps, frames=frames, last_steps=0))
+    try:
+        cost = simulate(short, folder, on_progress=mark).cost
+    except Interrupted as stopped:
+        if len(marks) < FRAMES[0]:
+            raise  # by a signal
+        cost = stopped.cost
     assert cost is not None, "a run that has ended or stopped has a cost"
     # What a run does once, before its first frame and after its last one, is not in these differences.
     wall, own, simulated = (last - first for first, last in zip(marks[0], marks[-1]))
