@@ -396,6 +396,7 @@ void ContactField::go_on(FieldContact &contact, const Hop &hop, const Spot<doubl
 ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now,
                                       ContactArrays &arrays, ContactAccount &account) const
 {
+  const Placed at = {*host->body, task.slot, task.place};
   MapWeights weights;
   Spot<double> spot;
   Vec3 off, part_slope;
@@ -412,17 +413,23 @@ ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, cons
     return Fate::OUT;
   }
 
+  Vec3 turn;
+  if (task.is_smooth && is_on_ramp(part_slope)) {
+    const int row = at.body.row(), layer = at.body.layer(), *const slots = at.slot + weights.base;
+    turn = part_turn(
+        weights.axis, [&](int i, int j, int k) { return at.place[slots[i + row * j + layer * k]].value; }, spot, part_slope,
+        shift);
+  }
   const ContactPush<double> push =
-      contact_push(task.law, task.dt, now.area, part, part_slope, below, spot, off, shift, contact.state);
+      contact_push(task.law, task.dt, now.area, part, part_slope, turn, below, spot, off, shift, contact.state);
   contact.force = push.on_point;
   contact.moved = push.moved;
   contact.energy = push.energy;
 
   Row *on = arrays.force();
   near.add_force(q, push.on_point, on);
-  if (part_slope.x != 0.0 || part_slope.y != 0.0 || part_slope.z != 0.0) near.add_force_at_centre(q, push.at_centre, on);
-  spread({*host->body, task.slot, task.place}, weights, -1.0 * push.both,
-         {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]}, on);
+  if (is_on_ramp(part_slope)) near.add_force_at_centre(q, push.at_centre, on);
+  spread(at, weights, -1.0 * push.both, {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]}, on);
   count(contact, push.heat, push.damped, account);
   return Fate::STAYS;
 }

@@ -91,6 +91,15 @@ struct Followed {
   int lost;                   // one bit for each lane that is not found
 };
 
+// place(i, j, k) of evaluate_nodes() in all lanes.
+MDANIM_ALWAYS_INLINE auto places_around(const PushTask &task, const Followed &found)
+{
+  return [&task, &found](int i, int j, int k) {
+    const long step = i + task.host.row * j + task.host.layer * k;
+    return gather_rows([&](int lane) { return &task.place[found.slots[lane][step]].value.x; });
+  };
+}
+
 // As ContactField::follow() does, all lanes at once: a lane that has its place repeats the same numbers.
 template <bool SMOOTH> MDANIM_ALWAYS_INLINE void follow(const PushTask &task, const Vec<Four> &x, Followed &found)
 {
@@ -198,10 +207,13 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, const FieldContact *f
   } else {
     below = depth_by_splines(host, X);
   }
+  Vec<Four> turn;
+  if (SMOOTH && any(is_on_ramp(part_slope)))
+    turn = part_turn(found.weights, places_around(task, found), found.spot, part_slope, shift);
   const auto stays = (below.value > 0.0) & (part > 0.0) & (below.value <= task.longest);
 
   const ContactPush<Four> push =
-      contact_push(task.law, task.dt, point.area, part, part_slope, below, found.spot, found.off, shift, state);
+      contact_push(task.law, task.dt, point.area, part, part_slope, turn, below, found.spot, found.off, shift, state);
   pushed.nodes = 0;
   spread_to_nodes<SMOOTH>(found.weights, -1.0 * push.both, {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]},
                           [&](int i, int j, int k, const Vec<Four> &force) {
@@ -211,7 +223,7 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, const FieldContact *f
                             store_columns(column, [&](int lane) { return &row[lane].value.x; });
                           });
   pushed.hard = (found.lost | ~bits(stays)) & ((1 << n) - 1);
-  pushed.on_ramp = bits((part_slope.x != 0.0) | (part_slope.y != 0.0) | (part_slope.z != 0.0));
+  pushed.on_ramp = bits(is_on_ramp(part_slope));
 #pragma GCC unroll 8
   for (int lane = 0; lane < LANES; ++lane) {
     pushed.slots[lane] = found.slots[lane];

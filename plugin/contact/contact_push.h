@@ -121,11 +121,28 @@ template <class Real> struct ContactPush {
   Real energy, heat, damped;
 };
 
-// `off` is X less its guess, about which all is linear; `shift` goes from X to the centre of the point's area.
+// A slope of the part that counts.
+template <class Real> MDANIM_ALWAYS_INLINE auto is_on_ramp(const Vec<Real> &part_slope)
+{ return (part_slope.x != 0.0) | (part_slope.y != 0.0) | (part_slope.z != 0.0); }
+
+// The part that counts is that at the centre of a sharp point's area, X + K shift. Where X moves K changes too: this is what that
+// does to the part, as a gradient in space by the place of the point. `shift` is in lattice coordinates.
+template <class Real, class Place>
+MDANIM_ALWAYS_INLINE Vec<Real> part_turn(const Weights<Real> &weights, const Place &place, const Spot<Real> &spot,
+                                         const Vec<Real> &part_slope, const Vec<Real> &shift)
+{
+  const Vec<Real> turn = spot.gradient(change_of_gradient(weights, place, spot.gradient(part_slope), shift));
+  const auto counts = is_on_ramp(part_slope);
+  return {pick(counts, turn.x, Real{}), pick(counts, turn.y, Real{}), pick(counts, turn.z, Real{})};
+}
+
+// `off` is X less its guess, about which all is linear; `shift` goes from X to the centre of the point's area; `turn` is
+// part_turn().
 template <class Real>
 MDANIM_ALWAYS_INLINE ContactPush<Real> contact_push(const ContactLaw &law, double dt, const Real &area, const Real &part,
-                                                    const Vec<Real> &part_slope, const Depth<Real> &below, const Spot<Real> &spot,
-                                                    const Vec<Real> &off, const Vec<Real> &shift, ContactState<Real> &state)
+                                                    const Vec<Real> &part_slope, const Vec<Real> &turn, const Depth<Real> &below,
+                                                    const Spot<Real> &spot, const Vec<Real> &off, const Vec<Real> &shift,
+                                                    ContactState<Real> &state)
 {
   const Vec<Real> normal = spot.gradient(below.slope);    // of the depth, in space
   ContactForce<Real> force = contact_pressure(law, area, part, below.value, dt, state.memory);
@@ -139,7 +156,7 @@ MDANIM_ALWAYS_INLINE ContactPush<Real> contact_push(const ContactLaw &law, doubl
     lean = force.kept * lean;
     state.anchor = state.X + lean;
   }
-  push.on_point = -force.press * normal + force.pull + force.drag;
+  push.on_point = -force.press * normal + force.pull + force.drag + force.surface_energy * turn;
   push.at_centre = -force.surface_energy * spot.gradient(part_slope);
   push.both = push.on_point + push.at_centre;
 #pragma GCC unroll 3

@@ -54,6 +54,7 @@ MDANIM_ALWAYS_INLINE bool step_to_neighbour(const Lattice &grid, int (&cell)[3],
 template <class Real> struct AxisWeights {
   Real w[3], slope[3];
   bool uses_first, uses_last;
+  Real bend[3]{};    // derivatives of the slopes
 };
 
 template <class Real> using Weights = AxisWeights<Real>[3];
@@ -81,7 +82,9 @@ template <class Real> MDANIM_ALWAYS_INLINE AxisWeights<Real> smooth_weights(cons
        pick(low, none, pick(high, inside, 0.5 * q * q))},
       {pick(low, -one, pick(high, none, -p)), pick(low, one, pick(high, -one, -2.0 * u)), pick(low, none, pick(high, one, q))},
       any(x < cells - 0.5),
-      any(x >= 0.5)};
+      any(x >= 0.5),
+      {pick(low, none, pick(high, none, one)), pick(low, none, pick(high, none, -2.0 * one)),
+       pick(low, none, pick(high, none, one))}};
 }
 
 // x(X) and its gradient: columns J = dx/dX, rows K of the inverse.
@@ -146,6 +149,36 @@ MDANIM_ALWAYS_INLINE void evaluate_nodes(const Weights<Real> &weights, const Pla
     add<SMOOTH>(k, spot.J[2], az.slope[k] * s);
   }
   spot.invert();
+}
+
+// How the gradient by X of along . x(X), of the smooth map, changes on a way of X.
+template <class Real, class Place>
+MDANIM_ALWAYS_INLINE Vec<Real> change_of_gradient(const Weights<Real> &weights, const Place &place, const Vec<Real> &along,
+                                                  const Vec<Real> &way)
+{
+  const AxisWeights<Real> &ax = weights[0], &ay = weights[1], &az = weights[2];
+  Real xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
+#pragma GCC unroll 3
+  for (int k = 0; k < 3; ++k) {
+    if (!uses<true>(az, k)) continue;
+    Real s{}, sx{}, sy{}, sxx{}, sxy{}, syy{};
+#pragma GCC unroll 3
+    for (int j = 0; j < 3; ++j) {
+      if (!uses<true>(ay, j)) continue;
+      Real t{}, tx{}, txx{};
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i) {
+        if (!uses<true>(ax, i)) continue;
+        const Real at = dot(along, place(i, j, k));
+        t += ax.w[i] * at, tx += ax.slope[i] * at, txx += ax.bend[i] * at;
+      }
+      s += ay.w[j] * t, sx += ay.w[j] * tx, sxx += ay.w[j] * txx;
+      sy += ay.slope[j] * t, sxy += ay.slope[j] * tx, syy += ay.bend[j] * t;
+    }
+    xx += az.w[k] * sxx, xy += az.w[k] * sxy, yy += az.w[k] * syy;
+    xz += az.slope[k] * sx, yz += az.slope[k] * sy, zz += az.bend[k] * s;
+  }
+  return {xx * way.x + xy * way.y + xz * way.z, xy * way.x + yy * way.y + yz * way.z, xz * way.x + yz * way.y + zz * way.z};
 }
 
 // Of every particle b: on(i, j, k, force N_b + dN_b/dX . moment).

@@ -7,7 +7,7 @@ It has no boxes, no lists and no look ahead. A cell in contact that is turned in
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 
 import numpy as np
@@ -28,9 +28,10 @@ FAR = 2.2
 
 
 def linear(X, cell, nodes: int = 2):
-    """First node, weights (P, nodes) and their slopes along one axis: those of a third node are 0."""
+    """First node, weights (P, nodes), their slopes and the slopes of these along one axis: those of a third node are 0."""
     u, zero = X - cell, np.zeros_like(X)
-    return cell, np.stack([1.0 - u, u, zero][:nodes], -1), np.stack([zero - 1.0, zero + 1.0, zero][:nodes], -1)
+    slope = np.stack([zero - 1.0, zero + 1.0, zero][:nodes], -1)
+    return cell, np.stack([1.0 - u, u, zero][:nodes], -1), slope, np.zeros_like(slope)
 
 
 def smooth(X, cells: int):
@@ -39,20 +40,23 @@ def smooth(X, cells: int):
     u = X - middle
     w = np.stack([(0.5 - u) ** 2 / 2.0, 0.75 - u**2, (0.5 + u) ** 2 / 2.0], -1)
     slope = np.stack([u - 0.5, -2.0 * u, u + 0.5], -1)
+    bend = np.tile([1.0, -2.0, 1.0], (len(X), 1))
     end = np.where((X < 0.5) | (cells == 1), 0.0, cells - 1.0)
-    first, straight, straight_slope = linear(X, end, 3)
+    first, straight, straight_slope, straight_bend = linear(X, end, 3)
     is_straight = (X < 0.5) | (cells == 1) | (X - (cells - 0.5) >= 0.0)
     pick = is_straight[:, None]
-    return np.where(is_straight, first, middle - 1.0), np.where(pick, straight, w), np.where(pick, straight_slope, slope)
+    of_axis = ((straight, w), (straight_slope, slope), (straight_bend, bend))
+    return np.where(is_straight, first, middle - 1.0), *(np.where(pick, a, b) for a, b in of_axis)
 
 
 @dataclass
 class Spot:
-    """Where points X are: place (P, 3), J = dx/dX (P, 3, 3), nodes (P, 8 or 27), their weights and the gradients of these by
-    X."""
+    """Where points X are: place (P, 3), J = dx/dX (P, 3, 3), dJ/dX (P, 3, 3, 3), nodes (P, 8 or 27), their weights and the
+    gradients of these by X."""
 
     x: np.ndarray
     J: np.ndarray
+    dJ: np.ndarray
     nodes: np.ndarray
     N: np.ndarray
     dN: np.ndarray
@@ -67,7 +71,7 @@ class Spot:
 
     def take(self, rows) -> Spot:
         """Some of the points."""
-        return Spot(self.x[rows], self.J[rows], self.nodes[rows], self.N[rows], self.dN[rows])
+        return Spot(*(getattr(self, part.name)[rows] for part in fields(self)))
 
     @cached_property
     def K(self):
@@ -77,7 +81,7 @@ class Spot:
 
 def evaluate(x, count, axes) -> Spot:
     """The map with these weights along the axes; ``x`` are the particles of a cuboid, x fastest."""
-    (first_x, wx, sx), (first_y, wy, sy), (first_z, wz, sz) = axes
+    (first_x, wx, sx, bx), (first_y, wy, sy, by), (first_z, wz, sz, bz) = axes
     n = wx.shape[1]
     i, j, k = (np.minimum(first[:, None].astype(int) + np.arange(n), c) for first, c in zip((first_x, first_y, first_z), count))
     product = lambda a, b, c: (c[:, :, None, None] * b[:, None, :, None] * a[:, None, None, :]).reshape(len(a), n**3)
@@ -85,8 +89,11 @@ def evaluate(x, count, axes) -> Spot:
     nodes = (i[:, None, None, :] + nx * (j[:, None, :, None] + ny * k[:, :, None, None])).reshape(len(i), n**3)
     N = product(wx, wy, wz)
     dN = np.stack([product(sx, wy, wz), product(wx, sy, wz), product(wx, wy, sz)], -1)
+    xy, xz, yz = product(sx, sy, wz), product(sx, wy, sz), product(wx, sy, sz)
+    ddN = np.stack([product(bx, wy, wz), xy, xz, xy, product(wx, by, wz), yz, xz, yz, product(wx, wy, bz)], -1)
     at = x[nodes]
-    return Spot((N[:, None, :] @ at)[:, 0], at.transpose(0, 2, 1) @ dN, nodes, N, dN)
+    dJ = (at.transpose(0, 2, 1) @ ddN).reshape(-1, 3, 3, 3)
+    return Spot((N[:, None, :] @ at)[:, 0], at.transpose(0, 2, 1) @ dN, dJ, nodes, N, dN)
 
 
 def trilinear_spot(x, count, X, cell, nodes: int = 2) -> Spot:
@@ -124,8 +131,8 @@ def inverse(x, count, place, X, is_smooth):
     X[is_smooth] = newton(place[is_smooth], X[is_smooth], lambda at: smooth_spot(x, count, at))
     at = np.nan_to_num(X)
     spot, sharp = trilinear_spot(x, count, at, cell, 3), smooth_spot(x, count, at[is_smooth])
-    for name in ("x", "J", "nodes", "N", "dN"):
-        getattr(spot, name)[is_smooth] = getattr(sharp, name)
+    for part in fields(Spot):
+        getattr(spot, part.name)[is_smooth] = getattr(sharp, part.name)
     return X, cell.astype(int), spot
 
 
@@ -297,7 +304,7 @@ class Solid:
         """Outward unit normals of the points in space: by the middle of the cell that carries each."""
         m = self.middles
         J = np.einsum("pnc,pna->pca", x[self.rows][m.nodes], m.dN)
-        n = Spot(None, J, None, None, None).gradient(self.body["normal"] * self.body["edge"])
+        n = np.einsum("pac,pa->pc", np.linalg.inv(J), self.body["normal"] * self.body["edge"])
         return n / np.linalg.norm(n, axis=1, keepdims=True)
 
     def push(self, which, points, forces, onto):
@@ -436,11 +443,12 @@ class Twin:
             pull, drag, kept = friction(law, area[n], t_c, n, memory, way, grad, press, dt, account)
             lean = kept[:, None] * lean
             memory.anchor[n] = X[c] + lean
-        at_point = -press[:, None] * grad + pull + drag
         at_centre = -surface[:, None] * spot.gradient(grad_t)
+        to_centre = spot.to_material(shift[n])
+        turned = np.einsum("pcab,pb->pca", spot.dJ, to_centre)  # how J changes on the way to the centre
+        at_point = -press[:, None] * grad + pull + drag - spot.gradient(np.einsum("pca,pc->pa", turned, at_centre))
         owner.push(0, n, at_point, total)
         owner.push(1, n, at_centre, total)
-        to_centre = spot.to_material(shift[n])
         moment = to_centre[:, :, None] * at_centre[:, None, :] + lean[:, :, None] * pull[:, None, :]  # (P, a, c)
         back = spot.N[:, :, None] * (at_point + at_centre)[:, None, :] + np.einsum("pna,pac->pnc", spot.dN, moment)
         np.add.at(total[host.rows], spot.nodes, -back)

@@ -227,6 +227,7 @@ def test_momentum_and_angular_momentum_stay(tmp_path, name):
     [
         # 5e-6 is leap-frog's.
         pytest.param("on a corner", 0.0, 1e-5, id="corner"),
+        pytest.param("beside an edge", 0.0, 5e-5, id="over an edge"),
         pytest.param("on a corner, rough", 0.0, 3e-4, id="corner, friction"),
         pytest.param("on an edge, rough", 0.0, 3e-4, id="edge, friction"),
         # What dashpots take is told to the first order of the step: 4 % of 0.08 at this one, half of that at half of it.
