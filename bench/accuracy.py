@@ -59,13 +59,10 @@ WAVE = math.sqrt(1.2 * 1e6 / 1000.0)
 
 
 def load(name: str, time: float | None = None, **overrides):
-    """A scene of scenes/ or of TEXTS, cut short; beam.txt with contact at the surfaces."""
+    """A scene of scenes/ or of TEXTS, cut short."""
     from mdanim_lammps.scene.parse import load_scene, parse_scene
-    from mdanim_lammps.scene.scene import ContactModel
 
     scene = parse_scene(TEXTS[name], name) if name in TEXTS else load_scene(ROOT / "scenes" / f"{name}.txt", overrides=overrides)
-    if name == "beam":
-        scene = replace(scene, control=replace(scene.control, contact_model=ContactModel.SURFACE))
     if time is None or time >= scene.control.time:
         return scene
     return replace(

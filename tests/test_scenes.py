@@ -32,4 +32,4 @@ def test_demo_scene_checks_from_the_command_line():
     done = subprocess.run(
         [sys.executable, "-m", "mdanim_lammps", "check", str(SCENES / "beam.txt")], capture_output=True, text=True
     )
-    assert done.returncode == 0 and "set by: beam" in done.stdout
+    assert done.returncode == 0 and "set by: cube" in done.stdout

@@ -93,7 +93,7 @@ def test_no_second_is_counted_twice(pond):
         fix_value=lambda fix, k: {7: 1.0, 8: 2.0, 9: 4.0}[k],
         array=lambda name: ready.plan.columns["lambda"],
     )
-    clocks = {e.name: e.clocks(instance) for e in EFFECTS}
+    clocks = {e.name: e.of(ready.scene).clocks(instance) for e in EFFECTS}
     account = Account()
     add_clocks(account, instance)
     assert account.effects == clocks

@@ -307,23 +307,25 @@ def test_only_what_may_be_met_fast_is_a_barrier_where_it_is_thin(prepared):
     assert {m.name: m.limit for m in ready.certificate.margins}["closing speed"] == pytest.approx(0.2 * WAVE)
 
 
-FREE = "contacts are frictionless"
+FREE, SLIDES = "contacts are frictionless", "what stands or lies on something slides off it"
 
 
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        pytest.param(pile(), f"{FREE}; write friction 0.5 in control", id="surface"),
+        pytest.param(pile(), f"{FREE}: {SLIDES}; write friction 0.5 in control", id="surface"),
         pytest.param(
             pile(z=0.2).replace("contact-model surface", "contact-model paper"),
-            f"{FREE}, as in the paper; write friction 0.5 in control",
+            f"{FREE}, as in the paper: {SLIDES}; write friction 0.5 in control in place of contact-model paper",
             id="paper",
         ),
         pytest.param(pile(control="friction 0.1"), "", id="friction"),
         pytest.param(pile("contact cube slab { friction 0.1 }"), "", id="friction of a pair"),
         pytest.param(pile("effects { gravity off }"), "", id="no gravity"),
         pytest.param(pile(slab="hold all", cube="hold all"), "", id="nothing moves"),
-        pytest.param(pile("effects { ground off walls off }", slab="hold faces x"), f"{FREE}; write", id="a held slab below"),
+        pytest.param(
+            pile("effects { ground off walls off }", slab="hold faces x"), f"{FREE}: {SLIDES}; write", id="a held slab below"
+        ),
         pytest.param(pile("effects { ground off walls off }"), "", id="all fall"),
         pytest.param(pile("effects { ground off walls off contact off }", slab="hold all"), "", id="all fall through the slab"),
         pytest.param(POOL.format(control="", more=""), "", id="floats"),

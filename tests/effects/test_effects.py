@@ -259,8 +259,9 @@ walls from (-1, -1, 0) to (1, 1, 3)
 object a { shape sphere 0.1 position (0, 0, 1.2) mass 1 elasticity 1e5 damping 0.1 drag 0.2 }
 object b { shape sphere 0.1 position (0, 0, 0.9) mass 1 elasticity 1e5 }
 liquid w { basin from (-1, -1, 0) to (1, 1, 3) density 1000 level 0.3 }
-control { time 0.1  resolution 0.1 }
+control { time 0.1  resolution 0.1  contact-model MODEL }
 """
+MODELS = ("surface", "paper")
 TRACES = {
     "springs": ["bond_style", "Bonds", "Bond Coeffs"],
     "damping": ["vel yes"],
@@ -274,7 +275,14 @@ TRACES = {
     "buoyancy": ["modify liquid buoyancy", "d_volume"],
     "liquid-drag": ["modify liquid drag", "d_gamma"],
 }
-"""Words of the built files that stand there for one effect alone."""
+"""Words of the built files that stand there for one effect alone, under the contact of the paper."""
+ON_SURFACES = {
+    "contact": ["fix contact mobile mdanim/contact", "mdanim/barrier", "d_reach", " reach", "group boundary", "group inner"],
+    "ground": ["fix ground mobile mdanim/contact"],
+    "walls": ["fix walls mobile mdanim/contact"],
+    "basin": ["fix basin mobile mdanim/contact"],
+}
+"""The same where contact is at the surfaces, as far as it is another."""
 FIXES = {"gravity", "contact", "ground", "walls", "basin", "liquid"}
 """Effects that are a fix of this name."""
 TAKES_ALONG = {
@@ -298,26 +306,39 @@ def live_fixes(ready) -> set[str]:
         return set(instance._lmp.available_ids("fix")) - {"model", "leapfrog"}
 
 
-def test_what_is_on_is_there(prepared):
+def traces(model: str) -> dict[str, list[str]]:
+    """TRACES under a model of contact."""
+    return TRACES if model == "paper" else TRACES | ON_SURFACES
+
+
+def fixes(effects: set[str], model: str) -> set[str]:
+    """IDs of the fixes of these effects."""
+    found = effects & FIXES
+    return found | {"barrier"} if "contact" in found and model == "surface" else found
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_what_is_on_is_there(prepared, model):
     """Find every trace where all effects are on."""
-    ready = prepared(ALL)
+    ready = prepared(ALL.replace("MODEL", model))
     text = written(ready)
     assert all(v.on for v in ready.verdicts.values())
-    assert not [word for words in TRACES.values() for word in words if word not in text]
-    assert live_fixes(ready) == FIXES
+    assert not [word for words in traces(model).values() for word in words if word not in text]
+    assert live_fixes(ready) == fixes(FIXES, model)
 
 
+@pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("effect", [e.name for e in EFFECTS])
-def test_what_is_off_leaves_nothing(prepared, effect):
+def test_what_is_off_leaves_nothing(prepared, effect, model):
     """Find no trace of an effect that is off, nor of those that need it, and all traces of the others."""
-    ready = prepared(ALL + f"effects {{ {effect} off }}\n")
+    ready = prepared(ALL.replace("MODEL", model) + f"effects {{ {effect} off }}\n")
     gone = {effect} | TAKES_ALONG.get(effect, set())
     assert {v.name for v in ready.verdicts.values() if not v.on} == gone
-    text = written(ready)
-    assert not [word for name in gone for word in TRACES[name] if word in text]
+    text, words_of = written(ready), traces(model)
+    assert not [word for name in gone for word in words_of[name] if word in text]
     shared = set() if "liquid-drag" not in gone else {"d_air", "base"}  # what air hands to the liquid
-    assert not [word for name in TRACES.keys() - gone for word in TRACES[name] if word not in text and word not in shared]
-    assert live_fixes(ready) == FIXES - gone
+    assert not [word for name in words_of.keys() - gone for word in words_of[name] if word not in text and word not in shared]
+    assert live_fixes(ready) == fixes(FIXES - gone, model)
     names = next(line for line in input_script(ready.plan).splitlines() if line.startswith("# Effects:"))
     assert not gone & set(names.removeprefix("# Effects: ").rstrip(".").split(", "))
 
@@ -344,4 +365,4 @@ def test_contact_that_cannot_be_leaves_nothing(prepared):
         + "control { time 0.1 }\n"
     )
     assert live_fixes(apart) == {"gravity"}
-    assert not [word for word in TRACES["contact"] if word in written(apart)]
+    assert not [word for model in MODELS for word in traces(model)["contact"] if word in written(apart)]

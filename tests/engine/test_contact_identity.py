@@ -156,5 +156,5 @@ def test_lmp_gives_the_bits_of_the_driver(prepared, tmp_path, ranks):
 
 def test_a_scene_without_surfaces_has_no_file_of_bodies(prepared, tmp_path):
     """Nor names one."""
-    write_inputs(prepared(HAND.replace("contact-model surface friction 0.4", "")), tmp_path)
+    write_inputs(prepared(HAND.replace("contact-model surface friction 0.4", "contact-model paper")), tmp_path)
     assert not (tmp_path / "contact.small").exists() and "bodies" not in (tmp_path / "in.small").read_text()

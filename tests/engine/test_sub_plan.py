@@ -198,8 +198,9 @@ def test_effects_with_nothing_to_act_on_are_left_out(prepared):
     pond = SubPlans(prepared(POND.replace("MODEL", "")).plan)
     dry = pond.part((0, 2), False)
     assert [e.name for e in dry.effects] == ["springs", "damping", "gravity", "contact", "basin", "air-drag"]
-    assert set(dry.columns) == {"stiffness", "reach", "lambda"} and not dry.tables and dry.grid is None
-    assert set(pond.part((0,), True).columns) == {"stiffness", "lambda", "volume", "gamma", "air"}
+    bodies = {"body", "young", "friction"}
+    assert set(dry.columns) == {*bodies, "stiffness", "reach", "lambda"} and not dry.tables and dry.grid is None
+    assert set(pond.part((0,), True).columns) == {*bodies, "lambda", "volume", "gamma", "air"}
 
 
 @pytest.mark.parametrize(

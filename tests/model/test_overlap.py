@@ -9,12 +9,17 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mdanim_lammps.model import build_models, check_geometry, shapes
-from mdanim_lammps.scene.scene import Box, Cylinder, HoldAll, Liquid, Mesh, Sphere, Torus, Walls
+from mdanim_lammps.scene.scene import Box, ContactModel, Cylinder, HoldAll, Liquid, Mesh, Sphere, Torus, Walls
 from model_samples import MESHES, SHAPES, rotation, scene, shape_id, solid
 
 CUBE = Box((1.0, 1.0, 1.0))
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 MOVES = {"up": (0, 0, 1), "down": (0, 0, -1), "to +x": (1, 0, 0), "to -x": (-1, 0, 0), "to +y": (0, 1, 0), "to -y": (0, -1, 0)}
+
+
+BOTH = pytest.mark.parametrize("model", ContactModel, ids=lambda model: model.value)
+PAPER = {"contact_model": ContactModel.PAPER}
+"""Of starts that are less than a quarter of a cell deep, which contact at the surfaces allows."""
 
 
 def problems(*solids, h=0.25, **rest):
@@ -41,10 +46,11 @@ def moved(body, hint):
         pytest.param((0, 0, 0), "cm", id="the same place"),
     ],
 )
-def test_two_cubes(position, deep):
-    """Let touching cubes be, and tell how deep others are."""
-    found = problems(solid(CUBE, "a"), solid(CUBE, "b", position=position))
-    if deep is None:
+@BOTH
+def test_two_cubes(position, deep, model):
+    """Let touching cubes be, and tell how deep others are; at the surfaces a start a little inside is one at rest."""
+    found = problems(solid(CUBE, "a"), solid(CUBE, "b", position=position), contact_model=model)
+    if deep is None or (deep == "3 cm" and model is ContactModel.SURFACE):
         assert not found
     else:
         (problem,) = found
@@ -55,7 +61,7 @@ def test_two_cubes(position, deep):
 
 def test_the_hint_is_the_shortest_way_out():
     """Offer to lift a cube that is 3 cm deep in the one below."""
-    (problem,) = problems(solid(CUBE, "a"), solid(CUBE, "b", position=(0.1, 0, 0.97)))
+    (problem,) = problems(solid(CUBE, "a"), solid(CUBE, "b", position=(0.1, 0, 0.97)), **PAPER)
     assert problem.hint == "move it up by 18 cm"  # and 0.6 of the spacing, so that contact holds no energy
 
 
@@ -121,7 +127,7 @@ def test_a_corner_that_pokes_into_a_face_is_found(order):
     on_corner = rotation(np.pi / 4, np.arctan(np.sqrt(0.5)), 0)
     cube = solid(CUBE, "cube", rotation=on_corner, position=(0.07, 0.03, np.sqrt(0.75) - 0.02))
     slab = solid(Box((3.0, 3.0, 1.0)), "slab", position=(0, 0, -0.5))
-    (problem,) = problems(*(cube, slab)[::order])
+    (problem,) = problems(*(cube, slab)[::order], **PAPER)
     assert "about 2 cm deep" in problem.message
 
 
@@ -142,10 +148,12 @@ def test_the_host_is_asked_in_its_own_frame():
         pytest.param((0, -5.0, 1.0), ("3.5 m outside the walls at -y", "move it to +y by 3.5 m"), id="outside"),
     ],
 )
-def test_ground_and_walls(position, words):
+@BOTH
+def test_ground_and_walls(position, words, model):
     """Keep objects above the ground and within the walls."""
-    found = problems(solid(CUBE, "cube", position=position), ground=0.0, walls=Walls((-2, -2, -9), (2, 2, 9)))
-    if words is None:
+    walls = Walls((-2, -2, -9), (2, 2, 9))
+    found = problems(solid(CUBE, "cube", position=position), ground=0.0, walls=walls, contact_model=model)
+    if words is None or (position == (0, 0, 0.47) and model is ContactModel.SURFACE):
         assert not found
     else:
         (problem,) = found
@@ -175,8 +183,9 @@ def test_no_move_into_the_ground_is_offered():
     """Send a cube up, not the shorter way down through the ground."""
     a, b = solid(CUBE, "a", position=(0, 0, 1.0)), solid(CUBE, "b", position=(0, 0, 0.5))
     walls = Walls((-0.5, -0.5, 0), (0.5, 0.5, 9))
-    (problem,) = problems(a, b, ground=0.0, walls=walls)
-    assert problem.hint == "move it up by 1.7 m"
+    for model, way in ((ContactModel.PAPER, "1.7 m"), (ContactModel.SURFACE, "1.5 m")):
+        (problem,) = problems(a, b, ground=0.0, walls=walls, contact_model=model)
+        assert problem.hint == f"move it up by {way}"
 
 
 def test_held_objects_may_overlap_and_stick_out():
@@ -194,7 +203,7 @@ def test_candidates_are_those_of_all_pairs():
     centres = rng.uniform(0, 3, (200, 3))
     balls = [solid(Sphere(0.2), f"{i}", position=tuple(c)) for i, c in enumerate(centres)]
     names = re.compile(r"(\d+) starts inside (\d+)")
-    found = {tuple(map(int, names.match(p.message).groups())) for p in problems(*balls, h=0.1)}
+    found = {tuple(map(int, names.match(p.message).groups())) for p in problems(*balls, h=0.1, **PAPER)}
     distance = np.linalg.norm(centres[:, None] - centres, axis=2)
     i, j = np.nonzero(np.triu(distance < 0.4, 1))
     # Faceted balls do not notice an overlap below the height of a facet, 0.4 % of a radius.

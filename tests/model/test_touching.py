@@ -11,7 +11,7 @@ from mdanim_lammps.model.touching import REACH, THIN, touching, touching_pairs
 
 STUFF = "density 1000 kg/m^3 elasticity 1 MPa"
 WORLD = "gravity (0, 0, -9.81) m/s^2\nground z 0 m\n"
-END = "\ncontrol {{ time 1 s }}\n"
+END = "\ncontrol {{ time 1 s contact-model paper }}\n"
 STACK = (
     WORLD
     + "repeat k in 0 .. 5 {{ object cube[k] {{ shape box (10, 10, 10) cm position (0, 0, 5 + {each}*k) cm {stuff} }} }}"
@@ -27,7 +27,7 @@ SHEETS = (
     "object block { shape box (4, 4, 5) cm position (0, 0, 9.5) cm STUFF hold face -y }\n"
     "object stone { shape box (4, 4, 4) cm position (30, 0, 12) cm STUFF hold all }\n"
     "object chip { shape box (3, 2, 2) cm position (30, 0, 15.2) cm STUFF }\n"
-    "control { time 1 s resolution 1 cm }"
+    "control { time 1 s resolution 1 cm contact-model paper }"
 ).replace("STUFF", STUFF)
 
 
@@ -116,18 +116,19 @@ def test_what_a_newcomer_writes_is_told(prepared, text, each, names, joules):
     by = re.search(r"by ([\d.]+) (mm|cm); or write (contact-model surface) in control", warning.hint)
     gap = float(by[1]) / (10 if by[2] == "mm" else 1)
     assert not start_warnings(prepared(text.format(each=each + gap, stuff=STUFF)))
-    assert not start_warnings(prepared(text.format(each=each, stuff=STUFF).replace("control {", f"control {{ {by[3]} ")))
+    assert not start_warnings(prepared(text.format(each=each, stuff=STUFF).replace("contact-model paper", by[3])))
 
 
-def test_the_way_out_of_an_overlap_is_no_exact_touch(prepared):
-    """After the move that the message about an overlap names, contact holds no energy."""
+@pytest.mark.parametrize("model", ["paper", "surface"])
+def test_after_the_way_out_of_an_overlap_contact_holds_no_energy(prepared, model):
+    """Make the move that the message about an overlap names."""
     from mdanim_lammps.errors import SceneError
 
     text = (
         "object a {{ shape box (10, 10, 10) cm position (0, 0, 5) cm STUFF }}\n"
         "object b {{ shape sphere 6 cm position (1, 0, {z}) cm STUFF }}" + END
     )
-    text = text.replace("STUFF", STUFF)
+    text = text.replace("STUFF", STUFF).replace("paper", model)
     with pytest.raises(SceneError) as error:
         prepared(text.format(z=12))
     (problem,) = error.value.problems

@@ -36,6 +36,7 @@ def test_output_folder_is_complete(fall):
         "scene.lock.txt",
         "data.fall",
         "in.fall",
+        "contact.fall",
         "certificate.json",
         "trajectory.h5",
         "checkpoint",
@@ -63,7 +64,7 @@ def test_a_missed_expectation_is_reported(tmp_path):
 def test_ledger_adds_up(fall):
     """Keep kinetic + elastic + gravity + contact + wall + losses constant, drag included."""
     ledger = Ledger.read(fall.folder / "ledger.csv")
-    assert ledger.terms == ("kinetic", "elastic", "gravity", "contact", "wall", "drag_loss")
+    assert ledger.terms == ("kinetic", "elastic", "gravity", "contact", "let_go", "wall", "drag_loss")
     assert len(ledger.rows) == 16
     total = sum(ledger.array(t) for t in ledger.terms)
     scale = np.ptp(ledger.array("gravity"))
@@ -399,7 +400,7 @@ def test_interrupt_in_a_liquid_resumes_bit_for_bit(splash, tmp_path, frame):
     with pytest.raises(Interrupted):
         scene.run(tmp_path / "cut.out", on_progress=stop_at(frame))
     checkpoint = Checkpoint.read(tmp_path / "cut.out" / "checkpoint")
-    assert checkpoint.frame == frame and list(checkpoint.records) == ["liquid"]
+    assert checkpoint.frame == frame and list(checkpoint.records) == ["basin", "liquid"]
     resumed = simulate(scene.prepared, tmp_path / "cut.out", resume=checkpoint)
     assert compare(splash.folder, tmp_path / "cut.out").equal
     for term in (*resumed.ledger.terms, *resumed.ledger.extras):

@@ -6,7 +6,7 @@ from mdanim_lammps.errors import SceneError
 from mdanim_lammps.scene.contact_pairs import any_friction, frictions, objects_by_name, pair_rules, pairs_of
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import parse_scene
-from mdanim_lammps.scene.scene import CONTACT_MODEL, ContactModel, ContactPair
+from mdanim_lammps.scene.scene import ContactModel, ContactPair
 from scene_parts import ball, text
 
 SURFACE = "contact-model surface"
@@ -34,7 +34,7 @@ def test_friction_of_objects_and_of_the_scene():
     assert (scene.control.friction, scene.control.contact_damping) == (0.5, 0.2)
     assert scene.control.contact_model is ContactModel.SURFACE
     bare = parse_scene(pile(control=""))
-    assert (bare.control.friction, bare.control.contact_damping, bare.control.contact_model) == (0.0, None, CONTACT_MODEL)
+    assert (bare.control.friction, bare.control.contact_damping, bare.control.contact_model) == (0.0, None, ContactModel.SURFACE)
     assert ball().friction is None and bare.contacts == ()
 
 

@@ -64,7 +64,7 @@ def test_a_scene_reads_what_is_said(si):
 
 def test_warnings_have_no_powers_of_ten(prepared):
     """Warn of a fall onto a soft ball, and do what the hint says: the warning goes."""
-    text = GOOD.replace("shape box (10, 10, 10) cm", "shape sphere 20 cm").replace("(0, 0, 6) cm", "(0, 0, 35) cm")
+    text = GOOD.replace("shape box (10, 10, 10) cm", "shape sphere 20 cm").replace("(0, 0, 6) cm", "(0, 0, 60) cm")
     first = prepared(text.replace("100 kPa", "21.7 kPa")).warnings[0]
     assert not re.search(r"\de[+-]?\d", f"{first}"), first
     told = re.search(r"write elasticity (\d\d\d kPa) or more", first.hint)[1]

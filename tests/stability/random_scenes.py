@@ -100,12 +100,12 @@ def scenes(draw) -> Text:
     return Text(text)
 
 
-def control(step: float | None = None, more: str = "") -> str:
+def control(step: float | None = None, more: str = "contact-model paper") -> str:
     """Frames so rare that they set no time step, or exactly as long as it."""
     return (
         f"control {{ time 10^9 frames 0.000001 fps resolution 1 {more} }}\n"
         if step is None
-        else (f"control {{ time {4 * STEPS * step!r} frames {1.0 / step!r} fps timestep {step!r} resolution 1 }}\n")
+        else (f"control {{ time {4 * STEPS * step!r} frames {1.0 / step!r} fps timestep {step!r} resolution 1 {more} }}\n")
     )
 
 
@@ -144,9 +144,9 @@ class Tally:
         )
 
 
-def play(scene: Text, tally: Tally, more: str = "") -> Trial:
+def play(scene: Text, tally: Tally, *more: str) -> Trial:
     """Run a scene at the step that is certified; its trial, closed. Raises DivergedError. ``more`` goes into control."""
-    with Trial(scene.scene + control(more=more)) as t:
+    with Trial(scene.scene + control(None, *more)) as t:
         tally.particles = max(tally.particles, t.system.particles)
         t.run(STEPS, 40)
         tally.drift.append(t.drift)

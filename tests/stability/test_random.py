@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Random scenes: none breaks down at the certified time step, most do at three times it. Always the same scenes."""
+"""Random scenes: none breaks down at the certified time step, most do at three times it, with the contact of the paper. They are
+always the same."""
 
 import pytest
 from random_scenes import BROKEN, MOST, STEPS, play_scenes, try_scenes
@@ -12,8 +13,8 @@ def check(trial) -> None:
 
 
 def check_at_surfaces(trial) -> None:
-    """Little energy comes or goes where `check` does not warn that a body folds up. Of 300 scenes with friction 269 kept theirs to
-    1e-3, 27 of the others folded up; the rest are bodies of one and two cells that hit at 0.1 c: 3.2e-3, a tenth of that at
+    """Little energy comes or goes where `check` does not warn that a body folds up. Of 300 scenes with friction 269 kept theirs
+    to 1e-3, 27 of the others folded up; the rest are bodies of one and two cells that hit at 0.1 c: 3.2e-3, a tenth of that at
     ``accuracy reference``."""
     check(trial)
     folds = any(m.name == "amplitude" and m.severity == "warning" for m in trial.ready.certificate.margins)

@@ -271,7 +271,7 @@ def test_contact_ladder_trades_depth_for_time(tmp_path, monkeypatch):
     from rich.console import Console
 
     monkeypatch.setattr(bench, "REPEATS", 1)
-    scene = parse_scene(BLOCKS.format(v=0.2 * WAVE))
+    scene = parse_scene(BLOCKS.format(v=0.2 * WAVE).replace("1000 fps", "1000 fps contact-model paper"))
     study = run_study(scene, tmp_path / "study", budget=30.0, only=["contact"])
     points = [study.points[s.key] for s in study.analysis.measured["contact"]]
     assert [p.setting.contact for p in points] == [0.25, 0.5, 1, 2, 4, 8]

@@ -50,8 +50,8 @@ def frictionless(envelope: Envelope) -> list[Problem]:
     return [
         Problem(
             scene.control.spans.get("contact-model") or scene.control.spans.get("control"),
-            f"contacts are frictionless{', as in the paper' if paper else ''}",
-            "write friction 0.5 in control",
+            f"contacts are frictionless{', as in the paper' if paper else ''}: what stands or lies on something slides off it",
+            f"write friction 0.5 in control{' in place of contact-model paper' if paper else ''}",
             severity="note",
         )
     ]
@@ -62,7 +62,7 @@ def slopes(envelope: Envelope) -> list[Problem]:
     if envelope.g <= 0.0 or not envelope.moving.any():
         return []
     found, own = _Slopes(envelope), np.array(frictions(envelope.scene))
-    steep = [s for s in (*found.onfloors(), *found.on_solids(own)) if s.tangent > s.friction]
+    steep = [s for s in (*found.on_floors(), *found.on_solids(own)) if s.tangent > s.friction]
     if not steep:
         return []
     worst = max(steep, key=lambda s: s.tangent / s.friction)
@@ -93,7 +93,7 @@ class _Slopes:
         rolling = np.array([isinstance(s.shape, ROLLING) for s in self.scene.solids])
         self.sliding = envelope.moving & ~rolling
 
-    def onfloors(self) -> Iterator[Slope]:
+    def on_floors(self) -> Iterator[Slope]:
         tangent = math.hypot(*self.gravity[:2]) / -self.gravity[2]
         for plane in floors(self.envelope) if tangent > LEVEL else ():
             yield from self._worst(tangent, np.array(frictions(self.scene, plane.effect)), self.sliding, plane.effect, plane.name)

@@ -8,7 +8,7 @@ import numpy as np
 from ..model.cells import TooThin, end_share, fill_cells
 from ..model.shapes import thickness
 from ..scene.formatting import at_least, number, say
-from ..scene.scene import Cone, Ellipsoid, Shape, Sphere
+from ..scene.scene import Cone, ContactModel, Ellipsoid, Shape, Sphere
 from .envelope import Envelope
 from .margin import Margin
 
@@ -17,8 +17,8 @@ FOLDS = 0.2
 FOLDS_ON_END, FOLDS_POWER = 0.5, 0.45
 """The same of a ball or a cone that lands on a plane, over a power of the part of its cells that its smallest end has: these
 few bear the blow of all (docs/physics-solids.md)."""
-POINTED = (Sphere, Ellipsoid, Cone)
-"""Shapes that may land on an end of few cells."""
+POINTED = {ContactModel.SURFACE: (Ellipsoid, Cone), ContactModel.PAPER: (Sphere, Ellipsoid, Cone)}
+"""Shapes that may land on an end of few cells. At its drawn surface a ball is borne by more than its lowest cells."""
 CRUSH = 0.2
 """Load over Young's modulus above which a lattice is crushed (docs/physics-solids.md)."""
 THINNEST = 2
@@ -62,9 +62,10 @@ def _spots(env: Envelope) -> np.ndarray:
     shape (M,)."""
     system, known = env.system, {}
     spots = np.full(len(system.names), np.inf)
-    balls = [m for m, s in enumerate(env.scene.solids) if env.moving[m] and isinstance(s.shape, POINTED)]
+    pointed = POINTED[env.scene.control.contact_model]
+    ends = [m for m, s in enumerate(env.scene.solids) if env.moving[m] and isinstance(s.shape, pointed)]
     first = np.searchsorted(system.hexahedron[:, 0], system.first)
-    for m in balls:
+    for m in ends:
         key = env.scene.solids[m].shape, float(system.cell_volume[m])
         if key not in known:
             middle = system.position[system.hexahedron[first[m] : first[m + 1]]].mean(axis=1)

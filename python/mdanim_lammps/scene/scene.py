@@ -110,7 +110,7 @@ class Solid:
     friction: float | None = setting(
         "<mu>",
         "Coefficient of friction; two objects in touch have sqrt(mu_A mu_B), an object has its own against ground, walls and "
-        "basin. Calls for `contact-model surface`. Absent: that of `control`.",
+        "basin. Not with `contact-model paper`. Absent: that of `control`.",
         "0.4", Rule.NOT_NEGATIVE, default=None, limit=FRICTION)  # fmt: skip
     """mu [-]; None is that of the scene."""
     hold: tuple[Hold, ...] = setting(
@@ -228,14 +228,10 @@ class Accuracy(Enum):
 
 
 class ContactModel(Enum):
-    PAPER = "paper"
-    """A barrier between boundary and inner particles, without friction."""
     SURFACE = "surface"
     """The drawn surface is where objects touch; friction."""
-
-
-CONTACT_MODEL = ContactModel.PAPER
-"""That of a scene which names none."""
+    PAPER = "paper"
+    """A barrier between boundary and inner particles, without friction."""
 
 
 class Save(Enum):
@@ -310,17 +306,17 @@ class Control:
     """What objects and walls push back with, over E h [-]."""
     contact_model: ContactModel = setting(
         None,
-        "`surface`: objects touch where their drawn surfaces are, and have friction. `paper`: a barrier between particles keeps "
-        "objects about half a spacing apart, without friction. What has friction has `surface` without being told.",
-        "surface", default=CONTACT_MODEL, codec=Words(ContactModel))  # fmt: skip
+        "`surface`: objects touch where their drawn surfaces are, and may have friction. `paper`: the barrier of Wcislo 1999 "
+        "between particles, which keeps objects about half a spacing apart, without friction.",
+        "paper", default=ContactModel.SURFACE, codec=Words(ContactModel))  # fmt: skip
     friction: float = setting(
-        "<mu>", "Coefficient of friction of objects that have none of their own. Calls for `contact-model surface`.",
+        "<mu>", "Coefficient of friction of objects that have none of their own. Not with `contact-model paper`.",
         "0.5", Rule.NOT_NEGATIVE, default=0.0, limit=FRICTION)  # fmt: skip
     """mu [-]"""
     contact_damping: float | None = setting(
         "<beta>",
-        "Damping of contacts that have friction, as a fraction of critical damping: it ends chatter. Calls for `contact-model "
-        "surface`. Absent: 0.3.",
+        "Damping of contacts that have friction, as a fraction of critical damping: it ends chatter. Not with `contact-model "
+        "paper`. Absent: 0.3.",
         "0.3", Rule.NOT_NEGATIVE, default=None, limit=CONTACT_DAMPING)  # fmt: skip
     """Share of critical damping where there is friction [-]; None is 0.3."""
     seed: int = setting("<n>", "Seed of `rand` and of the liquid.", "7", Rule.WHOLE, default=1)

@@ -76,7 +76,7 @@ class Validator:
         if top.get("walls"):
             self.corners(self.out.first("walls"), "the space between the walls")
             self.inside_walls(held["solids"], top["walls"])
-        held["control"] = control = self.contact_model(control, held["solids"])
+        self.contact_fits(control, held["solids"])
         held["control"] = control = self.frames(control, held["render"])
         self.cameras(control)
         top["expects"] = self.expects(control)
@@ -217,26 +217,22 @@ class Validator:
                     f"the walls go from {units.show(walls.low)} to {units.show(walls.high)} m",
                 )
 
-    def contact_model(self, control: records.Control | None, solids: list[records.Solid]) -> records.Control | None:
-        """Control with the contact model that the scene calls for: the contact of the paper has neither friction nor damping."""
+    def contact_fits(self, control: records.Control | None, solids: list[records.Solid]) -> None:
+        """The contact of the paper has neither friction nor damping; that of surfaces has damping where it has friction."""
         if control is None:
-            return None
-        words = {"friction": control.friction, "contact-damping": control.contact_damping}
-        asked = [("a contact block", self.head(b)) for b in self.blocks("contact")]
+            return
+        blocks, words = self.blocks("contact"), {"friction": control.friction, "contact-damping": control.contact_damping}
+        asked = [("a contact block", self.head(b)) for b in blocks]
         asked += [("friction", s.spans["friction"]) for s in solids if s.friction]
         asked += [(word, control.spans[word]) for word, value in words.items() if value]
-        if asked and "contact-model" not in control.spans:
-            control = replace(control, contact_model=records.ContactModel.SURFACE)
-        if control.contact_model is not records.ContactModel.PAPER:
-            if control.contact_damping and not (control.friction or self.blocks("contact") or any(s.friction for s in solids)):
-                cause = "contact-damping of control acts where there is friction, and nothing in the scene has any"
-                way_out = "write friction 0.5 in control, or contact-damping in a contact block"
-                self.problem(control.spans["contact-damping"], cause, way_out, severity="warning")
-        elif asked:
+        if control.contact_model is records.ContactModel.PAPER and asked:
             what, span = asked[0]
             cause = f"{what} needs contact-model surface; the contact of the paper has no friction"
             self.problem(span, cause, "take contact-model paper out of control", key="contact-model")
-        return control
+        elif [what for what, _ in asked] == ["contact-damping"]:
+            cause = "contact-damping of control acts where there is friction, and nothing in the scene has any"
+            way_out = "write friction 0.5 in control, or contact-damping in a contact block"
+            self.problem(control.spans["contact-damping"], cause, way_out, severity="warning")
 
     def frames(self, control: records.Control | None, render: records.Render | None) -> records.Control | None:
         """Control with as many frames as slow motion asks for, unless it says how many: at least one, and not too many."""

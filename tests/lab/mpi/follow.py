@@ -34,7 +34,8 @@ def seen(instance: Instance) -> dict[str, np.ndarray]:
     found["speed"] = instance.top_speeds()
     asked = (instance, plan.scene, plan.system)
     energies = [effect.energy(*asked) for effect in plan.effects if effect.ledger]
-    energies += [loss for effect in plan.effects for loss in effect.lost(*asked).values()]
+    losses = [loss for effect in plan.effects for loss in effect.lost(*asked).items()]
+    energies += [loss for term, loss in losses if term != "let_go"]  # nothing is let go where no cell is turned over
     return found | {
         "step": np.array(instance.step),
         "energies": np.array(energies),

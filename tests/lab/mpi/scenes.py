@@ -20,7 +20,7 @@ repeat i in 1 .. 4 {
     }
   }
 }
-control { time 0.2 s  frames 100 fps  resolution 5 cm }
+control { time 0.2 s  frames 100 fps  resolution 5 cm  contact-model paper }
 expect energy.residual = 0 +- 2e-2
 expect penetration.max = 0 +- 5 cm
 expect ball[5].position.z at 0.2 s = 0.5 +- 0.5 m
