@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Fixtures that every test may use: small scenes from text, prepared and run."""
 
-import os
 from pathlib import Path
 
 import pytest

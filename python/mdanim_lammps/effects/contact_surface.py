@@ -175,8 +175,9 @@ class SurfaceContact(OnSurfaces, Contact):
 
         with s_i the area of another body that a particle may bear: h^2 within a face, h^2/2 on an edge, h^2/4 in a corner.
         Between a cuboid and another shape only the points of the other one act, with ALONE kappa: 2 w_i or 2 s_i stand for the
-        sum where they are larger. The barrier behind is added. The stick spring of friction, 0.8 kappa along the surface, adds nothing to the norm of a
-        contact. No strict bound: the gradient of depth grows in pressed cells, and a folded sheet bears more than one layer.
+        sum where they are larger. The barrier behind is added. The stick spring of friction, 0.8 kappa along the surface, adds
+        nothing to the norm of a contact. No strict bound: the gradient of depth grows in pressed cells, and a folded sheet bears
+        more than one layer.
         """
         kappa = self.stiffness(scene, system)[system.object]
         own, borne, dense = own_area(system), borne_area(system), are_dense(system)
