@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -65,6 +66,36 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
                        given.area[p],
                        static_cast<PointKind>(given.kind[p])});
   }
+  sort_points();
+}
+
+void ContactBody::sort_points()
+{
+  const auto low_corner = [this](int p) { return place(surface[p].cell[0], surface[p].cell[1], surface[p].cell[2]); };
+  by_cell.resize(surface.size());
+  std::iota(by_cell.begin(), by_cell.end(), 0);
+  std::stable_sort(by_cell.begin(), by_cell.end(), [&](int p, int q) { return low_corner(p) < low_corner(q); });
+  std::vector<char> is_corner(places(), 0);
+  for (int n = 0; n < static_cast<int>(by_cell.size()); ++n) {
+    const int p = by_cell[n], low = low_corner(p);
+    if (carriers.empty() || carriers.back().place != low) {
+      carriers.push_back({low, n, n, {}, {}});
+      for (int corner = 0; corner < 8; ++corner)
+        is_corner[low + (corner & 1) + row() * (corner >> 1 & 1) + layer() * (corner >> 2)] = 1;
+    }
+    PointCell &cell = carriers.back();
+    const Vec3 from_corner = surface[p].at - Vec3{1.0 * surface[p].cell[0], 1.0 * surface[p].cell[1], 1.0 * surface[p].cell[2]};
+    if (cell.first == n) cell.low = cell.high = from_corner;
+    cell.last = n + 1;
+    const auto unite = [&](double at, double &least, double &most, double edge) {
+      least = std::min(least, at), most = std::max(most, at);
+      stands_out = std::max({stands_out, -least * edge, (most - 1.0) * edge});
+    };
+    unite(from_corner.x, cell.low.x, cell.high.x, edges[0]);
+    unite(from_corner.y, cell.low.y, cell.high.y, edges[1]);
+    unite(from_corner.z, cell.low.z, cell.high.z, edges[2]);
+  }
+  for (const int at : place_of_node) is_carrier.push_back(is_corner[at]);
 }
 
 // Particles are at the corners of filled cells, and nowhere else.
@@ -117,7 +148,8 @@ Depth<double> ContactBody::depth(int side, const Vec3 &X) const
 std::size_t ContactBody::bytes() const
 {
   return place_of_node.capacity() * sizeof(int) + filled.capacity() + surface.capacity() * sizeof(SurfacePoint) +
-         depth_grid.capacity() * sizeof(double);
+         depth_grid.capacity() * sizeof(double) + carriers.capacity() * sizeof(PointCell) + by_cell.capacity() * sizeof(int) +
+         is_carrier.capacity();
 }
 
 }    // namespace mdanim

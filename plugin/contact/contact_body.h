@@ -27,6 +27,13 @@ struct SurfacePoint {
   PointKind kind;
 };
 
+// The points that a cell carries.
+struct PointCell {
+  int place;          // of its low corner in the grid
+  int first, last;    // of ContactBody::points_by_cell()
+  Vec3 low, high;     // a box around their X, from that corner
+};
+
 // As mdanim_contact_body() is given them.
 struct ContactBodyArrays {
   const std::int32_t *count;
@@ -59,6 +66,11 @@ class ContactBody {
             is_cuboid() ? nullptr : depth_grid.data()};
   }
   const std::vector<SurfacePoint> &points() const { return surface; }
+  const std::vector<PointCell> &point_cells() const { return carriers; }
+  const std::vector<int> &points_by_cell() const { return by_cell; }
+  bool carries(int node) const { return is_carrier[node]; }    // points, or centres of their areas
+  // How far the drawn surface stands out of the cells [m].
+  double overhang() const { return stands_out; }
 
   // Places of the grid, x fastest, and the number of the particle there, -1 for none.
   int row() const { return cells[0] + 1; }
@@ -77,12 +89,17 @@ class ContactBody {
 
  private:
   void need_particles_of_cells() const;
+  void sort_points();
 
   int cells[3];
   double edges[3], mean_edge;
   std::vector<int> place_of_node;
   std::vector<std::uint8_t> filled;
   std::vector<SurfacePoint> surface;
+  std::vector<PointCell> carriers;
+  std::vector<int> by_cell;    // numbers of points, cell by cell, ascending in each
+  std::vector<char> is_carrier;
+  double stands_out = 0.0;
   std::vector<double> depth_grid;    // coefficients of quadratic B-splines on nodes -2 to n + 2
 };
 

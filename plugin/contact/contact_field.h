@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace mdanim {
@@ -19,10 +20,13 @@ class ContactField {
  public:
   ContactField(ContactObject &owner, ContactObject &host, const ContactLaw &law) : owner(&owner), host(&host), law(law) {}
 
+  // How far a point may be outside of its host's particles in contact.
+  static double stands_out(const ContactBody &owner, const ContactBody &host);
   // Points that may come in until lists are made again; contacts and what is known of points stay. `reach`: how far objects may
-  // come nearer. Objects and slots are as they are now; the finder is of the first.
-  void list(ContactObject &points_of, ContactObject &host_now, const PointFinder &finder, const ContactArrays &arrays,
-            double reach);
+  // come nearer; `nearer`: how much they have come nearer at most since the last step. Objects and slots are as they are now; the
+  // finder is of the first; outside of the zone points cannot touch.
+  void list(ContactObject &points_of, ContactObject &host_now, const PointFinder &finder, const Zone &zone,
+            const ContactArrays &arrays, double reach, double nearer);
   // Nothing is known of points but of those in contact; to be followed by list().
   void forget();
   // Looks at every point without a contact as it is now; nothing is born. For the setup of a run.
@@ -36,6 +40,9 @@ class ContactField {
   std::size_t bytes() const;
 
  private:
+  static constexpr double NEVER = std::numeric_limits<double>::infinity();
+  static constexpr std::uint8_t EVERY_SIDE = 63;
+
   struct Watch {
     std::array<int, 3> cell = {-1, -1, -1};    // where it was found last, -1 for nowhere
     Vec3 X;
@@ -94,8 +101,7 @@ class ContactField {
   std::vector<FieldContact> contacts;     // by ascending points
   std::vector<std::size_t> of_contact;    // their near points
   std::vector<PointNow> now;              // and their points in this step
-  double budget = 0.0;
-  Box host_box;
+  double budget = 0.0, next = 0.0;        // the least of `wake`, or less
 };
 
 }    // namespace mdanim

@@ -7,58 +7,96 @@
 
 namespace mdanim {
 
-bool NearPoints::add_carriers(const ContactObject &owner, const SurfacePoint &point, const Vec3 &X)
+// Those of the particles around X that have a weight.
+bool CarriedPoint::add(const ContactObject &owner, const SurfacePoint &point, const Vec3 &X)
 {
   const ContactBody &body = *owner.body;
   const MapWeights weights = trilinear(X, {point.cell[0], point.cell[1], point.cell[2]}, body);
+  const int *const slots = owner.slot.data() + weights.base;
+  int missing = 0;
   for (int k = 0; k < 2; ++k)
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i) {
         const double weight = weights.axis[0].w[i] * weights.axis[1].w[j] * weights.axis[2].w[k];
-        if (weight == 0.0) continue;
-        const int slot = owner.slot[body.place(point.cell[0] + i, point.cell[1] + j, point.cell[2] + k)];
-        if (slot < 0) return false;
-        carriers.push_back({slot, weight});
+        const int slot = slots[i + body.row() * j + body.layer() * k];
+        carrier[last] = {slot, weight};
+        missing |= weight == 0.0 ? 0 : slot;
+        last += weight != 0.0;
       }
-  return true;
+  return missing >= 0;
 }
 
-bool NearPoints::add(const ContactObject &owner, int number)
+CarriedPoint::CarriedPoint(const ContactObject &owner, int number) : number(number)
 {
   const SurfacePoint &point = owner.body->points()[number];
-  const std::size_t before = carriers.size();
-  bool all = add_carriers(owner, point, point.at);
-  const int middle = static_cast<int>(carriers.size());
-  if (all && point.kind == PointKind::SHARP) all = add_carriers(owner, point, point.centre);
-  if (!all) {
-    carriers.resize(before);
-    return false;
-  }
-  near.push_back({number, static_cast<int>(before), middle, static_cast<int>(carriers.size())});
-  return true;
+  is_there = add(owner, point, point.at);
+  middle = last;
+  if (is_there && point.kind == PointKind::SHARP) is_there = add(owner, point, point.centre);
 }
 
-PointFinder::PointFinder(const ContactObject &owner, const ContactArrays &arrays)
-    : grid([](int) { return static_cast<const double *>(nullptr); }, 0, 1.0)
+void NearPoints::add(const CarriedPoint &point)
 {
-  NearPoints one;
-  for (int p = 0; p < static_cast<int>(owner.body->points().size()); ++p) {
-    one.clear();
-    if (!one.add(owner, p)) continue;
-    number.push_back(p);
-    place.push_back(one.place(0, arrays.place()));
-  }
-  grid = Grid([this](int n) { return &place[n].x; }, static_cast<int>(place.size()), 2.0 * owner.body->spacing());
+  const int first = static_cast<int>(carriers.size());
+  near.push_back({point.number, first, first + point.middle, first + point.last});
+  carriers.insert(carriers.end(), point.carrier, point.carrier + point.last);
 }
 
-std::vector<int> PointFinder::inside(const Box &box) const
+// A box around where a map that is linear along each axis takes a box is that around where it takes its corners.
+static Box box_of(const PointCell &cell, const ContactObject &owner, const Row *place, bool &is_there)
 {
-  std::vector<int> found;
-  grid.inside(box, [&](int slot) {
-    if (box.contains(&place[grid.order()[slot]].x)) found.push_back(number[grid.order()[slot]]);
-  });
-  std::sort(found.begin(), found.end());
-  return found;
+  const int row = owner.body->row(), layer = owner.body->layer(), *const slots = owner.slot.data() + cell.place;
+  Vec3 corner[8];
+  int missing = 0;
+  for (int c = 0; c < 8; ++c) {
+    const int slot = slots[(c & 1) + row * (c >> 1 & 1) + layer * (c >> 2)];
+    missing |= slot;
+    corner[c] = place[slot].value;
+  }
+  is_there = missing >= 0;
+  const auto stretch = [&corner](int step, double low, double high) {
+    for (int c = 0; c < 8; ++c) {
+      if (c & step) continue;
+      const Vec3 first = corner[c], across = corner[c | step] - first;
+      corner[c] = first + low * across;
+      corner[c | step] = first + high * across;
+    }
+  };
+  stretch(1, cell.low.x, cell.high.x);
+  stretch(2, cell.low.y, cell.high.y);
+  stretch(4, cell.low.z, cell.high.z);
+  Box box;
+  for (const Vec3 &one : corner) box.include(&one.x);
+  return box;
+}
+
+PointFinder::PointFinder(const ContactObject &owner, const ContactArrays &arrays) : owner(owner), arrays(arrays)
+{
+  const std::vector<PointCell> &all = owner.body->point_cells();
+  cells.reserve(all.size());
+  for (int c = 0; c < static_cast<int>(all.size()); ++c) {
+    bool is_there = false;
+    const Box box = box_of(all[c], owner, arrays.place(), is_there);
+    if (is_there) cells.emplace_back(c, box);
+  }
+}
+
+double PointFinder::least_along(const Vec3 &direction) const
+{
+  const std::vector<int> &points = owner.body->points_by_cell();
+  const auto low = [&](const Box &box) { return dot(direction, farthest(box, -1.0 * direction)); };
+  const auto first = std::min_element(cells.begin(), cells.end(),
+                                      [&](const auto &one, const auto &other) { return low(one.second) < low(other.second); });
+  double least = Box::FAR;
+  const auto try_points_of = [&](const PointCell &cell) {
+    for (int n = cell.first; n < cell.last; ++n) {
+      const CarriedPoint point(owner, points[n]);
+      if (point.is_there) least = std::min(least, dot(direction, point.place(arrays.place())));
+    }
+  };
+  if (first != cells.end()) try_points_of(owner.body->point_cells()[first->first]);
+  for (const auto &[c, box] : cells)
+    if (low(box) < least && c != first->first) try_points_of(owner.body->point_cells()[c]);
+  return least;
 }
 
 OuterCells::OuterCells(const ContactObject &owner, const ContactArrays &arrays)

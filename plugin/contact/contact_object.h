@@ -7,7 +7,7 @@
 #include "contact/contact_body.h"
 #include "contact/material_map.h"
 #include "contact/row.h"
-#include "engine/boxes.h"
+#include "contact/zone.h"
 
 #include <algorithm>
 #include <array>
@@ -27,13 +27,13 @@ struct ContactObject {
   double friction;    // mu
   double density;     // of the lattice [kg/m^3]
 
-  Box box;    // when lists were made
   std::vector<int>
       slot;    // of its particles by their places in the grid, in the arrays of ContactWorld; -1 for what is not there
   int first_slot = 0, last_slot = 0;
   std::shared_ptr<const OuterCells> outer;    // made when it is first asked for; none after lists were made
   Vec3 way;                                   // of its first particle in this step
   double stir = 0.0;                          // the most that another has gone otherwise in this step
+  bool is_pushed = false;                     // in the last step, by contacts
 };
 
 // What contacts did in a step, and since the beginning.
@@ -51,23 +51,52 @@ class ContactArrays {
  public:
   const ContactKernels *kernels = nullptr;    // null: contacts one at a time, with the same bits
 
-  void resize(std::size_t particles) { place_rows.resize(particles + 1), force_rows.resize(particles); }
+  // For so many particles from now on, on which there are no forces; places are still to be told.
+  void renew(std::size_t particles)
+  {
+    place_rows.swap(rows_before);
+    place_rows.resize(particles + 1);
+    force_rows.resize(particles);
+  }
   std::size_t size() const { return force_rows.size(); }
-  void clear_forces() { std::fill(force_rows.begin(), force_rows.end(), Row{}); }
+  void clear_forces(int from, int to) { std::fill(force_rows.begin() + from, force_rows.begin() + to, Row{}); }
   Row *place() { return place_rows.data() + 1; }    // slot -1, of what is not there, may be read
   const Row *place() const { return place_rows.data() + 1; }
+  const Row *place_before() const { return rows_before.data() + 1; }    // renew() was called
   Row *force() { return force_rows.data(); }
   const Row *force() const { return force_rows.data(); }
-  std::size_t bytes() const { return (place_rows.capacity() + force_rows.capacity()) * sizeof(Row); }
+  std::size_t bytes() const { return (place_rows.capacity() + rows_before.capacity() + force_rows.capacity()) * sizeof(Row); }
 
  private:
-  std::vector<Row> place_rows = std::vector<Row>(1), force_rows;
+  std::vector<Row> place_rows = std::vector<Row>(1), rows_before, force_rows;
 };
 
 // A particle's part in a point.
 struct Carrier {
   int slot;
   double weight;
+};
+
+inline Vec3 weighted_sum(const Carrier *first, const Carrier *last, const Row *at)
+{
+  Vec3 x = first->weight * at[first->slot].value;
+  while (++first < last) x += first->weight * at[first->slot].value;
+  return x;
+}
+
+// A point of an object and the particles that carry it.
+class CarriedPoint {
+ public:
+  CarriedPoint(const ContactObject &owner, int number);
+  Vec3 place(const Row *at) const { return weighted_sum(carrier, carrier + middle, at); }
+
+  int number;
+  bool is_there;           // all of those particles are
+  int middle, last = 0;    // carriers of the point, and from `middle` on, if it has its own, of the centre of its area
+  Carrier carrier[2 * 8 + 1];
+
+ private:
+  bool add(const ContactObject &owner, const SurfacePoint &point, const Vec3 &X);
 };
 
 // Points of one object that are near something, with the particles that carry them.
@@ -79,13 +108,7 @@ class NearPoints {
   };
 
   void clear() { near.clear(), carriers.clear(); }
-  // False, with nothing added, when a particle that carries the point is not there.
-  bool add(const ContactObject &owner, int point);
-  void drop_last()
-  {
-    carriers.resize(near.back().first);
-    near.pop_back();
-  }
+  void add(const CarriedPoint &point);
   std::size_t size() const { return near.size(); }
   int point(std::size_t q) const { return near[q].point; }
   std::size_t bytes() const { return near.capacity() * sizeof(Near) + carriers.capacity() * sizeof(Carrier); }
@@ -110,29 +133,40 @@ class NearPoints {
   }
 
  private:
-  Vec3 sum(int first, int last, const Row *at) const
-  {
-    Vec3 x = carriers[first].weight * at[carriers[first].slot].value;
-    for (int c = first + 1; c < last; ++c) x += carriers[c].weight * at[carriers[c].slot].value;
-    return x;
-  }
-  bool add_carriers(const ContactObject &owner, const SurfacePoint &point, const Vec3 &X);
+  Vec3 sum(int first, int last, const Row *at) const { return weighted_sum(&carriers[first], &carriers[0] + last, at); }
 
   std::vector<Near> near;
   std::vector<Carrier> carriers;
 };
 
-// The points of an object whose particles are there, by their places when lists were made: found once for all its partners.
+// The points of an object whose particles are there, by where the cells that carry them were when lists were made.
 class PointFinder {
  public:
   PointFinder(const ContactObject &owner, const ContactArrays &arrays);
-  // Ascending numbers of those in a box.
-  std::vector<int> inside(const Box &box) const;
+  // Ascending numbers of all that are in a zone, and of some beside it; with those of `contacts` among them.
+  template <class Contact> std::vector<int> inside(const Zone &zone, const std::vector<Contact> &contacts) const
+  {
+    std::vector<std::uint64_t> marked((owner.body->points().size() + 63) / 64, 0);
+    const auto mark = [&marked](int point) { marked[point / 64] |= std::uint64_t{1} << point % 64; };
+    for (const auto &[c, box] : cells) {
+      const PointCell &cell = owner.body->point_cells()[c];
+      if (!zone.meets(box)) continue;
+      for (int n = cell.first; n < cell.last; ++n) mark(owner.body->points_by_cell()[n]);
+    }
+    for (const Contact &one : contacts) mark(one.point);
+    std::vector<int> found;
+    for (std::size_t word = 0; word < marked.size(); ++word)
+      for (std::uint64_t left = marked[word]; left; left &= left - 1)
+        found.push_back(static_cast<int>(64 * word) + __builtin_ctzll(left));
+    return found;
+  }
+  // Where the first of them is along a direction.
+  double least_along(const Vec3 &direction) const;
 
  private:
-  std::vector<int> number;
-  std::vector<Vec3> place;
-  Grid grid;
+  const ContactObject &owner;
+  const ContactArrays &arrays;
+  std::vector<std::pair<int, Box>> cells;    // those of the body that carry points, if all their particles are there
 };
 
 // Cells on an object's surface, to begin a search in.

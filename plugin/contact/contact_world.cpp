@@ -10,21 +10,25 @@
 
 namespace mdanim {
 
-static constexpr double STANDS_OUT = 2.5;    // spacings by which two drawn surfaces may stand out of their particles
-static constexpr double AROUND = 3.0;        // spacings around a contact in which particles may have a part in it
+static constexpr double AROUND = 3.0;      // spacings around a contact in which particles may have a part in it
+static constexpr double CARRIED = 2.25;    // spacings that a particle may be from a point of its cells
+static constexpr double STRETCHED = 2.0;
+static constexpr double AT_A_PLANE = 0.75;       // of the skin: half for particles, and for points outside of cells half of that
+static constexpr double BETWEEN_POINTS = 0.6;    // spacings by which a round surface may stand out of its points
 static constexpr double MOST_SKINS = 32.0;
 static constexpr double ONSET = 0.05;    // eps over the spacing
 static constexpr double ALONE = 2.0;     // stiffness where only the dense points of one act, over that of points of both
 
 void ContactWorld::take(std::vector<ContactObject> now, std::vector<char> moves)
 {
+  for (ContactObject &one : all) clear_forces(one);    // the new ones know nothing of them
   all = std::move(now);
   movable = std::move(moves);
   number_of.clear();
-  spacing = 0.0;
+  widest = 0.0;
   for (std::size_t n = 0; n < all.size(); ++n) {
     number_of[all[n].id] = static_cast<int>(n);
-    spacing = std::max(spacing, all[n].body->spacing());
+    widest = std::max({widest, ContactField::stands_out(*all[n].body, *all[n].body), 1.2 * all[n].body->spacing()});
   }
 }
 
@@ -64,11 +68,16 @@ bool ContactWorld::near_plane(const Box &box, const ContactPlane &plane, double 
   return !box.empty() && distance <= gap;
 }
 
+// How far the particles of two objects may be apart when they may touch before lists are made again.
+double ContactWorld::range(int a, int b) const
+{
+  const ContactBody &one = *all[a].body, &other = *all[b].body;
+  return skin + std::max(ContactField::stands_out(one, other), ContactField::stands_out(other, one));
+}
+
 void ContactWorld::look_ahead(const std::vector<Box> &boxes, double now)
 {
   skin = now;
-  for (std::size_t n = 0; n < all.size(); ++n) all[n].box = boxes[n];
-  const double range = skin + STANDS_OUT * spacing;
   const auto pairs_within = [&](double gap) {
     std::vector<std::pair<int, int>> found;
     if (settings.objects)
@@ -80,37 +89,72 @@ void ContactWorld::look_ahead(const std::vector<Box> &boxes, double now)
     std::vector<std::pair<int, int>> found;
     for (int n = 0; n < objects(); ++n)
       for (std::size_t p = 0; p < settings.planes.size(); ++p)
-        if (movable[n] && near_plane(boxes[n], settings.planes[p], gap)) found.emplace_back(n, static_cast<int>(p));
+        if (movable[n] && near_plane(boxes[n], settings.planes[p], gap + STRETCHED * all[n].body->overhang()))
+          found.emplace_back(n, static_cast<int>(p));
     return found;
   };
-  near_pairs = pairs_within(range);
-  near_planes = planes_within(range);
+  near_pairs.clear();
+  for (const auto &[a, b] : pairs_within(skin + widest)) {
+    Vec3 way;    // between the middles of their boxes
+    for (int d = 0; d < 3; ++d)
+      (d == 0 ? way.x : d == 1 ? way.y : way.z) = boxes[b].low(d) + boxes[b].high(d) - boxes[a].low(d) - boxes[a].high(d);
+    const double length = std::sqrt(dot(way, way));
+    if (length > 0.0) way = (1.0 / length) * way;
+    near_pairs.push_back({a, b, {boxes[a], -1.0 * way}, {boxes[b], way}});
+  }
+  near_planes = planes_within(skin);
   apart = 0.0;
   for (double skins = 1.0; is_idle() && skins <= MOST_SKINS; skins *= 2.0) {
-    if (!pairs_within(range + skins * skin).empty() || !planes_within(range + skins * skin).empty()) break;
+    if (!pairs_within(skin + widest + skins * skin).empty() || !planes_within(skin + skins * skin).empty()) break;
     apart = 0.5 * (1.0 + skins) * skin;
   }
+  find_sights();
+}
 
-  zones.assign(all.size(), {});
-  // Points of what is no cuboid stand out of its box.
-  const bool cuboids = std::all_of(all.begin(), all.end(), [](const ContactObject &one) { return one.body->is_cuboid(); });
-  const double around = skin + (AROUND + (cuboids ? 0.0 : 0.5 * STANDS_OUT)) * spacing;
-  for (const auto &[a, b] : near_pairs) {
-    zones[a].push_back(boxes[b].grown(around));
-    zones[b].push_back(boxes[a].grown(around));
+void ContactWorld::find_sights()
+{
+  sights.assign(all.size(), {});
+  for (std::size_t k = 0; k < near_pairs.size(); ++k) {
+    const NearPair &pair = near_pairs[k];
+    const ContactBody &one = *all[pair.a].body, &other = *all[pair.b].body;
+    const double around =
+        skin + AROUND * std::max(one.spacing(), other.spacing()) + STRETCHED * std::max(one.overhang(), other.overhang());
+    sights[pair.a].push_back({pair.of_b.grown(around), static_cast<int>(2 * k + 1)});
+    sights[pair.b].push_back({pair.of_a.grown(around), static_cast<int>(2 * k)});
   }
   for (const auto &[n, p] : near_planes) {
-    const ContactPlane &plane = settings.planes[p];
-    Box zone = boxes[n].grown(around);
-    // All on the plane's other side, and what is near it.
-    (plane.sign > 0 ? zone.bound[3 + plane.axis] : zone.bound[plane.axis]) = -plane.sign * plane.at - around;
-    zones[n].push_back(zone);
+    const ContactBody &body = *all[n].body;
+    sights[n].push_back({settings.planes[p].within(AT_A_PLANE * skin + CARRIED * body.spacing() + body.overhang()), -1});
   }
 }
 
-bool ContactWorld::needs(int object, const double *x) const
+void ContactWorld::see(int object, const Vec3 &x, std::vector<double> &ends) const
 {
-  return std::any_of(zones[object].begin(), zones[object].end(), [x](const Box &zone) { return zone.contains(x); });
+  for (const Sight &sight : sights[object])
+    if (sight.end >= 0 && sight.zone.contains(x)) {
+      double &own = ends[sight.end ^ 1];
+      own = std::min(own, -dot(sight.zone.across, x));
+    }
+}
+
+void ContactWorld::narrow(const std::vector<double> &ends)
+{
+  std::vector<NearPair> left;
+  for (std::size_t k = 0; k < near_pairs.size(); ++k) {
+    NearPair &pair = near_pairs[k];
+    pair.of_a.from = ends[2 * k], pair.of_b.from = ends[2 * k + 1];
+    if (pair.of_a.from + pair.of_b.from <= range(pair.a, pair.b)) left.push_back(pair);
+  }
+  near_pairs = std::move(left);
+  find_sights();
+}
+
+bool ContactWorld::needs(const ContactParticle &particle, const Vec3 &x) const
+{
+  const ContactBody &body = *all[particle.object].body;
+  const bool is_carrier = particle.node < 0 || particle.node >= body.particles() || body.carries(particle.node);
+  return std::any_of(sights[particle.object].begin(), sights[particle.object].end(),
+                     [&](const Sight &sight) { return (is_carrier || sight.end >= 0) && sight.zone.contains(x); });
 }
 
 void ContactWorld::forget()
@@ -121,36 +165,78 @@ void ContactWorld::forget()
 
 static Vec3 place(const Coordinates &places, std::size_t slot) { return {places[0][slot], places[1][slot], places[2][slot]}; }
 
+namespace {
+
+// The way of the first of many particles, and the most that another has gone otherwise.
+struct Motion {
+  Vec3 way;
+  double square = 0.0;
+  bool is_first = true;
+
+  void include(const Vec3 &change)
+  {
+    if (is_first) way = change, is_first = false;
+    const Vec3 off = change - way;
+    square = std::max(square, dot(off, off));
+  }
+};
+
+// How much two objects have come nearer at most.
+double nearer(const ContactObject &a, const ContactObject &b)
+{
+  const Vec3 together = a.way - b.way;
+  return std::sqrt(dot(together, together)) + a.stir + b.stir;
+}
+
+}    // namespace
+
+void ContactWorld::clear_forces(ContactObject &one)
+{
+  if (one.is_pushed) arrays.clear_forces(one.first_slot, one.last_slot);
+  one.is_pushed = false;
+}
+
 void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coordinates &places)
 {
-  arrays.resize(particles.size());
+  for (ContactObject &one : all) clear_forces(one);
+  arrays.renew(particles.size());
   for (std::size_t slot = 0; slot < particles.size(); ++slot) arrays.place()[slot].value = place(places, slot);
   std::size_t from = 0;
   for (int n = 0; n < objects(); ++n) {
     ContactObject &one = all[n];
+    const std::vector<int> slot_before = std::move(one.slot);
     one.outer.reset();
-    if (zones[n].empty()) {
-      one.slot.clear();
-      one.slot.shrink_to_fit();
-      one.first_slot = one.last_slot = static_cast<int>(from);
-      continue;
-    }
-    one.slot.assign(one.body->places(), -1);
+    one.slot.assign(sights[n].empty() ? 0 : one.body->places(), -1);
     one.first_slot = static_cast<int>(from);
-    for (; from < particles.size() && particles[from].object == n; ++from)
-      one.slot[one.body->place_of(particles[from].node)] = static_cast<int>(from);
+    Motion motion;    // since the last step, of those that were there
+    for (; from < particles.size() && particles[from].object == n; ++from) {
+      const int at = one.body->place_of(particles[from].node);
+      one.slot[at] = static_cast<int>(from);
+      if (!slot_before.empty() && slot_before[at] >= 0)
+        motion.include(arrays.place()[from].value - arrays.place_before()[slot_before[at]].value);
+    }
     one.last_slot = static_cast<int>(from);
+    one.way = motion.way, one.stir = std::sqrt(motion.square);
   }
 
   std::vector<std::optional<PointFinder>> finders(all.size());
   const auto finder = [&](int n) -> const PointFinder & { return finders[n] ? *finders[n] : finders[n].emplace(all[n], arrays); };
+  active.clear();
   std::map<PairKey, Both> kept;
-  for (const auto &[a, b] : near_pairs) {
-    const PairKey key{all[a].id, all[b].id};
+  for (const NearPair &pair : near_pairs) {
+    ContactObject &a = all[pair.a], &b = all[pair.b];
+    const PairKey key{a.id, b.id};
     const auto old = fields.find(key);
-    Both &both = kept.emplace(key, old == fields.end() ? new_pair(a, b) : std::move(old->second)).first->second;
-    both.lower.list(all[a], all[b], finder(a), arrays, skin);
-    both.higher.list(all[b], all[a], finder(b), arrays, skin);
+    Both &both = kept.emplace(key, old == fields.end() ? new_pair(pair.a, pair.b) : std::move(old->second)).first->second;
+    const auto where_points_touch = [&](const ContactObject &owner, const ContactObject &host, int n, const Zone &of_host) {
+      const double out = ContactField::stands_out(*owner.body, *host.body);
+      Zone zone = of_host.grown(out);
+      zone.from = finder(n).least_along(zone.across) - (host.body->is_cuboid() ? out : BETWEEN_POINTS * host.body->spacing());
+      return zone;
+    };
+    both.lower.list(a, b, finder(pair.a), where_points_touch(a, b, pair.b, pair.of_b), arrays, skin, nearer(a, b));
+    both.higher.list(b, a, finder(pair.b), where_points_touch(b, a, pair.a, pair.of_a), arrays, skin, nearer(a, b));
+    active.push_back({pair.a, pair.b, &both, nullptr});
   }
   fields = std::move(kept);
   std::map<std::pair<int, int>, PlaneField> kept_planes;
@@ -159,7 +245,8 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
     const auto old = plane_fields.find(key);
     PlaneField &field =
         kept_planes.emplace(key, old == plane_fields.end() ? new_plane(n, p) : std::move(old->second)).first->second;
-    field.list(all[n], arrays, skin);
+    field.list(all[n], finder(n), arrays, AT_A_PLANE * skin);
+    active.push_back({n, n, nullptr, &field});
   }
   plane_fields = std::move(kept_planes);
 }
@@ -169,17 +256,14 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
 void ContactWorld::move_to(const Coordinates &places)
 {
   for (ContactObject &one : all) {
-    one.stir = 0.0;
-    one.way = {};
-    if (one.first_slot == one.last_slot) continue;
-    one.way = place(places, one.first_slot) - arrays.place()[one.first_slot].value;
-    double most = 0.0;
+    Motion motion;
     for (int s = one.first_slot; s < one.last_slot; ++s) {
-      const Vec3 x = place(places, s), off = (x - arrays.place()[s].value) - one.way;
-      most = std::max(most, dot(off, off));
+      const Vec3 x = place(places, s);
+      motion.include(x - arrays.place()[s].value);
       arrays.place()[s].value = x;
     }
-    one.stir = std::sqrt(most);
+    one.way = motion.way, one.stir = std::sqrt(motion.square);
+    clear_forces(one);
   }
 }
 
@@ -188,20 +272,19 @@ void ContactWorld::step(const Coordinates &places, double dt)
   account.begin_step();
   if (arrays.size() == 0) return;
   move_to(places);
-  arrays.clear_forces();
-  for (auto &[key, both] : fields) {
-    const ContactObject &a = all[number_of[key.first]], &b = all[number_of[key.second]];
-    const Vec3 together = a.way - b.way;
-    const double nearer = std::sqrt(dot(together, together)) + a.stir + b.stir;
-    for (ContactField *field : {&both.lower, &both.higher}) {
-      if (dt == 0.0) field->settle(arrays);
-      field->add_forces(arrays, nearer, dt, account);
+  for (const Active &one : active) {
+    ContactObject &a = all[one.a], &b = all[one.b];
+    if (one.plane) {
+      if (dt == 0.0) one.plane->settle(arrays);
+      one.plane->add_forces(arrays, dt, account);
+      a.is_pushed |= !one.plane->touching().empty();
+      continue;
     }
-  }
-  for (auto &[key, field] : plane_fields) {
-    const ContactObject &one = all[number_of[key.first]];
-    if (dt == 0.0) field.settle(arrays);
-    field.add_forces(arrays, std::sqrt(dot(one.way, one.way)) + one.stir, dt, account);
+    for (ContactField *field : {&one.both->lower, &one.both->higher}) {
+      if (dt == 0.0) field->settle(arrays);
+      field->add_forces(arrays, nearer(a, b), dt, account);
+      if (!field->is_idle()) a.is_pushed = b.is_pushed = true;
+    }
   }
 }
 
@@ -235,6 +318,7 @@ ContactWorld::PlaneContacts ContactWorld::plane_contacts() const
 
 void ContactWorld::restore(const PairContacts &pairs, const PlaneContacts &planes)
 {
+  active.clear();
   fields.clear();
   plane_fields.clear();
   for (const auto &[key, contacts] : pairs) {
@@ -256,13 +340,19 @@ void ContactWorld::restore(const PairContacts &pairs, const PlaneContacts &plane
   }
 }
 
-std::size_t ContactWorld::bytes() const
+std::size_t ContactWorld::bytes_of_fields() const
+{
+  std::size_t sum = 0;
+  for (const auto &[key, both] : fields) sum += sizeof both + both.lower.bytes() + both.higher.bytes();
+  for (const auto &[key, field] : plane_fields) sum += sizeof field + field.bytes();
+  return sum;
+}
+
+std::size_t ContactWorld::bytes_of_particles() const
 {
   std::size_t sum = arrays.bytes();
   for (const ContactObject &one : all)
     sum += sizeof one + one.slot.capacity() * sizeof(int) + (one.outer ? one.outer->bytes() : 0);
-  for (const auto &[key, both] : fields) sum += sizeof both + both.lower.bytes() + both.higher.bytes();
-  for (const auto &[key, field] : plane_fields) sum += sizeof field + field.bytes();
   return sum;
 }
 

@@ -52,15 +52,20 @@ class ContactWorld {
   const ContactObject &object(int n) const { return all[n]; }
 
   // --- lists ---
-  // Boxes of all objects; none is nearer than `skin` to what it does not touch when lists are made again.
+  // Boxes of all objects, none of which comes nearer to another than by `skin` until lists are made again.
   void look_ahead(const std::vector<Box> &boxes, double skin);
+  // Two numbers for each pair whose boxes meet, of which each wants to be the least that see() comes to with all particles.
+  std::vector<double> ends() const { return std::vector<double>(2 * near_pairs.size(), Box::FAR); }
+  void see(int object, const Vec3 &x, std::vector<double> &ends) const;
+  // Pairs are near no more which are apart along the line between their middles.
+  void narrow(const std::vector<double> &ends);
   // How far every particle may go until two objects, or an object and a plane, can touch, of no more than `skin` times 32; 0
   // where some already can.
   double distance_apart() const { return apart; }
   bool is_idle() const { return near_pairs.empty() && near_planes.empty(); }
   int pairs() const { return static_cast<int>(near_pairs.size()); }
   // Whether a particle of an object may have a part in contacts.
-  bool needs(int object, const double *x) const;
+  bool needs(const ContactParticle &particle, const Vec3 &x) const;
   // The particles that may, ascending, and where they are.
   void list(const std::vector<ContactParticle> &particles, const Coordinates &places);
   // Nothing is known of points but of those in contact: to be called before list() at the setup of a run.
@@ -72,6 +77,8 @@ class ContactWorld {
   // The forces with all particles at these places. dt = 0 at the setup of a run: nothing changes.
   void step(const Coordinates &places, double dt);
   const Row *forces() const { return arrays.force(); }
+  // Whether any of those on an object's particles is not 0.
+  bool is_pushed(int object) const { return all[object].is_pushed; }
 
   ContactAccount account;
   Vec3 force_on_planes() const;
@@ -85,28 +92,50 @@ class ContactWorld {
   PlaneContacts plane_contacts() const;
   // Makes these all that there are.
   void restore(const PairContacts &pairs, const PlaneContacts &planes);
-  std::size_t bytes() const;
+  // What pairs of objects and objects at planes take, with the points near by; and the places of particles and forces on them.
+  std::size_t bytes_of_fields() const;
+  std::size_t bytes_of_particles() const;
 
  private:
   struct Both {
     ContactField lower, higher;    // points of the one with the lower id, and of the other
   };
+  // A pair of objects that may touch, by their numbers, and where their particles are for each other.
+  struct NearPair {
+    int a, b;
+    Zone of_a, of_b;    // `across` points at the other
+  };
+  // Where particles of an object may have a part.
+  struct Sight {
+    Zone zone;
+    int end;    // of its pair: that of the other object; -1 for a plane
+  };
+  // A field between two objects, or at a plane, with their numbers.
+  struct Active {
+    int a, b;
+    Both *both;
+    PlaneField *plane;
+  };
+  double range(int a, int b) const;
+  void find_sights();
   ContactLaw law(const ContactObject &owner, double kappa, double friction, double damping) const;
   Both new_pair(int a, int b);
   PlaneField new_plane(int n, int plane);
   bool can_touch(int a, int b) const { return movable[a] || movable[b]; }
   bool near_plane(const Box &box, const ContactPlane &plane, double gap) const;
   void move_to(const Coordinates &places);
+  void clear_forces(ContactObject &one);
 
   std::vector<ContactObject> all;
   std::vector<char> movable;
   std::map<int, int> number_of;    // of ids
-  double skin = 0.0, spacing = 0.0, apart = 0.0;
-  std::vector<std::pair<int, int>> near_pairs;               // numbers of objects
+  double skin = 0.0, widest = 0.0, apart = 0.0;
+  std::vector<NearPair> near_pairs;
   std::vector<std::pair<int, int>> near_planes;              // object and plane
-  std::vector<std::vector<Box>> zones;                       // of each object: where its particles may have a part
+  std::vector<std::vector<Sight>> sights;                    // of each object
   std::map<PairKey, Both> fields;                            // by ids
   std::map<std::pair<int, int>, PlaneField> plane_fields;    // by id and plane
+  std::vector<Active> active;                                // what steps go through, in the order of sums
   ContactArrays arrays;
 };
 

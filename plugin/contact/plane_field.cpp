@@ -10,26 +10,24 @@ namespace mdanim {
 static constexpr double AT_ONCE = -1.0;
 static constexpr double NEVER = std::numeric_limits<double>::infinity();
 
-void PlaneField::list(ContactObject &points_of, const ContactArrays &arrays, double reach)
+void PlaneField::list(ContactObject &points_of, const PointFinder &finder, const ContactArrays &arrays, double reach)
 {
   owner = &points_of;
   std::vector<int> points_before(near.size());
   for (std::size_t q = 0; q < near.size(); ++q) points_before[q] = near.point(q);
   const std::vector<std::uint8_t> below_before = std::move(was_below);
   near.clear(), wake.clear(), was_below.clear(), of_contact.clear();
-  budget = 0.0;
+  budget = 0.0, next = AT_ONCE;
   std::size_t before = 0, contact = 0;
-  const int points = static_cast<int>(owner->body->points().size());
-  for (int p = 0; p < points; ++p) {
+  for (const int p : finder.inside(plane.within(reach), contacts)) {
     while (contact < contacts.size() && contacts[contact].point < p) ++contact;
     const bool touches = contact < contacts.size() && contacts[contact].point == p;
     while (before < points_before.size() && points_before[before] < p) ++before;
-    if (!near.add(*owner, p)) continue;
-    const double above = -plane.depth(near.place(near.size() - 1, arrays.place()));
-    if (!touches && above > reach) {
-      near.drop_last();
-      continue;
-    }
+    const CarriedPoint point(*owner, p);
+    if (!point.is_there) continue;
+    const double above = -plane.depth(point.place(arrays.place()));
+    if (!touches && above > reach) continue;
+    near.add(point);
     if (touches) of_contact.push_back(near.size() - 1);
     was_below.push_back(before < points_before.size() && points_before[before] == p ? below_before[before] : 0);
     wake.push_back(touches ? NEVER : std::max(above, AT_ONCE));
@@ -47,6 +45,7 @@ void PlaneField::settle(const ContactArrays &arrays)
 {
   for (std::size_t q = 0; q < near.size(); ++q)
     if (wake[q] < NEVER && wake[q] <= budget) look(q, arrays, false);
+  next = AT_ONCE;
 }
 
 bool PlaneField::look(std::size_t q, const ContactArrays &arrays, bool may_begin)
@@ -72,14 +71,18 @@ bool PlaneField::look(std::size_t q, const ContactArrays &arrays, bool may_begin
   return true;
 }
 
-void PlaneField::add_forces(ContactArrays &arrays, double nearer, double dt, ContactAccount &account)
+void PlaneField::add_forces(ContactArrays &arrays, double dt, ContactAccount &account)
 {
-  budget += nearer;
+  budget += owner->stir - dot(plane.normal(), owner->way);
   on_plane = {};
   const bool moves = dt > 0.0;
-  if (moves)
-    for (std::size_t q = 0; q < wake.size(); ++q)
+  if (moves && next < budget) {
+    next = NEVER;
+    for (std::size_t q = 0; q < wake.size(); ++q) {
       if (wake[q] < budget) look(q, arrays, true);
+      next = std::min(next, wake[q]);
+    }
+  }
   const Vec3 downward = -1.0 * plane.normal();    // gradient of the depth
   std::size_t left = 0;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
@@ -93,6 +96,7 @@ void PlaneField::add_forces(ContactArrays &arrays, double nearer, double dt, Con
       account.damped += last_damping_work(contact.memory, depth);
       was_below[q] = 0;
       wake[q] = budget - depth;
+      next = std::min(next, wake[q]);
       continue;
     }
     const double area = owner->body->points()[near.point(q)].area;

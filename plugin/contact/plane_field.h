@@ -18,6 +18,15 @@ struct ContactPlane {
   double sign;    // 1: objects belong above, -1: below
   double at;      // [m]
   double depth(const Vec3 &x) const { return sign * (at - (axis == 0 ? x.x : axis == 1 ? x.y : x.z)); }
+  // What is no more than so far above it.
+  Zone within(double gap) const
+  {
+    Zone zone;
+    for (double &side : zone.box.bound) side = -Box::FAR;
+    zone.across = -1.0 * normal();
+    zone.from = -sign * at - gap;
+    return zone;
+  }
   Vec3 normal() const { return {axis == 0 ? sign : 0.0, axis == 1 ? sign : 0.0, axis == 2 ? sign : 0.0}; }
 };
 
@@ -35,10 +44,10 @@ class PlaneField {
   }
 
   // As those of ContactField.
-  void list(ContactObject &points_of, const ContactArrays &arrays, double reach);
+  void list(ContactObject &points_of, const PointFinder &finder, const ContactArrays &arrays, double reach);
   void forget();
   void settle(const ContactArrays &arrays);
-  void add_forces(ContactArrays &arrays, double nearer, double dt, ContactAccount &account);
+  void add_forces(ContactArrays &arrays, double dt, ContactAccount &account);
 
   const std::vector<PlaneContact> &touching() const { return contacts; }
   void restore(std::vector<PlaneContact> those) { contacts = std::move(those); }
@@ -57,7 +66,7 @@ class PlaneField {
   std::vector<std::uint8_t> was_below;    // when a near point was looked at last
   std::vector<PlaneContact> contacts;     // by ascending points
   std::vector<std::size_t> of_contact;
-  double budget = 0.0;
+  double budget = 0.0, next = 0.0;    // the least of `wake`, or less
   Vec3 on_plane;
 };
 

@@ -45,8 +45,8 @@ FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
   extscalar = 1;
   energy_global_flag = 1;
   vector_flag = 1;
-  size_vector = 11;
-  static int extensive[] = {1, 1, 1, 1, 0, 1, 1, 0, 1, 1, 1};
+  size_vector = 14;
+  static int extensive[] = {1, 1, 1, 1, 0, 1, 1, 0, 1, 1, 1, 0, 0, 0};
   extvector = -1;
   extlist = extensive;
   global_freq = 1;
@@ -224,7 +224,7 @@ void FixMdanimContact::take_objects()
                  one.id, one.young, one.friction);
     const double volume = body.edge(0) * body.edge(1) * body.edge(2);
     objects.push_back(
-        {one.id, &body, one.young, one.friction, one.mass / (volume * body.cells_around(0) / 8.0), {}, {}, 0, 0, {}, {}, 0.0});
+        {one.id, &body, one.young, one.friction, one.mass / (volume * body.cells_around(0) / 8.0), {}, 0, 0, {}, {}, 0.0, false});
     moves.push_back(static_cast<char>(one.moves));
     ids.push_back(one.id);
     lowest.push_back(one.lowest);
@@ -256,23 +256,35 @@ void FixMdanimContact::list()
   const int nlocal = atom->nlocal, objects = world_of_contact.objects();
   std::vector<Box> here(objects), boxes(objects);
   object.assign(nlocal, -1);
-  int last = 0;
-  for (int i = 0; i < nlocal; ++i) {
-    if (!(atom->mask[i] & among_bit) || atom->molecule[i] <= 0) continue;
-    if (ids[last] != atom->molecule[i])
-      last = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), atom->molecule[i]) - ids.begin());
-    object[i] = last;
-    here[last].include(atom->x[i]);
+  for (int i = 0; i < nlocal;) {
+    const tagint molecule = atom->molecule[i];
+    const int one = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), molecule) - ids.begin());
+    Box box;
+    for (; i < nlocal && atom->molecule[i] == molecule; ++i) {
+      if (!(atom->mask[i] & among_bit) || molecule <= 0) continue;
+      object[i] = one;
+      box.include(atom->x[i]);
+    }
+    if (!box.empty()) here[one].unite(box);
   }
   MPI_Allreduce(here.data(), boxes.data(), 6 * objects, MPI_DOUBLE, MPI_MIN, world);
   world_of_contact.look_ahead(boxes, neighbor->skin);
+  std::vector<double> ends = world_of_contact.ends();
+  if (!ends.empty()) {
+    for (int i = 0; i < nlocal; ++i)
+      if (object[i] >= 0) world_of_contact.see(object[i], vec3(atom->x[i]), ends);
+    MPI_Allreduce(MPI_IN_PLACE, ends.data(), static_cast<int>(ends.size()), MPI_DOUBLE, MPI_MIN, world);
+    world_of_contact.narrow(ends);
+  }
 
   std::vector<std::pair<ContactParticle, int>> needed;    // and local numbers
   if (!world_of_contact.is_idle())
-    for (int i = 0; i < nlocal; ++i)
-      if (object[i] >= 0 && world_of_contact.needs(object[i], atom->x[i]))
-        needed.push_back({{object[i], static_cast<int>(atom->tag[i] - lowest[object[i]])}, i});
-  std::sort(needed.begin(), needed.end());
+    for (int i = 0; i < nlocal; ++i) {
+      if (object[i] < 0) continue;
+      const ContactParticle particle{object[i], static_cast<int>(atom->tag[i] - lowest[object[i]])};
+      if (world_of_contact.needs(particle, vec3(atom->x[i]))) needed.push_back({particle, i});
+    }
+  if (!std::is_sorted(needed.begin(), needed.end())) std::sort(needed.begin(), needed.end());
   std::vector<ContactParticle> particles;
   mine.clear();
   for (const auto &[particle, i] : needed) {
@@ -290,10 +302,11 @@ void FixMdanimContact::list()
   particles = gather(world, particles);
   std::vector<int> order(particles.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int p, int q) { return particles[p] < particles[q]; });
+  const bool is_sorted = std::is_sorted(particles.begin(), particles.end());    // as where one rank has all
+  if (!is_sorted) std::sort(order.begin(), order.end(), [&](int p, int q) { return particles[p] < particles[q]; });
   slot.resize(order.size());
   for (std::size_t n = 0; n < order.size(); ++n) slot[order[n]] = static_cast<int>(n);
-  std::sort(particles.begin(), particles.end());
+  if (!is_sorted) std::sort(particles.begin(), particles.end());
   for (const ContactParticle &one : particles)
     if (one.node < 0 || one.node >= world_of_contact.object(one.object).body->particles())
       error->all(FLERR, "fix {} mdanim/contact: tags of object {} (molecule ID) do not follow each other", id,
@@ -331,6 +344,7 @@ template <class Add> void FixMdanimContact::give_forces(const Add &add) const
 {
   const Row *forces = world_of_contact.forces();
   for (std::size_t n = 0; n < mine.size(); ++n) {
+    if (!world_of_contact.is_pushed(object[mine[n]])) continue;
     const Vec3 &force = forces[slot[first_entry + n]].value;
     if ((force.x != 0.0 || force.y != 0.0 || force.z != 0.0) && atom->mask[mine[n]] & groupbit) add(n, force);
   }
@@ -368,7 +382,7 @@ double FixMdanimContact::compute_scalar() { return world_of_contact.account.ener
 
 // 1: energy of sticking; 2-4: heat of friction, energy that dashpots took, that was let go, since the fix was made; 5: deepest
 // point in this run; 6: points in touch; 7: pairs of objects near each other; 8: wall seconds of the slowest rank; 9-11: force on
-// planes
+// planes; 12-14: bytes on a rank, of bodies, of what is known of pairs and points, of particles near others
 double FixMdanimContact::compute_vector(int n)
 {
   const ContactAccount &account = world_of_contact.account;
@@ -392,6 +406,12 @@ double FixMdanimContact::compute_vector(int n)
       MPI_Allreduce(&seconds, &slowest, 1, MPI_DOUBLE, MPI_MAX, world);
       return slowest;
     }
+    case 11:
+      return static_cast<double>(bytes_of_bodies());
+    case 12:
+      return static_cast<double>(world_of_contact.bytes_of_fields());
+    case 13:
+      return static_cast<double>(bytes_of_particles());
     default: {
       const Vec3 force = world_of_contact.force_on_planes();
       return n == 8 ? force.x : n == 9 ? force.y : force.z;
@@ -399,10 +419,18 @@ double FixMdanimContact::compute_vector(int n)
   }
 }
 
-double FixMdanimContact::memory_usage()
+std::size_t FixMdanimContact::bytes_of_bodies() const
 {
-  double sum = static_cast<double>(world_of_contact.bytes() + my_places.bytes() + all_places.bytes()) +
-               static_cast<double>((mine.capacity() + slot.capacity()) * sizeof(int));
-  for (const auto &[number, body] : bodies) sum += static_cast<double>(body.bytes());
+  std::size_t sum = 0;
+  for (const auto &[number, body] : bodies) sum += body.bytes();
   return sum;
 }
+
+std::size_t FixMdanimContact::bytes_of_particles() const
+{
+  return world_of_contact.bytes_of_particles() + my_places.bytes() + all_places.bytes() +
+         (object.capacity() + mine.capacity() + slot.capacity()) * sizeof(int);
+}
+
+double FixMdanimContact::memory_usage()
+{ return static_cast<double>(bytes_of_bodies() + world_of_contact.bytes_of_fields() + bytes_of_particles()); }

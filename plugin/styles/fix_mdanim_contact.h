@@ -63,6 +63,8 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
   mdanim::Coordinates places_of_all(const mdanim::Coordinates &of_mine);
   template <class Add> void give_forces(const Add &add) const;
   void push(double dt);
+  std::size_t bytes_of_bodies() const;
+  std::size_t bytes_of_particles() const;
 
   mdanim::ParticleValue kind, young, friction;
   int among_bit = 1;

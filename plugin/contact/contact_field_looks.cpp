@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Points without a contact: where they are in the host, whether a contact begins, and when they are looked at again.
+
+#include "contact/contact_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mdanim {
+
+static constexpr double LEAST_COSINE = 0.45;    // between the outward normals of the point and of a side that faces it, negated
+static constexpr double DEEPEST_BIRTH = 0.5;    // cells
+static constexpr double LOST = 0.02;            // cells to go before a point that was not found is looked for again
+static constexpr double PRESSED = 0.5;          // cells are taken to be pressed to half at most: motion in space over that in X
+static constexpr double NEAREST = 2.2;          // cells from the middle of a cell on the surface beyond which there is no contact
+static constexpr double JUMP = 0.25;            // cells that X may jump between cells of a round host
+static constexpr int MOST_GUESSES = 3;
+static constexpr double NEAR_PLACE = 0.1;    // cells that a guess may be off its last one
+
+// Of a cuboid.
+std::array<int, 3> ContactField::cell_of(const Vec3 &X) const
+{
+  const auto along = [&](double at, int axis) {
+    return std::clamp(static_cast<int>(std::floor(at + LEFT)), 0, host->body->count(axis) - 1);
+  };
+  return {along(X.x, 0), along(X.y, 1), along(X.z, 2)};
+}
+
+// Of another shape, for a point at x whose X was found from `cell`: where X is beyond all filled cells it depends on the cell, so
+// that is the one whose middle is nearest, wherever the search came from. `room`: a motion that cannot change the cell [m].
+std::array<int, 3> ContactField::cell_beyond(const Vec3 &x, const Vec3 &X, std::array<int, 3> cell, const Placed &at,
+                                             double &room) const
+{
+  const Vec3 off = X - Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
+  const double inside = 0.5 - std::max({std::fabs(off.x), std::fabs(off.y), std::fabs(off.z)});
+  if (inside >= -LEFT) {
+    room = PRESSED * std::max(inside, 0.0) * host->body->spacing();
+    return cell;
+  }
+  const Lattice grid = at.body.lattice();
+  const int across = 1 + grid.row + grid.layer;    // from a cell's low corner to its high one
+  for (;;) {
+    std::array<int, 3> best = cell, from, to;
+    for (int d = 0; d < 3; ++d) from[d] = std::max(cell[d] - 1, 0), to[d] = std::min(cell[d] + 1, grid.cells[d] - 1);
+    double least = NEVER, second = NEVER;
+    for (int k = from[2]; k <= to[2]; ++k)
+      for (int j = from[1]; j <= to[1]; ++j) {
+        const std::uint8_t *const filled = grid.filled + grid.cells[0] * (j + static_cast<std::size_t>(grid.cells[1]) * k);
+        const int *const slots = at.slot + at.body.place(0, j, k);
+        for (int i = from[0]; i <= to[0]; ++i) {
+          if (!filled[i] || slots[i] < 0 || slots[i + across] < 0) continue;
+          const Vec3 away = 0.5 * (at.place[slots[i]].value + at.place[slots[i + across]].value) - x;
+          const double square = dot(away, away);
+          second = std::min(second, std::max(square, least));
+          if (square < least) least = square, best = {i, j, k};
+        }
+      }
+    if (best == cell) {
+      room = PRESSED * (std::sqrt(second) - std::sqrt(least));    // each of the two distances grows and shrinks as much at most
+      return cell;
+    }
+    cell = best;
+  }
+}
+
+// X of a point at x by one step of Newton's method from where it was found last; `off`: how far that is in cells, 1 and more
+// where the step says nothing. A small part of the work of find().
+void ContactField::guess(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X, double &off)
+{
+  constexpr double HEALTHY = 0.7, NEARBY = 3.0;    // volume over that of a cell; cells from the middle of one
+  Watch &known = watch[q];
+  const bool by_splines = is_smooth(surface_point(q).kind);
+  const double h = host->body->spacing();
+  off = NEVER;
+  if (!evaluate(at, by_splines ? smooth(known.X, at.body) : trilinear(known.X, known.cell, at.body), spot)) return;
+  if (!(spot.det > HEALTHY * h * h * h)) return;
+  const Vec3 change = spot.to_material(x - spot.x);
+  X = known.X + change;
+  const double square = dot(change, change);
+  if (!(square < 1.0)) return;
+  std::array<int, 3> cell = known.cell;
+  bool is_there = true;
+  if (by_splines)
+    cell = cell_of(X);
+  else
+    is_there = !MaterialSearch(at).step_to_neighbour(cell, X, LEFT);
+  double room = NEVER;
+  if (!at.body.is_cuboid() && cell_beyond(x, X, cell, at, room) != cell) return;
+  const Vec3 away = X - Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
+  if (dot(away, away) > NEARBY * NEARBY) return;
+  known.cell = cell, known.X = X, known.room = room;
+  off = is_there ? std::sqrt(square) : 1.0;
+}
+
+// X of a point at x, the same bits whatever was known of it: the last search begins in the middle of the cell that X lies in.
+bool ContactField::find(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X)
+{
+  Watch &known = watch[q];
+  const MaterialSearch search(at);
+  std::array<int, 3> cell = known.cell;
+  X = known.X;
+  if (!search.solve(x, cell, X)) return false;
+  known.room = NEVER;
+  cell = host->body->is_cuboid() ? cell_of(X) : cell_beyond(x, X, cell, at, known.room);
+  X = {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
+  if (!search.solve(x, cell, X, false)) return false;
+  known.cell = cell, known.X = X;
+  if (is_smooth(surface_point(q).kind)) return search.solve_smooth(x, X) && evaluate(at, smooth(X, *host->body), spot);
+  return evaluate(at, trilinear(X, cell, at.body), spot);
+}
+
+bool ContactField::world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const
+{
+  const Placed own = {*owner->body, owner->slot.data(), arrays.place()};
+  const std::array<int, 3> cell = {point.cell[0], point.cell[1], point.cell[2]};
+  Spot<double> spot;
+  if (!evaluate(own, trilinear({cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}, cell, *owner->body), spot)) return false;
+  const ContactBody &body = *owner->body;
+  normal = spot.gradient({point.normal.x * body.edge(0), point.normal.y * body.edge(1), point.normal.z * body.edge(2)});
+  const double length = std::sqrt(dot(normal, normal));
+  if (!(length > 0.0)) return false;
+  normal = (1.0 / length) * normal;
+  return true;
+}
+
+// Half of a flat point counts a cell and a half inside of an edge, half of others on the edge.
+Ramps ContactField::ramps(PointKind kind) const
+{
+  Ramps ramps;
+  for (int d = 0; d < 3; ++d) {
+    const double rise = kind == PointKind::FLAT ? std::min(1.0, 0.25 * host->body->count(d)) : 0.5;
+    ramps.width[d] = rise / (1.0 - Ramp<double>::ROUND);
+    ramps.from[d] = (kind == PointKind::FLAT ? 1.5 * rise : 0.0) - 0.5 * ramps.width[d];
+  }
+  return ramps;
+}
+
+ContactField::Verdict ContactField::judge(const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre,
+                                          const Spot<double> &spot, const Vec3 &normal, double off) const
+{
+  const double far = 1e-5 + off * off, turn = 1e-3 + 0.5 * off;    // that a depth and a cosine of a guess may be wrong, in cells
+  const Lattice grid = host->body->lattice();
+  const Ramps near_edges = ramps(point.kind);
+  const double h = host->body->spacing();
+  int side = -1;
+  bool is_shut = false, is_surely_shut = false, may_face = false;
+  double best = NEVER, until = 0.0, slack = NEVER;
+  Verdict verdict;
+  for (int s = 0; s < host->body->sides(); ++s) {
+    const Depth<double> below = host->body->depth(s, X);
+    const double depth = below.value / h;    // in cells
+    const Vec3 inward = spot.gradient(below.slope);
+    const double cosine = dot(normal, inward) / std::sqrt(dot(inward, inward));
+    // What must change before the side can begin a contact, in cells: the largest of these three.
+    double apart = -depth;
+    const double turned = PRESSED * (LEAST_COSINE - cosine);
+    if (host->body->is_cuboid())
+      for (int d = 0; d < 3; ++d) {
+        if (d == s / 2) continue;
+        const double inside = std::min(component(X_centre, d), grid.cells[d] - component(X_centre, d));
+        apart = std::max(apart, near_edges.from[d] - inside);
+      }
+    if (apart <= 0.0 || turned > apart) verdict.open |= static_cast<std::uint8_t>(1u << s);
+    verdict.is_sure &= std::fabs(apart - std::max(0.0, turned)) > (turned > 0.0 ? turn : far);
+    is_surely_shut |= turned < -turn && depth < -far;
+    may_face |= turned < turn && depth > -far;
+    slack = std::min(slack, PRESSED * h * std::max({apart, turned, depth - DEEPEST_BIRTH}));
+    if (cosine < LEAST_COSINE) continue;
+    if (depth <= 0.0) {
+      is_shut = true;
+      until = std::max(until, std::min(-PRESSED * depth * h, 0.5 * PRESSED * h * (cosine - LEAST_COSINE)));
+    } else if (depth / cosine < best) {
+      best = depth / cosine, side = s;
+      verdict.depth = below.value;
+    }
+  }
+  verdict.is_sure &= is_surely_shut || !may_face;
+  verdict.slack = is_shut ? std::max(slack, until) : slack;
+  const auto counts = [&] {
+    Vec3 slope;
+    return !host->body->is_cuboid() || part_that_counts<double>(near_edges, grid, X_centre, side / 2, slope) > 0.0;
+  };
+  if (!is_shut && side >= 0 && verdict.depth <= DEEPEST_BIRTH * h && counts()) verdict.side = side;
+  return verdict;
+}
+
+// Whether a contact begins; else when to look again.
+bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_begin)
+{
+  Watch &known = watch[q];
+  const SurfacePoint &point = surface_point(q);
+  const Vec3 x = near.place(q, arrays.place());
+  const double h = host->body->spacing();
+  const Placed at = placed(arrays);
+  const auto lost = [&] {
+    known.cell = {-1, -1, -1};
+    known.open = EVERY_SIDE;
+    wake[q] = budget + LOST * h;
+    return false;
+  };
+  if (known.cell[0] < 0) {
+    if (!host->outer) host->outer = std::make_shared<const OuterCells>(*host, arrays);
+    const std::array<int, 3> cell = host->outer->nearest(x);
+    Spot<double> there;
+    const Vec3 middle = {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
+    if (cell[0] >= 0 && !evaluate(at, trilinear(middle, cell, at.body), there)) return lost();
+    const double away = cell[0] < 0 ? 0.5 * OuterCells::SEARCHED * h : std::sqrt(dot(x - there.x, x - there.x));
+    if (away > NEAREST * h) {
+      known.open = 0;
+      wake[q] = budget + away - NEAREST * h;
+      return false;
+    }
+    known.cell = cell, known.X = middle;
+  }
+  Spot<double> spot;
+  Vec3 X, normal;
+  const Vec3 shift = near.shift(q, arrays.place());
+  if (!world_normal(point, arrays, normal)) return lost();
+  const std::uint8_t was_open = known.open;
+  Verdict verdict;
+  verdict.is_sure = false;
+  double off = 1.0;
+  for (int step = 0; step < MOST_GUESSES && !verdict.is_sure && off > SAME_PLACE && off < NEVER; ++step) {
+    guess(q, x, at, spot, X, off);
+    if (off < NEAR_PLACE) verdict = judge(point, X, X + spot.to_material(shift), spot, normal, off);
+  }
+  if (!verdict.is_sure) {
+    if (!find(q, x, at, spot, X)) return lost();
+    verdict = judge(point, X, X + spot.to_material(shift), spot, normal, 0.0);
+  }
+  known.open = verdict.open;
+  if (!may_begin || verdict.side < 0) {
+    // In another cell the depth may be another one.
+    const double slack = std::min(verdict.slack, std::max(known.room, verdict.slack - PRESSED * JUMP * h));
+    wake[q] = budget + std::max(0.0, slack);
+    return false;
+  }
+
+  FieldContact contact{};
+  contact.point = near.point(q);
+  contact.side = verdict.side;
+  for (int d = 0; d < 3; ++d) contact.cell[d] = known.cell[d];
+  contact.state.X = contact.state.anchor = X;
+  contact.state.memory.depth = verdict.depth;
+  contact.state.memory.offset = was_open >> verdict.side & 1 ? verdict.depth : 0.0;
+  const auto where = std::lower_bound(of_contact.begin(), of_contact.end(), q);
+  contacts.insert(contacts.begin() + (where - of_contact.begin()), contact);
+  of_contact.insert(where, q);
+  wake[q] = NEVER;
+  return true;
+}
+
+}    // namespace mdanim
