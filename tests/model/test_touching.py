@@ -119,6 +119,15 @@ def test_what_a_newcomer_writes_is_told(prepared, text, each, names, joules):
     assert not start_warnings(prepared(text.format(each=each, stuff=STUFF).replace("contact-model paper", by[3])))
 
 
+def test_the_way_out_of_what_lies_askew_is_a_move(prepared):
+    """Boxes around two turned cubes overlap though the cubes do not: there is no gap to be told, and the move is enough."""
+    cube = "object {} {{ shape box (10, 10, 10) cm position ({}, {!r}, 0) cm orientation axis (0, 0, 1) angle 45 deg {} }}\n"
+    text = lambda y: cube.format("a", 0, 0.0, STUFF) + cube.format("b", 7.35, y, STUFF) + END.format()
+    (warning,) = start_warnings(prepared(text(7.35)))
+    by = re.match(r"move b to \+y by ([\d.]+) cm;", warning.hint)
+    assert not start_warnings(prepared(text(7.35 + float(by[1]))))
+
+
 @pytest.mark.parametrize("model", ["paper", "surface"])
 def test_after_the_way_out_of_an_overlap_contact_holds_no_energy(prepared, model):
     """Make the move that the message about an overlap names."""

@@ -156,7 +156,8 @@ class Contact(Effect):
             return []
         t = found[0]
         first, second = scene.solids[t.first], scene.solids[t.second]
-        more = ""
+        # Boxes around what is turned overlap: there may be no gap to tell.
+        more, gap = "", f"leave a gap of {say(at_least(t.gap, 3), 'm')}: " if t.gap > 0.0 else ""
         if len(found) > 1:
             more = f"; {whole(len(found))} pairs start so, with {say(sum(f.energy for f in found), 'J')} in all"
         return [
@@ -164,8 +165,7 @@ class Contact(Effect):
                 second.spans.get("position") or second.spans.get("object"),
                 f"{second.name} starts within reach of {first.name}: contact holds {say(t.energy, 'J')} at the start and pushes "
                 f"them apart{more}",
-                f"leave a gap of {say(at_least(t.gap, 3), 'm')}: move {second.name} {WAY_NAMES[t.way]} "
-                f"by {say(at_least(t.move, 3), 'm')}; {OR_ON_SURFACES}",
+                f"{gap}move {second.name} {WAY_NAMES[t.way]} by {say(at_least(t.move, 3), 'm')}; {OR_ON_SURFACES}",
                 severity="warning",
             )
         ]
