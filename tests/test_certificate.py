@@ -200,6 +200,8 @@ object ball {{
 control {{ time 0.8 s  frames 100 fps  resolution {h} cm  contact-model {model} }}
 """
 """Hits the ground at 0.15 of the wave speed with 360 kPa."""
+ON_CORNER = "orientation euler (45, 35.2644, 0) deg"
+ON_EDGE = "orientation euler (45, 0, 0) deg"
 
 
 @pytest.mark.parametrize(
@@ -243,6 +245,23 @@ def test_a_round_body_of_many_cells_folds_up_sooner(prepared, tmp_path, shape, h
         cured = prepared(BALL.format(shape=shape, extra=extra, model=model, **cure))
         assert margin(cured.certificate, "amplitude").severity == "ok"
         simulate(cured, tmp_path)
+
+
+@pytest.mark.parametrize(("turned", "share"), [(ON_CORNER, 0.75**0.5 / 8**3), (ON_EDGE, 1.0 / 8**2)], ids=["corner", "edge"])
+def test_a_cube_folds_up_where_little_of_it_lands(prepared, tmp_path, turned, share):
+    """On its corner or edge sooner than on its face; the cure cures. A cube that spins may land on its corner."""
+    words = {"shape": "box (0.24, 0.24, 0.24)", "h": 3, "model": "surface"}
+    ready = prepared(BALL.format(**words, young=360, extra=turned))
+    found = margin(ready.certificate, "amplitude")
+    assert found.limit == pytest.approx(0.75 * share**0.45, rel=1e-3) and found.severity == "warning"
+    with pytest.raises(DivergedError, match="inside out"):
+        simulate(ready, tmp_path)
+    enough, kilo = re.search(r"write elasticity (\S+) (\wPa) or more", found.hint).groups()
+    cured = prepared(BALL.format(**words, young=float(enough) * (1000 if kilo == "MPa" else 1), extra=turned))
+    assert margin(cured.certificate, "amplitude").severity == "ok"
+    simulate(cured, tmp_path)
+    spins = prepared(BALL.format(**words, young=360, extra="spin (0, 0, 0.1)"))
+    assert margin(spins.certificate, "amplitude").limit == pytest.approx(0.75 * (0.75**0.5 / 8**3) ** 0.45, rel=1e-3)
 
 
 POOL = """gravity (0, 0, -9.81)

@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
 from ..model.cells import TooThin, end_share, fill_cells
 from ..model.shapes import thickness
+from ..model.system import System
 from ..scene.formatting import at_least, number, say
-from ..scene.scene import Cone, ContactModel, Ellipsoid, Shape, Sphere
+from ..scene.scene import Box, Cone, ContactModel, Ellipsoid, Solid, Sphere
 from .envelope import Envelope
 from .margin import Margin
 
@@ -19,6 +22,9 @@ FOLDS_ON_END, FOLDS_POWER = 0.5, 0.45
 few bear the blow of all (docs/physics-solids.md)."""
 POINTED = {ContactModel.SURFACE: (Ellipsoid, Cone), ContactModel.PAPER: (Sphere, Ellipsoid, Cone)}
 """Shapes that may land on an end of few cells. At its drawn surface a ball is borne by more than its lowest cells."""
+FOLDS_AT_CORNER = 0.75
+"""The same of a cuboid that lands on a corner or an edge, over that power of the part of it that is within a spacing of its
+lowest point."""
 CRUSH = 0.2
 """Load over Young's modulus above which a lattice is crushed (docs/physics-solids.md)."""
 THINNEST = 2
@@ -29,7 +35,7 @@ def amplitude(env: Envelope) -> Margin:
     scene, system = env.scene, env.system
     meets = len(system.names) > 1 or len(env.planes) > 0
     ratio = np.where(meets, env.speed / env.wave, 0.0)
-    hard = len(env.planes) > 0 and not any(e.uses_grid for e in env.on)  # a liquid breaks the fall
+    hard = (len(env.planes) > 0 or not env.moving.all()) and not any(e.uses_grid for e in env.on)  # a liquid breaks the fall
     spot = _spots(env) if hard else np.full(len(ratio), np.inf)
     limit = np.minimum(FOLDS, spot)
     m = int((ratio / limit).argmax())
@@ -40,7 +46,7 @@ def amplitude(env: Envelope) -> Margin:
     if spot[m] < FOLDS:
         what = f"one of {number(env.cells[m], 2)} cells across folds up at the spot where it lands"
         h = float(np.cbrt(system.cell_volume[m]))
-        if ratio[m] < FOLDS and (h := _coarser(scene.solids[m].shape, h, float(ratio[m]))):
+        if ratio[m] < FOLDS and (h := _coarser(env, scene.solids[m], h, float(ratio[m]))):
             coarser = f", or resolution {say(h, 'm')}"
     return Margin(
         "amplitude",
@@ -58,24 +64,53 @@ def amplitude(env: Envelope) -> Margin:
 
 
 def _spots(env: Envelope) -> np.ndarray:
-    """Speed of a landing on the smallest end, over the wave speed, that folds it up; infinite for shapes that are not POINTED,
-    shape (M,)."""
+    """Speed of a landing on what does not give way, over the wave speed, that folds up the spot where a solid lands, shape (M,).
+
+    Infinite for shapes that are neither cuboids nor pointed."""
     system, known = env.system, {}
     spots = np.full(len(system.names), np.inf)
     pointed = POINTED[env.scene.control.contact_model]
-    ends = [m for m, s in enumerate(env.scene.solids) if env.moving[m] and isinstance(s.shape, pointed)]
-    first = np.searchsorted(system.hexahedron[:, 0], system.first)
-    for m in ends:
-        key = env.scene.solids[m].shape, float(system.cell_volume[m])
-        if key not in known:
-            middle = system.position[system.hexahedron[first[m] : first[m + 1]]].mean(axis=1)
-            middle = middle @ np.array(env.scene.solids[m].rotation)
-            place = np.rint((middle - middle.min(axis=0)) / np.cbrt(system.cell_volume[m])).astype(int)  # voxels are cubes
-            filled = np.zeros(place.max(axis=0) + 1, bool)
-            filled[tuple(place.T)] = True
-            known[key] = folds_on_end(filled)
-        spots[m] = known[key]
+    for m in np.flatnonzero(env.moving).tolist():
+        solid = env.scene.solids[m]
+        if isinstance(solid.shape, Box):
+            spots[m] = _folds_on_corner(env, solid, float(np.cbrt(system.cell_volume[m])))
+        elif isinstance(solid.shape, pointed):
+            key = solid.shape, float(system.cell_volume[m])
+            if key not in known:
+                known[key] = folds_on_end(_filled(system, m, solid.rotation))
+            spots[m] = known[key]
     return spots
+
+
+def _filled(system: System, m: int, rotation: tuple) -> np.ndarray:
+    """The cells of one solid in a grid, bool."""
+    first = np.searchsorted(system.hexahedron[:, 0], system.first)
+    middle = system.position[system.hexahedron[first[m] : first[m + 1]]].mean(axis=1) @ np.array(rotation)
+    place = np.rint((middle - middle.min(axis=0)) / np.cbrt(system.cell_volume[m])).astype(int)  # voxels are cubes
+    filled = np.zeros(place.max(axis=0) + 1, bool)
+    filled[tuple(place.T)] = True
+    return filled
+
+
+def _folds_on_corner(env: Envelope, solid: Solid, h: float) -> float:
+    """The same of a cuboid with this spacing [m], which lands as it is turned at the start; on a corner where it spins."""
+    ways = [np.eye(3)[p.axis] for p in env.planes if p.sign * solid.velocity[p.axis] < 0.0]
+    if env.g > 0.0:
+        ways.append(np.array([0.0, 0.0, 1.0]))
+    turned = [np.ones(3) / np.sqrt(3.0)] if any(solid.spin) else [way @ np.array(solid.rotation) for way in ways]
+    share = min((low_share(np.array(solid.shape.size), way, h) for way in turned), default=1.0)
+    return FOLDS_AT_CORNER * share**FOLDS_POWER
+
+
+def low_share(size: np.ndarray, normal: np.ndarray, depth: float) -> float:
+    """Part of a cuboid with these edges [m], shape (3,), that is less than a depth [m] beyond its first point along a normal.
+
+    The way along the normal is a sum of three evenly spread ones, so this is its distribution: a sum of cubes over all corners.
+    """
+    ways = np.maximum(np.abs(normal) * size, 1e-3 * depth)
+    corners = np.array(list(product((0, 1), repeat=3)))
+    cubes = np.maximum(depth - corners @ ways, 0.0) ** 3
+    return min(1.0, float(((-1.0) ** corners.sum(axis=1) * cubes).sum() / (6.0 * ways.prod())))
 
 
 def load(env: Envelope) -> list[Margin]:
@@ -148,14 +183,15 @@ def folds_on_end(filled: np.ndarray) -> float:
     return FOLDS_ON_END * end_share(filled) ** FOLDS_POWER
 
 
-def _coarser(shape: Shape, h: float, ratio: float) -> float | None:
+def _coarser(env: Envelope, solid: Solid, h: float, ratio: float) -> float | None:
     """The next coarser spacing [m] at which a landing at this part of the wave speed folds no end;
     None below three cells across."""
     for trial in (at_least(h * 1.05**k) for k in range(1, 40)):
         try:
-            if thickness(shape) / trial < 3.0:
+            if thickness(solid.shape) / trial < 3.0:
                 break
-            if ratio <= folds_on_end(fill_cells(shape, trial).filled):
+            cuboid = isinstance(solid.shape, Box)
+            if ratio <= (_folds_on_corner(env, solid, trial) if cuboid else folds_on_end(fill_cells(solid.shape, trial).filled)):
                 return trial
         except TooThin:
             continue
