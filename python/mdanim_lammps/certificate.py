@@ -109,7 +109,10 @@ def certify(resolved: Resolved, system: System, *, allow_unstable: bool = False)
     scene, on = resolved.scene, resolved.effects
     rates = {e.name: r for e in on if (r := e.rate(scene, system)) is not None}
     drags = {e.name: r for e in on if (r := e.drag_rate(scene, system)) is not None}
-    limit = stable_step(sum(rates.values(), np.zeros(system.particles)), sum(drags.values(), np.zeros(system.particles)))
+    total_rate = sum(rates.values(), np.zeros(system.particles))
+    if own := [r for e in on if (r := e.own_rate(scene, system)) is not None]:
+        total_rate -= np.sum(own, axis=0) - np.max(own, axis=0)
+    limit = stable_step(total_rate, sum(drags.values(), np.zeros(system.particles)))
     limit[system.held] = np.inf
     worst = int(np.argmin(limit))
     bound = float(limit[worst])

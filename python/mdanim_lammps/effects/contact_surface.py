@@ -189,6 +189,10 @@ class SurfaceContact(OnSurfaces, Contact):
             system, self.barrier_stiffness(scene, system), float(self.barrier_reach(scene, system).max())
         )
 
+    def own_rate(self, scene, system):
+        kappa = self.stiffness(scene, system)[system.object]
+        return 2.0 * kappa * own_area(system) / system.mass
+
     def drag_rate(self, scene, system):
         """Points of the own body and of another, and the factor 2 as in `rate`."""
         one = self.dashpots(scene, system, self.stiffness(scene, system))
@@ -249,6 +253,9 @@ class SurfacePlanes(OnSurfaces, Boundary):
         """a_i = kappa w_i / m_i with w_i as in `SurfaceContact.rate`: the plane does not move, so there is no factor 2."""
         rate = self.stiffness(scene, system)[system.object] * own_area(system) / system.mass
         return np.where(system.held, 0.0, rate)
+
+    def own_rate(self, scene, system):
+        return self.rate(scene, system)
 
     def drag_rate(self, scene, system):
         return self.dashpots(scene, system, self.stiffness(scene, system))

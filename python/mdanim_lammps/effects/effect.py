@@ -99,8 +99,15 @@ class Effect:
         """Its share in the bound on the squared frequency of each particle, 2 lambda_max(D_i)/m_i [1/s^2], shape (N,)."""
         return None
 
+    def own_rate(self, scene: Scene, system: System) -> np.ndarray | None:
+        """The part of `rate` that comes of points of a particle's own surface in something else [1/s^2], shape (N,).
+
+        No point is in two things at once: of these parts of all effects the largest alone counts.
+        """
+        return None
+
     def drag_rate(self, scene: Scene, system: System) -> np.ndarray | None:
-        """The same of its dashpots, 2 lambda_max(C_i)/m_i [1/s], shape (N,)."""
+        """The same as `rate` of its dashpots, 2 lambda_max(C_i)/m_i [1/s], shape (N,)."""
         return None
 
     def max_timestep(self, scene: Scene, system: System) -> float:
