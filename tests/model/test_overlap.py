@@ -65,6 +65,14 @@ def test_the_hint_is_the_shortest_way_out():
     assert problem.hint == "move it up by 18 cm"  # and 0.6 of the spacing, so that contact holds no energy
 
 
+def test_on_a_slope_the_move_is_short():
+    """At its surface a block lies on a slope whose box it is in: 1.7 cm along the normal are 1.8 cm upward."""
+    turned = rotation(0, np.radians(20.0), 0)
+    ramp = solid(Box((2.0, 0.6, 0.1)), "ramp", rotation=turned)
+    (problem,) = problems(ramp, solid(Box((0.2, 0.2, 0.2)), "block", position=(-0.6, -0.15, 0.36), rotation=turned), h=0.05)
+    assert re.fullmatch(r"move it up by 1\.[89] cm", problem.hint)
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.sampled_from(SHAPES), st.sampled_from(SHAPES), *[st.tuples(*[st.floats(-0.6, 0.6)] * 3)] * 2)
 def test_an_offered_move_frees_any_two_bodies(first, second, shift, angles):

@@ -147,18 +147,30 @@ def _pair(scene: Scene, bodies: _BoundingBoxes, planes: tuple[Plane, ...], i: in
     # cells. The cells of the smaller body are enough, so the cells of a large floor are not searched for
     # every pebble.
     small, large = (i, j) if len(bodies.models[i].hexahedron) <= len(bodies.models[j].hexahedron) else (j, i)
-    deepest = max(
-        _deepest(bodies.vertices[i], bodies, j, second),
-        _deepest(bodies.vertices[j], bodies, i, first),
-        _deepest(bodies.cells(small), bodies, large, scene.solids[large]),
-    )
-    if deepest <= bodies.allowed:
+    cells = bodies.cells(small)
+
+    def deepest(moved: np.ndarray) -> float:
+        """Largest depth of one in the other when j is moved [m]."""
+        there = bodies.vertices[j], bodies.vertices[i] - moved, cells + (moved if small == j else -moved)
+        return max(
+            _deepest(there[0] + moved, bodies, i, first),
+            _deepest(there[1], bodies, j, second),
+            _deepest(there[2], bodies, large, scene.solids[large]),
+        )
+
+    depth = deepest(np.zeros(3))
+    if depth <= bodies.allowed:
         return None
-    direction, step = _way_out(planes, bodies, i, j)
+    axis, sign, step = _way_out(planes, bodies, i, j)
+    if bodies.on_surfaces:  # surfaces may touch where boxes overlap
+        way, short = sign * np.eye(3)[axis], 0.0
+        while step - short > 0.02 * step:
+            middle = 0.5 * (short + step)
+            short, step = (short, middle) if deepest(middle * way) == 0.0 else (middle, step)
     return Problem(
         _span(second),
-        f"{second.name} starts inside {first.name}, about {say(deepest, 'm')} deep",
-        f"move it {direction} by {say(_enough(step), 'm')}",
+        f"{second.name} starts inside {first.name}, about {say(depth, 'm')} deep",
+        f"move it {_MOVES[axis, sign]} by {say(_enough(step), 'm')}",
     )
 
 
@@ -172,19 +184,19 @@ def _deepest(points: np.ndarray, bodies: _BoundingBoxes, host: int, solid: Solid
     return float(shapes.depth(solid.shape, points).max()) if len(points) else 0.0
 
 
-def _way_out(planes: tuple[Plane, ...], bodies: _BoundingBoxes, i: int, j: int) -> tuple[str, float]:
-    """Direction and step [m] of object j after which contact has no energy; the shortest that stays between the planes."""
+def _way_out(planes: tuple[Plane, ...], bodies: _BoundingBoxes, i: int, j: int) -> tuple[int, int, float]:
+    """Axis, sign and step [m] of a move of object j after which contact has no energy, the shortest between the planes."""
     ways, gap = [], bodies.clearance(i, j)
-    for (axis, sign), name in _MOVES.items():
+    for axis, sign in _MOVES:
         ahead, behind = bodies.outer_high, bodies.outer_low
         if sign < 0:
             ahead, behind = behind, ahead
         step = sign * (ahead[i, axis] - behind[j, axis]) + gap
         arrival = ahead[j, axis] + sign * step
         blocked = any(p.axis == axis and p.sign == -sign and sign * (arrival - p.at) > bodies.hair for p in planes)
-        ways.append((blocked, step, name))
-    _, step, name = min(ways)
-    return name, step
+        ways.append((blocked, step, axis, sign))
+    _, step, axis, sign = min(ways)
+    return axis, sign, step
 
 
 def _enough(step: float) -> float:
