@@ -17,7 +17,6 @@ static constexpr double TRUSTED = 1.0;    // cells to go for which what was seen
 // stands out of its particles, and farther where cells are stretched.
 double ContactField::stands_out(const ContactBody &owner, const ContactBody &host)
 {
-  constexpr double STRETCHED = 2.0;
   if (!host.is_cuboid()) return STRETCHED * host.overhang();
   return 0.6 * (host.spacing() + (owner.is_cuboid() ? owner.spacing() : 0.0));
 }

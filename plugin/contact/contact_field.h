@@ -20,6 +20,7 @@ class ContactField {
  public:
   ContactField(ContactObject &owner, ContactObject &host, const ContactLaw &law) : owner(&owner), host(&host), law(law) {}
 
+  static constexpr double STRETCHED = 2.0;    // the most that cells are taken to be, over their undeformed size
   // How far a point may be outside of its host's particles in contact.
   static double stands_out(const ContactBody &owner, const ContactBody &host);
   // Points that may come in until lists are made again; contacts and what is known of points stay. `reach`: how far objects may

@@ -10,9 +10,8 @@
 
 namespace mdanim {
 
-static constexpr double AROUND = 3.0;      // spacings around a contact in which particles may have a part in it
-static constexpr double CARRIED = 2.25;    // spacings that a particle may be from a point of its cells
-static constexpr double STRETCHED = 2.0;
+static constexpr double AROUND = 3.0;            // spacings around a contact in which particles may have a part in it
+static constexpr double CARRIED = 2.25;          // spacings that a particle may be from a point of its cells
 static constexpr double AT_A_PLANE = 0.75;       // of the skin: half for particles, and for points outside of cells half of that
 static constexpr double BETWEEN_POINTS = 0.6;    // spacings by which a round surface may stand out of its points
 static constexpr double MOST_SKINS = 32.0;
@@ -89,7 +88,7 @@ void ContactWorld::look_ahead(const std::vector<Box> &boxes, double now)
     std::vector<std::pair<int, int>> found;
     for (int n = 0; n < objects(); ++n)
       for (std::size_t p = 0; p < settings.planes.size(); ++p)
-        if (movable[n] && near_plane(boxes[n], settings.planes[p], gap + STRETCHED * all[n].body->overhang()))
+        if (movable[n] && near_plane(boxes[n], settings.planes[p], gap + ContactField::STRETCHED * all[n].body->overhang()))
           found.emplace_back(n, static_cast<int>(p));
     return found;
   };
@@ -117,8 +116,8 @@ void ContactWorld::find_sights()
   for (std::size_t k = 0; k < near_pairs.size(); ++k) {
     const NearPair &pair = near_pairs[k];
     const ContactBody &one = *all[pair.a].body, &other = *all[pair.b].body;
-    const double around =
-        skin + AROUND * std::max(one.spacing(), other.spacing()) + STRETCHED * std::max(one.overhang(), other.overhang());
+    const double around = skin + AROUND * std::max(one.spacing(), other.spacing()) +
+                          ContactField::STRETCHED * std::max(one.overhang(), other.overhang());
     sights[pair.a].push_back({pair.of_b.grown(around), static_cast<int>(2 * k + 1)});
     sights[pair.b].push_back({pair.of_a.grown(around), static_cast<int>(2 * k)});
   }

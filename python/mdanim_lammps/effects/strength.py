@@ -27,6 +27,10 @@ FOLDS_AT_CORNER = 0.75
 lowest point."""
 CRUSH = 0.2
 """Load over Young's modulus above which a lattice is crushed (docs/physics-solids.md)."""
+CORNERS = np.array(list(product((0.0, 1.0), repeat=3)))
+"""Of a unit cube, shape (8, 3)."""
+SIGNS = (-1.0) ** CORNERS.sum(axis=1)
+"""1 for an even number of ones in a corner, else -1, shape (8,)."""
 THINNEST = 2
 """Fewest cells across: one cell is 1.9 times too stiff in bending (docs/physics-solids.md)."""
 
@@ -108,9 +112,8 @@ def low_share(size: np.ndarray, normal: np.ndarray, depth: float) -> float:
     The way along the normal is a sum of three evenly spread ones, so this is its distribution: a sum of cubes over all corners.
     """
     ways = np.maximum(np.abs(normal) * size, 1e-3 * depth)
-    corners = np.array(list(product((0, 1), repeat=3)))
-    cubes = np.maximum(depth - corners @ ways, 0.0) ** 3
-    return min(1.0, float(((-1.0) ** corners.sum(axis=1) * cubes).sum() / (6.0 * ways.prod())))
+    cubes = np.maximum(depth - CORNERS @ ways, 0.0) ** 3
+    return min(1.0, float(SIGNS @ cubes / (6.0 * ways.prod())))
 
 
 def load(env: Envelope) -> list[Margin]:

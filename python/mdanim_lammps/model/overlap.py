@@ -151,11 +151,10 @@ def _pair(scene: Scene, bodies: _BoundingBoxes, planes: tuple[Plane, ...], i: in
 
     def deepest(moved: np.ndarray) -> float:
         """Largest depth of one in the other when j is moved [m]."""
-        there = bodies.vertices[j], bodies.vertices[i] - moved, cells + (moved if small == j else -moved)
         return max(
-            _deepest(there[0] + moved, bodies, i, first),
-            _deepest(there[1], bodies, j, second),
-            _deepest(there[2], bodies, large, scene.solids[large]),
+            _deepest(bodies.vertices[j] + moved, bodies, i, first),
+            _deepest(bodies.vertices[i] - moved, bodies, j, second),
+            _deepest(cells + moved if small == j else cells - moved, bodies, large, scene.solids[large]),
         )
 
     depth = deepest(np.zeros(3))
