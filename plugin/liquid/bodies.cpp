@@ -223,7 +223,7 @@ int Bodies::body_of(int x, int y, int z) const
 {
   const int row = row_of(y, z);
   const auto run = std::lower_bound(runs.begin() + begin[row], runs.begin() + end[row], x,
-                                    [](const Run &r, int cell) { return r.last < cell; });
+                                    [](const CellRun &r, int cell) { return r.last < cell; });
   return run->body;
 }
 

@@ -62,7 +62,7 @@ class Bodies {
   template <class Visit> void each_beside(int y, int z, Visit visit);
 
  private:
-  struct Run {    // liquid cells first..last of one row, or of neighbouring rows that are alike
+  struct CellRun {    // liquid cells first..last of one row, or of neighbouring rows that are alike
     int first, last, body;
   };
 
@@ -85,7 +85,7 @@ class Bodies {
   std::vector<Word> liquid, empty, beside;
   int highest = -1;    // layer of the highest exposed cell
 
-  std::vector<Run> runs;          // from the top layer down
+  std::vector<CellRun> runs;      // from the top layer down
   std::vector<int> parent;        // of runs: a forest with a tree per body
   std::vector<int> begin, end;    // of a row's runs
   std::vector<Word> seen;         // scratch of each_beside: bits of a row for every body

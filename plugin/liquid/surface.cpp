@@ -28,7 +28,7 @@ struct Region {
 };
 
 // Free columns side by side in a row.
-struct Run {
+struct ColumnRun {
   std::size_t place;     // of the first one, here
   std::size_t number;    // of the first one, in arrays without a rim
   int length, region;
@@ -59,7 +59,7 @@ class Surface {
   }
 
   int nx = 0, ny = 0, row = 0;
-  std::vector<Run> runs;
+  std::vector<ColumnRun> runs;
   std::vector<Region> regions;
   std::vector<int> parent;    // of runs: a forest with a tree per region
   std::vector<std::uint8_t> free, known, wanted;
@@ -80,7 +80,7 @@ void Surface::read(int columns_x, int columns_y, const double *height, const std
     for (int x = 0; x < nx; ++x) free[at(x, y)] = blocked[static_cast<std::size_t>(y) * nx + x] == 0;
   find_runs();
   find_regions();
-  for (const Run &run : runs) {
+  for (const ColumnRun &run : runs) {
     double lowest = FAR, highest = -FAR;
     for (int n = 0; n < run.length; ++n) {    // NaN compares false
       const double h = height[run.number + n];
@@ -138,7 +138,7 @@ bool Surface::level() const
 // A region with one height only has it everywhere, bit for bit.
 void Surface::spread_level()
 {
-  for (const Run &run : runs)
+  for (const ColumnRun &run : runs)
     if (regions[run.region].has_height())
       for (int n = 0; n < run.length; ++n) set(run.place + n, regions[run.region].lowest);
 }
@@ -150,7 +150,7 @@ void Surface::spread_level()
 void Surface::filter(const double *height)
 {
   for (auto *numbers : {&keep, &take, &sum, &weight, &next_sum, &next_weight}) numbers->assign(value.size(), 0.0f);
-  for (const Run &run : runs)
+  for (const ColumnRun &run : runs)
     for (int n = 0; n < run.length; ++n) {
       const std::size_t place = run.place + n;
       keep[place] = 1.0f - MIX * (free[place - 1] + free[place + 1] + free[place - row] + free[place + row]);
@@ -160,7 +160,7 @@ void Surface::filter(const double *height)
       weight[place] = has_height ? 1.0f : 0.0f;
     }
   for (int n = 0; n < STEPS; ++n) step();
-  for (const Run &run : runs)
+  for (const ColumnRun &run : runs)
     for (std::size_t place = run.place; place < run.place + run.length; ++place)
       if (weight[place] > 0.0f) set(place, regions[run.region].lowest + static_cast<double>(sum[place]) / weight[place]);
 }

@@ -168,13 +168,13 @@ void ParticleRows::add(int i, const void *from)
 
 void ParticleRows::pack(StateRecords &into) const
 {
-  const std::vector<Row> all = gather(lmp->world, rows);
+  const std::vector<StateRow> all = gather(lmp->world, rows);
   const Bytes all_values = gather(lmp->world, values);
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) { return all[p] < all[q]; });
   for (std::size_t n = 0; n < order.size(); ++n) {
-    const Row &row = all[order[n]];
+    const StateRow &row = all[order[n]];
     if (n && !(all[order[n - 1]] < row)) fail("particle {} of object {} has its state twice", row.tag, row.object);
     Bytes &record = into[{row.object, 0}];
     if (record.empty()) append(record, version);

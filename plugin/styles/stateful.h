@@ -87,10 +87,10 @@ class ParticleRows {
   void unpack(const StateRecords &records, const Visit &visit) const;
 
  private:
-  struct Row {
+  struct StateRow {
     int object;
     std::int32_t tag;    // from the lowest of the object
-    bool operator<(const Row &other) const { return std::tie(object, tag) < std::tie(other.object, other.tag); }
+    bool operator<(const StateRow &other) const { return std::tie(object, tag) < std::tie(other.object, other.tag); }
   };
   struct Object {
     int id;
@@ -103,7 +103,7 @@ class ParticleRows {
   std::size_t width;
   std::vector<Object> objects;                         // of all ranks, by ascending IDs
   std::unordered_map<LAMMPS_NS::tagint, int> local;    // particles by tags; LAMMPS's own map may be older than they are here
-  std::vector<Row> rows;
+  std::vector<StateRow> rows;
   Bytes values;
 };
 

@@ -27,8 +27,7 @@ from .run.manifest import manifest
 from .run.prepare import Prepared, prepare
 from .scene.meshes import mesh_files
 from .scene.parse import load_scene
-from .scene.scene import Accuracy, Save
-from .scene.scene import Scene as SceneRecord
+from .scene.scene import Accuracy, Save, SceneRecord
 from .study.bench import BUDGET
 from .study.study import Study, run_study
 from .study.target import settle

@@ -26,7 +26,7 @@ from .effects.standing import towers
 from .errors import Problem, RefusedError, SceneError, Span
 from .model.system import System
 from .scene.formatting import estimate, number, say
-from .scene.scene import Accuracy, Scene
+from .scene.scene import Accuracy, SceneRecord
 
 WARN = 0.7
 """Time step over the bound above which large motion may blow up: the bound is that of small motion (docs/physics-solids.md)."""
@@ -159,7 +159,7 @@ def certify(resolved: Resolved, system: System, *, allow_unstable: bool = False)
     )
 
 
-def accuracy_fraction(scene: Scene) -> float:
+def accuracy_fraction(scene: SceneRecord) -> float:
     """Time step over the bound that the scene's accuracy asks of ``timestep auto``; a target error counts as balanced."""
     accuracy = scene.control.accuracy
     return (accuracy if isinstance(accuracy, Accuracy) else Accuracy.BALANCED).fraction
@@ -174,7 +174,7 @@ def stable_step(stiff: np.ndarray, drag: np.ndarray) -> np.ndarray:
     return np.where((stiff > 0.0) | (drag > 0.0), root, np.inf)
 
 
-def fit_steps(scene: Scene, longest: float) -> tuple[int, int, int]:
+def fit_steps(scene: SceneRecord, longest: float) -> tuple[int, int, int]:
     """Steps per frame, whole frames, and steps of a last shorter frame, so that one dt <= ``longest`` meets them all.
 
     ``time * frames`` = p/q in lowest terms asks for a multiple of q steps per frame. Raises SceneError when q is so large
@@ -213,7 +213,7 @@ def fit_steps(scene: Scene, longest: float) -> tuple[int, int, int]:
     return per_frame, frames, rest * per_frame // q
 
 
-def strong_drag(scene: Scene, system: System, effects: Iterable[Effect], timestep: float) -> float:
+def strong_drag(scene: SceneRecord, system: System, effects: Iterable[Effect], timestep: float) -> float:
     """Largest phi of the drag that these effects make, all together, when it is above STRONG, else 0."""
     frictions = [f for e in effects if (f := e.friction(scene, system)) is not None]
     phi = float((sum(frictions) / system.mass).max()) * timestep / 2.0 if frictions else 0.0

@@ -16,7 +16,7 @@ from .results.trajectory_file import trajectory_bytes
 from .run.loop import Progress, Result
 from .run.prepare import Prepared
 from .scene.formatting import number, say, whole
-from .scene.scene import Scene
+from .scene.scene import SceneRecord
 
 
 def count(things: int, noun: str) -> str:
@@ -64,7 +64,7 @@ MODELLING = 4e-6
 """Processor seconds for each particle of models, springs and time step, measured at 10^6."""
 
 
-def size_line(scene: Scene) -> str | None:
+def size_line(scene: SceneRecord) -> str | None:
     """One line: how large the models of a scene will be, before they are made; None where that is soon done.
     Raises SceneError."""
     if not scene.solids:

@@ -4,7 +4,7 @@
 import numpy as np
 from mdanim_lammps.errors import Span
 from mdanim_lammps.model import build_models
-from mdanim_lammps.scene.scene import Box, Cone, Control, Cylinder, Ellipsoid, Mesh, Scene, Solid, Sphere, Torus, Young
+from mdanim_lammps.scene.scene import Box, Cone, Control, Cylinder, Ellipsoid, Mesh, SceneRecord, Solid, Sphere, Torus, Young
 from paths import MESHES
 
 UPRIGHT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -33,10 +33,10 @@ def solid(shape, name="body", **rest) -> Solid:
     return Solid(name=name, shape=shape, **{**given, **rest})
 
 
-def scene(*solids, ground=None, walls=None, liquid=None, **control) -> Scene:
+def scene(*solids, ground=None, walls=None, liquid=None, **control) -> SceneRecord:
     """A scene of these solids."""
     spans = {"resolution": Span("test.txt", 9, 3)}
-    return Scene(
+    return SceneRecord(
         name="test", control=Control(time=1.0, spans=spans, **control), solids=solids, ground=ground, walls=walls, liquid=liquid
     )
 

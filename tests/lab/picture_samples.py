@@ -121,7 +121,7 @@ def slab_scene(**control):
         box("cube", (0.3, 0.3, 0.3), (3, 3, 3), (-0.35, 0, 0.9), mass=2.0),
         ball("ball", 0.2, 0.08, (0.35, 0, 1.0), mass=1.0),
     ]
-    scene = records.Scene(
+    scene = records.SceneRecord(
         name="slab",
         title="A cube and a ball fall on a slab",
         ground=0.0,
@@ -170,7 +170,7 @@ def pool_scene(models=None, spacing=0.05, color=None, **control):
     """A basin half full of water and, unless others are given, a crate and a ball above it; and the grid."""
     models = models or [box("crate", (0.4, 0.4, 0.3), (4, 4, 3), (-0.35, 0.1, 0.45)), ball("ball", 0.16, 0.08, (0.45, -0.3, 0.2))]
     liquid = records.Liquid("water", (-1.0, -0.7, 0.0), (1.0, 0.7, 1.0), 1000.0, volume=1.4, color=color)
-    scene = records.Scene(
+    scene = records.SceneRecord(
         name="pool",
         title="A crate in a tank of water",
         control=records.Control(time=1.0, frames=10.0, **control),
@@ -235,3 +235,22 @@ def read_png(path):
     from PIL import Image
 
     return np.asarray(Image.open(path))
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+from picture_samples import falling, slab_scene
+from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
+scene, models = slab_scene()
+writer = TrajectoryWriter(Path(sys.argv[2]) / "trajectory.h5", scene, models, frames=1000, dt=0.01, steps_per_frame=10)
+flushed = 0
+for i, frame in enumerate(falling(models, 1000)):
+    writer.write(*frame)
+    if i % 3 == 2:
+        writer.flush()
+        flushed = i + 1
+        print(flushed, flush=True)
+"""
+"""A process that writes a trajectory and says how many frames are flushed: arguments are the folder of this file and its own."""

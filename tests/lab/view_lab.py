@@ -15,7 +15,7 @@ from mdanim_lammps import Scene
 from mdanim_lammps.results.files import PAUSE
 from mdanim_lammps.results.progress import ProgressTail
 from mdanim_lammps.run.loop import Interrupted
-from mdanim_lammps.view.server import View
+from mdanim_lammps.view.server import ViewServer
 from mdanim_lammps.view.tail import Tail
 from websockets.sync.client import ClientConnection, connect
 
@@ -57,22 +57,22 @@ class Held:
 
 
 @contextmanager
-def served(folder: Path, **options) -> Iterator[View]:
+def served(folder: Path, **options) -> Iterator[ViewServer]:
     """The view of a folder."""
     with Tail(folder) as tail:
-        view = View(tail, **options)
+        view = ViewServer(tail, **options)
         try:
             yield view
         finally:
             view.end()
 
 
-def token(view: View) -> str:
+def token(view: ViewServer) -> str:
     """The secret of an address."""
     return parse_qs(urlsplit(view.address).query)["t"][0]
 
 
-def ask(view: View, path: str = "/", *, secret: bool = True, cookie: str = "", **headers: str) -> http.client.HTTPResponse:
+def ask(view: ViewServer, path: str = "/", *, secret: bool = True, cookie: str = "", **headers: str) -> http.client.HTTPResponse:
     """The answer to a GET, read; header names with _ for -. ``Host`` is right unless given."""
     link = http.client.HTTPConnection("127.0.0.1", view.port, timeout=10)
     link.putrequest("GET", path + (f"?t={token(view)}" if secret else ""), skip_host=True)
@@ -89,7 +89,7 @@ def ask(view: View, path: str = "/", *, secret: bool = True, cookie: str = "", *
     return answer
 
 
-def page(view: View, **options) -> ClientConnection:
+def page(view: ViewServer, **options) -> ClientConnection:
     """A socket as the page opens it."""
     origin = options.pop("origin", f"http://127.0.0.1:{view.port}")
     return connect(f"ws://127.0.0.1:{view.port}/socket?t={token(view)}", origin=origin, compression=None, **options)

@@ -8,14 +8,14 @@ import pytest
 from mdanim_lammps.picture.camera import MARGIN, CameraPath, action_of, automatic_view, fit_view, hermite_weights
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera
-from mdanim_lammps.scene.scene import Control, Scene
+from mdanim_lammps.scene.scene import Control, SceneRecord
 from picture_measures import project
 from picture_samples import box, falling, slab_scene, solid, write
 
 
 def moving(tmp_path, models, frames, dt=0.1, ground=0.0):
     """A trajectory in which model i is where frames[k][i] says, as a shift from its start."""
-    scene = Scene("s", Control(1.0), solids=tuple(solid(m, (0, 0, 0)) for m in models), ground=ground)
+    scene = SceneRecord("s", Control(1.0), solids=tuple(solid(m, (0, 0, 0)) for m in models), ground=ground)
     rows = []
     for k, shifts in enumerate(frames):
         position = np.concatenate([m.position + np.array(s) for m, s in zip(models, shifts)])

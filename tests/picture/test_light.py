@@ -13,7 +13,7 @@ from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.picture.window import fewer_pixels
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera, Floor, Quality, Render
-from mdanim_lammps.scene.scene import Control, Scene
+from mdanim_lammps.scene.scene import Control, SceneRecord
 from picture_measures import hue_mask, project
 from picture_samples import ball, box, falling, flat, pool_scene, raw_of, solid, wet_frames, write
 
@@ -24,7 +24,7 @@ ABOVE = (Camera((0.0, -4.0, 3.0), (0.0, 0.0, 0.3)),)
 def trajectory(tmp_path, models, ground=0.0, colors=None):
     """Models as they stand."""
     solids = tuple(solid(m, (0, 0, 0), color) for m, color in zip(models, colors or [None] * len(models)))
-    scene = Scene("s", Control(1.0), solids=solids, ground=ground)
+    scene = SceneRecord("s", Control(1.0), solids=solids, ground=ground)
     return Trajectory(write(tmp_path / "t.h5", scene, models, falling(models, 1, floor=0.0)))
 
 
@@ -140,7 +140,7 @@ def test_final_has_smoother_edges(tmp_path):
 def test_final_pictures_are_the_same_again(tmp_path):
     """On another painter, after another frame."""
     models = [standing(), ball("ball", 0.2, 0.08, (0.5, 0, 0.2))]
-    scene = Scene("s", Control(1.0), solids=tuple(solid(m, (0, 0, 0)) for m in models), ground=0.0)
+    scene = SceneRecord("s", Control(1.0), solids=tuple(solid(m, (0, 0, 0)) for m in models), ground=0.0)
     with Trajectory(write(tmp_path / "t.h5", scene, models, falling(models, 3, floor=-1.0))) as t:
         with Painter(t, Render(quality=Quality.FINAL), size=SIZE) as painter:
             painter.frame(0)

@@ -13,7 +13,7 @@ from mdanim_lammps.picture.palette import LOW, OBJECTS, STILL, object_colors
 from mdanim_lammps.picture.render import Painter, grid_spacing
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera, Render
-from mdanim_lammps.scene.scene import Control, Scene, Walls
+from mdanim_lammps.scene.scene import Control, SceneRecord, Walls
 from picture_measures import hue_mask
 from picture_samples import ball, box, falling, slab_scene, solid, write
 
@@ -23,7 +23,7 @@ SIZE = (320, 180)
 def trajectory(tmp_path, models, ground=0.0, colors=None, walls=None, frames=1):
     """Models that fall on the ground; one frame shows them at the start."""
     solids = tuple(solid(m, (0, 0, 0), color) for m, color in zip(models, colors or [None] * len(models)))
-    scene = Scene("s", Control(1.0), solids=solids, ground=ground, walls=walls)
+    scene = SceneRecord("s", Control(1.0), solids=solids, ground=ground, walls=walls)
     return Trajectory(write(tmp_path / "t.h5", scene, models, falling(models, frames, floor=0.0)))
 
 

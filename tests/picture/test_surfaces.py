@@ -13,7 +13,7 @@ from picture_samples import ball, box, slab_scene, solid
 
 def prepared(*models, pixel=None):
     """Mesh and positions of models at rest; a pixel may cover ``pixel`` [m] of each."""
-    scene = records.Scene("s", records.Control(1.0), solids=tuple(solid(m, (0, 0, 0)) for m in models))
+    scene = records.SceneRecord("s", records.Control(1.0), solids=tuple(solid(m, (0, 0, 0)) for m in models))
     position = np.concatenate([m.position for m in models])
     return shaded_mesh(metadata_of(scene, models), position, pixel and np.full(len(models), pixel)), position
 

@@ -13,7 +13,6 @@ import h5py
 import numpy as np
 import pytest
 from mdanim_lammps.errors import OutputError
-from mdanim_lammps.model.basin import Grid
 from mdanim_lammps.model.model import Layer
 from mdanim_lammps.results import trajectory_writer
 from mdanim_lammps.results.trajectory import Trajectory
@@ -21,7 +20,7 @@ from mdanim_lammps.results.trajectory_file import datasets_of_frames, part_of, t
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
 from mdanim_lammps.scene.scene import Save, Walls
 from paths import LAB
-from picture_samples import ball, dam, falling, flat, pool_scene, raw_of, slab_scene, splash, wet_frames, write
+from picture_samples import KILLED, ball, falling, slab_scene, write
 
 FRAMES = 6
 
@@ -217,24 +216,6 @@ def test_step_vouches_for_data(slab, tmp_path, monkeypatch):
             assert len(live) == 2
 
 
-KILLED = """
-import os, signal, sys
-from pathlib import Path
-sys.path.insert(0, sys.argv[1])
-from picture_samples import falling, slab_scene
-from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
-scene, models = slab_scene()
-writer = TrajectoryWriter(Path(sys.argv[2]) / "trajectory.h5", scene, models, frames=1000, dt=0.01, steps_per_frame=10)
-flushed = 0
-for i, frame in enumerate(falling(models, 1000)):
-    writer.write(*frame)
-    if i % 3 == 2:
-        writer.flush()
-        flushed = i + 1
-        print(flushed, flush=True)
-"""
-
-
 @pytest.mark.parametrize("after", [3, 60])
 def test_killed_writer_loses_no_flushed_frame(slab, tmp_path, after):
     """Kill -9 a writer at no particular moment: all frames it had flushed are there and right."""
@@ -371,43 +352,6 @@ def test_frame_number_out_of_range(slab, tmp_path):
             t.position(FRAMES)
 
 
-def pool(spacing=0.1):
-    """A pool, its grid, and three frames of a liquid that falls, splashes and lies still."""
-    scene, models, grid = pool_scene(spacing=spacing)
-    heights = [(h, raw_of(grid, h, models)) for h in (dam(grid), splash(grid), flat(grid))]
-    return scene, models, grid, list(wet_frames(models, *heights))
-
-
-def test_heights_of_a_liquid_come_back(tmp_path):
-    """Basin, density and colour come back, and heights to float32, NaN where a column told nothing."""
-    scene, models, grid, frames = pool()
-    scene = replace(scene, liquid=replace(scene.liquid, color="#204060"))
-    with Trajectory(write(tmp_path / "t.h5", scene, models, frames, grid)) as t:
-        assert t.liquid.grid == grid and t.liquid.shape == (20, 14, 10)
-        assert (t.liquid.name, t.liquid.density, t.liquid.color) == ("water", 1000.0, "#204060")
-        for i, (_, _, _, _, (smooth, raw)) in enumerate(frames):
-            np.testing.assert_array_equal(t.liquid_height(i), smooth.astype(np.float32))
-            np.testing.assert_array_equal(t.liquid_raw(i), raw.astype(np.float32))
-        assert np.isnan(t.liquid_raw(0)).any() and not np.isnan(t.liquid_raw(0)).all()
-        # Means of float32 heights below 1 m: their rounding.
-        np.testing.assert_allclose(t.liquid_levels, [f[4][0].mean() for f in frames], rtol=0, atol=6e-8)
-
-
-def test_heights_are_h5md_observables(tmp_path):
-    """Other programs find value, step and time of both heights, and MDAnalysis hands them out with a frame."""
-    scene, models, grid, frames = pool()
-    path = write(tmp_path / "t.h5", scene, models, frames, grid)
-    with h5py.File(path) as file:
-        liquid = file["observables/liquid"]
-        np.testing.assert_array_equal(liquid.attrs["high"], grid.high)
-        for name in ("height", "raw"):
-            assert liquid[name]["value"].shape == (3, 14, 20) and liquid[name]["value"].attrs["units"] == "m"
-            assert liquid[name]["step"] == file["particles/all/position/step"]
-            np.testing.assert_array_equal(liquid[name]["time"][:], [0.0, 0.1, 0.2])
-    with Trajectory(path) as t:
-        np.testing.assert_array_equal(t.universe.trajectory[1].data["liquid/height"], t.liquid_height(1))
-
-
 def test_no_liquid_no_heights(slab, tmp_path):
     """A run without liquid has none, and says so when asked for its height."""
     scene, models, frames = slab
@@ -429,80 +373,3 @@ def test_files_of_version_1_are_read(slab, tmp_path):
         file["parameters/mdanim"].attrs["format"] = 4
     with pytest.raises(OutputError, match="format 4, newer than 3"):
         Trajectory(path)
-
-
-@pytest.mark.parametrize("heights", [None, (np.zeros((14, 20)),), (np.zeros((20, 14)), np.zeros((20, 14)))])
-def test_heights_must_fit_the_basin(tmp_path, heights):
-    """Missing heights, one of two, and x for y are refused before anything is written."""
-    scene, models, grid, frames = pool()
-    with TrajectoryWriter(tmp_path / "t.h5", scene, models, frames=1, dt=0.01, steps_per_frame=10, grid=grid) as out:
-        with pytest.raises(ValueError, match=r"shapes \[\(14, 20\), \(14, 20\)\]"):
-            out.write(*frames[0][:4], heights)
-        out.write(*frames[0])
-    with Trajectory(tmp_path / "t.h5") as t:
-        assert len(t) == 1
-
-
-WET = (
-    KILLED.replace("falling, slab_scene", "pool_scene, splash, wet_frames")
-    .replace("models = slab_scene()", "models, grid = pool_scene(spacing=0.1)")
-    .replace("steps_per_frame=10", "steps_per_frame=10, grid=grid")
-    .replace("falling(models, 1000)", "wet_frames(models, *[(splash(grid, level=0.1 + 0.01 * k),) * 2 for k in range(50)])")
-)
-
-
-def test_heights_survive_a_kill_and_a_resume(tmp_path):
-    """Kill -9 a writer with a liquid, go on from an earlier frame: kept frames keep their heights, new ones follow."""
-    code = WET + "os.kill(os.getpid(), signal.SIGKILL)\n"
-    died = subprocess.run([sys.executable, "-c", code, str(LAB), str(tmp_path)], capture_output=True)
-    assert died.returncode == -signal.SIGKILL
-    scene, models, grid, frames = pool()
-    with Trajectory(tmp_path) as t:
-        assert len(t) == 48
-    out = TrajectoryWriter.append(tmp_path / "trajectory.h5", scene, models, after_step=20, grid=grid)
-    _, _, x, v, heights = frames[0]
-    out.write(30, 0.3, x, v, heights)
-    out.close(finished=False)
-    with Trajectory(tmp_path) as t:
-        assert t.steps.tolist() == [0, 10, 20, 30] and t.liquid.grid == grid
-        for k in range(3):
-            expected = splash(grid, level=0.1 + 0.01 * k).astype(np.float32)
-            np.testing.assert_array_equal(t.liquid_height(k), expected)
-            np.testing.assert_array_equal(t.liquid_raw(k), expected)
-        np.testing.assert_array_equal(t.liquid_raw(3), heights[1].astype(np.float32))
-
-
-@pytest.mark.parametrize("other", [None, Grid((-1.0, -0.7, 0.0), (1.0, 0.7, 1.0), (10, 7, 5))])
-def test_append_refuses_another_basin(tmp_path, other):
-    """Frames of a liquid go on only in the same cells."""
-    scene, models, grid, frames = pool()
-    path = write(tmp_path / "trajectory.h5", scene, models, frames, grid)
-    with pytest.raises(OutputError, match=r"holds a liquid in 20 x 14 x 10 cells, this scene (no|a) liquid"):
-        TrajectoryWriter.append(path, scene, models, after_step=0, grid=other)
-
-
-def test_size_with_a_liquid_is_known_before(tmp_path):
-    """Heights are counted: the estimate is what the disk then says, to a tenth, and mostly heights here."""
-    scene, models, grid = pool_scene(spacing=0.02)
-    heights = splash(grid)
-    path = write(tmp_path / "t.h5", scene, models, wet_frames(models, *[(heights, heights)] * 60), grid)
-    said = trajectory_bytes(models, 60, grid=grid)
-    assert said == pytest.approx(path.stat().st_size, rel=0.1)
-    assert said > 2 * trajectory_bytes(models, 60)
-
-
-def test_compare_sees_the_liquid(tmp_path):
-    """Runs whose objects agree differ where a height does, from its first frame on, and by how much."""
-    from mdanim_lammps.results.compare import compare
-
-    scene, models, grid, frames = pool()
-    a = write(tmp_path / "a.h5", scene, models, frames, grid)
-    assert compare(a, write(tmp_path / "b.h5", scene, models, frames, grid)).equal
-    step, time, x, v, (smooth, raw) = frames[1]
-    raised = smooth.copy()
-    raised[3, 4] += 0.25
-    b = write(tmp_path / "c.h5", scene, models, [frames[0], (step, time, x, v, (raised, raw)), frames[2]], grid)
-    found = compare(a, b)
-    assert (found.frame, found.object) == (1, "water")
-    # Heights below 1 m in float32.
-    assert found.distance == pytest.approx(0.25, abs=1e-7)

@@ -162,7 +162,7 @@ def scenes(draw):
             subject = kind if kind in GLOBALS else draw(st.sampled_from([b.name for b in bodies]))
             time = draw(st.none() | st.floats(0, control.time))
             expects.append(records.Expect(subject, quantity, draw(numbers), draw(st.floats(0, 1e3)), time))
-    return records.Scene(
+    return records.SceneRecord(
         name="scene",
         control=control,
         title=draw(texts),
@@ -219,7 +219,7 @@ def test_mesh_path_is_absolute(tmp_path):
 
 def test_a_quote_cannot_be_written():
     """Refuse a text that the language cannot hold, rather than write a file that does not read back."""
-    scene = records.Scene("s", records.Control(1.0), title='say "hello"')
+    scene = records.SceneRecord("s", records.Control(1.0), title='say "hello"')
     with pytest.raises(ValueError, match="no quote"):
         lock_text(scene)
 

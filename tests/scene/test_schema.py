@@ -10,7 +10,7 @@ from mdanim_lammps.scene.limits import Limit
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.page import language_page
 from mdanim_lammps.scene.parse import parse_scene
-from mdanim_lammps.scene.scene import Control, Scene, Solid
+from mdanim_lammps.scene.scene import Control, SceneRecord, Solid
 from mdanim_lammps.scene.schema import Rule, keywords, setting
 from scene_parts import CONTROL, text
 
@@ -40,7 +40,7 @@ class Touch:
 
 
 @dataclass(frozen=True, slots=True)
-class TouchingScene(Scene):
+class TouchingScene(SceneRecord):
     """A scene that holds such blocks."""
 
     touches: tuple[Touch, ...] = ()

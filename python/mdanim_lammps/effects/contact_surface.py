@@ -18,7 +18,7 @@ from ..model.planes import AXES, scene_planes
 from ..model.sweep import on
 from ..model.system import System
 from ..scene.contact_pairs import USUAL_DAMPING, damping, frictions, pair_rules
-from ..scene.scene import Box, Scene
+from ..scene.scene import Box, SceneRecord
 from .boundaries import Boundary, GroundPlane, WallPlanes
 from .contact import Contact, barrier, barrier_rate, closing_speeds, largest_of_others
 from .effect import Effect
@@ -58,15 +58,15 @@ class OnSurfaces(Effect):
             self.friction_column(scene): np.array(self.frictions(scene))[system.object],
         }
 
-    def frictions(self, scene: Scene) -> list[float]:
+    def frictions(self, scene: SceneRecord) -> list[float]:
         """Coefficient of friction of each object [-]."""
         return frictions(scene)
 
-    def friction_column(self, scene: Scene) -> str:
+    def friction_column(self, scene: SceneRecord) -> str:
         """The column with the friction of each particle's object."""
         return "friction"
 
-    def law(self, scene: Scene, touched: str) -> list[str]:
+    def law(self, scene: SceneRecord, touched: str) -> list[str]:
         """The command of the fix, with what objects touch, behind that of the group of all that is there: what is laid aside
         leaves it."""
         words = [f"fix {self.fix} mobile mdanim/contact d_body d_young d_{self.friction_column(scene)}"]
@@ -75,18 +75,18 @@ class OnSurfaces(Effect):
             words.append(f"damping {damping(scene)!r}")
         return ["group solid type 1:8", " ".join([*words, "among solid", touched])]
 
-    def rubs(self, scene: Scene) -> bool:
+    def rubs(self, scene: SceneRecord) -> bool:
         """Whether some contact may have friction."""
         return any(self.frictions(scene))
 
-    def damping(self, scene: Scene) -> float:
+    def damping(self, scene: SceneRecord) -> float:
         """Largest share of critical damping of a contact [-]."""
         return damping(scene) if self.rubs(scene) else 0.0
 
     def losses(self, scene):
         return (*[HEAT] * self.rubs(scene), *[DAMPED] * (self.damping(scene) > 0.0))
 
-    def dashpots(self, scene: Scene, system: System, kappa: np.ndarray) -> np.ndarray | None:
+    def dashpots(self, scene: SceneRecord, system: System, kappa: np.ndarray) -> np.ndarray | None:
         """eta_i s_i / m_i [1/s], shape (N,), of the part of the damping that counts in the bound; None where none does.
 
         The dashpot of a point is eta w_q with eta = 2 beta sqrt(kappa rho h/2), of an area s_i at most for a particle;
@@ -131,7 +131,7 @@ class SurfaceContact(OnSurfaces, Contact):
         thin = system.layer == Layer.THIN
         return {**own, "thin": (thin & self.guards(scene, system)[system.object]).astype(float)} if thin.any() else own
 
-    def guards(self, scene: Scene, system: System) -> np.ndarray:
+    def guards(self, scene: SceneRecord, system: System) -> np.ndarray:
         """Solids whose surface is a barrier where nothing is inside, bool, shape (M,): those that may be met fast. The faces of
         what touches at the start coincide."""
         found = fast(scene, system)
@@ -142,7 +142,7 @@ class SurfaceContact(OnSurfaces, Contact):
                 found[i] = found[j] = False
         return found
 
-    def barrier_stiffness(self, scene: Scene, system: System) -> np.ndarray:
+    def barrier_stiffness(self, scene: SceneRecord, system: System) -> np.ndarray:
         """Of each particle [N/m], shape (N,); 0 without a barrier.
 
         The cells of what is no cuboid stand out of its drawn surface: a barrier would bear it on their corners, so that balls do
@@ -150,7 +150,7 @@ class SurfaceContact(OnSurfaces, Contact):
         """
         return np.where((~are_dense(system) | fast(scene, system))[system.object], system.contact_stiffness, 0.0)
 
-    def barrier_reach(self, scene: Scene, system: System) -> np.ndarray:
+    def barrier_reach(self, scene: SceneRecord, system: System) -> np.ndarray:
         """Reach of the barrier of each object [m], shape (M,)."""
         return np.where(fast(scene, system), FULL, SHORT) * system.spacing
 
@@ -198,7 +198,7 @@ class SurfaceContact(OnSurfaces, Contact):
         one = self.dashpots(scene, system, self.stiffness(scene, system))
         return None if one is None else 4.0 * one
 
-    def stiffness(self, scene: Scene, system: System) -> np.ndarray:
+    def stiffness(self, scene: SceneRecord, system: System) -> np.ndarray:
         """kappa of the surface of each solid with the stiffest partner [N/m^3], shape (M,)."""
         partner = largest_of_others(system.young)
         return surface_stiffness(scene, system, 2.0 * partner / (system.young + partner))
@@ -260,7 +260,7 @@ class SurfacePlanes(OnSurfaces, Boundary):
     def drag_rate(self, scene, system):
         return self.dashpots(scene, system, self.stiffness(scene, system))
 
-    def stiffness(self, scene: Scene, system: System) -> np.ndarray:
+    def stiffness(self, scene: SceneRecord, system: System) -> np.ndarray:
         """kappa of the surface of each solid against a plane, which has no points of its own [N/m^3], shape (M,)."""
         return surface_stiffness(scene, system, np.where(are_dense(system), ALONE, 1.0))
 
@@ -277,7 +277,7 @@ class SurfaceBasin(SurfacePlanes, Basin):
     pass
 
 
-def surface_stiffness(scene: Scene, system: System, share: np.ndarray | float = 1.0) -> np.ndarray:
+def surface_stiffness(scene: SceneRecord, system: System, share: np.ndarray | float = 1.0) -> np.ndarray:
     """kappa = f E/h of the surface of each solid, times a share that a partner leaves of it [N/m^3], shape (M,).
 
     Between two solids kappa = f 2 E_A E_B/(E_A + E_B)/max(h_A, h_B): the share is 2 E_B/(E_A + E_B).
@@ -317,7 +317,7 @@ def carried_area(body: ContactBody) -> np.ndarray:
     return np.bincount(np.searchsorted(body.node, np.array(flat)).ravel(), area.ravel(), len(body.node))
 
 
-def fast(scene: Scene, system: System) -> np.ndarray:
+def fast(scene: SceneRecord, system: System) -> np.ndarray:
     """Solids that may meet others at more than SLOW of the wave speed of the softest, as if through air, bool, shape (M,)."""
     g = max(0.0, -scene.gravity[2]) * on(scene, "gravity")
     bottom, floor = heights(system, [p for p in scene_planes(scene) if on(scene, p.effect)])

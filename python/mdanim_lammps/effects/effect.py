@@ -14,7 +14,7 @@ from ..errors import Problem, Span
 from ..model.planes import Plane
 from ..model.system import System
 from ..scene.formatting import number
-from ..scene.scene import ContactModel, Scene, Switch
+from ..scene.scene import ContactModel, SceneRecord, Switch
 from .envelope import Envelope
 from .margin import Margin
 
@@ -33,7 +33,7 @@ class Verdict:
 class Resolved:
     """The verdicts of a scene, worked out once."""
 
-    scene: Scene
+    scene: SceneRecord
     verdicts: dict[str, Verdict]
     """Of every effect, by its name."""
     effects: tuple[Effect, ...]
@@ -71,70 +71,70 @@ class Effect:
         self.on_surfaces = on_surfaces
         """What it is under ``contact-model surface``; None where that is the same."""
 
-    def of(self, scene: Scene) -> Effect:
+    def of(self, scene: SceneRecord) -> Effect:
         """What it is under the contact model of a scene."""
         surface = scene.control.contact_model is ContactModel.SURFACE
         return self.on_surfaces if surface and self.on_surfaces else self
 
-    def called_for(self, scene: Scene, planes: tuple[Plane, ...] | None = None) -> Verdict:
+    def called_for(self, scene: SceneRecord, planes: tuple[Plane, ...] | None = None) -> Verdict:
         """Whether the scene, by itself, calls for the effect; ``planes`` push objects back, None are those of the scene."""
         raise NotImplementedError
 
-    def columns(self, scene: Scene, system: System) -> dict[str, np.ndarray]:
+    def columns(self, scene: SceneRecord, system: System) -> dict[str, np.ndarray]:
         """Per-particle properties that its commands name as ``d_NAME``, each of shape (N,).
 
         With ``body``, the kind of each particle's body (System.contact_kind), its fix is given the contact bodies of all kinds.
         """
         return {}
 
-    def tables(self, scene: Scene, system: System) -> dict[str, np.ndarray]:
+    def tables(self, scene: SceneRecord, system: System) -> dict[str, np.ndarray]:
         """Per-particle whole numbers that its commands name as ``i2_NAME``, int32, each of shape (N, K)."""
         return {}
 
-    def commands(self, scene: Scene, system: System) -> list[str]:
+    def commands(self, scene: SceneRecord, system: System) -> list[str]:
         """LAMMPS commands; group ``mobile`` exists by then."""
         return []
 
-    def rate(self, scene: Scene, system: System) -> np.ndarray | None:
+    def rate(self, scene: SceneRecord, system: System) -> np.ndarray | None:
         """Its share in the bound on the squared frequency of each particle, 2 lambda_max(D_i)/m_i [1/s^2], shape (N,)."""
         return None
 
-    def own_rate(self, scene: Scene, system: System) -> np.ndarray | None:
+    def own_rate(self, scene: SceneRecord, system: System) -> np.ndarray | None:
         """The part of `rate` that comes of points of a particle's own surface in something else [1/s^2], shape (N,).
 
         No point is in two things at once: of these parts of all effects the largest alone counts.
         """
         return None
 
-    def drag_rate(self, scene: Scene, system: System) -> np.ndarray | None:
+    def drag_rate(self, scene: SceneRecord, system: System) -> np.ndarray | None:
         """The same as `rate` of its dashpots, 2 lambda_max(C_i)/m_i [1/s], shape (N,)."""
         return None
 
-    def max_timestep(self, scene: Scene, system: System) -> float:
+    def max_timestep(self, scene: SceneRecord, system: System) -> float:
         """Longest time step that still shows what it does [s]; stability is another matter, see `rate`."""
         return math.inf
 
-    def friction(self, scene: Scene, system: System) -> np.ndarray | None:
+    def friction(self, scene: SceneRecord, system: System) -> np.ndarray | None:
         """The most that it adds to each particle's lambda, eq. (3.9) [N*s/m], shape (N,)."""
         return None
 
-    def energy(self, instance, scene: Scene, system: System) -> float:
+    def energy(self, instance, scene: SceneRecord, system: System) -> float:
         """What stands in its column ``ledger`` now [J]; ``instance`` is the running engine.instance.Instance."""
         return self.potential(scene, system.mass, instance.array("x")) if self.has_potential else 0.0
 
-    def potential(self, scene: Scene, mass: np.ndarray, x: np.ndarray) -> float:
+    def potential(self, scene: SceneRecord, mass: np.ndarray, x: np.ndarray) -> float:
         """Its energy, where that follows from the places of particles alone [J]; mass [kg], shape (N,), x [m], shape (N, 3)."""
         raise NotImplementedError
 
-    def losses(self, scene: Scene) -> tuple[str, ...]:
+    def losses(self, scene: SceneRecord) -> tuple[str, ...]:
         """The columns of ledger.csv with the energies that it has taken so far."""
         return ()
 
-    def lost(self, instance, scene: Scene, system: System) -> dict[str, float]:
+    def lost(self, instance, scene: SceneRecord, system: System) -> dict[str, float]:
         """What stands in these columns now [J]; ``instance`` as in `energy`."""
         return {}
 
-    def planes(self, scene: Scene) -> tuple[Plane, ...]:
+    def planes(self, scene: SceneRecord) -> tuple[Plane, ...]:
         """The planes that push objects back, whether the effect is on or not."""
         return ()
 
@@ -142,15 +142,15 @@ class Effect:
         """Limits that a scene in which something can move has to keep because of the effect, each with what the scene reaches."""
         return []
 
-    def pull(self, scene: Scene) -> float:
+    def pull(self, scene: SceneRecord) -> float:
         """Acceleration downward that it gives to everything [m/s^2]."""
         return 0.0
 
-    def lift(self, scene: Scene, system: System) -> np.ndarray | float:
+    def lift(self, scene: SceneRecord, system: System) -> np.ndarray | float:
         """Part of the mass of each immersed solid that it carries [kg], shape (M,)."""
         return 0.0
 
-    def surface(self, scene: Scene) -> float | None:
+    def surface(self, scene: SceneRecord) -> float | None:
         """Height below which solids are immersed in it [m]; None where it immerses nothing."""
         return None
 
@@ -158,7 +158,7 @@ class Effect:
         """Whether it has anything to act on in a part of a scene: some of its solids, and the liquid or not."""
         return True
 
-    def warnings(self, scene: Scene, system: System) -> list[Problem]:
+    def warnings(self, scene: SceneRecord, system: System) -> list[Problem]:
         """What is doubtful about the start of a scene that the effect is on in."""
         return []
 
@@ -166,7 +166,7 @@ class Effect:
         """What ``check`` tells of a scene in which something can move besides: nothing is doubtful, but it may not be known."""
         return []
 
-    def reach(self, scene: Scene, system: System) -> np.ndarray | float:
+    def reach(self, scene: SceneRecord, system: System) -> np.ndarray | float:
         """Gap from which on a solid does not feel another by it, the larger one of both counts [m], shape (M,)."""
         return 0.0
 
@@ -187,13 +187,13 @@ class Effect:
         return 0.0
 
 
-def stiffness_told(scene: Scene) -> str:
+def stiffness_told(scene: SceneRecord) -> str:
     """What the reason of an effect that pushes back adds about ``contact-stiffness``; nothing where it is the usual one."""
     factor = scene.control.contact_stiffness
     return "" if factor == 1.0 else f", {number(factor)} times as stiff as usual"
 
 
-def decide(effects: tuple[Effect, ...], scene: Scene) -> tuple[dict[str, Verdict], list[Problem]]:
+def decide(effects: tuple[Effect, ...], scene: SceneRecord) -> tuple[dict[str, Verdict], list[Problem]]:
     """Verdict of each effect, by name, with the scene's own switches applied; and warnings about needed ones switched off."""
     effects = tuple(e.of(scene) for e in effects)
     verdicts: dict[str, Verdict] = {}
@@ -230,7 +230,7 @@ def decide(effects: tuple[Effect, ...], scene: Scene) -> tuple[dict[str, Verdict
     return verdicts, warnings
 
 
-def resolve(effects: tuple[Effect, ...], scene: Scene) -> Resolved:
+def resolve(effects: tuple[Effect, ...], scene: SceneRecord) -> Resolved:
     """Decide on every effect of a scene."""
     effects = tuple(e.of(scene) for e in effects)
     verdicts, warnings = decide(effects, scene)

@@ -15,7 +15,7 @@ from ..model.basin import Grid
 from ..model.contact_body import ContactBody
 from ..model.springs import types
 from ..model.system import System
-from ..scene.scene import Scene
+from ..scene.scene import SceneRecord
 
 HELD = 4
 """Atom types 1-4 are the layers of free particles (model.Layer), 5-8 those of held ones."""
@@ -43,7 +43,7 @@ class Plan:
     What depends on the scene as a whole is a field of its own, so that part.py can make a plan of some of the objects.
     """
 
-    scene: Scene
+    scene: SceneRecord
     system: System
     certificate: Certificate
     effects: tuple[Effect, ...]

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import Problem
 from ..scene.formatting import estimate, number, say
-from ..scene.scene import Liquid, LiquidModel, Mesh, Scene, Solid, Switch, Vector
+from ..scene.scene import Liquid, LiquidModel, Mesh, SceneRecord, Solid, Switch, Vector
 from . import shapes
 from .model import Model
 from .spacing import available_memory, choose_spacing
@@ -75,7 +75,7 @@ def plan_grid(liquid: Liquid, h: float) -> Grid:
     return Grid(liquid.low, liquid.high, tuple(shape))
 
 
-def scene_grid(scene: Scene) -> Grid | None:
+def scene_grid(scene: SceneRecord) -> Grid | None:
     """The grid of a scene's basin; None without a liquid. Raises SceneError for a mesh that is no body."""
     return None if scene.liquid is None else plan_grid(scene.liquid, choose_spacing(scene)[0])
 
@@ -93,7 +93,7 @@ def liquid_level(liquid: Liquid) -> float:
 # --- whether all fits ---------------------------------------------------------------------------------------
 
 
-def check_basin(scene: Scene, models: Sequence[Model]) -> list[Problem]:
+def check_basin(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
     """Find a basin that is too narrow or too large, a liquid of no cell, and liquid and solids that do not fit into the basin.
 
     Solids that float need room for what they displace, others for all of their volume; those that are held,
@@ -155,7 +155,7 @@ def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
     return []
 
 
-def _too_snug(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem]:
+def _too_snug(scene: SceneRecord, models: Sequence[Model], grid: Grid) -> list[Problem]:
     """Bodies beside which there is no column of liquid that shows its height."""
     problems = []
     for solid, model in zip(scene.solids, models):
@@ -178,7 +178,7 @@ def _too_snug(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem
     return problems
 
 
-def _too_full(scene: Scene, models: Sequence[Model], grid: Grid) -> list[Problem]:
+def _too_full(scene: SceneRecord, models: Sequence[Model], grid: Grid) -> list[Problem]:
     """Liquid without room at the start, and bodies without room when they sink in."""
     liquid, cell = scene.liquid, grid.cell_volume
     volume = np.array([shapes.volume(s.shape) for s in scene.solids])
@@ -231,7 +231,7 @@ HOLLOW = 0.2
 """Room that a body encloses, over its own volume, above which the body counts as a hull."""
 
 
-def open_hulls(scene: Scene, models: Sequence[Model]) -> list[Problem]:
+def open_hulls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
     """Warn of bodies that enclose air, because model surface ignores that air."""
     if scene.liquid is None or scene.liquid.model is not LiquidModel.SURFACE:
         return []
@@ -279,7 +279,7 @@ def _within(models: Sequence[Model], low: Vector, high: Vector) -> np.ndarray:
     return parts
 
 
-def _sunk(solid: Solid, volume: float, scene: Scene) -> float:
+def _sunk(solid: Solid, volume: float, scene: SceneRecord) -> float:
     """Part of a free solid that is below the surface at rest [-]: Archimedes, if the liquid exerts lift."""
     liquid = scene.liquid
     if liquid.model is LiquidModel.PAPER or scene.effects.get("buoyancy") is Switch.OFF:

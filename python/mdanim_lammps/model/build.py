@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import Problem, SceneError
 from ..scene.formatting import number, say
-from ..scene.scene import HoldAll, HoldFaces, HoldWithin, Scene, Shape, Solid, SpringConstant, Young
+from ..scene.scene import HoldAll, HoldFaces, HoldWithin, SceneRecord, Shape, Solid, SpringConstant, Young
 from . import shapes
 from .cells import TooThin, fill_cells
 from .contact_body import BodyFrame
@@ -23,7 +23,7 @@ from .spacing import plan_spacing
 from .springs import dashpots, equivalent_modulus, rest_lengths, stiffness, types
 
 
-def build_models(scene: Scene, progress: Callable[[int, int], None] | None = None) -> tuple[Model, ...]:
+def build_models(scene: SceneRecord, progress: Callable[[int, int], None] | None = None) -> tuple[Model, ...]:
     """Make the model of every solid, in the order of the scene, all with one particle spacing.
 
     ``progress(done, total)`` is called after each solid. Objects of equal shape, elasticity and mass share

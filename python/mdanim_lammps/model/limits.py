@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import Problem
 from ..scene.formatting import estimate, say
-from ..scene.scene import Box, Scene, Shape, Solid
+from ..scene.scene import Box, SceneRecord, Shape, Solid
 from . import shapes
 
 PRECISION = 1e-8
@@ -17,7 +17,7 @@ SPARSE_CELLS, SPARSE = 3e7, 20.0
 """A shape whose bounding box has more cells than this is to fill one in so many of them."""
 
 
-def check_places(scene: Scene, h: float) -> list[Problem]:
+def check_places(scene: SceneRecord, h: float) -> list[Problem]:
     """A problem for every object so far from the origin that its particles, ``h`` [m] apart, cannot be distinguished well."""
     farthest = max((abs(x) for s in scene.solids for x in s.position), default=0.0)
     if np.spacing(farthest) <= PRECISION * h:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import Problem
 from ..scene.formatting import say
-from ..scene.scene import ContactModel, Scene, Solid
+from ..scene.scene import ContactModel, SceneRecord, Solid
 from . import shapes
 from .boxes import box_pairs
 from .model import Layer, Model
@@ -23,7 +23,7 @@ BORN_AT_REST = 0.25
 so deep is where contact begins. The law takes twice as much."""
 
 
-def check_geometry(scene: Scene, models: tuple[Model, ...], planes: Iterable[Plane] | None = None) -> list[Problem]:
+def check_geometry(scene: SceneRecord, models: tuple[Model, ...], planes: Iterable[Plane] | None = None) -> list[Problem]:
     """Find every object that starts in another one, below the ground, or outside walls or basin.
 
     ``planes`` push objects back; None are those of the scene. Each problem stands at the position of the (second) object and
@@ -85,14 +85,14 @@ class _BoundingBoxes:
 _MOVES = {(0, 1): "to +x", (0, -1): "to -x", (1, 1): "to +y", (1, -1): "to -y", (2, 1): "up", (2, -1): "down"}
 
 
-def _rooms(scene: Scene) -> list[tuple[str, tuple, tuple]]:
+def _rooms(scene: SceneRecord) -> list[tuple[str, tuple, tuple]]:
     """The space with a wall on both sides along x and y: its name, lower and upper corner [m]."""
     rooms = [("the space between the walls is", scene.walls)] if scene.walls is not None else []
     rooms += [("the basin is", scene.liquid)] if scene.liquid is not None else []
     return [(what, box.low, box.high) for what, box in rooms]
 
 
-def _outside(scene: Scene, bodies: _BoundingBoxes, planes: tuple[Plane, ...]) -> list[Problem]:
+def _outside(scene: SceneRecord, bodies: _BoundingBoxes, planes: tuple[Plane, ...]) -> list[Problem]:
     problems = []
     too_wide = np.zeros((len(bodies.models), 3), bool)  # no move helps along these axes
     for what, low, high in _rooms(scene):
@@ -127,7 +127,7 @@ def _outside(scene: Scene, bodies: _BoundingBoxes, planes: tuple[Plane, ...]) ->
 # --- pairs --------------------------------------------------------------------------------------------------
 
 
-def _candidates(scene: Scene, bodies: _BoundingBoxes) -> tuple[np.ndarray, np.ndarray]:
+def _candidates(scene: SceneRecord, bodies: _BoundingBoxes) -> tuple[np.ndarray, np.ndarray]:
     """Pairs i < j whose bounding boxes overlap and whose bounding balls do."""
     centre = np.array([s.position for s in scene.solids])
     radius = np.array([np.linalg.norm(v - c, axis=1).max() for v, c in zip(bodies.vertices, centre)])
@@ -141,7 +141,7 @@ def _candidates(scene: Scene, bodies: _BoundingBoxes) -> tuple[np.ndarray, np.nd
     return i[by_scene], j[by_scene]
 
 
-def _pair(scene: Scene, bodies: _BoundingBoxes, planes: tuple[Plane, ...], i: int, j: int) -> Problem | None:
+def _pair(scene: SceneRecord, bodies: _BoundingBoxes, planes: tuple[Plane, ...], i: int, j: int) -> Problem | None:
     first, second = scene.solids[i], scene.solids[j]
     # Vertices of the true surfaces find most overlaps; two bars that cross share no vertex but the centres of
     # cells. The cells of the smaller body are enough, so the cells of a large floor are not searched for

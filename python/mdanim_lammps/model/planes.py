@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..scene.scene import Scene
+from ..scene.scene import SceneRecord
 
 AXES = "xyz"
 
@@ -29,7 +29,7 @@ class Plane:
     """Position of an object beyond the plane: ``below the ground``."""
 
 
-def scene_planes(scene: Scene) -> tuple[Plane, ...]:
+def scene_planes(scene: SceneRecord) -> tuple[Plane, ...]:
     """Every plane that a scene names, whether its effect is on or not."""
     planes = []
     if scene.ground is not None:

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import Problem, SceneError
 from ..scene.formatting import number, say, whole
-from ..scene.scene import Accuracy, Box, HoldAll, Mesh, Scene, Shape, Solid
+from ..scene.scene import Accuracy, Box, HoldAll, Mesh, SceneRecord, Shape, Solid
 from . import shapes
 from .limits import check_places, check_sparse
 from .mesh import MeshError
@@ -42,7 +42,7 @@ class Spacing:
         return sum(self.particles)
 
 
-def plan_spacing(scene: Scene) -> Spacing:
+def plan_spacing(scene: SceneRecord) -> Spacing:
     """Choose the spacing: ``resolution``, else the thinnest part of all solids over the cells that accuracy
     asks.
 
@@ -75,7 +75,7 @@ def plan_spacing(scene: Scene) -> Spacing:
     return plan
 
 
-def choose_spacing(scene: Scene) -> tuple[float, str, list[float]]:
+def choose_spacing(scene: SceneRecord) -> tuple[float, str, list[float]]:
     """The spacing [m], what asked for it, and the thinnest part of every solid [m]; whether it will do is not looked at.
 
     Raises SceneError with a problem for every solid whose mesh is no body.
@@ -107,7 +107,7 @@ def _cells_needed(solid: Solid, accuracy: Accuracy | float) -> int:
     return min(wanted, 2) if any(isinstance(h, HoldAll) for h in solid.hold) else wanted
 
 
-def _choose(scene: Scene, thin: list[float]) -> tuple[float, str]:
+def _choose(scene: SceneRecord, thin: list[float]) -> tuple[float, str]:
     control = scene.control
     if control.resolution is not None:
         return control.resolution, "resolution"
@@ -147,7 +147,7 @@ def available_memory() -> float:
     return min(free)
 
 
-def _too_large(scene: Scene, plan: Spacing) -> Problem:
+def _too_large(scene: SceneRecord, plan: Spacing) -> Problem:
     found = (
         f"about {whole(plan.total) if plan.total < 1e9 else number(plan.total)} particles at a spacing of {say(plan.h, 'm')} "
         f"need {_gigabytes(plan.memory)} GB, {_gigabytes(plan.available)} GB are free"
@@ -171,7 +171,7 @@ def _too_large(scene: Scene, plan: Spacing) -> Problem:
     )
 
 
-def _without_scale(scene: Scene, plan: Spacing) -> Solid | None:
+def _without_scale(scene: SceneRecord, plan: Spacing) -> Solid | None:
     """The object with most particles, if its mesh file is read in metres and another object sets the spacing; else None."""
     largest = scene.solids[int(np.argmax(plan.particles))]
     in_metres = isinstance(largest.shape, Mesh) and largest.shape.scale == 1.0

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..scene import scene as kinds
 from ..scene.contact_pairs import any_friction, frictions
-from ..scene.scene import Box, HoldAll, HoldFaces, LiquidModel, Scene, Shape, Solid, Switch
+from ..scene.scene import Box, HoldAll, HoldFaces, LiquidModel, SceneRecord, Shape, Solid, Switch
 from . import mesh, shapes
 from .boxes import box_pairs
 from .planes import Plane, innermost, scene_planes
@@ -46,14 +46,14 @@ class Sweeps:
     """Solids that are held entirely, bool, shape (M,): two of them never are in contact."""
 
 
-def can_meet(scene: Scene, planes: Iterable[Plane] | None = None) -> tuple[Solid, Solid] | None:
+def can_meet(scene: SceneRecord, planes: Iterable[Plane] | None = None) -> tuple[Solid, Solid] | None:
     """Two solids that may come within reach of each other, or None where no two can.
     Raises SceneError for a mesh that is no body."""
     first, second, apart = closest(scene, planes)
     return None if apart > 0.0 else (first, second)
 
 
-def closest(scene: Scene, planes: Iterable[Plane] | None = None) -> tuple[Solid, Solid, float]:
+def closest(scene: SceneRecord, planes: Iterable[Plane] | None = None) -> tuple[Solid, Solid, float]:
     """Two solids of which one can move, and what stays between their boxes at least, along one axis [m].
 
     The first two found whose boxes overlap, with 0.0; where there are none, those whose boxes come nearest. Raises SceneError for
@@ -77,7 +77,7 @@ def closest(scene: Scene, planes: Iterable[Plane] | None = None) -> tuple[Solid,
 # --- boxes --------------------------------------------------------------------------------------------------
 
 
-def sweeps(scene: Scene, planes: Iterable[Plane] | None = None) -> Sweeps:
+def sweeps(scene: SceneRecord, planes: Iterable[Plane] | None = None) -> Sweeps:
     """The region that every solid can reach; ``planes`` push solids back, None are those of the scene that are not switched off.
 
     Along an axis on which nothing but gravity and drag of air acts, the centre of mass moves on its parabola. Along one on which
@@ -122,7 +122,7 @@ def sweeps(scene: Scene, planes: Iterable[Plane] | None = None) -> Sweeps:
 class _Movers:
     """Data of every solid that the bounds need."""
 
-    def __init__(self, scene: Scene, floor: float):
+    def __init__(self, scene: SceneRecord, floor: float):
         solids = scene.solids
         self.h = choose_spacing(scene)[0]
         self.position = np.array([s.position for s in solids], float)
@@ -170,22 +170,22 @@ def bounding_radius(shape: Shape) -> float:
             return float(np.linalg.norm(np.abs(shapes.extent(shape)).max(axis=0)))
 
 
-def on(scene: Scene, effect: str) -> bool:
+def on(scene: SceneRecord, effect: str) -> bool:
     """Whether a scene leaves an effect on."""
     return scene.effects.get(effect) is not Switch.OFF
 
 
-def _gravity(scene: Scene) -> np.ndarray:
+def _gravity(scene: SceneRecord) -> np.ndarray:
     return np.array(scene.gravity, float) * on(scene, "gravity")
 
 
-def _wet_below(scene: Scene) -> float:
+def _wet_below(scene: SceneRecord) -> float:
     """Height below which liquid may be [m]: waves rise up to the rim of the basin."""
     there = scene.liquid is not None and on(scene, "liquid") and on(scene, "gravity")
     return scene.liquid.high[2] if there else -np.inf
 
 
-def _pull(scene: Scene, bodies: _Movers) -> np.ndarray:
+def _pull(scene: SceneRecord, bodies: _Movers) -> np.ndarray:
     """Largest force of gravity and liquid over the mass [m/s^2], shape (M,)."""
     g = float(np.linalg.norm(_gravity(scene)))
     if not np.isfinite(_wet_below(scene)):
@@ -198,7 +198,7 @@ def _pull(scene: Scene, bodies: _Movers) -> np.ndarray:
     return g * (1.0 + lift)
 
 
-def _speed(scene: Scene, bodies: _Movers, floor: float) -> np.ndarray:
+def _speed(scene: SceneRecord, bodies: _Movers, floor: float) -> np.ndarray:
     """Largest speed that energy allows [m/s], shape (M,): v^2 = v0^2 + (spin) + 2 * pull * way.
 
     The way is the height above the highest floor where gravity alone pulls, down; else it is v * time at most.
@@ -213,7 +213,7 @@ def _speed(scene: Scene, bodies: _Movers, floor: float) -> np.ndarray:
     return np.minimum(most, np.sqrt(start + 2.0 * bodies.pull * way))
 
 
-def _flight(scene: Scene, bodies: _Movers) -> tuple[np.ndarray, np.ndarray]:
+def _flight(scene: SceneRecord, bodies: _Movers) -> tuple[np.ndarray, np.ndarray]:
     """Lowest and highest point of every centre of mass in free flight along each axis [m], each of shape (M, 3)."""
     v, g, time = bodies.velocity, _gravity(scene), scene.control.time
     end = v * time + 0.5 * g * time**2
@@ -230,12 +230,12 @@ def _flight(scene: Scene, bodies: _Movers) -> tuple[np.ndarray, np.ndarray]:
     return bodies.position + low, bodies.position + high
 
 
-def _rough(scene: Scene) -> np.ndarray:
+def _rough(scene: SceneRecord) -> np.ndarray:
     """Solids that may have friction against a plane, bool, shape (M,)."""
     return np.array(frictions(scene)) > 0.0 if not scene.contacts else np.full(len(scene.solids), any_friction(scene))
 
 
-def _clamped(scene: Scene, bodies: _Movers) -> np.ndarray:
+def _clamped(scene: SceneRecord, bodies: _Movers) -> np.ndarray:
     """Half edges of the box that a partly held solid stays in [m], shape (M, 3).
 
     A solid that is held in one place may swing around that place like a pendulum. A cuboid held at whole faces bends by twice

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..scene.scene import Scene
+from ..scene.scene import SceneRecord
 from . import shapes
 from .basin import Grid, scene_grid
 from .contact_body import BodyFrame, ContactBody
@@ -132,7 +132,7 @@ class System(SpringTypes):
         return weighted / self.mass_of[:, None]
 
 
-def assemble(models: Sequence[Model], scene: Scene) -> System:
+def assemble(models: Sequence[Model], scene: SceneRecord) -> System:
     """Join the models of a scene, in order, into one System."""
     first = np.concatenate([[0], np.cumsum([len(m.position) for m in models])]).astype(np.int64)
 

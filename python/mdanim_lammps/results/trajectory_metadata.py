@@ -11,7 +11,7 @@ import numpy as np
 
 from ..model.basin import Grid
 from ..model.model import Layer, Model, Surface
-from ..scene.scene import Liquid, Save, Scene, Vector
+from ..scene.scene import Liquid, Save, SceneRecord, Vector
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +124,9 @@ def stored_particles(model: Model, save: Save) -> np.ndarray:
     return stored
 
 
-def metadata_of(scene: Scene, models: Sequence[Model], scene_text: str = "", grid: Grid | None = None) -> TrajectoryMetadata:
+def metadata_of(
+    scene: SceneRecord, models: Sequence[Model], scene_text: str = "", grid: Grid | None = None
+) -> TrajectoryMetadata:
     """Collect what a trajectory of these models must know; objects in the order of ``models``.
 
     Args:

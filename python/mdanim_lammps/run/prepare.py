@@ -21,14 +21,14 @@ from ..model.overlap import check_geometry
 from ..model.system import System, as_parts, assemble
 from ..scene.lock import lock_text
 from ..scene.meshes import mesh_files
-from ..scene.scene import IMMERSION, Scene
+from ..scene.scene import IMMERSION, SceneRecord
 
 
 @dataclass(frozen=True)
 class Prepared:
     """A scene that is ready to run."""
 
-    scene: Scene
+    scene: SceneRecord
     models: tuple[Model, ...]
     system: System
     resolved: Resolved
@@ -49,7 +49,7 @@ class Prepared:
         return lock_text(self.scene, mesh_files(self.scene))
 
 
-def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[int, int], None] | None = None) -> Prepared:
+def prepare(scene: SceneRecord, *, allow_unstable: bool = False, progress: Callable[[int, int], None] | None = None) -> Prepared:
     """Build, check and certify a scene.
 
     Raises SceneError with all problems of its geometry, RefusedError when it does not fit in memory or its time step is
@@ -82,7 +82,7 @@ def prepare(scene: Scene, *, allow_unstable: bool = False, progress: Callable[[i
     return Prepared(scene, models, system, resolved, (*scene.warnings, *warnings), certificate, plan, allow_unstable)
 
 
-def _unmeasurable(scene: Scene, verdicts: dict[str, Verdict]) -> list[Problem]:
+def _unmeasurable(scene: SceneRecord, verdicts: dict[str, Verdict]) -> list[Problem]:
     """A problem for every ``expect`` about a liquid that is switched off."""
     if verdicts["liquid"].on:
         return []

@@ -8,7 +8,7 @@ from math import sqrt
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from .scene import SceneRecord
 
 PLANES = ("ground", "walls", "basin")
 """Words of a contact block that are no objects."""
@@ -39,7 +39,7 @@ def pairs_of(first: Sequence[int], second: Sequence[int]) -> Iterator[tuple[int,
                 yield min(i, j), max(i, j)
 
 
-def frictions(scene: Scene, plane: str = "") -> list[float]:
+def frictions(scene: SceneRecord, plane: str = "") -> list[float]:
     """Coefficient of friction of every object [-], its own or, with the name of a plane, that against the plane."""
     found = [scene.control.friction if s.friction is None else s.friction for s in scene.solids]
     told = [c for c in scene.contacts if plane in (c.first, c.second) and c.friction is not None] if plane else []
@@ -50,7 +50,7 @@ def frictions(scene: Scene, plane: str = "") -> list[float]:
     return found
 
 
-def pair_rules(scene: Scene, names: Sequence[str]) -> list[tuple[int, int, float, float]]:
+def pair_rules(scene: SceneRecord, names: Sequence[str]) -> list[tuple[int, int, float, float]]:
     """What contact blocks say of pairs i < j, from 0, of these objects of a scene: i, j, friction, share of critical damping."""
     own = dict(zip((s.name for s in scene.solids), frictions(scene))) if any(c.friction is None for c in scene.contacts) else {}
     by_name = objects_by_name(names) if scene.contacts else {}
@@ -63,12 +63,12 @@ def pair_rules(scene: Scene, names: Sequence[str]) -> list[tuple[int, int, float
     return rules
 
 
-def damping(scene: Scene) -> float:
+def damping(scene: SceneRecord) -> float:
     """Share of critical damping of a contact with friction of which no contact block says anything else."""
     asked = scene.control.contact_damping
     return USUAL_DAMPING if asked is None else asked
 
 
-def any_friction(scene: Scene) -> bool:
+def any_friction(scene: SceneRecord) -> bool:
     """Whether anything in a scene may have friction."""
     return any(frictions(scene)) or any(c.friction for c in scene.contacts)

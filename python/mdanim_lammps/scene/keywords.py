@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-from .scene import ContactPair, Control, Liquid, Render, Scene, Solid, Switch
+from .scene import ContactPair, Control, Liquid, Render, SceneRecord, Solid, Switch
 from .schema import Keyword, Rule, Words, keywords, syntax, units_shown
 
 
@@ -21,7 +21,7 @@ class Block:
     record: type | None
     """What it becomes; None for ``effects``, which becomes a mapping."""
     field: str
-    """The field of Scene that holds it; a tuple of all where there may be many."""
+    """The field of SceneRecord that holds it; a tuple of all where there may be many."""
     about: str
     names: tuple[str, ...] = ()
     """Fields of the record that take the names after its word."""
@@ -53,7 +53,7 @@ BLOCKS = {b.name: b for b in (
 )}  # fmt: skip
 """Blocks by name."""
 
-SCENE = Scene
+SCENE = SceneRecord
 """The record of a whole scene."""
 
 _EFFECTS = {

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from .keywords import BLOCKS, KEYWORDS, Block
-from .scene import Mesh, Scene
+from .scene import Mesh, SceneRecord
 
 LOCK = "scene.lock.txt"
 
 
-def lock_text(scene: Scene, meshes: Mapping[Path, str] | None = None) -> str:
+def lock_text(scene: SceneRecord, meshes: Mapping[Path, str] | None = None) -> str:
     """The scene as a text in SI units whose floats are exact: ``parse_scene(lock_text(s), s.name) == s``.
 
     ``meshes`` are the names of mesh files in the output folder; without it their paths are absolute.

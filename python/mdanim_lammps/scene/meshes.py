@@ -4,15 +4,18 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from functools import lru_cache
 from pathlib import Path
 
-from .scene import Mesh, Scene
+from .limits import MOST_BYTES_OF_MESH
+from .scene import Mesh, SceneRecord
+from .source import ordinary
 
 FOLDER = "meshes"
 
 
-def mesh_files(scene: Scene) -> dict[Path, str]:
+def mesh_files(scene: SceneRecord) -> dict[Path, str]:
     """Every mesh file of a scene, and its name in an output folder: ``meshes/HASH.stl``. Raises OSError."""
     paths = dict.fromkeys(s.shape.path for s in scene.solids if isinstance(s.shape, Mesh))
     return {path: content_name(path) for path in paths}
@@ -31,3 +34,16 @@ def _digest(path: Path, changed: int, size: int) -> str:
         while piece := file.read(2**20):
             digest.update(piece)
     return digest.hexdigest()[:32]
+
+
+def refusal_of_mesh(path: Path, name: str) -> tuple[str, str] | None:
+    """Why the file that a scene calls by this name cannot be its mesh, and a way out; None where it can."""
+    if path.suffix.lower() not in (".stl", ".obj", ".ply"):
+        return f"a mesh is an STL, OBJ or PLY file, found '{name}'", ""
+    if not os.path.exists(path):
+        return f"the mesh file '{name}' is not there: {path}", "its name is relative to this scene file"
+    if not ordinary(path):
+        return f"the mesh file '{name}' is not an ordinary file", "copy the mesh beside the scene"
+    if path.stat().st_size > MOST_BYTES_OF_MESH:
+        return f"the mesh file '{name}' is larger than {MOST_BYTES_OF_MESH >> 20} MB", "fewer triangles"
+    return None

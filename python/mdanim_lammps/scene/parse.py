@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The way in: a scene file, or its text, to a Scene."""
+"""The way in: a scene file, or its text, to a SceneRecord."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..errors import Problem, SceneError, Span
 from .expand import Expander
 from .limits import MOST_BYTES, MOST_BYTES_OF_LOCK
 from .lock import LOCK
-from .scene import Render, Scene
+from .scene import Render, SceneRecord
 from .source import Problems, SceneFile, UnreadableFile, read_text
 from .statements import parse
 from .validate import validate, validate_render
@@ -19,7 +19,7 @@ from .validate import validate, validate_render
 Overrides = Mapping[str, str | float]
 
 
-def load_scene(path: str | os.PathLike, overrides: Overrides | None = None, strict: bool = False) -> Scene:
+def load_scene(path: str | os.PathLike, overrides: Overrides | None = None, strict: bool = False) -> SceneRecord:
     """Read a scene file.
 
     ``overrides`` are the values of ``--set name=value``: numbers, or text such as ``"12 cm"``. ``strict``
@@ -66,7 +66,7 @@ def parse_scene(
     overrides: Overrides | None = None,
     strict: bool = False,
     folder: str | os.PathLike | None = None,
-) -> Scene:
+) -> SceneRecord:
     """Read a scene from a text; ``folder`` is where its includes and meshes are (default: the current one).
 
     Raises SceneError with every problem of the text; ``name`` stands in for the file name.
@@ -74,7 +74,7 @@ def parse_scene(
     return _scene(SceneFile(name, text, folder=Path(folder) if folder is not None else None), name, overrides, strict)
 
 
-def _scene(source: SceneFile, name: str, overrides: Overrides | None, strict: bool) -> Scene:
+def _scene(source: SceneFile, name: str, overrides: Overrides | None, strict: bool) -> SceneRecord:
     problems = Problems()
     problems.begin(source)
     if not source.text.strip():

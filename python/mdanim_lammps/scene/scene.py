@@ -385,7 +385,7 @@ class Check(Codec):
 
 
 @dataclass(frozen=True, slots=True)
-class Scene:
+class SceneRecord:
     """A whole scene, validated word by word; geometry is checked when models are made."""
 
     name: str

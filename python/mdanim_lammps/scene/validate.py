@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +19,13 @@ from .contact_pairs import PLANES, objects_by_name, pairs_of
 from .expand import EvaluatedBlock, EvaluatedSetting
 from .formatting import number, say, vector, whole
 from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example
-from .limits import MOST_BYTES_OF_MESH, MOST_FRAMES, MOST_PAIRS
+from .limits import MOST_FRAMES, MOST_PAIRS
+from .meshes import refusal_of_mesh
 from .scene import GLOBALS, IMMERSION, QUANTITIES, Vector
-from .source import Problems, SceneFile, ordinary
+from .source import Problems, SceneFile
 
 
-def validate(out: EvaluatedBlock, problems: Problems, name: str, source: SceneFile) -> records.Scene | None:
+def validate(out: EvaluatedBlock, problems: Problems, name: str, source: SceneFile) -> records.SceneRecord | None:
     """The scene, or None where errors make it impossible."""
     return Validator(out, problems, Span(source.name, 1, 1)).scene(name, source.path)
 
@@ -63,7 +65,7 @@ class Validator:
     def blocks(self, kind: str) -> list[EvaluatedBlock]:
         return self.by_kind.get(kind, [])
 
-    def scene(self, name: str, path: Path | None) -> records.Scene | None:
+    def scene(self, name: str, path: Path | None) -> records.SceneRecord | None:
         """All records; None after an error."""
         self.one_of_each()
         held = {block.field: self.records(block) for block in BLOCKS.values()}
@@ -315,30 +317,17 @@ class Validator:
                 self.corners(s, "the held box")
         s, shape = block.first("shape"), solid.shape
         if isinstance(shape, records.Mesh):
-            path = self.mesh(s, shape.path)
-            return replace(solid, shape=replace(shape, path=path)) if path else None
+            path = Path(os.path.abspath(s.entry.source.folder / shape.path))
+            if refusal := refusal_of_mesh(path, str(shape.path)):
+                self.problem(s.span(0), *refusal)
+                return None
+            return replace(solid, shape=replace(shape, path=path))
         if isinstance(shape, records.Torus) and shape.minor >= shape.major:
             r, big = say(shape.minor, "m", 6), say(shape.major, "m", 6)
             cause = f"the tube of a torus is thinner than the ring: r < R, found r = {r}, R = {big}"
             self.problem(s.span(1), cause, "write torus R r, the radius of the centre line first")
             return None
         return solid
-
-    def mesh(self, s: EvaluatedSetting, name: str) -> Path | None:
-        """The absolute path of a mesh file that may be read."""
-        path = Path(os.path.abspath(s.entry.source.folder / name))
-        cause = hint = ""
-        if path.suffix.lower() not in (".stl", ".obj", ".ply"):
-            cause = f"a mesh is an STL, OBJ or PLY file, found '{name}'"
-        elif not os.path.exists(path):
-            cause, hint = f"the mesh file '{name}' is not there: {path}", "its name is relative to this scene file"
-        elif not ordinary(path):
-            cause, hint = f"the mesh file '{name}' is not an ordinary file", "copy the mesh beside the scene"
-        elif path.stat().st_size > MOST_BYTES_OF_MESH:
-            cause, hint = f"the mesh file '{name}' is larger than {MOST_BYTES_OF_MESH >> 20} MB", "fewer triangles"
-        if cause:
-            self.problem(s.span(0), cause, hint)
-        return None if cause else path
 
     def check_contact(self, block: EvaluatedBlock, contact: records.ContactPair) -> records.ContactPair | None:
         """Two things that can touch, no pair of them twice, and something to say about them."""
@@ -432,9 +421,12 @@ class Validator:
         """Whether an object has this name; an unknown one is a problem."""
         if name in self.names or self.out.excused("object"):
             return name in self.names
-        hint = did_you_mean(name, list(self.names)[:2000])
-        self.problem(span, f"no object is called {name}", hint if self.names else "the scene has no object")
+        self.unknown_object(name, self.names, span)
         return False
+
+    def unknown_object(self, name: str, known: Iterable[str], span: Span) -> None:
+        hint = did_you_mean(name, [*islice(known, 2000)])
+        self.problem(span, f"no object is called {name}", hint if self.names else "the scene has no object")
 
     def known_body(self, name: str, span: Span) -> bool:
         """Whether a name of a contact block stands for something; an unknown one is a problem."""
@@ -449,8 +441,7 @@ class Validator:
             way_out = example(KEYWORDS["liquid"]["basin"]) + " in a liquid" if name == "basin" else example(KEYWORDS[""][name])
             self.problem(span, f"the scene has no {name}", way_out)
         else:
-            hint = did_you_mean(name, list(self.named)[:2000])
-            self.problem(span, f"no object is called {name}", hint if self.names else "the scene has no object")
+            self.unknown_object(name, self.named, span)
         return False
 
     def expects(self, control: records.Control | None) -> tuple[records.Expect, ...]:

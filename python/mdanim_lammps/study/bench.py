@@ -11,7 +11,7 @@ from ..errors import DivergedError, RefusedError, SceneError
 from ..run.loop import Interrupted
 from ..run.prepare import Prepared
 from ..scene.formatting import say
-from ..scene.scene import Scene
+from ..scene.scene import SceneRecord
 from .measure import Sample, TooLong, measure
 from .setting import Setting
 from .store import Point, Store
@@ -29,7 +29,9 @@ PRESSED = 1.3
 class Bench:
     """Measures settings of one scene, cheapest first, until a budget is spent."""
 
-    def __init__(self, scene: Scene, ready: Prepared, own: Setting, store: Store, budget: float, watch: Callable[[str], None]):
+    def __init__(
+        self, scene: SceneRecord, ready: Prepared, own: Setting, store: Store, budget: float, watch: Callable[[str], None]
+    ):
         self.scene, self.ready, self.own, self.store, self.watch = scene, ready, own, store, watch
         self.budget, self.start = budget, time.perf_counter()
 

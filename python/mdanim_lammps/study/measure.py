@@ -17,7 +17,7 @@ from ..results.trajectory import Trajectory
 from ..run.loop import Progress, simulate
 from ..run.prepare import prepare
 from ..scene.formatting import say
-from ..scene.scene import Scene
+from ..scene.scene import SceneRecord
 from .setting import Setting, frames_only, with_setting
 
 TRIED = 0.5
@@ -58,7 +58,7 @@ class TooLong(Exception):
 
 
 def measure(
-    scene: Scene,
+    scene: SceneRecord,
     setting: Setting,
     folder: Path,
     *,

@@ -15,7 +15,7 @@ from ..scene.limits import CONTACT_STIFFNESS
 from ..scene.lock import lock_text
 from ..scene.meshes import mesh_files
 from ..scene.render import Render
-from ..scene.scene import Accuracy, Save, Scene
+from ..scene.scene import Accuracy, Save, SceneRecord
 
 LADDERS = ("time step", "resolution", "sweeps", "contact")
 LARGEST = 0.9
@@ -70,7 +70,7 @@ class Ladder:
                 return 1.0 / setting.sweeps
 
 
-def thinnest(scene: Scene) -> float:
+def thinnest(scene: SceneRecord) -> float:
     """Length that counts as the thinnest part [m]: spacing = thinnest / cells, for ``balanced`` 4. Raises SceneError.
 
     The same for all settings of a scene.
@@ -79,7 +79,7 @@ def thinnest(scene: Scene) -> float:
     return choose_spacing(replace(scene, control=control))[0] * Accuracy.BALANCED.cells
 
 
-def own_setting(scene: Scene, ready: Prepared) -> Setting:
+def own_setting(scene: SceneRecord, ready: Prepared) -> Setting:
     """The scene's own setting."""
     c = ready.certificate
     sweeps = scene.liquid.sweeps if scene.liquid else None
@@ -87,7 +87,7 @@ def own_setting(scene: Scene, ready: Prepared) -> Setting:
     return Setting(cells, c.fraction if math.isfinite(c.bound) else 0.0, sweeps, scene.control.contact_stiffness)
 
 
-def with_setting(scene: Scene, setting: Setting, *, repeat: int = 0) -> Scene:
+def with_setting(scene: SceneRecord, setting: Setting, *, repeat: int = 0) -> SceneRecord:
     """The scene with a setting; a repeat of a scene with liquid has another seed for its automaton.
 
     Raises SceneError where an object is thinner than the spacing.
@@ -108,12 +108,12 @@ def with_setting(scene: Scene, setting: Setting, *, repeat: int = 0) -> Scene:
     return scene
 
 
-def frames_only(scene: Scene) -> Scene:
+def frames_only(scene: SceneRecord) -> SceneRecord:
     """The scene with as little in its trajectory as there can be; centres of mass stay in double precision."""
     return replace(scene, control=replace(scene.control, save=Save.BOUNDARY, single=True))
 
 
-def ladders(scene: Scene, ready: Prepared, own: Setting) -> tuple[list[Ladder], dict[str, str]]:
+def ladders(scene: SceneRecord, ready: Prepared, own: Setting) -> tuple[list[Ladder], dict[str, str]]:
     """The ladders around a setting, and for each that is left out why."""
     out, left = [], {}
     if own.fraction:
@@ -144,7 +144,7 @@ def ladders(scene: Scene, ready: Prepared, own: Setting) -> tuple[list[Ladder], 
     return out, left
 
 
-def scene_hash(scene: Scene) -> str:
+def scene_hash(scene: SceneRecord) -> str:
     """A word that is the same for scenes that move alike when run with the same setting.
 
     Accuracy, time step, resolution, sweeps, contact stiffness, what is saved and how pictures look are left out; the program's

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..errors import DivergedError, RefusedError, UsageError
 from ..run.prepare import prepare
-from ..scene.scene import Scene
+from ..scene.scene import SceneRecord
 from .analysis import Analysis, advice, analyse
 from .bench import BUDGET, Bench
 from .report import write_report
@@ -23,7 +23,7 @@ from .target import find_choice, store_choice, stored_choice, wanted, with_choic
 class Study:
     """The results of a study."""
 
-    scene: Scene
+    scene: SceneRecord
     folder: Path
     points: dict[str, Point]
     ladders: tuple[Ladder, ...]
@@ -38,7 +38,7 @@ class Study:
 
 
 def run_study(
-    scene: Scene,
+    scene: SceneRecord,
     folder: Path,
     *,
     budget: float = BUDGET,

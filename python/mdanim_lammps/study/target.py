@@ -13,7 +13,7 @@ from ..errors import DivergedError, OutputError, Problem
 from ..results.files import read_json, write_json
 from ..run.prepare import prepare
 from ..scene.formatting import number, say
-from ..scene.scene import Accuracy, Scene
+from ..scene.scene import Accuracy, SceneRecord
 from .analysis import Analysis, analyse
 from .bench import BUDGET, Bench
 from .error import ROUND_OFF, distance, extent
@@ -67,18 +67,18 @@ class Choice:
         return f"{self.cells:g} cells across{step} ({got})"
 
 
-def wanted(scene: Scene) -> bool:
+def wanted(scene: SceneRecord) -> bool:
     """Whether a scene names a target and leaves a setting to choose."""
     control = scene.control
     return not isinstance(control.accuracy, Accuracy) and None in (control.resolution, control.timestep)
 
 
-def choice_file(scene: Scene) -> Path | None:
+def choice_file(scene: SceneRecord) -> Path | None:
     """``SCENE.accuracy.json`` beside the scene; None for a scene without a file."""
     return scene.path and scene.path.with_name(f"{scene.name}.accuracy.json")
 
 
-def stored_choice(scene: Scene) -> Choice | None:
+def stored_choice(scene: SceneRecord) -> Choice | None:
     """The choice beside the scene, when it is for this scene and this target. Raises OutputError for a broken file."""
     path = choice_file(scene)
     if path is None or not path.exists():
@@ -91,13 +91,13 @@ def stored_choice(scene: Scene) -> Choice | None:
     return choice if data["scene"] == _digest(scene) and choice.error == scene.control.accuracy else None
 
 
-def store_choice(scene: Scene, choice: Choice) -> None:
+def store_choice(scene: SceneRecord, choice: Choice) -> None:
     """Write the choice beside the scene. Raises OutputError."""
     if (path := choice_file(scene)) is not None:
         write_json(path, {"scene": _digest(scene), "choice": asdict(choice), "met": choice.met})
 
 
-def with_choice(scene: Scene, choice: Choice) -> Scene:
+def with_choice(scene: SceneRecord, choice: Choice) -> SceneRecord:
     """The scene with the setting of a choice; what the scene itself says about resolution and time step stays."""
     c = scene.control
     return replace(
@@ -110,14 +110,14 @@ def with_choice(scene: Scene, choice: Choice) -> Scene:
     )
 
 
-def _digest(scene: Scene) -> str:
+def _digest(scene: SceneRecord) -> str:
     """The scene's hash without its accuracy line; a resolution or time step that it fixes and its contact stiffness count."""
     c = scene.control
     return f"{scene_hash(scene)} {c.resolution!r} {c.timestep!r} {c.contact_stiffness!r}"
 
 
 def find_choice(
-    scene: Scene, *, budget: float = BUDGET, store: Store | None = None, watch: Callable[[str], None] = lambda line: None
+    scene: SceneRecord, *, budget: float = BUDGET, store: Store | None = None, watch: Callable[[str], None] = lambda line: None
 ) -> Choice:
     """Measure until a setting meets the target of ``accuracy error p %``, or the budget is spent.
 
@@ -143,7 +143,7 @@ def find_choice(
 class Settled:
     """A scene whose target, if it has one, has become a setting."""
 
-    scene: Scene
+    scene: SceneRecord
     line: str = ""
     """Where the setting comes from; empty for a scene without a target."""
     warning: Problem | None = None
@@ -151,7 +151,7 @@ class Settled:
 
 
 def settle(
-    scene: Scene,
+    scene: SceneRecord,
     *,
     make: bool,
     budget: float = BUDGET,
@@ -201,7 +201,7 @@ def settle(
 class _Search:
     """Goes down one ladder, of resolutions or, where the scene fixes those, of time steps, until the target is met."""
 
-    def __init__(self, scene: Scene, store: Store, budget: float, watch: Callable[[str], None]):
+    def __init__(self, scene: SceneRecord, store: Store, budget: float, watch: Callable[[str], None]):
         self.scene, self.store, self.target = scene, store, scene.control.accuracy
         self.ready = prepare(scene)
         self.own = own_setting(scene, self.ready)

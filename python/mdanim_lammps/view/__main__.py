@@ -25,12 +25,12 @@ def serve(
     """
     from ..errors import UsageError
     from .edit import Editor
-    from .server import View
+    from .server import ViewServer
     from .tail import Tail
 
     with Tail(folder) as tail:
         try:
-            view = View(tail, port=port, linger=linger, editor=Editor(folder, scene) if edit else None)
+            view = ViewServer(tail, port=port, linger=linger, editor=Editor(folder, scene) if edit else None)
         except OSError as error:
             raise UsageError(f"--port {port}: {error.strerror}; leave it out, and a free one is taken") from error
         try:

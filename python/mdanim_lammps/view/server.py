@@ -43,7 +43,7 @@ POLICY = (
 )
 
 
-class View:
+class ViewServer:
     """Serves one output folder, from now on until it is told to end or is no longer needed.
 
     Args:
