@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""One-way flow: a module imports only from rooms above its own."""
+"""One-way flow: a module imports only from rooms above its own; files are short, and a class has a name of its own."""
 
 import ast
 import re
+from collections import Counter
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -62,11 +63,12 @@ def imported_rooms(path: Path) -> set[str]:
     return found - {"__version__"}
 
 
-@pytest.mark.parametrize("path", sorted(ROOT.rglob("*.py")), ids=lambda p: str(p.relative_to(ROOT)))
+FRONT_DOOR = ROOT / "__init__.py"  # names every room, lazily
+
+
+@pytest.mark.parametrize("path", sorted({*ROOT.rglob("*.py")} - {FRONT_DOOR}), ids=lambda p: str(p.relative_to(ROOT)))
 def test_imports_point_up_the_list(path):
     """Each module may use only its own room and the rooms listed before it."""
-    if path == ROOT / "__init__.py":
-        pytest.skip("the package's front door names every room, lazily")
     own = room(path)
     assert own in ROOMS, f"{own} is not in the list of rooms (docs/architecture.md)"
     assert imported_rooms(path) <= set(ROOMS[: ROOMS.index(own) + 1])
@@ -138,3 +140,29 @@ def test_no_exception_leaves_a_c_function(path):
     assert functions
     for head, body in functions:
         assert "noexcept" in head or re.match(r"return (mdanim::)?guarded\(", body), head
+
+
+OWN = [p for folder in (ROOT, PLUGIN, *(PLUGIN.parent / n for n in ("tests", "bench", "docs"))) for p in folder.rglob("*")]
+SOURCES = sorted(p for p in OWN if p.suffix in {".py", ".h", ".cpp", ".js", ".mjs"} and p.name != "vendor.js")
+
+
+def test_no_file_is_too_long_to_be_read():
+    """A newcomer reads each file top to bottom: none has more than 500 lines."""
+    assert {"validate.py", "fix_mdanim_liquid.cpp", "main.js", "test_parse.py"} <= {p.name for p in SOURCES}
+    lines = {str(p): len(p.read_text(encoding="utf-8").splitlines()) for p in SOURCES}
+    assert not {p: n for p, n in lines.items() if n > 500}
+
+
+@pytest.mark.parametrize(
+    ("folder", "pattern", "known"),
+    [
+        pytest.param(ROOT, r"^class (\w+)", {"Scene", "SceneRecord"}, id="Python"),
+        pytest.param(PLUGIN, r"^ *(?:class|struct) (\w+)\b(?!::)[^;()]*\{", {"Automaton", "Stateful"}, id="C++"),
+    ],
+)
+def test_no_two_classes_have_one_name(folder, pattern, known):
+    """A name of a class means one thing in the whole package, and one in the whole plugin."""
+    sources = (p for p in SOURCES if folder in p.parents)
+    names = Counter(name for p in sources for name in re.findall(pattern, p.read_text(encoding="utf-8"), re.MULTILINE))
+    assert known <= names.keys()
+    assert not [name for name, times in names.items() if times > 1]
