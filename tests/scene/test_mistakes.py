@@ -203,6 +203,8 @@ MISTAKES = [
      ""),
     ("contact with the wrong dash", text().replace("time 3 s", "time 3 s\n contact_stiffness 4"), 8, 2, "contact_stiffness",
      "did you mean 'contact-stiffness'?"),
+    ("a let called as a unit", text("let r = 10 cm\nlet t = 2 cm\n", shape="cylinder r t"), 4, 20,
+     "nothing follows the unit t: a name right after a value is its unit", "for the value of let t write (t)"),
     ("giant picture", text() + "render { size (99999, 1) }", 8, 15, "is too large", "16384"),
 ]  # fmt: skip
 

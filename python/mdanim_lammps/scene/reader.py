@@ -156,7 +156,7 @@ class Reader:
         if t.type == "NAME":
             self.take()
             site = next(self.sites) if t == "rand" else 0
-            if self._next().type != "LPAR":
+            if self._next().type != "LPAR" or self._next_value_in_brackets(t):
                 return build.name(t)
             _, parts, right = self._in_brackets()
             return build.call(t, parts, right, site)
@@ -168,6 +168,11 @@ class Reader:
         x = parts[0]
         x.first, x.last, x.terms = left, right, ()  # brackets make one term of a sum
         return x
+
+    def _next_value_in_brackets(self, name: Token) -> bool:
+        """Whether the bracket after a name and a blank is the next value, as in ``cylinder r (t)``."""
+        apart = self.peek.start > name.start + len(name)
+        return apart and self.more and not self.brackets and name not in build.RESERVED
 
     def _in_brackets(self) -> tuple[Token, list[Node], Token]:
         left = self.take()

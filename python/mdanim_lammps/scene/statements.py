@@ -20,6 +20,7 @@ from .schema import Keyword
 from .source import Fault, Problems, SceneFile, UnreadableFile, read_text
 from .tokens import Token
 from .tree import Group, Let, Name, Repeat, SettingNode, UnreadableStatement, Value
+from .units import UNITS
 
 
 class Unclosed(Exception):
@@ -385,7 +386,11 @@ class Parser(Reader):
         hint = example(keyword)
         if rest.startswith("#") and "color" in keyword.form:
             hint = "'#' starts a comment: put the colour in quotes, \"#rrggbb\""
-        raise Fault(word, f"nothing follows {word}", hint)
+        cause = f"nothing follows {word}"
+        if word in UNITS and word in self.shared.names:
+            cause = f"nothing follows the unit {word}: a name right after a value is its unit"
+            hint = f"for the value of let {word} write ({word})"
+        raise Fault(word, cause, hint)
 
     def match(self, parts: tuple, keyword: Keyword, words: list, values: list) -> None:
         """Read the parts of one alternative."""
