@@ -154,6 +154,15 @@ def test_the_energy_guard_is_generous(prepared, tmp_path, accuracy):
             guard.energy(10, residual, v)
 
 
+def test_a_stop_suspects_the_step_where_only_the_energies_are_off(prepared, tmp_path):
+    """Where every margin is kept a hit is suspected only while cells are inside out."""
+    guard = Guard(prepared(hit(speed=-0.1)), tmp_path)
+    for crumpled, suspicion in ((False, "the step is probably too long"), (True, "probably hit or squeezed")):
+        guard.crumpled = crumpled
+        with pytest.raises(DivergedError, match=suspicion):
+            guard.energy(10, 1.0, guard.ready.system.velocity)
+
+
 REST = """
 object a {{ shape sphere 10 cm position (0, 0, {z}) m density 1000 kg/m^3 elasticity 1 MPa }}
 control {{ time {time} s frames 1 fps {control} }}

@@ -22,6 +22,9 @@ RESIDUAL_FACTOR, LEAST_RESIDUAL = 50.0, 0.05
 RINGS = 10.0
 """Times that a wave crosses an object until cells that are inside out count as stuck: in a hard impact some at the surface are so
 for a moment, and come back."""
+SQUEEZED = "it is probably hit or squeezed harder than its lattice stands"
+TOO_LONG = "the step is probably too long for what happens here: no cell is inside out"
+"""What a stop is laid to where every margin is kept."""
 FLOWN_APART = (
     "lost its bond partner",
     "springs were given",
@@ -129,6 +132,7 @@ class Guard:
                 "amplitude",
                 "load",
                 "closing speed",
+                suspicion=SQUEEZED if self.crumpled else TOO_LONG,
             )
 
     def explain_failure(self, step: int, error: DivergedError, solid: int | None) -> DivergedError:
@@ -139,9 +143,9 @@ class Guard:
             return self.error_at(step, words, suspect, "time step", "amplitude", "load", "closing speed")
         return DivergedError(f"{self._when(step)}: {words}\n  {self._kept()}")
 
-    def error_at(self, step: int, what: str, m: int, *margins: str) -> DivergedError:
+    def error_at(self, step: int, what: str, m: int, *margins: str, suspicion: str = SQUEEZED) -> DivergedError:
         """The error that stops the run at a step for what solid ``m`` does;
-        the first of these margins that is passed says why."""
+        the first of these margins that is passed says why, and where none is the suspicion."""
         c = self.ready.certificate
         passed = {found.name: found for found in reversed(c.margins) if found.severity != "ok"}
         why = next((passed[name] for name in margins if name in passed), None)
@@ -149,8 +153,7 @@ class Guard:
             (why.text, why.hint)
             if why
             else (
-                f"every limit of the certificate is kept (time step {c.fraction:.2f} of the bound), so it is probably hit or "
-                "squeezed harder than its lattice stands",
+                f"every limit of the certificate is kept (time step {c.fraction:.2f} of the bound), so {suspicion}",
                 "try a lower speed, a stiffer object, a coarser resolution (edges, corners and tips of fine lattices "
                 "fold first) or a smaller timestep",
             )
