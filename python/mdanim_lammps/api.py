@@ -17,7 +17,6 @@ from .certificate import Certificate
 from .effects import Verdict
 from .errors import OutputError
 from .parallel.limits import check_executors
-from .parallel.runtime.launch import simulate_on
 from .picture.marks import Marks
 from .results.checkpoint import Checkpoint
 from .results.files import MARK, open_folder, read_json, write_json
@@ -233,4 +232,6 @@ def run_frames(
     check_executors(executors, ready.system.particles)
     if executors == 1 and control is None:
         return simulate(ready, folder, resume=resume, **options)
+    from .parallel.runtime.launch import simulate_on
+
     return simulate_on(executors, control or "central", ready, folder, resume=resume, **options)

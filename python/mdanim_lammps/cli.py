@@ -54,7 +54,7 @@ from .command_steps import (
     with_quality,
 )
 from .errors import ExitCode, RefusedError, UsageError
-from .terminal import PROGRAM, documented_exit, open_streams, progress_bar, stop_on_sigterm
+from .terminal import PROGRAM, documented_exit, few_collections, open_streams, progress_bar, stop_on_sigterm
 
 app = App(
     name=PROGRAM,
@@ -483,7 +483,7 @@ def main(argv: list[str] | None = None) -> None:
     arguments = list(sys.argv[1:] if argv is None else argv)
     debug = "--debug" in arguments
     arguments = [a for a in arguments if a != "--debug"]
-    with documented_exit(debug=debug):
+    with few_collections(), documented_exit(debug=debug):
         if (message := _suggest(arguments)) is not None:
             raise UsageError(message)
         if not arguments:

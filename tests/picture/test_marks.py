@@ -3,12 +3,17 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from mdanim_lammps.api import Scene, draw_picture
 from mdanim_lammps.cli import main
 from mdanim_lammps.errors import UsageError
 from mdanim_lammps.picture.marks import MOST_NAMES, Marks
+from mdanim_lammps.results.trajectory import Trajectory
+from mdanim_lammps.run.loop import write_start
 from picture_samples import read_png
 
 SIZE = (320, 180)
@@ -49,6 +54,45 @@ def test_start_and_a_later_moment(two):
     assert len(red) > 300 and blue.max() < red.min()
     assert 1.2 * side < fallen.max() - blue.max() < 1.9 * side
     assert {p.name for p in two.parent.iterdir()} == {"two.txt", "two.png"}
+
+
+LOADED = """
+import sys
+from mdanim_lammps.cli import main
+try:
+    main(["picture", sys.argv[1], "-q"])
+finally:
+    print("loaded", *sorted({"scipy", "lammps", "mpi4py", "rich"} & set(sys.modules)))
+"""
+
+
+def test_a_picture_of_boxes_loads_nothing_that_it_does_not_need(two):
+    """Each of these takes 0.1 to 0.3 s to import; a picture is to take a second or two."""
+    ran = subprocess.run([sys.executable, "-c", LOADED, str(two)], stdout=subprocess.PIPE, text=True, check=True)
+    assert ran.stdout.split() == ["loaded"]
+    assert two.with_suffix(".png").exists()
+
+
+MOVING = """object stone { shape sphere 10 cm  position (0, 0, 1) m  density 1000  elasticity 1 MPa
+  velocity (1, 2, 3) m/s  spin (0, 0, 3) rad/s }
+object wall { shape box (10, 60, 60) cm  position (1, 0, 1) m  density 1000  elasticity 1 MPa  hold faces y }
+control { time 0.02 s  frames 100 fps  save all }
+"""
+
+
+def test_the_start_that_is_drawn_is_the_run_s(tmp_path):
+    """Without a liquid it is written without LAMMPS: the same bits as frame 0 of a run."""
+    path = tmp_path / "moving.txt"
+    path.write_text(MOVING)
+    scene = Scene.load(path)
+    scene.run(tmp_path / "ran")
+    (tmp_path / "start").mkdir()
+    write_start(scene.prepared, tmp_path / "start")
+    with Trajectory(tmp_path / "ran") as ran, Trajectory(tmp_path / "start") as start:
+        assert len(start) == 1
+        assert start.times[0] == ran.times[0] == 0.0
+        np.testing.assert_array_equal(start.position(0), ran.position(0))
+        np.testing.assert_array_equal(start.velocity(0), ran.velocity(0))
 
 
 def test_marks_are_drawn(two):

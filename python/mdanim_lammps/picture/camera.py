@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from ..errors import OutputError, UsageError
 from ..results.trajectory import Trajectory
@@ -164,8 +165,6 @@ def worth_seeing(low, high, free, fixed: np.ndarray, forward: np.ndarray, aspect
         forward: direction of view, unit length, not vertical.
         aspect: width over height.
     """
-    from scipy.ndimage import maximum_filter1d
-
     right, up, tangent = _screen(forward, aspect)
     side = _sides(_corners(low, high), right, up, forward, tangent).reshape(8, *low.shape[:2], 4).max(axis=0)
     fixed_side = _sides(fixed, right, up, forward, tangent).max(axis=0, initial=-np.inf)
@@ -186,7 +185,8 @@ def worth_seeing(low, high, free, fixed: np.ndarray, forward: np.ndarray, aspect
         if max(scores) <= best + 1e-9:
             break
         best, kept = max(scores), smaller[int(np.argmax(scores))]
-    return maximum_filter1d(kept, 2 * round(MOMENT * len(kept)) + 1, axis=0)
+    moment = round(MOMENT * len(kept))
+    return sliding_window_view(np.pad(kept, [(moment, moment), (0, 0)]), 2 * moment + 1, axis=0).any(axis=-1)
 
 
 def fit_view(points: np.ndarray, forward: np.ndarray, aspect: float) -> View:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from ..scene.render import Quality, Render
 from .pieces import Field
@@ -153,8 +154,6 @@ def nearest_around(depth: np.ndarray, block: int) -> np.ndarray:
     Returns:
         shape (n / block, m / block).
     """
-    from scipy.ndimage import minimum_filter
-
     n, m = depth.shape
     least = depth.reshape(n // block, block, m).min(axis=1).reshape(n // block, m // block, block).min(axis=2)
-    return minimum_filter(least, 3, mode="nearest")
+    return sliding_window_view(np.pad(least, 1, mode="edge"), (3, 3)).min(axis=(2, 3))

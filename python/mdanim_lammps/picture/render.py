@@ -114,7 +114,6 @@ class Painter:
     # --- the stage -----------------------------------------------------------------------------------------
 
     def _build(self, render: Render, marks: Marks) -> None:
-        import vtkmodules.vtkInteractionStyle
         import vtkmodules.vtkRenderingFreeType
         import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
         from vtkmodules.vtkRenderingCore import vtkRenderer
@@ -134,7 +133,7 @@ class Painter:
         self._tank = Tank(self.trajectory, render.liquid, dark, sky) if metadata.liquid else None
         floor = None if render.floor is Floor.NONE else self._floor_height()
         (x, y, _), reach = self.action.centre, FLOOR * self.action.size
-        self._surface = MovingMesh(self._mesh.carry.shape[0], self._mesh.triangle)
+        self._surface = MovingMesh(len(self._mesh.carry), self._mesh.triangle)
         self._surface.paint(vertex_colors(metadata)[self._mesh.of_skin])
         self._actors = [lit_actor(self._surface.data, shading.FRAGMENT_SOLID, liquid=bool(self._tank), sky=sky)]
         self._actors[0].SetVisibility(not marks.springs)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..results.trajectory_metadata import TrajectoryMetadata
+from ..results.weights import Weights
 from .pieces import cells
 
 CREASE = 45.0
@@ -24,20 +25,22 @@ WORTH = 1.8
 class ShadedMesh:
     """V vertices, doubled along creases so that each has one normal; T triangles."""
 
-    carry: object
-    """Weights of stored particles in vertices, ``scipy.sparse.csr_array``, shape (V, N)."""
+    carry: Weights
+    """Weights of stored particles in vertices, shape (V, N)."""
     triangle: np.ndarray
     """Vertex indices, counter-clockwise seen from outside, int32, shape (T, 3)."""
-    gather: object
-    """Ones where a triangle touches a vertex, ``scipy.sparse.csr_array``, shape (V, T)."""
+    gather: Weights
+    """Ones where a triangle touches a vertex, shape (V, T)."""
     object_of_vertex: np.ndarray
     """int32, shape (V,)."""
     of_skin: np.ndarray
     """Vertex of the skin that each one was, int64, shape (V,)."""
     coarse: np.ndarray
     """Vertices of objects whose triangles were made fewer, shape (C,)."""
-    tangent: tuple
-    """Weights of stored particles in two tangents at each of these, from the fine surface; each shape (C, N)."""
+    fine: Weights
+    """Weights of stored particles in vertices of the skin, shape (S, N)."""
+    tangent: tuple[Weights, ...]
+    """Weights of these in two tangents at each of the coarse ones, shape (C, S) each."""
 
     def vertices(self, position: np.ndarray) -> np.ndarray:
         """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3)."""
@@ -51,8 +54,8 @@ class ShadedMesh:
         """
         normal = self.gather @ _area_vectors(vertices, self.triangle)
         if len(self.coarse):
-            along, across = (t @ np.asarray(position, dtype=np.float64) for t in self.tangent)
-            normal[self.coarse] = np.cross(along, across)
+            fine = self.fine @ np.asarray(position, dtype=np.float64)
+            normal[self.coarse] = np.cross(*(t @ fine for t in self.tangent))
         length = np.linalg.norm(normal, axis=1, keepdims=True)
         return np.divide(normal, length, out=np.zeros_like(normal), where=length > 0.0)
 
@@ -66,8 +69,6 @@ def shaded_mesh(metadata: TrajectoryMetadata, rest: np.ndarray, pixel: np.ndarra
         pixel: what a pixel covers of each object where it is seen nearest [m], shape (M,): round objects get no more triangles
             than show. None keeps all.
     """
-    from scipy.sparse import csr_array
-
     skin, triangle = metadata.skin, metadata.skin.triangle
     vertices = skin.vertices(rest)
     corner = _split_at_creases(vertices, triangle)
@@ -81,22 +82,19 @@ def shaded_mesh(metadata: TrajectoryMetadata, rest: np.ndarray, pixel: np.ndarra
     old = np.zeros(count, dtype=np.int64)
     old[corner.ravel()] = triangle.ravel()
     triangles = np.repeat(np.arange(len(corner)), 3)
-    gather = csr_array((np.ones(corner.size), (corner.ravel(), triangles)), shape=(count, len(corner)))
+    gather = Weights.of(corner.ravel(), triangles, np.ones(corner.size))
     coarse = np.flatnonzero(np.isin(skin.object_of_vertex[old], fewer))
     tangent = _tangents(vertices, skin.triangle, old[coarse])
-    carried = tuple(t @ skin.carry for t in tangent)
-    return ShadedMesh(skin.carry[old], corner, gather, skin.object_of_vertex[old], old, coarse, carried)
+    return ShadedMesh(skin.carry[old], corner, gather, skin.object_of_vertex[old], old, coarse, skin.carry, tangent)
 
 
-def _tangents(vertices: np.ndarray, triangle: np.ndarray, at: np.ndarray) -> tuple:
-    """Weights of vertices in two tangents at each of some of them, ``scipy.sparse.csr_array`` of shape (C, V) each.
+def _tangents(vertices: np.ndarray, triangle: np.ndarray, at: np.ndarray) -> tuple[Weights, ...]:
+    """Weights of vertices in two tangents at each of some of them, shape (C, V) each.
 
     With d the edges from a vertex, n its normal and u, w a basis across it, the tangents are sum d (d.u - a d.n) and
     sum d (d.w - b d.n), with a and b such that both are across n: as edges follow a deformation, so does their cross product
     follow the normal.
     """
-    from scipy.sparse import csr_array
-
     edge = np.concatenate([triangle[:, [0, 1]], triangle[:, [1, 2]], triangle[:, [2, 0]]])
     edge = np.unique(np.concatenate([edge, edge[:, ::-1]]), axis=0)
     row = np.full(len(vertices), -1, dtype=np.int64)
@@ -115,12 +113,7 @@ def _tangents(vertices: np.ndarray, triangle: np.ndarray, at: np.ndarray) -> tup
     for basis in (u, np.cross(normal, u)):
         weight = np.einsum("ed,ed->e", d, basis[own])
         weight -= (np.bincount(own, weight * rise, len(at)) / rises)[own] * rise
-        made.append(
-            csr_array(
-                (np.concatenate([weight, -weight]), (np.tile(own, 2), np.concatenate([head, tail]))),
-                shape=(len(at), len(vertices)),
-            )
-        )
+        made.append(Weights.of(np.tile(own, 2), np.concatenate([head, tail]), np.concatenate([weight, -weight])))
     return tuple(made)
 
 

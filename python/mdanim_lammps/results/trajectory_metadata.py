@@ -12,6 +12,7 @@ import numpy as np
 from ..model.basin import Grid
 from ..model.model import Layer, Model, Surface
 from ..scene.scene import Liquid, Save, SceneRecord, Vector
+from .weights import Weights
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,8 +95,8 @@ class TrajectoryMetadata:
 class Skin:
     """The surfaces of all objects as one mesh of V vertices and T triangles."""
 
-    carry: object
-    """Weights of particles in vertices, ``scipy.sparse.csr_array``, shape (V, N)."""
+    carry: Weights
+    """Weights of particles in vertices, shape (V, N)."""
     triangle: np.ndarray
     """Vertex indices, counter-clockwise seen from outside, int32, shape (T, 3)."""
     object_of_triangle: np.ndarray
@@ -187,27 +188,20 @@ def distinct_surfaces(models: Sequence[Model], stored: Sequence[np.ndarray]) -> 
 
 def merge_surfaces(metadata: TrajectoryMetadata) -> Skin:
     """Put the surfaces of all objects into one mesh; done once, so that a frame is one matrix product."""
-    from scipy.sparse import csr_array
-
     used = [metadata.surfaces[kind] for kind in metadata.surface_of]
     vertices = np.array([len(surface.index) for surface in used], dtype=np.int64)
     triangles = np.array([len(surface.triangle) for surface in used], dtype=np.int64)
+    weight = _joined([surface.weight.ravel() for surface in used], np.float64)
+    particle = _joined([surface.index.ravel() + first for surface, first in zip(used, metadata.first)], np.int64)
     corners = np.repeat([surface.index.shape[1] for surface in used], vertices)
     first_vertex = np.cumsum(vertices) - vertices
-    shape = (int(vertices.sum()), int(metadata.first[-1]))
-    carry = csr_array(
-        (
-            _joined([surface.weight.ravel() for surface in used], np.float64),
-            _joined([surface.index.ravel() + first for surface, first in zip(used, metadata.first)], np.int64),
-            np.concatenate([[0], np.cumsum(corners)]),
-        ),
-        shape=shape,
-    )
-    carry.eliminate_zeros()
+    vertex = np.repeat(np.arange(len(corners)), corners)
+    kept = weight != 0.0
+    kept[np.cumsum(corners) - corners] = True  # a vertex hangs on one particle at least
     objects = np.arange(len(used), dtype=np.int32)
     triangle = [surface.triangle + first for surface, first in zip(used, first_vertex)]
     return Skin(
-        carry=carry,
+        carry=Weights.of(vertex[kept], particle[kept], weight[kept]),
         triangle=np.concatenate([np.zeros((0, 3), np.int32), *triangle]).astype(np.int32),
         object_of_triangle=np.repeat(objects, triangles),
         object_of_vertex=np.repeat(objects, vertices),

@@ -124,9 +124,14 @@ def simulate(
 
 def write_start(ready: Prepared, folder: Path) -> Path:
     """Write a trajectory of the first frame alone, before any step; returns its file. Raises OutputError."""
-    with Sequential(ready.plan) as source, trajectory_writer(ready, folder, frames=1) as out:
-        now = source.begin(None)
-        out.write(now.step, 0.0, now.x, now.v, now.pool and now.pool.heights)
+    with trajectory_writer(ready, folder, frames=1) as out:
+        if ready.plan.grid is None:
+            # As the system says; LAMMPS, which takes a quarter of a second to start, is asked for a liquid alone.
+            out.write(0, 0.0, ready.system.position, ready.system.velocity, None)
+        else:
+            with Sequential(ready.plan) as source:
+                now = source.begin(None)
+                out.write(now.step, 0.0, now.x, now.v, now.pool.heights)
         out.flush()
         return out.close()
 
