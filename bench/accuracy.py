@@ -98,7 +98,7 @@ def study(name: str, budget: float, plots: Path | None) -> None:
     from mdanim_lammps.study.study import run_study
 
     with tempfile.TemporaryDirectory() as folder:
-        found = run_study(load(name, STUDIES[name]), Path(folder) / "study", budget=budget, watch=told)
+        found = run_study(load(name, STUDIES[name]), Path(folder) / "study", budget=budget, on_progress=told)
         if plots:
             shutil.copy(found.folder / "study.png", plots / f"study-{name}.png")
     a = found.analysis
@@ -196,7 +196,7 @@ def target(percent: float = 2.0, budget: float = 600.0):
     scene = cantilever(percent / 100.0)
     with tempfile.TemporaryDirectory() as folder:
         store = Store(Path(folder), scene_hash(scene))
-        choice = find_choice(scene, budget=budget, store=store, watch=told)
+        choice = find_choice(scene, budget=budget, store=store, on_progress=told)
         found = set(store.points)
         full_ladder(scene, store, choice)
         points = list(store.points.values())

@@ -128,13 +128,13 @@ def main(executors: int = 2, control: str = "central") -> None:
         f"moves and {sum(timeline['retries'][FIRST:]) / len(timeline['retries'][FIRST:]):.2f} new beginnings in a frame"
     )
     print(f"{'':>26} {'median':>8} {'least':>8}  [ms]")
-    for who, rows in (("executor", took[1:]), ("supervisor", took[:1])):
+    for process, rows in (("executor", took[1:]), ("supervisor", took[:1])):
         for name in dict.fromkeys(name for frames in rows for f in frames for name in f):
             per_frame = np.array([[1e3 * f.get(name, 0.0) for f in frames[: min(map(len, rows))]] for frames in rows]).max(axis=0)
-            print(f"{who:>10} {name:>15} {np.median(per_frame):8.2f} {per_frame.min():8.2f}")
-        if who == "executor":
+            print(f"{process:>10} {name:>15} {np.median(per_frame):8.2f} {per_frame.min():8.2f}")
+        if process == "executor":
             own = np.array([[1e3 * (f["all"] - f["LAMMPS"] + f["send frame"]) for f in frames if "all" in f] for frames in rows])
-            print(f"{who:>10} {'beside LAMMPS':>15} {np.median(own.max(axis=0)):8.2f} {own.max(axis=0).min():8.2f}")
+            print(f"{process:>10} {'beside LAMMPS':>15} {np.median(own.max(axis=0)):8.2f} {own.max(axis=0).min():8.2f}")
 
 
 if __name__ == "__main__":

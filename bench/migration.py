@@ -70,7 +70,9 @@ class Mover:
         pack = time.perf_counter() - start
         self.comm.Send(packed, 1)
         wire = time.perf_counter() - start - pack
-        while not self.comm.iprobe(1):  # asleep: who waits in MPI takes a core, and half of the next where two share one
+        while not self.comm.iprobe(
+            1
+        ):  # asleep: a process that waits in MPI takes a core, and half of the next where two share one
             time.sleep(2e-5)
         self.comm.Recv(np.empty(1), 1)
         return {"pack": pack, "wire": wire, "end to end": time.perf_counter() - start}

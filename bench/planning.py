@@ -53,9 +53,9 @@ def times() -> None:
         still = rng.random(count) < 0.05
         particles = rng.integers(100, 1000, count)
         known = dict(particles=particles, still=still, gap=0.1)
-        nobody = np.full(count, -1)
+        unowned = np.full(count, -1)
         where = low, high, d
-        first = planning.plan(*where, 2 * particles, nobody, EXECUTORS, **known)
+        first = planning.plan(*where, 2 * particles, unowned, EXECUTORS, **known)
         reserved = *islands.boxes(low, high, d), 0.1
         met = islands.pairs(*reserved)
         order = planning.z_order(low, high)
@@ -63,10 +63,10 @@ def times() -> None:
         print(
             f"{count:7} {len(met):7} {first.label.max() + 1:7} | {least(lambda: islands.pairs(*reserved)):7.2f} "
             f"{least(lambda: islands.components(count, met, still)):8.2f} "
-            f"{least(lambda: assign(first.label, 2 * particles, nobody, EXECUTORS, particles=particles, order=order)):7.2f} "
+            f"{least(lambda: assign(first.label, 2 * particles, unowned, EXECUTORS, particles=particles, order=order)):7.2f} "
             f"{least(lambda: planning.bundles(first.label, first.owner, particles, first.teams, order=order)):8.2f} "
             f"{least(lambda: planning.z_order(low, high)):6.2f} | "
-            f"{least(lambda: planning.plan(*where, 2 * particles, nobody, EXECUTORS, **known)):10.2f} "
+            f"{least(lambda: planning.plan(*where, 2 * particles, unowned, EXECUTORS, **known)):10.2f} "
             f"{least(lambda: planning.plan(*where, 2 * particles, first.owner, EXECUTORS, previous=first, **known)):7.2f} "
             f"{least(lambda: planning.plan(*where, uneven, first.owner, EXECUTORS, previous=first, **known)):9.2f}"
         )

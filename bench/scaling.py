@@ -3,7 +3,7 @@
 
 run: scenes/crowd.txt and a hail of 64 blocks by 1000 particles, in one process and on executors under both controls, in
 interleaved rounds; prints a table of medians, writes scaling.json and docs/images/scaling.png (plot draws it again). goals: 64
-blocks that meet nobody, and one object of 64 000 particles that two executors run as a team. model: what scaling.json says about
+blocks that meet nothing, and one object of 64 000 particles that two executors run as a team. model: what scaling.json says about
 more ranks than are here.
 
 Options: ``--executors 1,2,4``, ``--rounds 3``, ``--frames 14`` (of the hail; four times as many of the crowd), ``--json FILE``,
@@ -326,7 +326,7 @@ def fit(data: dict) -> dict:
 
 
 LATENCY, BANDWIDTH = 2e-4, 1e9
-"""Of a message [s]: mostly the nap of who waits for it (messages.NAP); of a network of ten gigabit [bytes/s]."""
+"""Of a message [s]: mostly the nap of the process that waits for it (messages.NAP); of a network of ten gigabit [bytes/s]."""
 MOVES = 0.004
 """Part of the objects that move in a frame: crowds of a thousand, `python bench/planning.py crowd`."""
 

@@ -61,7 +61,7 @@ CASES = {
 }
 STEPS, WARM = 100, 5
 """Of a block: two rebuilds of lists at 3 m/s; and those before its clock starts."""
-CLOSE = 0.0025
+HALF_WIDTH = 0.0025
 """Half the interval that is close enough."""
 LEAST, DRAWS = 40, 1000
 """Pairs at least; draws of the bootstrap."""
@@ -112,7 +112,7 @@ def measure(case: dict, seconds: float) -> tuple[float, float, float, float, int
                 bare.append(taken[False])
             if len(ratios) >= LEAST:
                 middle, low, high = interval(ratios, random)
-                if max(high - middle, middle - low) < CLOSE or time.monotonic() - start > seconds:
+                if max(high - middle, middle - low) < HALF_WIDTH or time.monotonic() - start > seconds:
                     return middle, low, high, float(np.median(bare)) / STEPS / scene.plan.system.particles, len(ratios)
 
 

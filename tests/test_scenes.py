@@ -23,7 +23,7 @@ def test_scene_meets_its_expectations(name, tmp_path):
 
 @pytest.mark.parametrize("name", sorted({p.stem for p in SCENES.glob("*.txt")} - FRAGMENTS))
 def test_scene_is_within_all_limits(name):
-    """Show nobody a scene that begins with a warning."""
+    """No scene that is shown begins with a warning."""
     assert not Scene.load(SCENES / f"{name}.txt").prepared.warnings
 
 

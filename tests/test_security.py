@@ -98,7 +98,7 @@ def replace(path, make) -> None:
 
 
 def test_unchanged_folders_are_accepted(whole, stopped, capsys):
-    """Draw, compare and resume what nobody has changed."""
+    """Draw, compare and resume what was not changed."""
     assert run("render", whole, "--size", 64, 48, "-q") == 0
     assert run("timeline", whole) == 0
     assert run("compare", whole, whole) == 0
@@ -329,7 +329,7 @@ def test_a_cut_off_trajectory_is_not_drawn(whole, capsys, share):
 
 
 def test_times_do_not_make_a_movie_endless(whole, capsys):
-    """Refuse a rate at which a movie would have more pictures than anybody can draw."""
+    """Refuse a rate at which a movie would have more pictures than can be drawn."""
     crafted(whole, edited("particles/all/position/time", setitem(-1, 1e30)))
     assert run("render", whole, "--fps", 30, "-q") == 2
     assert "too many" in capsys.readouterr().err

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Other programs on our scenes: ``python bench/peers/all.py [--write] [--quick] [--limit SECONDS] [--rounds N] [SCENE ...]``.
 
-Scenes: the keys of CASES. Every contender runs alone in a process of its own, on one thread, for a limit of processor seconds or
-until the scene is over; ours by the Python that runs this, others by .venv-peers. Who is through soon runs again, in turns. Who
-cannot run, or takes too long to begin, has a row that says why.
+Scenes: the keys of CASES. Every program runs alone in a process of its own, on one thread, for a limit of processor seconds or
+until the scene is over; ours by the Python that runs this, others by .venv-peers. A program that ends soon runs again, in turns.
+One that cannot run, or takes too long to begin, has a row that says why.
 """
 
 import argparse

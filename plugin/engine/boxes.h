@@ -153,13 +153,13 @@ class Grid {
   std::vector<int> begin, sorted;
 };
 
-// All pairs (a < b) of boxes that meet. Up to FEW boxes every pair is tried. Beyond that, boxes of usual size
+// All pairs (a < b) of boxes that meet. Up to ALL_PAIRS boxes every pair is tried. Beyond that, boxes of usual size
 // are sorted into a grid by their lower corner, cells as wide as the largest of them and the gap, so that a
 // partner lies in one of the 27 cells around; boxes much larger than the median (a floor, a pool) are tried
 // against all.
 inline std::vector<std::pair<int, int>> meeting_pairs(const std::vector<Box> &boxes, double gap)
 {
-  constexpr int FEW = 200;
+  constexpr int ALL_PAIRS = 200;
   constexpr double LARGE = 4.0;
   std::vector<std::pair<int, int>> pairs;
   const auto check = [&](int a, int b) {
@@ -170,7 +170,7 @@ inline std::vector<std::pair<int, int>> meeting_pairs(const std::vector<Box> &bo
   for (int a = 0; a < static_cast<int>(boxes.size()); ++a)
     if (!boxes[a].empty()) present.push_back(a);
 
-  if (present.size() <= FEW) {
+  if (present.size() <= ALL_PAIRS) {
     for (size_t a = 0; a < present.size(); ++a)
       for (size_t b = a + 1; b < present.size(); ++b) check(present[a], present[b]);
     return pairs;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Who is near whom: what the vector code (pair_filter_kernel.h) is given. Plain data alone, for the reason told in
-// kernels_of_set.cpp.
+// Which particles are near each other: what the vector code (pair_filter_kernel.h) is given. Plain data alone, for the reason
+// told in kernels_of_set.cpp.
 
 #ifndef MDANIM_PAIR_FILTER_H
 #define MDANIM_PAIR_FILTER_H

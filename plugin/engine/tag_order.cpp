@@ -35,11 +35,11 @@ void TagOrder::take(const Bonded &known)
     for (const int one : piece.tag) {
       const bool mine = own != ordered.end() && tag[*own] == one;
       index.push_back(mine ? *own++ : known.find(one));
-      if (index.back() < 0) tell_who_lost(known, one);
+      if (index.back() < 0) refuse_lost_partner(known, one);
     }
 }
 
-void TagOrder::tell_who_lost(const Bonded &known, int partner)
+void TagOrder::refuse_lost_partner(const Bonded &known, int partner)
 {
   for (int i = 0; i < known.own; ++i)
     if (std::find(known.partner[i], known.partner[i] + known.bonds[i], partner) != known.partner[i] + known.bonds[i])
@@ -92,12 +92,12 @@ TagOrder::Piece TagOrder::made(const Bonded &known, const Run &run) const
     }
   };
   each_bond([&](int, int, int partner, int) { lowest = std::min(lowest, partner), highest = std::max(highest, partner); });
-  constexpr int NOBODY = -1;
-  std::vector<int> of_tag(highest - lowest + 1, NOBODY);    // by tag: an index in LAMMPS's arrays, then a place in the piece
+  constexpr int ABSENT = -1;
+  std::vector<int> of_tag(highest - lowest + 1, ABSENT);    // by tag: an index in LAMMPS's arrays, then a place in the piece
   for (int n = run.begin; n < run.end; ++n) of_tag[known.tag[ordered[n]] - lowest] = ordered[n];
   each_bond([&](int, int i, int partner, int) {
     int &found = of_tag[partner - lowest];
-    if (found == NOBODY) found = known.find(partner);
+    if (found == ABSENT) found = known.find(partner);
     if (found < 0) known.lost(i, partner);
   });
 
@@ -105,7 +105,7 @@ TagOrder::Piece TagOrder::made(const Bonded &known, const Run &run) const
   std::vector<bool> own;
   for (std::size_t t = 0; t < of_tag.size(); ++t) {
     const int i = of_tag[t];
-    if (i == NOBODY) continue;
+    if (i == ABSENT) continue;
     of_tag[t] = static_cast<int>(piece.tag.size());
     piece.tag.push_back(lowest + static_cast<int>(t));
     piece.object.push_back(known.object[i]);

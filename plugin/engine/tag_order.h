@@ -55,7 +55,7 @@ class TagOrder {
   };
   bool take_by_objects(const Bonded &known, const std::vector<Run> &runs);
   Piece made(const Bonded &known, const Run &run) const;
-  static void tell_who_lost(const Bonded &known, int partner);
+  static void refuse_lost_partner(const Bonded &known, int partner);
 
   std::vector<int> ordered;    // own particles in tag order, by index in LAMMPS's arrays
   std::vector<Piece> all;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Who wants to know of whom, and telling it.
+// Which rank needs which particles of another, and sending them.
 
 #include "styles/ghosts.h"
 

@@ -92,9 +92,9 @@ void VerletMdanim::spare_bond_list()
 {
   if (!dynamic_cast<PassSprings *>(force->bond) || force->pair || force->angle || force->dihedral || force->improper) return;
   const auto leaves_it = [](const char *style) {
-    static constexpr const char *OTHERS[] = {"property/atom", "balance", "temp", "pressure", "pe", "ke"};
+    static constexpr const char *KNOWN[] = {"property/atom", "balance", "temp", "pressure", "pe", "ke"};
     return strncmp(style, "mdanim/", 7) == 0 ||
-           std::any_of(std::begin(OTHERS), std::end(OTHERS), [style](const char *other) { return strcmp(style, other) == 0; });
+           std::any_of(std::begin(KNOWN), std::end(KNOWN), [style](const char *other) { return strcmp(style, other) == 0; });
   };
   const auto &fixes = modify->get_fix_list();
   const auto &computes = modify->get_compute_list();

@@ -111,7 +111,7 @@ class Scene:
         RefusedError, DivergedError, OutputError.
         """
         study = output_folder(self.record, folder) / STUDY
-        return run_study(self.record, study, budget=budget, only=ladders, force=force, watch=on_progress)
+        return run_study(self.record, study, budget=budget, only=ladders, force=force, on_progress=on_progress)
 
 
 def draw_picture(

@@ -95,7 +95,7 @@ def run(
     """
     from .api import open_run, output_folder
     from .cost.speedup_forecast import forecast_speedup
-    from .report import prospect_lines
+    from .report import speedup_lines
 
     check_executors(executors)
     record = with_accuracy(load(scene, set_), accuracy)
@@ -104,7 +104,7 @@ def run(
     ready = prepare(record, allow_unstable=allow_unstable)
     announce(ready, quiet, verbose, executors, control)
     if executors > 1 and not quiet:
-        print("\n".join(prospect_lines(forecast_speedup(ready, executors))), flush=True)
+        print("\n".join(speedup_lines(forecast_speedup(ready, executors))), flush=True)
     with Viewer(view, scene if edit else None) as viewer, open_run(ready, out, force=force) as folder:
         viewer.start(folder)
         simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control)
@@ -450,7 +450,12 @@ def study(
     record = with_accuracy(load(scene, set_), accuracy)
     only = [name.strip() for name in ladders.split(",") if name.strip()]
     done = run_study(
-        record, output_folder(record, out) / STUDY, budget=seconds, only=only, force=force, watch=print_lines("study", quiet)
+        record,
+        output_folder(record, out) / STUDY,
+        budget=seconds,
+        only=only,
+        force=force,
+        on_progress=print_lines("study", quiet),
     )
     if quiet:
         return

@@ -62,7 +62,7 @@ def settle(scene, *, make: bool, quiet: bool = False, out: Path | None = None):
     from .study.target import settle as settle_scene
 
     study = (out or default_folder(scene)) / STUDY
-    settled = settle_scene(scene, make=make, study=study, watch=print_lines("accuracy", quiet))
+    settled = settle_scene(scene, make=make, study=study, on_progress=print_lines("accuracy", quiet))
     if settled.warning:
         print(settled.warning, file=sys.stderr)
     if settled.line and not quiet:

@@ -145,7 +145,7 @@ def executors_line(executors: int, control: str | None) -> str:
     return f"spread   over {count(executors, 'executor')} and a supervisor; {decision}"
 
 
-def prospect_lines(p: SpeedupForecast) -> list[str]:
+def speedup_lines(p: SpeedupForecast) -> list[str]:
     """Below `executors_line`: the most that executors can bring at first, and why it is not more."""
     when = "in the first second" if p.seconds == 1.0 else f"in the first {number(p.seconds, 2)} s"
     faster = "no faster than one" if p.faster < 1.05 else f"at most {number(p.faster, 2)} times as fast as one"
@@ -189,7 +189,7 @@ def _about(seconds: float) -> str:
     return f"{float(f'{seconds / size:.{digits}g}'):g} {unit}"
 
 
-def check_lines(ready: Prepared, forecast: Cost | None, prospect: SpeedupForecast | None = None) -> list[str]:
+def check_lines(ready: Prepared, forecast: Cost | None, speedup: SpeedupForecast | None = None) -> list[str]:
     """What ``check`` prints: scene, certificate, limits, output, cost, what executors gain, and every effect."""
     return [
         *scene_lines(ready),
@@ -199,13 +199,13 @@ def check_lines(ready: Prepared, forecast: Cost | None, prospect: SpeedupForecas
         *note_lines(ready.certificate),
         output_line(ready),
         forecast_line(forecast),
-        *([] if prospect is None else [executors_line(prospect.executors, None), *prospect_lines(prospect)]),
+        *([] if speedup is None else [executors_line(speedup.executors, None), *speedup_lines(speedup)]),
         "effects",
         *map(effect_line, ready.verdicts.values()),
     ]
 
 
-def check_json(ready: Prepared, forecast: Cost | None = None, prospect: SpeedupForecast | None = None) -> dict:
+def check_json(ready: Prepared, forecast: Cost | None = None, speedup: SpeedupForecast | None = None) -> dict:
     """What ``check --format json`` prints; with the expected cost (cost/forecast.py),
     and what executors gain (cost/speedup_forecast.py)."""
     return {
@@ -221,6 +221,6 @@ def check_json(ready: Prepared, forecast: Cost | None = None, prospect: SpeedupF
         },
         "certificate": ready.certificate.to_json(),
         "cost": None if forecast is None else forecast.to_json(),
-        "spread": None if prospect is None else asdict(prospect),
+        "spread": None if speedup is None else asdict(speedup),
         "warnings": [{"message": w.message, "hint": w.hint, "place": str(w.span) if w.span else None} for w in ready.warnings],
     }

@@ -65,7 +65,7 @@ def pond(tmp_path_factory):
 
 
 def test_parts_add_up_to_the_wall_time(pond):
-    """Leave less than a twentieth of the wall time, from the first word of the scene to the last frame, to nobody."""
+    """Leave less than a twentieth of the wall time, from the first word of the scene to the last frame, without an account."""
     cost = pond[1].cost
     assert 0.95 <= cost.covered <= 1.0 + 1e-9
     assert all(seconds >= 0.0 for seconds in cost.parts.values())

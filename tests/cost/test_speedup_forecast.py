@@ -12,7 +12,7 @@ from mdanim_lammps.cost.speedup_forecast import SpeedupForecast, _Moments, forec
 from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions
 from mdanim_lammps.parallel.plan.planner import Planner
-from mdanim_lammps.report import prospect_lines
+from mdanim_lammps.report import speedup_lines
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 from mdanim_lammps.scene.scene import ContactModel
@@ -36,9 +36,9 @@ def test_the_first_moment_is_the_first_order(prepared, text):
     planner = Planner(parts, 2, ready.certificate.lengths, PlannerOptions())
     planner.cost = moments.cost
     objects = len(ready.system.names)
-    who = np.arange(objects) % 2
-    who[ready.system.still] = -1
-    order = planner.decide(list(report(parts, who, speed=ready.system.top_speed(ready.system.velocity))))
+    owner = np.arange(objects) % 2
+    owner[ready.system.still] = -1
+    order = planner.decide(list(report(parts, owner, speed=ready.system.top_speed(ready.system.velocity))))
     found = moments.at(*Flight(ready).boxes())
     assert np.array_equal(found.label, order.plan.label) and np.array_equal(found.load, order.plan.load)
     assert found.teams == order.plan.teams
@@ -111,7 +111,7 @@ def test_what_is_heavy_runs_on_a_team(prepared):
 )
 def test_lines_say_what_to_expect(found, lines):
     """Say how much faster at most, and why not more."""
-    assert [line.strip() for line in prospect_lines(found)] == lines
+    assert [line.strip() for line in speedup_lines(found)] == lines
 
 
 def test_a_run_and_a_check_tell_it(tmp_path):

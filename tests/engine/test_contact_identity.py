@@ -88,7 +88,7 @@ def test_a_heap_goes_on_in_an_instance_of_its_own_and_back(prepared):
         same(evolve(whole, 300), after)
 
 
-def test_a_heap_that_is_laid_aside_is_in_nobodys_way(prepared):
+def test_a_heap_that_is_laid_aside_touches_nothing(prepared):
     """Of two heaps one is laid aside while its objects touch; the other goes on as before, also through where the first began."""
     fast = "velocity (1.6, 0, 0) m/s"  # it has gone farther than two skins, and so is put where it began
     text = PAIRS.replace("(70, 0, 5.1) cm velocity (0.1, 0.4, 0) m/s", f"(38, 0, 5.1) cm {fast}")

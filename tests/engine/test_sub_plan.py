@@ -325,7 +325,7 @@ def test_solids_that_are_laid_aside(prepared):
     np.testing.assert_allclose(list(whole.values()), list(part.values()), rtol=1e-12, atol=1e-12 * whole["kinetic"])
 
 
-def test_who_is_laid_aside_is_in_nobodys_way(prepared):
+def test_what_is_laid_aside_touches_nothing(prepared):
     """Of two that are about to hit each other one is laid aside, and stands where it began: the other one flies on through it."""
     plan = prepared("""
 object left { shape box (10, 10, 10) cm  position (0, 0, 0) cm  mass 1 kg  elasticity 100 kPa  velocity (2, 0, 0) m/s }

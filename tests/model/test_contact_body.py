@@ -12,7 +12,7 @@ from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.model import build_models, contact_body, shapes
 from mdanim_lammps.model.cells import fill_cells
 from mdanim_lammps.model.contact_body import DENSE, FLAT, SHARP, BodyFrame, make_contact_body
-from mdanim_lammps.model.distance import CLOSE, distance
+from mdanim_lammps.model.distance import TRIANGLE_REACH, distance
 from mdanim_lammps.model.lattice import CORNERS, Cells, make_lattice
 from mdanim_lammps.model.spread import spread
 from mdanim_lammps.model.system import assemble
@@ -265,7 +265,7 @@ def test_distance_to_a_mesh_is_that_of_vtk(shape):
     places = np.random.default_rng(1).uniform(low - 0.2 * (high - low), high + 0.2 * (high - low), (1500, 3))
     spacing = shapes.thickness(shape) / 16
     found, expected = distance(shape, places, spacing), shapes.depth(shape, places)
-    close = abs(expected) < 0.9 * CLOSE * spacing
+    close = abs(expected) < 0.9 * TRIANGLE_REACH * spacing
     assert 100 < close.sum() < 1400
     np.testing.assert_allclose(found[close], expected[close], atol=1e-3 * spacing)
     np.testing.assert_allclose(found, expected, rtol=0.06, atol=1e-3 * spacing)

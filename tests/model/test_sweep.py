@@ -74,7 +74,7 @@ def pair(top="", a="", b=""):
         pytest.param(pair("effects { springs off }", a="spin (0, 0, 60)"), True, id="loose particles fly off by 3 m"),
     ],
 )
-def test_who_can_meet(scene, meet):
+def test_what_can_meet(scene, meet):
     """Tell pairs that may come within reach from those that cannot."""
     found = can_meet(scene)
     assert (found is not None) == meet

@@ -76,7 +76,7 @@ def test_bars_are_filled_in_proportion():
 
 
 def test_every_object_has_its_row():
-    """Up to `SINGLE` objects have a row each, in the colour of their executor; what never moves is nobody's."""
+    """Up to `SINGLE` objects have a row each, in the colour of their executor; what never moves has none."""
     colors = executor_colors(2)
     picture = ownership(log(frames=4).owner(), colors)
     assert picture.shape == (3, 5, 3)

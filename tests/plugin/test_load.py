@@ -47,7 +47,7 @@ def test_loading_twice_is_harmless(tmp_path):
 
 
 def test_the_shared_object_needs_neither_liblammps_nor_libmpi():
-    """Both are loaded by whoever loads the plugin; a second copy of either would be fatal."""
+    """Both are loaded by the program that loads the plugin; a second copy of either would be fatal."""
     if shutil.which("readelf") is None:
         pytest.skip("no readelf (binutils)")
     needed = subprocess.run(["readelf", "-d", str(FILE)], capture_output=True, text=True, check=True).stdout

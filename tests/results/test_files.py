@@ -74,7 +74,7 @@ def test_a_file_has_the_rights_that_the_user_gives(tmp_path):
 
 
 def test_what_a_killed_writer_leaves_can_be_removed(tmp_path):
-    """SubPlans of files go, files stay."""
+    """Parts of files go, files stay."""
     with pytest.raises(SystemExit):
         write_whole(tmp_path / "checkpoint", lambda part: (_ for _ in ()).throw(SystemExit))
     part = files._new_part(tmp_path / "checkpoint")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The log of a distributed run: who owned what, read as it was written."""
+"""The log of a distributed run: which executor owned what, read as it was written."""
 
 import json
 
@@ -10,7 +10,7 @@ from mdanim_lammps.results.timeline import TIMELINE, Timeline
 
 
 def log() -> Timeline:
-    """Four objects on two executors: the second never moves, the last two change places, one has nobody for a frame."""
+    """Four objects on two executors: the second never moves, the last two change places, one has none for a frame."""
     timeline = Timeline(2, "central", ("a", "stone", "b", "c"))
     timeline.add(5, [np.array([0, 2]), np.array([3])], 0, 0)
     timeline.add(6, [np.array([0, 2]), np.array([3])], 0, 2)

@@ -210,7 +210,7 @@ def test_disk_full_is_told(fall, tmp_path):
 
 
 def test_force_never_deletes_a_folder_that_only_looks_like_ours(fall):
-    """Leave a folder alone that holds somebody else's manifest.json."""
+    """Leave a folder alone that holds another program's manifest.json."""
     folder = fall.folder.parent / "webapp"
     folder.mkdir()
     (folder / "manifest.json").write_text('{"name": "my web app"}')

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from mdanim_lammps import Scene
 from mdanim_lammps.errors import DivergedError, OutputError, RefusedError, UsageError
-from mdanim_lammps.run.loop import Interrupted
+from mdanim_lammps.run.loop import Interrupted, simulate
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.scene.scene import Accuracy
@@ -140,10 +140,10 @@ def test_ctrl_c_keeps_what_is_there(tmp_path, monkeypatch):
     def interrupted(*arguments, **options):
         nonlocal count
         if (count := count + 1) == 3:
-            options["watch"] = lambda p: signal.raise_signal(signal.SIGINT)
-        return measure(*arguments, **options)
+            options["on_progress"] = lambda p: signal.raise_signal(signal.SIGINT)
+        return simulate(*arguments, **options)
 
-    monkeypatch.setattr(bench, "measure", interrupted)
+    monkeypatch.setattr("mdanim_lammps.study.measure.simulate", interrupted)
     with pytest.raises(Interrupted, match="the same command goes on"):
         run_study(scene, tmp_path / "study", budget=30.0)
     assert len(json.loads((tmp_path / "study" / "study.json").read_text())["points"]) == 2
@@ -152,7 +152,7 @@ def test_ctrl_c_keeps_what_is_there(tmp_path, monkeypatch):
 
 def test_a_run_that_takes_too_long_is_stopped(tmp_path, monkeypatch):
     """Break off by the run's own pace and leave nothing behind."""
-    monkeypatch.setattr("mdanim_lammps.study.measure.TRIED", 0.0)
+    monkeypatch.setattr("mdanim_lammps.study.measure.PACE_SECONDS", 0.0)
     with pytest.raises(TooLong) as stopped:
         measure(parse_scene(BAR), Setting(4, 0.5), tmp_path, limit=1e-3)
     assert stopped.value.seconds > 1e-3

@@ -39,7 +39,7 @@ def test_target_is_found_stored_and_used_again(target_file, monkeypatch):
     """Take the cheapest setting that meets the target, keep it beside the scene, and look no more."""
     scene = load_scene(target_file)
     told = []
-    first = settle(scene, make=True, budget=30.0, watch=told.append)
+    first = settle(scene, make=True, budget=30.0, on_progress=told.append)
     assert told and first.warning is None
     choice = stored_choice(scene)
     assert choice.met and choice.reached <= 0.08

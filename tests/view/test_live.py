@@ -35,7 +35,7 @@ def told(link, wanted) -> dict:
     return known
 
 
-def test_bits_do_not_depend_on_who_looks(scene, tmp_path):
+def test_bits_do_not_depend_on_a_view(scene, tmp_path):
     """Watched, paused and let go by a page, every frame and the ledger are those of a run that was left alone."""
     Scene.load(scene).run(tmp_path / "alone")
     run = Held(scene, tmp_path / "seen")

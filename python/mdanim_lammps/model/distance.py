@@ -13,7 +13,7 @@ from . import mesh, shapes
 NEAR = 12
 """Samples of a mesh whose triangles are tried: for 3000 places in and around the duck the distance is then right to 1e-5 of the
 samples' spacing, with 6 to 2e-2; right on the surface it is off by up to a tenth of the spacing."""
-CLOSE, COARSE = 16, 4
+TRIANGLE_REACH, COARSE = 16, 4
 """Spacings of the samples up to which triangles are looked at. Further off the nearest of samples that are COARSE times as far
 apart will do: around a duck and a knot it is too far by up to 1.1 spacings, 5 % of the distance, where a search among all samples
 would take five times as long."""
@@ -89,7 +89,7 @@ def _(shape: Mesh, points, spacing):
     body = mesh.load(shape)
     sample, triangle, _ = mesh.scatter(body, spacing)
     away, _ = cKDTree(mesh.scatter(body, COARSE * spacing)[0]).query(points)
-    length, near = cKDTree(sample).query(points, NEAR, distance_upper_bound=CLOSE * spacing)
+    length, near = cKDTree(sample).query(points, NEAR, distance_upper_bound=TRIANGLE_REACH * spacing)
     close = np.flatnonzero(length[:, 0] < np.inf)
     # Where fewer are close, any other one does no harm.
     corners = body.points[body.triangles[triangle[near[close].clip(max=len(sample) - 1)]]]

@@ -24,7 +24,7 @@ LARGER = 0.35
 """What a larger picture is worth: one that shows all 10 % larger may lose this much of 10 % of what happens."""
 LEAST = 0.6
 """Share of the objects that move which is seen at any time."""
-TRIED = (0.995, 0.98, 0.95, 0.9, 0.8)
+NEXT_SHARES = (0.995, 0.98, 0.95, 0.9, 0.8)
 """Shares of what is seen that are tried as the next to be kept."""
 MOMENT = 0.03
 """Share of the run for which the picture follows what comes and goes beyond where it is worth it."""
@@ -180,7 +180,7 @@ def worth_seeing(low, high, free, fixed: np.ndarray, forward: np.ndarray, aspect
     kept = np.ones(low.shape[:2], dtype=bool)
     best = score(kept)
     while True:
-        smaller = [kept & (side[..., k] <= np.quantile(side[kept, k], share)) for k in range(4) for share in TRIED]
+        smaller = [kept & (side[..., k] <= np.quantile(side[kept, k], share)) for k in range(4) for share in NEXT_SHARES]
         scores = [score(s) for s in smaller]
         if max(scores) <= best + 1e-9:
             break

@@ -120,7 +120,7 @@ class ProgressTail:
         self.state, self.message = "", ""
         """The last state, empty while there is none, and what was said with it."""
         self.lives = 0
-        """How often the run has begun or was resumed: whoever knows frames of an earlier life forgets those after it."""
+        """How often the run has begun or was resumed: a reader that knows frames of an earlier life forgets those after it."""
         self.keep = 0
         """Frames of earlier lives that still hold."""
         self._rest = b""

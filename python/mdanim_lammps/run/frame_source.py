@@ -48,7 +48,7 @@ class Frame:
     """Every term of the ledger [J]; what is lost counts from the start of this run, not from before a resume."""
     penetration: float
     """Deepest that a boundary particle has been below a surface in this run [m]."""
-    pool: LiquidFrame | None = None
+    liquid: LiquidFrame | None = None
     """None without a liquid."""
     kept: bool = True
     """Whether `FrameSource.state` can be asked for."""
@@ -164,7 +164,12 @@ class Sequential:
     def _frame(self) -> Frame:
         instance = self.instance
         return Frame(
-            instance.step, instance.array("x"), instance.array("v"), energies(instance), penetration(instance), pool(instance)
+            instance.step,
+            instance.array("x"),
+            instance.array("v"),
+            energies(instance),
+            penetration(instance),
+            liquid_frame(instance),
         )
 
 
@@ -181,7 +186,7 @@ def penetration(instance: Instance) -> float:
     return max([0.0, *(e.penetration(instance, instance.plan.system) for e in instance.plan.effects)])
 
 
-def pool(instance: Instance) -> LiquidFrame | None:
+def liquid_frame(instance: Instance) -> LiquidFrame | None:
     """The liquid now."""
     if instance.plan.grid is None:
         return None

@@ -131,7 +131,7 @@ def write_start(ready: Prepared, folder: Path) -> Path:
         else:
             with Sequential(ready.plan) as source:
                 now = source.begin(None)
-                out.write(now.step, 0.0, now.x, now.v, now.pool.heights)
+                out.write(now.step, 0.0, now.x, now.v, now.liquid.heights)
         out.flush()
         return out.close()
 
@@ -377,17 +377,17 @@ class _Run:
     def _record(self, out: TrajectoryWriter, log: ProgressLog, frame: int, now: Frame) -> None:
         """Check the state, then append it to ledger and trajectory, and tell of it. Raises DivergedError before anything bad is
         written."""
-        system, when, pool = self.ready.system, now.step * self.certificate.timestep, now.pool
+        system, when, liquid = self.ready.system, now.step * self.certificate.timestep, now.liquid
         extras = {
-            column: record(quantity, system, self.ready.models[system.names.index(name)], now.x, pool and pool.heights[0])
+            column: record(quantity, system, self.ready.models[system.names.index(name)], now.x, liquid and liquid.heights[0])
             for (name, quantity), column in self.recorded.items()
         }
-        if pool:
-            extras["liquid_cells"] = pool.cells
-            if pool.cells != pool.start:
+        if liquid:
+            extras["liquid_cells"] = liquid.cells
+            if liquid.cells != liquid.start:
                 raise DivergedError(
-                    f"step {now.step}, t = {number(when, 4)} s: {pool.cells} cells of liquid, "
-                    f"{pool.start} at the start: this must "
+                    f"step {now.step}, t = {number(when, 4)} s: {liquid.cells} cells of liquid, "
+                    f"{liquid.start} at the start: this must "
                     f"never be, please report it. The last good frame is kept in {self.folder}"
                 )
         # Losses before a resume are carried over.
@@ -395,7 +395,7 @@ class _Run:
         self.guard.energy(now.step, row["residual"], now.v)
         self.ledger.rows.append(row)
         self.penetration = max(self.penetration, now.penetration)
-        out.write(now.step, when, now.x, now.v, pool and pool.heights)
+        out.write(now.step, when, now.x, now.v, liquid and liquid.heights)
         log.frame(frame, row, self.seconds["simulation"], self.source.new_owners())
 
     def _gained(self) -> int | None:

@@ -30,9 +30,9 @@ class Bench:
     """Measures settings of one scene, cheapest first, until a budget is spent."""
 
     def __init__(
-        self, scene: SceneRecord, ready: Prepared, own: Setting, store: Store, budget: float, watch: Callable[[str], None]
+        self, scene: SceneRecord, ready: Prepared, own: Setting, store: Store, budget: float, on_progress: Callable[[str], None]
     ):
-        self.scene, self.ready, self.own, self.store, self.watch = scene, ready, own, store, watch
+        self.scene, self.ready, self.own, self.store, self.on_progress = scene, ready, own, store, on_progress
         self.budget, self.start = budget, time.perf_counter()
 
     @property
@@ -106,7 +106,9 @@ class Bench:
         repeat = len(point.seconds) if point else 0
         expected = self.predict(setting)
         guess = f"about {say(expected, 's', 2)}" if expected is not None else "the first"
-        self.watch(f"{setting}{f', run {repeat + 1}' if repeat else ''}: {guess}; {max(0.0, self.left):.0f} s of the budget left")
+        self.on_progress(
+            f"{setting}{f', run {repeat + 1}' if repeat else ''}: {guess}; {max(0.0, self.left):.0f} s of the budget left"
+        )
         try:
             # Only the automaton draws numbers: without a liquid another seed changes nothing.
             sample: Sample = measure(self.scene, setting, self.store.folder, limit=limit, repeat=repeat)

@@ -6,7 +6,6 @@ from __future__ import annotations
 import shutil
 import tempfile
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,7 +19,7 @@ from ..scene.formatting import say
 from ..scene.scene import SceneRecord
 from .setting import Setting, frames_only, with_setting
 
-TRIED = 0.5
+PACE_SECONDS = 0.5
 """Wall seconds [s] after which a run's own pace shows whether the run can end in time."""
 
 
@@ -57,15 +56,7 @@ class TooLong(Exception):
         self.seconds = seconds
 
 
-def measure(
-    scene: SceneRecord,
-    setting: Setting,
-    folder: Path,
-    *,
-    limit: float = float("inf"),
-    repeat: int = 0,
-    watch: Callable[[Progress], None] | None = None,
-) -> Sample:
+def measure(scene: SceneRecord, setting: Setting, folder: Path, *, limit: float = float("inf"), repeat: int = 0) -> Sample:
     """Run a scene with a setting in a temporary folder inside ``folder``.
 
     Raises TooLong when the run turns out to need more than ``limit`` seconds of wall time in all, and SceneError,
@@ -77,12 +68,10 @@ def measure(
 
     def look(p: Progress) -> None:
         last[:] = [p]
-        if (wall := time.perf_counter() - start) > TRIED and p.step:
+        if (wall := time.perf_counter() - start) > PACE_SECONDS and p.step:
             needed = wall + p.seconds * (p.steps - p.step) / p.step
             if needed > limit:
                 raise TooLong(needed)
-        if watch:
-            watch(p)
 
     temporary = Path(tempfile.mkdtemp(prefix=f"{setting.key}-", dir=folder))
     try:

@@ -44,7 +44,7 @@ def run_study(
     budget: float = BUDGET,
     only: Sequence[str] = (),
     force: bool = False,
-    watch: Callable[[str], None] = lambda line: None,
+    on_progress: Callable[[str], None] = lambda line: None,
 ) -> Study:
     """Measure ladders around a scene's own setting for ``budget`` seconds of wall time; leaves study.json, .csv and .png.
 
@@ -54,7 +54,7 @@ def run_study(
         folder: of the study, usually SCENE.out/study.
         only: names of ladders (LADDERS); empty is all.
         force: delete a study of another scene.
-        watch: called with each line of progress.
+        on_progress: called with each line of progress.
 
     Raises SceneError, OutputError; RefusedError when the budget is too small for the scene's own setting, DivergedError when
     that diverges; Interrupted after Ctrl-C, with all finished points kept.
@@ -67,17 +67,17 @@ def run_study(
         # The scene's own setting has to be found first; a stored one that misses its target may be improved on.
         choice = stored_choice(scene)
         if choice is None or not choice.met:
-            found = find_choice(scene, budget=budget / 2.0, store=store, watch=watch)
+            found = find_choice(scene, budget=budget / 2.0, store=store, on_progress=on_progress)
             if choice is None or found.met or found.reached < choice.reached:
                 store_choice(scene, choice := found)
-        watch(f"accuracy error {100 * choice.error:g} %: {choice}{'' if choice.met else ', not met'}")
+        on_progress(f"accuracy error {100 * choice.error:g} %: {choice}{'' if choice.met else ', not met'}")
         scene = with_choice(scene, choice)
     ready = prepare(scene)
     own = store.named(own_setting(scene, ready), ready.certificate.timestep)
     found, left = ladders(scene, ready, own)
     found = [ladder for ladder in found if not only or ladder.name in only]
     left = {name: why for name, why in left.items() if not only or name in only}
-    bench = Bench(scene, ready, own, store, budget - (time.perf_counter() - start), watch)
+    bench = Bench(scene, ready, own, store, budget - (time.perf_counter() - start), on_progress)
     settings = list(dict.fromkeys([own, *(s for ladder in found for s in ladder.settings)]))
     left |= {str(s): why for s, why in bench.measure_all(settings).items()}
     point = store.points.get(own.key)

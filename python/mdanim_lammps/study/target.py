@@ -25,7 +25,7 @@ START = (2, 3, 4)
 """Cells across of the first runs: three is the smallest number that shows an order."""
 TIME_SHARE = 0.25
 """Share of the target that the time step may use up; what is left is for the resolution, which costs far more."""
-CLOSE = 0.9
+LARGEST_NEXT = 0.9
 """A coarser setting is only tried when it would be this much coarser: what is left untried costs two thirds at least, and half
 with the longest step of all."""
 MARGIN = 0.97
@@ -117,7 +117,11 @@ def _digest(scene: SceneRecord) -> str:
 
 
 def find_choice(
-    scene: SceneRecord, *, budget: float = BUDGET, store: Store | None = None, watch: Callable[[str], None] = lambda line: None
+    scene: SceneRecord,
+    *,
+    budget: float = BUDGET,
+    store: Store | None = None,
+    on_progress: Callable[[str], None] = lambda line: None,
 ) -> Choice:
     """Measure until a setting meets the target of ``accuracy error p %``, or the budget is spent.
 
@@ -129,14 +133,14 @@ def find_choice(
         scene: with a target.
         budget: wall time [s].
         store: a study of this scene whose points are used again; None measures in a temporary folder.
-        watch: called with each line of progress.
+        on_progress: called with each line of progress.
 
     Raises DivergedError when no setting could be found, and what measuring raises.
     """
     if store is not None:
-        return _Search(scene, store, budget, watch).go()
+        return _Search(scene, store, budget, on_progress).go()
     with tempfile.TemporaryDirectory(prefix="mdanim-") as temporary:
-        return _Search(scene, Store(Path(temporary), scene_hash(scene)), budget, watch).go()
+        return _Search(scene, Store(Path(temporary), scene_hash(scene)), budget, on_progress).go()
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,7 +160,7 @@ def settle(
     make: bool,
     budget: float = BUDGET,
     study: Path | None = None,
-    watch: Callable[[str], None] = lambda line: None,
+    on_progress: Callable[[str], None] = lambda line: None,
 ) -> Settled:
     """Turn ``accuracy error p %`` into a setting: the one stored beside the scene, or, with ``make``, one found now.
 
@@ -182,7 +186,9 @@ def settle(
                 ),
             )
         known = study and (study / FILE).exists() and read_json(study / FILE).get("hash") == scene_hash(scene)
-        choice = find_choice(scene, budget=budget, store=Store(study, scene_hash(scene)) if known else None, watch=watch)
+        choice = find_choice(
+            scene, budget=budget, store=Store(study, scene_hash(scene)) if known else None, on_progress=on_progress
+        )
         store_choice(scene, choice)
         source = f"found now, kept in {path.name}" if path else "found now"
     warning = (
@@ -201,11 +207,11 @@ def settle(
 class _Search:
     """Goes down one ladder, of resolutions or, where the scene fixes those, of time steps, until the target is met."""
 
-    def __init__(self, scene: SceneRecord, store: Store, budget: float, watch: Callable[[str], None]):
+    def __init__(self, scene: SceneRecord, store: Store, budget: float, on_progress: Callable[[str], None]):
         self.scene, self.store, self.target = scene, store, scene.control.accuracy
         self.ready = prepare(scene)
         self.own = own_setting(scene, self.ready)
-        self.bench = Bench(scene, self.ready, self.own, store, budget, watch)
+        self.bench = Bench(scene, self.ready, self.own, store, budget, on_progress)
         self.name = "resolution" if scene.control.resolution is None else "time step"
         self.step_error = 0.0  # of the time step at START[0] cells, relative to the extent
 
@@ -277,7 +283,7 @@ class _Search:
             if not coarser:
                 return None
             value = self._between(a, coarser[-1], meeting)
-            if value > CLOSE * self._value(meeting):
+            if value > LARGEST_NEXT * self._value(meeting):
                 return None
         return replace(known[-1], cells=value) if self.name == "resolution" else replace(known[-1], fraction=1.0 / value)
 
@@ -321,7 +327,7 @@ class _Search:
             return True
         expected = self.bench.predict(setting)
         if expected is not None and expected > self.bench.left:
-            self.bench.watch(
+            self.bench.on_progress(
                 f"{setting} would take about {say(expected, 's', 2)}, more than the {max(0.0, self.bench.left):.0f} s left"
             )
             return False

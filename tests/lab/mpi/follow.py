@@ -12,7 +12,7 @@ from mdanim_lammps.scene.parse import load_scene
 
 FIRST, THEN = 15, 20
 """Steps before the state that is put again, and after it."""
-SELDOM = 3
+LOOK_STEPS = 3
 """Steps from one look of the trace to the next, when steps are gone again."""
 SIDE = np.array([9.0, 0.0, 3.0])
 """A place far from all objects, twice [m]."""
@@ -64,7 +64,7 @@ def follow(path: Path, comm=None) -> dict[str, np.ndarray]:
         look("end")
         instance.put(FIRST, kept)
         instance.start_trace()
-        instance.look_every(SELDOM)
+        instance.look_every(LOOK_STEPS)
         instance.run(THEN)
         look("again")
         wider_low, wider_high = instance.trace()

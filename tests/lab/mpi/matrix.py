@@ -86,20 +86,20 @@ def wait(comm) -> None:
 
 def main() -> None:
     """All ways in their order; ranks that are not needed wait."""
-    faulthandler.dump_traceback_later(float(sys.argv[2]))  # who waits for whom, when all wait for ever
-    everybody = MPI.COMM_WORLD
+    faulthandler.dump_traceback_later(float(sys.argv[2]))  # which rank waits for which, when all wait for ever
+    all_ranks = MPI.COMM_WORLD
     work = json.loads(Path(sys.argv[1]).read_text())
-    ready = prepare(load_scene(Path(work["scene"]))) if everybody.rank == 0 else None
+    ready = prepare(load_scene(Path(work["scene"]))) if all_ranks.rank == 0 else None
     for case in work["cases"]:
         ranks = case["executors"] + 1 if case["control"] else 1
-        world = everybody.Split(0 if everybody.rank < ranks else MPI.UNDEFINED, everybody.rank)
+        world = all_ranks.Split(0 if all_ranks.rank < ranks else MPI.UNDEFINED, all_ranks.rank)
         if world != MPI.COMM_NULL:
             with Spoiled(case):
-                if everybody.rank == 0:
+                if all_ranks.rank == 0:
                     run(case, ready, world if case["control"] else None)
                 else:
                     serve(world)
-        wait(everybody)
+        wait(all_ranks)
 
 
 if __name__ == "__main__":

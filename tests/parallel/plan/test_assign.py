@@ -127,7 +127,7 @@ def test_names_of_executors_do_not_matter_in_balance(seed, objects, executors):
     [
         pytest.param([0, 0, 0], [10, 10, 15], [0, 0, 1], 2, [0, 0, 0], id="an island goes to whom has most of it"),
         pytest.param([0, 0], [10, 10], [1, 0], 2, [0, 0], id="of equals, the lowest"),
-        pytest.param([0, 0], [30, 10], [-1, 1], 2, [1, 1], id="who has some of it, though nobody has most"),
+        pytest.param([0, 0], [30, 10], [-1, 1], 2, [1, 1], id="an executor that has some of it, though none has most"),
         pytest.param([0, 1, 2], [50, 50, 8], [0, 1, 1], 2, [0, 1, 1], id="a little above the mean: stay"),
         pytest.param([0, 1, 2], [50, 50, 20], [0, 1, 1], 2, [0, 1, 1], id="uneven, but no other way is better"),
         pytest.param([0, 1, 2, 3], [50, 30, 20, 5], [1, 1, 1, 0], 2, [1, 0, 0, 0], id="the largest stays"),
@@ -136,7 +136,7 @@ def test_names_of_executors_do_not_matter_in_balance(seed, objects, executors):
         pytest.param([0, 1, 2, 3], [50, 50, 40, 40], [0, 0, 1, 1], 2, [0, 1, 0, 1], id="large ones are packed anew"),
         pytest.param([0, 1, 2, 3, 4], [30, 30, 20, 20, 20], [0, 1, 0, 1, 1], 2, [0, 1, 0, 1, 1], id="but not exchanged"),
         pytest.param([-1, 0, -1], [99, 5, 99], [2, 0, -1], 3, [2, 0, -1], id="what is still stays, and costs nothing"),
-        pytest.param([0, 1, 2], [0, 0, 0], [-1, -1, -1], 3, [0, 1, 2], id="nobody's, and no cost known yet"),
+        pytest.param([0, 1, 2], [0, 0, 0], [-1, -1, -1], 3, [0, 1, 2], id="no owner, and no cost known yet"),
     ],
 )
 def test_by_hand(label, cost, owner, executors, expected):
@@ -194,7 +194,7 @@ def heavy(cost, owner, executors, teams=(), particles=None, **more):
     ],
 )
 def test_teams(cost, owner, executors, sizes, load):
-    """Form teams of the right size; each has its members to itself and is led by who has the island, if that is free."""
+    """Form teams of the right size; each has its members to itself and is led by the island's executor, if that is free."""
     found = heavy(cost, owner, executors)
     assert sorted(len(team.members) for team in found.teams) == sizes
     members = [e for team in found.teams for e in team.members]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The plan of a frame: the same for all who make it, and bundles that last."""
+"""The plan of a frame: the same in every process that makes it, and bundles that last."""
 
 import os
 import subprocess
@@ -72,7 +72,7 @@ def test_nothing_changes_when_nothing_changes(seed, count, executors):
     assert made.fingerprint() == settled.fingerprint()
 
 
-def test_all_who_plan_get_the_same():
+def test_all_processes_plan_the_same():
     """Get the same fingerprint from copies in other memory layouts, and in a process of its own."""
     at = scene(250, 3)
     made = plan(**at, executors=4).fingerprint()
@@ -117,7 +117,7 @@ def test_larger_boxes_after_a_violation():
 
 
 def test_the_pool_stays_and_connects():
-    """Bring to the pool whoever is near it, and leave it where it is."""
+    """Bring to the pool what is near it, and leave it where it is."""
     low = np.array([(0.0, 0.0, 1.0), (5.0, 0.0, 1.0), (0.0, 0.0, 9.0), (-1.0, -1.0, 0.0)])
     high = np.array([(1.0, 1.0, 2.0), (6.0, 1.0, 2.0), (1.0, 1.0, 10.0), (7.0, 2.0, 1.0)])
     pinned = np.array([False, False, False, True])

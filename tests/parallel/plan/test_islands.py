@@ -138,7 +138,7 @@ def test_a_long_chain_is_one_island(shuffled):
     assert (islands.components(count, pairs, np.zeros(count, bool)) == 0).all()
 
 
-def test_a_floor_connects_nobody():
+def test_a_floor_connects_nothing():
     """Keep apart what lies on the same floor, and give each island its copy."""
     pairs = np.array([(0, 1), (0, 2), (0, 3), (2, 3), (0, 4)])
     still = np.array([True, False, False, False, True])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""From reports to orders: boxes, costs, windows, and the same for everybody who plans."""
+"""From reports to orders: boxes, costs, windows, and the same in every process that plans."""
 
 import numpy as np
 import pytest
@@ -31,8 +31,8 @@ def begun(parts, **settings):
     return planner, planner.decide(report(parts, EQUAL))
 
 
-def test_all_who_plan_order_the_same(parts):
-    """Two planners that hear the same stay the same through windows, violations and costs; who hears otherwise does not."""
+def test_all_planners_order_the_same(parts):
+    """Two planners that hear the same stay the same through windows, violations and costs; one that hears otherwise does not."""
     one, other = (Planner(parts, 2, LENGTHS, PlannerOptions(worth=0)) for _ in range(2))
     odd = Planner(parts, 2, LENGTHS, PlannerOptions(worth=0))
     rng = np.random.default_rng(3)
@@ -68,7 +68,7 @@ def test_costs_are_smoothed(parts):
     assert (planner.cost == 937).all() and planner.cost.dtype == np.int64
 
 
-def test_boxes_double_until_nobody_escapes(parts):
+def test_boxes_double_until_no_object_escapes(parts):
     """Only those that have escaped are widened, twice as much each time; a window that is done forgets it."""
     planner, order = begun(parts)
     widths = [order.high - order.low]
@@ -86,8 +86,8 @@ def test_boxes_double_until_nobody_escapes(parts):
     np.testing.assert_allclose(order.high - order.low, widths[0])
 
 
-def test_who_escapes_for_ever_is_named(parts):
-    """Not by a loop without end; and so is who is nowhere at all."""
+def test_an_object_that_escapes_for_ever_is_named(parts):
+    """Not by a loop without end; and so is an object that is nowhere at all."""
     planner, order = begun(parts)
     with pytest.raises(LammpsFailure, match="leaves every box") as found:  # noqa: PT012 -- in which turn is not known
         for _ in range(module.DOUBLINGS + 1):

@@ -32,7 +32,7 @@ def test_the_pool_is_a_bundle_of_its_island():
 
 
 def test_a_team_comes_first_and_all_its_members_want_it():
-    """Members run what they do not own, before what is their own; who is in no team does not."""
+    """Members run what they do not own, before what is their own; one in no team does not."""
     team = Team(4, (1, 2))
     assert wanted(1, teams=[team]) == [((6,), False, (1, 2), [6]), ((2, 3), False, (1,), [2])]
     assert wanted(2, teams=[team]) == [((6,), False, (1, 2), [6]), ((5,), False, (2,), [5])]

@@ -112,21 +112,21 @@ def test_objects_that_fly_about_change_their_executors(scene):
         assert (table >= 0).all() and (table < timeline.executors).all()
         assert (table[1:] != table[:-1]).sum() <= sum(timeline.moves)
     kinds = [kind for _, kind, *_ in timelines["again central3"].spans]
-    assert kinds.count("frozen") >= 10, "who is done is frozen while others begin a window again"
+    assert kinds.count("frozen") >= 10, "what is done is frozen while others begin a window again"
 
 
-def test_only_who_meets_others_begins_again(scene):
-    """Boxes are too small in every frame, but a window is simulated again only where a wider one meets somebody else's."""
+def test_only_what_meets_others_begins_again(scene):
+    """Boxes are too small in every frame, but a window is simulated again only where a wider one meets another executor's."""
     cases = matrix((3,), settings={"safety": 0.0})
     timelines = all_the_same(ways(scene(films.APART), cases), cases)
     for timeline in timelines.values():
         times = np.array(
             [
                 [
-                    sum(e == who and kind == "simulating" and f == frame for e, kind, f, *_ in timeline.spans)
+                    sum(e == executor and kind == "simulating" and f == frame for e, kind, f, *_ in timeline.spans)
                     for frame in timeline.frames[1:]
                 ]
-                for who in range(3)
+                for executor in range(3)
             ]
         )
         assert min(timeline.retries[1:]) > 0
@@ -157,7 +157,7 @@ def test_a_team_runs_what_is_too_heavy_for_one(scene, text, control, more):
 
 
 def test_a_team_ends_when_it_has_no_more_to_do(scene):
-    """Two objects meet and part: what each member of the team has of them goes to whoever runs them next, also when a window
+    """Two objects meet and part: what each member of the team has of them goes to the one that runs them next, also when a window
     begins again."""
     team = {"least": 50}
     cases = matrix((2,), settings=team) | matrix((2,), ["central"], "windows ", settings=WINDOWS | team | {"safety": 0.3})
@@ -188,12 +188,12 @@ def test_a_run_goes_on_with_other_executors(scene):
     timeline = checked(found["a"], 4)  # of all frames, those before the resume too
     assert (timeline.owner() >= 0).any(axis=1).all() and min(timeline.cpu) > 0.0
     assert timeline.owner().max() == 3 and timeline.owner()[0].max() == 2
-    spread = Timeline.read(found["b"]).frames  # the frames before and after were nobody's
+    spread = Timeline.read(found["b"]).frames  # the frames before and after had no team's owner
     assert spread[0] == 5 and 7 <= spread[-1] < len(timeline.frames) - 1
 
 
 def test_a_liquid_goes_on_with_other_executors(scene):
-    """Stop while bodies splash; the state of the liquid goes to whoever has it next."""
+    """Stop while bodies splash; the state of the liquid goes to the executor that has it next."""
     cases = {
         "a": {"executors": 2, "control": "central", "stop": 5},
         "a more": {"executors": 3, "control": "peers", "resume": True, "in": "a"},

@@ -14,7 +14,7 @@ from mdanim_lammps.parallel import limits
 from mdanim_lammps.parallel.runtime import launch
 from scene_texts import FALL
 
-OBITUARY = """\
+ABORT_REPORT = """\
 Abort(1) on node 0 (rank 0 in comm 0): application called MPI_Abort(MPI_COMM_WORLD, 1) - process 0
 ===================================================================================
 =   BAD TERMINATION OF ONE OF YOUR APPLICATION PROCESSES
@@ -88,17 +88,17 @@ def test_executors_that_do_not_fit_in_memory(monkeypatch):
     limits.check_executors(999, 2_000_000)
 
 
-def test_what_ranks_say_is_passed_on_but_for_obituaries(capsys):
+def test_what_ranks_say_is_passed_on_but_for_reports_of_an_abort(capsys):
     """A traceback of a rank is seen, mpiexec's own words are not."""
     said = []
-    launch._hear(io.StringIO("ValueError: from a rank\n" + OBITUARY), said)
+    launch._hear(io.StringIO("ValueError: from a rank\n" + ABORT_REPORT), said)
     assert capsys.readouterr().err == "ValueError: from a rank\n" and len(said) == 7
 
 
 @pytest.mark.parametrize(
     ("words", "checkpoint", "told"),
     [
-        pytest.param(OBITUARY, True, r"lost \(EXIT CODE: 9\).*go on with: mdanim-lammps resume", id="killed"),
+        pytest.param(ABORT_REPORT, True, r"lost \(EXIT CODE: 9\).*go on with: mdanim-lammps resume", id="killed"),
         pytest.param(
             "RuntimeError: no\nMemoryError: too large\n",
             True,

@@ -6,7 +6,7 @@ import pytest
 from level_lab import Pool
 from twin import level as twin
 
-NOTHING = np.nan
+NO_HEIGHT = np.nan
 
 
 def random_cells(random, shape):
@@ -301,7 +301,7 @@ def test_films_drops_and_dry_columns():
     content[0, 0, 9] = 1  # a film on the floor, and beside it dry floor
     solid[0, 0, 11] = 1  # a dry block
     told, _ = Pool(content, solid).heights()
-    nan = NOTHING
+    nan = NO_HEIGHT
     np.testing.assert_array_equal(told[0], [2.0, nan, nan, nan, nan, nan, nan, nan, nan, 1.0, 0.0, nan])
 
 

@@ -71,7 +71,7 @@ def test_force_of_one_pair(tmp_path, gap, words, force, energy):
         pytest.param((True, False), (2, 2), False, id="same object"),
     ],
 )
-def test_who_acts_on_whom(tmp_path, boundary, molecule, acts):
+def test_what_acts_on_what(tmp_path, boundary, molecule, acts):
     """Boundary of one object against the inner particles of the other, and nothing else."""
     body, commands = two(0.8, boundary=boundary, molecule=molecule)
     lmp = lab.load(body, tmp_path, commands)
@@ -249,7 +249,7 @@ def test_order_of_particles_changes_no_bit(tmp_path, damp):
         lmp.close()
     assert np.array_equal(*found)
 
-    # damp sees half-step velocities, which a setup does not know: whoever takes up a state puts its forces
+    # damp sees half-step velocities, which a setup does not know: a state that is taken up has its forces put
     # back too.
     lmp = lab.load(body, tmp_path, [*commands, "run 60"])
     force = lmp.numpy.extract_atom("f").copy()

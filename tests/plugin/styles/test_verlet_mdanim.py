@@ -77,8 +77,8 @@ def test_forces_are_added_in_the_order_of_fixes():
         ("damped, all at once", (), True),
     ],
 )
-def test_nobody_is_held_back_for_forces_of_places_alone(name, more, some):
-    """Count particles that do not move in passes, while somebody pushes: those of fixes that ask for more than places."""
+def test_no_particle_is_held_back_for_forces_of_places_alone(name, more, some):
+    """Count particles that do not move in passes, while something pushes: those of fixes that ask for more than places."""
     ready = prepare(parse_scene(FALL + EFFECTS[name] + "\n" + END))
     with Instance(ready.plan) as instance:
         for command in more:
@@ -159,7 +159,7 @@ def test_what_is_not_known_gets_the_plain_step(tmp_path, stranger):
     assert np.array_equal(found, plain)
 
 
-def test_somebody_who_looks_sees_every_step_he_asks_for(tmp_path):
+def test_what_looks_at_a_run_sees_every_step_it_asks_for(tmp_path):
     """Dump every seventh step and rebuild by a fix of LAMMPS in between: all of every particle is the same to the last digit.
 
     The box is not: LAMMPS shrinks it when it makes lists, and passes need new ones at other steps. Neither is farther off than
@@ -189,7 +189,7 @@ def test_somebody_who_looks_sees_every_step_he_asks_for(tmp_path):
         np.testing.assert_allclose(box, plain_box, rtol=0, atol=0.4)  # the skin: either is off by half of it at most
 
 
-def test_lists_are_rebuilt_before_anybody_has_gone_half_the_skin(tmp_path):
+def test_lists_are_rebuilt_before_any_particle_has_gone_half_the_skin(tmp_path):
     """Let a fast body pass through a region watched by a wall: it is pushed back as with run_style verlet, bit for bit."""
     fast = lab.block((3, 3, 3), (0.0, 0.0, 0.0), (0.7, 0.0, 0.0))
     commands = [
@@ -263,7 +263,7 @@ def test_a_periodic_box_gets_the_plain_step(tmp_path):
 
 
 def test_only_the_group_is_pushed(tmp_path):
-    """Let contact push one of two bodies alone, the first: the other one flies on as if nobody was there."""
+    """Let contact push one of two bodies alone, the first: the other one flies on as if nothing was there."""
     pair = lab.join(lab.block((4, 3, 3)), lab.block((3, 4, 3), (4.8, 0.0, 0.0), (-0.2, 0.0, 0.0)))
     commands = [
         "group first molecule 1",
@@ -339,7 +339,7 @@ def test_what_changes_between_two_runs_is_noticed(tmp_path, change):
 
 
 @pytest.mark.parametrize("first", [[], ["run 3"]], ids=["from the start", "after a run without"])
-def test_who_reads_the_list_of_bonds_finds_it(tmp_path, first):
+def test_what_reads_the_list_of_bonds_finds_it(tmp_path, first):
     """Let stock fix bond/break, which knows springs by LAMMPS's list of bonds alone, take the longer of two."""
     chain = replace(
         lab.particles([[0.0, 0, 0], [1.5, 0, 0], [3.0, 0, 0], [6.0, 0, 0]], molecule=[1, 1, 1, 1]),

@@ -18,13 +18,13 @@ from ...engine.state import Records, State, StateRecords, join_all
 from ...engine.sub_plan import SubPlans
 from ...errors import MdanimError
 from ...run.energy import stored
-from ...run.frame_source import COST_SECONDS, Account, LammpsFailure, add_clocks, penetration, pool
+from ...run.frame_source import COST_SECONDS, Account, LammpsFailure, add_clocks, liquid_frame, penetration
 from ..plan.orders import Order, Report
 from .bundle import Bundle, Wanted, wanted_bundles
 from .control import Controller, make_control
 from .messages import SUPERVISOR, Aborted, Ended, Failure, Job, Kept, Mail, Moved, Share, Tag, gathered, scatter
 
-OBITUARY = 2.0
+ABORT_SECONDS = 2.0
 """Seconds within which mpiexec ends all ranks after one has died."""
 
 
@@ -48,7 +48,7 @@ def serve(world: MPI.Comm) -> bool:
         last = Tag.FAILED, Failure(type(error).__name__, str(error))
     except Exception as error:  # whatever it is, the supervisor must be told
         if isinstance(error, MPI.Exception):  # where another rank has died, mpiexec ends this one now, and tells the better cause
-            time.sleep(OBITUARY)
+            time.sleep(ABORT_SECONDS)
         traceback.print_exc()
         last = Tag.FAILED, Failure("ExecutorLost", f"executor {comm.rank}: {type(error).__name__}: {error}")
     mail.world.send(last[1], SUPERVISOR, last[0])
@@ -293,11 +293,11 @@ class Executor:
 
     def _commit(self) -> None:
         """Take the states of all instances, and what was lost and how deep something was meanwhile."""
-        self.pool = None
+        self.liquid = None
         records = []
         for bundle in self.bundles:
             instance, lost = bundle.instance, bundle.newly_lost()
-            depth, liquid = penetration(instance), pool(instance)
+            depth, liquid = penetration(instance), liquid_frame(instance)
             kept = instance.records()  # together with the team, as all above
             bundle.write_state(x=self.x, v=self.v, f=self.f)
             if not self._leads(bundle):
@@ -309,7 +309,7 @@ class Executor:
             self.records = bundle.records_elsewhere(self.records)
             records.append(bundle.records_to(kept))
             if bundle.key.liquid:
-                self.pool = liquid
+                self.liquid = liquid
         self.records = join_all([self.records, *records])
         self.started = True
 
@@ -337,7 +337,7 @@ class Executor:
                 *gathered(places, self.x, self.v),
                 self.energies,
                 self.deepest,
-                self.pool,
+                self.liquid,
                 self.moves,
                 self.retries,
                 tuple(sorted(self.led)),

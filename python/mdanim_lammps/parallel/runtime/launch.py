@@ -127,13 +127,12 @@ def _started(command: list[str]) -> subprocess.Popen:
 
 
 def _hear(stream, said: list[str]) -> None:
-    """Pass on what ranks say, but for MPI's own obituaries,
-    which are told better by `lost` or by the error that a run has left."""
-    mourning = False
+    """Pass on what ranks say, but for MPI's own report of an abort: `lost`, or the error that a run has left, says more."""
+    aborted = False
     for line in stream:
         said.append(line)
-        mourning = mourning or line.startswith(("=====", "Abort("))
-        if not mourning:
+        aborted = aborted or line.startswith(("=====", "Abort("))
+        if not aborted:
             sys.stderr.write(line)
 
 
@@ -146,8 +145,8 @@ def _cause(code: int, said: list[str]) -> str:
     """Why ranks have ended without a result, from mpiexec's exit code and what was said on stderr."""
     words = [line.strip() for line in said if line.strip() and not set(line.strip()) <= {"="}]
     errors = [line for line in words if "Error" in line]
-    obituaries = [line.lstrip("= ").rstrip() for line in words if "EXIT CODE" in line or "killed" in line.lower()]
-    return (errors[-1:] or obituaries or [f"exit code {code}"])[0]
+    reports = [line.lstrip("= ").rstrip() for line in words if "EXIT CODE" in line or "killed" in line.lower()]
+    return (errors[-1:] or reports or [f"exit code {code}"])[0]
 
 
 def lost(why: str, folder: Path) -> ExecutorLost:

@@ -100,7 +100,7 @@ class Share:
     v: np.ndarray
     energies: dict[str, float]
     penetration: float
-    pool: LiquidFrame | None
+    liquid: LiquidFrame | None
     moves: int
     """Objects that have come to this executor since the frame before."""
     retries: int

@@ -20,7 +20,7 @@ from pathlib import Path
 from ...errors import MdanimError, OutputError
 from .launch import RESULT_SIGN, Task, lost
 
-FAREWELL = 30.0
+PATIENCE = 30.0
 """Seconds for which an executor that has failed waits for the supervisor to end all ranks, until it does so itself."""
 
 
@@ -40,7 +40,7 @@ def main() -> None:
 
             done = serve(world)
             if not done:
-                time.sleep(FAREWELL)
+                time.sleep(PATIENCE)
     except BaseException:
         traceback.print_exc()
         raise
@@ -55,7 +55,7 @@ def _supervise(world, job: Path) -> None:
 
     from ...results.timeline import Timeline
     from ...run.loop import Result, simulate
-    from .executor import OBITUARY
+    from .executor import ABORT_SECONDS
     from .supervisor import Distributed
 
     task: Task = pickle.loads(job.read_bytes())
@@ -75,7 +75,7 @@ def _supervise(world, job: Path) -> None:
         result = _told(error)
     except BaseException as error:
         if isinstance(error, MPI.Exception):  # where another rank has died, mpiexec ends this one now, and tells the better cause
-            time.sleep(OBITUARY)
+            time.sleep(ABORT_SECONDS)
         _hand_over(_told(lost(f"{type(error).__name__}: {error}", task.folder)), job)
         raise
     try:
@@ -98,7 +98,7 @@ def _hand_over(result, job: Path | None = None) -> None:
     abort may end the processes that pass on what stands on stdout.
     """
     print(RESULT_SIGN + base64.b64encode(pickle.dumps(result)).decode(), flush=True)
-    deadline = time.monotonic() + FAREWELL
+    deadline = time.monotonic() + PATIENCE
     while job and job.exists() and time.monotonic() < deadline:
         time.sleep(0.02)
 

@@ -189,12 +189,12 @@ class Distributed:
             pending.v,
             energies,
             max(s.penetration for s in shares),
-            next((s.pool for s in shares if s.pool), None),
+            next((s.liquid for s in shares if s.liquid), None),
             keep,
         )
 
     def _take(self, patience: float | None = None) -> None:
-        """Wait for one message and file it. Raises what an executor or the desk raised."""
+        """Wait for one message and file it. Raises what an executor or the message thread raised."""
         try:
             executor, message = self.messages.inbox.get(timeout=patience)
         except queue.Empty:
