@@ -52,11 +52,11 @@ class World:
 
     def energy(self) -> float:
         """All that the ledger counts, without gravity [J]."""
-        scene, system = self.ready.scene, self.ready.system
+        scene, mass = self.ready.scene, self.ready.system.mass
         v = self.instance.array("v")
-        kinetic = 0.5 * float((system.mass * (v**2).sum(1)).sum())
-        kept = sum(e.energy(self.instance, scene, system) for e in self.effects if e.ledger and e.name != "gravity")
-        return kinetic + kept + sum(sum(e.lost(self.instance, scene, system).values()) for e in self.effects if e.losses(scene))
+        kinetic = 0.5 * float((mass * (v**2).sum(1)).sum())
+        kept = sum(e.energy(self.instance) for e in self.effects if e.ledger and e.name != "gravity")
+        return kinetic + kept + sum(sum(e.lost(self.instance).values()) for e in self.effects if e.losses(scene))
 
     def close(self) -> None:
         """End LAMMPS."""

@@ -149,6 +149,24 @@ def test_a_time_that_fits_no_step_is_a_problem():
 
 
 @pytest.mark.parametrize(
+    ("elasticity", "timestep", "cause", "way_out"),
+    [
+        pytest.param("100 kPa", "1e-9 s", "steps of 1e-9 s", "a longer time step", id="of the scene"),
+        pytest.param("1e15 Pa", "auto", "set by a", "a softer or less damped object", id="of the bound"),
+    ],
+)
+def test_steps_that_would_take_years_are_refused(prepared, elasticity, timestep, cause, way_out):
+    """Few frames may have more steps than any machine runs: say what sets the step."""
+    text = (
+        "object a {\n shape box (4, 4, 4) cm\n position (0, 0, 0) m\n density 1e-3\n"
+        f" elasticity {elasticity}\n}}\ncontrol {{ time 1e7 s  frames 1 fps  timestep {timestep} }}"
+    )
+    with pytest.raises(RefusedError, match=cause) as refused:
+        prepared(text)
+    assert way_out in str(refused.value) and "time 1e7 s" in str(refused.value)
+
+
+@pytest.mark.parametrize(
     ("young", "height", "warned"),
     [
         pytest.param("100 kPa", 0.6, True, id="soft ball from 60 cm: 0.29 of the wave speed"),

@@ -32,8 +32,8 @@ WARN = 0.7
 """Time step over the bound above which large motion may blow up: the bound is that of small motion (docs/physics-solids.md)."""
 STRONG = 0.5
 """phi = lambda dt / 2m, eq. (3.13), above which the implicit form is no good: beyond 1 it turns velocities round every step."""
-MOST_FRAMES, MOST_STEPS = 10**7, 10**15
-"""Frames and steps of a run at most: every frame has a row of the ledger in memory, and so many steps take years."""
+MOST_STEPS = 10**15
+"""Steps of a run at most: so many take years."""
 MOST_OBJECTS = 100
 """Objects whose own bound is told, the smallest first."""
 
@@ -193,17 +193,6 @@ def fit_steps(scene: SceneRecord, longest: float) -> tuple[int, int, int]:
                     f"{number(control.frames, 6)} fps: "
                     "no time step fits both",
                     f"try 'time {number(whole / control.frames, 6)} s' ({whole} frames)",
-                )
-            ]
-        )
-    if ratio.numerator / ratio.denominator > MOST_FRAMES:
-        raise SceneError(
-            [
-                Problem(
-                    control.spans.get("time"),
-                    f"time {number(control.time)} s is {estimate(control.time * control.frames)} frames at "
-                    f"{number(control.frames)} fps; {estimate(MOST_FRAMES)} are the most",
-                    f"write a shorter time, or at most {number(MOST_FRAMES / control.time)} frames a second",
                 )
             ]
         )

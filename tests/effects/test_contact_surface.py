@@ -138,10 +138,10 @@ def test_the_energy_of_contact_is_that_of_surfaces_and_barrier(prepared):
         instance.array("x")[ready.system.object > 0, 2] -= 0.02
         instance.setup()
         instance.run(1)
-        found = contact.energy(instance, ready.scene, ready.system)
+        found = contact.energy(instance)
         behind = instance.fix_scalar("barrier")
         assert behind > 0.0 and found == instance.fix_scalar("contact") + behind
-        assert contact.penetration(instance, ready.system) == pytest.approx(0.02, abs=0.005)
+        assert contact.penetration(instance) == pytest.approx(0.02, abs=0.005)
         assert contact.clocks(instance).keys() == {"contact", "barrier"} and min(contact.clocks(instance).values()) > 0.0
 
 
@@ -394,10 +394,7 @@ def test_a_touching_start_is_free_of_stress(prepared, deep):
     assert ready.warnings == ()
     with Instance(ready.plan) as instance:
         instance.setup()
-        assert (
-            sum(e.energy(instance, ready.scene, ready.system) for e in ready.plan.effects if e.ledger in ("contact", "wall"))
-            < 1e-4
-        )
+        assert sum(e.energy(instance) for e in ready.plan.effects if e.ledger in ("contact", "wall")) < 1e-4
 
 
 @pytest.mark.parametrize(

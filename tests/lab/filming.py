@@ -130,5 +130,5 @@ def film(text: str, style: str, pieces=(1, 150, 149), comm=None, more=()) -> tup
         for steps in pieces:
             instance.run(steps)
             frames.append([instance.array(a).copy() for a in "xvf"])
-        energies = [instance.kinetic_energy(), *(e.energy(instance, ready.scene, ready.system) for e in ready.plan.effects)]
+        energies = [instance.kinetic_energy(), *(e.energy(instance) for e in ready.plan.effects)]
         return np.array(frames), energies, np.array(instance.trace()), passes(instance)

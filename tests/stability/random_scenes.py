@@ -153,7 +153,7 @@ def play(scene: Text, tally: Tally, *more: str) -> Trial:
         if t.ready.plan.grid:
             tally.lost.append(t.lost_cells)
         touched = [
-            e.penetration(t.instance, t.system) > 0.0 or e.energy(t.instance, t.ready.scene, t.system) > 0.0
+            e.penetration(t.instance) > 0.0 or e.energy(t.instance) > 0.0
             for e in t.ready.plan.effects
             if e.ledger in ("contact", "wall")
         ]

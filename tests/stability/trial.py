@@ -75,11 +75,11 @@ class Trial:
     def _look(self, before: np.ndarray) -> None:
         if not (np.isfinite(self.x).all() and np.isfinite(self.v).all()):
             raise DivergedError("positions are no numbers any more")
-        scene, energies = self.ready.scene, dict.fromkeys(self.ledger.terms, 0.0)
+        energies = dict.fromkeys(self.ledger.terms, 0.0)
         energies["kinetic"] = self.kinetic(before)
         for effect in self.ready.plan.effects:
             if effect.ledger:
-                energies[effect.ledger] += effect.energy(self.instance, scene, self.system)
+                energies[effect.ledger] += effect.energy(self.instance)
         energies |= losses(self.instance)
         self.ledger.add(self.instance.step * self.timestep, energies)
         if self.ready.plan.grid:

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..scene.scene import Switch
 from .effect import Effect, Verdict
+from .readings import Readings
 from .springs import all_held
 
 LEAPFROG = "leap-frog"
@@ -23,12 +24,10 @@ def felt(scene, system) -> np.ndarray | None:
     return system.drag if on else None
 
 
-def slowed_share(instance) -> float:
+def slowed_share(readings: Readings) -> float:
     """Part of the leap-frog's time that goes to drag: of the particles that feel any now, after a run mostly at rest."""
-    if "lambda" not in instance.plan.columns:
-        return 0.0
-    free = ~instance.plan.system.held
-    more = SLOWING / (1.0 - SLOWING) * np.count_nonzero(instance.array("d_lambda")[free]) / max(1, np.count_nonzero(free))
+    free = ~readings.system.held
+    more = SLOWING / (1.0 - SLOWING) * np.count_nonzero(readings.array("d_lambda")[free]) / max(1, np.count_nonzero(free))
     return more / (1.0 + more)
 
 
@@ -48,11 +47,11 @@ class AirDrag(Effect):
     def friction(self, scene, system):
         return system.drag
 
-    def clocks(self, instance):
-        return {LEAPFROG: slowed_share(instance) * instance.fix_seconds("leapfrog")}
+    def clocks(self, readings):
+        return {LEAPFROG: slowed_share(readings) * readings.fix_seconds("leapfrog")}
 
     def losses(self, scene):
         return (DRAG_LOSS,)
 
-    def lost(self, instance, scene, system):
-        return {DRAG_LOSS: instance.fix_scalar("leapfrog")}
+    def lost(self, readings):
+        return {DRAG_LOSS: readings.fix_scalar("leapfrog")}

@@ -60,11 +60,11 @@ class Boundary(Effect):
             )
         ]
 
-    def energy(self, instance, scene, system):
-        return instance.fix_scalar(self.fix)
+    def energy(self, readings):
+        return readings.fix_scalar(self.fix)
 
-    def penetration(self, instance, system):
-        return instance.fix_value(self.fix, DEEPEST)
+    def penetration(self, readings):
+        return readings.fix_value(self.fix, DEEPEST)
 
     def rate(self, scene, system):
         # A wall does not move, so D_i alone bounds it, without the factor 2 of a pair.

@@ -170,14 +170,14 @@ class Contact(Effect):
             )
         ]
 
-    def energy(self, instance, scene, system):
-        return instance.fix_scalar(self.fix)
+    def energy(self, readings):
+        return readings.fix_scalar(self.fix)
 
-    def penetration(self, instance, system):
+    def penetration(self, readings):
         # A guard lies one spacing below its surface, so r = h means that surfaces touch; between lattice points, and for
         # thin objects, this says rather too much.
-        nearest = instance.fix_value(self.fix, NEAREST)
-        return max(0.0, (1.0 / REACH - nearest) * REACH * float(system.spacing.max()))
+        nearest = readings.fix_value(self.fix, NEAREST)
+        return max(0.0, (1.0 / REACH - nearest) * REACH * float(readings.system.spacing.max()))
 
 
 def largest_of_others(values: np.ndarray) -> np.ndarray:

@@ -100,18 +100,18 @@ class OnSurfaces(Effect):
         eta = 2.0 * beta * np.sqrt(kappa * (density * h).max() / 2.0)
         return eta[system.object] * borne_area(system) / system.mass
 
-    def lost(self, instance, scene, system):
-        return {term: instance.fix_value(self.fix, TAKEN[term]) for term in self.losses(scene)}
+    def lost(self, readings):
+        return {term: readings.fix_value(self.fix, TAKEN[term]) for term in self.losses(readings.scene)}
 
     def warnings(self, scene, system):
         # Surfaces that touch at the start are free of stress; those deeper in each other are refused (model/overlap.py).
         return []
 
-    def clocks(self, instance):
-        return {self.fix: instance.fix_value(self.fix, SECONDS)}
+    def clocks(self, readings):
+        return {self.fix: readings.fix_value(self.fix, SECONDS)}
 
-    def penetration(self, instance, system):
-        return instance.fix_value(self.fix, DEEPEST)
+    def penetration(self, readings):
+        return readings.fix_value(self.fix, DEEPEST)
 
 
 class SurfaceContact(OnSurfaces, Contact):
@@ -228,11 +228,11 @@ class SurfaceContact(OnSurfaces, Contact):
     def losses(self, scene):
         return (*super().losses(scene), LET_GO)
 
-    def energy(self, instance, scene, system):
-        return instance.fix_scalar(self.fix) + instance.fix_scalar(self.behind)
+    def energy(self, readings):
+        return readings.fix_scalar(self.fix) + readings.fix_scalar(self.behind)
 
-    def clocks(self, instance):
-        return {**super().clocks(instance), self.behind: instance.fix_seconds(self.behind)}
+    def clocks(self, readings):
+        return {**super().clocks(readings), self.behind: readings.fix_seconds(self.behind)}
 
 
 class SurfacePlanes(OnSurfaces, Boundary):

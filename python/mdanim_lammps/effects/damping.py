@@ -21,12 +21,12 @@ class Damping(Effect):
     def losses(self, scene):
         return ("damping_loss",)
 
-    def lost(self, instance, scene, system):
-        return {"damping_loss": instance.damping_loss()}
+    def lost(self, readings):
+        return {"damping_loss": readings.damping_loss()}
 
-    def clocks(self, instance):
-        more = time_of_dashpots(instance.plan.system)
-        return {"springs": instance.bond_seconds() * more / (1.0 + more)}
+    def clocks(self, readings):
+        more = time_of_dashpots(readings.system)
+        return {"springs": readings.bond_seconds() * more / (1.0 + more)}
 
     def drag_rate(self, scene, system):
         if system.damping is None:  # all damped solids are held as a whole by boxes, and have no springs

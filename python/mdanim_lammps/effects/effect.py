@@ -17,6 +17,7 @@ from ..scene.formatting import number
 from ..scene.scene import ContactModel, SceneRecord, Switch
 from .envelope import Envelope
 from .margin import Margin
+from .readings import Readings
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,9 +119,9 @@ class Effect:
         """The most that it adds to each particle's lambda, eq. (3.9) [N*s/m], shape (N,)."""
         return None
 
-    def energy(self, instance, scene: SceneRecord, system: System) -> float:
-        """What stands in its column ``ledger`` now [J]; ``instance`` is the running engine.instance.Instance."""
-        return self.potential(scene, system.mass, instance.array("x")) if self.has_potential else 0.0
+    def energy(self, readings: Readings) -> float:
+        """What stands in its column ``ledger`` now [J]."""
+        return self.potential(readings.scene, readings.system.mass, readings.array("x")) if self.has_potential else 0.0
 
     def potential(self, scene: SceneRecord, mass: np.ndarray, x: np.ndarray) -> float:
         """Its energy, where that follows from the places of particles alone [J]; mass [kg], shape (N,), x [m], shape (N, 3)."""
@@ -130,8 +131,8 @@ class Effect:
         """The columns of ledger.csv with the energies that it has taken so far."""
         return ()
 
-    def lost(self, instance, scene: SceneRecord, system: System) -> dict[str, float]:
-        """What stands in these columns now [J]; ``instance`` as in `energy`."""
+    def lost(self, readings: Readings) -> dict[str, float]:
+        """What stands in these columns now [J]."""
         return {}
 
     def planes(self, scene: SceneRecord) -> tuple[Plane, ...]:
@@ -175,14 +176,14 @@ class Effect:
         """IDs of the fixes whose scalars are its energy."""
         return (self.fix,) if self.fix else ()
 
-    def clocks(self, instance) -> dict[str, float]:
-        """Wall seconds so far of each of its pieces; ``instance`` as in `energy`.
+    def clocks(self, readings: Readings) -> dict[str, float]:
+        """Wall seconds so far of each of its pieces.
 
         What runs under the clock of another style has its part of that clock, as ``python bench/effects.py shares`` measures it.
         """
-        return {self.fix: instance.fix_seconds(self.fix)} if self.fix else {}
+        return {self.fix: readings.fix_seconds(self.fix)} if self.fix else {}
 
-    def penetration(self, instance, system: System) -> float:
+    def penetration(self, readings: Readings) -> float:
         """Deepest that something has been where it should not be, in this run [m]."""
         return 0.0
 

@@ -111,8 +111,8 @@ class LiquidAutomaton(Effect):
     def tables(self, scene, system):
         return {} if scene.liquid.model is LiquidModel.PAPER else {"cell": lattice_cells(system)}
 
-    def clocks(self, instance):
-        return {"automaton": instance.fix_value(self.fix, AUTOMATON), "occupancy": instance.fix_value(self.fix, OCCUPANCY)}
+    def clocks(self, readings):
+        return {"automaton": readings.fix_value(self.fix, AUTOMATON), "occupancy": readings.fix_value(self.fix, OCCUPANCY)}
 
     def max_timestep(self, scene, system):
         return PERIOD / EVERY * math.sqrt(min(system.grid.cell) / -scene.gravity[2])
@@ -175,12 +175,12 @@ class Buoyancy(Effect):
             stiffness = weight * system.volume / system.grid.cell[2]
         return np.where(system.held, 0.0, stiffness / system.mass)
 
-    def energy(self, instance, scene, system):
-        return instance.fix_scalar(LiquidAutomaton.fix)
+    def energy(self, readings):
+        return readings.fix_scalar(LiquidAutomaton.fix)
 
-    def clocks(self, instance):
-        drag = any(e.name == LiquidDrag.name for e in instance.plan.effects)
-        return {"coupling": instance.fix_value(LiquidAutomaton.fix, COUPLING) * (1.0 - DRAGGING * drag)}
+    def clocks(self, readings):
+        drag = any(e.name == LiquidDrag.name for e in readings.effects)
+        return {"coupling": readings.fix_value(LiquidAutomaton.fix, COUPLING) * (1.0 - DRAGGING * drag)}
 
 
 class LiquidDrag(Effect):
@@ -210,18 +210,18 @@ class LiquidDrag(Effect):
     def losses(self, scene):
         return (air_drag.DRAG_LOSS,)
 
-    def lost(self, instance, scene, system):
+    def lost(self, readings):
         # Where air drag is on, that effect tells it.
-        mine = 0.0 if air_drag.felt(scene, system) is not None else instance.fix_scalar("leapfrog")
+        mine = 0.0 if air_drag.felt(readings.scene, readings.system) is not None else readings.fix_scalar("leapfrog")
         return {air_drag.DRAG_LOSS: mine}
 
-    def clocks(self, instance):
+    def clocks(self, readings):
         # Where particles are immersed is looked up for buoyancy in any case; drag adds this to it,
         # and makes the leap-frog slower.
-        coupling = {"coupling": DRAGGING * instance.fix_value(LiquidAutomaton.fix, COUPLING)}
-        if any(e.name == air_drag.AirDrag.name for e in instance.plan.effects):
+        coupling = {"coupling": DRAGGING * readings.fix_value(LiquidAutomaton.fix, COUPLING)}
+        if any(e.name == air_drag.AirDrag.name for e in readings.effects):
             return coupling
-        return coupling | {air_drag.LEAPFROG: air_drag.slowed_share(instance) * instance.fix_seconds("leapfrog")}
+        return coupling | {air_drag.LEAPFROG: air_drag.slowed_share(readings) * readings.fix_seconds("leapfrog")}
 
 
 def gamma(scene, system: System) -> np.ndarray:

@@ -60,13 +60,13 @@ class Springs(Effect):
     def margins(self, envelope):
         return [amplitude(envelope), *load(envelope), thinnest(envelope)]
 
-    def energy(self, instance, scene, system):
-        return instance.elastic_energy()
+    def energy(self, readings):
+        return readings.elastic_energy()
 
-    def clocks(self, instance):
+    def clocks(self, readings):
         # A system has dashpots even where damping is switched off.
-        more = time_of_dashpots(instance.plan.system) if instance.plan.damped else 0.0
-        return {"springs": instance.bond_seconds() / (1.0 + more)}
+        more = time_of_dashpots(readings.system) if any(e.name == "damping" for e in readings.effects) else 0.0
+        return {"springs": readings.bond_seconds() / (1.0 + more)}
 
 
 def spring_norm(system, weight: np.ndarray) -> np.ndarray:

@@ -45,7 +45,7 @@ class Instance:
 
     def __init__(self, plan: Plan, comm=None):
         """``comm`` is an mpi4py communicator; None is this process alone. Raises SetupError."""
-        self.plan = plan
+        self.plan, self.scene, self.system, self.effects = plan, plan.scene, plan.system, plan.effects
         self._comm = comm if comm is not None and comm.Get_size() > 1 else None
         if self._comm and not plan.system.particles:
             raise SetupError("ranks share space by its particles, and the plan has none: run it on one process")

@@ -50,7 +50,7 @@ def stored(instance: Instance) -> dict[str, float]:
     found["kinetic"] = instance.kinetic_energy()
     for effect in effects:
         if not effect.has_potential:
-            found[effect.ledger] += effect.energy(instance, plan.scene, plan.system)
+            found[effect.ledger] += effect.energy(instance)
     return found
 
 
@@ -63,6 +63,6 @@ def losses(instance: Instance) -> dict[str, float]:
     """The terms of what has been lost since the instance was made [J]."""
     plan, found = instance.plan, dict.fromkeys(loss_terms(instance.plan), 0.0)
     for effect in plan.effects:
-        for term, energy in effect.lost(instance, plan.scene, plan.system).items():
+        for term, energy in effect.lost(instance).items():
             found[term] += energy
     return found

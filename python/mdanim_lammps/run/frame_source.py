@@ -183,7 +183,7 @@ def run_window(instance: Instance, steps: int) -> None:
 
 def penetration(instance: Instance) -> float:
     """Deepest that a boundary particle has been below a surface since the instance was set up [m]."""
-    return max([0.0, *(e.penetration(instance, instance.plan.system) for e in instance.plan.effects)])
+    return max([0.0, *(e.penetration(instance) for e in instance.plan.effects)])
 
 
 def liquid_frame(instance: Instance) -> LiquidFrame | None:

@@ -32,14 +32,13 @@ def seen(instance: Instance) -> dict[str, np.ndarray]:
         assert np.array_equal(instance.here(name), found[name][instance.rows()])
     assert instance.total(len(instance.here("x"))) == plan.system.particles
     found["speed"] = instance.top_speeds()
-    asked = (instance, plan.scene, plan.system)
-    energies = [effect.energy(*asked) for effect in plan.effects if effect.ledger]
-    losses = [loss for effect in plan.effects for loss in effect.lost(*asked).items()]
+    energies = [effect.energy(instance) for effect in plan.effects if effect.ledger]
+    losses = [loss for effect in plan.effects for loss in effect.lost(instance).items()]
     energies += [loss for term, loss in losses if term != "let_go"]  # nothing is let go where no cell is turned over
     return found | {
         "step": np.array(instance.step),
         "energies": np.array(energies),
-        "depths": np.array([effect.penetration(instance, plan.system) for effect in plan.effects]),
+        "depths": np.array([effect.penetration(instance) for effect in plan.effects]),
     }
 
 

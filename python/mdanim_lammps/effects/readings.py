@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What effects read of a simulation that is under way."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from ..model.system import System
+from ..scene.scene import SceneRecord
+
+if TYPE_CHECKING:
+    from .effect import Effect
+
+
+class Readings(Protocol):
+    """What an instance tells, at the last step of a `run` or after `setup` (engine/instance.py)."""
+
+    scene: SceneRecord
+    system: System
+    """What it simulates: all solids of the scene, or some."""
+    effects: tuple[Effect, ...]
+    """Those that are on."""
+
+    def array(self, name: str) -> np.ndarray:
+        """Positions ``x`` [m], shape (N, 3), or a property ``d_NAME`` of each particle, shape (N,)."""
+
+    def elastic_energy(self) -> float:
+        """Energy of all springs [J]."""
+
+    def damping_loss(self) -> float:
+        """Energy that dashpots have taken so far [J]."""
+
+    def bond_seconds(self) -> float:
+        """Wall seconds of the springs so far."""
+
+    def fix_scalar(self, fix: str) -> float:
+        """Energy of a fix [J]."""
+
+    def fix_value(self, fix: str, index: int) -> float:
+        """Entry ``index`` (from 0) of a fix's vector."""
+
+    def fix_seconds(self, fix: str) -> float:
+        """Wall seconds of one of our fixes so far."""
