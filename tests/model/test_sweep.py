@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mdanim_lammps.effects import EFFECTS, decide
 from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.model.sweep import Sweeps, _overlaps, bounding_radius, can_meet, closest, sweeps
+from mdanim_lammps.model.sweep import Sweeps, _overlaps, bounding_radius, closest, sweeps
 from mdanim_lammps.scene.parse import parse_scene
 from mdanim_lammps.scene.scene import Box, Cylinder, Torus
 
@@ -76,10 +76,9 @@ def pair(top="", a="", b=""):
 )
 def test_what_can_meet(scene, meet):
     """Tell pairs that may come within reach from those that cannot."""
-    found = can_meet(scene)
-    assert (found is not None) == meet
-    if meet:
-        assert [s.name for s in found] == ["a", "b"]
+    first, second, apart = closest(scene)
+    assert (apart == 0.0) == meet
+    assert (first.name, second.name) == ("a", "b")
 
 
 def test_contact_is_off_with_the_nearest_pair():
@@ -126,8 +125,8 @@ def test_held_beams_side_by_side_do_not_meet():
         )
         + "control { time 1 }\n"
     )
-    assert can_meet(parse_scene(text.replace("MODULUS", "1e9"))) is None
-    assert can_meet(parse_scene(text.replace("MODULUS", "1e5"))) is not None
+    assert closest(parse_scene(text.replace("MODULUS", "1e9")))[2] > 0.0
+    assert closest(parse_scene(text.replace("MODULUS", "1e5")))[2] == 0.0
 
 
 # --- pairs --------------------------------------------------------------------------------------------------

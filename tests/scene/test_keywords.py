@@ -4,7 +4,7 @@
 import pytest
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.scene.forms import alternatives
-from mdanim_lammps.scene.keywords import BLOCKS, KEYWORDS, all_keywords, explain
+from mdanim_lammps.scene.keywords import KEYWORDS, all_keywords
 from mdanim_lammps.scene.page import language_page
 from mdanim_lammps.scene.parse import parse_scene
 from mdanim_lammps.scene.scene import GLOBALS, QUANTITIES
@@ -100,18 +100,3 @@ def test_syntax_is_the_form_without_its_marks():
     """Show a form as people write it."""
     assert syntax(KEYWORDS["object"]["shape"]).startswith("box (lx, ly, lz) | sphere r | ellipsoid")
     assert syntax(KEYWORDS["render"]["camera"]) == "[T] from (x, y, z) look (x, y, z)|NAME [up (x, y, z)]"
-
-
-def test_explain_knows_every_word():
-    """Explain keywords in all their blocks, blocks and statements."""
-    for word in [*(k.name for k in WORDS), *BLOCKS, "let", "repeat", "include"]:
-        assert word in explain(word)
-    assert "in object { }" in explain("drag")
-    assert "in liquid { }" in explain("drag")
-    assert "must be > 0" in explain("mass")
-
-
-def test_explain_helps_with_a_mistyped_word():
-    """Name the nearest word."""
-    with pytest.raises(KeyError, match="did you mean 'elasticity'"):
-        explain("elastisity")

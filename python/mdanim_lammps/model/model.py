@@ -44,11 +44,32 @@ class Surface:
         return np.einsum("vk,vkd->vd", self.weight, position[self.index])
 
 
-class SpringTypes:
-    """Springs of few types: for records with a type for each spring, ``spring_type``,
-    and a row of ``constants`` for each type."""
+@dataclass(frozen=True)
+class Particles:
+    """N particles and S springs of few types: what one solid and a whole system have in common."""
 
-    __slots__ = ()
+    position: np.ndarray
+    """At the start, world frame [m], shape (N, 3)."""
+    velocity: np.ndarray
+    """At the start [m/s], shape (N, 3); zero for held particles."""
+    mass: np.ndarray
+    """[kg], shape (N,)."""
+    share: np.ndarray
+    """Filled share of the eight cells around a particle, n/8 [-], shape (N,)."""
+    layer: np.ndarray
+    """Layer of each particle, uint8, shape (N,)."""
+    held: np.ndarray
+    """Particles that never move, bool, shape (N,)."""
+    spring: np.ndarray
+    """Neighbour pairs i < j, 0-based, sorted by (i, j), int32, shape (S, 2)."""
+    spring_type: np.ndarray
+    """Type of each spring, from 1, the smallest unsigned integers that do, shape (S,)."""
+    constants: np.ndarray
+    """k [N/m], r0 [m] and dashpot [N*s/m] of each type, in the order in which they appear, shape (T, 3)."""
+    drag: np.ndarray | None
+    """lambda of each particle, in a solid in proportion to its mass [N*s/m], shape (N,); None where nothing has air drag."""
+    hexahedron: np.ndarray
+    """Corners of every filled lattice cell, particle indices in VTK order, int32, shape (C, 8)."""
 
     @property
     def stiffness(self) -> np.ndarray:
@@ -69,37 +90,15 @@ class SpringTypes:
         return self.constants[self.spring_type - 1, column]
 
 
-@dataclass(frozen=True, slots=True)
-class Model(SpringTypes):
-    """One solid as N particles, S springs and a surface; particles are numbered row by row, x fastest."""
+@dataclass(frozen=True)
+class Model(Particles):
+    """One solid; particles are numbered row by row, x fastest. The mass-weighted mean of its positions is that of the scene."""
 
     name: str
-    position: np.ndarray
-    """At the start, world frame [m], shape (N, 3); the mass-weighted mean is the solid's ``position``."""
-    velocity: np.ndarray
-    """Initial velocities [m/s], shape (N, 3); zero for held particles."""
-    mass: np.ndarray
-    """[kg], shape (N,); sums to the solid's mass."""
-    share: np.ndarray
-    """Filled share of the eight cells around a particle, n/8 [-], shape (N,)."""
-    layer: np.ndarray
-    """Layer of each particle, uint8, shape (N,)."""
-    held: np.ndarray
-    """Particles that never move, bool, shape (N,)."""
-    spring: np.ndarray
-    """Neighbour pairs i < j, 0-based, sorted by (i, j), int32, shape (S, 2)."""
-    spring_type: np.ndarray
-    """Type of each spring, from 1, the smallest unsigned integers that do, shape (S,)."""
-    constants: np.ndarray
-    """k [N/m], r0 [m] and dashpot [N*s/m] of each type, in the order in which they appear, shape (T, 3)."""
-    hexahedron: np.ndarray
-    """Corners of every filled cell, particle indices in VTK order, int32, shape (C, 8)."""
     cell: tuple[float, float, float]
     """Cell edges along the body axes [m]."""
     young: float
     """Young's modulus [Pa]; for ``elasticity spring k`` that of an endless lattice of this k."""
-    drag: np.ndarray | None
-    """lambda of each particle, in proportion to its mass [N*s/m], shape (N,); None without air drag."""
     surface: Surface
     frame: BodyFrame
     """Its shape and cells; objects of equal shape share one, and with it the contact body."""

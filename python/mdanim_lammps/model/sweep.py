@@ -46,13 +46,6 @@ class Sweeps:
     """Solids that are held entirely, bool, shape (M,): two of them never are in contact."""
 
 
-def can_meet(scene: SceneRecord, planes: Iterable[Plane] | None = None) -> tuple[Solid, Solid] | None:
-    """Two solids that may come within reach of each other, or None where no two can.
-    Raises SceneError for a mesh that is no body."""
-    first, second, apart = closest(scene, planes)
-    return None if apart > 0.0 else (first, second)
-
-
 def closest(scene: SceneRecord, planes: Iterable[Plane] | None = None) -> tuple[Solid, Solid, float]:
     """Two solids of which one can move, and what stays between their boxes at least, along one axis [m].
 

@@ -13,37 +13,17 @@ from ..scene.scene import SceneRecord
 from . import shapes
 from .basin import Grid, scene_grid
 from .contact_body import BodyFrame, ContactBody
-from .model import Layer, Model, SpringTypes
+from .model import Layer, Model, Particles
 from .springs import types
 
 
 @dataclass(frozen=True)
-class System(SpringTypes):
-    """M solids as N particles and S springs; particle ``i`` has the LAMMPS tag ``i + 1``, solid ``m`` the molecule ``m + 1``."""
+class System(Particles):
+    """M solids; particle ``i`` has the LAMMPS tag ``i + 1``, solid ``m`` the molecule ``m + 1``."""
 
     names: tuple[str, ...]
     first: np.ndarray
     """First particle of each solid, and N at the end, int64, shape (M + 1,)."""
-    position: np.ndarray
-    """[m], shape (N, 3)."""
-    velocity: np.ndarray
-    """[m/s], shape (N, 3)."""
-    mass: np.ndarray
-    """[kg], shape (N,)."""
-    share: np.ndarray
-    """Filled share of the cells around a particle [-], shape (N,)."""
-    layer: np.ndarray
-    """Layer of each particle, uint8, shape (N,)."""
-    held: np.ndarray
-    """Particles that never move, bool, shape (N,)."""
-    spring: np.ndarray
-    """Neighbour pairs i < j, sorted, int32, shape (S, 2)."""
-    spring_type: np.ndarray
-    """Type of each spring, from 1, the smallest unsigned integers that do, shape (S,)."""
-    constants: np.ndarray
-    """k [N/m], r0 [m] and dashpot [N*s/m] of each type, shape (T, 3)."""
-    drag: np.ndarray | None
-    """lambda of each particle [N*s/m], shape (N,); None when no solid has air drag."""
     young: np.ndarray
     """Young's modulus of each solid [Pa], shape (M,)."""
     spacing: np.ndarray
@@ -52,8 +32,6 @@ class System(SpringTypes):
     """Volume of a lattice cell of each solid [m^3], shape (M,)."""
     per_mass: np.ndarray
     """True volume of each solid over its mass [m^3/kg], shape (M,)."""
-    hexahedron: np.ndarray
-    """Corners of every filled lattice cell, particle numbers in VTK order, int32, shape (C, 8)."""
     contact_kind: np.ndarray
     """Kind of body of each solid as contact sees it, by which solid has it first, int32, shape (M,)."""
     frames: tuple[BodyFrame, ...]

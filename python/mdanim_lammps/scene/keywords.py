@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 
 from .scene import ContactPair, Control, Liquid, Render, SceneRecord, Solid, Switch
-from .schema import Keyword, Rule, Words, keywords, syntax, units_shown
+from .schema import Keyword, Words, keywords
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,44 +159,6 @@ def did_you_mean(word: str, choices) -> str:
 def nearest(word: str, choices) -> str | None:
     """The choice that a mistyped word most likely stands for."""
     return next(iter(get_close_matches(word, list(choices), 1, 0.7)), None)
-
-
-def explain(word: str) -> str:
-    """Explain one word of the language for people; raises KeyError with a way out for an unknown one."""
-    parts = []
-    if word in STATEMENTS:
-        form, about = STATEMENTS[word]
-        parts.append(f"{form}\n  {about}")
-    if word in BLOCKS:
-        block = BLOCKS[word]
-        parts.append(f"{block.head} {{ ... }}\n  {block.about}\n  settings: {', '.join(KEYWORDS[word])}")
-    for k in all_keywords():
-        if k.name == word:
-            where = f"in {k.block} {{ }}" if k.block else "outside of all blocks"
-            facts = [f"{k.name} {syntax(k)}   ({where})", k.about, *_facts(k), example(k)]
-            parts.append("\n  ".join(facts))
-    if not parts:
-        known = [*STATEMENTS, *BLOCKS, *(k.name for k in all_keywords())]
-        raise KeyError(f"'{word}' is no word of the scene language; {did_you_mean(word, known)}")
-    return "\n\n".join(parts)
-
-
-def _facts(k: Keyword) -> list[str]:
-    """Unit, rule and default of a keyword, one line each."""
-    facts = []
-    if units_shown(k):
-        facts.append(f"unit: {units_shown(k)}")
-    if k.rule is not Rule.ANY:
-        facts.append(f"must be {k.rule.value}")
-    if k.needed:
-        facts.append("must be given")
-    elif k.one_of:
-        facts.append(f"exactly one of {' and '.join(k.one_of)} is given")
-    elif k.default:
-        facts.append(f"default: {k.default}")
-    if k.many:
-        facts.append("may be given several times")
-    return facts
 
 
 if __name__ == "__main__":
