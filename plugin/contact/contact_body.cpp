@@ -139,7 +139,7 @@ Depth<double> ContactBody::depth(int side, const Vec3 &X) const
   for (int d = 0; d < 3; ++d) {
     const double x = component(X, d) + DEPTH_MARGIN;
     const int middle = middle_node(x, depth_row(grid, d) - 1);
-    weights[d] = depth_weights<double>(x, middle);
+    depth_weights<double>(x, middle, weights[d]);
     first += (middle - 1) * step[d];
   }
   return depth_by_splines(weights, [&](int j, int k) { return vec3(first + nx * (j + ny * k)); });

@@ -172,39 +172,30 @@ ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, cons
   }
   const ContactPush<double> push =
       contact_push(task.law, task.dt, now.area, part, part_slope, turn, below, spot, off, shift, contact.state);
-  contact.force = push.on_point;
-  contact.moved = push.moved;
-  contact.energy = push.energy;
+  contact.last = push.outcome;
 
   Row *on = arrays.force();
-  near.add_force(q, push.on_point, on);
+  near.add_force(q, push.outcome.force, on);
   if (is_on_ramp(part_slope)) near.add_force_at_centre(q, push.at_centre, on);
   spread(at, weights, -1.0 * push.both, {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]}, on);
   count(contact, push.heat, push.damped, account);
   return Fate::STAYS;
 }
 
-// As push(), of what the kernel has worked out.
-void ContactField::take(FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,
+// As push(), of what the kernel has worked out. All forces of a block are added at once where that leaves the order of sums.
+void ContactField::take(const FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,
                         ContactAccount &account) const
 {
   const PushedContact<double> &found = pushed.contact[lane];
-  for (int d = 0; d < 3; ++d) contact.cell[d] = pushed.cell[lane][d];
-  contact.state = found.state;
-  contact.force = found.force;
-  contact.moved = found.moved;
-  contact.energy = found.energy;
-
-  Row *on = arrays.force();
-  near.add_force(q, contact.force, on);
-  if (pushed.on_ramp >> lane & 1) near.add_force_at_centre(q, found.at_centre, on);
-  arrays.kernels->add_to_nodes(pushed, lane, on);
+  if (pushed.hard) arrays.kernels->add_to_nodes(pushed, lane, lane + 1, arrays.force());
+  near.add_force(q, contact.last.force, arrays.force());
+  if (pushed.on_ramp >> lane & 1) near.add_force_at_centre(q, found.at_centre, arrays.force());
   count(contact, found.heat, found.damped, account);
 }
 
 void ContactField::count(const FieldContact &contact, double heat, double damped, ContactAccount &account) const
 {
-  account.energy += contact.energy;
+  account.energy += contact.last.energy;
   account.stick_energy += contact.state.memory.stick_energy;
   account.heat += heat;
   account.damped += damped;
@@ -219,7 +210,7 @@ void ContactField::end(const FieldContact &contact, std::size_t q, Fate fate, co
   account.heat += contact.state.memory.stick_energy;
   if (fate == Fate::LOST) {
     // The last force still did work in half of the last step, as leap-frog counts it.
-    account.let_go += contact.energy - 0.5 * dot(contact.force, contact.moved);
+    account.let_go += contact.last.energy - 0.5 * dot(contact.last.force, contact.last.moved);
     watch[q] = Watch{{-1, -1, -1}, {}, EVERY_SIDE};
     wake[q] = AT_ONCE;
   } else {
@@ -267,8 +258,11 @@ void ContactField::push_run(std::size_t first, std::size_t end, std::size_t &lef
   PushedBlock pushed;
   for (std::size_t c = first; c < end; ++c) {
     const std::size_t lane = (c - first) % CONTACT_LANES;
-    if (lane == 0 && arrays.kernels)
-      arrays.kernels->push(task, &contacts[c], &now[c], static_cast<int>(std::min<std::size_t>(CONTACT_LANES, end - c)), pushed);
+    if (lane == 0 && arrays.kernels) {
+      const int lanes = static_cast<int>(std::min<std::size_t>(CONTACT_LANES, end - c));
+      arrays.kernels->push(task, &contacts[c], &now[c], lanes, pushed);
+      if (!pushed.hard) arrays.kernels->add_to_nodes(pushed, 0, lanes, arrays.force());
+    }
     Fate fate = Fate::STAYS;
     if (!arrays.kernels || pushed.hard >> lane & 1)
       fate = push(contacts[c], of_contact[c], task, now[c], arrays, account);

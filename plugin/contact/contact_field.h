@@ -87,7 +87,7 @@ class ContactField {
   void go_on(FieldContact &contact, const Hop &hop, const Spot<double> &spot) const;
   Fate push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now, ContactArrays &arrays,
             ContactAccount &account) const;
-  void take(FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,
+  void take(const FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,
             ContactAccount &account) const;
   void count(const FieldContact &contact, double heat, double damped, ContactAccount &account) const;
   void push_run(std::size_t first, std::size_t end, std::size_t &left, const PushTask &task, ContactArrays &arrays,

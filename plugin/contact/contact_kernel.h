@@ -32,11 +32,8 @@ struct PushTask {
   bool is_smooth;    // the map
 };
 
-// What a contact comes to in a step.
+// What a contact comes to in a step, besides what it keeps.
 template <class Real> struct PushedContact {
-  ContactState<Real> state;
-  Vec<Real> force, moved;    // as those of FieldContact
-  Real energy;
   Vec<Real> at_centre;    // force there
   Real heat, damped;      // [J]
 };
@@ -45,7 +42,7 @@ template <class Real> struct PushedContact {
 struct PushedBlock {
   int hard, on_ramp;    // one bit for each lane; there is a force at the centre
   PushedContact<double> contact[CONTACT_LANES];
-  int cell[CONTACT_LANES][3];
+  FieldContact unused;                // what lanes in `hard` would keep
   const int *slots[CONTACT_LANES];    // of the host's nodes, from the first on
   int nodes;
   long step[27];    // from the first node to this one
@@ -54,10 +51,10 @@ struct PushedBlock {
 
 struct ContactKernels {
   const char *name;    // as those of engine/kernels.h
-  // The first `n` of the contacts from `first` on, all of points of one kind.
-  void (*push)(const PushTask &, const FieldContact *first, const PointNow *now, int n, PushedBlock &pushed);
-  // The forces of a lane on the host's nodes.
-  void (*add_to_nodes)(const PushedBlock &pushed, int lane, Row *on);
+  // The first `n` of the contacts from `first` on, all of points of one kind; those in `hard` stay as they are.
+  void (*push)(const PushTask &, FieldContact *first, const PointNow *now, int n, PushedBlock &pushed);
+  // The forces of lanes from `first` to `end` - 1 on the host's nodes.
+  void (*add_to_nodes)(const PushedBlock &pushed, int first, int end, Row *on);
 };
 
 // Those of a set of instructions that runs here; those of all processors for a name that is not known.

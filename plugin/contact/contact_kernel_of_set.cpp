@@ -34,33 +34,28 @@ template <class OfLane> MDANIM_ALWAYS_INLINE Vec<Four> gather_rows(const OfLane 
 }
 
 // Records of doubles, one of each lane, as one of vectors, and the other way round.
-template <class Vectors, class OfLane> MDANIM_ALWAYS_INLINE Vectors gather_record(const OfLane &record)
+template <class Vectors, class OfLane> MDANIM_ALWAYS_INLINE void gather_record(const OfLane &record, Vectors &vectors)
 {
   constexpr int N = sizeof(Vectors) / sizeof(Four);
   static_assert(sizeof(*record(0)) == N * sizeof(double), "they have the same members");
-  struct {
-    Four column[N];
-  } all;
-  load_columns([&](int lane) { return reinterpret_cast<const double *>(record(lane)); }, all.column);
-  return __builtin_bit_cast(Vectors, all);
+  load_columns([&](int lane) { return reinterpret_cast<const double *>(record(lane)); }, reinterpret_cast<Four(&)[N]>(vectors));
 }
 
 template <class Vectors, class OfLane> MDANIM_ALWAYS_INLINE void scatter_record(const Vectors &vectors, const OfLane &record)
 {
   constexpr int N = sizeof(Vectors) / sizeof(Four);
   static_assert(sizeof(*record(0)) == N * sizeof(double), "they have the same members");
-  struct All {
-    Four column[N];
-  };
-  store_columns(__builtin_bit_cast(All, vectors).column, [&](int lane) { return reinterpret_cast<double *>(record(lane)); });
+  store_columns(reinterpret_cast<const Four(&)[N]>(vectors), [&](int lane) { return reinterpret_cast<double *>(record(lane)); });
 }
 
 // Nodes of the smooth map, or of a depth, around X along an axis: the middle ones as numbers, and in lanes.
 MDANIM_ALWAYS_INLINE Four middle_nodes(const Four &x, int cells, int (&middle)[LANES])
 {
-#pragma GCC unroll 8
-  for (int lane = 0; lane < LANES; ++lane) middle[lane] = middle_node(x[lane], cells);
-  return gather([&](int lane) { return static_cast<double>(middle[lane]); });
+  typedef int Numbers __attribute__((vector_size(LANES * sizeof(int))));
+  const Numbers nearest = __builtin_convertvector(x + 0.5, Numbers), most = Numbers{} + (cells - 1), one = Numbers{} + 1;
+  const Numbers below = nearest < most ? nearest : most, inside = below > one ? below : one;    // as middle_node() does
+  store(middle, inside);
+  return __builtin_convertvector(inside, Four);
 }
 
 MDANIM_ALWAYS_INLINE Depth<Four> depth_by_splines(const Lattice &host, const Vec<Four> &X)
@@ -73,7 +68,7 @@ MDANIM_ALWAYS_INLINE Depth<Four> depth_by_splines(const Lattice &host, const Vec
   for (int d = 0; d < 3; ++d) {
     const Four x = component(X, d) + static_cast<double>(DEPTH_MARGIN);
     int middle[LANES];
-    weights[d] = depth_weights(x, middle_nodes(x, depth_row(host, d) - 1, middle));
+    depth_weights(x, middle_nodes(x, depth_row(host, d) - 1, middle), weights[d]);
 #pragma GCC unroll 8
     for (int lane = 0; lane < LANES; ++lane) first[lane] += (middle[lane] - 1) * (d == 0 ? 1 : d == 1 ? row : layer);
   }
@@ -117,12 +112,12 @@ template <bool SMOOTH> MDANIM_ALWAYS_INLINE void follow(const PushTask &task, co
       if (SMOOTH) {
         int middle[LANES];
         cell[d] = middle_nodes(component(found.guess, d), host.cells[d], middle);
-        found.weights[d] = smooth_weights(component(found.guess, d), cell[d], host.cells[d]);
+        smooth_weights(component(found.guess, d), cell[d], host.cells[d], found.weights[d]);
 #pragma GCC unroll 8
         for (int lane = 0; lane < LANES; ++lane) found.slots[lane] += (middle[lane] - 1) * step;
       } else {
         cell[d] = gather([&](int lane) { return static_cast<double>(found.cell[lane][d]); });
-        found.weights[d] = linear_weights(component(found.guess, d), cell[d]);
+        linear_weights(component(found.guess, d), cell[d], found.weights[d]);
 #pragma GCC unroll 8
         for (int lane = 0; lane < LANES; ++lane) found.slots[lane] += found.cell[lane][d] * step;
       }
@@ -172,8 +167,7 @@ template <bool SMOOTH> MDANIM_ALWAYS_INLINE void follow(const PushTask &task, co
 }
 
 template <bool SMOOTH, bool CUBOID>
-MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, const FieldContact *first, const PointNow *now, int n,
-                                     PushedBlock &pushed)
+MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, FieldContact *first, const PointNow *now, int n, PushedBlock &pushed)
 {
   const Lattice &host = task.host;
   int number[LANES];    // lanes without a contact repeat the last one
@@ -189,8 +183,10 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, const FieldContact *f
 #pragma GCC unroll 3
     for (int d = 0; d < 3; ++d) found.cell[lane][d] = contact(lane).cell[d];
   follow<SMOOTH>(task, gather_rows([&](int lane) { return &now[number[lane]].x.x; }), found);
-  const PointOf<Four> point = gather_record<PointOf<Four>>([&](int lane) { return &now[number[lane]]; });
-  ContactState<Four> state = gather_record<ContactState<Four>>([&](int lane) { return &contact(lane).state; });
+  PointOf<Four> point;
+  gather_record([&](int lane) { return &now[number[lane]]; }, point);
+  ContactState<Four> state;
+  gather_record([&](int lane) { return &contact(lane).state; }, state);
   const Vec<Four> X = found.guess + found.off;
   state.change = X - state.X;
   state.X = X;
@@ -224,26 +220,32 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, const FieldContact *f
                           });
   pushed.hard = (found.lost | ~bits(stays)) & ((1 << n) - 1);
   pushed.on_ramp = bits(is_on_ramp(part_slope));
+  FieldContact *to[LANES];
 #pragma GCC unroll 8
   for (int lane = 0; lane < LANES; ++lane) {
     pushed.slots[lane] = found.slots[lane];
+    to[lane] = lane < n && !(pushed.hard >> lane & 1) ? first + lane : &pushed.unused;
 #pragma GCC unroll 3
-    for (int d = 0; d < 3; ++d) pushed.cell[lane][d] = found.cell[lane][d];
+    for (int d = 0; d < 3; ++d) to[lane]->cell[d] = found.cell[lane][d];
   }
-  const PushedContact<Four> result = {state, push.on_point, push.moved, push.energy, push.at_centre, push.heat, push.damped};
-  scatter_record(result, [&](int lane) { return &pushed.contact[lane]; });
+  scatter_record(state, [&](int lane) { return &to[lane]->state; });
+  scatter_record(push.outcome, [&](int lane) { return &to[lane]->last; });
+  const PushedContact<Four> more = {push.at_centre, push.heat, push.damped};
+  scatter_record(more, [&](int lane) { return &pushed.contact[lane]; });
 }
 
-void add_to_nodes(const PushedBlock &pushed, int lane, Row *on)
+void add_to_nodes(const PushedBlock &pushed, int first, int end, Row *on)
 {
-  const int *slots = pushed.slots[lane];
-  for (int n = 0; n < pushed.nodes; ++n) {
-    double *to = &on[slots[pushed.step[n]]].value.x;
-    store(to, load<Four>(to) + load<Four>(&pushed.on_node[n][lane].value.x));
+  for (int lane = first; lane < end; ++lane) {
+    const int *slots = pushed.slots[lane];
+    for (int node = 0; node < pushed.nodes; ++node) {
+      double *to = &on[slots[pushed.step[node]]].value.x;
+      store(to, load<Four>(to) + load<Four>(&pushed.on_node[node][lane].value.x));
+    }
   }
 }
 
-void push(const PushTask &task, const FieldContact *first, const PointNow *now, int n, PushedBlock &pushed)
+void push(const PushTask &task, FieldContact *first, const PointNow *now, int n, PushedBlock &pushed)
 {
   if (task.host.depth)
     push_block<false, false>(task, first, now, n, pushed);

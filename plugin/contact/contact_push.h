@@ -46,10 +46,11 @@ MDANIM_ALWAYS_INLINE Depth<Real> depth_below(const Side<Real> &side, const Latti
 }
 
 // Factors of centred quadratic B-splines at x along an axis of the depth, for three nodes around the middle one.
-template <class Real> MDANIM_ALWAYS_INLINE AxisWeights<Real> depth_weights(const Real &x, const Real &middle)
+template <class Real> MDANIM_ALWAYS_INLINE void depth_weights(const Real &x, const Real &middle, AxisWeights<Real> &of)
 {
   const Real u = smaller(larger(x - middle, constant<Real>(-0.5)), constant<Real>(0.5)), p = 0.5 - u, q = 0.5 + u;
-  return {{0.5 * p * p, 0.75 - u * u, 0.5 * q * q}, {-p, -2.0 * u, q}, true, true};
+  of.w[0] = 0.5 * p * p, of.w[1] = 0.75 - u * u, of.w[2] = 0.5 * q * q;
+  of.slope[0] = -p, of.slope[1] = -2.0 * u, of.slope[2] = q;
 }
 
 MDANIM_ALWAYS_INLINE int depth_row(const Lattice &host, int axis) { return host.cells[axis] + 1 + 2 * DEPTH_MARGIN; }
@@ -114,11 +115,18 @@ template <class Real> struct ContactState {
   ContactMemory<Real> memory;
 };
 
+// What is asked for when a contact ends.
+template <class Real> struct ContactOutcome {
+  Vec<Real> force;    // on the point [N]
+  Vec<Real> moved;    // against the host in the step [m]
+  Real energy;        // of the pressure [J]
+};
+
 // Of one point. The host gets -(N_b both + dN_b/dX . moment).
 template <class Real> struct ContactPush {
-  Vec<Real> on_point, at_centre, both, moment[3];
-  Vec<Real> moved;    // against the host in this step [m]
-  Real energy, heat, damped;
+  ContactOutcome<Real> outcome;
+  Vec<Real> at_centre, both, moment[3];
+  Real heat, damped;
 };
 
 // A slope of the part that counts.
@@ -156,14 +164,13 @@ MDANIM_ALWAYS_INLINE ContactPush<Real> contact_push(const ContactLaw &law, doubl
     lean = force.kept * lean;
     state.anchor = state.X + lean;
   }
-  push.on_point = -force.press * normal + force.pull + force.drag + force.surface_energy * turn;
+  const Vec<Real> on_point = -force.press * normal + force.pull + force.drag + force.surface_energy * turn;
   push.at_centre = -force.surface_energy * spot.gradient(part_slope);
-  push.both = push.on_point + push.at_centre;
+  push.both = on_point + push.at_centre;
 #pragma GCC unroll 3
   for (int d = 0; d < 3; ++d)
     push.moment[d] = component(off, d) * push.both + component(shift, d) * push.at_centre + component(lean, d) * force.pull;
-  push.moved = spot.to_space(state.change);
-  push.energy = part * force.surface_energy;
+  push.outcome = {on_point, spot.to_space(state.change), part * force.surface_energy};
   push.heat = force.heat;
   push.damped = force.damped;
   return push;

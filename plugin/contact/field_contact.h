@@ -15,9 +15,7 @@ struct FieldContact {
   std::int32_t point, side;
   std::int32_t cell[3], spare;
   ContactState<double> state;
-  Vec3 force;       // on the point in the last step [N]
-  Vec3 moved;       // against the host in the last step [m]
-  double energy;    // of the pressure, in the last step [J]
+  ContactOutcome<double> last;    // of the last step
 };
 
 }    // namespace mdanim

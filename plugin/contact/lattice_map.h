@@ -53,15 +53,22 @@ MDANIM_ALWAYS_INLINE bool step_to_neighbour(const Lattice &grid, int (&cell)[3],
 // Factors of the weights along an axis, for three nodes from the base on; one that is not used in any lane has no weight.
 template <class Real> struct AxisWeights {
   Real w[3], slope[3];
+  Real bend;    // derivatives of the slopes are bend, -2 bend and bend
   bool uses_first, uses_last;
-  Real bend[3]{};    // derivatives of the slopes
 };
 
 template <class Real> using Weights = AxisWeights<Real>[3];
 
+// Weights are written where they stay: a copy of them, which compilers make byte by byte, takes as long as working them out.
+
 // Of the two nodes of a cell.
-template <class Real> MDANIM_ALWAYS_INLINE AxisWeights<Real> linear_weights(const Real &x, const Real &cell)
-{ return {{1.0 - (x - cell), x - cell, Real{}}, {constant<Real>(-1.0), constant<Real>(1.0), Real{}}, true, false}; }
+template <class Real> MDANIM_ALWAYS_INLINE void linear_weights(const Real &x, const Real &cell, AxisWeights<Real> &of)
+{
+  of.w[0] = 1.0 - (x - cell), of.w[1] = x - cell, of.w[2] = Real{};
+  of.slope[0] = constant<Real>(-1.0), of.slope[1] = constant<Real>(1.0), of.slope[2] = Real{};
+  of.bend = Real{};
+  of.uses_first = true, of.uses_last = false;
+}
 
 // The middle one of three nodes whose splines are at x, of an axis with `cells`.
 MDANIM_ALWAYS_INLINE int middle_node(double x, int cells)
@@ -71,20 +78,24 @@ MDANIM_ALWAYS_INLINE int middle_node(double x, int cells)
   return below > 1 ? below : 1;
 }
 
-template <class Real> MDANIM_ALWAYS_INLINE AxisWeights<Real> smooth_weights(const Real &x, const Real &middle, int cells)
+template <class Real>
+MDANIM_ALWAYS_INLINE void smooth_weights(const Real &x, const Real &middle, int cells, AxisWeights<Real> &of)
 {
-  if (cells == 1) return linear_weights(x, Real{});
+  if (cells == 1) {
+    linear_weights(x, Real{}, of);
+    return;
+  }
   const Real u = x - middle, p = 0.5 - u, q = 0.5 + u, none{}, one = constant<Real>(1.0);
   const auto low = x<0.5, high = x> cells - 0.5;    // near a face
   const Real inside = pick(low, x, x - (cells - 1.0));
-  return {
-      {pick(low, 1.0 - inside, pick(high, none, 0.5 * p * p)), pick(low, inside, pick(high, 1.0 - inside, 0.75 - u * u)),
-       pick(low, none, pick(high, inside, 0.5 * q * q))},
-      {pick(low, -one, pick(high, none, -p)), pick(low, one, pick(high, -one, -2.0 * u)), pick(low, none, pick(high, one, q))},
-      any(x < cells - 0.5),
-      any(x >= 0.5),
-      {pick(low, none, pick(high, none, one)), pick(low, none, pick(high, none, -2.0 * one)),
-       pick(low, none, pick(high, none, one))}};
+  of.w[0] = pick(low, 1.0 - inside, pick(high, none, 0.5 * p * p));
+  of.w[1] = pick(low, inside, pick(high, 1.0 - inside, 0.75 - u * u));
+  of.w[2] = pick(low, none, pick(high, inside, 0.5 * q * q));
+  of.slope[0] = pick(low, -one, pick(high, none, -p));
+  of.slope[1] = pick(low, one, pick(high, -one, -2.0 * u));
+  of.slope[2] = pick(low, none, pick(high, one, q));
+  of.bend = pick(low, none, pick(high, none, one));
+  of.uses_first = any(x < cells - 0.5), of.uses_last = any(x >= 0.5);
 }
 
 // x(X) and its gradient: columns J = dx/dX, rows K of the inverse.
@@ -156,6 +167,7 @@ template <class Real, class Place>
 MDANIM_ALWAYS_INLINE Vec<Real> change_of_gradient(const Weights<Real> &weights, const Place &place, const Vec<Real> &along,
                                                   const Vec<Real> &way)
 {
+  constexpr double BEND[3] = {1.0, -2.0, 1.0};
   const AxisWeights<Real> &ax = weights[0], &ay = weights[1], &az = weights[2];
   Real xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
 #pragma GCC unroll 3
@@ -170,14 +182,15 @@ MDANIM_ALWAYS_INLINE Vec<Real> change_of_gradient(const Weights<Real> &weights, 
       for (int i = 0; i < 3; ++i) {
         if (!uses<true>(ax, i)) continue;
         const Real at = dot(along, place(i, j, k));
-        t += ax.w[i] * at, tx += ax.slope[i] * at, txx += ax.bend[i] * at;
+        t += ax.w[i] * at, tx += ax.slope[i] * at, txx += BEND[i] * at;
       }
       s += ay.w[j] * t, sx += ay.w[j] * tx, sxx += ay.w[j] * txx;
-      sy += ay.slope[j] * t, sxy += ay.slope[j] * tx, syy += ay.bend[j] * t;
+      sy += ay.slope[j] * t, sxy += ay.slope[j] * tx, syy += BEND[j] * t;
     }
     xx += az.w[k] * sxx, xy += az.w[k] * sxy, yy += az.w[k] * syy;
-    xz += az.slope[k] * sx, yz += az.slope[k] * sy, zz += az.bend[k] * s;
+    xz += az.slope[k] * sx, yz += az.slope[k] * sy, zz += BEND[k] * s;
   }
+  xx = ax.bend * xx, yy = ay.bend * yy, zz = az.bend * zz;
   return {xx * way.x + xy * way.y + xz * way.z, xy * way.x + yy * way.y + yz * way.z, xz * way.x + yz * way.y + zz * way.z};
 }
 

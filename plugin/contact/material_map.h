@@ -30,18 +30,24 @@ struct MapWeights {
 
 inline MapWeights trilinear(const Vec3 &X, const std::array<int, 3> &cell, const ContactBody &body)
 {
-  return {{linear_weights<double>(X.x, cell[0]), linear_weights<double>(X.y, cell[1]), linear_weights<double>(X.z, cell[2])},
-          false,
-          body.place(cell[0], cell[1], cell[2])};
+  MapWeights weights;
+  for (int d = 0; d < 3; ++d) linear_weights<double>(component(X, d), cell[d], weights.axis[d]);
+  weights.is_smooth = false;
+  weights.base = body.place(cell[0], cell[1], cell[2]);
+  return weights;
 }
 
 inline MapWeights smooth(const Vec3 &X, const ContactBody &body)
 {
-  const int middle[3] = {middle_node(X.x, body.count(0)), middle_node(X.y, body.count(1)), middle_node(X.z, body.count(2))};
-  return {{smooth_weights<double>(X.x, middle[0], body.count(0)), smooth_weights<double>(X.y, middle[1], body.count(1)),
-           smooth_weights<double>(X.z, middle[2], body.count(2))},
-          true,
-          body.place(middle[0] - 1, middle[1] - 1, middle[2] - 1)};
+  MapWeights weights;
+  int middle[3];
+  for (int d = 0; d < 3; ++d) {
+    middle[d] = middle_node(component(X, d), body.count(d));
+    smooth_weights<double>(component(X, d), middle[d], body.count(d), weights.axis[d]);
+  }
+  weights.is_smooth = true;
+  weights.base = body.place(middle[0] - 1, middle[1] - 1, middle[2] - 1);
+  return weights;
 }
 
 // False when a particle with a weight is not there.

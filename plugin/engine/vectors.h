@@ -28,7 +28,7 @@ template <class Vector> struct __attribute__((packed, may_alias)) Unaligned {
 template <class Vector> MDANIM_ALWAYS_INLINE Vector load(const double *from)
 { return reinterpret_cast<const Unaligned<Vector> *>(from)->value; }
 
-template <class Vector> MDANIM_ALWAYS_INLINE void store(double *to, const Vector &value)
+template <class Number, class Vector> MDANIM_ALWAYS_INLINE void store(Number *to, const Vector &value)
 { reinterpret_cast<Unaligned<Vector> *>(to)->value = value; }
 
 // Elements of two vectors, those of the second numbered on.
