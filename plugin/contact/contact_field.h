@@ -68,6 +68,7 @@ class ContactField {
   void guess(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X, double &off);
   std::array<int, 3> cell_of(const Vec3 &X) const;
   std::array<int, 3> cell_beyond(const Vec3 &x, const Vec3 &X, std::array<int, 3> cell, const Placed &at, double &room) const;
+  double slack_of_far(const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre, double off) const;
   Verdict judge(const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre, const Spot<double> &spot, const Vec3 &normal,
                 double off) const;
   bool world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const;

@@ -135,6 +135,32 @@ Ramps ContactField::ramps(PointKind kind) const
   return ramps;
 }
 
+// The slack of a point that is so far from each side of the host that its own normal does not matter, as judge() would tell it; 0
+// for one that is not. Beside a cuboid some of the sides are far above the point: what keeps it from these are their edges.
+double ContactField::slack_of_far(const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre, double off) const
+{
+  const double least = PRESSED * (LEAST_COSINE + 1.0) + 1e-3 + off;    // cells; more than what any normal comes to
+  const double h = host->body->spacing();
+  if (!host->body->is_cuboid()) {
+    const double apart = -host->body->depth(0, X).value / h;
+    return apart > least ? PRESSED * h * apart : 0.0;
+  }
+  const Lattice grid = host->body->lattice();
+  const Ramps near_edges = ramps(point.kind);
+  double slack = NEVER, beyond[3];    // before the ramp about the nearer edge, along each axis
+  for (int d = 0; d < 3; ++d)
+    beyond[d] = near_edges.from[d] - std::min(component(X_centre, d), grid.cells[d] - component(X_centre, d));
+  for (int s = 0; s < host->body->sides(); ++s) {
+    const double depth = host->body->depth(s, X).value / h;
+    double of_side = -depth;    // apart from it
+    for (int d = 0; d < 3; ++d)
+      if (d != s / 2) of_side = std::max(of_side, beyond[d]);
+    if (of_side <= least) return 0.0;
+    slack = std::min(slack, PRESSED * h * std::max(of_side, depth - DEEPEST_BIRTH));
+  }
+  return slack;
+}
+
 ContactField::Verdict ContactField::judge(const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre,
                                           const Spot<double> &spot, const Vec3 &normal, double off) const
 {
@@ -215,17 +241,26 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
   Spot<double> spot;
   Vec3 X, normal;
   const Vec3 shift = near.shift(q, arrays.place());
-  if (!world_normal(point, arrays, normal)) return lost();
   const std::uint8_t was_open = known.open;
   Verdict verdict;
   verdict.is_sure = false;
+  bool has_normal = false;
   double off = 1.0;
   for (int step = 0; step < MOST_GUESSES && !verdict.is_sure && off > SAME_PLACE && off < NEVER; ++step) {
     guess(q, x, at, spot, X, off);
-    if (off < NEAR_PLACE) verdict = judge(point, X, X + spot.to_material(shift), spot, normal, off);
+    if (!(off < NEAR_PLACE)) continue;
+    const Vec3 X_centre = X + spot.to_material(shift);
+    if (const double slack = slack_of_far(point, X, X_centre, off); slack > 0.0) {
+      verdict = {};
+      verdict.slack = slack;
+      break;
+    }
+    if (!has_normal && !world_normal(point, arrays, normal)) return lost();
+    has_normal = true;
+    verdict = judge(point, X, X_centre, spot, normal, off);
   }
   if (!verdict.is_sure) {
-    if (!find(q, x, at, spot, X)) return lost();
+    if (!find(q, x, at, spot, X) || !(has_normal || world_normal(point, arrays, normal))) return lost();
     verdict = judge(point, X, X + spot.to_material(shift), spot, normal, 0.0);
   }
   known.open = verdict.open;

@@ -166,19 +166,21 @@ static Vec3 place(const Coordinates &places, std::size_t slot) { return {places[
 
 namespace {
 
-// The way of the first of many particles, and the most that another has gone otherwise.
+// The most that one of many particles has gone otherwise than `way`.
 struct Motion {
   Vec3 way;
   double square = 0.0;
-  bool is_first = true;
 
   void include(const Vec3 &change)
   {
-    if (is_first) way = change, is_first = false;
     const Vec3 off = change - way;
     square = std::max(square, dot(off, off));
   }
 };
+
+// Of the first and the last one in the middle, as these are far apart: of a body that turns others differ less from that than
+// from either.
+Vec3 way_of(const Vec3 &first, const Vec3 &last) { return 0.5 * (first + last); }
 
 // How much two objects have come nearer at most.
 double nearer(const ContactObject &a, const ContactObject &b)
@@ -201,20 +203,23 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
   arrays.renew(particles.size());
   for (std::size_t slot = 0; slot < particles.size(); ++slot) arrays.place()[slot].value = place(places, slot);
   std::size_t from = 0;
+  std::vector<Vec3> changes;
   for (int n = 0; n < objects(); ++n) {
     ContactObject &one = all[n];
     const std::vector<int> slot_before = std::move(one.slot);
     one.outer.reset();
     one.slot.assign(sights[n].empty() ? 0 : one.body->places(), -1);
     one.first_slot = static_cast<int>(from);
-    Motion motion;    // since the last step, of those that were there
+    changes.clear();    // since the last step, of those that were there
     for (; from < particles.size() && particles[from].object == n; ++from) {
       const int at = one.body->place_of(particles[from].node);
       one.slot[at] = static_cast<int>(from);
       if (!slot_before.empty() && slot_before[at] >= 0)
-        motion.include(arrays.place()[from].value - arrays.place_before()[slot_before[at]].value);
+        changes.push_back(arrays.place()[from].value - arrays.place_before()[slot_before[at]].value);
     }
     one.last_slot = static_cast<int>(from);
+    Motion motion{changes.empty() ? Vec3{} : way_of(changes.front(), changes.back())};
+    for (const Vec3 &change : changes) motion.include(change);
     one.way = motion.way, one.stir = std::sqrt(motion.square);
   }
 
@@ -255,7 +260,9 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
 void ContactWorld::move_to(const Coordinates &places)
 {
   for (ContactObject &one : all) {
-    Motion motion;
+    if (one.first_slot == one.last_slot) continue;
+    const auto change = [&](int s) { return place(places, s) - arrays.place()[s].value; };
+    Motion motion{way_of(change(one.first_slot), change(one.last_slot - 1))};
     for (int s = one.first_slot; s < one.last_slot; ++s) {
       const Vec3 x = place(places, s);
       motion.include(x - arrays.place()[s].value);
