@@ -83,6 +83,26 @@ def test_a_shadow_begins_where_a_box_stands(tmp_path, quality):
     assert line.max() < deep + 0.1 * (lit - deep)
 
 
+@pytest.mark.parametrize("quality", Quality)
+def test_a_shadow_begins_at_the_foot_of_a_step(tmp_path, quality):
+    """Beside a higher box that stands on the same ground the top of a lower one is dark from the foot on: no light line."""
+    models = [
+        box("high", (0.4, 0.8, 0.6), (4, 8, 6), (-0.2, 0.0, 0.3)),
+        box("low", (0.4, 0.8, 0.3), (4, 8, 3), (0.2, 0.0, 0.15)),
+        standing("far", (-3.0, 2.0, 0.3)),
+    ]
+    render = Render(
+        camera=(Camera((1.6, 0.3, 1.4), (0.05, 0.05, 0.3)),), quality=quality, floor=Floor.PLAIN, light=(-1.0, -0.3, 1.5)
+    )
+    with trajectory(tmp_path, models) as t:
+        image, view = picture(t, render, (1280, 720))
+    away = np.linspace(0.003, 0.1, 80)
+    line = at(image, view, np.column_stack([away, 0.08 + 0 * away, 0.3 + 0 * away]))
+    deep, lit = line[-10:].mean(), at(image, view, [(0.3, 0.08, 0.3)])[0]
+    assert deep < 0.8 * lit
+    assert line.max() < deep + 0.1 * (lit - deep)
+
+
 def test_floor_is_drawn_as_asked_for(tmp_path):
     """Lines, nothing, squares of two shades, or sky where there is no floor."""
     render = Render(camera=(Camera((0.0, -4.0, 1.5), (0.0, 0.0, 0.3)),))

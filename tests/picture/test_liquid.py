@@ -22,6 +22,21 @@ SIDE = Render(camera=(Camera((0.0, -4.5, 0.9), (0.0, 0.0, 0.45)),))
 """Through the front wall."""
 
 
+def test_a_liquid_looks_the_same_at_any_height(tmp_path):
+    """Two metres up, with the camera: the same picture, to rounding."""
+    pictures = []
+    for up in (0.0, 2.0):
+        lift = np.array([0.0, 0.0, up])
+        scene, models, grid = pool_scene([box("slab", (0.6, 0.1, 0.8), (6, 1, 8), (0.0, 0.3, 0.45 + up))])
+        grid = replace(grid, low=tuple(grid.low + lift), high=tuple(grid.high + lift))
+        render = Render(camera=(Camera((0.0, -4.5, 0.9 + up), (0.0, 0.0, 0.45 + up)),))
+        raw = raw_of(grid, flat(grid) + up, models)
+        path = write(tmp_path / "t.h5", scene, models, wet_frames(models, (flat(grid) + up, raw)), grid)
+        with Trajectory(path) as t, Painter(t, render, size=SIZE) as painter:
+            pictures.append(painter.frame(0).astype(float) / 255)
+    assert (np.abs(pictures[0] - pictures[1]).max(axis=2) > 0.02).mean() < 0.002
+
+
 def volume_below(points, triangle, floor):
     """Volume between upward triangles and a level [m^3]; walls have no plan area and add nothing."""
     a, b, c = (points[triangle[:, k]] for k in range(3))

@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The lamp and the sky: depth pictures of all objects along parallel rays, and what shaders look up in them.
-
-A depth picture holds the far side of objects. So a lit face never shades itself, and what stands on something shades it from the
-first point of contact on.
-"""
+"""The lamp and the sky: depth pictures of all objects along parallel rays, and what shaders look up in them."""
 
 from __future__ import annotations
 
@@ -37,6 +33,7 @@ class DepthPictures:
     """
 
     def __init__(self, data, centre: np.ndarray, radius: float, frames: np.ndarray, pixels: int):
+        from vtkmodules.util.numpy_support import numpy_to_vtk
         from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 
         side = round(len(frames) ** 0.5)
@@ -45,7 +42,7 @@ class DepthPictures:
         mapper.ScalarVisibilityOff()
         actor.SetMapper(mapper)
         actor.GetProperty().LightingOff()
-        actor.GetProperty().FrontfaceCullingOn()
+        actor.GetProperty().BackfaceCullingOn()
         for k, (_, up, toward) in enumerate(frames):
             renderer = vtkRenderer()
             x, y = k % side, k // side
@@ -61,12 +58,13 @@ class DepthPictures:
             renderers.append(renderer)
         self._size = side * pixels
         self._window = off_screen_window(renderers, (self._size, self._size), samples=0)
-        self.depth = Field(self._size, self._size, smooth=False)
+        self.depth = Field(self._size, self._size, packed=True)
+        self._values = numpy_to_vtk(self.depth.numbers.ravel())  # the same memory
 
     def take(self) -> None:
         """Draw the mesh as it is now; only one window can be drawn into at a time."""
         self._window.Render()
-        self._window.GetZbufferData(0, 0, self._size - 1, self._size - 1, self.depth.values)
+        self._window.GetZbufferData(0, 0, self._size - 1, self._size - 1, self._values)
         self.depth.changed()
 
     def close(self) -> None:
@@ -92,7 +90,7 @@ class Light:
         final = render.quality is Quality.FINAL
         self._pixels = MORE_PIXELS if final or typical < size / 30.0 else PIXELS
         self._lamp = DepthPictures(data, centre, self._radius, axes(self._toward)[None], self._pixels)
-        self._nearest = Field(self._pixels // BLOCK, self._pixels // BLOCK, smooth=False)
+        self._nearest = Field(self._pixels // BLOCK, self._pixels // BLOCK, packed=True)
         self._sky = DepthPictures(data, centre, self._radius, sky_axes(), SKY_PIXELS) if final else None
 
     def cast(self) -> None:
@@ -116,7 +114,8 @@ class Light:
             # As much depth as a pixel is wide.
             uniforms.SetUniformf("lampTouch", 2.0 * ROOM / (FAR - NEAR) / self._pixels)
             uniforms.SetUniformf("shadowDarkness", self._darkness)
-            uniforms.SetUniform3f("lamp", list(self._toward))
+            for name, axis in zip(("lampRight", "lampUp", "lamp"), axes(self._toward).tolist()):
+                uniforms.SetUniform3f(name, axis)
             uniforms.SetUniform3f("eye", [0.0, 0.0, 0.0])
             if self._sky:
                 look.SetTexture("skyDepth", self._sky.depth.texture)

@@ -82,21 +82,28 @@ class MovingLine:
 
 
 class Field:
-    """Single numbers on a grid for a shader to look up, overwritten for every frame."""
+    """Single numbers on a grid for a shader to look up, overwritten for every frame.
 
-    def __init__(self, width: int, height: int, *, smooth: bool):
-        from vtkmodules.util.numpy_support import vtk_to_numpy
-        from vtkmodules.vtkCommonCore import vtkFloatArray
+    VTK makes bytes of the numbers of a texture unless each texel has three or four. So three hold one number; or, where
+    ``packed``, four that lie side by side: a shader fetches x and y as ``texelFetch(name, ivec2(x / 4, y), 0)[x % 4]``.
+
+    Args:
+        width, height: of the grid; the width of a packed one is a multiple of four.
+        smooth: whether the shader sees what lies between.
+        packed: whether texels hold four numbers.
+    """
+
+    def __init__(self, width: int, height: int, *, smooth: bool = False, packed: bool = False):
+        from vtkmodules.util.numpy_support import numpy_to_vtk
         from vtkmodules.vtkCommonDataModel import vtkImageData
         from vtkmodules.vtkRenderingCore import vtkTexture
 
-        self.values = vtkFloatArray()
-        self.values.SetNumberOfTuples(width * height)
-        self.numbers = vtk_to_numpy(self.values).reshape(height, width)
-        self.numbers[:] = 0.0
+        held = np.zeros((height, width // 4, 4) if packed else (height, width, 3), dtype=np.float32)
+        self.numbers = held.reshape(height, width) if packed else held[:, :, 0]
+        self._texels = numpy_to_vtk(held.reshape(-1, held.shape[2]))  # the same memory
         self._image = vtkImageData()
-        self._image.SetDimensions(width, height, 1)
-        self._image.GetPointData().SetScalars(self.values)
+        self._image.SetDimensions(held.shape[1], height, 1)
+        self._image.GetPointData().SetScalars(self._texels)
         self.texture = vtkTexture()
         self.texture.SetInputData(self._image)
         self.texture.SetColorModeToDirectScalars()
@@ -110,8 +117,8 @@ class Field:
         self.changed()
 
     def changed(self) -> None:
-        """Say that ``values`` has been written to."""
-        self.values.Modified()
+        """Say that ``numbers`` has been written to."""
+        self._texels.Modified()
         self._image.Modified()
 
 

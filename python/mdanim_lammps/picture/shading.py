@@ -39,66 +39,81 @@ in vec3 worldNormal;
 
 
 SHADOW = """
-// Share of the lamp that is seen from here: the mean over a square four depth pixels wide that slides
-// smoothly over them, so that the edge of a shadow is soft and has no steps however near the camera comes.
-// `touch`, in depth pixels: what is farther from the lamp than this point by less shades it too; below 0, what is nearer by less
-// does not.
-float lampSeen(vec3 where, float touch)
+// Share of the lamp that is seen from a point of a surface: the mean over a square four depth pixels wide that slides
+// smoothly over them, so that the edge of a shadow is soft and has no steps however near the camera comes. What a depth pixel
+// holds is compared with the plane of the surface there. What is nearer by less than `slack` depth pixels does not shade.
+float lampSeen(vec3 where, vec3 normal, float slack)
 {
   vec3 p = (lampMatrix * vec4(where, 1.0)).xyz;
   if (any(lessThan(p.xy, vec2(0.0))) || any(greaterThan(p.xy, vec2(1.0)))) return 1.0;
   vec2 texel = p.xy * lampPixels - 0.5;
   ivec2 corner = ivec2(floor(texel));
   vec2 part = texel - floor(texel);
-  float slack = touch * lampTouch;
+  vec2 slope = lampTouch * vec2(dot(normal, lampRight), dot(normal, lampUp)) / max(dot(normal, lamp), 0.15);
+  float least = p.z - slack * lampTouch;
   // Most lit points have no object between them and the lamp, nor near that line.
   ivec2 block = clamp(corner, ivec2(0), ivec2(lampPixels) - 1) / lampBlock;
-  if (texelFetch(lampNearest, block, 0).r > p.z + slack) return 1.0;
+  float nearest = texelFetch(lampNearest, ivec2(block.x / 4, block.y), 0)[block.x % 4];
+  if (nearest > least + 3.0 * (abs(slope.x) + abs(slope.y))) return 1.0;
   float lit = 0.0;
   for (int j = -1; j <= 3; j++) {
     float row = j == -1 ? 1.0 - part.y : j == 3 ? part.y : 1.0;
     for (int i = -1; i <= 3; i++) {
       float column = i == -1 ? 1.0 - part.x : i == 3 ? part.x : 1.0;
       ivec2 pixel = clamp(corner + ivec2(i - 1, j - 1), ivec2(0), ivec2(lampPixels) - 1);
-      float depth = texelFetch(lampDepth, pixel, 0).r;
-      lit += row * column * ((depth >= 1.0 || depth > p.z + slack) ? 1.0 : 0.0);
+      float depth = texelFetch(lampDepth, ivec2(pixel.x / 4, pixel.y), 0)[pixel.x % 4];
+      float surface = least + dot(slope, vec2(i - 1, j - 1) - part);
+      lit += row * column * ((depth >= 1.0 || depth > surface) ? 1.0 : 0.0);
     }
   }
   return lit / 16.0;
 }
 
-float shadow(vec3 where, float touch)
+float shadow(vec3 where, vec3 normal, float slack)
 {
-  return mix(1.0, lampSeen(where, touch), shadowDarkness);
+  return mix(1.0, lampSeen(where, normal, slack), shadowDarkness);
+}
+
+// Normal of the triangle that is drawn, on the side of the shading's normal.
+vec3 facet(vec3 where, vec3 normal)
+{
+  vec3 flat_ = cross(dFdx(where), dFdy(where));
+  float size = length(flat_);
+  return size > 0.0 ? flat_ * (sign(dot(flat_, normal)) / size) : normal;
 }
 
 vec3 linear(vec3 c) { return c * c; }
 """
 
 SKY_NOT_LOOKED_AT = """
-float skySeen(vec3 where, vec3 normal, float touch) { return 1.0; }
+float skySeen(vec3 where, vec3 normal, vec3 plane, float slack) { return 1.0; }
 """
 
 SKY_LOOKED_AT = """
 // How much light comes from the sky above this surface and from what stands around it: the mean over directions, each weighted by
 // how much light it brings. A pixel that is drawn looks into every fourth direction, so one that is shown has looked into all.
-// `touch` is as above.
-float skySeen(vec3 where, vec3 normal, float touch)
+// `plane` is the normal of the surface as it is drawn; `slack` is as above.
+float skySeen(vec3 where, vec3 normal, vec3 plane, float slack)
 {
   const float pixel = 2.0 * SKY_ROOM / SKY_PIXELS;
   vec3 p = (where - skyCentre) / skyRadius;
-  // A little aside, differently for each pixel, so that depth pixels do not show.
+  // Aside, differently for each pixel and direction, so that neither depth pixels nor outlines of what hides the sky show.
+  const float ASIDE = 2.0;
   vec2 aside = fract(vec2(52.98, 31.17) * fract(dot(gl_FragCoord.xy, vec2(0.0671, 0.0058))));
   float hidden = 0.0, all = 0.0;
   for (int k = (int(gl_FragCoord.x) & 1) + 2 * (int(gl_FragCoord.y) & 1); k < SKY_SIDE * SKY_SIDE; k += 4) {
     float facing = dot(normal, skyToward[k]);
     if (facing <= 0.0) continue;
     all += facing;
-    vec2 across = vec2(dot(p, skyRight[k]), dot(p, skyUp[k])) / pixel;
-    ivec2 texel = ivec2(floor(across + 0.5 * float(SKY_PIXELS) + aside - 0.5));
+    vec2 across = vec2(dot(p, skyRight[k]), dot(p, skyUp[k])) / pixel + 0.5 * float(SKY_PIXELS);
+    ivec2 texel = ivec2(floor(across + ASIDE * (fract(aside + float(k) * vec2(0.7548777, 0.5698403)) - 0.5)));
     if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(SKY_PIXELS)))) continue;
-    float there = texelFetch(skyDepth, texel + SKY_PIXELS * ivec2(k % SKY_SIDE, k / SKY_SIDE), 0).r;
-    float nearer = (2.0 - SKY_NEAR - dot(p, skyToward[k])) - (SKY_FAR - SKY_NEAR) * there + touch * pixel;
+    ivec2 place = texel + SKY_PIXELS * ivec2(k % SKY_SIDE, k / SKY_SIDE);
+    float there = texelFetch(skyDepth, ivec2(place.x / 4, place.y), 0)[place.x % 4];
+    // The plane of the surface, where the pixel is.
+    vec2 slope = vec2(dot(plane, skyRight[k]), dot(plane, skyUp[k])) / max(dot(plane, skyToward[k]), 0.15);
+    float height = dot(p, skyToward[k]) - pixel * dot(slope, vec2(texel) + 0.5 - across);
+    float nearer = (2.0 - SKY_NEAR - height) - (SKY_FAR - SKY_NEAR) * there - slack * pixel;
     // What is far away hides nothing: it throws back about as much light as the sky behind it.
     if (there < 1.0 && nearer > 0.0) hidden += facing * max(0.0, 1.0 - nearer * skyRadius / skyReach);
   }
@@ -170,11 +185,12 @@ FRAGMENT_SOLID = """//VTK::Light::Impl
   vec3 n = normalize(worldNormal);
   vec3 toEye = normalize(eye - worldPosition);
   vec3 toLamp = normalize(lamp);
+  vec3 plane = facet(worldPosition, n);
   float facing = max(dot(n, toLamp), 0.0);
-  float lit = facing > 0.0 ? shadow(worldPosition, -1.0) : 0.0;
+  float lit = facing > 0.0 ? shadow(worldPosition, plane, 1.0) : 0.0;
   vec3 base = linear(diffuseColor);
   // Light from the sky above, a little thrown back from the floor below, and from behind the camera.
-  vec3 sky = mix(vec3(0.20, 0.19, 0.18), vec3(0.50, 0.54, 0.60), 0.5 + 0.5 * n.z) * skySeen(worldPosition, n, -1.0);
+  vec3 sky = mix(vec3(0.20, 0.19, 0.18), vec3(0.50, 0.54, 0.60), 0.5 + 0.5 * n.z) * skySeen(worldPosition, n, plane, 0.5);
   float fill = 0.16 * max(dot(n, toEye), 0.0);
   vec3 color = base * (sky + fill + vec3(0.86, 0.83, 0.78) * facing * lit);
   vec3 halfway = normalize(toLamp + toEye);
@@ -210,15 +226,14 @@ def fragment_floor(pattern: str) -> str:
     return FLOOR.replace("PATTERN", PATTERN[pattern])
 
 
-# The floor hides nothing, so depth pictures do not hold it, and what touches it shades it from the first point on.
+# The floor hides nothing, so depth pictures do not hold it.
 FLOOR = """//VTK::Light::Impl
 {
-  const float TOUCH = 4.0;
   vec3 up = vec3(0.0, 0.0, 1.0);
-  float lit = shadow(worldPosition, TOUCH);
+  float lit = shadow(worldPosition, up, 0.0);
 PATTERN
   // What hides the sky throws back some of the lamp's warmer light: in all, grey is missing.
-  vec3 light = mix(vec3(0.58, 0.62, 0.68), vec3(1.0), lit) - 0.62 * (1.0 - skySeen(worldPosition, up, TOUCH));
+  vec3 light = mix(vec3(0.58, 0.62, 0.68), vec3(1.0), lit) - 0.62 * (1.0 - skySeen(worldPosition, up, up, 0.0));
   vec3 color = mix(floorColor, gridColor, marked) * light;
   float away = length(worldPosition.xy - floorCentre.xy) / floorCentre.z;
   vec3 behind = mix(lowColor, highColor, clamp(gl_FragCoord.y / pictureHeight, 0.0, 1.0));
@@ -242,7 +257,7 @@ FRAGMENT_LIQUID = """//VTK::Light::Impl
   if (film <= 0.0) discard;
   bool inner = dot(n, toEye) < 0.0;
   if (inner) n = -n;
-  float lit = inner ? 0.0 : shadow(worldPosition, -1.0);
+  float lit = inner ? 0.0 : shadow(worldPosition, n, 0.0);
   float graze = pow(1.0 - max(dot(n, toEye), 0.0), 3.0);
   vec3 mirrored = reflect(-toEye, n);
   // Bright towards the horizon, blue above: what a slope mirrors tells how it leans.
