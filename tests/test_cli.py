@@ -41,10 +41,11 @@ def test_check_text_and_json(scene):
     path = scene()
     text = run("check", path)
     assert text.returncode == 0 and "certify" in text.stdout and "contact" in text.stdout
+    assert "cost     about " in text.stdout
     assert "basin, liquid, buoyancy, liquid-drag (no liquid in the scene)" in text.stdout
     data = json.loads(run("check", path, "--format", "json").stdout)
     assert data["effects"]["gravity"]["on"] and not data["effects"]["contact"]["on"]
-    assert data["certificate"]["object"] == "cube"
+    assert data["certificate"]["object"] == "cube" and data["cost"]["wall"] > 0.0
     assert [p.name for p in path.parent.iterdir()] == ["cube.txt"]
 
 

@@ -3,6 +3,7 @@
 
 import json
 import os
+import signal
 import tempfile
 import time
 from dataclasses import replace
@@ -251,6 +252,44 @@ def test_first_steps_that_end_badly(pond, monkeypatch, tmp_path):
     assert not list(tmp_path.iterdir())
     assert forecast_line(None).startswith("cost     not known")
     assert check_json(pond[0], None)["cost"] is None
+
+
+def test_ctrl_c_ends_a_forecast(pond, monkeypatch, tmp_path):
+    """A terminal sends it to both processes: the first steps leave it to the caller, which ends them. No file stays."""
+    from mdanim_lammps.cost import forecast as forecasting
+
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    cost = Cost(1.0, 1, 1, {}, {})
+
+    def signalled(ready, folder, setup):
+        os.kill(os.getpid(), signal.SIGINT)
+        return cost
+
+    def endless(ready, folder, setup):
+        os.kill(os.getppid(), signal.SIGINT)
+        time.sleep(60.0)
+
+    monkeypatch.setattr(forecasting, "extrapolate", signalled)
+    assert forecast(pond[0]) == cost
+    monkeypatch.setattr(forecasting, "extrapolate", endless)
+    start = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        forecast(pond[0])
+    assert time.perf_counter() - start < 30.0
+    assert not list(tmp_path.iterdir())
+
+
+def test_first_steps_that_are_ended_tell_nothing(pond, monkeypatch, fresh):
+    """SIGTERM before there are frames enough is no end that the forecast has asked for."""
+    from mdanim_lammps.run import loop
+
+    def ended(ready, folder, *, on_progress):
+        on_progress(SimpleNamespace(seconds=1.0))
+        raise loop.Interrupted("interrupted")
+
+    monkeypatch.setattr(loop, "simulate", ended)
+    with pytest.raises(loop.Interrupted):
+        extrapolate(pond[0], fresh())
 
 
 def test_forecast_is_printed(pond):

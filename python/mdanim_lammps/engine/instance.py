@@ -38,14 +38,18 @@ class Instance:
 
     On a communicator of several ranks all of them call all methods together, with the same arguments, and all get the same
     answers; each holds the particles of its part of space. Every number of a State is the same on any number of ranks, to the
-    last bit; energies are sums over particles and agree but for rounding, those that dashpots take
-    to about 1e-3 (plugin/engine/loss.h). When LAMMPS stops on one rank only, the error is raised there alone, and the other ranks
-    wait for ever: the caller must abort them.
+    last bit; energies are sums over particles and agree but for rounding, those that dashpots take to about 1e-3
+    (plugin/engine/loss.h). When LAMMPS stops on one rank only, the error is raised there alone, and the other ranks wait for
+    ever: the caller must abort them.
     """
+
+    scene = property(lambda self: self.plan.scene)
+    system = property(lambda self: self.plan.system)
+    effects = property(lambda self: self.plan.effects)
 
     def __init__(self, plan: Plan, comm=None):
         """``comm`` is an mpi4py communicator; None is this process alone. Raises SetupError."""
-        self.plan, self.scene, self.system, self.effects = plan, plan.scene, plan.system, plan.effects
+        self.plan = plan
         self._comm = comm if comm is not None and comm.Get_size() > 1 else None
         if self._comm and not plan.system.particles:
             raise SetupError("ranks share space by its particles, and the plan has none: run it on one process")
@@ -137,9 +141,8 @@ class Instance:
         if len(plan.bonds):
             *rows, last = bond_coeffs(plan)
             kind, rest = last.split(" ", 1)
-            self._lmp.commands_list(
-                [f"bond_coeff {row}" for row in (*rows, f"{kind}*{self._types} {rest}")]
-            )  # LAMMPS wants all types set
+            # LAMMPS wants all types set.
+            self._lmp.commands_list([f"bond_coeff {row}" for row in (*rows, f"{kind}*{self._types} {rest}")])
         self._lmp.commands_list(physics(plan))
         for fix in plan.body_fixes:
             for kind, body in plan.contact_bodies.items():
@@ -186,17 +189,8 @@ class Instance:
         properties = np.array([plan.columns[c] for c in names], dtype=np.float64).reshape(len(names), n)
         tag = np.arange(1, n + 1, dtype=np.int32)
         molecule = (system.object + 1).astype(np.int32)
-        arrays = [
-            np.ascontiguousarray(a, t)
-            for a, t in (
-                (tag, np.int32),
-                (plan.kind, np.int32),
-                (molecule, np.int32),
-                (position, np.float64),
-                (system.velocity, np.float64),
-                (system.mass, np.float64),
-            )
-        ]
+        reals = [np.ascontiguousarray(a, np.float64) for a in (position, system.velocity, system.mass)]
+        arrays = [tag, plan.kind, molecule, *reals]
         self._call(
             f"insert {n} particles",
             self._library.mdanim_insert,

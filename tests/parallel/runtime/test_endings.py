@@ -284,6 +284,14 @@ def test_a_folder_that_is_deleted_ends_the_run(place, control):
     assert code == 7 and said.count("error:") == 1 and "film.out" in said and "Traceback" not in said, said
 
 
+def test_a_folder_that_is_deleted_before_ranks_begin_is_told(place, monkeypatch):
+    """They find no job, and the cause is not that one of them was lost."""
+    ready, folder = readied(place, LONG)
+    monkeypatch.setenv(launch.MPIEXEC, f"sh -c 'rm -r {folder}; exit 3' sh")
+    with pytest.raises(OutputError, match=r"film\.out was deleted while the run wrote to it"):
+        simulate_on(2, "central", ready, folder)
+
+
 @pytest.mark.parametrize("arguments", [(), ("-n", 2)], ids=["alone", "executors"])
 def test_a_stop_file_that_is_there_early_is_honoured(place, arguments):
     """Touched as soon as the folder is there, before the first frame, it stops the run."""
