@@ -35,7 +35,7 @@ Occupancy::Occupancy(int nx, int ny, int nz) : nx(nx), ny(ny), nz(nz), count(sta
 
 void Occupancy::add(const Vec3 &place, int weight)
 {
-  // Written so that a place that is no number is outside.
+  // Written so that a place that is NaN is outside.
   if (!(place.x >= 0.0 && place.x < nx && place.y >= 0.0 && place.y < ny && place.z >= 0.0 && place.z < nz)) return;
   const int x = static_cast<int>(place.x), y = static_cast<int>(place.y), z = static_cast<int>(place.z);
   count[number(x, y, z)] += weight;

@@ -212,6 +212,20 @@ def test_what_lammps_says_is_passed_on(prepared, tmp_path):
     assert other.startswith("step 7, t = ") and "no open cell" in other and "cause" not in other and str(tmp_path) in other
 
 
+@pytest.mark.parametrize(("array", "value"), [("x", np.nan), ("v", -np.inf)])
+def test_what_has_overflowed_is_named(prepared, tmp_path, array, value):
+    """One particle of the second object alone: that object stops the run, not the first."""
+    text = hit().replace(
+        "control", "object rock { shape sphere 5 cm position (1, 0, 1) m density 900 elasticity 20 MPa }\ncontrol", 1
+    )
+    ready = prepared(text)
+    state = {"x": ready.system.position.copy(), "v": ready.system.velocity.copy()}
+    Guard(ready, tmp_path).check(1, **state)
+    state[array][-1, 1] = value
+    with pytest.raises(DivergedError, match=r"step 7, .*: rock: its positions or velocities are NaN or infinite"):
+        Guard(ready, tmp_path).check(7, **state)
+
+
 # --- the plugin's loops ---------------------------------------------------------------------------------------------
 
 TWO = """

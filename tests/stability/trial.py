@@ -74,7 +74,7 @@ class Trial:
 
     def _look(self, before: np.ndarray) -> None:
         if not (np.isfinite(self.x).all() and np.isfinite(self.v).all()):
-            raise DivergedError("positions are no numbers any more")
+            raise DivergedError("positions or velocities are NaN or infinite")
         energies = dict.fromkeys(self.ledger.terms, 0.0)
         energies["kinetic"] = self.kinetic(before)
         for effect in self.ready.plan.effects:

@@ -429,14 +429,14 @@ class Instance:
         """Lowest and highest coordinates of the particles of each object at any step since `start_trace` [m], each
         of shape (M, 3).
 
-        Coordinates that are no numbers are passed over. Raises SetupError when nothing is traced.
+        Coordinates that are NaN are passed over. Raises SetupError when nothing is traced.
         """
         low, high = np.empty((2, len(self.plan.system.names), 3))
         self._call("tell the trace", self._library.mdanim_trace, ctypes.c_int(len(low)), pointer(low), pointer(high))
         return low, high
 
     def top_speeds(self) -> np.ndarray:
-        """Speed of the fastest particle of each object [m/s], shape (M,). Speeds that are no numbers are passed over."""
+        """Speed of the fastest particle of each object [m/s], shape (M,). Speeds that are NaN are passed over."""
         speed = np.empty(len(self.plan.system.names))
         self._call("tell speeds", self._library.mdanim_top_speeds, ctypes.c_int(len(speed)), pointer(speed))
         return speed

@@ -89,6 +89,6 @@ def _rise(first: Trajectory, second: Trajectory, frame: int) -> float | None:
     pairs = [(t.liquid_height(frame), t.liquid_raw(frame)) for t in (first, second)]
     if all(np.array_equal(x, y, equal_nan=True) for x, y in zip(*pairs)):
         return None
-    # A raw height that only one of them has (NaN, minus infinity) is no number of metres.
+    # A raw height that only one of them has (NaN, minus infinity) is no height.
     both = [np.isfinite(x) & np.isfinite(y) for x, y in zip(*pairs)]
     return float(max(np.abs(x[b] - y[b]).max(initial=0.0) for x, y, b in zip(*pairs, both)))

@@ -67,7 +67,9 @@ class Guard:
         found, reach = self.geometry.glance(x, v)
         if found == NOT_FINITE:
             i = self.geometry.not_finite(x, v)
-            raise self.error_at(step, "its positions are no numbers any more", system.object[i], "time step", "amplitude", "load")
+            raise self.error_at(
+                step, "its positions or velocities are NaN or infinite", system.object[i], "time step", "amplitude", "load"
+            )
         if found == INVERTED:
             self._look_at_cells(step, self.geometry.inverted(x))
         elif self.crumpled:
