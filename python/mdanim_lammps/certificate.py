@@ -65,8 +65,13 @@ class Certificate:
     """What is not doubtful, but may not be known, of severity ``note``."""
 
     @property
+    def last_frame(self) -> int:
+        """Number of the last frame; the one at t = 0 has 0."""
+        return self.frames + (self.last_steps > 0)
+
+    @property
     def lengths(self) -> tuple[int, ...]:
-        """Steps to each frame after the one at t = 0."""
+        """Steps to each frame after the one at t = 0: made when asked for, and as long as the run."""
         return (self.steps_per_frame,) * self.frames + ((self.last_steps,) if self.last_steps else ())
 
     @property

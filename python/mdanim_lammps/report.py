@@ -100,7 +100,7 @@ def certificate_line(ready: Prepared) -> str:
 def output_line(ready: Prepared) -> str:
     """One line: how large the trajectory will be."""
     c, control = ready.certificate, ready.scene.control
-    frames = 1 + len(c.lengths)
+    frames = 1 + c.last_frame
     size = trajectory_bytes(ready.models, frames, control.save, control.single, ready.plan.grid)
     return f"output   {count(frames, 'frame')}, trajectory of {number(size / 1e6)} MB"
 

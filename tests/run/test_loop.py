@@ -12,6 +12,7 @@ import time
 import numpy as np
 import pytest
 from mdanim_lammps import Scene, Trajectory
+from mdanim_lammps.certificate import Certificate
 from mdanim_lammps.errors import DivergedError, OutputError
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
@@ -173,6 +174,15 @@ def test_a_finished_ledger_is_written_once(tmp_path, monkeypatch):
     (tmp_path / "a.txt").write_text(FALL.replace("time 0.3 s", "time 0.04 s").split("expect")[0])
     Scene.load(tmp_path / "a.txt").run()
     assert lengths == [1, 3]
+
+
+def test_no_frame_takes_longer_in_a_long_run(tmp_path, monkeypatch):
+    """Of the table of all frames' steps, which is as long as the run, one is made, not one for each frame."""
+    made, lengths = [], Certificate.lengths.fget
+    monkeypatch.setattr(Certificate, "lengths", property(lambda c: made.append(1) or lengths(c)))
+    (tmp_path / "a.txt").write_text(FALL.replace("time 0.3 s", "time 0.1 s").split("expect")[0])
+    result = Scene.load(tmp_path / "a.txt").run()
+    assert len(result.ledger.rows) > 5 and len(made) == 1
 
 
 def test_a_run_that_blows_up_keeps_the_last_good_frame(tmp_path):

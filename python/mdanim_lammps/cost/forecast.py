@@ -97,6 +97,6 @@ def extrapolate(ready: Prepared, folder: Path, *, setup: float = 0.0) -> Cost:
     other = {
         **{name: of_step * cost.other[name] for name in (LEAPFROG, REST)},
         "setup": setup + share * cost.other["setup"],
-        "output": share * (wall - simulated) / (len(marks) - 1) * (1 + len(c.lengths)),
+        "output": share * (wall - simulated) / (len(marks) - 1) * (1 + c.last_frame),
     }
     return Cost(sum(part.seconds for part in effects.values()) + sum(other.values()), c.steps, particles, effects, other)

@@ -183,7 +183,7 @@ class _Run:
             )
         c = self.certificate
         if resume and not (
-            0 <= resume.frame <= len(c.lengths)
+            0 <= resume.frame <= c.last_frame
             and resume.step == min(resume.frame * c.steps_per_frame, c.steps)
             and len(resume.x) == ready.system.particles
             and all(((r.keys >= 0) & (r.keys <= len(ready.system.names))).all() for r in resume.records.values())
@@ -201,7 +201,7 @@ class _Run:
 
     def go(self, on_progress: Callable[[Progress], None]) -> Result:
         ledger, resumed = self.ledger, self.resume.frame if self.resume else None
-        energies, frames = len(ledger.terms), len(self.certificate.lengths) + 1
+        energies, frames = len(ledger.terms), self.certificate.last_frame + 1
         with disk_errors(self.folder):
             (self.folder / PAUSE).unlink(missing_ok=True)  # of a run that was killed while it was paused
         with ProgressLog(
@@ -274,7 +274,7 @@ class _Run:
         seconds, paused = self.seconds["simulation"], self.folder / PAUSE
         return Progress(
             frame,
-            len(c.lengths),
+            c.last_frame,
             step,
             c.steps,
             row["time"],
@@ -370,7 +370,7 @@ class _Run:
 
     def _open_trajectory(self) -> TrajectoryWriter:
         if not self.resume:
-            return trajectory_writer(self.ready, self.folder, frames=len(self.certificate.lengths) + 1)
+            return trajectory_writer(self.ready, self.folder, frames=self.certificate.last_frame + 1)
         path = self.folder / "trajectory.h5"
         return TrajectoryWriter.append(path, self.ready.scene, self.ready.models, after_step=self.resume.step, grid=self.grid)
 
