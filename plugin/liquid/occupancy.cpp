@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace mdanim {
 
@@ -44,24 +45,87 @@ void Occupancy::add(const Vec3 &place, int weight)
 
 void Occupancy::add_particle(const Vec3 &place) { add(place, FULL); }
 
-void Occupancy::add_cell(const Vec3 corner[8])
+// A box of half edges `half`, each at most half a cell, around a place: along each axis the upper of two cells gets its share, in
+// 1/SHARES, and the lower one all the rest, so that nothing is lost.
+void Occupancy::spread(const Vec3 &place, const Vec3 &half, int weight)
 {
-  // Mean edges; their triple product is the volume of the cell, whatever way it is turned or squeezed.
-  const Vec3 a = 0.25 * ((corner[1] - corner[0]) + (corner[2] - corner[3]) + (corner[5] - corner[4]) + (corner[6] - corner[7]));
-  const Vec3 b = 0.25 * ((corner[3] - corner[0]) + (corner[2] - corner[1]) + (corner[7] - corner[4]) + (corner[6] - corner[5]));
-  const Vec3 c = 0.25 * ((corner[4] - corner[0]) + (corner[5] - corner[1]) + (corner[6] - corner[2]) + (corner[7] - corner[3]));
-  const int weight = static_cast<int>(std::min(1.0e3, std::fabs(dot(cross(a, b), c))) * 64.0 + 0.5);
-  if (weight == 0) return;
+  constexpr int SHARES = 1024;
+  const int cells[3] = {nx, ny, nz};
+  const double middle[3] = {place.x, place.y, place.z}, reach[3] = {half.x, half.y, half.z};
+  int lower[3], upper_share[3];
+  for (int d = 0; d < 3; ++d) {
+    const double low = middle[d] - reach[d], high = middle[d] + reach[d];
+    if (!(high >= 0.0 && low < cells[d])) return;    // so that a place that is no number is outside
+    const double first = std::floor(low);
+    lower[d] = static_cast<int>(first);
+    const double above = std::max(0.0, high - (first + 1.0));
+    upper_share[d] = static_cast<int>(above / std::max(high - low, 1e-9) * SHARES + 0.5);
+  }
+  const auto parts = [&](int d, int whole, auto &&give) {
+    const int upper = static_cast<int>(static_cast<std::int64_t>(whole) * upper_share[d] / SHARES);
+    if (lower[d] >= 0 && whole > upper) give(lower[d], whole - upper);
+    if (lower[d] + 1 < cells[d] && upper > 0) give(lower[d] + 1, upper);
+  };
+  parts(2, weight, [&](int z, int of_layer) {
+    parts(1, of_layer, [&](int y, int of_row) {
+      parts(0, of_row, [&](int x, int of_cell) {
+        count[number(x, y, z)] += of_cell;
+        touched.take_in(x, y, z);
+      });
+    });
+  });
+}
 
+namespace {
+
+// A lattice cell by its mean edges; their triple product is its volume, whatever way it is turned or squeezed.
+struct MeanEdges {
+  Vec3 a, b, c;
+
+  explicit MeanEdges(const Vec3 corner[8])
+      : a(0.25 * ((corner[1] - corner[0]) + (corner[2] - corner[3]) + (corner[5] - corner[4]) + (corner[6] - corner[7]))),
+        b(0.25 * ((corner[3] - corner[0]) + (corner[2] - corner[1]) + (corner[7] - corner[4]) + (corner[6] - corner[5]))),
+        c(0.25 * ((corner[4] - corner[0]) + (corner[5] - corner[1]) + (corner[6] - corner[2]) + (corner[7] - corner[3])))
+  {
+  }
+  // Of one of 27 samples, when a cell at rest counts as 27 * full.
+  int weight(double full) const { return static_cast<int>(std::min(1.0e3, std::fabs(dot(cross(a, b), c))) * full + 0.5); }
+};
+
+// Calls f(place) for 3x3x3 points of a lattice cell.
+template <class F> void each_sample(const Vec3 corner[8], const F &f)
+{
   static constexpr double AT[3] = {1.0 / 6.0, 0.5, 5.0 / 6.0};
   for (const double w : AT) {
     const Vec3 p0 = corner[0] + w * (corner[4] - corner[0]), p1 = corner[1] + w * (corner[5] - corner[1]);
     const Vec3 p2 = corner[2] + w * (corner[6] - corner[2]), p3 = corner[3] + w * (corner[7] - corner[3]);
     for (const double v : AT) {
       const Vec3 left = p0 + v * (p3 - p0), right = p1 + v * (p2 - p1), along = right - left;
-      for (const double u : AT) add(left + u * along, weight);
+      for (const double u : AT) f(left + u * along);
     }
   }
+}
+
+}    // namespace
+
+void Occupancy::add_cell(const Vec3 corner[8])
+{
+  const int weight = MeanEdges(corner).weight(FULL / 27.0);
+  if (weight > 0) each_sample(corner, [&](const Vec3 &place) { add(place, weight); });
+}
+
+void Occupancy::spread_cell(const Vec3 corner[8])
+{
+  const MeanEdges edges(corner);
+  const int weight = edges.weight(FULL_SPREAD / 27.0);
+  if (weight == 0) return;
+  // The box around a third of the cell along each edge.
+  const auto half = [](double a, double b, double c) {
+    return std::min(0.5, (std::fabs(a) + std::fabs(b) + std::fabs(c)) / 6.0);
+  };
+  const Vec3 reach{half(edges.a.x, edges.b.x, edges.c.x), half(edges.a.y, edges.b.y, edges.c.y),
+                   half(edges.a.z, edges.b.z, edges.c.z)};
+  each_sample(corner, [&](const Vec3 &place) { spread(place, reach, weight); });
 }
 
 void Occupancy::clear()

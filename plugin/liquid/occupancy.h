@@ -32,13 +32,17 @@ struct CellBox {
 // Counts of samples of lattice cells, for each cell of the automaton; a cell with half of FULL is solid.
 class Occupancy {
  public:
-  static constexpr int FULL = 27 * 64;    // count of a cell that is filled: 27 samples at rest of weight 64
+  static constexpr int FULL = 27 * 64;             // count of a cell that is filled: 27 samples at rest of weight 64
+  static constexpr int FULL_SPREAD = 27 * 4096;    // the same where samples are spread
 
   Occupancy(int nx, int ny, int nz);
 
   // Corner points of a lattice cell in VTK order, in units of the automaton's cells from the corner of its
   // grid. The lattice cell's present volume is shared out over 3x3x3 points.
   void add_cell(const Vec3 corner[8]);
+  // The same, but each sample is spread over all cells that the box around its part of the lattice cell overlaps, in proportion:
+  // counts change smoothly as a body moves. Cells inside a body of any attitude get 0.98 of FULL_SPREAD and more.
+  void spread_cell(const Vec3 corner[8]);
   // The paper's literal rule: the cell that holds a particle is full.
   void add_particle(const Vec3 &place);
 
@@ -55,6 +59,7 @@ class Occupancy {
 
  private:
   void add(const Vec3 &place, int weight);
+  void spread(const Vec3 &place, const Vec3 &half, int weight);
 };
 
 }    // namespace mdanim

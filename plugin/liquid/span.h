@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Columns of a basin, cut by solids into open spans, each of which holds liquid in whole units. docs/physics-liquid.md, "Waves".
+
+#ifndef MDANIM_SPAN_H
+#define MDANIM_SPAN_H
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace mdanim {
+
+using Units = std::int64_t;    // of liquid
+constexpr Units UNITS_PER_CELL = 1 << 20;
+
+// Which part of each cell is solid. Columns and cells are numbered x fastest, then y, then z.
+struct SolidParts {
+  static constexpr int FULL = 4096;                // a solid cell
+  static constexpr int SHUT = FULL - FULL / 32;    // from here on a cell parts what is above it from what is below
+  static constexpr Units UNITS = UNITS_PER_CELL / FULL;
+
+  SolidParts(int nx, int ny, int nz) : nx(nx), ny(ny), nz(nz), part(static_cast<std::size_t>(nx) * ny * nz, 0) {}
+
+  int columns() const { return nx * ny; }
+  int at(int column, int z) const { return part[static_cast<std::size_t>(z) * columns() + column]; }
+  bool shut(int column, int z) const { return z < 0 || z >= nz || at(column, z) >= SHUT; }
+  // Of the face between two neighbouring columns: a sliver of a cell leaks nothing, so a wall of one cell is tight wherever it
+  // stands.
+  int open_between(int a, int b, int z) const
+  {
+    const int open = FULL - at(a, z) - at(b, z);
+    return open >= FULL - SHUT ? open : 0;
+  }
+
+  int nx, ny, nz;
+  std::vector<std::uint16_t> part;
+};
+
+// Cells [low, high) of a column between shut ones. What is open of the shut cells at its ends belongs to it, so its capacity
+// changes smoothly as a body moves.
+struct Span {
+  int column, low, high;
+  bool plain;    // solid at its ends alone, so that its content stands as high as it is
+  double floor, roof;
+  Units capacity;
+
+  bool overlaps(const Span &other) const { return low < other.high && other.low < high; }
+};
+
+// Appends the spans of a column, from the lowest up.
+void cut_column(const SolidParts &solid, int column, std::vector<Span> &spans);
+
+struct Head {
+  double height, slope;    // of the surface; d volume/d height there
+};
+Head head_of(const SolidParts &solid, const Span &span, Units content);
+// In cells. The content of a span that is level at a height is its whole units.
+double volume_below(const SolidParts &solid, const Span &span, double height);
+
+// How much of the faces between two spans of neighbouring columns is open below a height, layer by layer.
+double open_below(const SolidParts &solid, const Span &a, const Span &b, double height);
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// A liquid with momentum: spans of columns that hold whole units, joined by links with velocities. docs/physics-liquid.md,
+// "Waves". The cell, g and the density of the liquid are 1, so times are in sqrt(cell/g).
+
+#ifndef MDANIM_WAVES_H
+#define MDANIM_WAVES_H
+
+#include "liquid/span.h"
+#include "liquid/waves_kernels.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace mdanim {
+
+// Every unit that leaves a span enters another one, so the sum never changes. Results depend on nothing but what is put in:
+// neither on the instruction set nor on the way in which solids came to where they are.
+//
+// Spans have places in arrays: the lowest span of a column has a place in the grid, further ones come in rows behind it. A link
+// of lowest spans has the place of its first span; further links come behind. What is regular, one plain span in each column
+// around, is left to vector kernels. All else is computed once more in a general form, from the same laws.
+class Waves {
+ public:
+  // Throws std::bad_alloc.
+  Waves(int nx, int ny, int nz);
+
+  // Solid parts of all cells, in 1/4096, and for each column the mass of what floats in it, in cells of liquid, 0 where it is
+  // held (null: everywhere). Liquid makes way. Throws std::runtime_error when there is no room for it; nothing can be done with
+  // the waves any more after that.
+  void set_solids(const std::uint16_t *part, const double *mass);
+  // Fills all spans of each column up to a height; those that are full get the pressure of that height.
+  void pour(const double *height);
+  // Velocities of links, in the order of links().
+  void set_velocities(const double *u);
+  void update(double dt);
+
+  struct SpanNow {
+    Span span;
+    Units content;
+    double head, phi;    // of the surface, and what pushes
+    bool full;
+  };
+  struct LinkNow {
+    int a, b, direction;    // numbers of spans; 0 along x, 1 along y
+    double u, height;
+    Units units;    // that passed in the last sub-update
+  };
+  // Columns in their order, in each from the lowest span up.
+  std::vector<SpanNow> spans() const;
+  // Those along x, then those along y, by the columns of their first spans.
+  std::vector<LinkNow> links() const;
+  // Head of the topmost wet span of each column (the floor of the lowest where all are dry), and the column's volume.
+  void surface(double *head, double *volume) const;
+  Units total() const;
+
+  // What solids feel. `owner` is the body of each cell, or negative; adds to `force`, three numbers for each body.
+  void add_forces(const std::int32_t *owner, double *force) const;
+  // Of height, and of motion along the links.
+  struct Energy {
+    double height, motion;
+  };
+  Energy energy() const;
+
+  bool at_rest() const { return resting; }    // nothing will move before a solid does
+
+  // For tests and benchmarks.
+  bool use_kernels(int number);    // false where this processor lacks them
+  void use_general_form();         // for everything
+  struct Counts {
+    long updates = 0, sub_updates = 0, solutions = 0, iterations = 0, limited = 0;
+    Units displaced = 0;    // by spans that closed
+  } counts;
+
+  WaveLaw law;
+  double tolerance = 1e-3;    // of the solver
+  int most_iterations = 200;
+  double rest = 1.0 / 16384.0;    // differences of heads, and velocities, that are none
+
+ private:
+  // Place of a link among those of its direction.
+  struct LinkPlace {
+    int d;
+    long at;
+    bool operator<(const LinkPlace &o) const { return d != o.d ? d < o.d : at < o.at; }
+    bool operator==(const LinkPlace &o) const { return d == o.d && at == o.at; }
+  };
+  struct Ends {
+    long a, b;
+  };
+  // A further link of a span, and the next one in its chain.
+  struct LinkOfSpan {
+    LinkPlace link;
+    bool inward;    // flux along the link comes in
+    long other;
+    int next;
+  };
+  // All of a span that lasts from update to update.
+  struct SpanState {
+    Span span;
+    Units content;
+    double level;    // of its surface
+    double full, rest, phi, delta, last_delta, coming;
+  };
+  static constexpr SpanState NO_SPAN{{-1, 0, 0, true, 0.0, 0.0, 0}, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  struct LinkState {
+    int column;    // of the first span
+    long a, b;
+    bool layered;
+    double edge, top, u, q;
+  };
+  // Liquid whose span has closed.
+  struct Homeless {
+    int column, z;
+    Units units;
+  };
+  // The links on one side of a span, as one.
+  struct SideLinks {
+    double q, u, has;
+    long widest;    // the span at the other end of the widest link, or -1
+  };
+  enum SideOf { WEST, EAST, SOUTH, NORTH };
+
+  // --- where things are ---
+  long place(int column) const { return (1 + column / nx) * stride + column % nx; }
+  long place(int column, int n) const { return n == 0 ? place(column) : further_start + further[column] + n - 1; }
+  long along(int d) const { return d == 0 ? 1 : stride; }
+  long end_row() const { return 1 + ny + further_rows; }
+  bool is_link(const LinkPlace &link) const { return arrays.links[link.d].edge[link.at] < WaveArrays::NOWHERE; }
+  bool is_layered(const LinkPlace &link) const
+  { return link.at < links_start ? layered[link.d][link.at] != 0 : further_links[link.d][link.at - links_start].layered; }
+  Ends ends(const LinkPlace &link) const
+  {
+    if (link.at < links_start) return {link.at, link.at + along(link.d)};
+    const LinkState &further_link = further_links[link.d][link.at - links_start];
+    return {further_link.a, further_link.b};
+  }
+  const WaveLinks &arrays_of(const LinkPlace &link) const { return arrays.links[link.d]; }
+  void lay_out(long rows, std::size_t most_further_links);
+  // f(place) for all spans, f(link) for all links, in the order in which they are told; and f(link, other span, inward) for those
+  // of a span, in the order in which they are summed.
+  template <class F> void each_span(const F &f) const
+  {
+    for (int column = 0; column < nx * ny; ++column)
+      for (int n = 0; n < spans_in[column]; ++n) f(place(column, n));
+  }
+  template <class F> void each_link(const F &f) const
+  {
+    for (int d = 0; d < 2; ++d) {
+      for (long i = stride; i < further_start; ++i)
+        if (is_link({d, i})) f(LinkPlace{d, i});
+      for (std::size_t n = 0; n < further_links[d].size(); ++n) f(LinkPlace{d, links_start + static_cast<long>(n)});
+    }
+  }
+  template <class F> void each_link_of(long i, const F &f) const
+  {
+    f(LinkPlace{1, i - stride}, i - stride, true);
+    f(LinkPlace{0, i - 1}, i - 1, true);
+    f(LinkPlace{0, i}, i + 1, false);
+    f(LinkPlace{1, i}, i + stride, false);
+    for (int n = chain[i]; n >= 0; n = link_of_span[n].next)
+      f(link_of_span[n].link, link_of_span[n].other, link_of_span[n].inward);
+  }
+
+  // --- waves_solids.cpp, waves_links.cpp ---
+  std::vector<int> differing(const std::uint16_t *part) const;
+  std::vector<Homeless> carry_over(const std::vector<int> &columns, const std::vector<int> &changed,
+                                   const std::vector<SpanState> &was);
+  std::vector<SpanState> share_out(const std::vector<SpanState> &was, const std::vector<Span> &cut,
+                                   std::vector<Homeless> &homeless) const;
+  void find_homes(const std::vector<Homeless> &homeless);
+  SpanState state_at(long i) const;
+  void put(long i, const SpanState &state);
+  void save_further_links();
+  void join(const std::vector<int> &columns);
+  void join_face(int d, int column, int other, const std::vector<LinkState> &was);
+  void put_link(const LinkPlace &link, const LinkState &state);
+  bool is_regular(int column) const;
+  void list_irregular();
+
+  // --- waves_update.cpp, waves_general.cpp, waves_solver.cpp, waves_limits.cpp, waves_rest.cpp ---
+  double fastest() const;
+  void sub_update(double dt, double share);
+  bool let_go();
+  void solve(bool again);
+  double sum_of_rows() const;
+  void limit();
+  void come_to_rest();
+  void level_out(const std::vector<long> &body);
+  void general_surface(long i);
+  void general_opening(const LinkPlace &link);
+  void general_advection(const LinkPlace &link);
+  void general_assembly(long i);
+  void general_coupling(const LinkPlace &link);
+  double general_product(long i, const double *x) const;
+  void general_push(const LinkPlace &link);
+  SpanFluxes<double> fluxes_of(long i) const;
+  double opening(const LinkPlace &link, double level) const;
+  SideLinks side_of(long i, SideOf side) const;
+
+  const int nx, ny, nz;
+  const long stride;
+  const long further_start;    // place of the first further span
+  long links_start = 0;        // place of the first further link
+  long further_rows = 0;
+  SolidParts solid;
+  const WaveKernels *kernels;
+  bool all_general = false, resting = false, some_full = false;
+
+  std::vector<int> spans_in, further;    // of each column: how many spans, and the number of its first further one
+  std::vector<Span> span;                // of each place; column -1 where there is none
+  std::vector<Units> content;
+  std::vector<std::vector<double>> of_spans, of_links[2];    // behind `arrays`
+  std::vector<std::uint8_t> layered[2];                      // links of the grid that go through partly solid cells
+  std::vector<LinkState> further_links[2];                   // their places come behind those of the grid
+  std::vector<int> chain;                                    // of each place: its first further link in `link_of_span`, or -1
+  std::vector<LinkOfSpan> link_of_span;
+  WaveArrays arrays;
+
+  // What the general form computes once more.
+  std::vector<long> listed_spans, branched;
+  std::vector<long> branched_rows;
+  std::vector<LinkPlace> listed_links;
+};
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Plain C functions over Occupancy, for tests.
+
+#include "c_api/abi.h"
+#include "liquid/occupancy.h"
+
+#include <algorithm>
+
+using mdanim::Occupancy;
+using mdanim::Vec3;
+
+// Counts of n lattice cells with eight corners each (VTK order, in cells), samples at points or spread.
+MDANIM_EXPORT void mdanim_occupancy_of_cells(int nx, int ny, int nz, int n, const double *corners, int spread, int *count)
+{
+  Occupancy occupancy(nx, ny, nz);
+  for (int cell = 0; cell < n; ++cell) {
+    Vec3 corner[8];
+    for (int k = 0; k < 8; ++k) corner[k] = mdanim::vec3(corners + 24 * cell + 3 * k);
+    spread ? occupancy.spread_cell(corner) : occupancy.add_cell(corner);
+  }
+  std::copy(occupancy.count.begin(), occupancy.count.end(), count);
+}
+
+MDANIM_EXPORT int mdanim_occupancy_full(int spread) { return spread ? Occupancy::FULL_SPREAD : Occupancy::FULL; }

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Plain C functions over waves, for tests and benchmarks. Cells are (nz, ny, nx), columns (ny, nx).
+
+#include "c_api/abi.h"
+#include "c_api/guarded.h"
+#include "liquid/waves.h"
+
+#include <cstdint>
+#include <cstring>
+#include <ctime>
+
+using mdanim::guarded;
+using mdanim::Waves;
+
+static Waves &waves(void *w) { return *static_cast<Waves *>(w); }
+
+// Null, with a message, where there is no memory for it.
+MDANIM_EXPORT void *mdanim_waves_new(int nx, int ny, int nz, char *error, int error_size)
+{
+  Waves *made = nullptr;
+  guarded(error, error_size, [&] { made = new Waves(nx, ny, nz); });
+  return made;
+}
+
+MDANIM_EXPORT void mdanim_waves_free(void *w) { delete &waves(w); }
+
+// False for a name that is none.
+MDANIM_EXPORT int mdanim_waves_set(void *w, const char *name, double value)
+{
+  Waves &it = waves(w);
+  const struct {
+    const char *name;
+    double *value;
+  } all[] = {{"viscosity", &it.law.viscosity},
+             {"calm", &it.law.calm},
+             {"bed", &it.law.bed},
+             {"inertia", &it.law.inertia},
+             {"quick", &it.law.quick},
+             {"breaking", &it.law.breaking},
+             {"overfull", &it.law.overfull},
+             {"mean_over", &it.law.mean_over},
+             {"tolerance", &it.tolerance},
+             {"rest", &it.rest}};
+  for (const auto &one : all)
+    if (std::strcmp(one.name, name) == 0) {
+      *one.value = value;
+      return 1;
+    }
+  return 0;
+}
+
+// False where this processor lacks the instruction set of this number.
+MDANIM_EXPORT int mdanim_waves_use(void *w, int number) { return waves(w).use_kernels(number); }
+
+MDANIM_EXPORT void mdanim_waves_use_general_form(void *w) { waves(w).use_general_form(); }
+
+// 0, or 1 with a message.
+MDANIM_EXPORT int mdanim_waves_solids(void *w, const std::uint16_t *part, const double *mass, char *error, int error_size)
+{
+  int failed = 1;
+  guarded(error, error_size, [&] {
+    waves(w).set_solids(part, mass);
+    failed = 0;
+  });
+  return failed;
+}
+
+MDANIM_EXPORT void mdanim_waves_pour(void *w, const double *height) { waves(w).pour(height); }
+
+MDANIM_EXPORT void mdanim_waves_set_velocities(void *w, const double *u) { waves(w).set_velocities(u); }
+
+// Returns the processor's time in seconds.
+MDANIM_EXPORT double mdanim_waves_update(void *w, double dt, int count)
+{
+  const std::clock_t start = std::clock();
+  for (int n = 0; n < count; ++n) waves(w).update(dt);
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+}
+
+MDANIM_EXPORT int mdanim_waves_at_rest(void *w) { return waves(w).at_rest(); }
+
+MDANIM_EXPORT std::int64_t mdanim_waves_total(void *w) { return waves(w).total(); }
+
+MDANIM_EXPORT int mdanim_waves_count_spans(void *w) { return static_cast<int>(waves(w).spans().size()); }
+
+MDANIM_EXPORT int mdanim_waves_count_links(void *w) { return static_cast<int>(waves(w).links().size()); }
+
+// Columns, cells from and to, whether they are full: four numbers for each; floor, roof, head, phi; content.
+MDANIM_EXPORT void mdanim_waves_spans(void *w, int *numbers, double *heights, std::int64_t *content)
+{
+  for (const Waves::SpanNow &now : waves(w).spans()) {
+    for (const int number : {now.span.column, now.span.low, now.span.high, now.full ? 1 : 0}) *numbers++ = number;
+    for (const double height : {now.span.floor, now.span.roof, now.head, now.phi}) *heights++ = height;
+    *content++ = now.content;
+  }
+}
+
+// Spans, and direction: three numbers for each; velocity, wetted height; units that passed.
+MDANIM_EXPORT void mdanim_waves_links(void *w, int *numbers, double *values, std::int64_t *units)
+{
+  for (const Waves::LinkNow &now : waves(w).links()) {
+    for (const int number : {now.a, now.b, now.direction}) *numbers++ = number;
+    for (const double value : {now.u, now.height}) *values++ = value;
+    *units++ = now.units;
+  }
+}
+
+MDANIM_EXPORT void mdanim_waves_surface(void *w, double *head, double *volume) { waves(w).surface(head, volume); }
+
+MDANIM_EXPORT void mdanim_waves_add_forces(void *w, const std::int32_t *owner, double *force)
+{ waves(w).add_forces(owner, force); }
+
+MDANIM_EXPORT void mdanim_waves_energy(void *w, double *height_and_motion)
+{
+  const Waves::Energy energy = waves(w).energy();
+  height_and_motion[0] = energy.height;
+  height_and_motion[1] = energy.motion;
+}
+
+MDANIM_EXPORT void mdanim_waves_counts(void *w, std::int64_t *counts)
+{
+  const Waves::Counts &c = waves(w).counts;
+  for (const std::int64_t count : {std::int64_t{c.updates}, std::int64_t{c.sub_updates}, std::int64_t{c.solutions},
+                                   std::int64_t{c.iterations}, std::int64_t{c.limited}, c.displaced})
+    *counts++ = count;
+}

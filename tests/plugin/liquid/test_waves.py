@@ -1,0 +1,294 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Waves: exact volume, rest, closed forms, and solids that move in them. The twin is in test_waves_twin.py."""
+
+import numpy as np
+import pytest
+import waves_forms as forms
+import waves_lab as lab
+
+UNIT = lab.UNIT
+
+
+def obstacles(seed, shape=(24, 32, 32)):
+    """A block on the floor, a shelf, a porous patch, and random solid parts here and there."""
+    random = np.random.default_rng(seed)
+    part = np.zeros(shape, int)
+    part[:6, 10:20, 10:30] = 4096
+    part[12:16, 20:30, 5:20] = 4096
+    part[7, 24:30, 24:30] = 2600
+    where = tuple(random.integers(0, n, 250) for n in shape)
+    part[where] = random.integers(1, 4097, 250)
+    return part
+
+
+# --- at rest ---
+
+
+@pytest.mark.parametrize("level", [14.5, 14.0, 9.25])
+@pytest.mark.parametrize("seed", range(3))
+def test_level_liquid_stays_to_the_unit(seed, level):
+    """Nothing moves over obstacles, shelves and random solid parts: no unit, no velocity; and then nothing is computed."""
+    part = obstacles(seed)
+    w = lab.Waves(part.shape, rest=0)  # without the rule that stops it
+    w.solids(part)
+    w.pour(level)
+    content = w.spans.content
+    w.update(100)
+    assert (w.spans.content == content).all() and w.fastest == 0.0 and not w.at_rest
+    w.set(rest=2**-14)
+    w.update()
+    assert w.at_rest
+    before = w.counts
+    w.update(1000)
+    assert w.counts == before and w.total == content.sum()
+
+
+def test_level_liquid_with_heads_that_units_do_not_divide_comes_to_rest():
+    """A level between the units of partly solid cells is levelled out and stays."""
+    part = obstacles(5)
+    w = lab.Waves(part.shape)
+    w.solids(part)
+    w.pour(14 + 1 / 3)
+    total = w.total
+    w.update(3)
+    assert w.at_rest and w.total == total and w.fastest == 0.0
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_liquid_comes_to_rest_by_itself(seed):
+    """From random heights each pool gets its one level to the unit, exactly, and wakes only when a solid moves."""
+    random = np.random.default_rng(seed)
+    shape = (14, 16, 20)
+    part = np.zeros(shape, int)
+    part[:10, :, 9:11] = 4096  # parts two pools
+    part[:4, 4:8, 2:6] = 4096
+    part[7:9, 10:14, 12:16] = 4096
+    part[:3, 3:9, 14:18] = 1700
+    w = lab.Waves(shape, calm=0.2)
+    w.solids(part)
+    w.pour(np.where(np.arange(20) < 10, 6.0, 8.0) + random.uniform(-1, 1, shape[1:]))
+    total = w.total
+    spans = w.spans
+    west = (spans.column % 20 < 9).nonzero()[0]
+    in_west = spans.content[west].sum()
+    for _ in range(60):
+        w.update(20)
+        if w.at_rest:
+            break
+    assert w.at_rest and w.total == total and w.fastest == 0.0
+    spans = w.spans
+    assert spans.content[west].sum() == in_west
+    for side in (spans.column % 20 < 9, spans.column % 20 > 10):
+        wet = side & (spans.content > UNIT // 1024)
+        free = wet & (spans.full == 0)
+        assert np.ptp(spans.phi[wet]) <= 2.0**-20 and np.ptp(spans.head[free]) <= 4.0 * 2.0**-20
+    w.solids(part)
+    assert w.at_rest
+    part[9:11, 2:4, 2:4] = 4096  # in the air: the liquid looks, and rests again
+    w.solids(part)
+    assert not w.at_rest
+    w.update(2)
+    assert w.at_rest and w.total == total
+    part[4:6, 2:4, 2:4] = 4096
+    w.solids(part)
+    w.update(5)
+    assert not w.at_rest and w.fastest > 0.0 and w.total == total
+
+
+def test_a_floating_cube_at_its_draft_stays():
+    """Neither the cube nor the liquid moves in 300 updates; the liquid sleeps from the start."""
+    w = lab.Waves((28, 24, 24))
+    body = forms.Body((6, 6, 6), (12, 12, 12), 0.5)
+    body.solids(w)
+    w.pour(12)
+    path = body.move(w, 300)
+    assert np.abs(path - [12, 12, 12]).max() == 0.0
+    assert w.at_rest and w.counts.sub_updates <= 2
+
+
+# --- closed forms; bench/waves.py prints more of them ---
+
+
+@pytest.mark.parametrize(
+    ("cells", "depth", "mode"), [(64, 4, 1), (64, 10, 1), (64, 20, 2), (64, 20, 4), (40, 20, 1), (32, 3, 4)], ids=str
+)  # kh = 0.2, 0.5, 2, 3.9, 1.6, 1.2
+def test_standing_waves_have_their_period(cells, depth, mode):
+    """Within 1.5 % of 2 pi/sqrt(k tanh kh), and most of the swing is left after six periods."""
+    found = forms.standing(cells, depth, mode)
+    assert found.period == pytest.approx(1.0, abs=0.015)
+    assert found.left > 0.85
+
+
+def test_a_standing_wave_loses_little_to_the_scheme():
+    """Without viscosity a wave 128 cells long keeps 95 % in six periods, with it 90 %."""
+    assert forms.standing(64, 10, 1, viscosity=0).left > 0.98
+    assert forms.standing(64, 10, 1).left > 0.97
+
+
+@pytest.mark.parametrize(("depth", "error", "front"), [(8, 0.016, 0.74), (16, 0.01, 0.78)])
+def test_a_dam_breaks_as_ritter_says(depth, error, front):
+    """Depths, the front on dry ground (first order: late), and 4/9 of the depth at the dam."""
+    found = forms.dam_on_dry_ground(depth)
+    assert found.error < error and front < found.front < 1.0
+    assert found.at_dam == pytest.approx(4 / 9, abs=0.01)
+
+
+def test_a_bore_runs_as_stoker_says():
+    """Speed within 1 %, plateau within 4 % (dispersion: an undular bore), 1 % without dispersion."""
+    found = forms.dam_on_wet_ground(16)
+    assert found.speed == pytest.approx(1.0, abs=0.01) and found.plateau == pytest.approx(1.0, abs=0.04)
+    assert found.highest < 1.2
+    assert forms.dam_on_wet_ground(16, inertia=0).plateau == pytest.approx(1.0, abs=0.01)
+
+
+def test_liquid_sloshes_in_a_dish_as_thacker_says():
+    """The period of the planar mode within 4 %, over a shore that falls dry and is wetted again."""
+    found = forms.dish(20, 6, periods=3)
+    assert found.period == pytest.approx(1.0, abs=0.04) and 0.75 < found.left < 1.0
+
+
+@pytest.mark.parametrize(
+    ("arm", "wall", "gap", "depth", "error"),
+    [(8, 16, 4, 16, 0.01), (8, 32, 4, 16, 0.01), (16, 8, 4, 16, 0.025), (4, 48, 4, 12, 0.01), (1, 64, 1, 12, 0.02)],
+    ids=str,
+)
+def test_vessels_swing_through_an_opening(arm, wall, gap, depth, error):
+    """The period of a U-tube of any shape: through a full duct under a wall."""
+    assert forms.vessels(arm, wall, gap, depth, periods=2).period == pytest.approx(1.0, abs=error)
+
+
+def test_vessels_come_to_one_level():
+    """12 against 4 cells through an opening: 8 on both sides, at rest."""
+    part = np.zeros((20, 1, 24), int)
+    part[4:, :, 8:16] = 4096
+    w = lab.Waves(part.shape, calm=0.2)
+    w.solids(part)
+    w.pour(np.where(np.arange(24) < 8, 12.0, 4.0))
+    w.update(2500)
+    assert w.at_rest
+    assert w.surface[0, 0] == pytest.approx(8.0, abs=1e-5) and w.surface[0, -1] == pytest.approx(8.0, abs=1e-5)
+
+
+def test_a_hull_stays_dry_and_is_lifted_by_its_depth():
+    """Water outside, none inside: Archimedes' lift of the whole hull."""
+    lift, inside = forms.hull(200)
+    assert lift == pytest.approx(1.0, abs=1e-4) and inside == 0.0
+
+
+@pytest.mark.parametrize(("density", "at"), [(0.3, (16.3, 16.1)), (0.9, (16, 16))], ids=str)
+def test_a_cube_comes_to_float_at_its_draft(density, at):
+    """Within 0.2 % of its side, on the grid and off it."""
+    assert forms.draft(density, at, updates=500) == pytest.approx(density, abs=0.004)
+
+
+def test_a_light_cube_is_stable():
+    """A cube of a twentieth of the liquid's density, let go in the surface, bobs and stays where it is."""
+    w = lab.Waves((32, 32, 32), calm=0.05)
+    body = forms.Body((6, 6, 6), (16.2, 16.1, 14.0), 0.05, drag=0.1)
+    body.solids(w)
+    w.pour(12)
+    path = body.move(w, 300)
+    assert np.abs(path[:, 2] - 14.7).max() < 1.0 and np.abs(path[-50:, 2] - 14.7).max() < 0.1
+
+
+def test_a_bore_carries_a_float():
+    """Flow pushes a body along, and not aside."""
+    along, aside = forms.carried(201)
+    assert 4.0 < along < 6.0 and aside < 0.05
+
+
+# --- solids that move ---
+
+
+@pytest.mark.parametrize(("seed", "jumps"), [(0, False), (1, True)])
+def test_random_bodies_lose_no_liquid(seed, jumps):
+    """300 updates with four bodies at random speeds among walls: exact, not negative, finite, bounded; then level again."""
+    check_random_bodies(seed, jumps, updates=300)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("seed", range(20))
+def test_random_bodies_lose_no_liquid_for_long(seed):
+    """The same for 10 000 updates."""
+    check_random_bodies(seed, seed % 2 == 1, updates=10_000)
+
+
+def check_random_bodies(seed, jumps, updates):
+    """Shake a basin, take the bodies out, and wait for rest."""
+    random = np.random.default_rng(seed)
+    shape = (16, 16, 20)
+    edges = np.array(shape[::-1])
+    held = np.zeros(shape)
+    for _ in range(3):
+        low = random.uniform(0, 12, 3)
+        held = np.maximum(held, forms.box(shape, low, low + random.uniform(1, 6, 3)))
+    w = lab.Waves(shape)
+    w.solids(forms.parts(held))
+    w.pour(7.5)
+    total = w.total
+    bodies = [
+        forms.Body((random.uniform(1, 6, 3) if n % 2 else random.uniform(1, 3)), random.uniform(4, 12, 3), random.uniform(0.1, 4))
+        for n in range(4)
+    ]
+    for body in bodies:
+        body.v = random.normal(0, 2, 3)
+    for _ in range(updates):
+        share, mass = held.copy(), np.zeros(shape[1:])
+        for body in bodies:
+            body.x += forms.DT * body.v
+            out = (body.x < 0) | (body.x > edges)
+            body.v[out] *= -1
+            body.x = np.clip(body.x, 0, edges)
+            if random.random() < 0.02:
+                body.v = random.normal(0, 3, 3)
+            if jumps and random.random() < 0.02:
+                body.x = random.uniform(0, edges)
+            own = body.share(shape)
+            share = np.maximum(share, own)
+            mass += own.sum(0) * body.density
+        w.solids(forms.parts(share), mass)
+        w.update()
+        spans = w.spans
+        assert w.total == total
+        assert (spans.content >= 0).all() and np.isfinite(spans.phi).all()
+        assert np.abs(spans.phi).max() <= shape[0] + 100 and w.fastest <= 4 * np.sqrt(shape[0])
+    assert w.counts.displaced > 0
+    w.solids(forms.parts(held))
+    w.set(calm=0.3)
+    for _ in range(200):
+        w.update(20)
+        if w.at_rest:
+            break
+    assert w.at_rest and w.total == total
+
+
+def test_a_lid_that_comes_down_parts_a_column_and_loses_nothing():
+    """A plate sinks through the surface to the floor and up again: liquid under it, over it, and beside it."""
+    shape = (16, 12, 12)
+    w = lab.Waves(shape, calm=0.1)
+    w.pour(8)
+    total = w.total
+    for bottom in np.concatenate([np.linspace(12, 0, 60), np.linspace(0, 12, 60)]):
+        w.solids(forms.parts(forms.box(shape, (3, 3, bottom), (9, 9, bottom + 2.5))))
+        w.update()
+        assert w.total == total and w.spans.content.min() >= 0
+    spans = w.spans
+    assert (spans.content[(spans.low > 10)] < UNIT).all()
+
+
+def test_no_room_is_an_error():
+    """A solid that fills what liquid needs stops with the cell and a way out."""
+    part = np.zeros((4, 3, 3), int)
+    w = lab.Waves(part.shape)
+    w.pour(3)
+    part[:, :, :] = 4096
+    part[:2, 0, 0] = 0
+    with pytest.raises(RuntimeError, match=r"closes cell \(\d, \d, \d\) .* no room for the \d+ units .*; enlarge the basin"):
+        w.solids(part)
+
+
+@pytest.mark.no_memory
+def test_a_basin_without_memory_is_told():
+    """An absurd size raises an error with its reason instead of ending the process."""
+    with pytest.raises(MemoryError, match="out of memory"):
+        lab.Waves((2**10, 2**15 - 8, 2**15 - 8))
