@@ -12,6 +12,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from mdanim_lammps import Scene
+from mdanim_lammps.cli import study as study_command
 from mdanim_lammps.errors import DivergedError, OutputError, RefusedError, UsageError
 from mdanim_lammps.run.loop import Interrupted, simulate
 from mdanim_lammps.run.prepare import prepare
@@ -19,7 +20,7 @@ from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.scene.scene import Accuracy
 from mdanim_lammps.study import bench
 from mdanim_lammps.study.measure import Sample, TooLong, measure
-from mdanim_lammps.study.setting import Setting, ladders, own_setting, scene_hash, with_setting
+from mdanim_lammps.study.setting import LADDERS, Setting, ladders, own_setting, scene_hash, with_setting
 from mdanim_lammps.study.store import Store
 from mdanim_lammps.study.study import run_study
 from study_lab import BAR, TIMES, track
@@ -233,6 +234,11 @@ def test_unknown_ladder(tmp_path):
     """Name the ladders there are."""
     with pytest.raises(UsageError, match="time step, resolution, sweeps"):
         run_study(parse_scene(BAR), tmp_path / "study", only=["dt"])
+
+
+def test_help_names_all_ladders():
+    """Each that ``--ladders`` takes."""
+    assert all(name in study_command.__doc__ for name in LADDERS)
 
 
 def test_ladders_of_what_a_scene_has(scenes):

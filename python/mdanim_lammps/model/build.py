@@ -34,11 +34,11 @@ def build_models(scene: SceneRecord, progress: Callable[[int, int], None] | None
     apart at this spacing, a ``hold`` without particles.
     """
     h = plan_spacing(scene).h
-    workshop = _Workshop(h)
+    shared = _Shared(h)
     models, problems = [], []
     for done, solid in enumerate(scene.solids, 1):
         try:
-            models.append(_make_model(solid, workshop))
+            models.append(_make_model(solid, shared))
         except TooThin as error:
             problems.append(_too_thin(solid, h, error))
         except MeshError as error:
@@ -65,7 +65,7 @@ class _Body:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Fabric:
+class _Material:
     """Masses and springs of a body of one material."""
 
     mass: np.ndarray
@@ -75,12 +75,12 @@ class _Fabric:
     young: float
 
 
-class _Workshop:
-    """Makes every body and fabric of one scene once; lives as long as one call of build_models."""
+class _Shared:
+    """Makes every body and material of one scene once; lives as long as one call of build_models."""
 
     def __init__(self, h: float):
         self.body = lru_cache(maxsize=None)(lambda shape: _make_body(shape, h))
-        self.fabric = lru_cache(maxsize=None)(_make_fabric)
+        self.material = lru_cache(maxsize=None)(_make_material)
 
 
 def _make_body(shape: Shape, h: float) -> _Body:
@@ -91,7 +91,7 @@ def _make_body(shape: Shape, h: float) -> _Body:
     return _Body(lattice, surface, BodyFrame(shape, lattice.cells))
 
 
-def _make_fabric(lattice: Lattice, mass: float, elasticity: Young | SpringConstant, damping: float, rigid: bool) -> _Fabric:
+def _make_material(lattice: Lattice, mass: float, elasticity: Young | SpringConstant, damping: float, rigid: bool) -> _Material:
     """Masses in proportion to the filled cells around a particle; no springs in a body that is all held."""
     m = lattice.share * (mass / lattice.share.sum())
     m *= mass / m.sum()
@@ -107,7 +107,7 @@ def _make_fabric(lattice: Lattice, mass: float, elasticity: Young | SpringConsta
         constants[:, 2] = dashpots(damping, k, m, spring)
     spring_type, constants = types(constants)
     _freeze(m, spring_type, constants)
-    return _Fabric(m, spring, spring_type, constants, equivalent_modulus(edge, elasticity))
+    return _Material(m, spring, spring_type, constants, equivalent_modulus(edge, elasticity))
 
 
 def _freeze(*arrays: np.ndarray) -> None:
@@ -118,12 +118,12 @@ def _freeze(*arrays: np.ndarray) -> None:
 # --- one object ---------------------------------------------------------------------------------------------
 
 
-def _make_model(solid: Solid, workshop: _Workshop) -> Model:
-    body = workshop.body(solid.shape)
+def _make_model(solid: Solid, shared: _Shared) -> Model:
+    body = shared.body(solid.shape)
     lattice = body.lattice
     held = _held(solid, lattice)
     mass = solid.mass if solid.mass is not None else solid.density * shapes.volume(solid.shape)
-    fabric = workshop.fabric(lattice, mass, solid.elasticity, solid.damping, bool(held.all()))
+    material = shared.material(lattice, mass, solid.elasticity, solid.damping, bool(held.all()))
     arm = _rotated(solid, lattice.position)
     velocity = solid.velocity + np.cross(solid.spin, arm)
     velocity[held] = 0.0
@@ -131,15 +131,15 @@ def _make_model(solid: Solid, workshop: _Workshop) -> Model:
         name=solid.name,
         position=arm + solid.position,
         velocity=velocity,
-        mass=fabric.mass,
+        mass=material.mass,
         share=lattice.share,
         layer=lattice.layer,
         held=held,
-        spring=fabric.spring,
-        spring_type=fabric.spring_type,
-        constants=fabric.constants,
-        drag=fabric.mass * (solid.drag / mass) if solid.drag > 0 else None,
-        young=fabric.young,
+        spring=material.spring,
+        spring_type=material.spring_type,
+        constants=material.constants,
+        drag=material.mass * (solid.drag / mass) if solid.drag > 0 else None,
+        young=material.young,
         hexahedron=lattice.hexahedron,
         cell=tuple(lattice.cells.edge.tolist()),
         surface=body.surface,
