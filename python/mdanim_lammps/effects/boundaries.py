@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..errors import Problem
 from ..model.planes import innermost, scene_planes
-from ..model.touching import WAY_NAMES, behind_planes
+from ..model.touching import WAY_NAMES, Touch, behind_planes
 from ..scene.formatting import at_least, say, whole
 from .effect import Effect, Verdict, stiffness_told
 
@@ -17,6 +19,13 @@ OR_ON_SURFACES = "or write contact-model surface in control, where what touches 
 
 DEEPEST = 4
 """In the vector of fix mdanim/wall: the deepest particle behind the region in this run [m]."""
+
+
+def others(found: Sequence[Touch], what: str) -> str:
+    """What a warning about the first of these starts adds about all."""
+    if len(found) < 2:
+        return ""
+    return f"; {whole(len(found))} {what} start so, with {say(sum(t.energy for t in found), 'J')} in all"
 
 
 class Boundary(Effect):
@@ -47,14 +56,11 @@ class Boundary(Effect):
             return []
         t = found[0]
         solid, name = scene.solids[t.second], planes[0].name
-        more = ""
-        if len(found) > 1:
-            more = f"; {whole(len(found))} objects start so, with {say(sum(f.energy for f in found), 'J')} in all"
         return [
             Problem(
                 solid.spans.get("position") or solid.spans.get("object"),
                 f"{solid.name} starts with particles beyond {name}, which holds {say(t.energy, 'J')} at the start and pushes "
-                f"them back{more}",
+                f"them back{others(found, 'objects')}",
                 f"move {solid.name} {WAY_NAMES[t.way]} by {say(at_least(t.move, 3), 'm')}; {OR_ON_SURFACES}",
                 severity="warning",
             )

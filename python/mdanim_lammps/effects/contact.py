@@ -12,8 +12,8 @@ from ..model.model import Layer
 from ..model.sweep import closest
 from ..model.system import System
 from ..model.touching import REACH, THIN, WAY_NAMES, touching
-from ..scene.formatting import at_least, say, whole
-from .boundaries import OR_ON_SURFACES
+from ..scene.formatting import at_least, say
+from .boundaries import OR_ON_SURFACES, others
 from .effect import Effect, Verdict, stiffness_told
 from .envelope import Envelope
 from .margin import Margin
@@ -157,14 +157,12 @@ class Contact(Effect):
         t = found[0]
         first, second = scene.solids[t.first], scene.solids[t.second]
         # Boxes around what is turned overlap: there may be no gap to tell.
-        more, gap = "", f"leave a gap of {say(at_least(t.gap, 3), 'm')}: " if t.gap > 0.0 else ""
-        if len(found) > 1:
-            more = f"; {whole(len(found))} pairs start so, with {say(sum(f.energy for f in found), 'J')} in all"
+        gap = f"leave a gap of {say(at_least(t.gap, 3), 'm')}: " if t.gap > 0.0 else ""
         return [
             Problem(
                 second.spans.get("position") or second.spans.get("object"),
                 f"{second.name} starts within reach of {first.name}: contact holds {say(t.energy, 'J')} at the start and pushes "
-                f"them apart{more}",
+                f"them apart{others(found, 'pairs')}",
                 f"{gap}move {second.name} {WAY_NAMES[t.way]} by {say(at_least(t.move, 3), 'm')}; {OR_ON_SURFACES}",
                 severity="warning",
             )

@@ -157,7 +157,6 @@ def setting(
     *,
     default: Any = dataclasses.MISSING,
     name: str = "",
-    shown: str = "",
     absent: Any = dataclasses.MISSING,
     codec: Codec | None = None,
     **facts: Any,
@@ -165,7 +164,7 @@ def setting(
     """A field of a record together with its keyword, which is called as the field unless ``name`` says otherwise.
 
     ``default`` is that of the field, ``absent`` one that the field itself does not have; without both the keyword must be given.
-    ``shown`` is the default as a scene would write it, where that does not follow. ``facts`` are further fields of Keyword.
+    ``facts`` are further fields of Keyword.
     """
     codec = codec or PLAIN
     if form is None:
@@ -173,7 +172,7 @@ def setting(
     value = default if absent is dataclasses.MISSING else absent
     needed = value is dataclasses.MISSING and not facts.get("one_of")
     keyword = Keyword(
-        form, about, example, rule, codec=codec, name=name, needed=needed, default=shown,
+        form, about, example, rule, codec=codec, name=name, needed=needed,
         absent=None if value is dataclasses.MISSING else value, **facts,
     )  # fmt: skip
     return dataclasses.field(default=default, metadata={"keyword": keyword})
@@ -185,7 +184,7 @@ def keywords(block: str, record: type | None) -> dict[str, Keyword]:
     for field in dataclasses.fields(record) if record else ():
         if (k := field.metadata.get("keyword")) is not None:
             k = dataclasses.replace(k, block=block, field=field.name, name=k.name or field.name.replace("_", "-"))
-            if not k.default and not k.needed and not k.many and not k.one_of:
+            if not k.needed and not k.many and not k.one_of:
                 k = dataclasses.replace(k, default=_default(k, record))
             found[k.name] = k
     return found
