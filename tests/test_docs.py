@@ -94,3 +94,12 @@ def test_the_check_sees_links_and_anchors():
     """Find links beside code, and anchors of headings with signs."""
     assert "quickstart.md" in links(ROOT / "docs" / "index.md")
     assert "on-several-executors" in anchors(ROOT / "docs" / "command-line.md")
+
+
+@pytest.mark.parametrize("room", ["engine", "run", "parallel", "parallel/plan", "parallel/runtime", "cost", "view"])
+def test_architecture_names_every_module(room):
+    """Of the rooms whose modules the table of rooms names one by one, all of them."""
+    table = text_of(ROOT / "docs" / "architecture.md")
+    modules = [m for m in (ROOT / "python" / "mdanim_lammps" / room).glob("*.py") if not m.name.startswith("__")]
+    assert modules
+    assert not [m.name for m in modules if f"`{m.name}`" not in table and f"`{room}/{m.name}`" not in table]

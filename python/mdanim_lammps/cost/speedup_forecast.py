@@ -93,12 +93,12 @@ class _Moments:
     def at(self, low: np.ndarray, high: np.ndarray, speed: np.ndarray) -> FrameAssignment:
         """The plan for objects in these boxes (M, 3) [m] at these speeds (M,) [m/s],
         for the window that leaves loads in balance."""
-        terms = self.context
-        if terms.pool is not None:
-            low, high, speed = np.vstack([low, terms.pool[0]]), np.vstack([high, terms.pool[1]]), np.append(speed, 0.0)
+        context = self.context
+        if context.pool is not None:
+            low, high, speed = np.vstack([low, context.pool[0]]), np.vstack([high, context.pool[1]]), np.append(speed, 0.0)
 
         def make(steps: int) -> tuple[FrameAssignment, np.ndarray]:
-            d = terms.reach(speed, steps)
-            return terms.plan(low, high, d, self.cost), d
+            d = context.reach(speed, steps)
+            return context.plan(low, high, d, self.cost), d
 
-        return terms.longest_window(self.length, self.length, make)[1]
+        return context.longest_window(self.length, self.length, make)[1]

@@ -285,10 +285,10 @@ class _Run:
             str(paused) if paused.exists() else "",
         )
 
-    def _pause(self, stop: _Stop, log: ProgressLog, tell: Callable[[], None]) -> None:
+    def _pause(self, stop: _Stop, log: ProgressLog, on_pause: Callable[[], None]) -> None:
         """Sleep until the file ``pause`` is gone, or a stop is asked for."""
         log.state("paused")
-        tell()
+        on_pause()
         with self._clock("paused"):
             while (self.folder / PAUSE).exists() and not stop.is_set():
                 time.sleep(NAP)
