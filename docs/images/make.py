@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Make the pictures of README and docs: ``python docs/images/make.py [SCENE ...]`` (runs the scenes; default all)."""
+"""Make the pictures of README and docs: ``python docs/images/make.py [SCENE ...]`` (runs the scenes; default all), or, with the
+name ``view``, that of the page, which needs Chromium."""
 
+import io
+import subprocess
 import sys
 import tempfile
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -37,10 +41,47 @@ PICTURES = {
 """Scene and the moment to show [s]."""
 SIZE = (720, 405)
 """Two beside each other in the gallery; no file is larger than 200 kB."""
+PAGE = (1280, 940)
+"""Of the browser's window."""
+
+
+def view() -> None:
+    """Write the picture of the page: beam.txt with the cube picked."""
+    sys.path.insert(0, str(SCENES.parent / "tests" / "lab"))
+    from browser import Browser
+
+    with tempfile.TemporaryDirectory() as folder:
+        Scene.load(SCENES / "beam.txt").run(folder, force=True)
+        server = subprocess.Popen([sys.executable, "-m", "mdanim_lammps.view", folder], stdout=subprocess.PIPE, text=True)
+        browser = Browser(*PAGE)
+        try:
+            browser.go(server.stdout.readline().split()[0])
+            browser.until("window.mdanim && mdanim.shown")
+            browser.js("mdanim.player.go(25)")
+            browser.until("mdanim.shown.frame == 25 && !mdanim.stage.changed && mdanim.stage.level == 0")
+            box = browser.js("const b = document.getElementById('stage').getBoundingClientRect(); return [b.left, b.top]")
+            x, y = browser.js(
+                "const o = mdanim.shown.object.subarray(18), p = mdanim.stage.camera.position.clone().set(o[0], o[1], o[2])"
+                ".project(mdanim.stage.camera), c = mdanim.stage.renderer.domElement;"
+                "return [(p.x + 1) / 2 * c.clientWidth, (1 - p.y) / 2 * c.clientHeight]"
+            )
+            browser.click(box[0] + x, box[1] + y)
+            browser.until("document.querySelector('#height-line canvas')")
+            time.sleep(1.0)  # until the picture is drawn in full
+            picture = Image.open(io.BytesIO(browser.picture())).convert("RGB")
+        finally:
+            browser.close()
+            server.terminate()
+            server.wait()
+    picture.save(HERE / "view.png", optimize=True)
+    print(HERE / "view.png")
 
 
 def main(names: list[str]) -> None:
     """Write one picture per scene beside this file."""
+    if names == ["view"]:
+        view()
+        return
     for name in names or PICTURES:
         with tempfile.TemporaryDirectory() as folder:
             scene = Scene.load(SCENES / f"{name}.txt")

@@ -136,6 +136,7 @@ def test_a_finished_run(browser, beam):
         assert "8 kg" in text(browser, "object") and "look cube" in text(browser, "camera")
         browser.until("document.querySelector('#height-line canvas')")
         assert "height of the centre" in text(browser, "height")
+        browser.until("document.querySelector('#height-line .now').style.left > '0px'")
         browser.press("Escape")
         browser.until("document.getElementById('object').innerText.includes('click')")
         assert browser.js("return document.getElementById('height').hidden && !document.querySelector('#height-line canvas')")
@@ -152,6 +153,43 @@ def test_a_finished_run(browser, beam):
         browser.until("mdanim.shown.frame > 35")
         browser.press(" ")
         browser.until("!mdanim.player.playing")
+
+
+def test_a_narrow_window(browser, beam):
+    """The panels stand below the picture, which is as wide as the window, and every button is in it."""
+    window = browser.ask("GET", "/window/rect")
+    try:
+        browser.ask("POST", "/window/rect", {"width": 500, "height": 800})
+        with served(beam) as view:
+            open_page(browser, view.address)
+            wide, canvas = browser.js("return [innerWidth, document.getElementById('stage').clientWidth]")
+            right = (
+                "[...document.querySelectorAll('header button, footer button, select')].map(e => e.getBoundingClientRect().right)"
+            )
+            assert wide < 600 and canvas == wide and max(browser.js(f"return {right}")) <= wide
+    finally:
+        browser.ask("POST", "/window/rect", {"width": window["width"], "height": window["height"]})
+
+
+def test_a_processor_draws_fine_pictures_at_rest_only(browser, beam):
+    """While the film plays a picture has fewer pixels than the page, from the first one on; at rest it has more."""
+    share = "mdanim.stage.renderer.domElement.width / document.getElementById('stage').clientWidth"
+    with served(beam) as view:
+        browser.go(view.address)
+        browser.until("window.mdanim && mdanim.drawn")
+        assert browser.js(f"return mdanim.stage.slow && mdanim.ease == 2 && {share}") <= 0.5
+        show(browser, 3)
+        assert 1.5 < browser.js(f"return {share}") <= 2.0
+
+
+def test_a_stranger_is_told_what_to_do(browser, beam):
+    """Until the picture is first touched; a choice that this run does not have says where it is."""
+    with served(beam) as view:
+        open_page(browser, view.address)
+        assert "drag to turn" in text(browser, "hello")
+        browser.drag(300, 250, 20, 10)
+        assert browser.js("return document.getElementById('hello').hidden")
+        assert "(of a run with -n)" in text(browser, "colour") and text(browser, "help") == "help"
 
 
 def test_the_camera_line_is_of_the_language(browser, beam, tmp_path):
@@ -193,7 +231,8 @@ def test_a_live_run_is_let_go_and_stopped(browser, tmp_path):
         browser.until(SHOWN)
         browser.until("document.getElementById('state').innerText == 'paused'")
         assert browser.js("return mdanim.run.count") == HOLD + 1 and text(browser, "pause") == "go on"
-        press(browser, "pause")
+        told = "const e = document.getElementById('pause'); e.click(); return [e.textContent, e.disabled]"
+        assert browser.js(told) == ["after this frame …", True]
         browser.until("document.getElementById('state').innerText == 'done'")
         browser.until("mdanim.shown.frame == 15 && document.getElementById('pause').hidden")
     run.thread.join()

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import threading
 from pathlib import Path
 
 from ..terminal import documented_exit, open_streams, stop_on_sigterm
@@ -33,6 +34,7 @@ def serve(
             view = ViewServer(tail, port=port, linger=linger, editor=Editor(folder, scene) if edit else None)
         except OSError as error:
             raise UsageError(f"--port {port}: {error.strerror}; leave it out, and a free one is taken") from error
+        threading.Thread(target=tail.read_ahead, daemon=True).start()
         try:
             on_address(view.address, view.address_once())
             view.wait()

@@ -168,6 +168,7 @@ def _page(title: str, block: bytes, sections: Iterable[str]) -> str:
     page = files["index.html"]
     for old, new in (
         ('<meta charset="utf-8">', f'<meta charset="utf-8">\n<meta http-equiv="Content-Security-Policy" content="{policy}">'),
+        ('<link rel="modulepreload" href="vendor.js">\n', ""),
         ('<link rel="stylesheet" href="vendor.css">\n', ""),
         ('<link rel="stylesheet" href="view.css">', f"<style>{style}</style>"),
         ("<title>mdanim-lammps</title>", f"<title>{html.escape(title)}</title>"),

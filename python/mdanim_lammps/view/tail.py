@@ -121,6 +121,11 @@ class Tail:
                 self._feed.__dict__.pop("action", None)
             return self._feed
 
+    def read_ahead(self) -> None:
+        """Make the scene, where there is one, before a page asks for it: it takes half a second, as a browser does to begin."""
+        with suppress(MdanimError, OSError):
+            self.feed().scene()
+
     @property
     def count(self) -> int:
         """Frames that can be asked for."""

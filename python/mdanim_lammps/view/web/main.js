@@ -5,9 +5,10 @@ import { STRAIN, PARTICLES, cameraLine, nearlyMost, number, ownersAt } from "./m
 import { Energies, Height, byId, element, executorColor, roundStrain, showCost, showExpects, showLegend, showObject, strainColor, table } from "./panel.js";
 import { Cache, Player, SPEEDS } from "./player.js";
 import { Embedded, Socket } from "./source.js";
-import { Stage } from "./stage.js";
+import { COARSEST, Stage } from "./stage.js";
 
 const SLOW = 60, REST = 350; // milliseconds: of a picture that is too slow, and without motion before one in full
+const TOLD = 200; // milliseconds between two lots of numbers beside pictures that are eased: to draw these takes as long as a picture
 const LIVE = ["preparing", "running", "paused"];
 const KEYS = [
   ["drag, wheel, right drag", "turn, zoom, move"], ["click", "pick an object; Esc lets it go"], ["Space", "play or hold the film"], ["Shift+Space", "pause the run, or let it go on"],
@@ -17,7 +18,7 @@ const KEYS = [
 const run = { file: null, count: 0, total: 0, executors: 1, state: "", message: "", seconds: 0, cost: {}, facts: {}, owners: [] };
 const energies = new Energies(), height = new Height(), cache = new Cache();
 const report = byId("replay"); // in a report: the block of data
-let source, scene, stage, player, shown = null, shownKey = "", picked = null, heightAt = 0, ease = 0, slow = 0, drawnAt = 0, rested = true, failedAt = 0, range = 0.002, lastTick = 0;
+let source, scene, stage, player, shown = null, shownKey = "", picked = null, heightAt = 0, ease = 0, slow = 0, drawnAt = 0, rested = true, failedAt = 0, range = 0.002, lastTick = 0, toldKey = "", toldAt = 0, asked = "";
 
 async function start() {
   byId("speed").append(...SPEEDS.map((x) => element("option", { value: x, textContent: `${x} ×`, selected: x === 1 })));
@@ -35,9 +36,11 @@ async function start() {
   if (width) byId("scale").textContent = `${scene.pattern} ${number(width)} m`;
   player = new Player(scene.frameTime);
   stage = new Stage(byId("stage"), scene);
+  if (stage.slow) ease = COARSEST;
   for (const [id, on] of [["liquid", scene.liquid], ["walls", scene.walls], ["springs", scene.springs && !report], ["particles", !report]]) byId(`show-${id}`).parentElement.hidden = !on;
-  byId("colour").querySelector('[value="strain"]').disabled = Boolean(report) || !scene.springs;
+  offer("strain", !report && scene.springs, "by strain", report ? "in a view" : "where save all is asked for");
   controls();
+  byId("hello").textContent = "drag to turn, wheel to zoom, right drag to move, click an object to know it";
   refresh();
   player.play(true);
   requestAnimationFrame(tick);
@@ -66,16 +69,31 @@ function refresh() {
   byId("slider").max = Math.max(run.total, 1) - 1;
   byId("ready").style.width = `${100 * share}%`;
   byId("pause").hidden = byId("stop").hidden = byId("newest").hidden = !live;
-  byId("pause").textContent = run.state === "paused" ? "go on" : "pause run";
-  byId("pause").disabled = run.state === "preparing";
+  if (asked !== run.state) asked = "";
+  byId("pause").textContent = asked ? "after this frame …" : run.state === "paused" ? "go on" : "pause run";
+  byId("pause").disabled = byId("stop").disabled = run.state === "preparing" || asked !== "";
   const words = live && run.total ? [`${Math.floor(100 * share)} %`] : [];
   if (live && run.seconds && scene) words.push(`${number((run.count * scene.frameTime) / run.seconds, 2)} s of film per second`, `${number(run.seconds * (1 / share - 1), 2)} s left`);
   if (energies.rows.length) words.push(`energy residual ${number(energies.residual, 2)}`);
   byId("progress").textContent = words.join("   ");
-  byId("colour").querySelector('[value="executor"]').disabled = run.executors < 2;
+  offer("executor", run.executors > 1, "by executor", "of a run with -n");
   if (picked !== null && live && performance.now() - heightAt > 1000) showHeight();
   showCost(run.cost, run.facts);
   showExpects(run.facts);
+}
+
+// A way to colour objects; one that this run does not have says where it is.
+function offer(value, there, words, where) {
+  const choice = byId("colour").querySelector(`[value="${value}"]`);
+  choice.disabled = !there;
+  choice.textContent = there ? words : `${words} (${where})`;
+}
+
+// Tell the run, and that it was told: it obeys when it has finished its frame.
+function order(what) {
+  source.tell(what);
+  asked = run.state;
+  refresh();
 }
 
 function say(state, message) {
@@ -106,6 +124,7 @@ function tick(now) {
   if (frame && key !== shownKey) show(frame, key);
   byId("play").classList.toggle("on", player.playing && !player.newest);
   byId("newest").setAttribute("aria-pressed", String(player.newest));
+  if (shown && toldKey !== shownKey && (!ease || !player.playing || now - toldAt > TOLD)) tell(now);
   if (stage.changed && shown) draw(now, 0);
   else if (!rested && !player.playing && now - drawnAt > REST) draw(now, 1);
 }
@@ -115,10 +134,16 @@ function show(frame, key) {
   stage.show(frame);
   if (frame.strain) paintStrain(frame.strain);
   else if (byId("colour").value === "executor") stage.paint([...ownersAt(run.owners, frame.frame, scene.objects.length)].map(executorColor));
-  byId("slider").value = frame.frame;
-  byId("clock").textContent = `frame ${frame.frame}/${Math.max(run.total, 1) - 1}   t = ${frame.time.toFixed(3)} s`;
-  energies.at(frame.time);
-  height.at(frame.time);
+}
+
+// What is beside the picture of the frame that is seen.
+function tell(now) {
+  [toldKey, toldAt] = [shownKey, now];
+  byId("slider").value = shown.frame;
+  byId("clock").textContent = `frame ${shown.frame}/${Math.max(run.total, 1) - 1}   t = ${shown.time.toFixed(3)} s`;
+  byId("camera").textContent = cameraWords();
+  energies.at(shown.time);
+  height.at(shown.time);
   about();
 }
 
@@ -138,13 +163,13 @@ function about() {
 function draw(now, full) {
   const gap = now - drawnAt;
   if (!full && gap < 1000 && (player.playing || stage.moving)) slow = 0.7 * slow + 0.3 * gap;
-  if (slow > SLOW && ease < 2 && !full) [ease, slow] = [ease + 1, 0];
+  if (slow > SLOW && ease < COARSEST && !full) [ease, slow] = [ease + 1, 0];
   stage.quality(full ? 0 : ease);
   stage.draw();
   rested = full || !ease;
   drawnAt = now;
-  page.drawn++;
-  byId("camera").textContent = cameraWords();
+  if (!page.drawn++) performance.mark("first picture");
+  if (stage.moving || full) byId("camera").textContent = cameraWords();
 }
 
 function cameraWords() {
@@ -161,8 +186,8 @@ function controls() {
   press("back", () => step(-1));
   press("next", () => step(1));
   press("newest", () => player.follow());
-  press("pause", () => source.tell(run.state === "paused" ? "go" : "pause"));
-  press("stop", () => source.tell("stop"));
+  press("pause", () => order(run.state === "paused" ? "go" : "pause"));
+  press("stop", () => order("stop"));
   press("see", see);
   press("home", () => stage.seeStart());
   press("copy", copy);
@@ -180,7 +205,7 @@ function controls() {
   toggle("boxes", (on) => (stage.extras.boxes.visible = on));
   toggle("walls", (on) => (stage.extras.walls.visible = on));
   addEventListener("resize", () => stage.resize());
-  stage.orbit.addEventListener("start", () => (stage.moving = true));
+  stage.orbit.addEventListener("start", () => { stage.moving = true; byId("hello").hidden = true; });
   stage.orbit.addEventListener("end", () => (stage.moving = false));
   pointer(byId("stage"));
   addEventListener("keydown", keyboard);
@@ -233,16 +258,8 @@ async function copy() {
   setTimeout(() => (byId("copy").textContent = "copy line"), 1500);
 }
 
-// The picture in full, on its background.
 function screenshot() {
-  stage.quality(0);
-  stage.draw();
-  const { width, height } = stage.renderer.domElement, paper = Object.assign(document.createElement("canvas"), { width, height }), pen = paper.getContext("2d");
-  const sky = pen.createLinearGradient(0, 0, 0, height);
-  scene.background.forEach((color, k) => sky.addColorStop(1 - k, `rgb(${color})`));
-  pen.fillStyle = sky;
-  pen.fillRect(0, 0, width, height);
-  pen.drawImage(stage.renderer.domElement, 0, 0);
+  const paper = stage.paper();
   paper.toBlob((file) => {
     const link = element("a", { href: URL.createObjectURL(file), download: `frame-${shown.frame}.png` });
     link.click();

@@ -34,6 +34,7 @@ export function showObject(scene, frame, k, owner) {
 class Lines {
   constructor() {
     this.line = document.createElement("div");
+    this.time = 0;
   }
 
   clear() {
@@ -48,14 +49,16 @@ class Lines {
     const series = [{}, ...names.map((label, k) => ({ label, stroke: INK[k % INK.length], width: 1.5 }))];
     const values = (_, ticks) => ticks.map((x) => number(x, 4));
     this.plot = new Plot({ width: 272, height, scales: { x: { time: false } }, legend: { show: false }, cursor: { show: false }, padding: [6, 8, 0, 0],
-      axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((x) => `${number(x)} s`) }, { ...axis, size: 46, values }], series }, data, place);
+      axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((x) => `${number(x)} s`) }, { ...axis, size: 46, values }], series,
+      hooks: { draw: [() => this.at(this.time)] } }, data, place);
     this.line = element("div", { className: "now" });
     this.plot.over.append(this.line);
     Object.assign(this.line.style, { position: "absolute", top: "0", bottom: "0", width: "1px", background: ink });
   }
 
   at(time) {
-    if (this.plot) this.line.style.left = `${this.plot.valToPos(time, "x")}px`;
+    this.time = time;
+    if (this.plot && this.line.parentElement) this.line.style.left = `${this.plot.valToPos(time, "x")}px`;
   }
 }
 

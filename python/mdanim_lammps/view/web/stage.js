@@ -9,6 +9,8 @@ import { Liquid } from "./liquid.js";
 import { pick, placeVertices, sumNormals } from "./message.js";
 
 const SHADOWS = [2048, 1024, 512], PIXELS = [1, 0.7, 0.5]; // by level of quality
+export const COARSEST = SHADOWS.length - 1;
+const MOST_PIXELS = 4e6; // of a picture at rest that a processor draws
 const FLOOR = 5; // half side of the floor, in sizes of the scene
 
 const PATTERN = { // of `render { floor ... }`: how much of the colour of the lines is seen
@@ -29,13 +31,24 @@ const FLOOR_COLOR = `
   gl_FragColor.a = 1.0 - smoothstep(0.25, 1.0, distance(place.xy, gridMiddle) / gridReach);
   gl_FragColor.rgb *= gl_FragColor.a;`;
 
+// Whether a processor draws, not a graphics card.
+function drawnByProcessor() {
+  const gl = document.createElement("canvas").getContext("webgl2"), info = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = gl?.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER) ?? "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|basic render/i.test(name);
+}
+
 export class Stage {
   constructor(canvas, scene) {
     this.scene = scene;
     this.changed = true; // whether a new picture is due
     this.level = 0;
-    const renderer = (this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "high-performance" }));
+    this.slow = drawnByProcessor();
+    // A processor takes more pixels instead of more samples of each, and these at rest only.
+    const renderer = (this.renderer = new WebGLRenderer({ canvas, antialias: !this.slow, alpha: true, powerPreference: "high-performance" }));
     renderer.shadowMap.enabled = true;
+    renderer.shadowMap.autoUpdate = false;
     renderer.shadowMap.type = PCFShadowMap;
     this.world = new Scene();
     this.camera = new PerspectiveCamera(scene.fieldOfView, 1, 0.01, 1000);
@@ -135,7 +148,7 @@ export class Stage {
     this.geometry.attributes.position.needsUpdate = this.geometry.attributes.normal.needsUpdate = true;
     if (frame.liquid) this.liquid.show(frame);
     this.extras.show(frame);
-    this.changed = true;
+    this.renderer.shadowMap.needsUpdate = this.changed = true;
   }
 
   // --- camera -----------------------------------------------------------------------------------------------------
@@ -185,12 +198,14 @@ export class Stage {
     shadow.mapSize.set(SHADOWS[level], SHADOWS[level]);
     shadow.map?.dispose();
     shadow.map = null;
+    this.renderer.shadowMap.needsUpdate = true;
     this.resize();
   }
 
   resize() {
     const { clientWidth: w, clientHeight: h } = this.renderer.domElement;
-    this.renderer.setPixelRatio(PIXELS[this.level] * Math.min(2, devicePixelRatio));
+    const finer = this.slow && this.level === 0 ? Math.max(1, Math.min(2, Math.sqrt(MOST_PIXELS / (w * h)))) : Math.min(2, devicePixelRatio);
+    this.renderer.setPixelRatio(PIXELS[this.level] * finer);
     this.renderer.setSize(w, h, false);
     this.camera.aspect = w / h;
     this.look();
@@ -199,5 +214,18 @@ export class Stage {
   draw() {
     this.renderer.render(this.world, this.camera);
     this.changed = false;
+  }
+
+  // A canvas with the picture in full on its background.
+  paper() {
+    this.quality(0);
+    this.draw();
+    const { width, height } = this.renderer.domElement, paper = Object.assign(document.createElement("canvas"), { width, height }), pen = paper.getContext("2d");
+    const sky = pen.createLinearGradient(0, 0, 0, height);
+    this.scene.background.forEach((color, k) => sky.addColorStop(1 - k, `rgb(${color})`));
+    pen.fillStyle = sky;
+    pen.fillRect(0, 0, width, height);
+    pen.drawImage(this.renderer.domElement, 0, 0);
+    return paper;
   }
 }
