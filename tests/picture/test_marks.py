@@ -109,6 +109,14 @@ def test_marks_are_drawn(two):
     assert (springs < 100).all(axis=2).sum() > 500
 
 
+def test_many_springs_leave_a_lattice(two):
+    """A fine model is not one black patch: most of it is grey."""
+    two.write_text(TWO.replace("resolution 5 cm", "resolution 2.5 cm"))
+    path = draw_picture(Scene.load(two).record, two.with_suffix(".png"), size=(640, 360), marks=Marks(springs=True))
+    seen = read_png(path)[:300].mean(axis=2)
+    assert (seen < 200).sum() > 5000 and (seen < 60).sum() < 0.4 * (seen < 200).sum()
+
+
 def test_too_many_names_are_refused(tmp_path):
     """Before a window is opened, with the number that is possible."""
     path = tmp_path / "many.txt"

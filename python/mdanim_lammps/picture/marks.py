@@ -13,6 +13,8 @@ from .pieces import MovingLines
 
 MOST_NAMES = 200
 """More would cover the picture."""
+CLEAR_SPRINGS = 600
+"""More are drawn the fainter: a fine lattice would be one black patch."""
 BOX_EDGES = np.array([(0, 1), (2, 3), (4, 5), (6, 7), (0, 2), (1, 3), (4, 6), (5, 7), (0, 4), (1, 5), (2, 6), (3, 7)])
 """Corners are counted with x fastest, z slowest."""
 
@@ -51,6 +53,7 @@ class MarkActors:
                 raise UsageError("--springs: this scene stores no inner particles; write 'save all' in its control block")
             ends = np.searchsorted(metadata.id, metadata.bond)
             self._springs = MovingLines(len(metadata.id), ends, grey, 1.0)
+            self._springs.actor.GetProperty().SetOpacity(min(1.0, (CLEAR_SPRINGS / len(ends)) ** 0.5))
             self.actors.append(self._springs.actor)
         if marks.boxes:
             objects = len(metadata.names)
