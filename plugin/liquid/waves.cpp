@@ -45,8 +45,8 @@ Waves::Waves(int nx, int ny, int nz)
 void Waves::lay_out(long rows, std::size_t most_further_links)
 {
   further_rows = rows;
-  const std::size_t n = (2 + ny + rows) * stride;
-  if (n > content.size()) {
+  const std::size_t n = (2 + ny + rows) * stride, old = content.size();
+  if (n > old) {
     span.resize(n, Span{-1, 0, 0, true, 0.0, 0.0, 0});
     content.resize(n, 0);
     chain.resize(n, -1);
@@ -62,6 +62,7 @@ void Waves::lay_out(long rows, std::size_t most_further_links)
     const std::size_t room = content.size() + most_further_links;
     for (std::size_t k = 0; k < std::size(OF_LINKS); ++k) {
       const bool height = OF_LINKS[k] == &WaveLinks::edge || OF_LINKS[k] == &WaveLinks::top;
+      if (n > old) of_links[d][k].resize(old);    // further links were there, spans of new rows come there
       if (room > of_links[d][k].size()) of_links[d][k].resize(room, height ? WaveArrays::NOWHERE : 0.0);
       arrays.links[d].*OF_LINKS[k] = of_links[d][k].data();
     }

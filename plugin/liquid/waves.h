@@ -61,6 +61,11 @@ class Waves {
   };
   Energy energy() const;
 
+  // Everything that later updates depend on, between updates.
+  std::vector<std::uint8_t> state() const;
+  // Takes it up. Throws std::runtime_error, and changes nothing, when it is not of such a basin or damaged.
+  void set_state(const std::uint8_t *bytes, std::size_t size);
+
   bool at_rest() const { return resting; }    // nothing will move before a solid does
 
   // For tests and benchmarks.
@@ -81,8 +86,6 @@ class Waves {
   struct LinkPlace {
     int d;
     long at;
-    bool operator<(const LinkPlace &o) const { return d != o.d ? d < o.d : at < o.at; }
-    bool operator==(const LinkPlace &o) const { return d == o.d && at == o.at; }
   };
   struct Ends {
     long a, b;

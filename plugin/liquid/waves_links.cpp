@@ -153,6 +153,8 @@ void Waves::list_irregular()
 
   listed_spans.clear();
   listed_links.clear();
+  std::vector<std::uint8_t> listed[2];    // links of the grid
+  for (auto &of_direction : listed) of_direction.assign(content.size(), 0);
   branched.clear();
   branched_rows.clear();
   for (int column = 0; column < nx * ny; ++column) {
@@ -166,12 +168,13 @@ void Waves::list_irregular()
     const long i = place(column);
     for (const long near : {i, i - 1, i + 1, i - stride, i + stride})
       for (const LinkPlace &link : {LinkPlace{0, near - 1}, {0, near}, {1, near - stride}, {1, near}})
-        if (link.at >= 0 && is_link(link)) listed_links.push_back(link);
+        if (link.at >= 0) listed[link.d][link.at] = 1;
   }
-  for (int d = 0; d < 2; ++d)
+  for (int d = 0; d < 2; ++d) {
+    for (long i = stride; i < further_start; ++i)
+      if (listed[d][i] && is_link({d, i})) listed_links.push_back({d, i});
     for (std::size_t n = 0; n < further_links[d].size(); ++n) listed_links.push_back({d, links_start + static_cast<long>(n)});
-  std::sort(listed_links.begin(), listed_links.end());
-  listed_links.erase(std::unique(listed_links.begin(), listed_links.end()), listed_links.end());
+  }
   for (const long i : branched) branched_rows.push_back(i / stride);
   std::sort(branched_rows.begin(), branched_rows.end());
   branched_rows.erase(std::unique(branched_rows.begin(), branched_rows.end()), branched_rows.end());

@@ -32,7 +32,8 @@ void Waves::set_solids(const std::uint16_t *part, const double *mass)
     for (const int column : columns)
       for (int n = 0; n < spans_in[column]; ++n) was.push_back(state_at(place(column, n)));
     save_further_links();
-    std::copy_n(part, solid.part.size(), solid.part.begin());
+    for (const int column : changed)
+      for (std::size_t cell = column; cell < solid.part.size(); cell += nx * ny) solid.part[cell] = part[cell];
     find_homes(carry_over(columns, changed, was));
     join(changed);
   }

@@ -44,8 +44,9 @@ def standing(cells: int, depth: int, mode: int, periods=6, dt=DT, **settings) ->
 
 
 class Dry(NamedTuple):
-    """A broken dam on dry ground: L1 error of the depth, speed of the front (1 % of the depth D) over 2 sqrt(D), depth at
-    the dam over D.
+    """A broken dam on dry ground: L1 error of the depth, speed of the front over 2 sqrt(D), depth at the dam over D.
+
+    The front is where the depth is 1 % of D; Ritter's depth (2 sqrt(D) - x/t)^2/9 is that at 0.85 of 2 sqrt(D).
     """
 
     error: float

@@ -41,6 +41,9 @@ FUNCTIONS = {
     "count_links": (INT, [HANDLE]),
     "spans": (None, [HANDLE, INTS, DOUBLES, LONGS]),
     "links": (None, [HANDLE, INTS, DOUBLES, LONGS]),
+    "state_size": (LONG, [HANDLE]),
+    "state": (None, [HANDLE, array(np.uint8)]),
+    "set_state": (INT, [HANDLE, array(np.uint8), LONG, TEXT, INT]),
     "surface": (None, [HANDLE, DOUBLES, DOUBLES]),
     "add_forces": (None, [HANDLE, INTS, DOUBLES]),
     "energy": (None, [HANDLE, DOUBLES]),
@@ -156,6 +159,21 @@ class Waves:
         numbers, values, units = np.empty((count, 3), np.int32), np.empty((count, 2)), np.empty(count, np.int64)
         function("links")(self.handle, numbers, values, units)
         return Links(*numbers.T, *values.T, units)
+
+    @property
+    def state(self) -> np.ndarray:
+        """Everything that later updates depend on, as bytes."""
+        found = np.empty(function("state_size")(self.handle), np.uint8)
+        function("state")(self.handle, found)
+        return found
+
+    @state.setter
+    def state(self, state):
+        """RuntimeError when it is not of such a basin, or damaged; then nothing changes."""
+        error = ctypes.create_string_buffer(500)
+        state = np.ascontiguousarray(state, np.uint8)
+        if function("set_state")(self.handle, state, len(state), error, len(error)):
+            raise RuntimeError(error.value.decode())
 
     @property
     def surface(self) -> np.ndarray:

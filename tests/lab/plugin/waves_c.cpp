@@ -105,6 +105,25 @@ MDANIM_EXPORT void mdanim_waves_links(void *w, int *numbers, double *values, std
   }
 }
 
+MDANIM_EXPORT std::int64_t mdanim_waves_state_size(void *w) { return static_cast<std::int64_t>(waves(w).state().size()); }
+
+MDANIM_EXPORT void mdanim_waves_state(void *w, std::uint8_t *bytes)
+{
+  const std::vector<std::uint8_t> state = waves(w).state();
+  std::memcpy(bytes, state.data(), state.size());
+}
+
+// 0, or 1 with a message.
+MDANIM_EXPORT int mdanim_waves_set_state(void *w, const std::uint8_t *bytes, std::int64_t size, char *error, int error_size)
+{
+  int failed = 1;
+  guarded(error, error_size, [&] {
+    waves(w).set_state(bytes, static_cast<std::size_t>(size));
+    failed = 0;
+  });
+  return failed;
+}
+
 MDANIM_EXPORT void mdanim_waves_surface(void *w, double *head, double *volume) { waves(w).surface(head, volume); }
 
 MDANIM_EXPORT void mdanim_waves_add_forces(void *w, const std::int32_t *owner, double *force)
