@@ -262,6 +262,16 @@ def test_a_cube_folds_up_where_little_of_it_lands(prepared, tmp_path, turned, sh
     assert margin(spins.certificate, "amplitude").limit == pytest.approx(0.75 * (0.75**0.5 / 8**3) ** 0.45, rel=1e-3)
 
 
+@pytest.mark.parametrize(("held", "severity"), [("hold all", "warning"), ("", "ok")])
+def test_a_held_body_breaks_no_fall(prepared, held, severity):
+    """A cube that falls on its corner folds up on a held slab as on the ground, not on one that is thrown back."""
+    slab = f"object slab {{ shape box (0.48, 0.48, 0.24)  position (0, 0, -0.24)  density 1000  elasticity 360 kPa  {held} }}"
+    cube = BALL.format(shape="box (0.24, 0.24, 0.24)", h=3, model="surface", young=360, extra=ON_CORNER)
+    ready = prepared(cube.replace("ground z 0", slab))
+    assert "ground" not in {e.name for e in ready.plan.effects}
+    assert margin(ready.certificate, "amplitude").severity == severity
+
+
 @pytest.mark.parametrize(("model", "floor"), [("paper", 2), ("surface", 6)])
 def test_buoyancy_is_a_spring_to_the_surface(prepared, model, floor):
     """Add (rho_l/rho_s) g over the height of a cell to every particle's rate, and no more: a rigid body bobs more slowly."""

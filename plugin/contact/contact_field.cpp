@@ -60,10 +60,10 @@ void ContactField::forget()
   budget = 0.0;
 }
 
-void ContactField::settle(const ContactArrays &arrays)
+void ContactField::settle(const ContactArrays &arrays, ContactAccount &account)
 {
   for (std::size_t q = 0; q < near.size(); ++q)
-    if (wake[q] < NEVER && wake[q] <= budget) look(q, arrays, false);
+    if (wake[q] < NEVER && wake[q] <= budget) look(q, arrays, false, account);
   next = AT_ONCE;
 }
 
@@ -216,7 +216,7 @@ void ContactField::end(const FieldContact &contact, std::size_t q, Fate fate, co
   } else {
     watch[q].cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
     watch[q].X = contact.state.X;
-    look(q, arrays, false);
+    look(q, arrays, false, account);
   }
   next = std::min(next, wake[q]);
 }
@@ -228,7 +228,7 @@ void ContactField::add_forces(ContactArrays &arrays, double nearer, double dt, C
   if (moves && next < budget) {
     next = NEVER;
     for (std::size_t q = 0; q < wake.size(); ++q) {
-      if (wake[q] < budget) look(q, arrays, true);
+      if (wake[q] < budget) look(q, arrays, true, account);
       next = std::min(next, wake[q]);
     }
   }

@@ -31,7 +31,7 @@ class ContactField {
   // Nothing is known of points but of those in contact; to be followed by list().
   void forget();
   // Looks at every point without a contact as it is now; nothing is born. For the setup of a run.
-  void settle(const ContactArrays &arrays);
+  void settle(const ContactArrays &arrays, ContactAccount &account);
   // `nearer`: how much the objects have come nearer at most in this step [m]. dt = 0: nothing moves, as at the setup of a run.
   void add_forces(ContactArrays &arrays, double nearer, double dt, ContactAccount &account);
 
@@ -63,7 +63,7 @@ class ContactField {
   Placed placed(const ContactArrays &arrays) const { return {*host->body, host->slot.data(), arrays.place()}; }
   const SurfacePoint &surface_point(std::size_t q) const { return owner->body->points()[near.point(q)]; }
   bool is_smooth(PointKind kind) const { return kind != PointKind::FLAT && host->body->is_cuboid(); }
-  bool look(std::size_t q, const ContactArrays &arrays, bool may_begin);
+  bool look(std::size_t q, const ContactArrays &arrays, bool may_begin, ContactAccount &account);
   bool find(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X);
   void guess(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X, double &off);
   std::array<int, 3> cell_of(const Vec3 &X) const;

@@ -211,8 +211,9 @@ ContactField::Verdict ContactField::judge(const SurfacePoint &point, const Vec3 
 }
 
 // Whether a contact begins; else when to look again.
-bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_begin)
+bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_begin, ContactAccount &account)
 {
+  account.looks += 1.0;
   Watch &known = watch[q];
   const SurfacePoint &point = surface_point(q);
   const Vec3 x = near.place(q, arrays.place());

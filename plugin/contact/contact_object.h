@@ -42,6 +42,7 @@ struct ContactAccount {
   int touching = 0;                                 // points, now
   double heat = 0.0, damped = 0.0, let_go = 0.0;    // since the beginning [J]
   double deepest = 0.0;                             // in this run [m]
+  double looks = 0.0;                               // at points of objects without a contact, since the beginning
 
   void begin_step() { energy = stick_energy = 0.0, touching = 0; }
 };

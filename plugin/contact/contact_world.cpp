@@ -287,7 +287,7 @@ void ContactWorld::step(const Coordinates &places, double dt)
       continue;
     }
     for (ContactField *field : {&one.both->lower, &one.both->higher}) {
-      if (dt == 0.0) field->settle(arrays);
+      if (dt == 0.0) field->settle(arrays, account);
       field->add_forces(arrays, nearer(a, b), dt, account);
       if (!field->is_idle()) a.is_pushed = b.is_pushed = true;
     }

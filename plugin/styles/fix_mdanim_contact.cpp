@@ -45,8 +45,8 @@ FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
   extscalar = 1;
   energy_global_flag = 1;
   vector_flag = 1;
-  size_vector = 14;
-  static int extensive[] = {1, 1, 1, 1, 0, 1, 1, 0, 1, 1, 1, 0, 0, 0};
+  size_vector = 15;
+  static int extensive[] = {1, 1, 1, 1, 0, 1, 1, 0, 1, 1, 1, 0, 0, 0, 1};
   extvector = -1;
   extlist = extensive;
   global_freq = 1;
@@ -382,7 +382,8 @@ double FixMdanimContact::compute_scalar() { return world_of_contact.account.ener
 
 // 1: energy of sticking; 2-4: heat of friction, energy that dashpots took, that was let go, since the fix was made; 5: deepest
 // point in this run; 6: points in touch; 7: pairs of objects near each other; 8: wall seconds of the slowest rank; 9-11: force on
-// planes; 12-14: bytes on a rank, of bodies, of what is known of pairs and points, of particles near others
+// planes; 12-14: bytes on a rank, of bodies, of what is known of pairs and points, of particles near others; 15: looks at points
+// of objects without a contact, since the fix was made
 double FixMdanimContact::compute_vector(int n)
 {
   const ContactAccount &account = world_of_contact.account;
@@ -412,6 +413,8 @@ double FixMdanimContact::compute_vector(int n)
       return static_cast<double>(world_of_contact.bytes_of_fields());
     case 13:
       return static_cast<double>(bytes_of_particles());
+    case 14:
+      return account.looks;
     default: {
       const Vec3 force = world_of_contact.force_on_planes();
       return n == 8 ? force.x : n == 9 ? force.y : force.z;

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""How often fix mdanim/contact looks points up that touch nothing: what was seen of a point holds when lists are made again."""
+
+import pytest
+from mdanim_lammps.engine.instance import Instance
+
+LOOKS = 14
+"""Entry of the fix's vector."""
+SOLID = "density 1000  elasticity 0.2 MPa"
+PAIRS = {
+    "boxes": ("box (6, 6, 6) cm  orientation axis (1, 1, 0) angle 5 deg", 6.6),
+    "balls": ("sphere 3 cm", 6.3),
+    "ball over box": ("sphere 3 cm", 6.3),
+}
+"""Shape of the upper object, and its height [cm]; the lower one has that of `LOWER`."""
+LOWER = {"boxes": "box (6, 6, 6) cm", "balls": "sphere 3 cm", "ball over box": "box (6, 6, 6) cm"}
+
+
+def looks(prepared, name: str, speed: float) -> float:
+    """Of two objects that rest near each other; far away another one flies off at so many m/s, which asks for new lists."""
+    shape, height = PAIRS[name]
+    text = (
+        f"object a {{ shape {LOWER[name]}  position (0, 0, 0) cm  {SOLID} }}\n"
+        f"object b {{ shape {shape}  position (0, 0, {height}) cm  {SOLID} }}\n"
+        f"object c {{ shape box (3, 3, 3) cm  position (60, 0, 0) cm  {SOLID}  velocity ({speed}, 0, 0) }}\n"
+        "control { time 1 s  frames 25 fps  resolution 1 cm }\n"
+    )
+    with Instance(prepared(text, f"at{speed:g}").plan) as instance:
+        instance.setup()
+        instance.run(2000)
+        assert instance.fix_value("contact", 5) == 0.0 and instance.fix_value("contact", 6) == 1.0
+        return instance.fix_value("contact", LOOKS)
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_new_lists_alone_ask_for_no_look(prepared, name):
+    """Those of objects that come no nearer: no point is looked up more often than without."""
+    still = looks(prepared, name, 0.0)
+    assert still > 10.0
+    assert looks(prepared, name, 2.0) < 1.5 * still
