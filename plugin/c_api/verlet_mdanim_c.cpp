@@ -19,6 +19,13 @@ MDANIM_EXPORT long long mdanim_passes(void *handle) noexcept
   return run ? run->passes() : 0;
 }
 
+// Into how many ranges threads share the latest pass of this rank; 0 before any.
+MDANIM_EXPORT int mdanim_ranges(void *handle) noexcept
+{
+  const VerletMdanim *run = run_of(handle);
+  return run ? run->ranges() : 0;
+}
+
 // How many particles were held back in passes of this rank and moved one by one, all passes together.
 MDANIM_EXPORT long long mdanim_held_back(void *handle) noexcept
 {

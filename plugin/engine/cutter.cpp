@@ -13,8 +13,20 @@ static constexpr int OVERHEAD = 2;
 // Passes are taken only when at least this part of the lanes has work.
 static constexpr double WORTH_IT = 0.3;
 
+// The chunk of each particle.
+static std::vector<int> chunks(int particles, const int *object)
+{
+  std::vector<int> chunk(particles);
+  for (int i = 1, first = 0; i < particles; ++i) {
+    const bool full = i - first == Cut::CHUNK || object[i] != object[i - 1];
+    if (full) first = i;
+    chunk[i] = chunk[i - 1] + full;
+  }
+  return chunk;
+}
+
 // How many particles the best cut takes into the block that ends before particle i; index 1 … N.
-std::vector<int> Cutter::lengths(const HalfBonds &bonds, const int *object) const
+std::vector<int> Cutter::lengths(const HalfBonds &bonds, const std::vector<int> &chunk) const
 {
   const SpringRows &rows = *bonds.rows;
   const int particles = rows.size();
@@ -29,7 +41,7 @@ std::vector<int> Cutter::lengths(const HalfBonds &bonds, const int *object) cons
     long offsets = 0;
     for (int n = 1; n <= width && i + n <= particles; ++n) {
       const int k = i + n - 1;
-      if (object[k] != object[i]) break;
+      if (chunk[k] != chunk[i]) break;
       for (const SpringRows::Link &link : rows[k]) {
         int &latest = seen[link.offset];
         offsets += latest != i;
@@ -58,9 +70,17 @@ Cut Cutter::cut(const HalfBonds &bonds, const int *object)
   Cut cut;
   cut.particles = rows.size();
   cut.springs = rows.total();
-  const std::vector<int> length = lengths(bonds, object);
-  for (int end = cut.particles; end > 0; end -= length[end])
-    cut.block.push_back({end - length[end], static_cast<short>(length[end]), false, false, false, 0, -1, 0, object[end - 1] - 1});
+  const std::vector<int> chunk = chunks(cut.particles, object), length = lengths(bonds, chunk);
+  cut.chunks = cut.particles ? chunk.back() + 1 : 0;
+  for (int end = cut.particles; end > 0; end -= length[end]) {
+    Block block = {};
+    block.start = end - length[end];
+    block.lanes = static_cast<short>(length[end]);
+    block.external_force = block.crossing = -1;
+    block.object = object[end - 1] - 1;
+    block.chunk = chunk[end - 1];
+    cut.block.push_back(block);
+  }
   std::reverse(cut.block.begin(), cut.block.end());
 
   std::vector<bool> damped(cut.particles), bound(cut.particles);
@@ -92,8 +112,7 @@ Cut Cutter::cut(const HalfBonds &bonds, const int *object)
         law[width + lane] = own.pull;
         if (block.damped) law[2 * width + lane] = own.c;
       }
-      cut.entry.push_back(
-          {offset, block.damped ? damped_coeffs.find_or_add(law.data(), 3 * width) : coeffs.find_or_add(law.data(), 2 * width)});
+      cut.entry.push_back({offset, add_row(block.damped, law.data())});
       cut.farthest = std::max(cut.farthest, offset);
     }
     block.end = static_cast<unsigned>(cut.entry.size());
@@ -114,10 +133,12 @@ Cut Cutter::join(const std::vector<const Cut *> &cuts)
     for (Block block : cut->block) {
       block.start += all.particles;
       block.end += first;
+      block.chunk += all.chunks;
       all.block.push_back(block);
     }
     all.entry.insert(all.entry.end(), cut->entry.begin(), cut->entry.end());
     all.particles += cut->particles;
+    all.chunks += cut->chunks;
     all.springs += cut->springs;
     all.farthest = std::max(all.farthest, cut->farthest);
   }

@@ -12,11 +12,14 @@
 
 namespace mdanim {
 
-// Blocks of some particles that no spring leads out of; starts count from the first of them, ends from the first entry.
+// Blocks of some particles that no spring leads out of; starts count from the first of them, ends from the first entry. A chunk
+// has up to so many particles of one object, and a block is in one chunk.
 struct Cut {
+  static constexpr int CHUNK = 512;
   std::vector<Block> block;
   std::vector<Entry> entry;
   int particles = 0, farthest = 0;    // the longest offset
+  int chunks = 0;
   std::size_t springs = 0;
 
   std::size_t bytes() const { return block.capacity() * sizeof(Block) + entry.capacity() * sizeof(Entry); }
@@ -36,7 +39,7 @@ class Cutter {
  public:
   // Forget all cuts: from now on they are for blocks of so many lanes.
   void start(int lanes);
-  // Cut particles into blocks so that the fewest vectors of forces are to be computed. A block is of one object.
+  // Cut particles into blocks so that the fewest vectors of forces are to be computed.
   Cut cut(const HalfBonds &bonds, const int *object);
   // All cuts one after the other, as a single one; there may be none.
   Cut join(const std::vector<const Cut *> &cuts);
@@ -45,12 +48,17 @@ class Cutter {
 
   int lanes() const { return width; }
   bool damped() const { return damped_coeffs.size() > 0; }    // some block is
+  // Rows of coefficients: of a damped block push, pull and c, of another one push and pull, one of each for every lane.
+  int row_length(bool of_damped) const { return (of_damped ? 3 : 2) * width; }
+  const double *row(bool of_damped, unsigned law) const { return (of_damped ? damped_coeffs : coeffs).first_of(law); }
+  unsigned add_row(bool of_damped, const double *row)
+  { return (of_damped ? damped_coeffs : coeffs).find_or_add(row, row_length(of_damped)); }
   const double *rows() const { return coeffs.data(); }
   const double *damped_rows() const { return damped() ? damped_coeffs.data() : nullptr; }
   std::size_t bytes() const { return coeffs.bytes() + damped_coeffs.bytes(); }
 
  private:
-  std::vector<int> lengths(const HalfBonds &bonds, const int *object) const;
+  std::vector<int> lengths(const HalfBonds &bonds, const std::vector<int> &chunk) const;
 
   int width = 0;
   DistinctRows<double> coeffs, damped_coeffs;    // all of one length, one number for each lane or several

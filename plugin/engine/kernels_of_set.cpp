@@ -50,7 +50,7 @@ bool runs_here()
 }    // namespace
 
 extern const Kernels MDANIM_KERNELS(MDANIM_SET);
-const Kernels MDANIM_KERNELS(MDANIM_SET) = {MDANIM_NAME(MDANIM_SET), MDANIM_LANES,  runs_here,      whole_pass,
+const Kernels MDANIM_KERNELS(MDANIM_SET) = {MDANIM_NAME(MDANIM_SET), MDANIM_LANES,  runs_here,      pass_of_range,
                                             {in_reach, within},      spring_forces, spring_energies};
 
 }    // namespace mdanim

@@ -27,6 +27,37 @@ struct Block {
   int external_force;    // first of its rows of Pass::external_force; negative for none
   unsigned motion;       // row of Pass::motion
   int object;            // molecule - 1
+  int chunk;             // row of Pass::sums
+  bool at_border;        // of a range of blocks: some of what is loaded with its lanes belongs to another range
+  int crossing;          // its row of Pass::crossed; negative where none of its springs cross the border above it
+};
+
+// The springs of a block that cross a border between two ranges of blocks: entries from the last one's end on.
+struct Crossing {
+  int start;
+  bool damped;
+  unsigned end;
+};
+
+// A border between two ranges. Springs across it are evaluated once, before a thread moves anything that they need: they are the
+// first that their lower particles add up, as their offsets are the longest, and the first that their upper particles receive, as
+// these come from their lowest partners. So each sum has the order that it has without a border.
+struct Border {
+  int first, crossings;    // of Pass::crossing, ascending
+  unsigned first_entry;
+  double *f[3], *part[3];       // of the range above
+  unsigned claimed, crossed;    // Pass::turn in which a thread has begun to evaluate them, and in which they are done
+};
+
+// Blocks that one thread takes through a pass.
+struct Range {
+  int first, blocks;    // of Pass::block
+  unsigned first_entry;
+  int end;                   // particle
+  Border *below, *above;     // null where no spring crosses
+  double *f[3], *part[3];    // of this range alone, with the lanes of a vector on either side
+  int shared[2];             // objects that the ranges below and above may have blocks of, too; negative for none
+  double *shared_trace;      // two rows of TRACE for them
 };
 
 enum class Friction { NONE, IMPLICIT, EXPONENTIAL };
@@ -48,32 +79,42 @@ enum Trace { FASTEST = 6, TRACE };
 
 using DashpotSums = DashpotWork<double>;    // over particles
 
+// Sums over particles that have moved in a pass. They are kept for each chunk of particles (Cut) and added up in the order of
+// chunks: no number depends on how many lanes a block has, nor on which threads take the pass.
+struct PassSums {
+  double final_loss, first_loss;    // to friction in either half step
+  double bend;                      // dt v^{n+1/2} . F^n
+  DashpotSums dashpots;
+};
+
 struct Pass {
   const Block *block;
-  int blocks;
   const Entry *entry;
   const double *law;           // rows of push and pull (spring.h), one of each for every lane
   const double *damped_law;    // rows of push, pull and c; null where nothing is damped
   const double *motion;        // see Motion
   double *x[3], *v[3];         // x^n -> x^{n+1}, v^{n-1/2} -> v^{n+1/2}
-  double *f[3];                // what lower partners have done so far; nothing before and after a pass
-  // With dashpots: their part of f; their forces of the last step, F^{n-1} -> F^n, and the velocities that those of this step
-  // have seen, v^{n-3/2} -> v^{n-1/2}. Of what is held back F^n stays in `part`, and the other two as they are.
-  double *part[3], *last[3], *seen[3];
-  double gravity[3];               // [velocity/time]
+  // With dashpots: their forces of the last step, F^{n-1} -> F^n, and the velocities that those of this step have seen,
+  // v^{n-3/2} -> v^{n-1/2}. Of what is held back these stay as they are, and F^n goes to `held_part`.
+  double *last[3], *seen[3], *held_part[3];
+  // Of the range: what lower partners have done so far, and the dashpots' part of it; nothing before and after a pass.
+  const Range *range;
+  const Crossing *crossing;
+  const Entry *crossing_entry;
+  double *crossed;      // what crossing springs do to their lower particles: rows of (3, lanes), (6, lanes) with dashpots
+  unsigned turn;        // number of the pass
+  double gravity[3];    // [velocity/time]
   const double *external_force;    // rows of forces from elsewhere, (3, lanes) each, to be added after gravity:
   int force_providers;             // so many in a row for a block that has any
   Friction friction;
-  double *total;    // (N, 3): sum of all forces on the particles of blocks that are held back
-  double *trace;    // rows of TRACE, one of each object: to be grown; null for none
-  bool looks;       // where particles are after this pass; else the trace takes note of their speeds alone
-  bool bends;       // `bend` is asked for
+  double *total;     // (N, 3): sum of all forces on the particles of blocks that are held back
+  double *trace;     // rows of TRACE, one of each object: to be grown; null for none
+  bool looks;        // where particles are after this pass; else the trace takes note of their speeds alone
+  bool bends;        // `bend` is asked for
+  PassSums *sums;    // of every chunk, zero before a pass
 
-  double fastest;                   // largest v^2 of what has moved
-  double squares;                   // sum of v^2, with lanes of others: finite where all of them are
-  double final_loss, first_loss;    // to friction in either half step
-  DashpotSums dashpots;             // but for what is held back
-  double bend;                      // dt v^{n+1/2} . F^n of what has moved
+  double fastest;    // largest v^2 of what has moved
+  double squares;    // sum of v^2, with lanes of others: finite where all of them are
 };
 
 }    // namespace mdanim

@@ -8,6 +8,18 @@
 
 namespace mdanim {
 
+// Fewer particles take less time than a thread to wake up.
+static constexpr int LEAST_PARTICLES = 1000;    // of a range
+
+void PassEngine::set_threads(int many)
+{
+  threads = many;
+  team = Team::of(many);
+}
+
+RangeCut PassEngine::ranges_of(Cut &cut)
+{ return cut_into_ranges(cutter, cut, std::min({threads, cut.particles / LEAST_PARTICLES, Team::MOST_TASKS})); }
+
 bool PassEngine::begin_run(const Kernels &now)
 {
   const bool others = kernels != &now;
@@ -36,7 +48,9 @@ bool PassEngine::cut(int particles, const int *object)
   blocks.reset();
   cutter.start(kernels->lanes);
   Cut all = cutter.cut(half, objects.data());
-  if (cutter.use(all).worth_it()) blocks.emplace(cutter, std::move(all));
+  if (!cutter.use(all).worth_it()) return false;
+  RangeCut ranges = ranges_of(all);
+  blocks.emplace(cutter, std::move(all), std::move(ranges));
   return blocks.has_value();
 }
 
@@ -60,7 +74,8 @@ LaneUse PassEngine::cut(const Bonded &known)
     motion_for = NONE;
     Cut all = cutter.join(cuts);
     use = cutter.use(all);
-    blocks.emplace(cutter, std::move(all), line.places(), known.own);
+    RangeCut ranges = ranges_of(all);
+    blocks.emplace(cutter, std::move(all), std::move(ranges), line.places(), known.own);
   } else {
     blocks->lay_out_at(line.places(), known.own);
   }
@@ -69,7 +84,7 @@ LaneUse PassEngine::cut(const Bonded &known)
 
 PassRun &PassEngine::start(const AtomArrays &atoms, double dt, bool positions, long long build)
 {
-  run.emplace(*blocks, *kernels, crew, atoms, dt, PassRun::Fresh{positions, motion_for != build});
+  run.emplace(*blocks, *kernels, *team, crew, atoms, dt, PassRun::Fresh{positions, motion_for != build});
   motion_for = build;
   return *run;
 }

@@ -9,6 +9,7 @@
 #include "engine/simd_blocks.h"
 #include "engine/tag_order.h"
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -19,6 +20,9 @@ namespace mdanim {
 class PassEngine {
  public:
   PassCrew crew;
+
+  // So many threads take passes, where there is enough for each of them to do. The caller of all other functions is one of them.
+  void set_threads(int threads);
 
   // The crew is complete: with these kernels, and what only this run knows forgotten. Whether the kernels are others than before.
   bool begin_run(const Kernels &kernels);
@@ -41,11 +45,16 @@ class PassEngine {
   SimdBlocks &laid_out() { return *blocks; }
 
   long long held_back() const { return moved_alone; }    // particles, all passes together
+  int ranges() const { return blocks ? static_cast<int>(blocks->ranges().size()) : 0; }
   std::size_t bytes() const;
 
  private:
   static constexpr long long NONE = -1;
 
+  RangeCut ranges_of(Cut &cut);
+
+  int threads = 1;
+  std::shared_ptr<Team> team = Team::of(1);
   const Kernels *kernels = nullptr;
   long long cut_for = NONE;            // version of the springs
   long long motion_for = NONE;         // build of lists

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The pass over all blocks (pass.h), for vectors of MDANIM_LANES doubles.
+// The pass over a range of blocks (pass.h), for vectors of MDANIM_LANES doubles.
 //
 // Springs are evaluated once. Blocks come in ascending order and in each of them offsets in descending order, so that a particle
 // receives from its lower partners in ascending order, and a block's own sum takes its upper ones in descending order: the order
@@ -14,6 +14,8 @@
 #include "engine/vectors.h"
 #include "laws/leapfrog.h"
 #include "laws/spring.h"
+
+#include <sched.h>
 
 namespace mdanim {
 namespace {
@@ -76,16 +78,25 @@ struct Bounds {
 // What a pass tells at its end.
 struct Tally {
   Vector fastest{}, squares{};
-  double final_loss = 0.0, first_loss = 0.0, bend = 0.0;
-  DashpotSums dashpots = {0.0, 0.0, 0.0};
+  PassSums sums{};
+  int chunk = -1;    // whose sums these are
   Bounds box;
   Vector fastest_of_object{};
   int object = -1;    // whose box and speed these are
 
-  MDANIM_ALWAYS_INLINE void turn_to(int next, const Pass &pass)
+  MDANIM_ALWAYS_INLINE void turn_to_chunk(int next, const Pass &pass)
+  {
+    if (chunk >= 0) pass.sums[chunk] = sums;
+    sums = {};
+    chunk = next;
+  }
+
+  MDANIM_ALWAYS_INLINE void turn_to_object(int next, const Pass &pass)
   {
     if (object >= 0) {
-      double *const row = pass.trace + TRACE * object;
+      double *row = pass.trace + TRACE * object;
+      for (int side = 0; side < 2; ++side)
+        if (object == pass.range->shared[side]) row = pass.range->shared_trace + TRACE * side;
       if (pass.looks) box.close(row);
       for (int lane = 0; lane < LANES; ++lane)
         if (-fastest_of_object[lane] < row[FASTEST]) row[FASTEST] = -fastest_of_object[lane];
@@ -97,43 +108,63 @@ struct Tally {
   }
 };
 
-// Springs of a block, each once, and the dashpots beside them; adds up what its own particles feel of them and of gravity, and
-// behind that what they feel of dashpots alone.
-template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel(const Pass &pass, const Block &block, unsigned &e, double *total)
+// What the particles of a block feel of springs to upper partners, and of dashpots alone.
+struct Felt {
+  Vector3 springs, dashpots;
+};
+
+// Springs of a block, each once, and the dashpots beside them: for its own particles into `felt`, for their partners into f and
+// part. place(array, i) has the lanes of particles from i on.
+template <bool DAMPED, class Place>
+MDANIM_ALWAYS_INLINE void add_springs(const Pass &pass, const Entry *entry, unsigned &e, unsigned end, int i, double *const *of_f,
+                                      double *const *of_part, Felt &felt, const Place &place)
 {
   constexpr int COEFFS = DAMPED ? 3 : 2;
-  double *const x[] = {pass.x[0], pass.x[1], pass.x[2]}, *const f[] = {pass.f[0], pass.f[1], pass.f[2]};
-  const Entry *const entry = pass.entry;
+  double *const x[] = {pass.x[0], pass.x[1], pass.x[2]}, *const f[] = {of_f[0], of_f[1], of_f[2]};
   const double *const coeffs = DAMPED ? pass.damped_law : pass.law;
-  const int i = block.start;
-  const Vector3 here = load(x, i);
-  Vector3 upper, v, part;
-  if (DAMPED) v = load(pass.v, i);
-  for (; e < block.end; ++e) {
+  const Vector3 here = place(x, i);
+  Vector3 v;
+  if (DAMPED) v = place(pass.v, i);
+  for (; e < end; ++e) {
     const int j = i + entry[e].offset;
     const double *const own = coeffs + static_cast<unsigned long>(entry[e].law) * (COEFFS * LANES);
-    const Vector3 d = here - load(x, j);
+    const Vector3 d = here - place(x, j);
     const Vector square = floored_square(d);
     Vector3 force = spring_factor(load(own), load(own + LANES), square) * d;
     if (DAMPED) {
-      const Vector3 slowing = dashpot_factor(load(own + 2 * LANES), d, v - load(pass.v, j), square) * d;
+      const Vector3 slowing = dashpot_factor(load(own + 2 * LANES), d, v - place(pass.v, j), square) * d;
       force += slowing;
-      part += slowing;
-      store(pass.part, j, load(pass.part, j) - slowing);
+      felt.dashpots += slowing;
+      store(of_part, j, load(of_part, j) - slowing);
     }
-    upper += force;
+    felt.springs += force;
     store(f, j, load(f, j) - force);
   }
+}
+
+// All that a block's own particles feel of springs and of gravity, and behind that what they feel of dashpots alone.
+template <bool DAMPED> MDANIM_ALWAYS_INLINE void add_up(const Pass &pass, const Block &block, const Felt &felt, double *total)
+{
+  double *const f[] = {pass.range->f[0], pass.range->f[1], pass.range->f[2]};
+  const int i = block.start;
   const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
   const Vector mass = load(motion + MASS * LANES), others = load(motion + FOREIGN_LANE * LANES);
   const Vector3 received = load(f, i), gravity{mass * pass.gravity[0], mass * pass.gravity[1], mass * pass.gravity[2]};
   store(f, i, others * received);
-  store_own(total, (received + upper) + gravity);
+  store_own(total, (received + felt.springs) + gravity);
   if (DAMPED) {
-    const Vector3 slowed = load(pass.part, i);
-    store(pass.part, i, others * slowed);
-    store_own(total + 3 * LANES, slowed + part);
+    const Vector3 slowed = load(pass.range->part, i);
+    store(pass.range->part, i, others * slowed);
+    store_own(total + 3 * LANES, slowed + felt.dashpots);
   }
+}
+
+template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel(const Pass &pass, const Block &block, unsigned &e, double *total)
+{
+  Felt felt{};
+  const auto place = [](double *const *from, int i) { return load(from, i); };
+  add_springs<DAMPED>(pass, pass.entry, e, block.end, block.start, pass.range->f, pass.range->part, felt, place);
+  add_up<DAMPED>(pass, block, felt, total);
 }
 
 // Forces of participants. Not inlined: most blocks have none, and the springs need all registers.
@@ -180,7 +211,7 @@ MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const doubl
     for (int lane = 0; lane < block.lanes; ++lane)
       for (int d = 0; d < 3; ++d) {
         pass.total[3 * (i + lane) + d] = total[d * LANES + lane];
-        if (DAMPED && block.damped) pass.part[d][i + lane] = total[(3 + d) * LANES + lane];
+        if (DAMPED && block.damped) pass.held_part[d][i + lane] = total[(3 + d) * LANES + lane];
       }
     return;
   }
@@ -194,15 +225,16 @@ MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const doubl
   store(pass.x, i, place);
   Vector square = dot(last, last);
   tally.squares += square;
-  if (pass.bends) add_lanes(tally.bend, dt * dot(last, f));
-  if (DAMPED && block.damped) account(pass, block, motion, load_own(total + 3 * LANES), first, last, tally.dashpots);
+  if (block.chunk != tally.chunk) tally.turn_to_chunk(block.chunk, pass);
+  if (pass.bends) add_lanes(tally.sums.bend, dt * dot(last, f));
+  if (DAMPED && block.damped) account(pass, block, motion, load_own(total + 3 * LANES), first, last, tally.sums.dashpots);
   if constexpr (FRICTION != Friction::NONE) {    // 0 in lanes of others
     const Vector mass = load(motion + BRAKED_MASS * LANES);
-    add_lanes(tally.final_loss, law.loss(first, middle, f, mass, false));
-    add_lanes(tally.first_loss, law.loss(middle, last, f, mass, true));
+    add_lanes(tally.sums.final_loss, law.loss(first, middle, f, mass, false));
+    add_lanes(tally.sums.first_loss, law.loss(middle, last, f, mass, true));
   }
   if (TRACED) {
-    if (block.object != tally.object) tally.turn_to(block.object, pass);
+    if (block.object != tally.object) tally.turn_to_object(block.object, pass);
     if (block.lanes < LANES) {    // lanes of others go where the first one is, and rest
       const Vector others = load(motion + FOREIGN_LANE * LANES);
       const auto at_first = [&](const Vector &a) { return others > 0.0 ? Vector{} + a[0] : a; };
@@ -216,33 +248,129 @@ MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const doubl
   }
 }
 
+// --- at the borders of ranges ---
+
+// Lanes of particles from i on, but for those of another range, which another thread may be moving: these are where the first is.
+MDANIM_ALWAYS_INLINE Vector3 load_before(int end, double *const *from, int i)
+{
+  double lanes[3 * LANES];
+  for (int d = 0; d < 3; ++d)
+    for (int lane = 0; lane < LANES; ++lane) lanes[d * LANES + lane] = from[d][i + lane < end ? i + lane : i];
+  return load_own(lanes);
+}
+
+template <bool DAMPED> MDANIM_ALWAYS_INLINE void cross(const Pass &pass, const Border &border)
+{
+  const auto place = [](double *const *from, int i) { return load(from, i); };
+  unsigned e = border.first_entry;
+  for (int n = border.first; n < border.first + border.crossings; ++n) {
+    const Crossing &block = pass.crossing[n];
+    Felt felt{};
+    if (DAMPED && block.damped)
+      add_springs<true>(pass, pass.crossing_entry, e, block.end, block.start, border.f, border.part, felt, place);
+    else
+      add_springs<false>(pass, pass.crossing_entry, e, block.end, block.start, border.f, border.part, felt, place);
+    double *const row = pass.crossed + static_cast<long>(n) * ((DAMPED ? 6 : 3) * LANES);
+    store_own(row, felt.springs);
+    if (DAMPED) store_own(row + 3 * LANES, felt.dashpots);
+  }
+}
+
+// The springs across a border are evaluated when this returns, by whichever thread came first. It waits for no other, so no
+// thread waits for long.
+template <bool DAMPED> __attribute__((noinline)) void see_crossed(const Pass &pass, Border &border)
+{
+  unsigned before = pass.turn - 1;
+  if (__atomic_compare_exchange_n(&border.claimed, &before, pass.turn, false, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE)) {
+    cross<DAMPED>(pass, border);
+    __atomic_store_n(&border.crossed, pass.turn, __ATOMIC_RELEASE);
+    return;
+  }
+  while (__atomic_load_n(&border.crossed, __ATOMIC_ACQUIRE) != pass.turn) sched_yield();
+}
+
+// Of a damped pass, a block that is damped itself or not.
+template <bool DAMPED_PASS, bool DAMPED>
+__attribute__((noinline)) void feel_at_border(const Pass &pass, const Block &block, unsigned &e, double *total)
+{
+  Felt felt{};
+  if (block.crossing >= 0) {
+    see_crossed<DAMPED_PASS>(pass, *pass.range->above);
+    const double *const row = pass.crossed + static_cast<long>(block.crossing) * ((DAMPED_PASS ? 6 : 3) * LANES);
+    felt.springs = load_own(row);
+    if (DAMPED) felt.dashpots = load_own(row + 3 * LANES);
+  }
+  const auto place = [end = pass.range->end](double *const *from, int i) { return load_before(end, from, i); };
+  add_springs<DAMPED>(pass, pass.entry, e, block.end, block.start, pass.range->f, pass.range->part, felt, place);
+  add_up<DAMPED>(pass, block, felt, total);
+}
+
+// In a copy of its own lanes.
+template <Friction FRICTION, bool TRACED, bool DAMPED>
+__attribute__((noinline)) void move_at_border(const Pass &pass, const Block &block, const double *total, Tally &tally)
+{
+  constexpr int KINDS = DAMPED ? 4 : 2;
+  double room[KINDS][3][LANES] = {};
+  Pass copy = pass;
+  double **const of_copy[] = {copy.x, copy.v, copy.last, copy.seen};
+  for (int kind = 0; kind < KINDS; ++kind)
+    for (int d = 0; d < 3; ++d) {
+      for (int lane = 0; lane < block.lanes; ++lane) room[kind][d][lane] = of_copy[kind][d][block.start + lane];
+      of_copy[kind][d] = room[kind][d] - block.start;
+    }
+  move<FRICTION, TRACED, DAMPED>(copy, block, total, tally);
+  double *const *const of_pass[] = {pass.x, pass.v, pass.last, pass.seen};
+  for (int kind = 0; kind < KINDS; ++kind)
+    for (int d = 0; d < 3; ++d)
+      for (int lane = 0; lane < block.lanes; ++lane) of_pass[kind][d][block.start + lane] = room[kind][d][lane];
+}
+
+// --- all of a range ---
+
+template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel_anywhere(const Pass &pass, const Block &block, unsigned &e, double *total)
+{
+  if (__builtin_expect(block.at_border, 0))
+    DAMPED &&block.damped ? feel_at_border<DAMPED, DAMPED>(pass, block, e, total)
+                          : feel_at_border<DAMPED, false>(pass, block, e, total);
+  else if (DAMPED && block.damped)
+    feel<true>(pass, block, e, total);
+  else
+    feel<false>(pass, block, e, total);
+  if (__builtin_expect(block.external_force >= 0, 0)) add_external_force(pass, block, total);
+}
+
+template <Friction FRICTION, bool TRACED, bool DAMPED>
+MDANIM_ALWAYS_INLINE void move_anywhere(const Pass &pass, const Block &block, const double *total, Tally &tally)
+{
+  if (__builtin_expect(block.at_border, 0))
+    move_at_border<FRICTION, TRACED, DAMPED>(pass, block, total, tally);
+  else
+    move<FRICTION, TRACED, DAMPED>(pass, block, total, tally);
+}
+
 // A block moves while the next one's springs keep the divider busy: nothing then waits for its forces.
 template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_ALWAYS_INLINE void go(Pass &pass)
 {
   double total[2][(DAMPED ? 6 : 3) * LANES];
   Tally tally;
   tally.box.open();
-  unsigned e = 0;
-  for (int n = 0; n < pass.blocks; ++n) {
-    if (DAMPED && pass.block[n].damped)
-      feel<true>(pass, pass.block[n], e, total[n & 1]);
-    else
-      feel<false>(pass, pass.block[n], e, total[n & 1]);
-    if (__builtin_expect(pass.block[n].external_force >= 0, 0)) add_external_force(pass, pass.block[n], total[n & 1]);
-    if (n) move<FRICTION, TRACED, DAMPED>(pass, pass.block[n - 1], total[~n & 1], tally);
+  const Block *const block = pass.block + pass.range->first;
+  const int blocks = pass.range->blocks;
+  unsigned e = pass.range->first_entry;
+  if (pass.range->below) see_crossed<DAMPED>(pass, *pass.range->below);
+  for (int n = 0; n < blocks; ++n) {
+    feel_anywhere<DAMPED>(pass, block[n], e, total[n & 1]);
+    if (n) move_anywhere<FRICTION, TRACED, DAMPED>(pass, block[n - 1], total[~n & 1], tally);
   }
-  if (pass.blocks) move<FRICTION, TRACED, DAMPED>(pass, pass.block[pass.blocks - 1], total[~pass.blocks & 1], tally);
+  if (blocks) move_anywhere<FRICTION, TRACED, DAMPED>(pass, block[blocks - 1], total[~blocks & 1], tally);
 
-  if (TRACED) tally.turn_to(-1, pass);
+  if (TRACED) tally.turn_to_object(-1, pass);
+  tally.turn_to_chunk(-1, pass);
   pass.fastest = pass.squares = 0.0;
   for (int lane = 0; lane < LANES; ++lane) {
     if (tally.fastest[lane] > pass.fastest) pass.fastest = tally.fastest[lane];
     pass.squares += tally.squares[lane];
   }
-  pass.final_loss = tally.final_loss;
-  pass.first_loss = tally.first_loss;
-  pass.bend = tally.bend;
-  pass.dashpots = tally.dashpots;
 }
 
 template <Friction FRICTION, bool TRACED> MDANIM_ALWAYS_INLINE void with_or_without_dashpots(Pass &pass)
@@ -261,7 +389,7 @@ template <Friction FRICTION> MDANIM_ALWAYS_INLINE void with_or_without_trace(Pas
     with_or_without_dashpots<FRICTION, false>(pass);
 }
 
-void whole_pass(Pass &pass)
+void pass_of_range(Pass &pass)
 {
   switch (pass.friction) {
     case Friction::NONE:

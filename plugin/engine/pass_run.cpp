@@ -15,9 +15,9 @@ namespace mdanim {
 // (bench/effects.py shares, which goes from 13 and 3 springs for each particle to none). The springs have the rest.
 static constexpr double OF_LEAPFROG = 0.35, OF_DRAG = 0.14, OF_GRAVITY = 0.01;
 
-PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const PassCrew &crew, const AtomArrays &atoms, double dt,
+PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, Team &team, const PassCrew &crew, const AtomArrays &atoms, double dt,
                  Fresh fresh)
-    : blocks(blocks), kernels(kernels), crew(crew), atoms(atoms), dt(dt)
+    : blocks(blocks), kernels(kernels), team(team), crew(crew), atoms(atoms), dt(dt)
 {
   if (fresh.positions) blocks.take_in(atoms.x, atoms.v);
   if (fresh.motion)
@@ -41,6 +41,8 @@ PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const PassCrew &cre
     pass.gravity[0] = g.x, pass.gravity[1] = g.y, pass.gravity[2] = g.z;
   }
   pass.trace = crew.integrator->trace_rows();
+  chunk_sums.resize(blocks.chunks());
+  pass.sums = chunk_sums.data();
   hold_back();
 }
 
@@ -64,18 +66,47 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
   pass.looks = crew.integrator->looks();
   {
     const Lap lap(all);
-    kernels.pass(pass);
+    take_pass();
   }
   const double moving = (OF_LEAPFROG + (pass.friction == Friction::NONE ? 0.0 : OF_DRAG)) * all;
   const double pulling = crew.gravity ? OF_GRAVITY * all : 0.0;
-  crew.integrator->moved(pass.final_loss, pass.first_loss, pass.bend, moving);
+  crew.integrator->moved(sums.final_loss, sums.first_loss, sums.bend, moving);
   if (crew.gravity) crew.gravity->took(pulling);
   crew.springs->took(all - moving - pulling);
   if (!crew.late.empty()) {
     late_participants_turn(late);
     if (needs_all) hold_back();    // they may need others now
   }
-  if (Loss *account = crew.springs->account()) account->passed(pass.dashpots, dt);
+  if (Loss *account = crew.springs->account()) account->passed(sums.dashpots, dt);
+}
+
+void PassRun::take_pass()
+{
+  std::fill(chunk_sums.begin(), chunk_sums.end(), PassSums{});
+  blocks.begin_pass(pass);
+  const std::vector<Range> &ranges = blocks.ranges();
+  of_range.assign(ranges.size(), pass);
+  for (std::size_t n = 0; n < ranges.size(); ++n) of_range[n].range = &ranges[n];
+  const auto of_one = [](void *run, int n) {
+    auto &self = *static_cast<PassRun *>(run);
+    self.kernels.pass(self.of_range[n]);
+  };
+  team.share_out(static_cast<int>(ranges.size()), of_one, this);
+  blocks.end_pass(pass);
+  pass.fastest = pass.squares = 0.0;
+  for (const Pass &one : of_range) {
+    pass.fastest = std::max(pass.fastest, one.fastest);
+    pass.squares += one.squares;
+  }
+  sums = {};
+  for (const PassSums &of_chunk : chunk_sums) {
+    sums.final_loss += of_chunk.final_loss;
+    sums.first_loss += of_chunk.first_loss;
+    sums.bend += of_chunk.bend;
+    sums.dashpots.work += of_chunk.dashpots.work;
+    sums.dashpots.bend += of_chunk.dashpots.bend;
+    sums.dashpots.ahead += of_chunk.dashpots.ahead;
+  }
 }
 
 // Forces that the pass is to add.
@@ -102,7 +133,7 @@ void PassRun::late_participants_turn(const std::function<void(bool at_end)> &lat
   late(true);
   if (waiting.empty()) return;
   crew.integrator->begin_step(waiting);
-  if (blocks.damped()) blocks.count_held_back(atoms.v, pass.dashpots);
+  if (blocks.damped()) blocks.count_held_back(atoms.v, sums.dashpots);
   blocks.take_in_held_back(atoms.x, atoms.v);
   for (const int i : waiting) {
     const double square = dot(vec3(atoms.v[i]), vec3(atoms.v[i]));

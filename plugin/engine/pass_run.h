@@ -7,6 +7,7 @@
 #include "engine/kernels.h"
 #include "engine/pass_participant.h"
 #include "engine/simd_blocks.h"
+#include "engine/team.h"
 
 #include <functional>
 #include <vector>
@@ -26,7 +27,8 @@ class PassRun {
   struct Fresh {
     bool positions, motion;
   };
-  PassRun(SimdBlocks &blocks, const Kernels &kernels, const PassCrew &crew, const AtomArrays &atoms, double dt, Fresh fresh);
+  PassRun(SimdBlocks &blocks, const Kernels &kernels, Team &team, const PassCrew &crew, const AtomArrays &atoms, double dt,
+          Fresh fresh);
 
   // Whether a participant reads particles in the arrays, besides those that are held back.
   bool participants_look() const { return look; }
@@ -47,15 +49,20 @@ class PassRun {
   static constexpr double LARGEST_SQUARE = 1e200;
 
   void hold_back();
+  void take_pass();
   void early_participants_turn();
   void late_participants_turn(const std::function<void(bool at_end)> &late);
 
   SimdBlocks &blocks;
   const Kernels &kernels;
+  Team &team;
   const PassCrew &crew;
   const AtomArrays atoms;
   const double dt;
   Pass pass = {};
+  std::vector<Pass> of_range;          // the pass of each range
+  PassSums sums = {};                  // of the last pass,
+  std::vector<PassSums> chunk_sums;    // and of each of its chunks
   bool look = false;
   long long moved_alone = 0;
   Positions place;            // of the particles of an early participant

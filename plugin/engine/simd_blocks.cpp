@@ -3,6 +3,7 @@
 
 #include "engine/simd_blocks.h"
 
+#include "engine/boxes.h"
 #include "laws/leapfrog.h"
 
 #include <algorithm>
@@ -15,20 +16,35 @@ static constexpr int STAGGER = 72;
 
 // --- layout ---
 
-SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut)
-    : cutter(of), lanes(of.lanes()), particles(cut.particles), has_damped(of.damped()), all(std::move(cut.block)),
-      entries(std::move(cut.entry))
+static constexpr int PAGE = 512;    // doubles
+
+SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges)
+    : cutter(of), lanes(of.lanes()), particles(cut.particles), many_chunks(cut.chunks), has_damped(of.damped()),
+      all(std::move(cut.block)), entries(std::move(cut.entry)), cuts(std::move(ranges)), range(cuts.ranges()),
+      border(cuts.ranges() - 1)
 {
-  const std::size_t room = (particles + cut.farthest + 2 * lanes) / 512 * 512 + 512 + STAGGER;    // whole pages and a bit
-  const int kinds = damped() ? 6 : 3;
-  memory.assign(3 * kinds * room);
+  const auto room = [](int length) { return length / PAGE * PAGE + PAGE + STAGGER; };    // whole pages and a bit
+  const int whole = room(particles + cut.farthest + 2 * lanes), kinds = damped() ? 5 : 2, kinds_of_range = damped() ? 2 : 1;
+  const auto end = [&](int n) { return n + 1 < cuts.ranges() ? cuts.first[n + 1] : particles + cut.farthest; };
+  const auto room_of = [&](int n) { return room(end(n) - cuts.first[n] + 2 * lanes); };
+  std::size_t size = 3 * kinds * static_cast<std::size_t>(whole);
+  for (int n = 0; n < cuts.ranges(); ++n) size += 3 * kinds_of_range * static_cast<std::size_t>(room_of(n));
+  memory.assign(size);
   double *place = memory.data();
-  double **const arrays[] = {x, v, f, part, last, seen};
+  double **const arrays[] = {x, v, last, seen, held_part};
   for (int kind = 0; kind < kinds; ++kind)
-    for (int d = 0; d < 3; ++d, place += room) arrays[kind][d] = place;
+    for (int d = 0; d < 3; ++d, place += whole) arrays[kind][d] = place;
+  for (int n = 0; n < cuts.ranges(); ++n) {
+    double **const of_range[] = {range[n].f, range[n].part};
+    for (int kind = 0; kind < kinds_of_range; ++kind)
+      for (int d = 0; d < 3; ++d, place += room_of(n)) of_range[kind][d] = place + lanes - cuts.first[n];
+  }
+  crossed.assign((damped() ? 6 : 3) * lanes * cuts.crossing.size());
+  shared_trace.assign(2 * TRACE * range.size());
 }
 
-SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, const std::vector<int> &places, int own) : SimdBlocks(of, std::move(cut))
+SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges, const std::vector<int> &places, int own)
+    : SimdBlocks(of, std::move(cut), std::move(ranges))
 { lay_out_at(places, own); }
 
 void SimdBlocks::lay_out_at(const std::vector<int> &places, int own)
@@ -214,14 +230,13 @@ void SimdBlocks::count_held_back(const double *const *from_v, DashpotSums &sums)
   for (const int i : outside) {
     if (!all[home[i]].damped) continue;
     const auto of = [i](const double *const *a) { return Vec3{a[0][i], a[1][i], a[2][i]}; };
-    const auto terms = dashpot_work(of(part), of(last), of(seen), of(v), vec3(from_v[at(i)]));
+    const auto terms = dashpot_work(of(held_part), of(last), of(seen), of(v), vec3(from_v[at(i)]));
     sums.work += terms.work;
     sums.bend += terms.bend;
     sums.ahead += terms.ahead;
     for (int d = 0; d < 3; ++d) {
-      last[d][i] = part[d][i];
+      last[d][i] = held_part[d][i];
       seen[d][i] = v[d][i];
-      part[d][i] = 0.0;
     }
   }
 }
@@ -270,7 +285,6 @@ void SimdBlocks::give_out_forces(double *const *f) const
 void SimdBlocks::fill(Pass &pass, double *const *forces)
 {
   pass.block = all.data();
-  pass.blocks = active;
   pass.entry = entries.data();
   pass.law = cutter.rows();
   pass.damped_law = damped() ? cutter.damped_rows() : nullptr;
@@ -280,17 +294,78 @@ void SimdBlocks::fill(Pass &pass, double *const *forces)
   for (int d = 0; d < 3; ++d) {
     pass.x[d] = x[d];
     pass.v[d] = v[d];
-    pass.f[d] = f[d];
-    pass.part[d] = part[d];
     pass.last[d] = last[d];
     pass.seen[d] = seen[d];
+    pass.held_part[d] = held_part[d];
   }
   pass.total = reordered ? total.data() : forces[0];
+  fill_ranges(pass);
+}
+
+// --- ranges ---
+
+void SimdBlocks::fill_ranges(Pass &pass)
+{
+  pass.crossing = cuts.crossing.data();
+  pass.crossing_entry = cuts.entry.data();
+  pass.crossed = crossed.data();
+  for (std::size_t n = 0; n < border.size(); ++n) {
+    Border &own = border[n];
+    own.first = n ? cuts.end_of_border[n - 1] : 0;
+    own.crossings = cuts.end_of_border[n] - own.first;
+    own.first_entry = own.first ? cuts.crossing[own.first - 1].end : 0;
+    own.claimed = own.crossed = turn;
+    std::copy_n(range[n + 1].f, 3, own.f);
+    std::copy_n(range[n + 1].part, 3, own.part);
+  }
+  const auto is_below = [](const Block &block, int particle) { return block.start < particle; };
+  const auto first = [&](std::size_t n) {
+    if (n == range.size()) return active;
+    return static_cast<int>(std::lower_bound(all.begin(), all.begin() + active, cuts.first[n], is_below) - all.begin());
+  };
+  for (std::size_t n = 0; n < range.size(); ++n) {
+    Range &own = range[n];
+    own.first = first(n);
+    own.blocks = first(n + 1) - own.first;
+    own.first_entry = own.first ? all[own.first - 1].end : 0;
+    own.end = n + 1 < range.size() ? cuts.first[n + 1] : particles;
+    own.below = n && border[n - 1].crossings ? &border[n - 1] : nullptr;
+    own.above = n < border.size() && border[n].crossings ? &border[n] : nullptr;
+    const auto shared = [&](int before, int after) {
+      return own.blocks && before >= 0 && after < active && all[before].object == all[after].object ? all[after].object : -1;
+    };
+    own.shared[0] = shared(own.first - 1, own.first);
+    own.shared[1] = shared(own.first + own.blocks - 1, own.first + own.blocks);
+    own.shared_trace = shared_trace.data() + 2 * TRACE * n;
+  }
+}
+
+void SimdBlocks::begin_pass(Pass &pass)
+{
+  pass.turn = ++turn;
+  const Box nothing;
+  for (std::size_t n = 0; n < 2 * range.size(); ++n) {
+    double *const row = shared_trace.data() + TRACE * n;
+    std::copy_n(nothing.bound, 6, row);
+    row[FASTEST] = 0.0;
+  }
+}
+
+// Objects that several ranges have blocks of.
+void SimdBlocks::end_pass(const Pass &pass)
+{
+  if (!pass.trace) return;
+  for (const Range &own : range)
+    for (int side = 0; side < 2; ++side)
+      for (int k = 0; own.shared[side] >= 0 && k < TRACE; ++k) {
+        double &known = pass.trace[TRACE * own.shared[side] + k];
+        known = std::min(known, own.shared_trace[TRACE * side + k]);
+      }
 }
 
 std::size_t SimdBlocks::bytes() const
 {
-  std::size_t of_providers = external_force.bytes();
+  std::size_t of_providers = external_force.bytes() + crossed.bytes() + shared_trace.bytes() + cuts.bytes();
   for (const ForceProvider &b : force_providers)
     of_providers += b.particle.capacity() * sizeof(int) + b.ghosts.capacity() * sizeof(Ghost) + b.slot.capacity() * sizeof(long);
   return of_providers + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + motions.bytes() + memory.bytes() +

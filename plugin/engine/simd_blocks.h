@@ -8,6 +8,7 @@
 #include "engine/pass.h"
 #include "engine/pass_participant.h"
 #include "engine/positions.h"
+#include "engine/range_cut.h"
 #include "laws/vec3.h"
 
 #include <vector>
@@ -19,15 +20,16 @@ namespace mdanim {
 class SimdBlocks {
  public:
   // Of a cut of all particles, which are in the same order in the arrays of LAMMPS.
-  SimdBlocks(const Cutter &cutter, Cut &&cut);
+  SimdBlocks(const Cutter &cutter, Cut &&cut, RangeCut &&ranges);
   // They are elsewhere in the arrays of LAMMPS: those from `own` on are ghosts, which others move. After this all other numbers
   // are LAMMPS's: those of mover(), expect(), hold_back(), held_back().
-  SimdBlocks(const Cutter &cutter, Cut &&cut, const std::vector<int> &places, int own);
+  SimdBlocks(const Cutter &cutter, Cut &&cut, RangeCut &&ranges, const std::vector<int> &places, int own);
   SimdBlocks(const SimdBlocks &) = delete;
   SimdBlocks &operator=(const SimdBlocks &) = delete;
   void lay_out_at(const std::vector<int> &places, int own);    // the same blocks when particles are elsewhere again
 
   bool damped() const { return has_damped; }    // some block is
+  int chunks() const { return many_chunks; }
 
   template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
   // Which participants give forces before every pass, in the order in which they are added: the particles of each, ghosts perhaps
@@ -66,8 +68,11 @@ class SimdBlocks {
   void pack(const std::vector<int> &particles, bool velocities, double *to) const;
   void unpack(const std::vector<int> &particles, bool velocities, const double *from);
 
-  void fill(Pass &pass, double *const *f);         // f: where forces on those that are held back go
-  void give_out_forces(double *const *f) const;    // there they are after a pass and this
+  void fill(Pass &pass, double *const *f);    // f: where forces on those that are held back go
+  void begin_pass(Pass &pass);
+  const std::vector<Range> &ranges() const { return range; }    // of the blocks that have something to do in a pass
+  void end_pass(const Pass &pass);                              // of all ranges
+  void give_out_forces(double *const *f) const;                 // there they are after a pass and this
   std::size_t bytes() const;
 
  private:
@@ -75,10 +80,11 @@ class SimdBlocks {
   int ours(int i) const { return reordered ? place[i] : i; }    // the way back
   bool is_ghost(int place) const { return reordered && place >= owned; }
   void set_row(const Mover &mover, Friction friction, int lane, double *row) const;
+  void fill_ranges(Pass &pass);
   void set_apart(const std::vector<bool> &moves);    // by the first particle of a block: whether any of it moves
 
   const Cutter &cutter;
-  const int lanes, particles;
+  const int lanes, particles, many_chunks;
   const bool has_damped;
   bool reordered = false;    // by lay_out_at()
   std::vector<Block> all;
@@ -103,8 +109,13 @@ class SimdBlocks {
   int owned = 0;                       // in LAMMPS's arrays, ghosts come after them
   DistinctRows<double> motions;
   Doubles memory;    // of the arrays
-  double *x[3] = {}, *v[3] = {}, *f[3] = {};
-  double *part[3] = {}, *last[3] = {}, *seen[3] = {};    // where damped
+  double *x[3] = {}, *v[3] = {};
+  double *last[3] = {}, *seen[3] = {}, *held_part[3] = {};    // where damped
+  RangeCut cuts;
+  std::vector<Range> range;
+  std::vector<Border> border;
+  Doubles crossed, shared_trace;
+  unsigned turn = 0;    // passes so far
 };
 
 template <class Tell> void SimdBlocks::set_motion(Friction friction, Tell mover)

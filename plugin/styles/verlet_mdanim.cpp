@@ -43,20 +43,41 @@ using namespace mdanim;
 static constexpr int ACTS = FixConst::INITIAL_INTEGRATE | FixConst::POST_INTEGRATE | FixConst::PRE_FORCE | FixConst::PRE_REVERSE |
                             FixConst::POST_FORCE | FixConst::FINAL_INTEGRATE | FixConst::END_OF_STEP;
 
-// run_style verlet/mdanim [width common|avx2|avx512]
+// run_style verlet/mdanim [width common|avx2|avx512] [threads N]
 VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : SplitVerlet(lmp, 0, arg)
 {
-  if (narg == 0) return;
-  if (strcmp(arg[0], "width") != 0) error->all(FLERR, "run_style verlet/mdanim: unknown keyword {}; it knows width", arg[0]);
-  if (narg != 2) error->all(FLERR, "run_style verlet/mdanim: width takes one word, common, avx2 or avx512");
-  told = kernels_named(arg[1]);
+  for (int n = 0; n < narg; n += 2) {
+    if (strcmp(arg[n], "width") != 0 && strcmp(arg[n], "threads") != 0)
+      error->all(FLERR, "run_style verlet/mdanim: unknown keyword {}; it knows width and threads", arg[n]);
+    if (n + 1 == narg)
+      error->all(FLERR, "run_style verlet/mdanim: {}",
+                 strcmp(arg[n], "width") == 0 ? "width takes one word, common, avx2 or avx512"
+                                              : "threads takes a number, e.g. threads 4");
+    if (strcmp(arg[n], "width") == 0)
+      set_width(arg[n + 1]);
+    else
+      set_threads(arg[n + 1]);
+  }
+}
+
+void VerletMdanim::set_threads(const char *word)
+{
+  const int threads = utils::inumeric(FLERR, word, false, lmp);
+  if (threads < 1 || threads > MOST_THREADS)
+    error->all(FLERR, "run_style verlet/mdanim: threads is a number from 1 to {}, not {}", MOST_THREADS, threads);
+  engine.set_threads(threads);
+}
+
+void VerletMdanim::set_width(const char *word)
+{
+  told = kernels_named(word);
   int here = told != nullptr, everywhere = 0;    // hosts may have different processors
   MPI_Allreduce(&here, &everywhere, 1, MPI_INT, MPI_MIN, world);
   if (!everywhere)
     error->all(
         FLERR,
         "run_style verlet/mdanim: width {} is unknown or {} does not have it; leave width out, and every rank takes its best",
-        arg[1], comm->nprocs > 1 ? "the processor of some rank" : "this processor");
+        word, comm->nprocs > 1 ? "the processor of some rank" : "this processor");
 }
 
 double VerletMdanim::memory_usage()

@@ -24,9 +24,14 @@ class VerletMdanim : public SplitVerlet {
   void run(int) override;
   double memory_usage() override;
   long long passes() const { return passed; }
+  int ranges() const { return engine.ranges(); }
   long long held_back() const { return engine.held_back(); }    // particles, all passes together
 
  private:
+  static constexpr int MOST_THREADS = mdanim::Team::MOST_TASKS;    // no more can have a range each
+
+  void set_width(const char *word);
+  void set_threads(const char *word);
   void begin_setup();
   void spare_bond_list();
   bool find_crew();

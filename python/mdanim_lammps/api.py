@@ -15,6 +15,7 @@ from tempfile import TemporaryDirectory
 
 from .certificate import Certificate
 from .effects import Verdict
+from .engine.threads import with_threads
 from .errors import OutputError
 from .parallel.limits import check_executors
 from .picture.marks import Marks
@@ -72,6 +73,7 @@ class Scene:
         folder: str | Path | None = None,
         *,
         executors: int = 1,
+        threads: int | None = None,
         control: str | None = None,
         force: bool = False,
         movie: bool = False,
@@ -80,6 +82,7 @@ class Scene:
         """Simulate into ``folder`` (default: ``NAME.out`` beside the scene); returns ledger, outcomes and cost.
 
         On several ``executors``, ``control`` is ``central`` (the default) or ``peers``: the frames are the same to the last bit.
+        So they are for any number of ``threads``, of which each process has one unless it is told.
         ``on_progress`` is called with a Progress after every frame. A scene with ``accuracy error p %`` and no setting stored
         beside it is studied first, for two minutes at most. Raises SceneError, RefusedError, DivergedError, OutputError.
         """
@@ -87,7 +90,9 @@ class Scene:
         settled = settle(self.record, make=True, study=output_folder(self.record, folder) / STUDY)
         ready = self.prepared if settled.scene is self.record else prepare(settled.scene)
         with open_run(ready, folder, force=force) as folder:
-            result = run_frames(ready, folder, executors=executors, control=control, on_progress=on_progress, started=started)
+            result = run_frames(
+                ready, folder, executors=executors, threads=threads, control=control, on_progress=on_progress, started=started
+            )
             if movie:
                 from .picture.movie import render_movie
 
@@ -222,16 +227,25 @@ def stored_scene(folder: Path) -> SceneRecord:
 
 
 def run_frames(
-    ready: Prepared, folder: Path, *, executors: int = 1, control: str | None = None, resume: Checkpoint | None = None, **options
+    ready: Prepared,
+    folder: Path,
+    *,
+    executors: int = 1,
+    threads: int | None = None,
+    control: str | None = None,
+    resume: Checkpoint | None = None,
+    **options,
 ) -> Result:
-    """Simulate in this process, or on executors of their own when there is more than one or a ``control`` is named.
+    """Simulate in this process, or on executors of their own when there is more than one or a ``control`` is named, each with so
+    many threads.
 
-    ``options`` are those of `run.loop.simulate`. Raises what that does, and UsageError for less than one executor or more than
-    this machine can hold.
+    ``options`` are those of `run.loop.simulate`. Raises what that does, and UsageError for less than one executor or thread or
+    more than this machine can hold.
     """
     check_executors(executors, ready.system.particles)
-    if executors == 1 and control is None:
-        return simulate(ready, folder, resume=resume, **options)
-    from .parallel.runtime.launch import simulate_on
+    with with_threads(threads):
+        if executors == 1 and control is None:
+            return simulate(ready, folder, resume=resume, **options)
+        from .parallel.runtime.launch import simulate_on
 
-    return simulate_on(executors, control or "central", ready, folder, resume=resume, **options)
+        return simulate_on(executors, control or "central", ready, folder, resume=resume, **options)

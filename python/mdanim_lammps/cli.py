@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 import shlex
 import sys
@@ -29,6 +28,7 @@ from .command_options import (
     Set,
     Size,
     Strict,
+    Threads,
     Verbose,
     View,
     whole_number,
@@ -46,6 +46,7 @@ from .command_steps import (
     prepare,
     print_lines,
     print_warnings,
+    refuse_mistyped,
     seconds_of,
     settle,
     show_address,
@@ -72,6 +73,7 @@ def run(
     /,
     *,
     executors: Executors = 1,
+    threads: Threads = None,
     out: Out = None,
     control: Control = None,
     accuracy: Accuracy = None,
@@ -107,7 +109,7 @@ def run(
         print("\n".join(speedup_lines(forecast_speedup(ready, executors))), flush=True)
     with Viewer(view, scene if edit else None) as viewer, open_run(ready, out, force=force) as folder:
         viewer.start(folder)
-        simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control)
+        simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, threads=threads, control=control)
 
 
 @app.command
@@ -240,6 +242,7 @@ def resume(
     /,
     *,
     executors: Executors = 1,
+    threads: Threads = None,
     control: Control = None,
     movie: bool = True,
     view: View = False,
@@ -268,7 +271,9 @@ def resume(
         ready = prepare(scene, allow_unstable=allow_unstable)
         announce(ready, quiet, False, executors, control)
         viewer.start(folder)
-        simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, control=control, resume=checkpoint)
+        simulate_and_draw(
+            ready, folder, quiet=quiet, movie=movie, executors=executors, threads=threads, control=control, resume=checkpoint
+        )
 
 
 @app.command
@@ -468,19 +473,6 @@ def study(
     print(f"output   {done.folder}/study.json, study.csv, study.png")
 
 
-def _suggest(arguments: list[str]) -> str | None:
-    """A message for a mistyped subcommand: the first word is neither a file nor a command, but close to one."""
-    if not arguments or arguments[0].startswith("-") or Path(arguments[0]).exists():
-        return None
-    commands = [name for name in app if not name.startswith("-")]
-    if arguments[0] in commands:
-        return None
-    close = difflib.get_close_matches(arguments[0], commands, n=1)
-    if close:
-        return f"no scene file and no command is called '{arguments[0]}'; did you mean '{close[0]}'?"
-    return None
-
-
 def main(argv: list[str] | None = None) -> None:
     """Run the command line and exit with one of the documented codes."""
     open_streams()
@@ -489,8 +481,7 @@ def main(argv: list[str] | None = None) -> None:
     debug = "--debug" in arguments
     arguments = [a for a in arguments if a != "--debug"]
     with few_collections(), documented_exit(debug=debug):
-        if (message := _suggest(arguments)) is not None:
-            raise UsageError(message)
+        refuse_mistyped(arguments, [name for name in app if not name.startswith("-")])
         if not arguments:
             app.help_print([])
             raise SystemExit(ExitCode.USAGE)

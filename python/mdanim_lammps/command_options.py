@@ -9,6 +9,9 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
+from .engine.threads import check_threads
+from .errors import UsageError
+
 Set = Annotated[
     tuple[str, ...], Parameter(name="--set", help="Override a 'let': --set NAME=VALUE.", negative=(), consume_multiple=False)
 ]
@@ -33,6 +36,17 @@ def whole_number(_, tokens) -> int:
 Executors = Annotated[
     int, Parameter(name=["-n", "--executors"], converter=whole_number, help="Processes that simulate; one more supervises them.")
 ]
+
+
+def thread_count(_, tokens) -> int:
+    """As `check_threads` takes it."""
+    try:
+        return check_threads(tokens[0].value)
+    except UsageError as error:
+        raise ValueError(error) from None
+
+
+Threads = Annotated[int | None, Parameter(converter=thread_count, help="Threads of each process that simulates; 1 if left out.")]
 Control = Annotated[
     Literal["central", "peers"] | None,
     Parameter(help="What assigns objects to executors: the supervisor, or each executor alike."),

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import difflib
 import os
 import re
 import shlex
@@ -262,3 +263,12 @@ def draw_movie(folder: Path, scene, path: Path, *, quiet: bool, **options) -> No
     except KeyboardInterrupt:
         print(f"the movie was interrupted, the run is complete; draw it with: mdanim-lammps render {folder}", file=sys.stderr)
         raise SystemExit(ExitCode.INTERRUPTED) from None
+
+
+def refuse_mistyped(arguments: list[str], commands: list[str]) -> None:
+    """Raise UsageError for a mistyped command: a first word that is neither a file nor a command, but close to one."""
+    word = arguments[0] if arguments else "-"
+    if word.startswith("-") or word in commands or Path(word).exists():
+        return
+    if close := difflib.get_close_matches(word, commands, n=1):
+        raise UsageError(f"no scene file and no command is called '{word}'; did you mean '{close[0]}'?")

@@ -26,6 +26,9 @@ def functions() -> ctypes.CDLL:
         ("cut_blocks", i, handle),
         ("cut_entries", i, handle),
         ("cut_tell", None, handle, INTS, INTS, DOUBLES),
+        ("cut_ranges", i, handle, i, INTS, INTS),
+        ("ranges_tell", None, handle, INTS, INTS, INTS, INTS, DOUBLES, INTS),
+        ("team_count", None, i, i, i, i, i, INTS),
         ("order", i, i, i, INTS, INTS, INTS, INTS, INTS, INTS, ctypes.POINTER(i)),
         ("loss", d, i, i, DOUBLES, DOUBLES, d, i, i),
         ("budget_new", handle, LEAST, handle),
@@ -67,26 +70,52 @@ class Block:
     lanes: int
     damped: bool
     entries: tuple[Entry, ...]
+    at_border: bool = False
+    crossing: Block | None = None
+    """Its springs over the border above it, which are not among the entries."""
 
 
 def cut(lanes: int, particles: int, springs, krc, objects=None) -> list[Block]:
     """Blocks of so many lanes for springs (S, 2), the lower particle first, of K, r0, c (S, 3)."""
+    return cut_into_ranges(lanes, particles, springs, krc, objects, 1)[0]
+
+
+def cut_into_ranges(lanes: int, particles: int, springs, krc, objects, wanted: int) -> tuple[list[Block], list[int]]:
+    """The blocks of `cut`, and the first particle of each of up to so many ranges of them."""
     springs, krc = np.reshape(springs, (-1, 2)), np.reshape(krc, (-1, 3))
     order = np.lexsort((-springs[:, 1], springs[:, 0]))
     low, high = ints(springs[order, 0]), ints(springs[order, 1])
     objects = ints(np.ones(particles) if objects is None else objects)
     made = functions().mdanim_cut_new(lanes, particles, len(springs), low, high, doubles(krc[order]), objects)
     try:
+        crossings, crossing_entries = ints([0]), ints([0])
+        ranges = functions().mdanim_cut_ranges(made, wanted, crossings, crossing_entries)
         blocks, entries = functions().mdanim_cut_blocks(made), functions().mdanim_cut_entries(made)
         block, offset, coeffs = np.zeros((blocks, 4), np.int32), np.zeros(entries, np.int32), np.zeros((entries, 3, lanes))
         functions().mdanim_cut_tell(made, block, offset, coeffs)
+        first, of_border, border = np.zeros(ranges, np.int32), np.zeros(ranges, np.int32), np.zeros((blocks, 2), np.int32)
+        crossing, far = np.zeros((crossings[0], 3), np.int32), np.zeros(crossing_entries[0], np.int32)
+        far_coeffs = np.zeros((crossing_entries[0], 3, lanes))
+        functions().mdanim_ranges_tell(made, first, of_border, crossing, far, far_coeffs, border)
     finally:
         functions().mdanim_cut_delete(made)
-    ends = [0, *block[:, 2].tolist()]
-    return [
-        Block(int(start), int(own), bool(damped), tuple(Entry(int(offset[e]), coeffs[e]) for e in range(begin, end)))
-        for (start, own, end, damped), begin in zip(block, ends)
+    far_ends, ends = [0, *crossing[:, 1].tolist()], [0, *block[:, 2].tolist()]
+    over = [
+        Block(int(start), lanes, bool(damped), tuple(Entry(int(far[e]), far_coeffs[e]) for e in range(begin, end)))
+        for (start, end, damped), begin in zip(crossing, far_ends)
     ]
+    assert [b.start for b in over] == [s for s, (_, c) in zip(block[:, 0].tolist(), border.tolist()) if c >= 0]
+    made_blocks = [
+        Block(
+            int(start), int(own), bool(damped), tuple(Entry(int(offset[e]), coeffs[e]) for e in range(begin, end)),
+            bool(at_border), over[c] if c >= 0 else None,
+        )
+        for (start, own, end, damped), begin, (at_border, c) in zip(block, ends, border)
+    ]  # fmt: skip
+    # Crossings of a border are those of the blocks of the range below it.
+    for n, (low, high) in enumerate(zip([0, *of_border[:-2]], of_border[:-1])):
+        assert all(first[n] <= over[k].start < first[n + 1] for k in range(low, high))
+    return made_blocks, first.tolist()
 
 
 def order(own: int, tags, objects, bonds: dict[int, list[int]]) -> tuple[list[int], list[tuple[int, int]]]:

@@ -104,6 +104,11 @@ def passes(instance: Instance) -> int:
     return instance._library.mdanim_passes(instance._handle)
 
 
+def ranges(instance: Instance) -> int:
+    """Into how many ranges threads share a pass."""
+    return instance._library.mdanim_ranges(instance._handle)
+
+
 def supported(width: str) -> bool:
     """Whether this processor has it."""
     lmp = plugin_path.lammps()
@@ -118,9 +123,11 @@ def supported(width: str) -> bool:
         lmp.close()
 
 
-def film(text: str, style: str, pieces=(1, 150, 149), comm=None, more=()) -> tuple[np.ndarray, list[float], np.ndarray, int]:
+def film(
+    text: str, style: str, pieces=(1, 150, 149), comm=None, more=(), end: str = END
+) -> tuple[np.ndarray, list[float], np.ndarray, int]:
     """x, v and f after every piece of a run, at its end the energies, the trace, and how many passes were taken."""
-    ready = prepare(parse_scene(FALL + text + "\n" + END))
+    ready = prepare(parse_scene(FALL + text + "\n" + end))
     with Instance(ready.plan, comm) as instance:
         for command in (*more, f"run_style {style}"):
             instance._lmp.command(command)

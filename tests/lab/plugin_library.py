@@ -20,7 +20,9 @@ PLUGIN, TESTS = ROOT / "plugin", ROOT / "tests" / "lab" / "plugin"
 FOLDER = ROOT / "build" / "mdanimtest"
 """Of the library alone: as LAMMPS_PLUGIN_PATH it makes LAMMPS load the styles of the tests."""
 FILE = FOLDER / "mdanimtestplugin.so"
-ENGINE = [PLUGIN / "engine" / f"{n}.cpp" for n in ("cutter", "displacement_budget", "positions", "tag_order")]
+ENGINE = [
+    PLUGIN / "engine" / f"{n}.cpp" for n in ("cutter", "displacement_budget", "positions", "range_cut", "tag_order", "team")
+]
 SOURCES = (*sorted(TESTS.glob("*.cpp")), *sorted((PLUGIN / "liquid").glob("*.cpp")), *ENGINE, PLUGIN / "styles" / "stateful.cpp")
 
 

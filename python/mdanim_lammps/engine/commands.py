@@ -67,7 +67,7 @@ def told_once(commands: list[str]) -> list[str]:
     return [command for command in commands if not command.startswith("comm_modify")]
 
 
-def physics(plan: Plan) -> list[str]:
+def physics(plan: Plan, threads: int = 1) -> list[str]:
     """Commands after the particles exist: groups, effects, integrator, time step."""
     effects = [c for e in plan.effects for c in e.commands(plan.scene, plan.system)]
     drag = " lambda d_lambda" if "lambda" in plan.columns else ""
@@ -79,7 +79,7 @@ def physics(plan: Plan) -> list[str]:
         *effects,
         f"fix leapfrog mobile mdanim/leapfrog{drag}",
         f"timestep {plan.certificate.timestep!r}",
-        "run_style verlet/mdanim",
+        "run_style verlet/mdanim" + (f" threads {threads}" if threads > 1 else ""),
     ]
 
 

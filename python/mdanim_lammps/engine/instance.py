@@ -16,6 +16,7 @@ from .cut import box_to_cut, shorter_along_rows
 from .plan import Ends, Plan
 from .plugin import open_lammps
 from .state import NO_RECORDS, Records, State, StateRecords
+from .threads import threads_of_instance
 
 LIQUID = b"liquid"
 """ID of the liquid's fix (effects/liquid.py)."""
@@ -143,7 +144,7 @@ class Instance:
             kind, rest = last.split(" ", 1)
             # LAMMPS wants all types set.
             self._lmp.commands_list([f"bond_coeff {row}" for row in (*rows, f"{kind}*{self._types} {rest}")])
-        self._lmp.commands_list(physics(plan))
+        self._lmp.commands_list(physics(plan, threads_of_instance()))
         for fix in plan.body_fixes:
             for kind, body in plan.contact_bodies.items():
                 arguments = body_arguments(kind, body)
@@ -417,8 +418,7 @@ class Instance:
         self._call("trace objects", self._library.mdanim_trace_start, ctypes.c_int(len(self.plan.system.names)))
 
     def look_every(self, steps: int) -> None:
-        """Let the trace look at particles after every so many steps only, until it is started again; a look takes a
-        25th of a step.
+        """Let the trace look at particles after every so many steps only, until it is started again; a look takes 1/25 of a step.
 
         Boxes are then wider, by no more than the way of each object's fastest particle in one step less: nothing is
         ever outside of them.

@@ -5,10 +5,13 @@
 #include "engine/cutter.h"
 #include "engine/displacement_budget.h"
 #include "engine/loss.h"
+#include "engine/range_cut.h"
 #include "engine/tag_order.h"
+#include "engine/team.h"
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <map>
 #include <vector>
 
@@ -19,6 +22,7 @@ namespace {
 struct MadeCut {
   Cutter cutter;
   Cut cut;
+  RangeCut ranges;
 };
 
 std::vector<const double *> rows_of(const double *numbers, int rows)
@@ -51,6 +55,65 @@ MDANIM_EXPORT void *mdanim_cut_new(int lanes, int particles, int springs, const 
   return made;
 }
 
+// Cuts it into up to so many ranges, and tells how many there are, and crossings and their entries.
+MDANIM_EXPORT int mdanim_cut_ranges(void *p, int wanted, int *crossings, int *entries)
+{
+  auto &[cutter, cut, ranges] = *static_cast<MadeCut *>(p);
+  ranges = cut_into_ranges(cutter, cut, wanted);
+  *crossings = static_cast<int>(ranges.crossing.size());
+  *entries = static_cast<int>(ranges.entry.size());
+  return ranges.ranges();
+}
+
+// The first particle of each range and the end of the crossings of each border; of each crossing start, end and whether it is
+// damped; of each of their entries its offset and push, pull and c of every lane; of each block whether it is at a border, and
+// its crossing.
+MDANIM_EXPORT void mdanim_ranges_tell(void *p, int *first, int *end_of_border, int *crossing, int *offset, double *coeffs,
+                                      int *at_border)
+{
+  const auto &[cutter, cut, ranges] = *static_cast<MadeCut *>(p);
+  std::copy(ranges.first.begin(), ranges.first.end(), first);
+  std::copy(ranges.end_of_border.begin(), ranges.end_of_border.end(), end_of_border);
+  unsigned e = 0;
+  for (const Crossing &c : ranges.crossing) {
+    for (const int number : {c.start, static_cast<int>(c.end), static_cast<int>(c.damped)}) *crossing++ = number;
+    for (; e < c.end; ++e, coeffs += 3 * cutter.lanes()) {
+      *offset++ = ranges.entry[e].offset;
+      std::copy_n(cutter.row(c.damped, ranges.entry[e].law), cutter.row_length(c.damped), coeffs);
+    }
+  }
+  for (const Block &b : cut.block) {
+    *at_border++ = b.at_border;
+    *at_border++ = b.crossing;
+  }
+}
+
+// Shares out so many tasks among so many threads, `calls` times: `count` tells how often each task was done. A task waits so many
+// microseconds; in between the caller waits for as many as `nap` tells.
+MDANIM_EXPORT void mdanim_team_count(int threads, int tasks, int calls, int task_us, int nap_us, int *count)
+{
+  const std::shared_ptr<Team> team = Team::of(threads);
+  struct Work {
+    int *count, us;
+  } work = {count, task_us};
+  const auto wait = [](int us) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(us);
+    while (std::chrono::steady_clock::now() < end) {}
+  };
+  for (int n = 0; n < calls; ++n) {
+    team->share_out(
+        tasks,
+        [](void *whose, int task) {
+          const auto *of = static_cast<Work *>(whose);
+          const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(of->us);
+          while (std::chrono::steady_clock::now() < end) {}
+          ++of->count[task];
+        },
+        &work);
+    wait(nap_us);
+  }
+}
+
 MDANIM_EXPORT void mdanim_cut_delete(void *made) { delete static_cast<MadeCut *>(made); }
 
 MDANIM_EXPORT int mdanim_cut_blocks(void *made) { return static_cast<int>(static_cast<MadeCut *>(made)->cut.block.size()); }
@@ -60,7 +123,7 @@ MDANIM_EXPORT int mdanim_cut_entries(void *made) { return static_cast<int>(stati
 // Of each block start, lanes, end and whether it is damped; of each entry its offset and push, pull and c of every lane.
 MDANIM_EXPORT void mdanim_cut_tell(void *p, int *block, int *offset, double *coeffs)
 {
-  const auto &[cutter, cut] = *static_cast<MadeCut *>(p);
+  const auto &[cutter, cut, ranges] = *static_cast<MadeCut *>(p);
   const int lanes = cutter.lanes();
   unsigned e = 0;
   for (const Block &b : cut.block) {

@@ -283,7 +283,10 @@ def test_only_the_group_is_pushed(tmp_path):
 @pytest.mark.parametrize(
     ("command", "message"),
     [
-        ("run_style verlet/mdanim fast", "unknown keyword fast; it knows width"),
+        ("run_style verlet/mdanim fast", "unknown keyword fast; it knows width and threads"),
+        ("run_style verlet/mdanim threads", "threads takes a number"),
+        ("run_style verlet/mdanim threads 0", "threads is a number from 1 to 32, not 0"),
+        ("run_style verlet/mdanim threads 33", "threads is a number from 1 to 32, not 33"),
         ("run_style verlet/mdanim width", "width takes one word"),
         ("run_style verlet/mdanim width avx1024", "width avx1024 is unknown or this processor does not have it"),
         ("fix g all mdanim/gravity 0 0", "fix mdanim/gravity"),

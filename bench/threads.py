@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What threads bring: ``python bench/threads.py [rounds [threads [scene ...]]]``.
+
+A scene is ``cube N``, of N particles along an edge, or the name of a file in scenes/. Told is the wall time of a step by one
+thread and by several, in turns, beside the machine's own ceiling in the same rounds: what as many independent processes with one
+thread each do at once, over one alone. Figures are medians over rounds. A scene is run from its own beginning on, without frames.
+"""
+
+from __future__ import annotations
+
+import os
+import statistics
+import sys
+import time
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+SCENES = Path(__file__).resolve().parents[1] / "scenes"
+CUBE = """gravity (0, 0, -9.81)
+object a {{ shape box ({0}, {0}, {0}) cm position (0, 0, 0) density 1000 elasticity 1 MPa drag 1e-3 }}
+control {{ time 1 s  resolution 1 cm }}
+"""
+ROUNDS, PARTICLE_STEPS, NAMES = 9, 4_000_000, ("cube 30", "cube 60", "beam", "crowd", "pile")
+
+
+def serve(pipe: Connection, name: str, threads: list[int]) -> None:
+    """Run steps with so many threads when asked, and tell the seconds."""
+    from mdanim_lammps.engine.instance import Instance
+    from mdanim_lammps.engine.threads import with_threads
+    from mdanim_lammps.run.prepare import prepare
+    from mdanim_lammps.scene.parse import load_scene, parse_scene
+
+    kind, _, edge = name.partition(" ")
+    ready = prepare(parse_scene(CUBE.format(int(edge) - 1)) if kind == "cube" else load_scene(SCENES / f"{name}.txt"))
+    instances = {}
+    for number in threads:
+        with with_threads(number):
+            instances[number] = Instance(ready.plan)
+        instances[number].setup()
+    steps = max(20, PARTICLE_STEPS // ready.system.particles)
+    pipe.send((ready.system.particles, steps))
+    while (number := pipe.recv()) is not None:
+        start = time.perf_counter()
+        instances[number].run(steps)
+        pipe.send(time.perf_counter() - start)
+
+
+def measure(name: str, threads: int, rounds: int) -> None:
+    """Print one row."""
+    context = get_context("spawn")
+    pipes, processes = [], []
+    for n in range(threads):
+        own, other = context.Pipe()
+        processes.append(context.Process(target=serve, args=(other, name, [1, 1 if n else threads]), daemon=True))
+        processes[-1].start()
+        pipes.append(own)
+    ready = [pipe.recv() for pipe in pipes]
+    particles, steps = ready[0]
+
+    def seconds(who: list[Connection], number: int) -> float:
+        for pipe in who:
+            pipe.send(number)
+        return max(pipe.recv() for pipe in who)
+
+    alone, shared, at_once = [], [], []
+    for _ in range(rounds):
+        alone.append(seconds(pipes[:1], 1))
+        shared.append(seconds(pipes[:1], threads))
+        at_once.append(seconds(pipes, 1))
+    for pipe, process in zip(pipes, processes):
+        pipe.send(None)
+        process.join()
+    one, many, both = (1e6 * statistics.median(t) / steps for t in (alone, shared, at_once))
+    ceiling, faster = threads * one / both, one / many
+    print(
+        f"| {name} | {particles} | {one:.0f} | {many:.0f} | {faster:.2f} | {ceiling:.2f} | {faster / ceiling:.2f} "
+        f"| {os.getloadavg()[0]:.1f} |",
+        flush=True,
+    )
+
+
+def main(rounds: int = ROUNDS, threads: int = 2, names: tuple[str, ...] = NAMES) -> None:
+    """Measure scenes and print a table in Markdown."""
+    print(f"| scene | particles | us a step, 1 thread | {threads} threads | times as fast | ceiling | over the ceiling | load |")
+    print("|---|---|---|---|---|---|---|---|")
+    for name in names:
+        measure(name, threads, rounds)
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:3]), *([tuple(sys.argv[3:])] if sys.argv[3:] else []))

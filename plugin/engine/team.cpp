@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Taking tasks, waiting, sleeping.
+
+#include "engine/team.h"
+
+#include <chrono>
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <unistd.h>
+
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+namespace mdanim {
+
+// A thread waits so long for work before it sleeps, and for others before it offers them its processor. Longer waits bring
+// nothing, and take the processor from others where there are more threads than processors.
+static constexpr std::chrono::microseconds PATIENCE{50};
+
+namespace {
+
+void pause()
+{
+#if defined(__SSE__)
+  _mm_pause();
+#elif defined(__aarch64__)
+  asm volatile("yield");
+#endif
+}
+
+// Flush to zero and its like: with another mode a helper would compute other bits than the caller.
+unsigned floating_point_mode()
+{
+#if defined(__SSE__)
+  return _mm_getcsr();
+#elif defined(__aarch64__)
+  unsigned long mode;
+  asm volatile("mrs %0, fpcr" : "=r"(mode));
+  return static_cast<unsigned>(mode);
+#else
+  return 0;
+#endif
+}
+
+void set_floating_point_mode(unsigned mode)
+{
+#if defined(__SSE__)
+  _mm_setcsr(mode);
+#elif defined(__aarch64__)
+  asm volatile("msr fpcr, %0" ::"r"(static_cast<unsigned long>(mode)));
+#else
+  (void) mode;
+#endif
+}
+
+// Whether something happens before patience ends.
+template <class Happens> bool wait_for(const Happens &happens)
+{
+  const auto end = std::chrono::steady_clock::now() + PATIENCE;
+  do {
+    for (int n = 0; n < 64; ++n) {
+      if (happens()) return true;
+      pause();
+    }
+  } while (std::chrono::steady_clock::now() < end);
+  return false;
+}
+
+std::uint32_t call_of(std::uint64_t state) { return static_cast<std::uint32_t>(state >> 32); }
+
+}    // namespace
+
+std::shared_ptr<Team> Team::of(int threads)
+{
+  static std::mutex one_at_a_time;
+  static std::weak_ptr<Team> known;
+  const std::lock_guard<std::mutex> lock(one_at_a_time);
+  std::shared_ptr<Team> team = known.lock();
+  if (!team || team->owner != getpid()) known = team = std::make_shared<Team>();
+  team->grow(threads);
+  return team;
+}
+
+void Team::grow(int threads)
+{
+  owner = getpid();
+  sigset_t all, before;    // signals are for the threads of the host program
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  while (static_cast<int>(helpers.size()) + 1 < threads)
+    helpers.emplace_back([this, member = static_cast<int>(helpers.size()) + 1] { help(member); });
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+Team::~Team()
+{
+  if (owner != getpid()) {    // a fork has copied no threads
+    for (std::thread &helper : helpers) helper.detach();
+    return;
+  }
+  {
+    const std::lock_guard<std::mutex> lock(door);
+    over = true;
+  }
+  bell.notify_all();
+  for (std::thread &helper : helpers) helper.join();
+}
+
+void Team::share_out(int tasks, Task what, void *of_whom)
+{
+  if (helpers.empty() || tasks < 2 || owner != getpid() || called.test_and_set(std::memory_order_acquire)) {
+    for (int n = 0; n < tasks; ++n) what(of_whom, n);
+    return;
+  }
+  task = what;
+  whose = of_whom;
+  rounding = floating_point_mode();
+  done.store(0, std::memory_order_relaxed);
+  const std::uint32_t call = call_of(state.load(std::memory_order_relaxed)) + 1;
+  const std::uint64_t missing = ~std::uint64_t{0} << tasks & 0xffffffffu;
+  state.store(static_cast<std::uint64_t>(call) << 32 | missing);    // before `asleep` is read
+  if (asleep.load()) {
+    {
+      const std::lock_guard<std::mutex> lock(door);
+    }    // a thread between its last look and its sleep
+    bell.notify_all();
+  }
+  work(call, 0);
+  const auto all_done = [&] { return done.load(std::memory_order_acquire) == tasks; };
+  while (!wait_for(all_done)) sched_yield();
+  called.clear(std::memory_order_release);
+}
+
+bool Team::take(std::uint32_t call, int preferred, int &taken)
+{
+  std::uint64_t now = state.load(std::memory_order_acquire);
+  for (;;) {
+    const std::uint32_t open = ~static_cast<std::uint32_t>(now);
+    if (call_of(now) != call || !open) return false;
+    const std::uint32_t later = preferred < MOST_TASKS ? open >> preferred << preferred : 0;
+    taken = __builtin_ctz(later ? later : open);
+    if (state.compare_exchange_weak(now, now | std::uint64_t{1} << taken, std::memory_order_acq_rel)) return true;
+  }
+}
+
+void Team::work(std::uint32_t call, int member)
+{
+  for (int taken; take(call, member, taken);) {
+    if (member) set_floating_point_mode(rounding);
+    task(whose, taken);
+    done.fetch_add(1, std::memory_order_release);
+  }
+}
+
+void Team::help(int member)
+{
+  std::uint32_t seen = 0;
+  const auto called_again = [&] { return over || call_of(state.load()) != seen; };
+  while (!over) {
+    if (!wait_for(called_again)) {
+      std::unique_lock<std::mutex> lock(door);
+      ++asleep;
+      bell.wait(lock, called_again);
+      --asleep;
+    }
+    seen = call_of(state.load());
+    work(seen, member);
+  }
+}
+
+}    // namespace mdanim

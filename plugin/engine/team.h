@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Threads that help the one that calls.
+
+#ifndef MDANIM_TEAM_H
+#define MDANIM_TEAM_H
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace mdanim {
+
+// The threads of this process, which all instances share. The caller of share_out() hands out tasks and takes part; a task is
+// taken by whichever thread comes first. No one waits for a thread that has no processor: what it does not take others do.
+class Team {
+ public:
+  static constexpr int MOST_TASKS = 32;    // of one call
+  using Task = void (*)(void *whose, int task);
+
+  // The team of the process, with at least so many threads, the caller's among them. It ends with its last owner.
+  static std::shared_ptr<Team> of(int threads);
+  Team() = default;
+  Team(const Team &) = delete;
+  Team &operator=(const Team &) = delete;
+  ~Team();
+
+  // Does all tasks and returns. Thread n prefers task n: what it has in its cache. Where another thread of this process is
+  // calling, or in a process that was forked, the caller does them alone.
+  void share_out(int tasks, Task task, void *whose);
+
+ private:
+  void grow(int threads);
+  void help(int member);
+  bool take(std::uint32_t call, int preferred, int &task);
+  void work(std::uint32_t call, int member);
+
+  std::vector<std::thread> helpers;
+  int owner = 0;    // the process that has started them
+  std::atomic_flag called = ATOMIC_FLAG_INIT;
+
+  // The number of the call, and a bit for each task that is taken or not there. A thread that comes late finds another number or
+  // all bits set; one that has set a bit knows that the call goes on until its task is done.
+  alignas(64) std::atomic<std::uint64_t> state{0xffffffffu};    // no call yet, and no task
+  alignas(64) std::atomic<int> done{0};
+  Task task = nullptr;
+  void *whose = nullptr;
+  unsigned rounding = 0;    // the caller's mode of floating-point numbers
+
+  alignas(64) std::atomic<int> asleep{0};
+  std::atomic<bool> over{false};
+  std::mutex door;
+  std::condition_variable bell;
+};
+
+}    // namespace mdanim
+
+#endif

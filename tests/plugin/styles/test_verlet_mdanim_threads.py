@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""run_style verlet/mdanim with threads against one thread, bit for bit: places, velocities, forces, traces, energies, losses."""
+
+import numpy as np
+import pytest
+from filming import EFFECTS, FALL, SHAPES, SOFT, SOLID, WIDTHS, ranges, supported
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.parse import parse_scene
+
+FINE = "control {{ time 10 s resolution {} mm contact-model {} }}\n"
+"""Cells so small that there are particles for several ranges."""
+LARGE = {
+    "a block": f"object a {{ shape box (7, 6, 5) cm position (0, 0, 0) spin (3, 2, 40) rad/s {SOLID} drag 0.3 }}",
+    "a damped block": f"object a {{ shape box (7, 6, 5) cm position (0, 0, 0) spin (3, 2, 40) rad/s {SOFT} drag 0.3 }}",
+    "a ring beside a damped ball": f"object a {{ shape torus 4 cm 1.5 cm position (0, 0, 0) spin (3, 2, 40) rad/s {SOLID} }}\n"
+    f"object b {{ shape sphere 3 cm position (12, 0, 0) cm spin (3, 2, 40) rad/s {SOFT} drag 0.1 }}",
+    "small ones": "repeat i in 0 .. 8 { object a[i] { shape box (2, 3, 2) cm position (4 * i, 0, 0) cm "
+    f"spin (9, i, 4) rad/s {SOLID} }} }}",
+    "held": f"object a {{ shape box (9, 4, 4) cm position (0, 0, 0) {SOFT} hold face -x }}",
+    **{
+        name: EFFECTS[name]
+        for name in ("contact", "ground", "walls and contact", "damped, all at once", "damped contact", "liquid")
+    },
+}
+
+
+def film(text: str, style: str, end: str, steps=(1, 40, 39)) -> tuple[list[bytes], int]:
+    """All that a run tells, byte for byte, and how many ranges there were."""
+    ready = prepare(parse_scene(FALL + text + "\n" + end))
+    with Instance(ready.plan) as instance:
+        instance._lmp.command(f"run_style verlet/mdanim {style}")
+        instance.setup()
+        instance.start_trace()
+        told = []
+        for many in steps:
+            instance.run(many)
+            told += [instance.array(a).tobytes() for a in "xvf"]
+            told += [np.asarray(a).tobytes() for a in instance.trace()]
+            sums = [
+                instance.kinetic_energy(),
+                instance.elastic_energy(),
+                instance.damping_loss(),
+                instance.fix_scalar("leapfrog"),
+            ]
+            told.append(np.array(sums).tobytes())
+        return told, ranges(instance)
+
+
+@pytest.mark.parametrize("name", LARGE)
+def test_threads_change_no_bit(name):
+    """Two, three and five threads give what one gives, the sums of losses among it."""
+    end = FINE.format(4, "paper")
+    alone, one = film(LARGE[name], "threads 1", end)
+    assert one == 1
+    for threads in (2, 3, 5):
+        found, many = film(LARGE[name], f"threads {threads}", end)
+        assert 1 < many <= threads
+        assert found == alone, threads
+
+
+@pytest.mark.parametrize("name", ["a damped block", "contact"])
+def test_threads_and_widths_change_no_bit(name):
+    """Each width with threads gives what the narrowest gives without; contact at the surfaces, too."""
+    end = FINE.format(4, "surface")
+    alone, _ = film(LARGE[name], "width common", end)
+    for width in [w for w in WIDTHS if supported(w)]:
+        found, many = film(LARGE[name], f"threads 3 width {width}", end)
+        assert many > 1 and found == alone, width
+
+
+def test_a_small_scene_has_one_range():
+    """Threads are left out where there is too little for each of them to do."""
+    assert film(SHAPES["block"], "threads 4", FINE.format(10, "paper"), steps=(2,))[1] == 1
+
+
+def test_instances_share_threads():
+    """A second instance with more threads in the same process changes no bit of the first."""
+    end, text = FINE.format(4, "paper"), LARGE["a block"]
+    alone, _ = film(text, "threads 1", end)
+    ready = prepare(parse_scene(FALL + text + "\n" + end))
+    with Instance(ready.plan) as other:
+        other._lmp.command("run_style verlet/mdanim threads 4")
+        other.setup()
+        other.run(10)
+        assert film(text, "threads 2", end)[0] == alone
+        other.run(10)
+        assert ranges(other) > 2
