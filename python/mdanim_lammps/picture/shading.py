@@ -39,6 +39,14 @@ in vec3 worldNormal;
 
 
 SHADOW = """
+// A number of a field whose texels hold four. To choose among them is quicker than to index them.
+float numberAt(sampler2D field, ivec2 place)
+{
+  vec4 four = texelFetch(field, ivec2(place.x >> 2, place.y), 0);
+  int which = place.x & 3;
+  return which < 2 ? (which == 0 ? four.r : four.g) : (which == 2 ? four.b : four.a);
+}
+
 // Share of the lamp that is seen from a point of a surface: the mean over a square four depth pixels wide that slides
 // smoothly over them, so that the edge of a shadow is soft and has no steps however near the camera comes. What a depth pixel
 // holds is compared with the plane of the surface there. What is nearer by less than `slack` depth pixels does not shade.
@@ -53,7 +61,7 @@ float lampSeen(vec3 where, vec3 normal, float slack)
   float least = p.z - slack * lampTouch;
   // Most lit points have no object between them and the lamp, nor near that line.
   ivec2 block = clamp(corner, ivec2(0), ivec2(lampPixels) - 1) / lampBlock;
-  float nearest = texelFetch(lampNearest, ivec2(block.x / 4, block.y), 0)[block.x % 4];
+  float nearest = numberAt(lampNearest, block);
   if (nearest > least + 3.0 * (abs(slope.x) + abs(slope.y))) return 1.0;
   float lit = 0.0;
   for (int j = -1; j <= 3; j++) {
@@ -61,7 +69,7 @@ float lampSeen(vec3 where, vec3 normal, float slack)
     for (int i = -1; i <= 3; i++) {
       float column = i == -1 ? 1.0 - part.x : i == 3 ? part.x : 1.0;
       ivec2 pixel = clamp(corner + ivec2(i - 1, j - 1), ivec2(0), ivec2(lampPixels) - 1);
-      float depth = texelFetch(lampDepth, ivec2(pixel.x / 4, pixel.y), 0)[pixel.x % 4];
+      float depth = numberAt(lampDepth, pixel);
       float surface = least + dot(slope, vec2(i - 1, j - 1) - part);
       lit += row * column * ((depth >= 1.0 || depth > surface) ? 1.0 : 0.0);
     }
@@ -109,7 +117,7 @@ float skySeen(vec3 where, vec3 normal, vec3 plane, float slack)
     ivec2 texel = ivec2(floor(across + ASIDE * (fract(aside + float(k) * vec2(0.7548777, 0.5698403)) - 0.5)));
     if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(SKY_PIXELS)))) continue;
     ivec2 place = texel + SKY_PIXELS * ivec2(k % SKY_SIDE, k / SKY_SIDE);
-    float there = texelFetch(skyDepth, ivec2(place.x / 4, place.y), 0)[place.x % 4];
+    float there = numberAt(skyDepth, place);
     // The plane of the surface, where the pixel is.
     vec2 slope = vec2(dot(plane, skyRight[k]), dot(plane, skyUp[k])) / max(dot(plane, skyToward[k]), 0.15);
     float height = dot(p, skyToward[k]) - pixel * dot(slope, vec2(texel) + 0.5 - across);
