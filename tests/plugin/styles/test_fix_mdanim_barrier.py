@@ -336,11 +336,15 @@ def test_without_a_skin_objects_apart_come_together(tmp_path):
     lmp.close()
 
 
-def test_without_skin_and_reach_nothing_touches(tmp_path):
-    """Many particles where boxes meet, and none within reach: cells have no width."""
+@pytest.mark.parametrize("inner", [None, 2.0], ids=["apart", "in one place"])
+def test_without_skin_and_reach_nothing_touches(tmp_path, inner):
+    """Many particles where boxes meet, and none within reach: cells have no width, nor has what they hold."""
     random = np.random.default_rng(2)
     x = random.uniform(0.0, 4.0, (400, 3))
-    body = lab.particles(x, molecule=np.arange(400) % 2 + 1, boundary=random.random(400) < 0.5)
+    boundary = random.random(400) < 0.5
+    if inner is not None:
+        x[~boundary] = inner
+    body = lab.particles(x, molecule=np.arange(400) % 2 + 1, boundary=boundary)
     commands = ["fix contact all mdanim/barrier boundary inner 1.0 0.0", "fix run all mdanim/leapfrog", "run 0"]
     for line in lab.in_child(body, tmp_path, commands, skin=0.0).splitlines()[1:]:
         assert [float(word) for word in line.split()[7:]] == [0.0, 0.0, 0.0]
