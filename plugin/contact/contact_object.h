@@ -31,7 +31,7 @@ struct ContactObject {
       slot;    // of its particles by their places in the grid, in the arrays of ContactWorld; -1 for what is not there
   int first_slot = 0, last_slot = 0;
   std::shared_ptr<const OuterCells> outer;    // made when it is first asked for; none after lists were made
-  Vec3 way;                                   // of its particles in this step, about
+  Vec3 way;                                   // of its first particle in this step
   double stir = 0.0;                          // the most that another has gone otherwise in this step
   bool is_pushed = false;                     // in the last step, by contacts
 };

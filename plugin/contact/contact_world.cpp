@@ -166,7 +166,8 @@ static Vec3 place(const Coordinates &places, std::size_t slot) { return {places[
 
 namespace {
 
-// The most that one of many particles has gone otherwise than `way`.
+// The most that one of many particles has gone otherwise than `way`, which is that of the first. That of the middle between the
+// first and the last gives fewer looks, but parts of a crowd then have other bits than the whole: a look came too late.
 struct Motion {
   Vec3 way;
   double square = 0.0;
@@ -177,10 +178,6 @@ struct Motion {
     square = std::max(square, dot(off, off));
   }
 };
-
-// Of the first and the last one in the middle, as these are far apart: of a body that turns others differ less from that than
-// from either.
-Vec3 way_of(const Vec3 &first, const Vec3 &last) { return 0.5 * (first + last); }
 
 // How much two objects have come nearer at most.
 double nearer(const ContactObject &a, const ContactObject &b)
@@ -218,7 +215,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
         changes.push_back(arrays.place()[from].value - arrays.place_before()[slot_before[at]].value);
     }
     one.last_slot = static_cast<int>(from);
-    Motion motion{changes.empty() ? Vec3{} : way_of(changes.front(), changes.back())};
+    Motion motion{changes.empty() ? Vec3{} : changes.front()};
     for (const Vec3 &change : changes) motion.include(change);
     one.way = motion.way, one.stir = std::sqrt(motion.square);
   }
@@ -261,8 +258,7 @@ void ContactWorld::move_to(const Coordinates &places)
 {
   for (ContactObject &one : all) {
     if (one.first_slot == one.last_slot) continue;
-    const auto change = [&](int s) { return place(places, s) - arrays.place()[s].value; };
-    Motion motion{way_of(change(one.first_slot), change(one.last_slot - 1))};
+    Motion motion{place(places, one.first_slot) - arrays.place()[one.first_slot].value};
     for (int s = one.first_slot; s < one.last_slot; ++s) {
       const Vec3 x = place(places, s);
       motion.include(x - arrays.place()[s].value);
