@@ -123,13 +123,15 @@ template <class Real> struct SpanSums {
   }
 };
 
+constexpr double POROUS = 0.999;    // d volume/d height of columns that solids partly fill is less
+
 // (W5) A free span: its head is that of its surface and what its rising takes.
 template <class Real>
 MDANIM_ALWAYS_INLINE Real free_stiffness(const WaveLaw &law, const Real &steepest, const Real &volume, const Real &slope)
 {
   const Real none = constant<Real>(0.0), one = constant<Real>(1.0);
   const Real part = smaller(one, larger(none, constant<Real>(2.0) - steepest * constant<Real>(1.0 / law.breaking)));
-  const Real smooth = pick(slope < constant<Real>(0.999), none, part);    // none in columns that solids partly fill
+  const Real smooth = pick(slope < constant<Real>(POROUS), none, part);    // none in columns that solids partly fill
   return slope / larger(constant<Real>(law.dt * law.dt), smooth * constant<Real>(law.inertia) * volume);
 }
 

@@ -181,6 +181,7 @@ class Waves {
   void list_irregular();
 
   // --- waves_update.cpp, waves_general.cpp, waves_solver.cpp, waves_limits.cpp, waves_rest.cpp ---
+  bool hardly_flows() const;
   double fastest() const;
   void sub_update(double dt, double share);
   bool let_go();

@@ -120,6 +120,9 @@ void Waves::general_assembly(long i)
     sums.rhs = full_rhs(law, arrays.volume[i], arrays.capacity[i], arrays.coming[i], sums.inflow);
   } else {
     sums.diagonal = free_stiffness(law, sums.steepest, arrays.volume[i], arrays.slope[i]);
+    // A partly solid column has the head that it will have: liquid under nearly shut cells would go on rising and falling for
+    // ever.
+    if (arrays.slope[i] < POROUS) sums.rhs = sums.inflow / (law.dt * law.dt);
   }
   arrays.beside_full[i] = sums.beside_full;
   each_link_of(i, [&](const LinkPlace &link, long other, bool) {

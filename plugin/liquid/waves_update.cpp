@@ -16,7 +16,20 @@ void Waves::update(double dt)
   const int parts = std::max(1, static_cast<int>(std::ceil(fastest() * dt / FARTHEST)));
   for (int n = 0; n < parts; ++n) sub_update(dt / parts, 1.0 / parts);
   std::fill_n(arrays.coming, content.size(), 0.0);
-  if (fastest() < rest) come_to_rest();
+  if (hardly_flows()) come_to_rest();
+}
+
+// By velocities in open liquid, by fluxes in thin layers: a puddle that passes less than half a unit keeps its velocity for ever.
+bool Waves::hardly_flows() const
+{
+  constexpr double IN_PUDDLES = 0.1;
+  if (fastest() > IN_PUDDLES) return false;
+  bool hardly = true;
+  each_link([&](const LinkPlace &link) {
+    const WaveLinks &l = arrays_of(link);
+    hardly = hardly && std::fabs(l.u[link.at]) * std::min(1.0, l.height[link.at]) < rest;
+  });
+  return hardly;
 }
 
 double Waves::fastest() const

@@ -253,6 +253,8 @@ class Twin:
                 inflow = sum(link.height * link.star * (1 if link.b is span else -1) for link in mine) * dt
                 rhs[n] = (OVERFULL * (span.volume - span.capacity) - span.coming * share + inflow) / dt**2
                 continue
+            if span.slope < 0.999:
+                rhs[n] = sum(link.height * link.star * (1 if link.b is span else -1) for link in mine) / dt
             slopes = [abs(link.a.head - link.b.head) for link in mine if not (link.a.full or link.b.full)]
             part = min(1.0, max(0.0, 2 - max(slopes, default=0.0) / BREAKING)) if span.slope >= 0.999 else 0.0
             matrix[n, n] = span.slope / max(dt**2, part * INERTIA * span.volume)

@@ -95,6 +95,31 @@ def test_liquid_comes_to_rest_by_itself(seed):
     assert not w.at_rest and w.fastest > 0.0 and w.total == total
 
 
+def test_liquid_below_nearly_shut_cells_comes_to_rest():
+    """A block of cells that are just not shut, across the surface: little volume moves the surface in it by cells."""
+    shape = (12, 6, 10)
+    part = np.zeros(shape, int)
+    part[5:10, 2:5, 3:7] = np.array([3675, 3967, 3967, 3967, 1939])[:, None, None]
+    w = lab.Waves(shape, calm=0.3)
+    w.solids(part)
+    w.pour(7.3 + np.random.default_rng(0).uniform(-1, 1, shape[1:]))
+    total = w.total
+    w.update(1000)
+    assert w.at_rest and w.total == total
+
+
+def test_a_puddle_comes_to_rest():
+    """A film on a block, in which a velocity stands that passes less than half a unit."""
+    part = np.zeros((6, 3, 6), int)
+    part[3, :, :] = 4096
+    w = lab.Waves(part.shape, calm=0.3)
+    w.solids(part)
+    w.pour(np.where(np.arange(6) == 2, 4 + 1743 / UNIT, 4 + 850 / UNIT))
+    total = w.total
+    w.update(400)
+    assert w.at_rest and w.total == total
+
+
 def test_a_floating_cube_at_its_draft_stays():
     """Neither the cube nor the liquid moves in 300 updates; the liquid sleeps from the start."""
     w = lab.Waves((28, 24, 24))
