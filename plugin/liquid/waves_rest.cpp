@@ -12,7 +12,8 @@ namespace mdanim {
 // Bodies are spans joined through links in which liquid stands on both sides.
 void Waves::come_to_rest()
 {
-  const auto flows = [&](long i) { return static_cast<double>(content[i]) > law.film * law.units_per_cell; };
+  constexpr double PUDDLE = 4.0;    // films: so thin a layer passes no whole unit while it is not level, and stays as it is
+  const auto flows = [&](long i) { return static_cast<double>(content[i]) > PUDDLE * law.film * law.units_per_cell; };
   std::vector<double> head(content.size(), 0.0);
   each_span([&](long i) { head[i] = arrays.full[i] > 0.0 ? arrays.phi[i] : head_of(solid, span[i], content[i]).height; });
   std::vector<long> bodies;             // one after the other

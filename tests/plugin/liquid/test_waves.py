@@ -114,7 +114,7 @@ def test_a_puddle_comes_to_rest():
     part[3, :, :] = 4096
     w = lab.Waves(part.shape, calm=0.3)
     w.solids(part)
-    w.pour(np.where(np.arange(6) == 2, 4 + 1743 / UNIT, 4 + 850 / UNIT))
+    w.pour(4 + np.array([850, 850, 1743, 1620, 850, 850]) / UNIT)
     total = w.total
     w.update(400)
     assert w.at_rest and w.total == total
