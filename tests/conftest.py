@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Fixtures that every test may use: small scenes from text, prepared and run."""
 
+import signal
 from pathlib import Path
 
 import pytest
+
+# A shell that starts tests in the background has them ignore Ctrl-C, and all processes that they start: tests send it to some.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 SCENES = Path(__file__).parent.parent / "scenes"
 
