@@ -21,11 +21,12 @@ CUBE = """gravity (0, 0, -9.81)
 object a {{ shape box ({0}, {0}, {0}) cm position (0, 0, 0) density 1000 elasticity 1 MPa drag 1e-3 }}
 control {{ time 1 s  resolution 1 cm }}
 """
-ROUNDS, PARTICLE_STEPS, NAMES = 9, 4_000_000, ("cube 30", "cube 60", "beam", "crowd", "pile")
+ALONE, SHARED, AT_ONCE = "alone", "shared", "at once"
+ROUNDS, PARTICLE_STEPS, NAMES = 9, 8_000_000, ("cube 30", "cube 60", "beam", "crowd", "pile")
 
 
-def serve(pipe: Connection, name: str, threads: list[int]) -> None:
-    """Run steps with so many threads when asked, and tell the seconds."""
+def serve(pipe: Connection, name: str, threads: dict[str, int]) -> None:
+    """Run the next steps of an instance with so many threads when asked for it by its name, and tell the seconds."""
     from mdanim_lammps.engine.instance import Instance
     from mdanim_lammps.engine.threads import with_threads
     from mdanim_lammps.run.prepare import prepare
@@ -34,15 +35,15 @@ def serve(pipe: Connection, name: str, threads: list[int]) -> None:
     kind, _, edge = name.partition(" ")
     ready = prepare(parse_scene(CUBE.format(int(edge) - 1)) if kind == "cube" else load_scene(SCENES / f"{name}.txt"))
     instances = {}
-    for number in threads:
+    for who, number in threads.items():
         with with_threads(number):
-            instances[number] = Instance(ready.plan)
-        instances[number].setup()
+            instances[who] = Instance(ready.plan)
+        instances[who].setup()
     steps = max(20, PARTICLE_STEPS // ready.system.particles)
     pipe.send((ready.system.particles, steps))
-    while (number := pipe.recv()) is not None:
+    while (who := pipe.recv()) is not None:
         start = time.perf_counter()
-        instances[number].run(steps)
+        instances[who].run(steps)
         pipe.send(time.perf_counter() - start)
 
 
@@ -52,22 +53,24 @@ def measure(name: str, threads: int, rounds: int) -> None:
     pipes, processes = [], []
     for n in range(threads):
         own, other = context.Pipe()
-        processes.append(context.Process(target=serve, args=(other, name, [1, 1 if n else threads]), daemon=True))
+        # An instance for each question: all see the same part of the scene in a round.
+        asked = {AT_ONCE: 1} if n else {ALONE: 1, SHARED: threads, AT_ONCE: 1}
+        processes.append(context.Process(target=serve, args=(other, name, asked), daemon=True))
         processes[-1].start()
         pipes.append(own)
     ready = [pipe.recv() for pipe in pipes]
     particles, steps = ready[0]
 
-    def seconds(who: list[Connection], number: int) -> float:
-        for pipe in who:
-            pipe.send(number)
-        return max(pipe.recv() for pipe in who)
+    def seconds(asked: list[Connection], who: str) -> float:
+        for pipe in asked:
+            pipe.send(who)
+        return max(pipe.recv() for pipe in asked)
 
     alone, shared, at_once = [], [], []
     for _ in range(rounds):
-        alone.append(seconds(pipes[:1], 1))
-        shared.append(seconds(pipes[:1], threads))
-        at_once.append(seconds(pipes, 1))
+        alone.append(seconds(pipes[:1], ALONE))
+        shared.append(seconds(pipes[:1], SHARED))
+        at_once.append(seconds(pipes, AT_ONCE))
     for pipe, process in zip(pipes, processes):
         pipe.send(None)
         process.join()
