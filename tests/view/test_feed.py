@@ -157,6 +157,19 @@ def test_a_run_that_has_begun_has_room_below(slab):
     feed.close()
 
 
+def test_a_run_ends_while_it_is_fed(slab, tmp_path):
+    """A page that comes after the end, when the trajectory has got its last name, sees the scene of a finished run."""
+    folder, finished = slab
+    (tmp_path / "trajectory.h5.part").write_bytes((folder / "trajectory.h5").read_bytes())
+    feed = Feed(tmp_path, "slab")
+    assert feed.head()["bounds"] != finished.head()["bounds"]
+    (tmp_path / "trajectory.h5.part").rename(tmp_path / "trajectory.h5")
+    feed.finished = True
+    del feed.action
+    assert feed.scene() == finished.scene()
+    feed.close()
+
+
 def test_strain_is_that_of_the_springs(slab):
     """None in frame 0; later the mean of |strain| of a particle's springs, as a twin in a plain loop finds it."""
     folder, feed = slab

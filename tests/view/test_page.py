@@ -133,7 +133,12 @@ def test_a_finished_run(browser, beam):
 
         browser.click(*center_of(browser, 1))
         browser.until("document.getElementById('object').innerText.includes('cube')")
-        assert "8 kg" in text(browser, "object") and "look cube" in text(browser, "camera")
+        assert "8 kg" in text(browser, "object")
+        browser.js("mdanim.stage.orbit.target.set(0, 0, 90)")  # the line tells where the camera looks, not what was picked
+        browser.js("mdanim.stage.look()")
+        browser.until("!document.getElementById('camera').textContent.includes('cube')")
+        press(browser, "see")
+        browser.until("document.getElementById('camera').textContent.includes('look cube')")
         browser.until("document.querySelector('#height-line canvas')")
         assert "height of the centre" in text(browser, "height")
         browser.until("document.querySelector('#height-line .now').style.left > '0px'")
@@ -190,6 +195,32 @@ def test_a_stranger_is_told_what_to_do(browser, beam):
         browser.drag(300, 250, 20, 10)
         assert browser.js("return document.getElementById('hello').hidden")
         assert "(of a run with -n)" in text(browser, "colour") and text(browser, "help") == "help"
+
+
+def test_a_message_does_not_squash_the_picture(browser, beam):
+    """Where a message takes room above the picture the drawn picture keeps the shape of its place."""
+    with served(beam) as view:
+        open_page(browser, view.address)
+        show(browser, 0)
+        browser.js("const m = document.getElementById('message'); m.textContent = 'word '.repeat(400); m.hidden = false")
+        shape = "(({ clientWidth: w, clientHeight: h }) => w / h)(document.getElementById('stage'))"
+        browser.until(f"Math.abs(mdanim.stage.camera.aspect - {shape}) < 0.01")
+        assert browser.js(f"return {shape}") > 1.7
+
+
+def test_a_drag_ends_above_the_floor(browser, tmp_path):
+    """The floor is not seen from below, where nothing stands on it."""
+    scene = tmp_path / "ball.txt"
+    scene.write_text(
+        "gravity (0, 0, -9.81)\nground z 0\n"
+        "object a { shape sphere 10 cm position (0, 0, 0.2) density 1000 elasticity 1 MPa }\ncontrol { time 0.1 s }\n"
+    )
+    Scene.load(scene).run(tmp_path / "out")
+    with served(tmp_path / "out") as view:
+        open_page(browser, view.address)
+        show(browser, 0)
+        browser.js("const o = mdanim.stage.orbit; o.object.position.set(o.target.x + 1, o.target.y, o.target.z - 3); o.update()")
+        assert browser.js("return mdanim.stage.camera.position.z > mdanim.stage.orbit.target.z")
 
 
 def test_the_camera_line_is_of_the_language(browser, beam, tmp_path):

@@ -63,6 +63,7 @@ class Feed:
 
     def __init__(self, folder: Path, title: str = "", render: Render = Render(), *, finished: bool = False):
         self.frames, self.title, self.render, self.finished = WrittenFrames(folder), title, render, finished
+        self.folder = folder
         m = self.metadata = self.frames.metadata
         self.mesh = shaded_mesh(m, self.frames.value("position", 0))
         of = self.mesh.object_of_vertex
@@ -161,14 +162,14 @@ class Feed:
     def action(self) -> Action:
         """Where things happen: known for a finished run, guessed from frame 0 for others."""
         if self.finished:
-            with Trajectory(self.frames.path) as trajectory:
+            with Trajectory(self.folder) as trajectory:  # the file has another name than while the run went on
                 return action_of(trajectory)
         return first_action(self.metadata, *self._boxes(self.vertices(self.frames.value("position", 0))))
 
     def _view(self):
         m = self.metadata
         if self.render.camera and self.finished:
-            with Trajectory(self.frames.path) as trajectory:
+            with Trajectory(self.folder) as trajectory:
                 return CameraPath(self.render.camera, trajectory).at(0.0)
         basin = (m.liquid.low, m.liquid.high) if m.liquid else None
         return automatic_view(self.action, ASPECT, m.walls, basin)

@@ -173,9 +173,12 @@ function draw(now, full) {
 }
 
 function cameraWords() {
-  const name = picked === null ? null : scene.objects[picked].name, there = /^[A-Za-z_][A-Za-z0-9_.\-]*(\[\d+\])*$/.test(name ?? "");
+  const name = picked !== null && shown && stage.looksAt(box(picked)) ? scene.objects[picked].name : "", there = /^[A-Za-z_][A-Za-z0-9_.\-]*(\[\d+\])*$/.test(name);
   return cameraLine(shown?.time ?? 0, stage.camera.position.toArray(), there ? name : stage.orbit.target.toArray());
 }
+
+// Corner and size of an object's box.
+const box = (k) => shown.object.subarray(12 * k, 12 * k + 6);
 
 // --- what is pressed --------------------------------------------------------------------------------------------------
 
@@ -204,7 +207,7 @@ function controls() {
   toggle("springs", async (on) => { stage.extras.springs.visible = on; stage.seeInside(on || checked("particles")); if (on && !run.bond) stage.extras.join((run.bond = await source.springs())); stage.changed = true; });
   toggle("boxes", (on) => (stage.extras.boxes.visible = on));
   toggle("walls", (on) => (stage.extras.walls.visible = on));
-  addEventListener("resize", () => stage.resize());
+  new ResizeObserver(() => stage.resize()).observe(byId("stage")); // also where a message takes some of its room
   stage.orbit.addEventListener("start", () => { stage.moving = true; byId("hello").hidden = true; });
   stage.orbit.addEventListener("end", () => (stage.moving = false));
   pointer(byId("stage"));
@@ -249,7 +252,6 @@ async function showHeight() {
 }
 
 function see() {
-  const box = (k) => shown.object.subarray(12 * k, 12 * k + 6);
   if (shown) stage.see(picked === null ? scene.objects.map((_, k) => box(k)) : [box(picked)]);
 }
 

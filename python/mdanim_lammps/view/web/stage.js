@@ -39,6 +39,8 @@ function drawnByProcessor() {
   return /swiftshader|llvmpipe|softpipe|basic render/i.test(name);
 }
 
+const ABOVE_FLOOR = 0.495 * Math.PI; // angle from above at which a drag stops: nothing stands on a floor that is seen from below
+
 export class Stage {
   constructor(canvas, scene) {
     this.scene = scene;
@@ -62,6 +64,7 @@ export class Stage {
     if (scene.floor !== null) this.floor();
     this.extras = new Extras(this.world, scene);
     this.seeStart();
+    if (scene.floor !== null) this.orbit.maxPolarAngle = Math.max(ABOVE_FLOOR, this.orbit.getPolarAngle());
     this.resize();
   }
 
@@ -170,6 +173,12 @@ export class Stage {
     this.orbit.target.copy(middle);
     this.camera.position.copy(middle).addScaledVector(back, (1.1 * 0.5 * high.distanceTo(low)) / Math.sin(Math.atan(narrow)));
     this.look();
+  }
+
+  // Whether the camera is turned to a box.
+  looksAt([x, y, z, a, b, c]) {
+    const at = this.orbit.target;
+    return at.x >= x && at.x <= x + a && at.y >= y && at.y <= y + b && at.z >= z && at.z <= z + c;
   }
 
   look() {
