@@ -273,6 +273,18 @@ def test_messages_are_checked(view, folder, text):
     assert ask(view).status == 200 and sorted(p.name for p in folder.iterdir()) == before
 
 
+def test_a_server_that_is_ended_early_ends(folder):
+    """SIGTERM while the scene is made ahead, at several moments: the process ends all the same."""
+    for moment in (0.0, 0.05, 0.1, 0.2, 0.3):
+        process = subprocess.Popen(
+            [sys.executable, "-m", "mdanim_lammps.view", str(folder)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+        )
+        process.stdout.readline()
+        time.sleep(moment)
+        process.terminate()
+        process.communicate(timeout=30)
+
+
 def test_pages_are_counted(folder, monkeypatch):
     """More than so many are refused; one that closes makes room."""
     monkeypatch.setattr(server, "PAGES", 2)

@@ -34,12 +34,14 @@ def serve(
             view = ViewServer(tail, port=port, linger=linger, editor=Editor(folder, scene) if edit else None)
         except OSError as error:
             raise UsageError(f"--port {port}: {error.strerror}; leave it out, and a free one is taken") from error
-        threading.Thread(target=tail.read_ahead, daemon=True).start()
+        ahead = threading.Thread(target=tail.read_ahead, daemon=True)
+        ahead.start()
         try:
             on_address(view.address, view.address_once())
             view.wait()
         finally:
             view.end()
+            ahead.join()  # a thread that is in HDF5 when the program ends would hang it
 
 
 def main() -> None:
