@@ -276,9 +276,8 @@ def test_messages_are_checked(view, folder, text):
 def test_a_server_that_is_ended_early_ends(folder):
     """SIGTERM while the scene is made ahead, at several moments: the process ends all the same."""
     for moment in (0.0, 0.05, 0.1, 0.2, 0.3):
-        process = subprocess.Popen(
-            [sys.executable, "-m", "mdanim_lammps.view", str(folder)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-        )
+        command = [sys.executable, "-m", "mdanim_lammps.view", str(folder)]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
         process.stdout.readline()
         time.sleep(moment)
         process.terminate()
