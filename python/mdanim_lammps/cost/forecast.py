@@ -19,7 +19,7 @@ from ..run.prepare import Prepared
 
 REST = "rest of the step"
 ENOUGH = 0.4
-"""Seconds of processor time after which no more frames are run."""
+"""Seconds of the processor after which no more frames are run."""
 FRAMES = 3, 30
 """Fewest and most frames that are run."""
 PARTICLE_STEPS, STEPS = 500_000, 10
@@ -76,7 +76,7 @@ def extrapolate(ready: Prepared, folder: Path, *, setup: float = 0.0) -> Cost:
     marks: list[tuple[float, float, float]] = []
 
     def mark(progress: Progress) -> None:
-        marks.append((time.perf_counter(), time.process_time(), progress.seconds))
+        marks.append((time.perf_counter(), time.thread_time(), progress.seconds))
         if len(marks) >= FRAMES[0] and marks[-1][1] - marks[0][1] > ENOUGH:
             (folder / STOP).touch()
 
@@ -90,7 +90,8 @@ def extrapolate(ready: Prepared, folder: Path, *, setup: float = 0.0) -> Cost:
     assert cost is not None, "a run that has ended or stopped has a cost"
     # What a run does once, before its first frame and after its last one, is not in these differences.
     wall, own, simulated = (last - first for first, last in zip(marks[0], marks[-1]))
-    share = own / wall  # what other programs have of the processor is not part of a run
+    # What other programs have of the processor is not part of a run. Time is that of this thread: others share its work.
+    share = own / wall
     counted = sum(part.seconds for part in cost.effects.values()) + cost.other[LEAPFROG] + cost.other[REST]
     of_step = share * simulated / ((len(marks) - 1) * steps) * c.steps / counted
     effects = {name: replace(part, seconds=of_step * part.seconds, clocks={}) for name, part in cost.effects.items()}
