@@ -268,6 +268,7 @@ def test_ctrl_c_ends_a_forecast(pond, monkeypatch, tmp_path):
         return cost
 
     def endless(ready, folder, setup):
+        time.sleep(0.5)  # Python drops an exception that comes while it ends a fork
         os.kill(os.getppid(), signal.SIGINT)
         time.sleep(60.0)
 
