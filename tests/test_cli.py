@@ -146,6 +146,9 @@ def test_compare_and_render_use_an_output_folder(scene):
         pytest.param(["view", "nowhere.out", "--port", "70000"], 2, ["--port 70000", "65535"], id="no port"),
         pytest.param(["report", "nowhere.out"], 7, ["nowhere.out does not exist"], id="nothing to report"),
         pytest.param(["report", "nowhere.out", "-o", "x.pdf"], 2, ["written as .html"], id="no report"),
+        pytest.param(["export", "nowhere.out", "--to", "usd"], 7, ["nowhere.out does not exist"], id="nothing to export"),
+        pytest.param(["export", "nowhere.out"], 2, ["--to"], id="no format"),
+        pytest.param(["export", "nowhere.out", "--to", "usd", "--frames", "7"], 2, ["expected START:END"], id="no range"),
         pytest.param(["render", "nowhere.out", "--quality", "best"], 2, ['"best"', '"draft", "final"'], id="no quality"),
         pytest.param(["render", "nowhere.out", "--fps", "-3"], 2, ["--fps -3", "above 0"], id="no rate"),
         pytest.param(

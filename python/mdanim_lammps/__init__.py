@@ -7,7 +7,7 @@
 """
 
 __version__ = "0.1.0"
-__all__ = ["Scene", "SceneError", "Trajectory"]
+__all__ = ["Scene", "SceneError", "Trajectory", "Universe"]
 
 
 def __getattr__(name: str):
@@ -24,4 +24,8 @@ def __getattr__(name: str):
         from .results.trajectory import Trajectory
 
         return Trajectory
+    if name == "Universe":
+        from .results.universe import open_data
+
+        return open_data
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

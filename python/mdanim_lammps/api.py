@@ -22,11 +22,12 @@ from .picture.marks import Marks
 from .results.checkpoint import Checkpoint
 from .results.files import MARK, open_folder, read_json, write_json
 from .results.untrusted import check_folder, check_plain
-from .run.loop import Progress, Result, simulate, write_inputs, write_start
+from .run.loop import Progress, simulate, write_inputs, write_start
 from .run.manifest import manifest
 from .run.prepare import Prepared, prepare
+from .run.result import Result
 from .scene.meshes import mesh_files
-from .scene.parse import load_scene
+from .scene.parse import load_scene, parse_scene
 from .scene.scene import Accuracy, Save, SceneRecord
 from .study.bench import BUDGET
 from .study.study import Study, run_study
@@ -50,6 +51,23 @@ class Scene:
         Raises SceneError with all problems in ``.problems``.
         """
         return cls(load_scene(path, overrides=overrides, strict=strict))
+
+    @classmethod
+    def from_text(
+        cls, text: str, name: str = "scene", *, folder: str | Path | None = None, strict: bool = False, **overrides: float | str
+    ) -> Scene:
+        """Read a scene from a text.
+
+        Args:
+            text: as a scene file has it.
+            name: of the scene and of its output folder.
+            folder: where its includes and meshes are; None is the current folder.
+            strict: refuse numbers that have a dimension but no unit.
+            overrides: values of its ``let`` names, such as ``h=0.5`` or ``h="50 cm"``.
+
+        Raises SceneError with all problems in ``.problems``.
+        """
+        return cls(parse_scene(text, name, overrides, strict, folder))
 
     @cached_property
     def prepared(self) -> Prepared:

@@ -7,14 +7,12 @@ import json
 import shlex
 import sys
 import time
-from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
 
 from cyclopts import App, CycloptsError, Parameter
 
-from . import __version__
+from . import __version__, run_commands
 from .command_options import (
     Accuracy,
     AllowUnstable,
@@ -31,7 +29,6 @@ from .command_options import (
     Threads,
     Verbose,
     View,
-    whole_number,
 )
 from .command_steps import (
     STARTED,
@@ -39,7 +36,6 @@ from .command_steps import (
     announce,
     check_executors,
     check_size,
-    draw_movie,
     lmp_command,
     load,
     picture_file,
@@ -49,12 +45,11 @@ from .command_steps import (
     refuse_mistyped,
     seconds_of,
     settle,
-    show_address,
     simulate_and_draw,
     with_accuracy,
     with_quality,
 )
-from .errors import ExitCode, RefusedError, UsageError
+from .errors import ExitCode, UsageError
 from .terminal import PROGRAM, documented_exit, few_collections, open_streams, progress_bar, stop_on_sigterm
 
 app = App(
@@ -237,191 +232,6 @@ def build(
 
 
 @app.command
-def resume(
-    folder: Path,
-    /,
-    *,
-    executors: Executors = 1,
-    threads: Threads = None,
-    control: Control = None,
-    movie: bool = True,
-    view: View = False,
-    allow_unstable: AllowUnstable = False,
-    quiet: Quiet = False,
-) -> None:
-    """Continue a run from its last checkpoint, as if it had never stopped.
-
-    Parameters
-    ----------
-    folder
-        The output folder of a run that was stopped.
-    movie
-        Make movie.mp4 at the end.
-    """
-    from .api import stored_scene
-    from .results.checkpoint import Checkpoint
-    from .results.files import CHECKPOINT, claimed
-
-    check_executors(executors)
-    scene = stored_scene(folder)
-    with Viewer(view) as viewer, claimed(folder):
-        if (folder / "summary.json").exists():
-            raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
-        checkpoint = Checkpoint.read(folder / CHECKPOINT)
-        ready = prepare(scene, allow_unstable=allow_unstable)
-        announce(ready, quiet, False, executors, control)
-        viewer.start(folder)
-        simulate_and_draw(
-            ready, folder, quiet=quiet, movie=movie, executors=executors, threads=threads, control=control, resume=checkpoint
-        )
-
-
-@app.command
-def render(
-    folder: Path,
-    /,
-    *,
-    size: Size = None,
-    quality: Quality = None,
-    fps: float | None = None,
-    out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
-    frames: Annotated[bool, Parameter(negative=())] = False,
-    scene: Path | None = None,
-    quiet: Quiet = False,
-) -> None:
-    """Draw the movie of an output folder again, with another size, rate or camera.
-
-    Parameters
-    ----------
-    folder
-        The output folder of a run.
-    fps
-        Pictures per second of the movie.
-    out
-        The movie's file; default movie.mp4 in the folder.
-    frames
-        Write every picture to frames/ in the folder too.
-    scene
-        Take the render block (camera, background, speed) of this file instead; it need hold nothing else.
-    """
-    check_size(size)
-    if fps is not None and not 0.0 < fps <= 1000.0:
-        raise UsageError(f"--fps {fps:g}: must be above 0 and at most 1000, e.g. --fps 30")
-    from .api import movie_file, stored_scene
-    from .scene.parse import load_render
-
-    stored = stored_scene(folder)
-    record = stored if scene is None else replace(stored, render=load_render(scene, [solid.name for solid in stored.solids]))
-    record = with_quality(record, quality)
-    path = movie_file(folder, record) if out is None else picture_file(out, ".mp4")
-    draw_movie(folder, record, path, quiet=quiet, size=size, fps=fps, frames=folder / "frames" if frames else None)
-    if not quiet:
-        print(f"movie    {path}" + (f"   pictures in {folder / 'frames'}" if frames else ""))
-
-
-@app.command
-def view(
-    folder: Path,
-    /,
-    *,
-    port: Annotated[int, Parameter(converter=whole_number)] = 0,
-    open_: Annotated[bool, Parameter(name="--open", negative="--no-open")] = True,
-    edit: Annotated[bool, Parameter(negative=(), help="Let the page change the scene's text and run it again.")] = False,
-) -> None:
-    """Look at a run in a browser: one that goes on, with its controls, or one that has ended. Ctrl-C ends it.
-
-    Parameters
-    ----------
-    folder
-        The output folder of a run.
-    port
-        Port of this machine on which the page is served; a free one unless it is given.
-    open
-        Open a browser where there is a display.
-    """
-    from .view.__main__ import serve
-
-    if not 0 <= port <= 65535:
-        raise UsageError(f"--port {port}: must be between 0 (any that is free) and 65535")
-    with suppress(KeyboardInterrupt):
-        serve(folder, port=port, edit=edit, on_address=lambda address, once: show_address(address, once if open_ else None))
-
-
-@app.command
-def report(
-    folder: Path,
-    /,
-    *,
-    out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
-    exact: Annotated[bool, Parameter(negative=())] = False,
-    quiet: Quiet = False,
-) -> None:
-    """Write a run as one HTML file: replay, energies, cost, certificate, effects, scene. It opens from disk, without a network.
-
-    Parameters
-    ----------
-    folder
-        The output folder of a run that has ended.
-    out
-        The file; default report.html in the folder.
-    exact
-        Positions in 16 bits instead of 12.
-    """
-    from .view.export import write_report
-
-    path = folder / "report.html" if out is None else picture_file(out, ".html")
-    with progress_bar("report", quiet=quiet) as bar:
-        every = write_report(folder, path, exact=exact, on_progress=lambda done, total: bar(done, total, ""))
-    if not quiet:
-        print(f"report   {path}   {path.stat().st_size / 1e6:.1f} MB" + (f"   one of {every} frames" if every > 1 else ""))
-
-
-@app.command
-def timeline(folder: Path, /, *, out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None) -> None:
-    """Draw what each executor did, and which objects it owned, in a run with -n.
-
-    Parameters
-    ----------
-    folder
-        The output folder of a run with -n.
-    out
-        The picture's file; default timeline.png in the folder.
-    """
-    from .api import stored_scene
-    from .picture.timeline import draw
-    from .results.timeline import TIMELINE, Timeline
-
-    scene = stored_scene(folder)
-    if not (folder / TIMELINE).exists():
-        raise RefusedError(
-            f"{folder} was simulated by one process, so there is no {TIMELINE}; "
-            "executors are asked for with -n: mdanim-lammps SCENE -n 2"
-        )
-    path = folder / "timeline.png" if out is None else picture_file(out, ".png")
-    draw(Timeline.read(folder), path, scene.title or scene.name)
-    print(f"picture  {path}")
-
-
-@app.command
-def compare(a: Path, b: Path, /) -> None:
-    """Find where two runs differ: first frame and object, in metres. Ends with 6 when they differ.
-
-    Parameters
-    ----------
-    a
-        An output folder.
-    b
-        Another.
-    """
-    from .results.compare import compare as compare_runs
-
-    difference = compare_runs(a, b)
-    print(difference)
-    if not difference.equal:
-        raise SystemExit(ExitCode.DIVERGED)
-
-
-@app.command
 def study(
     scene: Path,
     /,
@@ -471,6 +281,10 @@ def study(
         print(line)
     print(f"advice   {done.advice}")
     print(f"output   {done.folder}/study.json, study.csv, study.png")
+
+
+for command in run_commands.COMMANDS:
+    app.command(command)
 
 
 def main(argv: list[str] | None = None) -> None:

@@ -120,6 +120,13 @@ def seconds_of(option: str, text: str) -> float:
     return seconds
 
 
+def frame_range(text: str) -> slice:
+    """Frames such as "30:90" or "30:". Raises UsageError."""
+    if not (match := re.fullmatch(r"(\d*):(\d*)", text)):
+        raise UsageError(f"--frames {text}: expected START:END in frames, e.g. --frames 30:90 or --frames 30:")
+    return slice(*(int(word) if word else None for word in match.groups()))
+
+
 def picture_file(path: Path, suffix: str) -> Path:
     """The file that -o names for a movie or a picture. Raises UsageError."""
     if path.suffix.lower() != suffix:
@@ -184,6 +191,17 @@ def simulate_and_draw(ready, folder: Path, *, quiet: bool, movie: bool, **option
         print(f"movie    {file}" if movie else f"output   {folder}")
     if result.missed:
         raise SystemExit(ExitCode.DIVERGED)
+
+
+def adopt(folder: Path, *, quiet: bool):
+    """The scene that an output folder holds; a dump that plain ``lmp`` has left there becomes its trajectory."""
+    from .api import stored_scene
+    from .run.adopt import adopt_dump
+
+    scene = stored_scene(folder)
+    if (line := adopt_dump(folder, scene)) and not quiet:
+        print(line)
+    return scene
 
 
 class Viewer:

@@ -13,8 +13,9 @@ from .model import plan_spacing
 from .results.cost import Cost
 from .results.timeline import Timeline
 from .results.trajectory_file import trajectory_bytes
-from .run.loop import Progress, Result
+from .run.loop import Progress
 from .run.prepare import Prepared
+from .run.result import Result
 from .scene.formatting import number, say, whole
 from .scene.scene import SceneRecord
 

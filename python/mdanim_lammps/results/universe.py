@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""A trajectory for MDAnalysis."""
+"""A trajectory, or what ``build`` has written, for MDAnalysis."""
 
 from __future__ import annotations
+
+from pathlib import Path
 
 import MDAnalysis
 import numpy as np
 from MDAnalysis.coordinates.H5MD import H5MDReader
 
+from ..errors import OutputError
+from .dump import read_dump
 from .trajectory import Trajectory
 
 
@@ -56,4 +60,48 @@ def universe_of(trajectory: Trajectory) -> MDAnalysis.Universe:
         rank[metadata.id] = np.arange(len(metadata.id))
         universe.add_TopologyAttr("bonds", rank[metadata.bond])
     universe.trajectory = _Reader(str(trajectory.path), convert_units=False, dt=trajectory.dt * trajectory.steps_per_frame)
+    return universe
+
+
+def open_data(data: str | Path, dump: str | Path | None = None) -> MDAnalysis.Universe:
+    """What ``mdanim-lammps build`` has written, for MDAnalysis; masses and springs included, metres and m/s.
+
+    Args:
+        data: ``data.NAME``. MDAnalysis alone does not read it: masses are those of particles, not of atom types.
+        dump: ``NAME.lammpstrj`` that ``lmp -in in.NAME`` has left, for frames; None has one frame, the start.
+
+    Raises:
+        OutputError: a file is missing, or is not what ``build`` and ``lmp`` write.
+    """
+    data = Path(data)
+    try:
+        lines = data.read_text(encoding="ascii").splitlines()
+        count = int(lines[2].split()[0])
+        starts = {line.split(" #")[0]: n + 2 for n, line in enumerate(lines) if line[:1].isalpha() and n}
+        springs = int(lines[3].split()[0])
+        table = lambda name, rows: np.array(" ".join(lines[starts[name] : starts[name] + rows]).split(), float).reshape(rows, -1)
+        atoms, mass = table("Atoms", count), table("Model", count)[:, 1]
+        velocity = table("Velocities", count)[:, 1:4]
+        bonds = table("Bonds", springs)[:, 2:4].astype(int) if springs else np.zeros((0, 2), int)
+    except (OSError, ValueError, KeyError, IndexError) as error:
+        raise OutputError(f"{data} is not a data file that 'mdanim-lammps build' has written: {error}") from error
+    residues = np.unique(atoms[:, 1].astype(int))
+    universe = MDAnalysis.Universe.empty(
+        count, n_residues=len(residues), atom_resindex=np.searchsorted(residues, atoms[:, 1]), trajectory=True, velocities=True
+    )
+    universe.add_TopologyAttr("masses", mass)
+    universe.add_TopologyAttr("ids", atoms[:, 0].astype(int))
+    universe.add_TopologyAttr("types", atoms[:, 2].astype(int).astype(str).astype(object))
+    universe.add_TopologyAttr("resids", residues)
+    if springs:
+        universe.add_TopologyAttr("bonds", bonds - 1)
+    universe.atoms.positions, universe.atoms.velocities = atoms[:, 3:6], velocity
+    if dump is not None:
+        try:
+            # MDAnalysis's own reader of dumps moves the lower corner of the box to the origin.
+            frames = [(x.astype(np.float32), v.astype(np.float32)) for _, x, v in read_dump(Path(dump), count)]
+            x, v = (np.stack(values) for values in zip(*frames))
+        except (OSError, ValueError) as error:
+            raise OutputError(f"{dump} is not a dump of {data}: {error}") from error
+        universe.load_new(x, velocities=v)
     return universe

@@ -9,7 +9,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +18,7 @@ from .. import __version__
 from ..effects.air_drag import LEAPFROG
 from ..engine.commands import input_script
 from ..engine.data_file import write_bodies, write_data
-from ..errors import DivergedError, ExitCode, MdanimError, OutputError, Problem
+from ..errors import DivergedError, ExitCode, MdanimError, OutputError
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
 from ..results.expect import Measured, Outcome, evaluate, record, recorded
@@ -33,6 +33,7 @@ from .energy import ledger_terms, loss_terms, rounding_energy
 from .frame_source import COST_SECONDS, Account, Frame, FrameSource, LammpsFailure, Sequential
 from .guard import Guard
 from .prepare import Prepared
+from .result import Result
 
 CHECKPOINT_SECONDS = 10.0
 """Wall time between checkpoints: a killed run loses at most this much, and a fast one does not write all the time."""
@@ -59,23 +60,6 @@ class Progress:
     """Whole cells of liquid more than at the start; None without a liquid."""
     paused: str = ""
     """The file that holds a paused run: it goes on when this is deleted. Empty while the run goes on."""
-
-
-@dataclass
-class Result:
-    """What a run has left."""
-
-    folder: Path
-    ledger: Ledger
-    outcomes: list[Outcome] = field(default_factory=list)
-    cost: Cost | None = None
-    """Seconds per effect and per other piece of work."""
-    warnings: list[Problem] = field(default_factory=list)
-    """What was seen in the run that does not stop it."""
-
-    @property
-    def missed(self) -> list[Outcome]:
-        return [o for o in self.outcomes if not o.met]
 
 
 class Interrupted(MdanimError):

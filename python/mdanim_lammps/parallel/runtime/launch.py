@@ -24,8 +24,9 @@ from pathlib import Path
 from ...errors import ExecutorLost, OutputError, SetupError
 from ...results.checkpoint import Checkpoint
 from ...results.files import CHECKPOINT, JOB, STOP, claims, disk_errors
-from ...run.loop import Progress, Result
+from ...run.loop import Progress
 from ...run.prepare import Prepared
+from ...run.result import Result
 from ..limits import MPIEXEC
 from ..plan.frame_plan import PlannerOptions
 

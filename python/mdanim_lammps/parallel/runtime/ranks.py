@@ -54,7 +54,8 @@ def _supervise(world, job: Path) -> None:
     from mpi4py import MPI
 
     from ...results.timeline import Timeline
-    from ...run.loop import Result, simulate
+    from ...run.loop import simulate
+    from ...run.result import Result
     from .executor import ABORT_SECONDS
     from .supervisor import Distributed
 

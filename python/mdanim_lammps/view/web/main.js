@@ -74,7 +74,7 @@ function refresh() {
   byId("pause").disabled = byId("stop").disabled = run.state === "preparing" || asked !== "";
   const words = live && run.total ? [`${Math.floor(100 * share)} %`] : [];
   if (live && run.seconds && scene) words.push(`${number((run.count * scene.frameTime) / run.seconds, 2)} s of film per second`, `${number(run.seconds * (1 / share - 1), 2)} s left`);
-  if (energies.rows.length) words.push(`energy residual ${number(energies.residual, 2)}`);
+  if (energies.names.length && energies.rows.length) words.push(`energy residual ${number(energies.residual, 2)}`);
   byId("progress").textContent = words.join("   ");
   offer("executor", run.executors > 1, "by executor", "of a run with -n");
   if (picked !== null && live && performance.now() - heightAt > 1000) showHeight();

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A run in formats of other programs (docs/export.md): one file of this folder for each format, one table of all."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+
+from ..errors import OutputError, SetupError, UsageError
+from ..results.files import disk_errors, sync
+from ..results.trajectory import Trajectory
+from ..results.untrusted import check_folder
+from ..scene.keywords import did_you_mean
+from .cut import Cut
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """One row of the table."""
+
+    module: str
+    """File of this folder whose function ``write(cut, folder, stem, on_frame)`` writes the files; it returns notes for people."""
+    suffixes: tuple[str, ...]
+    """Of what it writes; the first one is that of the name that is asked for."""
+    about: str
+    needs: str = ""
+    """Module that only ``pip install 'mdanim-lammps[export]'`` brings."""
+
+
+FORMATS = {
+    "usd": Format("usd", (".usdc",), "USD: meshes over time, materials, liquid, camera; Blender, Houdini, usdview", "pxr"),
+    "gltf": Format("gltf", (".glb",), "glTF: meshes with a morph target for each frame; browsers, slides"),
+    "vtk": Format("vtk", (".pvd", ".vtk"), "PVD series: surfaces, particles with velocity and strain, liquid; ParaView, PyVista"),
+    "xyz": Format("xyz", (".xyz",), "extended XYZ in metres: particles with velocity and mass, box, time; OVITO, ASE"),
+    "xtc": Format("xtc", (".xtc", ".gro"), "XTC with its GRO: particles, a tenth of the size, lengths scaled; VMD, MDAnalysis"),
+    "lammpstrj": Format("lammpstrj", (".lammpstrj",), "the dump that lmp writes for the same scene, to the last digit"),
+    "csv": Format("csv", (".csv",), "a row for each object and frame: centre, velocity, spin, energy; pandas, spreadsheets"),
+}
+"""Formats by the name that ``--to`` takes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Exported:
+    """What `export` has written."""
+
+    files: tuple[Path, ...]
+    frames: int
+    notes: tuple[str, ...]
+    """What the format cannot hold, or holds otherwise: a scale, a quantity that was left out and why."""
+
+
+def export(
+    run: Trajectory | str | Path,
+    to: str,
+    path: str | Path | None = None,
+    *,
+    objects: Sequence[str] = (),
+    every: int = 1,
+    frames: slice = slice(None),
+    force: bool = False,
+    on_progress: Callable[[int, int], None] = lambda done, total: None,
+) -> Exported:
+    """Write a run as a file of another program, frame by frame; it appears when it is whole.
+
+    Args:
+        run: output folder, or an open trajectory; of a run that was stopped what is there.
+        to: a name in `FORMATS`.
+        path: the file; None is ``NAME.SUFFIX`` in the output folder.
+        objects: names of those that are wanted; none for all. Liquid is written only with all objects.
+        every: only every n-th frame.
+        frames: only these, before ``every`` counts.
+        force: replace files of an earlier export.
+        on_progress: called with (frames done, frames in all).
+
+    Raises:
+        UsageError: a format, an object or a range that is not there.
+        SetupError: the library of the format is not installed.
+        OutputError: no frames, a file in the way, a full disk.
+    """
+    if to not in FORMATS:
+        raise UsageError(f"no format is called '{to}'; {did_you_mean(to, FORMATS)}")
+    kind = FORMATS[to]
+    if not isinstance(run, Trajectory):
+        if Path(run).is_dir():
+            check_folder(Path(run))
+        with Trajectory(run) as opened:
+            return export(opened, to, path, objects=objects, every=every, frames=frames, force=force, on_progress=on_progress)
+    cut = Cut(run, objects, every, frames)
+    if path is None:
+        home = run.path.parent
+        path = home / f"{home.stem}{kind.suffixes[0]}"
+    path = Path(path)
+    if path.suffix.lower() != kind.suffixes[0]:
+        name = f"{path.stem or 'scene'}{kind.suffixes[0]}"
+        raise UsageError(f"-o {path}: {to} is written as {kind.suffixes[0]}; give it a name such as {name}")
+    if not path.parent.is_dir():
+        raise OutputError(f"-o {path}: there is no folder {path.parent}; make it first, or name another")
+    try:
+        if kind.needs:
+            import_module(kind.needs)
+    except ImportError:
+        raise SetupError(f"--to {to} needs a library that is not installed: pip install 'mdanim-lammps[export]'") from None
+    targets = [path.with_suffix(suffix) for suffix in kind.suffixes]
+    _make_way(targets, force=force, delete=False)
+    write = import_module(f".{kind.module}", __package__).write
+    total = len(cut.frames)
+    with disk_errors(path), tempfile.TemporaryDirectory(prefix=".export-", dir=path.parent) as name:
+        part = Path(name)
+        notes = write(cut, part, path.stem, lambda done: on_progress(done, total))
+        for made in (p for p in part.rglob("*") if p.is_file()):
+            sync(made)
+        _make_way(targets, force=force, delete=True)
+        for target in reversed(targets):  # the name that was asked for comes last
+            os.replace(part / target.name, target)
+        sync(path.parent)
+    return Exported(tuple(targets), total, tuple(notes))
+
+
+def _make_way(targets: Sequence[Path], *, force: bool, delete: bool) -> None:
+    """Raises OutputError where something stands in the way that is not an export, or ``force`` is missing."""
+    for target in targets:
+        if not os.path.lexists(target):
+            continue
+        if not force:
+            raise OutputError(f"{target} exists; overwrite it with --force, or write elsewhere with -o FILE")
+        if target.is_dir() and not target.is_symlink():
+            if any(p.suffix != ".vtp" for p in target.iterdir()):
+                raise OutputError(f"{target} holds files that are no export; --force does not delete them: name another with -o")
+            if delete:
+                shutil.rmtree(target)

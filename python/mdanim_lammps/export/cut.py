@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What is exported of a run: some of its frames and objects."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from ..errors import OutputError, UsageError
+from ..picture.liquid import Sheet
+from ..picture.palette import LIQUID, object_colors, rgb, vertex_colors
+from ..picture.surfaces import ShadedMesh, shaded_mesh
+from ..results.trajectory import Trajectory
+from ..results.trajectory_metadata import TrajectoryMetadata
+from ..scene.keywords import did_you_mean
+
+
+@dataclass(frozen=True)
+class Body:
+    """The surface of one object, or of the liquid, with V vertices."""
+
+    name: str
+    color: tuple[float, float, float]
+    """Red, green, blue from 0 to 1, as a screen shows them."""
+    triangle: np.ndarray
+    """Vertex indices, counter-clockwise seen from outside, int32, shape (T, 3)."""
+    paint: np.ndarray | None = None
+    """Colour of each vertex as a mesh file has it, uint8, shape (V, 3)."""
+    liquid: bool = False
+
+
+class Cut:
+    """Frames and objects of a trajectory; O objects, N stored particles of these.
+
+    Args:
+        trajectory: of the run.
+        objects: names; none for all, and then with the liquid.
+        every, frames: as `export` takes them.
+
+    Raises UsageError for names and ranges that are not there, OutputError where there is no frame.
+    """
+
+    def __init__(self, trajectory: Trajectory, objects: Sequence[str], every: int, frames: slice):
+        if every < 1:
+            raise UsageError(f"--every {every}: must be 1 or more, e.g. --every 10")
+        for name in objects:
+            if name not in trajectory.names:
+                raise UsageError(f"--objects {name}: no object is called so; {did_you_mean(name, trajectory.names)}")
+        if not len(trajectory):
+            raise OutputError(f"{trajectory.path}: holds no frame, nothing can be exported; resume the run first")
+        self.trajectory = trajectory
+        self.frames = np.arange(len(trajectory))[frames][::every]
+        """Numbers of the frames, shape (F,)."""
+        if not len(self.frames):
+            raise UsageError(f"--frames {frames.start}:{frames.stop}: the run has frames 0 to {len(trajectory) - 1}")
+        self.objects = np.array([n for n, name in enumerate(trajectory.names) if not objects or name in objects])
+        """Indices into ``trajectory.names``, shape (O,)."""
+        m = trajectory.metadata
+        self._kept = np.isin(m.object_of, self.objects)
+        self.liquid = None if objects else m.liquid
+        sizes = np.diff(m.first)[self.objects]
+        self.metadata: TrajectoryMetadata = replace(
+            m,
+            names=tuple(m.names[n] for n in self.objects),
+            colors=tuple(m.colors[n] for n in self.objects),
+            still=m.still[self.objects],
+            object_mass=m.object_mass[self.objects],
+            first=np.concatenate([[0], np.cumsum(sizes)]),
+            id=m.id[self._kept],
+            mass=m.mass[self._kept],
+            layer=m.layer[self._kept],
+            held=m.held[self._kept],
+            bond=m.bond[np.isin(m.bond, m.id[self._kept]).all(axis=1)] if len(m.bond) else m.bond,
+            surface_of=m.surface_of[self.objects],
+            liquid=self.liquid,
+        )
+        """That of the trajectory, for these objects alone."""
+
+    @property
+    def times(self) -> np.ndarray:
+        """[s], shape (F,)."""
+        return self.trajectory.times[self.frames]
+
+    @property
+    def rate(self) -> float:
+        """Frames per second of simulated time."""
+        times = self.times
+        return (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 else 30.0
+
+    def position(self, frame: int) -> np.ndarray:
+        """Of the particles in a frame of the trajectory [m], shape (N, 3)."""
+        return self.trajectory.position(frame)[self._kept]
+
+    def velocity(self, frame: int) -> np.ndarray:
+        """[m/s], shape (N, 3)."""
+        return self.trajectory.velocity(frame)[self._kept]
+
+    @property
+    def types(self) -> np.ndarray:
+        """Atom type of each particle as ``data.NAME`` has it: its layer, and four more where it is held; shape (N,)."""
+        return self.metadata.layer.astype(int) + 4 * self.metadata.held
+
+    @cached_property
+    def bonds(self) -> np.ndarray:
+        """Springs as pairs of particles, counted from 0, shape (B, 2)."""
+        return np.searchsorted(self.metadata.id, self.metadata.bond).reshape(-1, 2)
+
+    @cached_property
+    def spacing(self) -> float:
+        """Typical distance of neighbours at the start [m]."""
+        if len(self.bonds):
+            return float(np.median(self._rest))
+        size = np.ptp(self.position(0), axis=0)
+        return float(max(size.max(), np.finfo(np.float32).tiny) / max(1.0, len(self.metadata.id) ** (1 / 3)))
+
+    def strain(self, position: np.ndarray) -> np.ndarray:
+        """Largest \\|r/r0 - 1\\| of the springs of each particle [-], shape (N,); r0 is the length in the first frame of the run,
+        which is undeformed. Of stored springs only (``save boundary`` leaves inner ones out)."""
+        stretch = np.abs(self._lengths(position) / self._rest - 1.0)
+        strain = np.zeros(len(position))
+        for end in self.bonds.T:
+            np.maximum.at(strain, end, stretch)
+        return strain
+
+    @cached_property
+    def _rest(self) -> np.ndarray:
+        return self._lengths(self.position(0))
+
+    def _lengths(self, position: np.ndarray) -> np.ndarray:
+        i, j = self.bonds.T
+        return np.linalg.norm(position[i] - position[j], axis=1)
+
+    # --- surfaces ---------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def bodies(self) -> list[Body]:
+        """Surfaces of the objects, then that of the liquid; vertices are doubled along creases, as pictures have them."""
+        mesh, m = self._mesh, self.trajectory.metadata
+        colors = object_colors(m.colors, m.still)[self.objects] / 255.0
+        skin = m.skin
+        of_kept = np.isin(skin.object_of_vertex, self.objects)
+        paint = vertex_colors(m)[of_kept][mesh.of_skin][self._order]
+        painted = np.zeros(len(skin.object_of_vertex), bool)
+        painted[skin.painted] = True
+        chosen = np.array([bool(name) for name in m.colors])
+        painted = (painted & ~chosen[skin.object_of_vertex])[of_kept][mesh.of_skin][self._order]
+        rank = np.empty(len(self._order), np.int32)
+        rank[self._order] = np.arange(len(self._order))
+        triangle = rank[mesh.triangle]
+        owner = np.searchsorted(self._first, triangle[:, 0], side="right") - 1
+        order = np.argsort(owner, kind="stable")
+        ends = np.searchsorted(owner[order], np.arange(len(self.objects) + 1))
+        bodies = []
+        for n, name in enumerate(self.metadata.names):
+            own = slice(self._first[n], self._first[n + 1])
+            bodies.append(
+                Body(
+                    name,
+                    tuple(map(float, colors[n])),
+                    triangle[order[ends[n] : ends[n + 1]]] - np.int32(self._first[n]),
+                    paint[own] if painted[own].any() else None,
+                )
+            )
+        if self.liquid:
+            color = tuple(map(float, rgb(self.liquid.color or LIQUID)))
+            bodies.append(Body(self.liquid.name, color, self._sheet.triangle, liquid=True))
+        return bodies
+
+    def surfaces(self, frame: int) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Vertices [m] and outward unit normals of each of `bodies` in a frame of the trajectory, shape (V, 3) each."""
+        position = self.position(frame)
+        vertices = self._mesh.vertices(position)
+        normals = self._mesh.normals(vertices, position)[self._order]
+        vertices = vertices[self._order]
+        made = [(vertices[a:b], normals[a:b]) for a, b in zip(self._first, self._first[1:])]
+        if self.liquid:
+            made.append(self._sheet.mesh(self.trajectory.liquid_height(frame).astype(float)))
+        return made
+
+    @cached_property
+    def _mesh(self) -> ShadedMesh:
+        return shaded_mesh(self.metadata, self.position(0))
+
+    @cached_property
+    def _order(self) -> np.ndarray:
+        """Vertices object by object: those that creases have doubled are the last ones of the mesh."""
+        return np.argsort(self._mesh.object_of_vertex, kind="stable")
+
+    @cached_property
+    def _first(self) -> np.ndarray:
+        """First vertex of each object in `_order`, and their number, shape (O + 1,)."""
+        return np.searchsorted(self._mesh.object_of_vertex[self._order], np.arange(len(self.objects) + 1))
+
+    @cached_property
+    def _sheet(self) -> Sheet:
+        return Sheet(self.liquid.grid)

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""glTF 2.0 in one binary file. Its only way to bend a mesh over time are morph targets: each frame is one, as the
+difference to the first frame, and an animation lets one after the other count."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import struct
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import UsageError
+from .cut import Cut
+from .usd import OPACITY, linear
+
+LARGEST = 2**32 - 2**20
+"""Bytes: the file counts its own length in 32 bits."""
+FLOAT, UINT = 5126, 5125
+VERTICES, INDICES = 34962, 34963
+
+
+def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) -> list[str]:
+    start, total = cut.surfaces(cut.frames[0]), len(cut.frames)
+    vertices = sum(len(v) for v, _ in start)
+    expected = 24 * vertices * total + 4 * total**2
+    if expected > LARGEST:
+        fewer = int(np.ceil(expected / LARGEST)) + 1
+        raise UsageError(
+            f"--to gltf: {total} frames of {vertices} vertices would take {expected / 1e9:.1f} GB, the format allows 4 GB; "
+            f"take fewer frames (--every {fewer}) or objects (--objects), or --to usd"
+        )
+    part = folder / "buffer"
+    with open(part, "wb") as file:
+        out = _Buffer(file)
+        meshes = []
+        for body, (x, normal) in zip(cut.bodies, start):
+            attributes = {"POSITION": out.add(x, FLOAT, VERTICES, bounds=True), "NORMAL": out.add(normal, FLOAT, VERTICES)}
+            if body.paint is not None:
+                attributes["COLOR_0"] = out.add(np.column_stack([linear(body.paint / 255.0), np.ones(len(x))]), FLOAT, VERTICES)
+            index = out.add(body.triangle.ravel().astype(np.uint32), UINT, INDICES)
+            meshes.append({"attributes": attributes, "indices": index, "material": 0, "targets": []})
+        for done, frame in enumerate(cut.frames[1:], 1):
+            for mesh, (x, normal), (x0, normal0) in zip(meshes, cut.surfaces(frame), start):
+                mesh["targets"].append(
+                    {
+                        "POSITION": out.add(x - x0, FLOAT, VERTICES, bounds=True),
+                        "NORMAL": out.add(normal - normal0, FLOAT, VERTICES),
+                    }
+                )
+            on_frame(done)
+        animation = []
+        if total > 1:
+            times = out.add((cut.times - cut.times[0]).astype(np.float32), FLOAT, bounds=True)
+            weights = out.add(np.eye(total, dtype=np.float32)[:, 1:].ravel(), FLOAT)
+            animation = [
+                {
+                    "name": "run",
+                    "samplers": [{"input": times, "output": weights, "interpolation": "LINEAR"}],
+                    "channels": [{"sampler": 0, "target": {"node": n + 1, "path": "weights"}} for n in range(len(meshes))],
+                }
+            ]
+    materials, known = [], {}
+    for mesh, body in zip(meshes, cut.bodies):
+        key = (body.color if body.paint is None else (1.0, 1.0, 1.0), body.liquid)
+        if key not in known:
+            known[key] = len(materials)
+            color = [*linear(np.array(key[0])).tolist(), OPACITY if body.liquid else 1.0]
+            look = {"pbrMetallicRoughness": {"baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.5}}
+            materials.append(look | ({"alphaMode": "BLEND"} if body.liquid else {}))
+        mesh["material"] = known[key]
+    # glTF has y up: the root turns the scene's z there.
+    turned = {"name": stem, "rotation": [-(0.5**0.5), 0.0, 0.0, 0.5**0.5], "children": list(range(1, len(meshes) + 1))}
+    document = {
+        "asset": {"version": "2.0", "generator": "mdanim-lammps"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [turned, *({"name": body.name, "mesh": n} for n, body in enumerate(cut.bodies))],
+        "meshes": [
+            {"name": body.name, "primitives": [mesh], "weights": [0.0] * (total - 1)}
+            if total > 1
+            else {"name": body.name, "primitives": [{k: v for k, v in mesh.items() if k != "targets"}]}
+            for body, mesh in zip(cut.bodies, meshes)
+        ],
+        "materials": materials,
+        "accessors": out.accessors,
+        "bufferViews": out.views,
+        "buffers": [{"byteLength": out.length}],
+        **({"animations": animation} if animation else {}),
+    }
+    text = json.dumps(document, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 4)
+    with open(folder / f"{stem}.glb", "wb") as file, open(part, "rb") as data:
+        file.write(struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + out.length))
+        file.write(struct.pack("<I4s", len(text), b"JSON") + text)
+        file.write(struct.pack("<I4s", out.length, b"BIN\0"))
+        shutil.copyfileobj(data, file)
+    part.unlink()
+    on_frame(total)
+    return [
+        f"{total - 1} morph targets for {len(meshes)} meshes; between frames positions are mixed linearly",
+        "lengths are metres; the root node turns z to y, which is up in glTF",
+    ]
+
+
+class _Buffer:
+    """The binary part, written as it grows, and the tables that say where things are in it."""
+
+    def __init__(self, file):
+        self.file, self.length = file, 0
+        self.views: list[dict] = []
+        self.accessors: list[dict] = []
+
+    def add(self, values: np.ndarray, kind: int, target: int | None = None, *, bounds: bool = False) -> int:
+        """Append numbers, of shape (n,) or (n, 3) or (n, 4); returns their accessor."""
+        values = np.ascontiguousarray(values, np.float32 if kind == FLOAT else np.uint32)
+        view = {"buffer": 0, "byteOffset": self.length, "byteLength": values.nbytes} | ({"target": target} if target else {})
+        of = {(1,): "SCALAR", (2, 3): "VEC3", (2, 4): "VEC4"}[(values.ndim, *values.shape[1:])]
+        accessor = {"bufferView": len(self.views), "componentType": kind, "count": len(values), "type": of}
+        if bounds:
+            accessor |= {"min": np.atleast_1d(values.min(axis=0)).tolist(), "max": np.atleast_1d(values.max(axis=0)).tolist()}
+        self.file.write(values)
+        self.length += values.nbytes
+        self.views.append(view)
+        self.accessors.append(accessor)
+        return len(self.accessors) - 1

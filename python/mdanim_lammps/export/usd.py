@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""USD: a mesh with time samples for each object, one for the liquid, materials by colour, the camera. Metres, z up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import OutputError, SceneError
+from ..picture.camera import FIELD_OF_VIEW, CameraPath, View, action_of, automatic_view
+from ..scene.parse import parse_scene
+from ..scene.render import Render
+from .cut import Body, Cut
+
+FLUSH = 100_000_000
+"""Bytes of points after which they go to the disk, so that a long run need not fit in memory."""
+OPACITY = 0.6
+"""Of the liquid."""
+
+
+def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) -> list[str]:
+    from pxr import Sdf, Tf, Usd, UsdGeom, UsdShade, Vt
+
+    stage = Usd.Stage.CreateNew(str(folder / f"{stem}.usdc"))
+    UsdGeom.SetStageMetersPerUnit(stage, 1.0)
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
+    rate, codes = cut.rate, cut.times * cut.rate
+    stage.SetTimeCodesPerSecond(rate)
+    stage.SetFramesPerSecond(rate)
+    stage.SetStartTimeCode(codes[0])
+    stage.SetEndTimeCode(codes[-1])
+    scene = UsdGeom.Xform.Define(stage, "/scene")
+    stage.SetDefaultPrim(scene.GetPrim())
+    UsdGeom.Scope.Define(stage, "/scene/materials")
+    meshes, used, materials = [], set(), {}
+    array = lambda values: Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(values, np.float32))
+    for body in cut.bodies:
+        name = Tf.MakeValidIdentifier(body.name)
+        while name in used:
+            name += "_"
+        used.add(name)
+        mesh = UsdGeom.Mesh.Define(stage, f"/scene/{name}")
+        mesh.GetPrim().SetDisplayName(body.name)
+        mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+        mesh.CreateFaceVertexCountsAttr(Vt.IntArray(len(body.triangle), 3))
+        mesh.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(np.ascontiguousarray(body.triangle.ravel())))
+        mesh.CreatePointsAttr()
+        mesh.CreateExtentAttr()
+        mesh.CreateNormalsAttr()
+        mesh.SetNormalsInterpolation(UsdGeom.Tokens.vertex)
+        colors = np.array([body.color]) if body.paint is None else body.paint / 255.0
+        kind = UsdGeom.Tokens.constant if body.paint is None else UsdGeom.Tokens.vertex
+        mesh.CreateDisplayColorPrimvar(kind).Set(array(linear(colors)))
+        key = (body.color if body.paint is None else None, body.liquid)
+        if key not in materials:
+            materials[key] = _material(stage, f"/scene/materials/material_{len(materials)}", body, Sdf, UsdShade)
+        UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(materials[key])
+        meshes.append((mesh.GetPointsAttr(), mesh.GetNormalsAttr(), mesh.GetExtentAttr()))
+    _camera(stage, cut)
+    waiting = 0
+    for done, (frame, code) in enumerate(zip(cut.frames, codes), 1):
+        for (points, normals, extent), (vertices, normal) in zip(meshes, cut.surfaces(frame)):
+            points.Set(array(vertices), code)
+            normals.Set(array(normal), code)
+            extent.Set(array([vertices.min(axis=0), vertices.max(axis=0)]), code)
+            waiting += 24 * len(vertices)
+        if waiting > FLUSH:
+            _save(stage, stem)
+            waiting = 0
+        on_frame(done)
+    _save(stage, stem)
+    return [f"one time code is a frame, {rate:g} of them a second; lengths are metres, z is up"]
+
+
+def linear(color: np.ndarray) -> np.ndarray:
+    """Linear light, as USD wants colours, of colours as a screen shows them (sRGB), from 0 to 1."""
+    return np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4)
+
+
+def _save(stage, stem: str) -> None:
+    if not stage.GetRootLayer().Save():
+        raise OutputError(f"{stem}.usdc cannot be written; is the disk full?")
+
+
+def _material(stage, path: str, body: Body, Sdf, UsdShade):
+    material, shader = UsdShade.Material.Define(stage, path), UsdShade.Shader.Define(stage, f"{path}/surface")
+    shader.CreateIdAttr("UsdPreviewSurface")
+    shader.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(0.1 if body.liquid else 0.5)
+    if body.liquid:
+        shader.CreateInput("opacity", Sdf.ValueTypeNames.Float).Set(OPACITY)
+    color = shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f)
+    if body.paint is None:
+        color.Set(tuple(map(float, linear(np.array(body.color)))))
+    else:
+        reader = UsdShade.Shader.Define(stage, f"{path}/paint")
+        reader.CreateIdAttr("UsdPrimvarReader_float3")
+        reader.CreateInput("varname", Sdf.ValueTypeNames.String).Set("displayColor")
+        color.ConnectToSource(reader.CreateOutput("result", Sdf.ValueTypeNames.Float3))
+    material.CreateSurfaceOutput().ConnectToSource(shader.CreateOutput("surface", Sdf.ValueTypeNames.Token))
+    return material
+
+
+def _camera(stage, cut: Cut) -> None:
+    """The camera of the scene, or the one that movies have without one."""
+    from pxr import Gf, UsdGeom
+
+    t = cut.trajectory
+    try:
+        render = parse_scene(t.metadata.scene_text, folder=t.path.parent).render
+    except SceneError:  # of an older language
+        render = Render()
+    width, height = render.size
+    camera = UsdGeom.Camera.Define(stage, "/scene/camera")
+    # Only the ratio of apertures and focal length counts; those of a film of 24 mm.
+    camera.CreateVerticalApertureAttr(24.0)
+    camera.CreateHorizontalApertureAttr(24.0 * width / height)
+    camera.CreateFocalLengthAttr(12.0 / np.tan(np.radians(FIELD_OF_VIEW / 2)))
+    place = camera.AddTransformOp()
+    matrix = lambda view: Gf.Matrix4d(camera_matrix(view).tolist())
+    if render.camera:
+        path = CameraPath(render.camera, t)
+        views = [path.at(float(time)) for time in cut.times]
+        for time, view in zip(cut.times, views):
+            place.Set(matrix(view), time * cut.rate)
+    else:
+        pool = t.liquid
+        basin = (pool.low, pool.high) if pool else None
+        views = [automatic_view(action_of(t), width / height, t.metadata.walls, basin)]
+        place.Set(matrix(views[0]))
+    far = max(float(np.linalg.norm(view.eye - view.look)) for view in views)
+    camera.CreateClippingRangeAttr(Gf.Vec2f(0.001 * far, 100.0 * far))
+
+
+def camera_matrix(view: View) -> np.ndarray:
+    """From the camera, which looks along -z, to the scene; rows are its axes and its place, shape (4, 4)."""
+    back = view.eye - view.look
+    back = back / np.linalg.norm(back)
+    right = np.cross(view.up, back)
+    right /= np.linalg.norm(right)
+    matrix = np.eye(4)
+    matrix[:, :3] = right, np.cross(back, right), back, view.eye
+    return matrix

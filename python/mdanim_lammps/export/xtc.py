@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""XTC, whose lengths are whole numbers of a small unit within the size of molecules: the scene is scaled into it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from .cut import Cut
+
+DECIMALS = 5
+"""Of the nanometres that XTC counts in: an ångström has 10 000 parts."""
+
+
+def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) -> list[str]:
+    import MDAnalysis
+    from MDAnalysis.coordinates.XTC import XTCWriter
+
+    m, start = cut.metadata, cut.position(cut.frames[0])
+    scale = scale_of(cut)
+    note = f"1 m of the scene is {scale:g} angstrom, 1 s is 1 ps"
+    universe = MDAnalysis.Universe.empty(len(m.id), n_residues=len(m.names), atom_resindex=m.object_of, trajectory=True)
+    universe.add_TopologyAttr("names", np.array([f"L{kind}" for kind in range(9)], dtype=object)[cut.types])
+    universe.add_TopologyAttr("resnames", np.array([name[:5] for name in m.names], dtype=object))
+    universe.add_TopologyAttr("resids", cut.objects + 1)
+    universe.atoms.positions = start * scale
+    box = lambda x: [*np.maximum(np.ptp(x, axis=0), 1.0), 90.0, 90.0, 90.0]
+    universe.dimensions = box(start * scale)
+    with MDAnalysis.Writer(str(folder / f"{stem}.gro"), n_atoms=len(m.id), reindex=True) as file:
+        file.write(universe.atoms)
+    with XTCWriter(str(folder / f"{stem}.xtc"), n_atoms=len(m.id), precision=DECIMALS) as file:
+        for done, (frame, time) in enumerate(zip(cut.frames, cut.times), 1):
+            x = cut.position(frame) * scale
+            universe.atoms.positions = x
+            universe.dimensions = box(x)
+            universe.trajectory.ts.time, universe.trajectory.ts.frame = time, done - 1
+            universe.trajectory.ts.data["step"] = int(cut.trajectory.steps[frame])
+            file.write(universe.atoms)
+            on_frame(done)
+    return [note, "velocities are not in XTC; names of objects are cut after five letters, which is all that GRO has"]
+
+
+def scale_of(cut: Cut) -> float:
+    """Ångström for a metre: the power of ten with which neighbours are 1 to 10 Å apart, as atoms are."""
+    return float(10.0 ** np.ceil(-np.log10(cut.spacing)))

@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Commands about a run that there is: go on with it, draw it, look at it, take it elsewhere."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from .command_options import AllowUnstable, Control, Executors, Quality, Quiet, Size, Threads, View, whole_number
+from .command_steps import (
+    Viewer,
+    adopt,
+    announce,
+    check_executors,
+    check_size,
+    draw_movie,
+    frame_range,
+    picture_file,
+    prepare,
+    show_address,
+    simulate_and_draw,
+    with_quality,
+)
+from .errors import ExitCode, RefusedError, UsageError
+from .terminal import progress_bar
+
+
+def resume(
+    folder: Path,
+    /,
+    *,
+    executors: Executors = 1,
+    threads: Threads = None,
+    control: Control = None,
+    movie: bool = True,
+    view: View = False,
+    allow_unstable: AllowUnstable = False,
+    quiet: Quiet = False,
+) -> None:
+    """Continue a run from its last checkpoint, as if it had never stopped.
+
+    Parameters
+    ----------
+    folder
+        The output folder of a run that was stopped.
+    movie
+        Make movie.mp4 at the end.
+    """
+    from .api import stored_scene
+    from .results.checkpoint import Checkpoint
+    from .results.files import CHECKPOINT, claimed
+
+    check_executors(executors)
+    scene = stored_scene(folder)
+    with Viewer(view) as viewer, claimed(folder):
+        if (folder / "summary.json").exists():
+            raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
+        checkpoint = Checkpoint.read(folder / CHECKPOINT)
+        ready = prepare(scene, allow_unstable=allow_unstable)
+        announce(ready, quiet, False, executors, control)
+        viewer.start(folder)
+        simulate_and_draw(
+            ready, folder, quiet=quiet, movie=movie, executors=executors, threads=threads, control=control, resume=checkpoint
+        )
+
+
+def render(
+    folder: Path,
+    /,
+    *,
+    size: Size = None,
+    quality: Quality = None,
+    fps: float | None = None,
+    out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
+    frames: Annotated[bool, Parameter(negative=())] = False,
+    scene: Path | None = None,
+    quiet: Quiet = False,
+) -> None:
+    """Draw the movie of an output folder again, with another size, rate or camera.
+
+    Parameters
+    ----------
+    folder
+        The output folder of a run.
+    fps
+        Pictures per second of the movie.
+    out
+        The movie's file; default movie.mp4 in the folder.
+    frames
+        Write every picture to frames/ in the folder too.
+    scene
+        Take the render block (camera, background, speed) of this file instead; it need hold nothing else.
+    """
+    check_size(size)
+    if fps is not None and not 0.0 < fps <= 1000.0:
+        raise UsageError(f"--fps {fps:g}: must be above 0 and at most 1000, e.g. --fps 30")
+    from .api import movie_file
+    from .scene.parse import load_render
+
+    stored = adopt(folder, quiet=quiet)
+    record = stored if scene is None else replace(stored, render=load_render(scene, [solid.name for solid in stored.solids]))
+    record = with_quality(record, quality)
+    path = movie_file(folder, record) if out is None else picture_file(out, ".mp4")
+    draw_movie(folder, record, path, quiet=quiet, size=size, fps=fps, frames=folder / "frames" if frames else None)
+    if not quiet:
+        print(f"movie    {path}" + (f"   pictures in {folder / 'frames'}" if frames else ""))
+
+
+def view(
+    folder: Path,
+    /,
+    *,
+    port: Annotated[int, Parameter(converter=whole_number)] = 0,
+    open_: Annotated[bool, Parameter(name="--open", negative="--no-open")] = True,
+    edit: Annotated[bool, Parameter(negative=(), help="Let the page change the scene's text and run it again.")] = False,
+) -> None:
+    """Look at a run in a browser: one that goes on, with its controls, or one that has ended. Ctrl-C ends it.
+
+    Parameters
+    ----------
+    folder
+        The output folder of a run.
+    port
+        Port of this machine on which the page is served; a free one unless it is given.
+    open
+        Open a browser where there is a display.
+    """
+    from .view.__main__ import serve
+
+    if not 0 <= port <= 65535:
+        raise UsageError(f"--port {port}: must be between 0 (any that is free) and 65535")
+    with suppress(KeyboardInterrupt):
+        serve(folder, port=port, edit=edit, on_address=lambda address, once: show_address(address, once if open_ else None))
+
+
+def report(
+    folder: Path,
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
+    exact: Annotated[bool, Parameter(negative=())] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Write a run as one HTML file: replay, energies, cost, certificate, effects, scene. It opens from disk, without a network.
+
+    Parameters
+    ----------
+    folder
+        The output folder of a run that has ended.
+    out
+        The file; default report.html in the folder.
+    exact
+        Positions in 16 bits instead of 12.
+    """
+    from .view.export import write_report
+
+    path = folder / "report.html" if out is None else picture_file(out, ".html")
+    adopt(folder, quiet=quiet)
+    with progress_bar("report", quiet=quiet) as bar:
+        every = write_report(folder, path, exact=exact, on_progress=lambda done, total: bar(done, total, ""))
+    if not quiet:
+        print(f"report   {path}   {path.stat().st_size / 1e6:.1f} MB" + (f"   one of {every} frames" if every > 1 else ""))
+
+
+def export(
+    folder: Path,
+    /,
+    *,
+    to: Annotated[str, Parameter(help="usd, gltf, vtk, xyz, xtc, lammpstrj or csv.")],
+    out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
+    objects: Annotated[str, Parameter()] = "",
+    every: Annotated[int, Parameter(converter=whole_number)] = 1,
+    frames: str = ":",
+    force: Annotated[bool, Parameter(negative=())] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Write a run as a file of another program: Blender, ParaView, OVITO, VMD, a spreadsheet.
+
+    Parameters
+    ----------
+    folder
+        The output folder of a run, also of one that was stopped.
+    out
+        The file; default NAME with the suffix of the format in the folder.
+    objects
+        Only these, e.g. "cube, ball[2]"; without liquid.
+    every
+        Only every N-th frame.
+    frames
+        Only these, e.g. 30:90; what is left out is the start or the end.
+    force
+        Overwrite the files of an earlier export.
+    """
+    from .export import export as export_run
+
+    chosen = frame_range(frames)
+    adopt(folder, quiet=quiet)
+    names = [name.strip() for name in objects.split(",") if name.strip()]
+    with progress_bar("export", quiet=quiet) as bar:
+        done = export_run(
+            folder,
+            to,
+            out,
+            objects=names,
+            every=every,
+            frames=chosen,
+            force=force,
+            on_progress=lambda n, total: bar(n, total, f"frame {n} of {total}"),
+        )
+    if quiet:
+        return
+    sizes = sum(p.stat().st_size for file in done.files for p in (file.iterdir() if file.is_dir() else [file]))
+    print(f"export   {'  '.join(map(str, done.files))}   {done.frames} frames, {sizes / 1e6:.3g} MB")
+    for note in done.notes:
+        print(f"         {note}")
+
+
+def timeline(folder: Path, /, *, out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None) -> None:
+    """Draw what each executor did, and which objects it owned, in a run with -n.
+
+    Parameters
+    ----------
+    folder
+        The output folder of a run with -n.
+    out
+        The picture's file; default timeline.png in the folder.
+    """
+    from .api import stored_scene
+    from .picture.timeline import draw
+    from .results.timeline import TIMELINE, Timeline
+
+    scene = stored_scene(folder)
+    if not (folder / TIMELINE).exists():
+        raise RefusedError(
+            f"{folder} was simulated by one process, so there is no {TIMELINE}; "
+            "executors are asked for with -n: mdanim-lammps SCENE -n 2"
+        )
+    path = folder / "timeline.png" if out is None else picture_file(out, ".png")
+    draw(Timeline.read(folder), path, scene.title or scene.name)
+    print(f"picture  {path}")
+
+
+def compare(a: Path, b: Path, /) -> None:
+    """Find where two runs differ: first frame and object, in metres. Ends with 6 when they differ.
+
+    Parameters
+    ----------
+    a
+        An output folder.
+    b
+        Another.
+    """
+    from .results.compare import compare as compare_runs
+
+    difference = compare_runs(a, b)
+    print(difference)
+    if not difference.equal:
+        raise SystemExit(ExitCode.DIVERGED)
+
+
+COMMANDS = (resume, render, view, report, export, timeline, compare)
+"""Of the command line, in the order of its help."""
