@@ -15,7 +15,7 @@ struct WaveLaw {
   double share = 1.0;                 // of the update, this sub-update
   double film = 1.0 / 1024.0;         // a content up to this does not flow
   double viscosity = 0.02;            // between neighbouring links
-  double calm = 0.0;                  // rate at which all velocities die
+  double calm = 0.0;                  // rate at which all velocities die, see calm_rate()
   double bed = 0.0;                   // friction of the floor, times |u|/H
   double inertia = 8.0 / 21.0;        // of rising columns, in their depth
   double quick = 0.125;               // part of the dispersive head that does not push
@@ -27,6 +27,9 @@ struct WaveLaw {
   double fastest = 16.0;              // velocity
   double units_per_cell = 1 << 20;    // of content
 };
+
+// Friction under which waves die to 1/e in a time: half of their energy is in velocities.
+constexpr double calm_rate(double time) { return 2.0 / time; }
 
 // (W1) Head of the surface of a span with solids at its ends alone. A full span has the head of its rest.
 template <class Real> struct Surface {
@@ -70,20 +73,25 @@ MDANIM_ALWAYS_INLINE Opened<Real> open_link(const Real &level_a, const Real &lev
 
 // The links around one: those behind and ahead along its direction, and those to the left and right of it.
 template <class Real> struct Around {
-  Real u[4], has[4];    // velocity; 1 where there is one and it is wet, else 0
-  Real inflow[4];       // flux from there, positive where it comes towards the link
+  Real u[4], height[4];    // velocity, and wetted height: 0 where there is none
+  Real inflow[4];          // flux from there, positive where it comes towards the link
 };
 
-// (W3) Advection of Stelling & Duinmeijer 2003 and viscosity, both as a mean of velocities; (W4) friction.
+// (W3) Advection of Stelling & Duinmeijer 2003 and viscosity, both as a mean of velocities; (W4) friction. Viscosity acts over
+// the height that two links share: what one gains the other loses.
 template <class Real>
 MDANIM_ALWAYS_INLINE Real advected(const WaveLaw &law, const Real &u, const Around<Real> &around, const Real &volume_a,
                                    const Real &volume_b, const Real &height)
 {
   const Real none = constant<Real>(0.0), one = constant<Real>(1.0);
   const Real depth = larger(constant<Real>(0.5) * (volume_a + volume_b), constant<Real>(1e-6));
-  const Real k = constant<Real>(law.dt) / depth, viscous = constant<Real>(law.viscosity * law.dt);
+  const Real k = constant<Real>(law.dt) / depth;
+  const Real viscous = constant<Real>(law.viscosity * law.dt) / larger(height, constant<Real>(1e-6));
   Real weight[4];
-  for (int n = 0; n < 4; ++n) weight[n] = pick(around.has[n] > none, k * larger(around.inflow[n], none) + viscous, none);
+  for (int n = 0; n < 4; ++n) {
+    const Real &beside = around.height[n];
+    weight[n] = pick(beside > none, k * larger(around.inflow[n], none) + viscous * smaller(beside, height), none);
+  }
   const Real sum = ((weight[0] + weight[1]) + weight[2]) + weight[3];
   Real change = ((weight[0] * (around.u[0] - u) + weight[1] * (around.u[1] - u)) + weight[2] * (around.u[2] - u)) +
                 weight[3] * (around.u[3] - u);

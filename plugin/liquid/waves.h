@@ -79,7 +79,7 @@ class Waves {
   WaveLaw law;
   double tolerance = 1e-3;    // of the solver
   int most_iterations = 200;
-  double rest = 1.0 / 16384.0;    // differences of heads, and velocities, that are none
+  double rest = 1.0 / 1024.0;    // differences of heads, and velocities, that are none: those of a film
 
  private:
   // Place of a link among those of its direction.
@@ -118,7 +118,7 @@ class Waves {
   };
   // The links on one side of a span, as one.
   struct SideLinks {
-    double q, u, has;
+    double q, u, height;
     long widest;    // the span at the other end of the widest link, or -1
   };
   enum SideOf { WEST, EAST, SOUTH, NORTH };

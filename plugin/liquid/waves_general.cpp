@@ -2,6 +2,7 @@
 // The steps of an update for one span or link of any kind: what the kernels do where everything is regular.
 
 #include "liquid/waves.h"
+#include "liquid/waves_link_steps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,25 +34,17 @@ void Waves::general_surface(long i)
 
 void Waves::general_opening(const LinkPlace &link)
 {
-  const WaveLinks &l = arrays_of(link);
   const Ends e = ends(link);
-  const long j = link.at;
-  const double level_a = level_at(law, arrays.head[e.a], arrays.volume[e.a], l.edge[j]);
-  const double level_b = level_at(law, arrays.head[e.b], arrays.volume[e.b], l.edge[j]);
-  const auto opened = open_link(level_a, level_b, l.edge[j], l.u[j], l.q[j], [&](double level) { return opening(link, level); });
-  l.height[j] = opened.height;
-  l.wet[j] = opened.wet;
-  l.u[j] = opened.u;
-  l.q[j] = opened.q;
+  open_at<double>(arrays, law, {arrays_of(link), link.at, e.a, e.b}, [&](double level) { return opening(link, level); });
 }
 
-// Fluxes through a side add up; its velocity is that of the largest one.
+// Fluxes and heights of a side add up; its velocity is that of the largest one.
 Waves::SideLinks Waves::side_of(long i, SideOf side) const
 {
   const int d = side == WEST || side == EAST ? 0 : 1;
   const bool inward = side == WEST || side == SOUTH;
   SideLinks sum{0.0, 0.0, 0.0, -1};
-  double most = 0.0, widest = 0.0;
+  double most = -1.0, widest = 0.0;
   const auto add = [&](const LinkPlace &link, long other) {
     const WaveLinks &l = arrays_of(link);
     const long j = link.at;
@@ -62,11 +55,11 @@ Waves::SideLinks Waves::side_of(long i, SideOf side) const
     }
     if (l.wet[j] == 0.0) return;
     sum.q += l.q[j];
-    if (sum.has == 0.0 || std::fabs(l.q[j]) > most) {
+    if (std::fabs(l.q[j]) > most) {
       most = std::fabs(l.q[j]);
       sum.u = l.u[j];
     }
-    sum.has = 1.0;
+    sum.height += l.height[j];
   };
   add({d, inward ? i - along(d) : i}, inward ? i - along(d) : i + along(d));
   for (int n = chain[i]; n >= 0; n = link_of_span[n].next)
@@ -86,14 +79,14 @@ void Waves::general_advection(const LinkPlace &link)
   Around<double> around;
   const auto set = [&](int n, const SideLinks &side, double inflow) {
     around.u[n] = side.u;
-    around.has[n] = side.has;
+    around.height[n] = side.height;
     around.inflow[n] = inflow;
   };
   // The link beside this one: between the spans beside its own.
   const auto beside = [&](long of_a, long of_b) {
     SideLinks found{0.0, 0.0, 0.0, -1};
     if (of_a >= 0) found = side_of(of_a, ahead);
-    if (found.has == 0.0 && of_b >= 0) found = side_of(of_b, back);
+    if (found.height == 0.0 && of_b >= 0) found = side_of(of_b, back);
     return found;
   };
   const SideLinks behind = side_of(e.a, back), before = side_of(e.b, ahead);
@@ -151,15 +144,8 @@ double Waves::general_product(long i, const double *x) const
 
 void Waves::general_push(const LinkPlace &link)
 {
-  const WaveLinks &l = arrays_of(link);
   const Ends e = ends(link);
-  const long j = link.at;
-  const double level_a = level_at(law, arrays.head[e.a], arrays.volume[e.a], l.edge[j]);
-  const double level_b = level_at(law, arrays.head[e.b], arrays.volume[e.b], l.edge[j]);
-  const auto flow = pushed(law, l.faster[j], l.wet[j], arrays.phi[e.a], arrays.phi[e.b], level_a, level_b, l.edge[j],
-                           [&](double level) { return opening(link, level); });
-  l.u[j] = flow.u;
-  l.units[j] = flow.units;
+  push_at<double>(arrays, law, {arrays_of(link), link.at, e.a, e.b}, [&](double level) { return opening(link, level); });
 }
 
 SpanFluxes<double> Waves::fluxes_of(long i) const

@@ -4,7 +4,7 @@
 
 #include "liquid/waves_kernels.h"
 
-#include "engine/vectors.h"
+#include "liquid/waves_link_steps.h"
 
 #include <iterator>
 
@@ -91,25 +91,19 @@ template <class Vector> MDANIM_ALWAYS_INLINE bool surfaces(const WaveArrays &a, 
   return any(some_full > Vector{});
 }
 
-template <class Vector> MDANIM_ALWAYS_INLINE auto opening(const Vector &edge, const Vector &top)
+// How a link is open up to a level where solids are at the ends of its spans alone.
+template <class Vector> MDANIM_ALWAYS_INLINE auto opening(const LinkAt &at)
 {
+  const Vector edge = load<Vector>(at.links.edge + at.link), top = load<Vector>(at.links.top + at.link);
   return [edge, top](const Vector &level) MDANIM_INLINED { return smaller(level, top) - edge; };
 }
 
 template <class Vector> MDANIM_ALWAYS_INLINE void open_links(const WaveArrays &a, const WaveLaw &law, int d, long first, long end)
 {
-  const WaveLinks &links = a.links[d];
   const long along = d == 0 ? 1 : a.stride;
   each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
-    const Vector edge = load<Vector>(links.edge + i);
-    const Vector level_a = level_at(law, load<Vector>(a.head + i), load<Vector>(a.volume + i), edge);
-    const Vector level_b = level_at(law, load<Vector>(a.head + i + along), load<Vector>(a.volume + i + along), edge);
-    const auto opened = open_link(level_a, level_b, edge, load<Vector>(links.u + i), load<Vector>(links.q + i),
-                                  opening(edge, load<Vector>(links.top + i)));
-    store(links.height + i, opened.height);
-    store(links.wet + i, opened.wet);
-    store(links.u + i, opened.u);
-    store(links.q + i, opened.q);
+    const LinkAt at{a.links[d], i, i, i + along};
+    open_at<Vector>(a, law, at, opening<Vector>(at));
   });
 }
 
@@ -126,7 +120,7 @@ template <class Vector> MDANIM_ALWAYS_INLINE void advect(const WaveArrays &a, co
 #pragma GCC unroll 4
     for (int n = 0; n < 4; ++n) {
       around.u[n] = load<Vector>(links.u + at[n]);
-      around.has[n] = load<Vector>(links.wet + at[n]);
+      around.height[n] = load<Vector>(links.height + at[n]);
     }
     around.inflow[0] = half * (load<Vector>(q + at[0]) + own);
     around.inflow[1] = none - half * (own + load<Vector>(q + at[1]));
@@ -273,16 +267,10 @@ template <class Vector> MDANIM_ALWAYS_INLINE void heads(const WaveArrays &a, con
 
 template <class Vector> MDANIM_ALWAYS_INLINE void push(const WaveArrays &a, const WaveLaw &law, int d, long first, long end)
 {
-  const WaveLinks &links = a.links[d];
   const long along = d == 0 ? 1 : a.stride;
   each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
-    const Vector edge = load<Vector>(links.edge + i);
-    const Vector level_a = level_at(law, load<Vector>(a.head + i), load<Vector>(a.volume + i), edge);
-    const Vector level_b = level_at(law, load<Vector>(a.head + i + along), load<Vector>(a.volume + i + along), edge);
-    const auto flow = pushed(law, load<Vector>(links.faster + i), load<Vector>(links.wet + i), load<Vector>(a.phi + i),
-                             load<Vector>(a.phi + i + along), level_a, level_b, edge, opening(edge, load<Vector>(links.top + i)));
-    store(links.u + i, flow.u);
-    store(links.units + i, flow.units);
+    const LinkAt at{a.links[d], i, i, i + along};
+    push_at<Vector>(a, law, at, opening<Vector>(at));
   });
 }
 

@@ -9,11 +9,11 @@
 
 namespace mdanim {
 
-// Bodies are spans joined through links in which liquid stands on both sides.
+// Bodies are spans joined through links in which liquid stands on both sides. A thin layer in a link passes no whole unit while
+// it is not level, so it joins nothing: puddles, and pools that a rim holds, stay as they are.
 void Waves::come_to_rest()
 {
-  constexpr double PUDDLE = 4.0;    // films: so thin a layer passes no whole unit while it is not level, and stays as it is
-  const auto flows = [&](long i) { return static_cast<double>(content[i]) > PUDDLE * law.film * law.units_per_cell; };
+  constexpr double PUDDLE = 4.0;    // films
   std::vector<double> head(content.size(), 0.0);
   each_span([&](long i) { head[i] = arrays.full[i] > 0.0 ? arrays.phi[i] : head_of(solid, span[i], content[i]).height; });
   std::vector<long> bodies;             // one after the other
@@ -21,7 +21,7 @@ void Waves::come_to_rest()
   std::vector<std::uint8_t> found(content.size(), 0);
   bool level = true;
   each_span([&](long start) {
-    if (!level || found[start] || !flows(start)) return;
+    if (!level || found[start]) return;
     double low = head[start], high = head[start];
     found[start] = 1;
     bodies.push_back(start);
@@ -30,8 +30,8 @@ void Waves::come_to_rest()
       low = std::min(low, head[i]);
       high = std::max(high, head[i]);
       each_link_of(i, [&](const LinkPlace &link, long other, bool) {
-        const double edge = arrays_of(link).edge[link.at];
-        if (found[other] || !is_link(link) || !flows(other) || head[i] <= edge || head[other] <= edge) return;
+        if (found[other] || !is_link(link)) return;
+        if (opening(link, std::min(head[i], head[other])) <= PUDDLE * law.film) return;
         found[other] = 1;
         bodies.push_back(other);
       });

@@ -24,10 +24,14 @@ MDANIM_EXPORT void *mdanim_waves_new(int nx, int ny, int nz, char *error, int er
 
 MDANIM_EXPORT void mdanim_waves_free(void *w) { delete &waves(w); }
 
-// False for a name that is none.
+// False for a name that is none. `calm_time` sets the rate `calm`.
 MDANIM_EXPORT int mdanim_waves_set(void *w, const char *name, double value)
 {
   Waves &it = waves(w);
+  if (std::strcmp("calm_time", name) == 0) {
+    it.law.calm = mdanim::calm_rate(value);
+    return 1;
+  }
   const struct {
     const char *name;
     double *value;

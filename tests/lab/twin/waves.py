@@ -217,9 +217,10 @@ class Twin:
         def flux(span, side):
             return sum(other.q for other in span.sides[side] if other.wet)
 
-        def velocity(span, side):
+        def neighbour(span, side):
             wet = [other for other in span.sides[side] if other.wet] if span else []
-            return max(wet, key=lambda other: abs(other.q)).u if wet else None
+            height = sum(other.height for other in wet)
+            return (max(wet, key=lambda other: abs(other.q)).u, height) if height > 0 else None
 
         def beyond(span, side):
             found = span.sides[side]
@@ -229,14 +230,15 @@ class Twin:
             return widest.b if widest.a is span else widest.a
 
         a, b = link.a, link.b
-        incoming = [(velocity(a, back), (flux(a, back) + link.q) / 2), (velocity(b, ahead), -(link.q + flux(b, ahead)) / 2)]
+        incoming = [(neighbour(a, back), (flux(a, back) + link.q) / 2), (neighbour(b, ahead), -(link.q + flux(b, ahead)) / 2)]
         for side, sign in zip(across, (1, -1)):
-            beside = velocity(beyond(a, side), ahead)
-            if beside is None:
-                beside = velocity(beyond(b, side), back)
+            beside = neighbour(beyond(a, side), ahead) or neighbour(beyond(b, side), back)
             incoming.append((beside, sign * (flux(a, side) + flux(b, side)) / 2))
         depth = max((a.volume + b.volume) / 2, 1e-6)
-        weights = [(u, max(q, 0.0) * dt / depth + VISCOSITY * dt) for u, q in incoming if u is not None]
+        weights = []
+        for (u, height), q in ((found, q) for found, q in incoming if found):
+            shared = min(height, link.height) / max(link.height, 1e-6)
+            weights.append((u, max(q, 0.0) * dt / depth + VISCOSITY * dt * shared))
         total = max(1.0, sum(weight for _, weight in weights))
         return link.u + sum(weight * (u - link.u) for u, weight in weights) / total
 
