@@ -139,6 +139,14 @@ class DivergedError(MdanimError):
 
     exit_code = ExitCode.DIVERGED
 
+    def __init__(self, why: str, kept: str = ""):
+        super().__init__(why, kept)
+        self.why, self.kept = why, kept
+
+    def __str__(self) -> str:
+        """When and why, and in a line of its own what is kept and how to go on."""
+        return f"{self.why}\n  {self.kept}" if self.kept else self.why
+
 
 class OutputError(MdanimError):
     """Disk full, output folder in the way, file not readable."""

@@ -9,6 +9,7 @@ from pathlib import Path
 from .certificate import margin_lines, note_lines
 from .cost.speedup_forecast import SpeedupForecast
 from .effects import Verdict
+from .errors import DivergedError
 from .model import plan_spacing
 from .results.cost import Cost
 from .results.timeline import Timeline
@@ -173,10 +174,12 @@ def spread_line(timeline: Timeline, folder: Path) -> str:
     )
 
 
-def forecast_line(cost: Cost | None) -> str:
-    """One line of ``check``: what a run will cost on this machine, and most of it."""
+def forecast_line(cost: Cost | DivergedError | None) -> str:
+    """One line of ``check``: what a run will cost on this machine, and most of it; or where the run will stop, and why."""
     if cost is None:
-        return "cost     not known: the first steps of the run diverge, or take longer than half a minute"
+        return "cost     not known: the first steps of the run take longer than half a minute"
+    if isinstance(cost, DivergedError):
+        return f"stops    {cost.why}"
     parts = sorted(cost.parts.items(), key=lambda item: -item[1])
     largest = ", ".join(f"{name} {_about(s)}" for name, s in parts if s >= 0.05 * cost.total)
     return f"cost     about {_about(cost.total)} here: {largest}"
@@ -190,7 +193,7 @@ def _about(seconds: float) -> str:
     return f"{float(f'{seconds / size:.{digits}g}'):g} {unit}"
 
 
-def check_lines(ready: Prepared, forecast: Cost | None, speedup: SpeedupForecast | None = None) -> list[str]:
+def check_lines(ready: Prepared, forecast: Cost | DivergedError | None, speedup: SpeedupForecast | None = None) -> list[str]:
     """What ``check`` prints: scene, certificate, limits, output, cost, what executors gain, and every effect."""
     return [
         *scene_lines(ready),
@@ -206,7 +209,7 @@ def check_lines(ready: Prepared, forecast: Cost | None, speedup: SpeedupForecast
     ]
 
 
-def check_json(ready: Prepared, forecast: Cost | None = None, speedup: SpeedupForecast | None = None) -> dict:
+def check_json(ready: Prepared, forecast: Cost | DivergedError | None = None, speedup: SpeedupForecast | None = None) -> dict:
     """What ``check --format json`` prints; with the expected cost (cost/forecast.py),
     and what executors gain (cost/speedup_forecast.py)."""
     return {
@@ -221,7 +224,8 @@ def check_json(ready: Prepared, forecast: Cost | None = None, speedup: SpeedupFo
             v.name: {"on": v.on, "reason": v.reason, "place": str(v.span) if v.span else None} for v in ready.verdicts.values()
         },
         "certificate": ready.certificate.to_json(),
-        "cost": None if forecast is None else forecast.to_json(),
+        "cost": forecast.to_json() if isinstance(forecast, Cost) else None,
+        "stops": forecast.why if isinstance(forecast, DivergedError) else None,
         "spread": None if speedup is None else asdict(speedup),
         "warnings": [{"message": w.message, "hint": w.hint, "place": str(w.span) if w.span else None} for w in ready.warnings],
     }

@@ -226,8 +226,8 @@ def test_a_forecast_runs_no_more_than_the_run(pond, clockwork, fresh):
 
 
 def test_first_steps_that_end_badly(pond, monkeypatch, tmp_path):
-    """Tell nothing where they diverge or take too long, pass on that LAMMPS cannot be used, and outlive an end of the process.
-    No file stays."""
+    """Tell where and why they are stopped, nothing where they take too long, pass on that LAMMPS cannot be used, and outlive an
+    end of the process. No file stays."""
     from mdanim_lammps.cost import forecast as forecasting
 
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
@@ -242,7 +242,9 @@ def test_first_steps_that_end_badly(pond, monkeypatch, tmp_path):
 
         return run
 
-    assert ends(fail(DivergedError("particles are lost"))) is None
+    stopped = ends(fail(DivergedError("step 7: particles are lost", "the last good frame is in a folder that is gone")))
+    assert forecast_line(stopped) == "stops    step 7: particles are lost"
+    assert check_json(pond[0], stopped) | {"cost": None, "stops": "step 7: particles are lost"} == check_json(pond[0], stopped)
     with pytest.raises(SetupError, match="no plugin"):
         ends(fail(SetupError("no plugin")))
     with pytest.raises(SetupError, match="ended the process"):
@@ -253,7 +255,7 @@ def test_first_steps_that_end_badly(pond, monkeypatch, tmp_path):
     assert time.perf_counter() - start < 30.0
     assert not list(tmp_path.iterdir())
     assert forecast_line(None).startswith("cost     not known")
-    assert check_json(pond[0], None)["cost"] is None
+    assert check_json(pond[0], None) | {"cost": None, "stops": None} == check_json(pond[0], None)
 
 
 def test_ctrl_c_ends_a_forecast(pond, monkeypatch, tmp_path):

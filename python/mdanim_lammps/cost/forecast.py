@@ -28,12 +28,12 @@ PATIENCE = 30.0
 """Seconds after which a forecast is given up."""
 
 
-def forecast(ready: Prepared, *, setup: float = 0.0) -> Cost | None:
+def forecast(ready: Prepared, *, setup: float = 0.0) -> Cost | DivergedError | None:
     """The expected cost of a run; ``setup`` is what loading and modelling have taken already [s].
 
-    The steps are run in a process of their own, so that the caller's neither loads LAMMPS nor ends with it. None where they end
-    in a divergence or take longer than PATIENCE. Raises SetupError when LAMMPS or the plugin cannot be used, OutputError when the
-    folder for temporary files is full.
+    The steps are run in a process of their own, so that the caller's neither loads LAMMPS nor ends with it. The error where they
+    are stopped, as the run will be; None where they take longer than PATIENCE. Raises SetupError when LAMMPS or the plugin
+    cannot be used, OutputError when the folder for temporary files is full.
     """
     context = get_context("fork")
     answer, send = context.Pipe(duplex=False)
@@ -48,18 +48,16 @@ def forecast(ready: Prepared, *, setup: float = 0.0) -> Cost | None:
         finally:
             child.kill()
             child.join()
-    if isinstance(found, MdanimError):
+    if isinstance(found, MdanimError) and not isinstance(found, DivergedError):
         raise found
     return found
 
 
 def _tell(send: Connection, ready: Prepared, folder: Path, setup: float) -> None:
-    """Send the cost, None or the error through a pipe."""
+    """Send the cost or the error through a pipe."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the caller's, which ends this process
     try:
-        found: Cost | MdanimError | None = extrapolate(ready, folder, setup=setup)
-    except DivergedError:
-        found = None
+        found: Cost | MdanimError = extrapolate(ready, folder, setup=setup)
     except MdanimError as error:
         found = error
     send.send(found)

@@ -27,6 +27,8 @@ FOLDS_AT_CORNER = 0.75
 lowest point."""
 CRUSH = 0.2
 """Load over Young's modulus above which a lattice is crushed (docs/physics-solids.md)."""
+MOST_NAMED = 4
+"""Objects up to which a cure has a number for each."""
 CORNERS = np.array(list(product((0.0, 1.0), repeat=3)))
 """Of a unit cube, shape (8, 3)."""
 SIGNS = (-1.0) ** CORNERS.sum(axis=1)
@@ -45,12 +47,13 @@ def amplitude(env: Envelope) -> Margin:
     m = int((ratio / limit).argmax())
     folds = ratio > limit
     others = int(folds.sum()) - 1
-    enough = system.young[m] * (ratio[m] / limit[m]) ** 2
+    weak = np.flatnonzero(folds).tolist() or [m]
+    enough = {system.names[o]: at_least(system.young[o] * (ratio[o] / limit[o]) ** 2) for o in weak}
     what, coarser = "a soft object folds up", ""
     if spot[m] < FOLDS:
         what = f"one of {number(env.cells[m], 2)} cells across folds up at the spot where it lands"
         h = float(np.cbrt(system.cell_volume[m]))
-        if ratio[m] < FOLDS and (h := _coarser(env, scene.solids[m], h, float(ratio[m]))):
+        if others < 1 and ratio[m] < FOLDS and (h := _coarser(env, scene.solids[m], h, float(ratio[m]))):
             coarser = f", or resolution {say(h, 'm')}"
     return Margin(
         "amplitude",
@@ -63,8 +66,15 @@ def amplitude(env: Envelope) -> Margin:
         f"above about {number(limit[m], 2)} {what} and stays crumpled",
         env.place(m, "elasticity"),
         "warning" if folds[m] else "ok",
-        hint=f"write elasticity {say(at_least(enough), 'Pa')} or more{coarser}, or a lower density, height or speed",
+        hint=f"write elasticity {_stiffer(enough)} or more{coarser}, or a lower density, height or speed",
     )
+
+
+def _stiffer(enough: dict[str, float]) -> str:
+    """Young's moduli [Pa] of objects in words; one for all of them where there are many."""
+    if 1 < len(enough) <= MOST_NAMED:
+        return ", ".join(f"{say(young, 'Pa')} for {name}" for name, young in enough.items())
+    return say(max(enough.values()), "Pa") + (" for all of them" if len(enough) > 1 else "")
 
 
 def _spots(env: Envelope) -> np.ndarray:

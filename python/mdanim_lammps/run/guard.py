@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,9 @@ RESIDUAL_FACTOR, LEAST_RESIDUAL = 50.0, 0.05
 RINGS = 10.0
 """Times that a wave crosses an object until cells that are inside out count as stuck: in a hard impact some at the surface are so
 for a moment, and come back."""
+CRUMPLED = 0.05
+"""Part of the cells of a solid that may stay inside out: a dent, with which a body keeps its shape and its energy. With more of
+them it does not (docs/physics-solids.md)."""
 SQUEEZED = "it is probably hit or squeezed harder than its lattice stands"
 TOO_LONG = "the step is probably too long for what happens here: no cell is inside out"
 """What a stop is laid to where every margin is kept."""
@@ -57,6 +61,8 @@ class Guard:
         self.crumpled = False
         """Whether some cell was inside out at the last look."""
         self.most_inverted = 0
+        self.dents: dict[int, int] = {}
+        """Most cells of a solid that have stayed inside out."""
         low, high = ready.system.bounds(ready.system.position)
         self.patience = RINGS * (high - low).max(1) / wave_speed(ready.system) / ready.certificate.timestep
         """Steps that a cell of each solid may stay inside out, shape (M,)."""
@@ -88,14 +94,16 @@ class Guard:
         self.since = np.where(inverted, np.where(self.since < 0, step, self.since), -1)
         cells = np.flatnonzero(inverted)
         owner = self.ready.system.object[self.ready.system.hexahedron[cells, 0]]
-        stuck = owner[step - self.since[cells] > self.patience[owner]]
-        if len(stuck) and not self.ready.insist:
-            count = np.bincount(stuck)
-            m = int(count.argmax())
+        stuck = np.bincount(owner[step - self.since[cells] > self.patience[owner]], minlength=len(self.patience))
+        for m in np.flatnonzero(stuck).tolist():
+            self.dents[m] = max(self.dents.get(m, 0), int(stuck[m]))
+        parts = stuck / np.maximum(np.diff(self.geometry.first_cell), 1)
+        m = int(parts.argmax())
+        if parts[m] > CRUMPLED and not self.ready.insist:
             raise self.error_at(
                 step,
-                f"{count[m]} of its {np.diff(self.geometry.first_cell)[m]} cells have been inside out since step "
-                f"{self.since[cells].min()}; springs cannot tell mirrored from right, so they would stay so",
+                f"{stuck[m]} of its {np.diff(self.geometry.first_cell)[m]} cells have been inside out since step "
+                f"{self.since[cells[owner == m]].min()}; springs cannot tell mirrored from right, so they would stay so",
                 m,
                 "amplitude",
                 "load",
@@ -143,25 +151,27 @@ class Guard:
         if any(sign in words for sign in FLOWN_APART):
             suspect = self.ready.system.names.index(self.ready.certificate.object) if solid is None else solid
             return self.error_at(step, words, suspect, "time step", "amplitude", "load", "closing speed")
-        return DivergedError(f"{self._when(step)}: {words}\n  {self._kept()}")
+        return DivergedError(f"{self._when(step)}: {words}", self._kept())
 
     def error_at(self, step: int, what: str, m: int, *margins: str, suspicion: str = SQUEEZED) -> DivergedError:
         """The error that stops the run at a step for what solid ``m`` does;
         the first of these margins that is passed says why, and where none is the suspicion."""
+        cause, cure = self._why(margins, suspicion)
+        return DivergedError(
+            f"{self._when(step)}: {self.ready.system.names[m]}: {what}.\n  cause: {cause}\n  change: {cure}", self._kept()
+        )
+
+    def _why(self, margins: Sequence[str], suspicion: str) -> tuple[str, str]:
+        """Cause and cure: of the first of these margins that is passed, where none is the suspicion."""
         c = self.ready.certificate
         passed = {found.name: found for found in reversed(c.margins) if found.severity != "ok"}
         why = next((passed[name] for name in margins if name in passed), None)
-        cause, cure = (
-            (why.text, why.hint)
-            if why
-            else (
-                f"every limit of the certificate is kept (time step {c.fraction:.2f} of the bound), so {suspicion}",
-                "try a lower speed, a stiffer object, a coarser resolution (edges, corners and tips of fine lattices "
-                "fold first) or a smaller timestep",
-            )
-        )
-        return DivergedError(
-            f"{self._when(step)}: {self.ready.system.names[m]}: {what}.\n  cause: {cause}\n  change: {cure}\n  {self._kept()}"
+        if why:
+            return why.text, why.hint
+        return (
+            f"every limit of the certificate is kept (time step {c.fraction:.2f} of the bound), so {suspicion}",
+            "try a lower speed, a stiffer object, a coarser resolution (edges, corners and tips of fine lattices "
+            "fold first) or a smaller timestep",
         )
 
     def _when(self, step: int) -> str:
@@ -170,11 +180,28 @@ class Guard:
     def _kept(self) -> str:
         return f"the last good frame and checkpoint are kept in {self.folder}"
 
-    def missed(self, residual: float) -> Problem | None:
-        """A warning when a finished run has missed the class of energy that its accuracy stands for."""
-        scene, goal = self.ready.scene, energy_class(self.ready.scene)
-        if residual <= goal:
-            return None
+    def warnings(self, residual: float) -> list[Problem]:
+        """Of a finished run: where bodies have got dents, and whether it has missed the class of energy of its accuracy."""
+        scene, goal, found = self.ready.scene, energy_class(self.ready.scene), []
+        if self.dents:
+            m = max(self.dents, key=lambda m: self.dents[m] / np.diff(self.geometry.first_cell)[m])
+            cause, cure = self._why(("amplitude", "load"), SQUEEZED)
+            others = f" and {len(self.dents) - 1} more" if len(self.dents) > 1 else ""
+            found.append(
+                Problem(
+                    scene.solids[m].spans.get("elasticity"),
+                    f"{self.ready.system.names[m]}{others} got a dent: {self.dents[m]} of its "
+                    f"{np.diff(self.geometry.first_cell)[m]} cells have been turned inside out by a blow; {cause}",
+                    cure,
+                    severity="warning",
+                )
+            )
+        if residual > goal:
+            found.append(self._missed(residual, goal))
+        return found
+
+    def _missed(self, residual: float, goal: float) -> Problem:
+        scene = self.ready.scene
         return Problem(
             scene.control.spans.get("accuracy"),
             f"the energy residual {number(residual)} is above {number(goal)}, "

@@ -311,8 +311,7 @@ class _Run:
         cost = self._cost(account)
         write_json(self.folder / "cost.json", cost.to_json())
         write_json(self.folder / "summary.json", self._summary(outcomes))
-        missed = self.guard.missed(self.ledger.residual)
-        return Result(self.folder, self.ledger, outcomes, cost, [missed] if missed else [])
+        return Result(self.folder, self.ledger, outcomes, cost, self.guard.warnings(self.ledger.residual))
 
     def _summary(self, outcomes: list[Outcome]) -> dict:
         scene, c = self.ready.scene, self.certificate
