@@ -241,9 +241,11 @@ class Reader:
             return False
         if after_unit:
             if known:
-                raise Fault(
-                    t, f"the unit '{t}' follows another unit", f"write a product of units with *: {self.tokens[self.at - 1]}*{t}"
-                )
+                cure = f"write a product of units with *: {self.tokens[self.at - 1]}*{t}"
+                if (number := self.ahead(1)).type == "NUMBER":
+                    word = "frames" if t == "fps" else "a word that says what it is"
+                    cure = f"a unit comes behind its number: write {word}, then {number} {t}"
+                raise Fault(t, f"the unit '{t}' follows another unit", cure)
             if not inside:
                 return False
         if known:
