@@ -33,7 +33,7 @@ MISTAKES = [
      "leave out 'm'"),
     ("calculating behind a unit", text(mass="2 kg * 3"), 4, 15, "a unit is expected after '*'", "brackets"),
     ("a function behind a unit", text(mass="2 kg*sqrt(2)"), 4, 13, "'sqrt' is not a unit", "brackets"),
-    ("frame rate", text().replace("time 3 s", "time 3 s fps 25"), 7, 20, "the unit 'fps' follows another unit", "write frames, then 25"),
+    ("frame rate", text().replace("time 3 s", "time 3 s fps 25"), 7, 20, "follows another unit", "frames, then 25 fps"),
     ("units side by side", text(mass="2 kg m"), 4, 13, "the unit 'm' follows another unit", "kg*m"),
     ("unknown name", text("let rho = 1\n", mass="roh kg"), 5, 8, "'roh' has no value", "did you mean 'rho'?"),
     ("name before its let", text(mass="a kg") + "let a = 3\n", 4, 8, "'a' is used before its let", "line 8"),
