@@ -15,6 +15,8 @@ ROOT = Path(mdanim_lammps.__file__).parent
 SCRIPTS = sorted(p for folder in ("bench", "docs") for p in (Path(__file__).parents[1] / folder).rglob("*.py"))
 ROOMS = [
     "errors",
+    "processes",
+    "terminal",
     "scene",
     "model",
     "effects",
@@ -29,7 +31,6 @@ ROOMS = [
     "study",
     "report",
     "api",
-    "terminal",
     "view",
     "command_options",
     "command_steps",

@@ -3,46 +3,63 @@
 
 from __future__ import annotations
 
+import itertools
 import os
+import re
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager, suppress
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
+from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from .certificate import Certificate
 from .effects import Verdict
 from .engine.threads import with_threads
-from .errors import OutputError
+from .errors import MdanimError, OutputError, UsageError
 from .parallel.limits import check_executors
 from .picture.marks import Marks
+from .processes import begin_worker, cores, without_main
+from .report import progress_line
 from .results.checkpoint import Checkpoint
 from .results.files import MARK, open_folder, read_json, write_json
+from .results.html import THUMBNAIL, html_table
 from .results.untrusted import check_folder, check_plain
 from .run.loop import Progress, simulate, write_inputs, write_start
 from .run.manifest import manifest
 from .run.prepare import Prepared, prepare
 from .run.result import Result
+from .scene.formatting import say
+from .scene.keywords import Named
 from .scene.meshes import mesh_files
 from .scene.parse import load_scene, parse_scene
 from .scene.scene import Accuracy, Save, SceneRecord
 from .study.bench import BUDGET
 from .study.study import Study, run_study
 from .study.target import settle
+from .terminal import in_notebook, progress_bar
 
 STUDY = "study"
 """Folder of a study inside the output folder."""
 
 
 class Scene:
-    """A scene that was read and found valid."""
+    """A scene that was read and found valid.
 
-    def __init__(self, record: SceneRecord):
-        self.record = record
-        """The scene as plain frozen records in SI units."""
+    Args:
+        record: the scene as plain frozen records in SI units.
+        read: reads the scene again with values of its ``let`` names; None where it is not from a text.
+        values: those that it was read with.
+    """
+
+    def __init__(
+        self, record: SceneRecord, read: Callable[..., SceneRecord] | None = None, values: Mapping[str, float | str] | None = None
+    ):
+        self.record, self._read, self.values = record, read, dict(values or {})
 
     @classmethod
     def load(cls, path: str | Path, *, strict: bool = False, **overrides: float | str) -> Scene:
@@ -50,7 +67,8 @@ class Scene:
 
         Raises SceneError with all problems in ``.problems``.
         """
-        return cls(load_scene(path, overrides=overrides, strict=strict))
+        read = partial(load_scene, path, strict=strict)
+        return cls(read(overrides=overrides), read, overrides)
 
     @classmethod
     def from_text(
@@ -67,7 +85,18 @@ class Scene:
 
         Raises SceneError with all problems in ``.problems``.
         """
-        return cls(parse_scene(text, name, overrides, strict, folder))
+        read = partial(parse_scene, text, name, strict=strict, folder=folder)
+        return cls(read(overrides=overrides), read, overrides)
+
+    def where(self, **values: float | str) -> Scene:
+        """The same scene with other values of its ``let`` names, such as ``h=0.5``.
+
+        Raises SceneError with all problems, UsageError for a scene that was not read from a text.
+        """
+        if self._read is None:
+            raise UsageError("this Scene was made of records; only one that was read by Scene.load or Scene.from_text has names")
+        values = self.values | values
+        return Scene(self._read(overrides=values), self._read, values)
 
     @cached_property
     def prepared(self) -> Prepared:
@@ -79,8 +108,8 @@ class Scene:
         return prepare(settle(self.record, make=False).scene)
 
     def effects(self) -> dict[str, Verdict]:
-        """Every effect with whether it is on, and why. Raises SceneError, RefusedError."""
-        return dict(self.prepared.verdicts)
+        """Every effect with whether it is on, and why; a KeyError suggests a name. Raises SceneError, RefusedError."""
+        return Named("effect", self.prepared.verdicts)
 
     def certificate(self) -> Certificate:
         """The certified time step and what sets it. Raises SceneError, RefusedError."""
@@ -95,27 +124,90 @@ class Scene:
         control: str | None = None,
         force: bool = False,
         movie: bool = False,
+        progress: bool | None = None,
         on_progress: Callable[[Progress], None] | None = None,
     ) -> Result:
         """Simulate into ``folder`` (default: ``NAME.out`` beside the scene); returns ledger, outcomes and cost.
 
         On several ``executors``, ``control`` is ``central`` (the default) or ``peers``: the frames are the same to the last bit.
         So they are for any number of ``threads``, of which each process has one unless it is told.
-        ``on_progress`` is called with a Progress after every frame. A scene with ``accuracy error p %`` and no setting stored
-        beside it is studied first, for two minutes at most. Raises SceneError, RefusedError, DivergedError, OutputError.
+        ``progress`` shows a bar, by default in a notebook only; ``on_progress`` is called with a Progress after every frame.
+        A scene with ``accuracy error p %`` and no setting stored beside it is studied first, for two minutes at most.
+        Raises SceneError, RefusedError, DivergedError, OutputError.
         """
         started = time.perf_counter()
         settled = settle(self.record, make=True, study=output_folder(self.record, folder) / STUDY)
         ready = self.prepared if settled.scene is self.record else prepare(settled.scene)
-        with open_run(ready, folder, force=force) as folder:
+        quiet = not (in_notebook() if progress is None else progress)
+        with open_run(ready, folder, force=force) as folder, progress_bar("run", quiet=quiet) as bar:
+
+            def tell(now: Progress) -> None:
+                bar(now.frame, now.frames, progress_line(now))
+                if on_progress:
+                    on_progress(now)
+
             result = run_frames(
-                ready, folder, executors=executors, threads=threads, control=control, on_progress=on_progress, started=started
+                ready, folder, executors=executors, threads=threads, control=control, on_progress=tell, started=started
             )
             if movie:
                 from .picture.movie import render_movie
 
                 render_movie(folder, self.record.render, movie_file(folder, self.record))
+        result.values = self.values
         return result
+
+    def sweep(
+        self,
+        folder: str | Path | None = None,
+        *,
+        processes: int | None = None,
+        force: bool = False,
+        movie: bool = False,
+        progress: bool | None = None,
+        **values: Iterable[float | str],
+    ) -> Iterator[Result]:
+        """Run the scene for all combinations of values of its ``let`` names, several at a time; gives their results in order.
+
+        ::
+
+            for run in scene.sweep(h=[0.5, 1.0], young=["100 kPa", "1 MPa"]):
+                print(run.values, run.ledger.residual)
+
+        Args:
+            folder: of all runs, each in a folder such as ``h=0.5,young=1 MPa`` inside; None is ``NAME.sweep`` beside the scene.
+            processes: how many runs at a time; None is one for each core.
+            force, movie: as `run` takes them.
+            progress: shows a bar of runs, by default in a notebook only.
+            values: lists of values by name.
+
+        Raises SceneError before the first run where any combination has problems, UsageError for no or equal combinations. A
+        run that fails raises what `run` does when its turn has come; runs before it keep their results.
+        """
+        points = [dict(zip(values, point)) for point in itertools.product(*values.values())]
+        names = [",".join(f"{name}={value}" for name, value in point.items()) for point in points]
+        if not values or not points or len(set(names)) < len(names):
+            raise UsageError("sweep needs lists of different values of names of the scene, e.g. scene.sweep(h=[0.5, 1.0])")
+        scenes = [self.where(**point) for point in points]
+        home = default_folder(self.record).with_suffix(".sweep") if folder is None else Path(folder)
+        places = [home / re.sub(r"[^\w.+=,-]", "_", name) for name in names]
+        return self._sweep(scenes, places, min(processes or cores(), len(scenes)), force, movie, progress)
+
+    @staticmethod
+    def _sweep(scenes, places, processes: int, force: bool, movie: bool, progress: bool | None) -> Iterator[Result]:
+        quiet = not (in_notebook() if progress is None else progress)
+        # Spawned: a forked process cannot use the MPI of its parent.
+        with (
+            ProcessPoolExecutor(processes, get_context("spawn"), begin_worker) as pool,
+            progress_bar("sweep", quiet=quiet) as bar,
+        ):
+            with without_main():
+                runs = [pool.submit(_run_point, *point, force, movie) for point in zip(scenes, places)]
+            try:
+                for done, run in enumerate(runs, 1):
+                    yield run.result()
+                    bar(done, len(runs), f"run {done} of {len(runs)}")
+            finally:
+                pool.shutdown(cancel_futures=True)
 
     def study(
         self,
@@ -135,6 +227,29 @@ class Scene:
         """
         study = output_folder(self.record, folder) / STUDY
         return run_study(self.record, study, budget=budget, only=ladders, force=force, on_progress=on_progress)
+
+    def picture(self, path: str | Path, *, at: float = 0.0, size: tuple[int, int] | None = None) -> Path:
+        """Draw the scene before it is run, at its start or after ``at`` seconds of a quick, coarse run; see `draw_picture`."""
+        return draw_picture(self.record, Path(path), at=at, size=size)
+
+    def __repr__(self) -> str:
+        values = "".join(f", {name}={value}" for name, value in self.values.items())
+        count = len(self.record.solids)
+        return f"<Scene {self.record.name}: {count} object{'s' * (count != 1)}, {self.record.control.time:g} s{values}>"
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (s.name, say(s.mass, "kg") if s.mass else say(s.density, "kg/m^3") if s.density else "") for s in self.record.solids
+        ]
+        with TemporaryDirectory(prefix="mdanim-picture-") as name, suppress(MdanimError):
+            picture = self.picture(Path(name) / "start.png", size=THUMBNAIL).read_bytes()
+            return html_table(repr(self)[1:-1], ("object", "mass or density"), rows, picture)
+        return html_table(repr(self)[1:-1], ("object", "mass or density"), rows)
+
+
+def _run_point(scene: Scene, folder: Path, force: bool, movie: bool) -> Result:
+    """One run of a sweep, in a process of its own."""
+    return scene.run(folder, force=force, movie=movie, progress=False)
 
 
 def draw_picture(

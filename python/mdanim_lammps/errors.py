@@ -115,6 +115,10 @@ class SceneError(MdanimError):
         self.problems = list(problems)
         super().__init__("\n".join(map(str, self.problems)))
 
+    def __reduce__(self):
+        # From another process: an exception is made anew from its arguments.
+        return SceneError, (self.problems,)
+
 
 class RefusedError(MdanimError):
     """The run is refused before step 0, e.g. for a time step above the certified bound."""

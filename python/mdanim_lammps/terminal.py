@@ -9,6 +9,7 @@ import select
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -98,6 +99,29 @@ def documented_exit(*, debug: bool) -> Iterator[None]:
         raise SystemExit(ExitCode.IO) from None
 
 
+def in_notebook() -> bool:
+    """Whether this is the kernel of a notebook."""
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    return getattr(shell, "kernel", None) is not None
+
+
+def _notebook_bar(name: str) -> Callable[[int, int, str], None]:
+    """A bar below the cell that is moved in place, at most ten times a second."""
+    from html import escape
+
+    from IPython.display import HTML, display
+
+    handle, last = display(HTML(""), display_id=True), [0.0]
+
+    def move(done: int, total: int, text: str) -> None:
+        now = time.monotonic()
+        if now - last[0] > 0.1 or done >= total:
+            last[0] = now
+            handle.update(HTML(f'{escape(name)} <progress value="{done}" max="{total}"></progress> {escape(text)}'))
+
+    return move
+
+
 @contextmanager
 def progress_bar(name: str, *, quiet: bool) -> Iterator[Callable[[int, int, str], None]]:
     """A progress bar on stderr: moving on a terminal, a line for each tenth elsewhere.
@@ -106,6 +130,9 @@ def progress_bar(name: str, *, quiet: bool) -> Iterator[Callable[[int, int, str]
     """
     if quiet:
         yield lambda done, total, text: None
+        return
+    if in_notebook():
+        yield _notebook_bar(name)
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn

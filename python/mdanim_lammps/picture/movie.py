@@ -4,23 +4,21 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 import tempfile
-import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, closing, contextmanager
 from fractions import Fraction
-from multiprocessing import get_context, parent_process
+from multiprocessing import get_context
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 
 from ..errors import OutputError, SetupError, UsageError
+from ..processes import begin_worker, cores, without_main
 from ..results.files import disk_errors, sync, write_whole
 from ..results.trajectory import Trajectory
 from ..scene.render import Render
@@ -115,7 +113,7 @@ def render_movie(
     width, height = size or render.size
     size = (width + width % 2, height + height % 2)
     shown, rate = movie_frames(trajectory, fps, render.speed)
-    processes = processes or max(1, min(_cores(), len(shown) // FRAMES_PER_PROCESS))
+    processes = processes or max(1, min(cores(), len(shown) // FRAMES_PER_PROCESS))
     pictures = _draw_here if processes == 1 else _draw_apart
     with _encoder(Path(path), size, rate, len(shown)) as encode:
         for done, picture in enumerate(pictures(trajectory, render, size, shown, processes), start=1):
@@ -155,11 +153,6 @@ def movie_frames(trajectory: Trajectory, fps: float | None = None, speed: float 
     return np.clip(np.rint(wanted * own), 0, len(times) - 1).astype(int), _rate(fps)
 
 
-def _cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 def _rate(fps: float) -> Fraction:
     """A rate that movies can have; slow ones have the denominators that they need."""
     return Fraction(fps).limit_denominator(max(1001, round(1000.0 / fps)))
@@ -180,13 +173,13 @@ def _draw_apart(trajectory, render, size, shown: Sequence[int], processes: int) 
     """Pictures in order, drawn by several processes that are a few pictures ahead."""
     from .camera import action_of
 
-    task = (trajectory.path.absolute(), render, size, action_of(trajectory), max(1, _cores() // processes))
+    task = (trajectory.path.absolute(), render, size, action_of(trajectory), max(1, cores() // processes))
     ahead: deque = deque()
     # Spawned: a forked process cannot use the OpenGL of its parent.
     with ProcessPoolExecutor(processes, get_context("spawn"), _begin_worker, task) as pool:
         try:
             for index in shown:
-                with _no_main():
+                with without_main():
                     ahead.append(pool.submit(_draw_in_worker, int(index)))
                 if len(ahead) > 2 * processes:
                     yield ahead.popleft().result()
@@ -201,25 +194,12 @@ def _draw_apart(trajectory, render, size, shown: Sequence[int], processes: int) 
             pool.shutdown(cancel_futures=True)
 
 
-@contextmanager
-def _no_main() -> Iterator[None]:
-    """Hide the main module from new processes: each would run the user's script again, with all that the script simulates."""
-    main, sys.modules["__main__"] = sys.modules["__main__"], ModuleType("__main__")
-    try:
-        yield
-    finally:
-        sys.modules["__main__"] = main
-
-
 _worker: dict = {}
 """Of a process that draws: its task, and the painter once there is one."""
 
 
 def _begin_worker(*task) -> None:
-    # Ctrl-C reaches the whole group of processes; the parent ends this one.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # A parent that is killed leaves no process behind.
-    threading.Thread(target=lambda: (parent_process().join(), os._exit(1)), daemon=True).start()
+    begin_worker()
     _worker["task"] = task
 
 

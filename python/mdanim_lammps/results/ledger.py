@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import OutputError
+from ..scene.keywords import did_you_mean
 
 POTENTIALS = ("gravity", "buoyancy")
 """Energies whose zero is arbitrary: only how far they have changed says how much is in play."""
@@ -70,8 +71,16 @@ class Ledger:
         return zlib.crc32(table, zlib.crc32(",".join(self.columns).encode()))
 
     def array(self, column: str) -> np.ndarray:
-        """One column, shape (F,)."""
+        """One column, shape (F,). Raises KeyError that names a near column."""
+        if column not in self.columns:
+            raise KeyError(f"the ledger has no column {column!r}; {did_you_mean(column, self.columns)}")
         return np.array([r[column] for r in self.rows])
+
+    def to_pandas(self):
+        """All columns as a pandas.DataFrame, a row for each frame. Raises SetupError where pandas is not installed."""
+        from .trajectory import import_pandas
+
+        return import_pandas().DataFrame(self.rows, columns=list(self.columns))
 
     def write(self, path: Path) -> None:
         """Write the ledger as CSV, floats in digits that keep every bit. Raises OSError."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
@@ -11,8 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import OutputError
-from ..scene.keywords import did_you_mean
+from ..errors import OutputError, SetupError
+from ..scene.keywords import Named
+from ..scene.scene import Save
+from .html import html_table
 from .trajectory_file import (
     CHECKSUM,
     LIQUID,
@@ -32,6 +35,7 @@ from .untrusted import check_frames, check_hdf5, check_metadata
 
 if TYPE_CHECKING:
     import MDAnalysis
+    import pandas
     import pyvista
 
 
@@ -97,10 +101,39 @@ class Trajectory:
         """Number of frames."""
         return len(self.times)
 
+    def __getitem__(self, frame):
+        """A frame by its number, negative ones count from the end; of a slice a list of them. Nothing is read yet.
+
+        Raises IndexError.
+        """
+        if isinstance(frame, slice):
+            return [Snapshot(self, n) for n in range(len(self))[frame]]
+        return Snapshot(self, self._frame(operator.index(frame)))
+
+    def __iter__(self) -> Iterator[Snapshot]:
+        """Frame after frame."""
+        return (Snapshot(self, n) for n in range(len(self)))
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A row for each object and frame: ``frame``, ``time`` [s], ``object``, centre of mass ``x y z`` [m], its velocity
+        ``vx vy vz`` [m/s] and, where all particles are stored, spin ``wx wy wz`` [rad/s] and ``kinetic`` energy [J].
+
+        Raises SetupError where pandas is not installed, OutputError.
+        """
+        from .motion import MotionTable
+
+        table, count = MotionTable(self, np.arange(len(self.names))), len(self.names)
+        values = np.concatenate([np.zeros((0, len(table.columns) - 3)), *map(table.numbers, range(len(self)))])
+        frame = import_pandas().DataFrame(values, columns=table.columns[3:])
+        frame.insert(0, "frame", np.repeat(np.arange(len(self)), count))
+        frame.insert(1, "time", np.repeat(self.times, count))
+        frame.insert(2, "object", list(self.names) * len(self))
+        return frame
+
     @cached_property
     def objects(self) -> Mapping[str, ObjectTrack]:
         """The objects by name; a KeyError for another name suggests one."""
-        return _Tracks((name, ObjectTrack(self, index)) for index, name in enumerate(self.names))
+        return Named("object", ((name, ObjectTrack(self, index)) for index, name in enumerate(self.names)))
 
     def position(self, frame: int) -> np.ndarray:
         """Positions of all stored particles [m], shape (N, 3)."""
@@ -184,6 +217,14 @@ class Trajectory:
     def __repr__(self) -> str:
         return f"<Trajectory {self.path}: {len(self)} frames, {len(self.names)} objects>"
 
+    def _repr_html_(self) -> str:
+        end = f", {self.times[-1]:.4g} s" if len(self) else ""
+        rows = [
+            (name, f"{mass:.4g} kg", f"{size:,}")
+            for name, mass, size in zip(self.names, self.metadata.object_mass, np.diff(self.metadata.first))
+        ]
+        return html_table(f"{self.path}: {len(self)} frames{end}", ("object", "mass", "stored particles"), rows)
+
     def _liquid(self, name: str, frame: int) -> np.ndarray:
         if self.liquid is None:
             raise OutputError(f"{self.path}: there is no liquid in this run")
@@ -232,11 +273,43 @@ class Trajectory:
             raise OutputError(f"{self.path}: not a trajectory of mdanim-lammps, or damaged ({error})") from None
 
 
-class _Tracks(dict):
-    """Objects by name."""
+class Snapshot:
+    """One frame of a trajectory; what is asked for is read."""
 
-    def __missing__(self, name):
-        raise KeyError(f"no object is called {name!r}; {did_you_mean(str(name), self) or 'see Trajectory.names'}")
+    def __init__(self, trajectory: Trajectory, frame: int):
+        self.trajectory, self.frame = trajectory, frame
+
+    @property
+    def time(self) -> float:
+        """Simulated [s]."""
+        return float(self.trajectory.times[self.frame])
+
+    @property
+    def step(self) -> int:
+        """Time step of the simulation."""
+        return int(self.trajectory.steps[self.frame])
+
+    @property
+    def position(self) -> np.ndarray:
+        """Of all stored particles [m], shape (N, 3)."""
+        return self.trajectory.position(self.frame)
+
+    @property
+    def velocity(self) -> np.ndarray:
+        """Of all stored particles [m/s], shape (N, 3)."""
+        return self.trajectory.velocity(self.frame)
+
+    @property
+    def centers(self) -> np.ndarray:
+        """Centres of mass of all objects [m], shape (O, 3)."""
+        return self.trajectory.centers[self.frame]
+
+    def surface(self) -> pyvista.PolyData:
+        """Surfaces of all objects, as `Trajectory.surface`."""
+        return self.trajectory.surface(self.frame)
+
+    def __repr__(self) -> str:
+        return f"<frame {self.frame} of {len(self.trajectory)}, t = {self.time:.6g} s>"
 
 
 class ObjectTrack:
@@ -269,12 +342,49 @@ class ObjectTrack:
         """Of the centre of mass [m/s], shape (F, 3)."""
         return self._trajectory.center_velocities[:, self.index]
 
+    @cached_property
+    def spin(self) -> np.ndarray:
+        """Angular velocity, angular momentum over inertia about the centre of mass [rad/s], shape (F, 3).
+
+        Raises OutputError where only boundary particles are stored.
+        """
+        from .motion import spin
+
+        t = self._trajectory
+        if t.metadata.save is not Save.ALL:
+            raise OutputError(
+                f"{t.path}: stores boundary particles only, spin needs all; run the scene with control {{ save all }}"
+            )
+        mass, first = t.metadata.mass[self.particles], np.zeros(1, int)
+        found = [spin(mass, first, self.position(n), t._read("velocity", n, self.particles))[0] for n in range(len(t))]
+        return np.array(found).reshape(-1, 3)
+
     def position(self, frame: int) -> np.ndarray:
         """Positions of its stored particles [m], shape (n, 3)."""
         return self._trajectory._read("position", frame, self.particles)
 
+    def surface(self, frame: int) -> pyvista.PolyData:
+        """Its surface in a frame [m]."""
+        import pyvista
+
+        t = self._trajectory
+        skin = t.metadata.skin
+        own = skin.object_of_triangle == self.index
+        start = int(np.searchsorted(skin.object_of_vertex, self.index))
+        end = int(np.searchsorted(skin.object_of_vertex, self.index, side="right"))
+        return pyvista.PolyData.from_regular_faces(skin.vertices(t.position(frame))[start:end], skin.triangle[own] - start)
+
     def __repr__(self) -> str:
         return f"<ObjectTrack {self.name}: {self.particles.stop - self.particles.start} particles>"
+
+
+def import_pandas():
+    """Raises SetupError where it is not installed."""
+    try:
+        import pandas
+    except ImportError:
+        raise SetupError("pandas is not installed: pip install 'mdanim-lammps[export]'") from None
+    return pandas
 
 
 def _rgb(color: str) -> tuple[int, int, int]:

@@ -3,19 +3,25 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
-from ..errors import Problem
+from ..errors import MdanimError, Problem
 from ..export import Exported, export
+from ..picture.movie import render_still
 from ..results.cost import Cost
 from ..results.expect import Outcome
+from ..results.html import THUMBNAIL, html_table
 from ..results.ledger import Ledger
 from ..results.trajectory import Trajectory
+from ..scene.formatting import number
+from ..scene.parse import parse_scene
 
 
-@dataclass
+@dataclass(repr=False)
 class Result:
     """What a run has left."""
 
@@ -26,6 +32,8 @@ class Result:
     """Seconds per effect and per other piece of work."""
     warnings: list[Problem] = field(default_factory=list)
     """What was seen in the run that does not stop it."""
+    values: dict[str, float | str] = field(default_factory=dict)
+    """Values of the scene's ``let`` names that were given for this run."""
 
     @property
     def missed(self) -> list[Outcome]:
@@ -39,3 +47,25 @@ class Result:
     def export(self, to: str, path: str | Path | None = None, **options) -> Exported:
         """Write the run as a file of another program; arguments and errors are those of `mdanim_lammps.export.export`."""
         return export(self.folder, to, path, **options)
+
+    def __repr__(self) -> str:
+        values = "".join(f"{name}={value}, " for name, value in self.values.items())
+        missed = f", {len(self.missed)} of {len(self.outcomes)} expectations missed" if self.missed else ""
+        residual = number(self.ledger.residual, 3)
+        return f"<Result {self.folder}: {values}{len(self.ledger.rows)} frames, energy residual {residual}{missed}>"
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (
+                f"{o.expect.subject}.{o.expect.quantity}",
+                number(o.expect.value, 4),
+                number(o.found, 4),
+                "met" if o.met else "MISSED",
+            )
+            for o in self.outcomes
+        ]
+        picture = None
+        with TemporaryDirectory(prefix="mdanim-picture-") as name, suppress(MdanimError):
+            render = parse_scene(self.trajectory.metadata.scene_text, folder=self.folder).render
+            picture = render_still(self.trajectory, -1, Path(name) / "end.png", render, size=THUMBNAIL).read_bytes()
+        return html_table(repr(self)[1:-1], ("expected", "value", "found", ""), rows, picture)

@@ -156,6 +156,17 @@ def did_you_mean(word: str, choices) -> str:
     return f"known here: {', '.join(choices)}" if 0 < len(choices) <= 20 else ""
 
 
+class Named(dict):
+    """Things by name; a KeyError suggests a name."""
+
+    def __init__(self, kind: str, things):
+        super().__init__(things)
+        self._kind = kind
+
+    def __missing__(self, name):
+        raise KeyError(f"no {self._kind} is called {name!r}; {did_you_mean(str(name), self) or f'there are {len(self)}'}")
+
+
 def nearest(word: str, choices) -> str | None:
     """The choice that a mistyped word most likely stands for."""
     return next(iter(get_close_matches(word, list(choices), 1, 0.7)), None)

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The Python interface as a researcher uses it: texts, parameters, sweeps, frames, tables, notebooks."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import mdanim_lammps
+import numpy as np
+import pytest
+from mdanim_lammps import Scene, SceneError
+from mdanim_lammps.errors import OutputError, UsageError
+
+TEXT = """
+let h = 0.3 m
+gravity (0, 0, -9.81) m/s^2
+object ball { shape sphere 10 cm position (0 m, 0 m, h) mass 1 kg elasticity 300 kPa spin (0, 0, 3) rad/s }
+object box { shape box (10, 10, 20) cm position (1, 0, 1) m mass 2 kg elasticity 300 kPa velocity (0, 2, 0) m/s }
+control { time 0.2 s  frames 10 fps  resolution 5 cm }
+expect ball.position.z at 0 s = 0.3 m +- 1 mm
+"""
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    return Scene.from_text(TEXT, "pair").run(tmp_path_factory.mktemp("python") / "pair.out")
+
+
+def test_a_scene_from_a_text():
+    """Its name, its values, and those that another Scene has."""
+    scene = Scene.from_text(TEXT, "pair", h=0.5)
+    assert scene.record.solids[0].position == (0.0, 0.0, 0.5) and scene.values == {"h": 0.5}
+    assert scene.where(h="70 cm").record.solids[0].position == (0.0, 0.0, 0.7)
+    assert scene.record.solids[0].position == (0.0, 0.0, 0.5)
+    assert repr(scene) == "<Scene pair: 2 objects, 0.2 s, h=0.5>"
+    with pytest.raises(SceneError, match="did you mean 'h'"):
+        scene.where(hh=1.0)
+    with pytest.raises(UsageError, match="made of records"):
+        Scene(scene.record).where(h=1.0)
+
+
+def test_a_scene_from_a_file_keeps_its_values(tmp_path):
+    """``where`` changes one of them."""
+    (tmp_path / "two.txt").write_text("let k = 1\n" + TEXT)
+    scene = Scene.load(tmp_path / "two.txt", h=0.4).where(k=2.0)
+    assert scene.values == {"h": 0.4, "k": 2.0} and scene.record.solids[0].position[2] == 0.4
+
+
+SWEEP = """
+from mdanim_lammps import Scene
+print("main module")
+for run in Scene.from_text(open("pair.txt").read(), "pair").sweep(h=[0.3, 0.5]):
+    print(run.values, run.trajectory.objects["ball"].center_of_mass[0, 2].round(9), run.folder)
+"""
+
+
+def test_a_sweep(tmp_path):
+    """All combinations in order, each in a folder of its own, from a script that no process runs again."""
+    (tmp_path / "pair.txt").write_text(TEXT)
+    (tmp_path / "script.py").write_text(SWEEP)
+    done = subprocess.run([sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines() == [
+        "main module",
+        f"{{'h': 0.3}} 0.3 {tmp_path}/pair.sweep/h=0.3",
+        f"{{'h': 0.5}} 0.5 {tmp_path}/pair.sweep/h=0.5",
+    ]
+
+
+def test_what_a_sweep_refuses(tmp_path):
+    """All problems before the first run; an error of a run comes from its process as it is."""
+    scene = Scene.from_text(TEXT, "pair")
+    with pytest.raises(UsageError, match="lists of different values"):
+        scene.sweep(h=[0.3, 0.3])
+    with pytest.raises(SceneError):
+        scene.sweep(tmp_path / "s", h=[0.3, "soft"])
+    assert not (tmp_path / "s").exists()
+    (tmp_path / "s" / "h=0.5").mkdir(parents=True)
+    (tmp_path / "s" / "h=0.5" / "thesis.tex").touch()
+    runs = scene.sweep(tmp_path / "s", h=[0.3, 0.5], processes=1)
+    assert next(runs).values == {"h": 0.3}
+    with pytest.raises(OutputError, match="exists; overwrite it with --force"):
+        next(runs)
+    # Overlapping objects are found when models are built, in the process of the run.
+    overlap = scene.sweep(tmp_path / "o", h=[1.0], processes=1)
+    with pytest.raises(SceneError) as caught:
+        next(Scene.from_text(TEXT.replace("(1, 0, 1) m", "(0, 0, 1) m"), "pair").sweep(tmp_path / "p", h=[1.0]))
+    assert all(problem.message for problem in caught.value.problems)
+    assert next(overlap).values == {"h": 1.0}
+
+
+def test_frames(run):
+    """By number, from the end, as slices, one after the other."""
+    t = run.trajectory
+    assert [frame.frame for frame in t] == [0, 1, 2] == [frame.frame for frame in t[:]]
+    assert t[-1].time == t.times[2] and t[1].step == t.steps[1]
+    np.testing.assert_array_equal(t[1].position, t.position(1))
+    np.testing.assert_array_equal(t[1].velocity, t.velocity(1))
+    np.testing.assert_array_equal(t[1].centers, t.centers[1])
+    assert [frame.frame for frame in t[1:]] == [1, 2] and t[np.int64(1)].frame == 1
+    assert t[1].surface().n_cells == t.surface(1).n_cells
+    with pytest.raises(IndexError):
+        t[3]
+    with pytest.raises(TypeError):
+        t[0.5]
+
+
+def test_tracks_of_objects(run):
+    """Velocity, spin and surface of one object, in SI units."""
+    ball, box = (run.trajectory.objects[name] for name in ("ball", "box"))
+    np.testing.assert_allclose(ball.spin[0], (0.0, 0.0, 3.0), atol=1e-9)
+    np.testing.assert_allclose(box.spin, 0.0, atol=1e-6)
+    np.testing.assert_allclose(box.velocity[:, 1], 2.0, rtol=1e-9)
+    # Its lattice fills the box: mass per volume is that of the text.
+    assert box.surface(2).volume == pytest.approx(0.1 * 0.1 * 0.2, rel=1e-6)
+    np.testing.assert_allclose(box.surface(2).center, box.center_of_mass[2], atol=1e-6)
+    assert ball.surface(0).n_cells + box.surface(0).n_cells == run.trajectory.surface(0).n_cells
+
+
+def test_tables(run):
+    """pandas gets a row for each object and frame, and the columns of the ledger."""
+    table = run.trajectory.to_pandas()
+    assert list(table.object) == ["ball", "box"] * 3 and list(table.frame) == [0, 0, 1, 1, 2, 2]
+    np.testing.assert_array_equal(table[table.object == "box"][["x", "y", "z"]], run.trajectory.centers[:, 1])
+    assert table.wz[0] == pytest.approx(3.0) and table.kinetic[1] == pytest.approx(0.5 * 2.0 * 2.0**2)
+    ledger = run.ledger.to_pandas()
+    np.testing.assert_array_equal(ledger["elastic"], run.ledger.array("elastic"))
+    assert tuple(ledger) == run.ledger.columns
+
+
+def test_names_are_suggested(run):
+    """Whatever has names says which one is near."""
+    for ask, words in (
+        (lambda: run.trajectory.objects["bal"], "no object is called 'bal'; did you mean 'ball'"),
+        (lambda: run.ledger.array("kinetc"), "no column 'kinetc'; did you mean 'kinetic'"),
+        (lambda: Scene.from_text(TEXT).effects()["gravty"], "did you mean 'gravity'"),
+    ):
+        with pytest.raises(KeyError, match=re.escape(words)):
+            ask()
+
+
+def test_what_notebooks_show(run):
+    """A picture and a table of a scene and of a result, a table of a trajectory; names are no markup."""
+    scene = Scene.from_text(TEXT, "<b>pair")._repr_html_()
+    result = run._repr_html_()
+    assert scene.count("data:image/png;base64,") == 1 == result.count("data:image/png;base64,")
+    assert "&lt;b&gt;pair" in scene and "<td>ball</td><td>1 kg</td>" in scene
+    assert "<td>ball.position.z</td>" in result and "<td>met</td>" in result
+    assert "<td>box</td><td>2 kg</td>" in run.trajectory._repr_html_()
+    assert repr(run).startswith(f"<Result {run.folder}: 3 frames, energy residual ")
+
+
+def test_progress_is_shown_where_asked_for(tmp_path, capfd):
+    """Lines of a bar on stderr, and none without ``progress``."""
+    scene = Scene.from_text(TEXT, "pair")
+    scene.run(tmp_path / "a", progress=True)
+    assert re.search(r"run +\d+%  t=", capfd.readouterr().err)
+    scene.run(tmp_path / "b")
+    assert "%" not in capfd.readouterr().err
+
+
+def test_types_are_for_others_too():
+    """Type checkers of other projects read the annotations."""
+    assert (Path(mdanim_lammps.__file__).parent / "py.typed").exists()
