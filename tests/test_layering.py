@@ -35,6 +35,9 @@ ROOMS = [
     "command_options",
     "command_steps",
     "run_commands",
+    "gallery",
+    "doctor",
+    "help_commands",
     "cli",
     "__main__",
 ]

@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 
 from cyclopts import App, CycloptsError, Parameter
 
-from . import __version__, run_commands
+from . import __version__, help_commands, run_commands
 from .command_options import (
     Accuracy,
     AllowUnstable,
@@ -49,7 +49,7 @@ from .command_steps import (
     with_accuracy,
     with_quality,
 )
-from .errors import ExitCode, UsageError
+from .errors import ExitCode, Problem, RefusedError, SceneError, UsageError, problem_json
 from .terminal import PROGRAM, documented_exit, few_collections, open_streams, progress_bar, stop_on_sigterm
 
 app = App(
@@ -118,6 +118,7 @@ def check(
     strict: Strict = False,
     allow_unstable: AllowUnstable = False,
     format: Literal["text", "json"] = "text",
+    json_: Annotated[bool, Parameter(name="--json", negative=(), help="The same as --format json.")] = False,
 ) -> None:
     """List the effects of a scene with reasons and certify its time step; of the run only some first steps, which tell its cost.
 
@@ -128,17 +129,29 @@ def check(
     format
         Text for people, JSON for programs.
     """
+    as_json = json_ or format == "json"
+    try:
+        _check(scene, executors, set_, accuracy, strict, allow_unstable, as_json)
+    except (SceneError, RefusedError) as error:
+        if not as_json:
+            raise
+        problems = error.problems if isinstance(error, SceneError) else [Problem(None, str(error))]
+        print(json.dumps({"problems": [problem_json(p) for p in problems]}, indent=1))
+        raise SystemExit(error.exit_code) from None
+
+
+def _check(scene: Path, executors: int, set_, accuracy, strict: bool, allow_unstable: bool, as_json: bool) -> None:
     from .cost.forecast import forecast
     from .cost.speedup_forecast import forecast_speedup
     from .report import check_json, check_lines
 
     check_executors(executors)
     record = with_accuracy(load(scene, set_, strict=strict), accuracy)
-    ready = prepare(settle(record, make=False, quiet=format == "json"), allow_unstable=allow_unstable)
+    ready = prepare(settle(record, make=False, quiet=as_json), allow_unstable=allow_unstable)
     setup = time.perf_counter() - STARTED
     cost = forecast(ready, setup=setup)
     spread = forecast_speedup(ready, executors) if executors > 1 else None
-    if format == "json":
+    if as_json:
         print(json.dumps(check_json(ready, cost, spread), indent=1))
         return
     print_warnings(ready)
@@ -283,7 +296,19 @@ def study(
     print(f"output   {done.folder}/study.json, study.csv, study.png")
 
 
-for command in run_commands.COMMANDS:
+@app.command
+def completion(shell: Literal["bash", "zsh", "fish"], /) -> None:
+    """Print a script that completes commands and options in a shell.
+
+    Parameters
+    ----------
+    shell
+        bash: put  eval "$(mdanim-lammps completion bash)"  into ~/.bashrc; zsh and fish alike in their files.
+    """
+    print(app.generate_completion(shell=shell))
+
+
+for command in (*run_commands.COMMANDS, *help_commands.COMMANDS):
     app.command(command)
 
 

@@ -83,6 +83,19 @@ class Problem:
         return f"{head}\n{picture}{hint}{chain}"
 
 
+def problem_json(problem: Problem) -> dict:
+    """A problem for programs: place (line and column from 1, 0 without a place), severity, message, hint."""
+    return {
+        "file": problem.file,
+        "line": problem.line,
+        "column": problem.column,
+        "width": problem.span.width if problem.span else 0,
+        "severity": problem.severity,
+        "message": problem.message,
+        "hint": problem.hint,
+    }
+
+
 def _window(text: str, start: int) -> tuple[str, int]:
     """Cut a long line down to the part around offset ``start``; returns it with the offset moved along."""
     text = "".join(c if c.isprintable() or c == "\t" else "\N{REPLACEMENT CHARACTER}" for c in text.rstrip())

@@ -9,7 +9,7 @@ from pathlib import Path
 from .certificate import margin_lines, note_lines
 from .cost.speedup_forecast import SpeedupForecast
 from .effects import Verdict
-from .errors import DivergedError
+from .errors import DivergedError, problem_json
 from .model import plan_spacing
 from .results.cost import Cost
 from .results.timeline import Timeline
@@ -227,5 +227,6 @@ def check_json(ready: Prepared, forecast: Cost | DivergedError | None = None, sp
         "cost": forecast.to_json() if isinstance(forecast, Cost) else None,
         "stops": forecast.why if isinstance(forecast, DivergedError) else None,
         "spread": None if speedup is None else asdict(speedup),
+        "problems": [problem_json(w) for w in ready.warnings],
         "warnings": [{"message": w.message, "hint": w.hint, "place": str(w.span) if w.span else None} for w in ready.warnings],
     }

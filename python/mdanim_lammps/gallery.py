@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""All scenes of a folder as one page with their movies."""
+
+from __future__ import annotations
+
+import html
+import sys
+from pathlib import Path
+
+from .api import Scene, movie_file, output_folder
+from .command_steps import load, with_accuracy
+from .errors import MdanimError, OutputError
+from .picture.movie import render_movie
+from .results.files import MARK, disk_errors, write_whole
+
+STYLE = (
+    "body{font:16px sans-serif;margin:2em;background:#f8fafb}figure{margin:0}video{width:100%}code{color:#555}"
+    "main{display:grid;grid-template-columns:repeat(auto-fill,minmax(22em,1fr));gap:1.5em}"
+)
+
+
+def make_gallery(folder: Path, out: Path, *, accuracy=None, size=None, overrides=(), force=False, quiet=False) -> tuple[int, int]:
+    """Run every ``NAME.txt`` of a folder into ``out``/NAME, and write ``out``/index.html; returns how many, and how many failed.
+
+    A run that is there already is kept unless ``force`` is given. A scene that fails does not stop the others: its message is
+    on the page. Raises OutputError where there are no scenes or the page cannot be written.
+    """
+    scenes = sorted(folder.glob("*.txt"))
+    if not scenes:
+        raise OutputError(f"{folder} holds no scenes, files NAME.txt; name a folder that does")
+    with disk_errors(out):
+        out.mkdir(parents=True, exist_ok=True)
+    cells, failed = [], 0
+    for number, path in enumerate(scenes, 1):
+        if not quiet:
+            print(f"gallery  {number} of {len(scenes)}: {path}", file=sys.stderr, flush=True)
+        title = path.stem
+        try:
+            record = with_accuracy(load(path, overrides), accuracy)
+            title = record.title or path.stem
+            place = output_folder(record, out / path.stem)
+            if force or not (place / MARK).exists():
+                Scene(record).run(place, force=force)
+            movie = movie_file(place, record)
+            if force or not movie.exists():
+                render_movie(place, record.render, movie, size=size)
+            shown = f'<video src="{html.escape(movie.relative_to(out).as_posix())}" controls loop muted></video>'
+        except MdanimError as error:
+            failed += 1
+            print(error, file=sys.stderr)
+            shown = f"<pre>{html.escape(str(error))}</pre>"
+        words = f"{html.escape(title)} <code>{html.escape(path.name)}</code>"
+        cells.append(f"<figure>{shown}<figcaption>{words}</figcaption></figure>")
+    page = f'<!doctype html><meta charset="utf-8"><title>Gallery</title><style>{STYLE}</style><main>{"".join(cells)}</main>'
+    write_whole(out / "index.html", page + "\n")
+    return len(scenes), failed

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What a word means: a setting, a block, a shape, an effect, a quantity, a unit, a limit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from . import shapes, units
+from .formatting import say
+from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, SYNONYMS, did_you_mean, example
+from .limits import LIMITS
+from .scene import QUANTITIES
+from .schema import Keyword, Rule, syntax, units_shown
+
+MARGINS = {
+    "time step": "the bound of each object on the time step; above it motion blows up. 'timestep auto' is half of it",
+    "contact": "the time step that contact alone would bear, by its largest curvature over a plane (an estimate)",
+    "wall": "the time step that ground, walls and basin alone would bear",
+    "closing speed": "how fast objects may meet so that nothing passes through; softer or thinner objects bear less",
+    "sweeps": "how often the liquid is swept while an object travels one cell; below 4 it is pushed up before it can flow away",
+    "amplitude": "the speed of a hit over the wave speed of the object; above about 0.2 a soft object stays crumpled",
+    "load": "the pressure at the foot of what stands at the start, beside the strength 0.2 E at which it is crushed",
+    "thinnest part": "cells across the thinnest part; one cell is 1.9 times too stiff in bending, two are not",
+    "drag": "phi = drag * dt / 2 m of a particle; where it is large the exponential form is used instead of the implicit one",
+}
+"""Limits that `check` prints with their margins, and certificate.json holds."""
+
+
+def explain(word: str) -> str:
+    """All meanings of a word, one after the other. Raises KeyError that suggests a near word."""
+    wanted = word.strip().lower().replace("_", " ")
+    found = [text for name, text in _entries() if wanted == name.lower() or wanted == name.lower().replace("-", " ")]
+    if not found:
+        raise KeyError(f"'{word}' is no word of a scene; {did_you_mean(wanted, words()) or 'docs/language.md lists all of them'}")
+    return "\n\n".join(found)
+
+
+def words() -> list[str]:
+    """All words that can be explained, in alphabetical order."""
+    return sorted({name for name, _ in _entries()})
+
+
+def _entries() -> Iterator[tuple[str, str]]:
+    for block in BLOCKS.values():
+        inside = ", ".join(KEYWORDS[block.name])
+        yield block.name, f"{block.head} {{ ... }}   a block\n  {_plain(block.about)}\n  inside: {inside}"
+    for block, keywords in KEYWORDS.items():
+        for keyword in keywords.values():
+            yield keyword.name, _keyword(keyword, f"in {block} {{ }}" if block else "outside of all blocks")
+    for name, (form, about) in STATEMENTS.items():
+        yield name, f"{form}   a statement\n  {_plain(about)}"
+    for kind in vars(shapes).values():
+        if isinstance(kind, type) and (forms := getattr(kind, "FORMS", ())) and forms[0].split()[0].isalpha():
+            yield forms[0].split()[0], f"{_slots(' | '.join(forms))}\n  {_plain((kind.__doc__ or '').splitlines()[0])}"
+    for (subject, quantity), (unit, about) in QUANTITIES.items():
+        what = f"expect {subject}.{quantity} = ...   a quantity, in {unit if unit != '1' else 'plain numbers'}\n  {_plain(about)}"
+        yield f"{subject}.{quantity}".removeprefix("NAME."), what
+    for unit, about, others in units.LISTED:
+        limit = f", at most {say(LIMITS[unit].most, unit, 6)}" if unit in LIMITS else ""
+        for name in others.split():
+            yield name, f"{name}   a unit of {about.split(' ', 1)[1]} (also {others}){limit}"
+    for name, about in MARGINS.items():
+        yield name, f"{name}   a limit that check prints with its margin\n  {about}"
+    for name, instead in NOT_SUPPORTED.items():
+        yield name, f"{name}   is not in the language\n  instead: {_plain(instead)}"
+    for name, shape in SYNONYMS.items():
+        yield name, f"{name}   is written as the shape '{shape}': mdanim-lammps explain {shape}"
+
+
+def _keyword(k: Keyword, where: str) -> str:
+    lines = [f"{k.name} {_plain(syntax(k))}   a setting {where}", _plain(k.about)]
+    default = "needed" if k.needed else f"one of {', '.join(k.one_of)} is needed" if k.one_of else ""
+    default = default or (f"default {k.default}" if k.default else "")
+    rule = "" if k.rule is Rule.ANY else f"must be {k.rule.value}"
+    many = "may be given several times" if k.many else ""
+    facts = [f"in {units_shown(k)}" if units_shown(k) else "", rule, default, many]
+    return "\n  ".join(filter(None, [*lines, "; ".join(filter(None, facts)), example(k)]))
+
+
+def _slots(form: str) -> str:
+    return form.replace("<", "").replace(">", "").replace(":m", "")
+
+
+def _plain(text: str) -> str:
+    """Without the marks of Markdown."""
+    return text.replace("`", "")

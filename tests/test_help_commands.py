@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What helps a newcomer: init, explain, gallery, doctor, completion, problems as JSON, colours in editors."""
+
+import json
+import re
+import subprocess
+from dataclasses import replace
+
+import pytest
+from command_line import GOOD, run
+from mdanim_lammps import doctor
+from mdanim_lammps.scene.explain import MARGINS, explain, words
+from mdanim_lammps.scene.grammar import grammar
+from mdanim_lammps.scene.keywords import BLOCKS, KEYWORDS
+from paths import REPOSITORY, SCENES
+
+
+def test_init_writes_a_scene_that_runs(tmp_path):
+    """As it is and with its remarks taken out; a second time it is refused."""
+    said = run("init", "first", cwd=tmp_path)
+    assert said.returncode == 0 and "mdanim-lammps check first.txt" in said.stdout
+    text = (tmp_path / "first.txt").read_text()
+    (tmp_path / "wet.txt").write_text(re.sub(r"^# (?=liquid|  |\})", "", text, flags=re.M).replace("ground z 0 m", "#"))
+    for name in ("first.txt", "wet.txt"):
+        checked = run("check", name, "--json", cwd=tmp_path)
+        assert checked.returncode == 0, checked.stdout
+        assert json.loads(checked.stdout)["problems"] == []
+    assert json.loads(checked.stdout)["liquid"]["name"] == "water"
+    again = run("init", "first", cwd=tmp_path)
+    assert again.returncode == 7 and "first.txt exists; overwrite it with --force" in again.stderr
+    assert run("init", "first", "--force", cwd=tmp_path).returncode == 0
+    assert run("init", "no/first", cwd=tmp_path).returncode == 7
+
+
+def test_every_word_is_explained():
+    """All blocks, settings and limits; what is said has the form, the unit, the meaning."""
+    for name in (
+        *BLOCKS,
+        *(k for block in KEYWORDS.values() for k in block),
+        *MARGINS,
+        "kPa",
+        "sphere",
+        "ball",
+        "rigid",
+        "draft",
+    ):
+        assert explain(name)
+    said = explain("elasticity")
+    assert "elasticity E | spring k   a setting in object { }" in said and "in Pa, N/m; must be > 0; needed" in said
+    assert len(explain("friction").split("\n\n")) == 3  # of objects, of two objects, of the scene
+    assert explain("time_step") == explain("Time Step")
+    assert "`" not in "".join(map(explain, words()))
+    with pytest.raises(KeyError, match="did you mean 'friction'"):
+        explain("frction")
+
+
+def test_every_margin_of_the_shipped_scenes_is_explained():
+    """No limit that check prints is without a meaning."""
+    from mdanim_lammps import Scene
+
+    for name in ("beam", "float", "crowd", "plates"):
+        scene = Scene.load(SCENES / f"{name}.txt")
+        assert {margin.name for margin in scene.certificate().margins} <= {*MARGINS, *scene.effects()}
+
+
+def test_explain_on_the_command_line():
+    """A near word is suggested; without a word all are listed."""
+    assert "a unit of pressure" in run("explain", "kPa").stdout
+    assert "the bound of each object" in run("explain", "time", "step").stdout
+    unknown = run("explain", "elastisity")
+    assert unknown.returncode == 2 and "did you mean 'elasticity'" in unknown.stderr
+    assert "torus" in run("explain").stdout
+
+
+def test_completion():
+    """The script is one that the shell can read, and knows the commands."""
+    script = run("completion", "bash").stdout
+    assert "export" in script and "--accuracy" in script
+    assert subprocess.run(["bash", "-n"], input=script, text=True).returncode == 0
+
+
+def test_gallery(tmp_path):
+    """All scenes of a folder on a page; one that fails is shown with its message and does not stop the others."""
+    folder = tmp_path / "scenes"
+    folder.mkdir()
+    (folder / "good.txt").write_text('title "A <cube>"\n' + GOOD)
+    (folder / "bad.txt").write_text(GOOD.replace("100 kPa", "100 kg"))
+    said = run("gallery", folder, "-o", tmp_path / "g", "--size", "64", "48", "--accuracy", "preview")
+    assert said.returncode == 6 and "2 scenes, 1 of them failed" in said.stdout
+    page = (tmp_path / "g" / "index.html").read_text()
+    assert '<video src="good/movie.mp4"' in page and "A &lt;cube&gt;" in page and "bad.txt:8" in page
+    movie = tmp_path / "g" / "good" / "movie.mp4"
+    before = movie.stat().st_mtime_ns
+    run("gallery", folder, "-o", tmp_path / "g")
+    assert movie.stat().st_mtime_ns == before  # what is there is kept
+    empty = run("gallery", tmp_path)
+    assert empty.returncode == 7 and "holds no scenes" in empty.stderr
+
+
+def test_doctor_finds_nothing_wrong_here():
+    """Each need is met by what runs these tests."""
+    said = run("doctor")
+    assert said.returncode == 0, said.stdout
+    for words_ in ("plugin     loaded by LAMMPS 20250722, interface", "mpich 5", "opengl", "ffmpeg", "cores", "GB free in"):
+        assert words_ in said.stdout
+
+
+def test_doctor_names_a_cure(monkeypatch, tmp_path):
+    """For a plugin that is missing, an mpiexec that is not there, an lmp that does not know the styles."""
+    monkeypatch.setattr(doctor.plugin, "_FILE", tmp_path / "mdanimplugin.so")
+    monkeypatch.setenv("MDANIM_MPIEXEC", str(tmp_path / "mpiexec"))
+    (tmp_path / "lmp").write_text("#!/bin/sh\n")
+    (tmp_path / "lmp").chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    found = {finding.what: finding for finding in doctor.examine()}
+    assert found["plugin"].severity == doctor.FAIL and "is missing" in found["plugin"].found
+    assert "pip install" in found["plugin"].cure
+    assert found["mpi"].severity == doctor.FAIL and "MDANIM_MPIEXEC" in found["mpi"].cure
+    assert found["lmp"].severity == doctor.NOTE and "does not know the styles" in found["lmp"].found
+    assert all(f.cure for f in found.values() if f.severity) and not replace(found["python"], severity=0).cure
+
+
+def test_problems_as_json(tmp_path):
+    """Each with its place, for editors; exit codes are those of check."""
+    (tmp_path / "bad.txt").write_text(GOOD.replace("100 kPa", "100 kg"))
+    bad = run("check", "bad.txt", "--json", cwd=tmp_path)
+    (problem,) = json.loads(bad.stdout)["problems"]
+    assert bad.returncode == 3 and (problem["file"], problem["line"], problem["severity"]) == ("bad.txt", 8, "error")
+    assert problem["column"] > 1 and problem["width"] > 1 and problem["message"] and problem["hint"]
+    (tmp_path / "fast.txt").write_text(GOOD.replace("time 0.1 s", "time 0.1 s\n timestep 1 s"))
+    fast = run("check", "fast.txt", "--format", "json", cwd=tmp_path)
+    assert fast.returncode == 4 and "certified bound" in json.loads(fast.stdout)["problems"][0]["message"]
+
+
+def test_the_grammar_for_editors_is_that_of_the_schema():
+    """The file in the repository is what the schema makes now."""
+    stored = json.loads((REPOSITORY / "editors" / "vscode" / "syntaxes" / "mdanim.tmLanguage.json").read_text())
+    assert stored == grammar(), "python -m mdanim_lammps.scene.grammar > editors/vscode/syntaxes/mdanim.tmLanguage.json"
+
+
+def scopes(line: str) -> dict[str, str]:
+    """Pieces of a line with their scopes, found as an editor finds them: the nearest match, of equally near ones the first."""
+    patterns, found, at = [(re.compile(p["match"]), p) for p in grammar()["patterns"]], {}, 0
+    while hits := [(m.start(), n, m, p) for n, (regex, p) in enumerate(patterns) if (m := regex.search(line, at)) and m.group()]:
+        _, _, match, pattern = min(hits, key=lambda hit: hit[:2])
+        for group, capture in pattern.get("captures", {"0": {"name": pattern.get("name")}}).items():
+            if match[int(group)]:
+                found[match[int(group)]] = capture["name"].split(".")[0]
+        at = match.end()
+    return found
+
+
+def test_the_grammar_tells_words_apart():
+    """Blocks, names, settings, units, shapes, quantities, remarks."""
+    assert scopes("  shape sphere 10 cm  # round") == {
+        "shape": "keyword",
+        "sphere": "constant",
+        "10": "constant",
+        "cm": "storage",
+        "# round": "comment",
+    }
+    assert scopes("object ball[2] {")["ball[2]"] == "entity"
+    assert scopes("let h = 2 kg/m^3")["h"] == "variable"
+    assert scopes("expect ball.position.z = 1 +- 0.1")[".position.z"] == "support"
+    assert scopes("  contact-stiffness 4")["contact-stiffness"] == "keyword"
+    for block in KEYWORDS.values():
+        for name in block:
+            assert scopes(f" {name} 1").get(name) == "keyword", name
+
+
+def test_the_problem_matcher_reads_what_check_prints(tmp_path):
+    """File, line, column, severity and message of a problem."""
+    package = json.loads((REPOSITORY / "editors" / "vscode" / "package.json").read_text())
+    pattern = package["contributes"]["problemMatchers"][0]["pattern"]
+    (tmp_path / "bad.txt").write_text(GOOD.replace("100 kPa", "100 kg"))
+    first = run("check", "bad.txt", cwd=tmp_path).stderr.splitlines()[0]
+    file, line, column, severity, message = re.match(pattern["regexp"], first).groups()
+    assert (file, line, severity) == ("bad.txt", "8", "error") and int(column) > 1 and "elasticity" in message
