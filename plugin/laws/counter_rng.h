@@ -34,7 +34,7 @@ inline std::uint32_t draw32(std::uint64_t key, std::uint32_t index)
 { return mix32(mix32(index ^ static_cast<std::uint32_t>(key)) ^ static_cast<std::uint32_t>(key >> 32)); }
 
 // What a draw is for, so that no two uses share numbers.
-enum class Phase : std::uint64_t { EVEN_BLOCKS, ODD_BLOCKS, DISPLACEMENT, LEVEL, FILL };
+enum class Phase : std::uint64_t { EVEN_BLOCKS, ODD_BLOCKS, DISPLACEMENT, LEVEL, FILL, DROPS };
 
 // Key of all draws of one kind at one time; `when` counts sweeps or steps.
 inline std::uint64_t draw_key(std::uint64_t seed, std::uint64_t when, Phase phase)

@@ -98,8 +98,10 @@ double open_below(const SolidParts &solid, const Span &a, const Span &b, double 
 {
   double open = 0.0;
   const int top = std::min(a.high, b.high);
-  for (int z = std::max(a.low, b.low); z < top && z < height; ++z)
-    open += share(solid.open_between(a.column, b.column, z)) * std::min(1.0, height - z);
+  for (int z = std::max(a.low, b.low); z < top && z < height; ++z) {
+    const double low = std::max({static_cast<double>(z), a.floor, b.floor});
+    open += share(solid.open_between(a.column, b.column, z)) * std::clamp((height - low) / (z + 1.0 - low), 0.0, 1.0);
+  }
   return open;
 }
 

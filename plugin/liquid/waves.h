@@ -61,6 +61,21 @@ class Waves {
   };
   Energy energy() const;
 
+  // --- liquid that comes and goes between updates (waves_exchange.cpp) ---
+
+  // Puts units, with a velocity, into the span of a column that holds a height, or else into the next one below. Returns how many
+  // found room.
+  Units give(int column, double height, Units units, double ux, double uy);
+  // Takes units out of such a span; a film stays. Returns how many.
+  Units take(int column, double height, Units most);
+  double held_below(int column, double height) const;    // of such a span
+  // The topmost span of a column: its floor, surface and volume, the speed at which the surface has just risen, the mean
+  // velocity of the liquid, and how fast the liquid around could shoot up there (Bernoulli).
+  struct Top {
+    double floor, head, volume, rising, u[2], jet;
+  };
+  Top top_of(int column) const;
+
   // Everything that later updates depend on, between updates.
   std::vector<std::uint8_t> state() const;
   // Takes it up. Throws std::runtime_error, and changes nothing, when it is not of such a basin or damaged.
@@ -163,6 +178,8 @@ class Waves {
     for (int n = chain[i]; n >= 0; n = link_of_span[n].next)
       f(link_of_span[n].link, link_of_span[n].other, link_of_span[n].inward);
   }
+
+  int span_below(int column, double height) const;
 
   // --- waves_solids.cpp, waves_links.cpp ---
   std::vector<int> differing(const std::uint16_t *part) const;

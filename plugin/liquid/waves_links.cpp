@@ -27,7 +27,7 @@ Gap gap_between(const SolidParts &solid, const Span &a, const Span &b)
   }
   for (int z = std::max(a.low, b.low); z < std::min(a.high, b.high) && !gap.open; ++z) {
     gap.open = solid.open_between(a.column, b.column, z) > 0;
-    gap.edge = z;
+    gap.edge = std::max({static_cast<double>(z), a.floor, b.floor});
   }
   return gap;
 }

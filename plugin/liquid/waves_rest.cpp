@@ -9,11 +9,11 @@
 
 namespace mdanim {
 
-// Bodies are spans joined through links in which liquid stands on both sides. A thin layer in a link passes no whole unit while
-// it is not level, so it joins nothing: puddles, and pools that a rim holds, stay as they are.
+// Bodies are spans joined through links in which liquid stands on both sides. A thin layer joins nothing: it would drip for
+// thousands of updates, or for ever where it passes no whole unit. So puddles, and pools that a rim holds, stay as they are.
 void Waves::come_to_rest()
 {
-  constexpr double PUDDLE = 4.0;    // films
+  constexpr double PUDDLE = 16.0;    // films
   std::vector<double> head(content.size(), 0.0);
   each_span([&](long i) { head[i] = arrays.full[i] > 0.0 ? arrays.phi[i] : head_of(solid, span[i], content[i]).height; });
   std::vector<long> bodies;             // one after the other

@@ -72,7 +72,7 @@ class Link:
         """How much of it is open below a level."""
         if self.layers is None:
             return min(level, self.top) - self.edge
-        return sum(open * min(1.0, max(0.0, level - z)) for z, open in self.layers)
+        return sum(open * min(1.0, max(0.0, (level - low) / (high - low))) for low, high, open in self.layers)
 
 
 def cut(part, x, y):
@@ -113,7 +113,7 @@ def join(part, a, b):
         edge = max(a.floor, b.floor)
         return Link(a, b, edge, top, None) if top - edge >= 1e-3 else None
     open = [(z, WHOLE - int(part[z, a.y, a.x]) - int(part[z, b.y, b.x])) for z in layers]
-    open = [(z, share / WHOLE) for z, share in open if share >= WHOLE - SHUT]
+    open = [(max(z, a.floor, b.floor), z + 1, share / WHOLE) for z, share in open if share >= WHOLE - SHUT]
     return Link(a, b, float(open[0][0]), top, open) if open else None
 
 

@@ -158,6 +158,20 @@ def test_pools_that_a_ridge_parts_but_for_a_layer_come_to_rest():
     assert w.surface[0, 0] > w.surface[0, -1] + 0.001
 
 
+def test_a_film_above_does_not_push_what_stands_below():
+    """On a block that ends inside a cell, beside a partly solid column whose liquid stands in the same cell, but lower."""
+    part = np.zeros((10, 3, 8), int)
+    part[:7, :, :4] = 4096
+    part[7, :, :4] = 3265
+    part[5:8, :, 4] = np.array([194, 217, 173])[:, None]
+    w = lab.Waves(part.shape, rest=0)
+    w.solids(part)
+    w.pour(np.where(np.arange(8) < 4, 7 + 3265 / 4096 + 0.0007, 7.4))
+    w.update(20)
+    spans = w.spans
+    assert np.abs(spans.phi - spans.head).max() < 1e-6 and w.fastest < 1e-6
+
+
 @pytest.mark.parametrize(("cells", "depth"), [(64, 4), (64, 20)])
 def test_waves_die_in_the_calm_time(cells, depth):
     """To 1/e, whatever the depth."""

@@ -106,7 +106,7 @@ def test_every_instruction_set_and_the_general_form_give_the_same_bits(shape, ob
     if obstacles:
         part[3:5, : max(1, ny // 2), 1:4] = 4096
         part[random.random(shape) < 0.02] = 1500
-    height = random.uniform(-3.0, 6.5, (ny, nx))
+    height = random.uniform(-1.0, nz, (ny, nx))
     kinds = [waves(part, height) for _ in range(4)]
     here = [kind.use(number) for number, kind in enumerate(kinds[:3])]
     kinds[3].use_general_form()

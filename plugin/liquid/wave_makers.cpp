@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-2.0-only
+
+#include "liquid/wave_makers.h"
+
+#include "liquid/waves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+namespace mdanim {
+
+namespace {
+
+constexpr double ANY_HEIGHT = 1e9;
+constexpr double TWO_PI = 6.283185307179586;
+
+// k of w^2 = k tanh(k depth).
+double wave_number(double w, double depth)
+{
+  double k = w * w / std::sqrt(std::tanh(w * w * depth));
+  for (int n = 0; n < 30; ++n) {
+    const double t = std::tanh(k * depth), f = k * t - w * w;
+    k -= f / (t + k * depth * (1.0 - t * t));
+  }
+  return k;
+}
+
+int columns_of(const WaveMakers::Region &region) { return (region.high[0] - region.low[0]) * (region.high[1] - region.low[1]); }
+
+template <class F> void each_column(const WaveMakers::Region &region, int nx, const F &f)
+{
+  for (int y = region.low[1]; y < region.high[1]; ++y)
+    for (int x = region.low[0]; x < region.high[0]; ++x) f(y * nx + x);
+}
+
+}    // namespace
+
+WaveMakers::Region WaveMakers::along(Side side) const
+{
+  Region region{{0, 0}, {nx, ny}, ANY_HEIGHT};
+  const int d = side == WEST || side == EAST ? 0 : 1, cells = d == 0 ? nx : ny;
+  region.low[d] = side == WEST || side == SOUTH ? 0 : cells - 1;
+  region.high[d] = region.low[d] + 1;
+  return region;
+}
+
+void WaveMakers::add_inflow(const Region &region, double rate, double ux, double uy)
+{
+  makers.push_back({INFLOW, region, {}, rate, 0.0, {ux, uy}});
+  due.push_back(0.0);
+}
+
+void WaveMakers::add_drain(const Region &region, double rate)
+{
+  makers.push_back({DRAIN, region, {}, rate, 0.0, {0.0, 0.0}});
+  due.push_back(0.0);
+}
+
+void WaveMakers::add_paddle(Side side, double amplitude, double period, double depth)
+{
+  // What comes in at a wall runs away with the velocity of a group.
+  const double w = TWO_PI / period, k = wave_number(w, depth), twice = 2.0 * k * depth;
+  const double flux = amplitude * w / k * 0.5 * (1.0 + twice / std::sinh(std::min(twice, 700.0)));
+  const Region region = along(side);
+  makers.push_back({PADDLE, region, {}, flux * columns_of(region), period, {0.0, 0.0}});
+  due.push_back(0.0);
+}
+
+void WaveMakers::add_current(Side from, double speed)
+{
+  const Side to = from == WEST ? EAST : from == EAST ? WEST : from == SOUTH ? NORTH : SOUTH;
+  const bool along_x = from == WEST || from == EAST;
+  const double u = from == WEST || from == SOUTH ? speed : -speed;
+  makers.push_back({CURRENT, along(from), along(to), speed, 0.0, {along_x ? u : 0.0, along_x ? 0.0 : u}});
+  due.push_back(0.0);
+}
+
+void WaveMakers::apply(Waves &waves, double dt)
+{
+  const double start = account.time;
+  account.time += dt;
+  for (std::size_t n = 0; n < makers.size(); ++n) {
+    const Maker &m = makers[n];
+    double volume = m.rate * dt;    // that comes in, or goes out where it is negative
+    if (m.kind == DRAIN) volume = -volume;
+    if (m.kind == PADDLE) {
+      // In front of a paddle that starts in its first period.
+      const double w = TWO_PI / m.period;
+      const auto pushed = [&](double time) { return m.rate / w * std::min(1.0, time / m.period) * std::sin(w * time); };
+      volume = pushed(account.time) - pushed(start);
+    }
+    if (m.kind == CURRENT) {
+      volume = 0.0;
+      each_column(m.drain, nx, [&](int column) { volume += m.rate * dt * waves.top_of(column).volume; });
+    }
+    due[n] += volume * UNITS_PER_CELL;
+    const Units units = static_cast<Units>(due[n]);    // towards 0
+    due[n] -= static_cast<double>(units);
+    const double ux = m.kind == PADDLE ? 0.0 : m.u[0], uy = m.kind == PADDLE ? 0.0 : m.u[1];
+    if (m.kind == CURRENT) {
+      const Units left = go(waves, m.drain, units), came = come(waves, m.region, left, ux, uy);
+      come(waves, m.drain, left - came, ux, uy);
+    } else if (units > 0)
+      come(waves, m.region, units, ux, uy);
+    else if (units < 0)
+      go(waves, m.region, -units);
+  }
+}
+
+// The same into each column, the remainder into the first ones; returns what found room.
+Units WaveMakers::come(Waves &waves, const Region &region, Units units, double ux, double uy)
+{
+  const Units columns = columns_of(region);
+  Units given = 0, n = 0;
+  each_column(region, nx, [&](int column) {
+    const Units part = units / columns + (n++ < units % columns);
+    given += waves.give(column, region.height, part, ux, uy);
+  });
+  account.in += given;
+  return given;
+}
+
+// Of each column by what it holds.
+Units WaveMakers::go(Waves &waves, const Region &region, Units units)
+{
+  double all = 0.0;
+  each_column(region, nx, [&](int column) { all += waves.held_below(column, region.height); });
+  if (!(all > 0.0)) return 0;
+  Units taken = 0;
+  double sum = 0.0;
+  Units wanted = 0;
+  each_column(region, nx, [&](int column) {
+    sum += waves.held_below(column, region.height);
+    const Units until = static_cast<Units>(static_cast<double>(units) * (sum / all));
+    taken += waves.take(column, region.height, until - wanted);
+    wanted = until;
+  });
+  account.out += taken;
+  return taken;
+}
+
+std::vector<std::uint8_t> WaveMakers::state() const
+{
+  std::vector<std::uint8_t> bytes(sizeof account + due.size() * sizeof(double));
+  std::memcpy(bytes.data(), &account, sizeof account);
+  if (!due.empty()) std::memcpy(bytes.data() + sizeof account, due.data(), due.size() * sizeof(double));
+  return bytes;
+}
+
+void WaveMakers::set_state(const std::uint8_t *bytes, std::size_t size)
+{
+  const std::size_t own = sizeof account + due.size() * sizeof(double);
+  if (size != own)
+    throw std::runtime_error("the state of the makers of waves has " + std::to_string(size) + " bytes, these have " +
+                             std::to_string(own));
+  std::memcpy(&account, bytes, sizeof account);
+  if (!due.empty()) std::memcpy(due.data(), bytes + sizeof account, due.size() * sizeof(double));
+}
+
+}    // namespace mdanim

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Liquid that comes into columns and leaves them between updates: of drops, inflows and drains. No link knows of it, so whoever
+// calls holds the account.
+
+#include "liquid/waves.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mdanim {
+
+// The span that holds a height, or else the next one below it; the lowest where there is none. Negative without spans.
+int Waves::span_below(int column, double height) const
+{
+  int n = spans_in[column] - 1;
+  while (n > 0 && span[place(column, n)].floor > height) --n;
+  return n;
+}
+
+Units Waves::give(int column, double height, Units units, double ux, double uy)
+{
+  const int n = span_below(column, height);
+  if (n < 0) return 0;
+  const long i = place(column, n);
+  const Units taken = std::clamp<Units>(span[i].capacity - content[i], 0, units);
+  if (taken == 0) return 0;
+  resting = false;
+  content[i] += taken;
+  const auto head_now = [&](long at) { return head_of(solid, span[at], content[at]).height; };
+  const double head = head_now(i);
+  for (int d = 0; d < 2; ++d) {
+    int links = 0;
+    const auto filled = [&](const LinkPlace &link, long other) {
+      if (link.d != d || !is_link(link)) return 0.0;
+      return std::max(0.0, opening(link, std::max(head, head_now(other))));
+    };
+    each_link_of(i, [&](const LinkPlace &link, long other, bool) { links += filled(link, other) > 0.0; });
+    each_link_of(i, [&](const LinkPlace &link, long other, bool) {
+      const double height_there = filled(link, other);
+      if (height_there == 0.0) return;
+      const double part = static_cast<double>(taken) / UNITS_PER_CELL / links;
+      double &u = arrays_of(link).u[link.at];
+      u += std::min(1.0, part / height_there) * ((d == 0 ? ux : uy) - u);
+    });
+  }
+  return taken;
+}
+
+Units Waves::take(int column, double height, Units most)
+{
+  const int n = span_below(column, height);
+  if (n < 0) return 0;
+  const long i = place(column, n);
+  const Units film = static_cast<Units>(law.film * law.units_per_cell);
+  const Units taken = std::clamp<Units>(content[i] - film, 0, most);
+  if (taken > 0) resting = false;
+  content[i] -= taken;
+  return taken;
+}
+
+double Waves::held_below(int column, double height) const
+{
+  const int n = span_below(column, height);
+  return n < 0 ? 0.0 : static_cast<double>(content[place(column, n)]) / UNITS_PER_CELL;
+}
+
+Waves::Top Waves::top_of(int column) const
+{
+  if (spans_in[column] == 0) return {};
+  const long i = place(column, spans_in[column] - 1);
+  const Head head = head_of(solid, span[i], content[i]);
+  Top top{span[i].floor, head.height, static_cast<double>(content[i]) / UNITS_PER_CELL, 0.0, {0.0, 0.0}, 0.0};
+  if (!resting) top.rising = arrays.net[i] / (law.units_per_cell * law.dt * std::max(0.05, head.slope));
+  double open[2] = {0.0, 0.0}, energy = 0.0;
+  each_link_of(i, [&](const LinkPlace &link, long other, bool) {
+    const WaveLinks &l = arrays_of(link);
+    if (!is_link(link) || l.height[link.at] == 0.0) return;
+    open[link.d] += l.height[link.at];
+    top.u[link.d] += l.height[link.at] * l.u[link.at];
+    energy = std::max(energy, 0.5 * l.u[link.at] * l.u[link.at] + arrays.phi[other] - head.height);
+  });
+  for (int d = 0; d < 2; ++d)
+    if (open[d] > 0.0) top.u[d] /= open[d];
+  top.jet = std::sqrt(2.0 * energy);
+  return top;
+}
+
+}    // namespace mdanim
