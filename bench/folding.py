@@ -12,6 +12,7 @@ import tempfile
 from pathlib import Path
 
 from mdanim_lammps.errors import DivergedError
+from mdanim_lammps.results.files import read_json
 from mdanim_lammps.run.loop import simulate
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
@@ -43,15 +44,15 @@ control {{ time 0.6 s  frames 100 fps  resolution {h} m }}
 
 
 def folds(make, cells: int, speed: float) -> bool:
-    """Whether the guard stops a landing at this part of the wave speed."""
+    """Whether cells stay inside out after a landing at this part of the wave speed."""
     shape, height, orientation = make(cells * H)
     text = SCENE.format(shape=shape, height=height + 2.0 * H, orientation=orientation, speed=speed * C, h=H)
     with tempfile.TemporaryDirectory() as folder:
         try:
             simulate(prepare(parse_scene(text)), Path(folder))
-        except DivergedError:
+        except DivergedError:  # a body is crumpled
             return True
-    return False
+        return bool(read_json(Path(folder) / "summary.json")["dents"])
 
 
 if __name__ == "__main__":

@@ -202,6 +202,7 @@ def test_a_cone_that_falls_on_its_tip_is_foreseen(tmp_path):
         r"a got a dent: \d+ of its \d+ cells have been turned inside out by a blow; a may hit at 1.6 m/s", dent.message
     )
     assert foreseen.severity == "warning" and foreseen.text in dent.message and foreseen.hint == dent.hint
+    assert json.loads((result.folder / "summary.json").read_text())["dents"]["a"] > 0
     assert dent.span.line == 2 and result.ledger.residual < energy_class(ready.scene)
 
 

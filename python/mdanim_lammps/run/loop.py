@@ -330,6 +330,7 @@ class _Run:
             "energy_residual": self.ledger.residual,
             "penetration": self.penetration,
             "inverted_cells": self.guard.most_inverted,
+            "dents": {self.ready.system.names[m]: cells for m, cells in self.guard.dents.items()},
             **(
                 {"liquid_cells": int(self.ledger.rows[-1]["liquid_cells"]), "liquid_residual": self._gained()}
                 if self.grid
