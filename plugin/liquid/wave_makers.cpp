@@ -28,34 +28,34 @@ double wave_number(double w, double depth)
   return k;
 }
 
-int columns_of(const WaveMakers::Region &region) { return (region.high[0] - region.low[0]) * (region.high[1] - region.low[1]); }
+int columns_of(const WaveMakers::Mouth &mouth) { return (mouth.high[0] - mouth.low[0]) * (mouth.high[1] - mouth.low[1]); }
 
-template <class F> void each_column(const WaveMakers::Region &region, int nx, const F &f)
+template <class F> void each_column(const WaveMakers::Mouth &mouth, int nx, const F &f)
 {
-  for (int y = region.low[1]; y < region.high[1]; ++y)
-    for (int x = region.low[0]; x < region.high[0]; ++x) f(y * nx + x);
+  for (int y = mouth.low[1]; y < mouth.high[1]; ++y)
+    for (int x = mouth.low[0]; x < mouth.high[0]; ++x) f(y * nx + x);
 }
 
 }    // namespace
 
-WaveMakers::Region WaveMakers::along(Side side) const
+WaveMakers::Mouth WaveMakers::along(Side side) const
 {
-  Region region{{0, 0}, {nx, ny}, ANY_HEIGHT};
+  Mouth mouth{{0, 0}, {nx, ny}, ANY_HEIGHT};
   const int d = side == WEST || side == EAST ? 0 : 1, cells = d == 0 ? nx : ny;
-  region.low[d] = side == WEST || side == SOUTH ? 0 : cells - 1;
-  region.high[d] = region.low[d] + 1;
-  return region;
+  mouth.low[d] = side == WEST || side == SOUTH ? 0 : cells - 1;
+  mouth.high[d] = mouth.low[d] + 1;
+  return mouth;
 }
 
-void WaveMakers::add_inflow(const Region &region, double rate, double ux, double uy)
+void WaveMakers::add_inflow(const Mouth &mouth, double rate, double ux, double uy)
 {
-  makers.push_back({INFLOW, region, {}, rate, 0.0, {ux, uy}});
+  makers.push_back({INFLOW, mouth, {}, rate, 0.0, {ux, uy}});
   due.push_back(0.0);
 }
 
-void WaveMakers::add_drain(const Region &region, double rate)
+void WaveMakers::add_drain(const Mouth &mouth, double rate)
 {
-  makers.push_back({DRAIN, region, {}, rate, 0.0, {0.0, 0.0}});
+  makers.push_back({DRAIN, mouth, {}, rate, 0.0, {0.0, 0.0}});
   due.push_back(0.0);
 }
 
@@ -64,8 +64,8 @@ void WaveMakers::add_paddle(Side side, double amplitude, double period, double d
   // What comes in at a wall runs away with the velocity of a group.
   const double w = TWO_PI / period, k = wave_number(w, depth), twice = 2.0 * k * depth;
   const double flux = amplitude * w / k * 0.5 * (1.0 + twice / std::sinh(std::min(twice, 700.0)));
-  const Region region = along(side);
-  makers.push_back({PADDLE, region, {}, flux * columns_of(region), period, {0.0, 0.0}});
+  const Mouth mouth = along(side);
+  makers.push_back({PADDLE, mouth, {}, flux * columns_of(mouth), period, {0.0, 0.0}});
   due.push_back(0.0);
 }
 
@@ -101,41 +101,41 @@ void WaveMakers::apply(Waves &waves, double dt)
     due[n] -= static_cast<double>(units);
     const double ux = m.kind == PADDLE ? 0.0 : m.u[0], uy = m.kind == PADDLE ? 0.0 : m.u[1];
     if (m.kind == CURRENT) {
-      const Units left = go(waves, m.drain, units), came = come(waves, m.region, left, ux, uy);
+      const Units left = go(waves, m.drain, units), came = come(waves, m.mouth, left, ux, uy);
       come(waves, m.drain, left - came, ux, uy);
     } else if (units > 0)
-      come(waves, m.region, units, ux, uy);
+      come(waves, m.mouth, units, ux, uy);
     else if (units < 0)
-      go(waves, m.region, -units);
+      go(waves, m.mouth, -units);
   }
 }
 
 // The same into each column, the remainder into the first ones; returns what found room.
-Units WaveMakers::come(Waves &waves, const Region &region, Units units, double ux, double uy)
+Units WaveMakers::come(Waves &waves, const Mouth &mouth, Units units, double ux, double uy)
 {
-  const Units columns = columns_of(region);
+  const Units columns = columns_of(mouth);
   Units given = 0, n = 0;
-  each_column(region, nx, [&](int column) {
+  each_column(mouth, nx, [&](int column) {
     const Units part = units / columns + (n++ < units % columns);
-    given += waves.give(column, region.height, part, ux, uy);
+    given += waves.give(column, mouth.height, part, ux, uy);
   });
   account.in += given;
   return given;
 }
 
 // Of each column by what it holds.
-Units WaveMakers::go(Waves &waves, const Region &region, Units units)
+Units WaveMakers::go(Waves &waves, const Mouth &mouth, Units units)
 {
   double all = 0.0;
-  each_column(region, nx, [&](int column) { all += waves.held_below(column, region.height); });
+  each_column(mouth, nx, [&](int column) { all += waves.held_below(column, mouth.height); });
   if (!(all > 0.0)) return 0;
   Units taken = 0;
   double sum = 0.0;
   Units wanted = 0;
-  each_column(region, nx, [&](int column) {
-    sum += waves.held_below(column, region.height);
+  each_column(mouth, nx, [&](int column) {
+    sum += waves.held_below(column, mouth.height);
     const Units until = static_cast<Units>(static_cast<double>(units) * (sum / all));
-    taken += waves.take(column, region.height, until - wanted);
+    taken += waves.take(column, mouth.height, until - wanted);
     wanted = until;
   });
   account.out += taken;

@@ -22,16 +22,16 @@ class WaveMakers {
 
   // Columns [low, high) along x and y, and the height at which liquid comes and goes: that of the span that holds it, or else of
   // the next one below.
-  struct Region {
+  struct Mouth {
     int low[2], high[2];
     double height;
   };
 
   WaveMakers(int nx, int ny) : nx(nx), ny(ny) {}
 
-  // `rate` in cells per time, for the whole region; in with a velocity. What finds no room stays outside.
-  void add_inflow(const Region &region, double rate, double ux, double uy);
-  void add_drain(const Region &region, double rate);
+  // `rate` in cells per time, for the whole mouth; in with a velocity. What finds no room stays outside.
+  void add_inflow(const Mouth &mouth, double rate, double ux, double uy);
+  void add_drain(const Mouth &mouth, double rate);
   // A paddle along a side: from there waves of an amplitude and a period run into liquid of a depth. What the paddle pushes in,
   // it draws back.
   void add_paddle(Side side, double amplitude, double period, double depth);
@@ -52,13 +52,13 @@ class WaveMakers {
   enum Kind { INFLOW, DRAIN, PADDLE, CURRENT };
   struct Maker {
     Kind kind;
-    Region region, drain;         // where liquid comes in; where a current goes out
-    double rate, period, u[2];    // rate: cells per time in the whole region, of a paddle the largest
+    Mouth mouth, drain;           // where liquid comes in; where a current goes out
+    double rate, period, u[2];    // rate: cells per time in the whole mouth, of a paddle the largest
   };
 
-  Region along(Side side) const;
-  Units come(Waves &waves, const Region &region, Units units, double ux, double uy);
-  Units go(Waves &waves, const Region &region, Units units);
+  Mouth along(Side side) const;
+  Units come(Waves &waves, const Mouth &mouth, Units units, double ux, double uy);
+  Units go(Waves &waves, const Mouth &mouth, Units units);
 
   const int nx, ny;
   std::vector<Maker> makers;

@@ -59,11 +59,11 @@ MDANIM_EXPORT void mdanim_makers_free(void *m) { delete &makers(m); }
 // `columns`: from and to along x and y. Negative rates drain.
 MDANIM_EXPORT void mdanim_makers_flow(void *m, const int *columns, double height, double rate, double ux, double uy)
 {
-  const WaveMakers::Region region{{columns[0], columns[2]}, {columns[1], columns[3]}, height};
+  const WaveMakers::Mouth mouth{{columns[0], columns[2]}, {columns[1], columns[3]}, height};
   if (rate < 0.0)
-    makers(m).add_drain(region, -rate);
+    makers(m).add_drain(mouth, -rate);
   else
-    makers(m).add_inflow(region, rate, ux, uy);
+    makers(m).add_inflow(mouth, rate, ux, uy);
 }
 
 MDANIM_EXPORT void mdanim_makers_paddle(void *m, int side, double amplitude, double period, double depth)
