@@ -4,6 +4,7 @@
 
 #include "c_api/abi.h"
 #include "styles/bond_mdanim_harmonic.h"
+#include "styles/compute_mdanim_timestep.h"
 #include "styles/fix_mdanim_barrier.h"
 #include "styles/fix_mdanim_contact.h"
 #include "styles/fix_mdanim_gravity.h"
@@ -45,6 +46,15 @@ PluginRecord bond(const char *name, const char *info, void *(*creator)(void *) )
 {
   PluginRecord row = record("bond", name, info);
   row.creator.without_arguments = creator;
+  return row;
+}
+
+void *make_compute(void *lmp, int narg, char **arg) { return new ComputeMdanimTimestep(static_cast<LAMMPS *>(lmp), narg, arg); }
+
+PluginRecord compute(const char *name, const char *info, void *(*creator)(void *, int, char **) )
+{
+  PluginRecord row = record("compute", name, info);
+  row.creator.with_arguments = creator;
   return row;
 }
 
@@ -130,6 +140,7 @@ MDANIM_EXPORT void lammpsplugin_init(void *handle_of_lammps, void *handle, void 
 
   PluginRecord styles[] = {
       bond("mdanim/harmonic", "springs in gather form", &make_bond<BondMdanimHarmonic>),
+      compute("mdanim/timestep", "the largest stable time step", &make_compute),
       fix("mdanim/leapfrog", "leap-frog with friction", &make_fix<FixMdanimLeapfrog>),
       fix("mdanim/gravity", "m g on every particle", &make_fix<FixMdanimGravity>),
       fix("mdanim/barrier", "a barrier between objects", &make_fix<FixMdanimBarrier>),

@@ -38,6 +38,9 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
   // on a rank that is alone.
   void take(mdanim::SpringRows &&upper_rows);
 
+  const std::vector<mdanim::Spring> &springs() const { return spring; }    // by bond type
+  bool are_given() const { return given; }
+
   bool halves(mdanim::HalfBonds &half) const override;
   const std::vector<mdanim::SpringCoeffs> &coeffs() const override { return law; }
   mdanim::Loss *account() override { return damped ? &loss : nullptr; }

@@ -35,6 +35,10 @@ class FixMdanimWall : public Fix, public mdanim::PassParticipant {
   bool needs_all_atoms() override { return !watching; }
   double safe_displacement() const override { return clear; }
 
+  // Of all local particles, or nullptr where all have stiffness_number().
+  const double *stiffness_values() const { return stiffness.values(lmp); }
+  double stiffness_number() const { return stiffness.number; }
+
  private:
   bool behind(const mdanim::Vec3 &x, mdanim::Vec3 &d);
   mdanim::Box box_of_all() const;

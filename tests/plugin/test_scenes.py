@@ -97,3 +97,33 @@ def test_energy_is_kept_with_drag_and_damp(tmp_path):
     t = table(output)
     assert t["f_run"][-1] > 0.05 * t["TotEng"][0]
     assert t["v_balance"] == pytest.approx(t["v_balance"][0], rel=1.5e-3)
+
+
+def last_table(output):
+    """That of the last ``run``: these scripts have a ``run 0`` before it, which finds the time step."""
+    return table(output[output.rindex("   Step ") :])
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize(("scene", "steps"), [("cantilever", "400"), ("bowl", "300")])
+def test_scripts_that_find_their_time_step_are_the_same_on_any_number_of_ranks(tmp_path, scene, steps):
+    """Dumps and time steps, to the last bit."""
+    alone, _ = run(tmp_path, 1, scene, "-var", "steps", steps)
+    assert alone == run(tmp_path, 3, scene, "-var", "steps", steps)[0]
+
+
+def test_the_cantilever_swings_between_its_start_and_twice_its_sag(tmp_path):
+    """The step is half of the bound, which hardly changes; the energy goes to the dashpots little by little."""
+    _, output = run(tmp_path, 1, "cantilever")
+    t = last_table(output)
+    assert t["Time"][1] == pytest.approx(500 * 0.5 * t["c_step"][0], rel=1e-9)
+    assert np.ptp(t["c_step"]) < 1e-3 * t["c_step"][0]
+    assert 3.0 < t["v_sag"].max() < 4.0 and t["v_sag"][1:].min() > -0.1
+
+
+def test_cubes_come_to_rest_in_the_bowl(tmp_path):
+    """None is crumpled or has left it; the barrier is warned of by name."""
+    _, output = run(tmp_path, 1, "bowl")
+    t = last_table(output)
+    assert t["KinEng"].max() > 0.3 and t["KinEng"][-1] < 0.02 and t["E_bond"][-1] < 0.05
+    assert "not in it: fix contact mdanim/barrier" in output

@@ -20,6 +20,7 @@ ABI = 10
 """Number of the plugin's own C interface, `mdanim_abi`."""
 STYLES = (
     ("bond", "mdanim/harmonic"),
+    ("compute", "mdanim/timestep"),
     ("fix", "mdanim/leapfrog"),
     ("fix", "mdanim/gravity"),
     ("fix", "mdanim/barrier"),

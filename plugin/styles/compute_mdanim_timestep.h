@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// compute mdanim/timestep: the largest stable time step of what springs, dashpots and walls do to a group.
+
+#ifndef LMP_COMPUTE_MDANIM_TIMESTEP_H
+#define LMP_COMPUTE_MDANIM_TIMESTEP_H
+
+#include "compute.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class ComputeMdanimTimestep : public Compute {
+ public:
+  ComputeMdanimTimestep(class LAMMPS *, int, char **);
+  ~ComputeMdanimTimestep() override;
+
+  void init() override;
+  double compute_scalar() override;
+  void compute_vector() override;
+
+ private:
+  const class BondMdanimHarmonic *bonds = nullptr;    // none: no springs
+  std::vector<class FixMdanimWall *> walls;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
