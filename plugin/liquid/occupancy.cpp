@@ -128,8 +128,27 @@ void Occupancy::spread_cell(const Vec3 corner[8])
   each_sample(corner, [&](const Vec3 &place) { spread(place, reach, weight); });
 }
 
+void Occupancy::add_mass(const Vec3 &place, double mass, double softness)
+{
+  if (!(place.x >= 0.0 && place.x <= nx && place.y >= 0.0 && place.y <= ny)) return;
+  if (sums.empty()) sums.assign(static_cast<std::size_t>(2) * nx * ny, 0);
+  const double x = std::clamp(place.x - 0.5, 0.0, nx - 1.0), y = std::clamp(place.y - 0.5, 0.0, ny - 1.0);
+  const int x0 = static_cast<int>(x), y0 = static_cast<int>(y), x1 = std::min(x0 + 1, nx - 1), y1 = std::min(y0 + 1, ny - 1);
+  const double u = x - x0, v = y - y0;
+  const auto give = [&](int cx, int cy, double part) {
+    std::int64_t *const of_column = &sums[2 * (static_cast<std::size_t>(cy) * nx + cx)];
+    of_column[0] += static_cast<std::int64_t>(mass * part / SUM_UNIT + 0.5);
+    of_column[1] += static_cast<std::int64_t>(softness * part / SUM_UNIT + 0.5);
+  };
+  give(x0, y0, (1.0 - u) * (1.0 - v));
+  give(x1, y0, u * (1.0 - v));
+  give(x0, y1, (1.0 - u) * v);
+  give(x1, y1, u * v);
+}
+
 void Occupancy::clear()
 {
+  std::fill(sums.begin(), sums.end(), 0);
   for (int z = touched.low[2]; z < touched.high[2]; ++z)
     for (int y = touched.low[1]; y < touched.high[1]; ++y) {
       const auto first = count.begin() + static_cast<std::ptrdiff_t>(number(0, y, z));
@@ -142,12 +161,17 @@ void Occupancy::clear()
 void Occupancy::sum_over(const RankSums &ranks)
 {
   if (ranks.alone()) return;
-  int bounds[6];
+  int bounds[7];
   for (int d = 0; d < 3; ++d) {
     bounds[d] = touched.low[d];
     bounds[3 + d] = -touched.high[d];
   }
-  ranks.lowest(bounds, 6);
+  bounds[6] = sums.empty() ? 0 : -1;
+  ranks.lowest(bounds, 7);
+  if (bounds[6]) {    // some rank has mass
+    sums.resize(static_cast<std::size_t>(2) * nx * ny, 0);
+    ranks.add_wide(sums.data(), static_cast<int>(sums.size()));
+  }
   for (int d = 0; d < 3; ++d) {
     touched.low[d] = bounds[d];
     touched.high[d] = -bounds[3 + d];

@@ -9,6 +9,7 @@
 #include "liquid/rank_sums.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace mdanim {
@@ -43,6 +44,9 @@ class Occupancy {
   // The same, but each sample is spread over all cells that the box around its part of the lattice cell overlaps, in proportion:
   // counts change smoothly as a body moves. Cells inside a body of any attitude get 0.98 of FULL_SPREAD and more.
   void spread_cell(const Vec3 corner[8]);
+  // Mass at a place, in cells of liquid, and by how much it is compressed by a cell of liquid that stands on the column, in cells:
+  // shared among the four columns around, in whole numbers.
+  void add_mass(const Vec3 &place, double mass, double softness);
   // The paper's literal rule: the cell that holds a particle is full.
   void add_particle(const Vec3 &place);
 
@@ -56,10 +60,15 @@ class Occupancy {
   int nx, ny, nz;
   std::vector<int> count;    // x fastest
   CellBox touched;           // all counts outside are 0
+  double mass_of(int column) const { return sums.empty() ? 0.0 : static_cast<double>(sums[2 * column]) * SUM_UNIT; }
+  double softness_of(int column) const { return sums.empty() ? 0.0 : static_cast<double>(sums[2 * column + 1]) * SUM_UNIT; }
 
  private:
   void add(const Vec3 &place, int weight);
   void spread(const Vec3 &place, const Vec3 &half, int weight);
+
+  static constexpr double SUM_UNIT = 1.0 / (1 << 24);
+  std::vector<std::int64_t> sums;    // mass and softness of each column, in units; empty before any is added
 };
 
 }    // namespace mdanim

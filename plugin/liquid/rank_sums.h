@@ -4,6 +4,8 @@
 #ifndef MDANIM_RANK_SUMS_H
 #define MDANIM_RANK_SUMS_H
 
+#include <cstdint>
+
 namespace mdanim {
 
 // All ranks call together; of a process that is alone, this class itself, nothing changes. Whole numbers only: their sums do not
@@ -12,7 +14,9 @@ class RankSums {
  public:
   virtual ~RankSums() = default;
   virtual bool alone() const { return true; }
+  virtual bool first() const { return true; }    // whether this is the first rank
   virtual void add(int * /*values*/, int /*count*/) const {}
+  virtual void add_wide(std::int64_t * /*values*/, int /*count*/) const {}
   virtual void lowest(int * /*values*/, int /*count*/) const {}
 };
 

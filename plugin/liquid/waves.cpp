@@ -82,12 +82,15 @@ void Waves::use_general_form()
   list_irregular();
 }
 
-void Waves::pour(const double *height)
+void Waves::pour(const double *height, const double *from)
 {
   resting = false;
   each_span([&](long i) {
     const double level = height[span[i].column];
-    content[i] = static_cast<Units>(volume_below(solid, span[i], level) * UNITS_PER_CELL);
+    const auto up_to = [&](double z) {    // not a unit less than it can hold
+      return z >= span[i].roof ? span[i].capacity : static_cast<Units>(volume_below(solid, span[i], z) * UNITS_PER_CELL);
+    };
+    content[i] = up_to(level) - (from ? up_to(std::min(level, from[span[i].column])) : 0);
     const Head head = head_of(solid, span[i], content[i]);
     const bool full = content[i] >= span[i].capacity;
     arrays.full[i] = full ? 1.0 : 0.0;

@@ -28,8 +28,9 @@ class Waves {
   // held (null: everywhere). Liquid makes way. Throws std::runtime_error when there is no room for it; nothing can be done with
   // the waves any more after that.
   void set_solids(const std::uint16_t *part, const double *mass);
-  // Fills all spans of each column up to a height; those that are full get the pressure of that height.
-  void pour(const double *height);
+  // Fills all spans of each column up to a height; those that are full get the pressure of that height. `from`: what would be
+  // below this height is left out.
+  void pour(const double *height, const double *from = nullptr);
   // Velocities of links, in the order of links().
   void set_velocities(const double *u);
   void update(double dt);
@@ -75,6 +76,27 @@ class Waves {
     double floor, head, volume, rising, u[2], jet;
   };
   Top top_of(int column) const;
+
+  // --- for what floats in it (waves_coupling.cpp) ---
+
+  // The n-th span of a column, from the lowest up.
+  struct SpanView {
+    int low, high;
+    double floor, roof, phi;
+    bool wet, full;
+  };
+  int spans_of(int column) const { return spans_in[column]; }
+  SpanView span_view(int column, int n) const;
+  // West, east, south and north of a span, through its widest wet link: by how much the head that pushes is higher there, and
+  // the velocity; 0 where there is none.
+  struct Sides {
+    double rise[4], u[4];
+  };
+  Sides around(int column, int n) const;
+  // Momentum along x and y for each column of its liquid, in cells of liquid. Liquid at rest stays so where that is next to
+  // nothing.
+  void add_impulse(const double *x, const double *y);
+  const SolidParts &solids() const { return solid; }
 
   // Everything that later updates depend on, between updates.
   std::vector<std::uint8_t> state() const;

@@ -24,7 +24,6 @@ using namespace LAMMPS_NS;
 
 namespace mdanim {
 
-static constexpr double SPLASH = 1.5;    // cells below the surface within which an empty cell is taken for a ripple
 static constexpr const char *STYLE = "fix mdanim/liquid";
 
 // --- the command ---
@@ -48,7 +47,7 @@ bool Buoyancy::keyword(int iarg, const char *word, const char *value)
   return true;
 }
 
-void Buoyancy::init(const std::string &fix, Basin::Model model)
+void Buoyancy::init(const std::string &fix)
 {
   if (slows && !lambda_column.given())
     error->all(FLERR, "{}: drag needs lambda d_NAME, the property that fix mdanim/leapfrog reads", fix);
@@ -64,7 +63,6 @@ void Buoyancy::init(const std::string &fix, Basin::Model model)
         FLERR,
         "{}: faces names i2_{}, which is no property of 3 integers a face; make it with 'fix ID all property/atom i2_{} 36'", fix,
         faces_of.name, faces_of.name);
-  if (model == Basin::Model::PAPER) error->all(FLERR, "{}: model paper knows no pressure on faces; leave faces out", fix);
 }
 
 // --- what depends on lists ---
@@ -115,33 +113,46 @@ void Buoyancy::append_required_atoms(std::vector<int> &particles) const
 
 // --- a step ---
 
-void Buoyancy::act(const Basin &basin, const std::vector<int> &near)
+void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
 {
   wet.clear();
   if (!lifts || near.empty()) return;
   const Lap lap(seconds);
-  double *const *x = atom->x, *const *f = atom->f;
+  double *const *x = atom->x, *const *v = atom->v, *const *f = atom->f;
   const double *volumes = volume.values(lmp), *gammas = slows ? gamma.values(lmp) : nullptr;
   double *lambda = slows ? lambda_column.values(lmp) : nullptr;
   const double *base = base_column.given() ? base_column.values(lmp) : nullptr;
   for (Face &face : faces) face.push = pressure_on(face, basin);
   const double floor = basin.shape.low.z, height = basin.shape.cell.z;
   const double above = floor + (basin.top() + 1.0) * height;    // nothing is immersed from here up
-  // All is from here down, as far as the basin reaches; most particles of a large body need not look up the surface.
-  const bool deep = basin.model == Basin::Model::SURFACE && basin.lowest_surface() >= 1.0;
-  const double below = deep ? floor + (basin.lowest_surface() - 0.5) * height : -std::numeric_limits<double>::infinity();
+  const double below = basin.all_below();                       // most particles of a large body need not look up the surface
+  const double scale = update->dt * force->ftm2v / rho;
   for (std::size_t n = 0; n < near.size(); ++n) {
     const int i = near[n];
     const double z = x[i][2];
-    const double s = z >= above ? 0.0 : z <= below && basin.over_floor(x[i]) ? 1.0 : basin.immersed(basin.in_cells(x[i]));
+    Basin::AtPlace at;
+    if (z < above) {
+      if (z <= below && basin.over_floor(x[i]))
+        at.immersed = at.push.z = 1.0;
+      else
+        at = basin.at(basin.in_cells(x[i]));
+    }
+    const double s = at.immersed;
     const double own = volumes ? volumes[i] : volume.number;
     const double own_lambda = slows ? liquid_lambda(gammas ? gammas[i] : gamma.number, rho, own, s) / force->ftm2v : 0.0;
     if (lambda) lambda[i] = (base ? base[i] : 0.0) + own_lambda;
     Vec3 push;
     if (!pressed())
-      push.z = lift(rho, own, s, basin.g);
+      push = {lift(rho, own, at.push.x, basin.g), lift(rho, own, at.push.y, basin.g), lift(rho, own, at.push.z, basin.g)};
     else
       for (int k = face_of_first[n]; k < face_of_first[n + 1]; ++k) push += faces[face_of[k]].push;
+    if (own_lambda > 0.0 && basin.takes_impulses()) {
+      // Drag is against the liquid, not against the floor, and takes it along.
+      const double strength = liquid_lambda(gammas ? gammas[i] : gamma.number, rho, own, s);
+      push += strength / force->ftm2v * at.flow;
+      const Vec3 relative = vec3(v[i]) - at.flow;
+      if (in_step) basin.take_impulse(basin.in_cells(x[i]), scale * strength / force->ftm2v * Vec3{relative.x, relative.y, 0.0});
+    }
     if (s == 0.0 && dot(push, push) == 0.0) continue;
     add_to(f[i], push);
     wet.push_back({i, push, own_lambda});
@@ -154,15 +165,8 @@ Vec3 Buoyancy::pressure_on(const Face &face, const Basin &basin) const
   const double *const *x = atom->x;
   const Vec3 a = vec3(x[face.corner[0]]), b = vec3(x[face.corner[1]]), c = vec3(x[face.corner[2]]), d = vec3(x[face.corner[3]]);
   const Vec3 middle = 0.25 * ((a + c) + (b + d));
-  if (!basin.over_floor(&middle.x)) return {};
-  const Vec3 place = basin.in_cells(&middle.x);
-  const double depth = basin.surface_at(place) - place.z;
+  const double depth = basin.pressing_depth(middle, cross(c - a, d - b));
   if (depth <= 0.0) return {};
-  if (depth > SPLASH) {
-    const Vec3 area = cross(c - a, d - b);
-    const double size = std::sqrt(dot(area, area));
-    if (size == 0.0 || basin.air_before(middle, (1.0 / size) * area)) return {};
-  }
   return corner_push(rho * basin.g * depth * basin.shape.cell.z, a, b, c, d);
 }
 

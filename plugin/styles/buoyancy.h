@@ -24,15 +24,15 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   // Takes a keyword of the command; false when it is none of buoyancy, drag, lambda, base and faces.
   bool keyword(int iarg, const char *word, const char *value);
   // Refuses keywords that do not fit together. `fix` begins messages.
-  void init(const std::string &fix, Basin::Model model);
+  void init(const std::string &fix);
   bool pressed() const { return faces_of.given(); }
 
   // New lists: leaves the particles of a group the friction that they have anyway; finds the faces of the particles near the
   // liquid.
   void clear_friction(int groupbit) const;
   void find_faces(const std::vector<int> &near, const std::string &fix);
-  // Adds forces and sets friction.
-  void act(const Basin &basin, const std::vector<int> &near);
+  // Adds forces and sets friction; in a step the liquid feels what it does.
+  void act(Basin &basin, const std::vector<int> &near, bool in_step);
   // The account begins at the velocities of now, and goes on by a step.
   void begin_account() { last = power(); }
   void account();
@@ -42,6 +42,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   // Of all ranks; and all of it on the first one.
   Basin::Energies energies() const;
   void set_energies(const Basin::Energies &energies);
+  double density() const { return rho; }
   double bytes() const { return static_cast<double>(wet.capacity() * sizeof(Wet)); }
   double seconds = 0.0;
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The command, solids as samples on the grid, the particles near the liquid, and output.
+// The command, the particles near the liquid, and output.
 
 #include "styles/fix_mdanim_liquid.h"
 
 #include "engine/stopwatch.h"
 #include "laws/vec3.h"
+#include "liquid/automaton_basin.h"
+#include "liquid/wave_basin.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -35,6 +37,13 @@ bool FixMdanimLiquid::WorldSums::alone() const { return lmp->comm->nprocs == 1; 
 void FixMdanimLiquid::WorldSums::add(int *values, int count) const
 { MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_INT, MPI_SUM, lmp->world); }
 
+bool FixMdanimLiquid::WorldSums::first() const { return lmp->comm->me == 0; }
+
+void FixMdanimLiquid::WorldSums::add_wide(std::int64_t *values, int count) const
+{
+  if (!alone()) MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_INT64_T, MPI_SUM, lmp->world);
+}
+
 void FixMdanimLiquid::WorldSums::lowest(int *values, int count) const
 { MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_INT, MPI_MIN, lmp->world); }
 
@@ -47,7 +56,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   extscalar = 1;
   energy_global_flag = 1;
   vector_flag = 1;
-  size_vector = 11;
+  size_vector = 13;
   extvector = 0;
   array_flag = 1;
   size_array_cols = 4;
@@ -73,14 +82,12 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
     n[d] = utils::inumeric(FLERR, arg[6 + d], false, lmp);
     if (n[d] < 1) error->all(FLERR, 6 + d, "fix mdanim/liquid: grid must be >= 1 along every axis, got {}", arg[6 + d]);
   }
-  const std::string too_large = Basin::too_large(n[0], n[1], n[2]);
-  if (!too_large.empty()) error->all(FLERR, 6, "fix mdanim/liquid: {}", too_large);
 
   bool has_volume = false;
   double g = -1.0;
   bigint seed = 1;
   Vertical vertical = Vertical::LOWER;
-  Basin::Model model = Basin::Model::SURFACE;
+  double calm = 0.0;
   Basin::Pace pace;
   for (int iarg = 9; iarg < narg;) {
     if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", arg[iarg]), error);
@@ -102,11 +109,16 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
       if (!(g > 0.0)) error->all(FLERR, iarg + 1, "fix mdanim/liquid: gravity, along -z, must be > 0, got {}", value);
     } else if (strcmp(word, "model") == 0) {
       if (strcmp(value, "surface") == 0)
-        model = Basin::Model::SURFACE;
+        model = Model::SURFACE;
       else if (strcmp(value, "paper") == 0)
-        model = Basin::Model::PAPER;
+        model = Model::PAPER;
+      else if (strcmp(value, "waves") == 0)
+        model = Model::WAVES;
       else
-        error->all(FLERR, iarg + 1, "fix mdanim/liquid: model must be surface or paper, got {}", value);
+        error->all(FLERR, iarg + 1, "fix mdanim/liquid: model must be surface, paper or waves, got {}", value);
+    } else if (strcmp(word, "calm") == 0) {
+      calm = utils::numeric(FLERR, value, false, lmp);
+      if (!(calm > 0.0)) error->all(FLERR, iarg + 1, "fix mdanim/liquid: calm must be > 0, got {}", value);
     } else if (strcmp(word, "vertical") == 0) {
       if (strcmp(value, "lower") == 0)
         vertical = Vertical::LOWER;
@@ -120,8 +132,8 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
       used = keyword(iarg, narg, arg, pace);
       if (!used)
         error->all(FLERR, iarg,
-                   "fix mdanim/liquid: unknown keyword {}; it knows volume, level, fill, gravity, model, vertical, "
-                   "seed, buoyancy, drag, lambda, base, cells, faces, still, sweeps, every, stride and period",
+                   "fix mdanim/liquid: unknown keyword {}; it knows volume, level, fill, gravity, model, calm, vertical, "
+                   "seed, buoyancy, drag, lambda, base, cells, faces, softness, still, sweeps, every, stride and period",
                    word);
     }
     iarg += used;
@@ -135,9 +147,18 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
                      (region->extent_zhi - low.z) / n[2]};
   if (has_level && !(level_asked > low.z && level_asked <= region->extent_zhi))
     error->all(FLERR, "fix mdanim/liquid: level {} is not within the basin, {} to {}", level_asked, low.z, region->extent_zhi);
+  const Basin::Shape shape{n[0], n[1], n[2], low, cell};
+  if (calm > 0.0 && model != Model::WAVES)
+    error->all(FLERR, "fix mdanim/liquid: calm is for model waves; leave it out, or write model waves");
+  const std::string refused = model == Model::WAVES ? WaveBasin::unusable(shape) : AutomatonBasin::too_large(n[0], n[1], n[2]);
+  if (!refused.empty()) error->all(FLERR, 6, "fix mdanim/liquid: {}", refused);
   try {
-    const Basin::Shape shape{n[0], n[1], n[2], low, cell};
-    basin = std::make_unique<Basin>(shape, g, static_cast<std::uint64_t>(seed), vertical, model, sums);
+    if (model == Model::WAVES)    // an amplitude falls at half the rate of friction
+      basin = std::make_unique<WaveBasin>(shape, g, calm > 0.0 ? 2.0 / calm : 0.0, sums);
+    else
+      basin = std::make_unique<AutomatonBasin>(
+          shape, g, static_cast<std::uint64_t>(seed), vertical,
+          model == Model::PAPER ? AutomatonBasin::Model::PAPER : AutomatonBasin::Model::SURFACE, sums);
   } catch (const std::bad_alloc &) {
     error->one(FLERR, "fix mdanim/liquid: no memory for a grid of {:.3g} cells; use fewer, larger cells",
                1.0 * n[0] * n[1] * n[2]);
@@ -150,14 +171,16 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
 int FixMdanimLiquid::keyword(int iarg, int narg, char **arg, Basin::Pace &pace)
 {
   const char *word = arg[iarg];
-  static const char *const known[] = {"buoyancy", "drag",   "lambda", "base",   "cells", "faces",
-                                      "still",    "sweeps", "every",  "stride", "period"};
+  static const char *const known[] = {"buoyancy", "drag",   "lambda", "base",   "cells",  "faces",   "softness",
+                                      "still",    "sweeps", "every",  "stride", "period", "softness"};
   if (std::none_of(std::begin(known), std::end(known), [&](const char *k) { return strcmp(k, word) == 0; })) return 0;
   if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", word), error);
   const char *value = arg[iarg + 1];
   if (buoyancy->keyword(iarg, word, value)) return 2;
   if (strcmp(word, "cells") == 0) {
     lattice_cells = ParticleTable(lmp, "fix mdanim/liquid: cells", iarg + 1, value);
+  } else if (strcmp(word, "softness") == 0) {
+    softness = ParticleColumn(lmp, "fix mdanim/liquid", word, iarg + 1, value);
   } else if (strcmp(word, "still") == 0) {
     still_bit = group_bit(iarg + 1, value);
   } else if (strcmp(word, "sweeps") == 0) {
@@ -196,7 +219,13 @@ void FixMdanimLiquid::init()
   if (domain->triclinic) error->all(FLERR, "{}: a triclinic box is not supported", name());
   if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
     error->all(FLERR, "{}: periodic boundaries are not supported; use boundary s, f or m", name());
-  buoyancy->init(name(), basin->model);
+  buoyancy->init(name());
+  if (buoyancy->pressed() && model == Model::PAPER)
+    error->all(FLERR, "{}: model paper knows no pressure on faces; leave faces out", name());
+  if (buoyancy->pressed() && model == Model::WAVES)
+    error->all(FLERR, "{}: model waves presses on all solids without faces; leave faces out", name());
+  if (model == Model::WAVES && !lattice_cells.given())
+    error->all(FLERR, "{}: model waves needs the lattice cells of solids; add cells i2_NAME, or write model surface", name());
   if (lattice_cells.given() && lattice_cells.width(lmp) != 7)
     error->all(
         FLERR,
@@ -205,57 +234,6 @@ void FixMdanimLiquid::init()
   if ((lattice_cells.given() || buoyancy->pressed()) && atom->map_style == Atom::MAP_NONE)
     error->all(FLERR, "{}: cells and faces need an atom map; use 'atom_modify map array'", name());
   lists_are_prompt = neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once;
-}
-
-// --- solids on the grid ---
-
-// Bodies that never move (or all others), as far as they reach below a height.
-Basin::AddBodies FixMdanimLiquid::bodies(bool still) const
-{
-  const bool by_cells = lattice_cells.given() && basin->model != Basin::Model::PAPER;
-  return [=](Occupancy &into, double below) {
-    if (by_cells)
-      add_lattice_cells(into, still, below);
-    else
-      add_particles(into, still, below);
-  };
-}
-
-void FixMdanimLiquid::add_particles(Occupancy &into, bool still, double below) const
-{
-  for (int i = 0; i < atom->nlocal; ++i) {
-    const int mask = atom->mask[i];
-    if (!(mask & groupbit) || static_cast<bool>(mask & still_bit) != still) continue;
-    const Vec3 place = basin->in_cells(atom->x[i]);
-    if (place.z <= below) into.add_particle(place);
-  }
-}
-
-void FixMdanimLiquid::add_lattice_cells(Occupancy &into, bool still, double below) const
-{
-  const int *mask = atom->mask;
-  int *const *corners = lattice_cells.rows(lmp);
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (!(mask[i] & groupbit) || corners[i][0] == 0) continue;
-    int at[8] = {i};
-    int all = mask[i];
-    for (int k = 0; k < 7; ++k) {
-      at[k + 1] = atom->map(corners[i][k]);
-      if (at[k + 1] < 0)
-        error->one(FLERR,
-                   "{}: particle {}, a corner of the lattice cell of particle {}, is out of reach; raise comm_modify cutoff",
-                   name(), corners[i][k], atom->tag[i]);
-      all &= mask[at[k + 1]];
-    }
-    if (static_cast<bool>(all & still_bit) != still) continue;
-    Vec3 corner[8];
-    double bottom = ANYWHERE;
-    for (int k = 0; k < 8; ++k) {
-      corner[k] = basin->in_cells(atom->x[at[k]]);
-      bottom = std::min(bottom, corner[k].z);
-    }
-    if (bottom <= below) into.add_cell(corner);
-  }
 }
 
 // --- the liquid ---
@@ -273,26 +251,26 @@ template <class Work> void FixMdanimLiquid::in_basin(Work &&work)
 void FixMdanimLiquid::pour()
 {
   basin->mark_moving(bodies(false));
-  const Cells &cells = basin->cells();
-  const Vec3 &low = basin->shape.low, &cell = basin->shape.cell;
-  std::vector<std::uint8_t> within(static_cast<std::size_t>(cells.nx) * cells.ny * cells.nz, 1);
+  const Basin::Shape &shape = basin->shape;
+  const Vec3 &low = shape.low, &cell = shape.cell;
+  std::vector<std::uint8_t> within(static_cast<std::size_t>(shape.nx) * shape.ny * shape.nz, 1);
   if (!fill_id.empty()) {
     Region *fill = domain->get_region_by_id(fill_id);
     if (!fill) error->all(FLERR, "{}: region {} has been deleted", name(), fill_id);
     fill->prematch();
-    cells.each([&](int x, int y, int z) {
-      within[cells.number(x, y, z)] =
+    CellBox{{0, 0, 0}, {shape.nx, shape.ny, shape.nz}}.each([&](int x, int y, int z) {
+      within[basin->cell_number(x, y, z)] =
           fill->match(low.x + (x + 0.5) * cell.x, low.y + (y + 0.5) * cell.y, low.z + (z + 0.5) * cell.z);
     });
   }
-  const std::int64_t units = has_level ? basin->units_up_to(level_asked, within) : basin->units_of(volume_asked);
-  if (units < 1)
+  const Basin::Amount amount{has_level, has_level ? level_asked : volume_asked};
+  const Basin::Filled filled = basin->fill(amount, within, static_cast<std::uint64_t>(update->ntimestep));
+  if (filled.wanted < 1)
     error->all(FLERR, "{}: {} is less than half a cell of liquid; use more liquid or smaller cells", name(),
                has_level ? fmt::format("level {}", level_asked) : fmt::format("volume {}", volume_asked));
-  const long left = basin->pour(units, within, static_cast<std::uint64_t>(update->ntimestep));
-  if (left)
+  if (filled.left)
     error->all(FLERR, "{}: {} of {} cells of liquid find no room beside the solids in {}; use less liquid or a larger basin",
-               name(), left, units, fill_id.empty() ? "the basin" : "the region to fill");
+               name(), filled.left, filled.wanted, fill_id.empty() ? "the basin" : "the region to fill");
 }
 
 // Asks once for a step.
@@ -372,14 +350,14 @@ void FixMdanimLiquid::find_near(double margin)
 
 void FixMdanimLiquid::setup(int)
 {
-  buoyancy->act(*basin, near);
+  buoyancy->act(*basin, near, false);
   buoyancy->begin_account();
 }
 
 void FixMdanimLiquid::post_force(int)
 {
   if (due()) update_liquid();
-  buoyancy->act(*basin, near);
+  buoyancy->act(*basin, near, true);
 }
 
 void FixMdanimLiquid::end_of_step() { buoyancy->account(); }
@@ -403,31 +381,34 @@ double FixMdanimLiquid::safe_displacement() const
 
 double FixMdanimLiquid::compute_scalar() { return -buoyancy->energies().work; }
 
-// 1 units of liquid; 2 at the start; 3 mean level; 4 solid cells; 5 sweeps; 6 awake; 7 energy lost to drag;
-// wall seconds of the slowest rank for 8 automaton, 9 occupancy, 10 coupling, 11 all
+// 1 cells of liquid; 2 at the start; 3 mean level; 4 solid cells; 5 sweeps, of waves updates; 6 awake; 7 energy lost to drag;
+// wall seconds of the slowest rank for 8 liquid, 9 occupancy, 10 coupling, 11 all; 12 energy of waves; 13 highest liquid
 double FixMdanimLiquid::compute_vector(int n)
 {
   switch (n) {
     case 0:
-      return static_cast<double>(basin->units_now());
+      return basin->cells_now();
     case 1:
-      return static_cast<double>(basin->units_at_start());
+      return basin->cells_at_start();
     case 2:
       return basin->mean_level();
     case 3:
       return static_cast<double>(basin->solid_cells());
     case 4:
-      return static_cast<double>(basin->sweeps_so_far());
+      return static_cast<double>(basin->updates_so_far());
     case 5:
       return !(basin->is_calm() && none_near);
     case 6:
       return buoyancy->energies().lost;
+    case 11:
+      return basin->energy() * buoyancy->density() * basin->g * basin->cell_volume() * basin->shape.cell.z;
+    case 12:
+      return top_height(basin->highest());
     default:
       break;
   }
-  const double automaton = basin->automaton_seconds, occupancy = basin->occupancy_seconds,
-               coupling = look_seconds + buoyancy->seconds;
-  const double here[] = {automaton, occupancy, coupling, automaton + occupancy + coupling};
+  const double liquid = basin->liquid_seconds, occupancy = basin->occupancy_seconds, coupling = look_seconds + buoyancy->seconds;
+  const double here[] = {liquid, occupancy, coupling, liquid + occupancy + coupling};
   double slowest = 0.0;
   MPI_Allreduce(&here[n - 7], &slowest, 1, MPI_DOUBLE, MPI_MAX, world);
   return slowest;

@@ -52,7 +52,9 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
    public:
     explicit WorldSums(const LAMMPS *lmp) : lmp(lmp) {}
     bool alone() const override;
+    bool first() const override;
     void add(int *values, int count) const override;
+    void add_wide(std::int64_t *values, int count) const override;
     void lowest(int *values, int count) const override;
 
    private:
@@ -74,12 +76,16 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   double top_height(double cells) const;    // [distance]
   bool asleep() const { return none_near && basin->is_calm() && basin->moving_solid() == 0; }
 
+  enum class Model { SURFACE, PAPER, WAVES };
+
   // of the command
+  Model model = Model::SURFACE;
   std::string region_id, fill_id;
   double volume_asked = -1.0, level_asked = 0.0;
   bool has_level = false;
   int still_bit = 0;
   mdanim::ParticleTable lattice_cells;
+  mdanim::ParticleColumn softness;    // volume over Young's modulus
 
   WorldSums sums;
   std::unique_ptr<mdanim::Basin> basin;

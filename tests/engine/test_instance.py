@@ -18,7 +18,8 @@ from mdanim_lammps.run.prepare import Prepared
 from scene_texts import MEETING, SPLASH
 from twin import world
 
-SCENES = [pytest.param(MEETING, id="solids"), pytest.param(SPLASH, id="liquid")]
+WAVES = SPLASH.replace("volume 45 l", "volume 45 l model waves")
+SCENES = [pytest.param(MEETING, id="solids"), pytest.param(SPLASH, id="liquid"), pytest.param(WAVES, id="waves")]
 
 
 def state(instance):
@@ -152,7 +153,7 @@ def test_pieces_of_a_run_give_the_bits_of_one(prepared, text):
         assert np.array_equal(state(whole), state(pieces))
 
 
-@pytest.mark.parametrize("text", [pytest.param(MEETING.replace("drag 0.8", "drag 0.8\n  damping 0.1"), id="solids"), SCENES[1]])
+@pytest.mark.parametrize("text", [pytest.param(MEETING.replace("drag 0.8", "drag 0.8\n  damping 0.1"), id="solids"), *SCENES[1:]])
 def test_restore_goes_on_bit_for_bit(prepared, text):
     """Go on from a stored state, dashpots and liquid included, as if nothing had happened."""
     ready = prepared(text)

@@ -26,6 +26,7 @@ SCENES = {
     "solids": NEARER.replace("drag 0.8", "drag 0.8\n  damping 0.05"),
     "liquid": SPLASH,
     "pressure": SPLASH.replace("volume 45 l", "volume 45 l model pressure"),
+    "waves": SPLASH.replace("volume 45 l", "volume 45 l model waves"),
 }
 MOVING = {
     **{name: SHAPES[name] for name in ("sphere", "held", "damped", "damped beside others", "damped and held")},
@@ -34,12 +35,14 @@ MOVING = {
 }
 """Scenes whose steps are taken by passes."""
 ACCOUNTS = np.s_[80:96]
-"""Bytes of a liquid's state that only tell energies, StateHead in plugin/liquid/basin_state.cpp."""
+"""Bytes of a liquid's state that only tell energies, in the heads of plugin/liquid/automaton_basin_state.cpp and of
+wave_basin_state.cpp."""
 
 
 @pytest.mark.mpi
 @pytest.mark.parametrize(
-    ("name", "ranks"), [("solids", 2), ("solids", 3), ("solids", 4), ("liquid", 2), ("liquid", 4), ("pressure", 3)]
+    ("name", "ranks"),
+    [("solids", 2), ("solids", 3), ("solids", 4), ("liquid", 2), ("liquid", 4), ("pressure", 3), ("waves", 2), ("waves", 3)],
 )
 def test_ranks_see_what_one_sees(tmp_path, name, ranks):
     """Follow contact, dashpots, drag, held particles and liquid, take back steps, move all particles: the same bits on

@@ -29,6 +29,8 @@ def scene(block: str, **settings: str):
         blocks |= {"contact": {}, "floor": dict(BALL)}
     if block == "contact" or any(settings.get(word, "0") != "0" for word in OF_SURFACES):
         blocks["control"]["contact-model"] = "surface"
+    if block == "liquid" and settings.get("calm", "auto") != "auto":
+        blocks["liquid"]["model"] = "waves"
     top = {"gravity": "(0, 0, -9.81) m/s^2"}
     chosen = blocks[block] if block else top
     for word in settings:

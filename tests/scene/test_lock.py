@@ -131,6 +131,8 @@ def scenes(draw):
         by_volume = draw(st.booleans())
         share = draw(st.floats(0.1, 0.9))
         taken = {b.name for b in bodies}
+        model = draw(st.sampled_from(records.LiquidModel))
+        waves = model is records.LiquidModel.WAVES
         liquid = records.Liquid(
             name=draw(words.filter(lambda w: w not in taken)),
             low=basin.low,
@@ -139,8 +141,9 @@ def scenes(draw):
             volume=room * share if by_volume else None,
             level=None if by_volume else basin.low[2] + share * (basin.high[2] - basin.low[2]),
             drag=draw(st.none() | st.floats(0, 100)),
-            model=draw(st.sampled_from(records.LiquidModel)),
-            sweeps=draw(st.none() | st.integers(1, 100)),
+            model=model,
+            calm=draw(st.none() | positive) if waves else None,
+            sweeps=None if waves else draw(st.none() | st.integers(1, 100)),
             fill=draw(st.none() | st.just((basin.low, basin.high))),
             color=draw(colors),
         )

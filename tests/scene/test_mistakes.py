@@ -164,6 +164,8 @@ MISTAKES = [
      "6 l of liquid do not fit into the fill region of 5 l", "larger fill region"),
     ("level outside fill", pool("level 0.1 m fill from (0, 0, 0.2) m to (1, 1, 1) m"), 3, 9,
      "the level 10 cm is outside the fill region, which goes from 20 cm to 1 m", ""),
+    ("calm without waves", pool("level 0.5 m calm 3 s"), 3, 15, "model surface has no calm", "leave the line out"),
+    ("sweeps of waves", pool("level 0.5 m model waves sweeps 3"), 3, 27, "model waves has no sweeps", "leave the line out"),
     ("basin upside down", pool("volume 1 l basin from (0, 0, 1) m to (1, 1, 0) m"), 3, 40,
      "the basin has no extent along z", "lower corner"),
     ("outside the walls", text("walls from (2, 2, 2) m to (3, 3, 3) m\n"), 4, 12,

@@ -57,6 +57,8 @@ class Effect:
     """ID of its LAMMPS fix of ours, which times itself; empty when it has none."""
     ledger = ""
     """The column of ledger.csv with the energy that it stores; empty when it stores none."""
+    further_ledger: tuple[str, ...] = ()
+    """Further columns of that kind, see `further_energies`."""
     has_potential = False
     """Whether its energy is a `potential` of single particles; no other effect has the same column then."""
     uses_grid = False
@@ -122,6 +124,10 @@ class Effect:
     def energy(self, readings: Readings) -> float:
         """What stands in its column ``ledger`` now [J]."""
         return self.potential(readings.scene, readings.system.mass, readings.array("x")) if self.has_potential else 0.0
+
+    def further_energies(self, readings: Readings) -> dict[str, float]:
+        """What stands in its columns ``further_ledger`` now [J]."""
+        return {}
 
     def potential(self, scene: SceneRecord, mass: np.ndarray, x: np.ndarray) -> float:
         """Its energy, where that follows from the places of particles alone [J]; mass [kg], shape (N,), x [m], shape (N, 3)."""

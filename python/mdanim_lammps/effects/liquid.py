@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from ..errors import Problem
 from ..model.basin import liquid_level
 from ..model.embed import FACES
 from ..model.system import System
@@ -26,10 +27,19 @@ PERIOD = 0.06
 """Time between updates of a liquid that is not level, over sqrt(cell/g)."""
 NEAR = 8.0
 """Cells above the liquid up to which the motion of solids counts for it; as in the fix."""
-CELLS, CELLS_AT_START, AUTOMATON, OCCUPANCY, COUPLING = 0, 1, 7, 8, 9
-"""In the fix's vector: whole cells of liquid now and before step 0, and three clocks [s]."""
+CELLS, CELLS_AT_START, AUTOMATON, OCCUPANCY, COUPLING, WAVES, CREST = 0, 1, 7, 8, 9, 11, 12
+"""In the fix's vector: whole cells of liquid now and before step 0, three clocks [s], the energy of a liquid with momentum since
+then [J], its highest point [m]."""
+WAVE_PERIOD = 0.1
+"""As PERIOD, of waves."""
+CALM = 50.0
+"""Time in which waves die, over sqrt(depth/g)."""
+WAVE_DRAG = 1.0 / 3.0
+"""Part of the usual drag that is left where waves take energy away."""
 DRAGGING = 0.07
 """Part of the coupling's time that drag takes (bench/effects.py shares)."""
+SHALLOW = 4
+"""Fewest cells of depth that show waves."""
 SWEEPS = 4
 """Fewest sweeps of the automaton for each cell that the fastest solid travels; 8 are better (docs/physics-liquid.md)."""
 
@@ -75,6 +85,9 @@ class LiquidAutomaton(Effect):
             return Verdict(self.name, False, "no liquid in the scene")
         return Verdict(self.name, True, f"{scene.liquid.name} in a basin", scene.liquid.spans.get("liquid"))
 
+    def of(self, scene):
+        return LiquidWaves() if _is_wavy(scene) else self
+
     def margins(self, envelope):
         """Sweeps for each cell that the fastest solid travels: it may go on for EVERY steps before the fix looks."""
         liquid, cell = envelope.scene.liquid, min(envelope.system.grid.cell)
@@ -117,6 +130,11 @@ class LiquidAutomaton(Effect):
     def max_timestep(self, scene, system):
         return PERIOD / EVERY * math.sqrt(min(system.grid.cell) / -scene.gravity[2])
 
+    def words(self, scene) -> str:
+        """What the command says about the model."""
+        model = "model paper" if scene.liquid.model is LiquidModel.PAPER else "cells i2_cell"
+        return f"{model} still held sweeps {scene.liquid.sweeps or 'auto'} every {EVERY} stride {STRIDE} period {PERIOD}"
+
     def commands(self, scene, system):
         liquid, grid = scene.liquid, system.grid
         fill = [f"region fill {_block(*liquid.fill)}"] if liquid.fill else []
@@ -128,11 +146,41 @@ class LiquidAutomaton(Effect):
             f"volume {liquid.volume!r}" if liquid.volume is not None else f"level {liquid.level!r}",
             *(["fill fill"] if fill else []),
             f"gravity {-scene.gravity[2]!r}",
-            "model paper" if liquid.model is LiquidModel.PAPER else "cells i2_cell",
-            f"still held sweeps {liquid.sweeps or 'auto'} every {EVERY} stride {STRIDE} period {PERIOD} "
+            self.words(scene),
             f"seed {scene.control.seed}",
         ]
         return ["group held type 5:8", f"region liquid {_block(liquid.low, liquid.high)}", *fill, " ".join(words)]
+
+
+class LiquidWaves(LiquidAutomaton):
+    """The same with momentum: columns of whole units that move by pressure."""
+
+    def margins(self, envelope):
+        return []
+
+    def max_timestep(self, scene, system):
+        return WAVE_PERIOD / EVERY * math.sqrt(min(system.grid.cell) / -scene.gravity[2])
+
+    def columns(self, scene, system):
+        return {"softness": system.volume / system.young[system.object]}
+
+    def words(self, scene):
+        calm = scene.liquid.calm or calm_time(scene)
+        return f"model waves calm {calm!r} cells i2_cell softness d_softness still held every {EVERY} stride {STRIDE} period {WAVE_PERIOD}"
+
+    def warnings(self, scene, system):
+        liquid, cell = scene.liquid, system.grid.cell[2]
+        depth = (liquid_level(liquid) - liquid.low[2]) / cell
+        if depth >= SHALLOW:
+            return []
+        return [
+            Problem(
+                liquid.spans.get("level") or liquid.spans.get("volume"),
+                f"{liquid.name} is {number(depth, 2)} cells deep when it lies flat; waves need {SHALLOW}",
+                f"more liquid, or resolution {say(depth * cell / SHALLOW, 'm')}",
+                severity="warning",
+            )
+        ]
 
 
 class Buoyancy(Effect):
@@ -142,6 +190,9 @@ class Buoyancy(Effect):
     ledger = "buoyancy"
     needs = ("liquid",)
     if_off = "objects sink like stones"
+
+    def of(self, scene):
+        return WavePush() if _is_wavy(scene) else self
 
     def called_for(self, scene, planes=None):
         return _reached(self.name, scene)
@@ -181,6 +232,20 @@ class Buoyancy(Effect):
     def clocks(self, readings):
         drag = any(e.name == LiquidDrag.name for e in readings.effects)
         return {"coupling": readings.fix_value(LiquidAutomaton.fix, COUPLING) * (1.0 - DRAGGING * drag)}
+
+
+class WavePush(Buoyancy):
+    """Lift and push by the pressure of a liquid with momentum."""
+
+    ledger = "waves"
+    further_ledger = ("wave_loss",)
+
+    def energy(self, readings):
+        return readings.fix_value(LiquidAutomaton.fix, WAVES)
+
+    def further_energies(self, readings):
+        # What closes the sum with the work on solids, which the scalar is minus of.
+        return {"wave_loss": readings.fix_scalar(LiquidAutomaton.fix) - readings.fix_value(LiquidAutomaton.fix, WAVES)}
 
 
 class LiquidDrag(Effect):
@@ -225,11 +290,17 @@ class LiquidDrag(Effect):
 
 
 def gamma(scene, system: System) -> np.ndarray:
-    """Drag rate of each particle [1/s], shape (N,); ``auto`` is sqrt(g/L), L^3 the volume of its solid."""
+    """Drag rate of each particle [1/s], shape (N,); ``auto`` is sqrt(g/L), L^3 the volume of its solid, or a part of that."""
     if scene.liquid.drag is not None:
         return np.full(system.particles, scene.liquid.drag)
     size = np.cbrt(np.add.reduceat(system.volume, system.first[:-1]))
-    return np.sqrt(-scene.gravity[2] / size)[system.object]
+    part = WAVE_DRAG if _is_wavy(scene) else 1.0
+    return part * np.sqrt(-scene.gravity[2] / size)[system.object]
+
+
+def calm_time(scene) -> float:
+    """Time in which waves die where the scene does not tell it [s]."""
+    return CALM * math.sqrt((liquid_level(scene.liquid) - scene.liquid.low[2]) / -scene.gravity[2])
 
 
 def lattice_cells(system: System) -> np.ndarray:
@@ -271,6 +342,11 @@ def _reached(name: str, scene) -> Verdict:
     if solid is None:
         return Verdict(name, False, "nothing that can move reaches the liquid")
     return Verdict(name, True, f"{solid.name} can reach {scene.liquid.name}", solid.spans.get("object"))
+
+
+def _is_wavy(scene) -> bool:
+    """Whether the liquid has momentum."""
+    return scene.liquid is not None and scene.liquid.model is LiquidModel.WAVES
 
 
 def _block(low, high) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import OutputError
 from ..scene.keywords import did_you_mean
 
-POTENTIALS = ("gravity", "buoyancy")
+POTENTIALS = ("gravity", "buoyancy", "waves")
 """Energies whose zero is arbitrary: only how far they have changed says how much is in play."""
 WHOLE = ("liquid_cells",)
 """Extras that are whole numbers, and written as such."""
@@ -25,8 +25,8 @@ class Ledger:
     """One row per frame: time [s], one energy per effect that is on [J], and the residual.
 
     residual = (total now - total at the start) / (largest energy in play so far). The total is the sum of all columns,
-    losses included; the energy in play is the sum of the columns' absolute values, gravity and buoyancy each counted from
-    its own lowest value so far: their zeros are arbitrary, and a floating body trades one for the other.
+    losses included; the energy in play is the sum of the columns' absolute values, gravity, buoyancy and waves each counted
+    from its own lowest value so far: their zeros are arbitrary, and a floating body trades one for the other.
     """
 
     terms: tuple[str, ...]

@@ -25,7 +25,7 @@ def rounding_energy(system: System) -> float:
 
 def ledger_terms(plan: Plan) -> tuple[str, ...]:
     """Columns of the ledger: kinetic energy, and those of the effects that are on."""
-    of_effects = (term for e in plan.effects for term in (e.ledger, *e.losses(plan.scene)) if term)
+    of_effects = (term for e in plan.effects for term in (e.ledger, *e.further_ledger, *e.losses(plan.scene)) if term)
     return ("kinetic", *dict.fromkeys(of_effects))
 
 
@@ -51,6 +51,7 @@ def stored(instance: Instance) -> dict[str, float]:
     for effect in effects:
         if not effect.has_potential:
             found[effect.ledger] += effect.energy(instance)
+        found |= effect.further_energies(instance)
     return found
 
 

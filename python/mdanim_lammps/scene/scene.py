@@ -150,6 +150,8 @@ class LiquidModel(Enum):
     """The same liquid, lift by its pressure on the outer faces: for open hulls."""
     PAPER = "paper"
     """The paper's rules, word by word."""
+    WAVES = "waves"
+    """A liquid with momentum."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,17 +180,24 @@ class Liquid:
     """Lower and upper corner of the part of the basin that the liquid starts in [m]; None is all of it."""
     drag: float | None = setting(
         "auto | <gamma:1/s>",
-        "Immersed solids feel F = -gamma rho V v with the immersed volume V; `auto` is sqrt(g/L) for a body of size L.",
+        "Immersed solids feel F = -gamma rho V v with the immersed volume V and the velocity v against the liquid; `auto` is "
+        "sqrt(g/L) for a body of size L, with `model waves` a third of that.",
         "4 1/s", Rule.NOT_NEGATIVE, default=None)  # fmt: skip
     """gamma [1/s]; None is ``auto``."""
     model: LiquidModel = setting(
         None,
         "`surface`: draft after Archimedes, occupancy by hexahedra, level rule. `pressure`: the same with the liquid's pressure "
         "on every outer face, so that an open hull floats by the air in it. `paper`: the literal rules of the paper, with a "
-        "warning: not Archimedes, objects denser than about 0.4 of the liquid sink.",
+        "warning: not Archimedes, objects denser than about 0.4 of the liquid sink. `waves`: a liquid with momentum that splashes, "
+        "sloshes and pushes; open hulls float dry.",
         "surface", default=LiquidModel.SURFACE, codec=Words(LiquidModel))  # fmt: skip
+    calm: float | None = setting(
+        "auto | <T:s>",
+        "With `model waves`: time in which waves die to 1/e, besides what drag and depth do; `auto` is 50 √(depth/g).",
+        "20 s", Rule.POSITIVE, default=None)  # fmt: skip
+    """Time in which waves die to 1/e [s]; None is ``auto``."""
     sweeps: int | None = setting(
-        "auto | <n>", "Sweeps of the automaton per update.", "4", Rule.COUNT, default=None, limit=SWEEPS)  # fmt: skip
+        "auto | <n>", "Sweeps of the automaton per update; not with `model waves`.", "4", Rule.COUNT, default=None, limit=SWEEPS)  # fmt: skip
     """Automaton sweeps per update; None is ``auto``."""
     color: str | None = setting("<color>", f"Colour in pictures: {COLOR}", "deepskyblue", default=None)
     """``#rrggbb``; None lets the renderer choose."""

@@ -384,6 +384,9 @@ class Validator:
             cause = f"the level {say(liquid.level, 'm', 6)} is outside {where}, which goes from "
             cause += f"{say(bottom[2], 'm', 6)} to {say(top[2], 'm', 6)}"
             self.problem(block.first("level").span(0), cause, "the level is a height, not a depth")
+        stray = "sweeps" if liquid.model is records.LiquidModel.WAVES else "calm"
+        if getattr(liquid, stray) is not None:
+            self.problem(block.first(stray).span(), f"model {liquid.model.value} has no {stray}", "leave the line out")
         if liquid.model is records.LiquidModel.PAPER:
             self.problem(
                 block.first("model").span(0),

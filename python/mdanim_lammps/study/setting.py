@@ -15,7 +15,7 @@ from ..scene.limits import CONTACT_STIFFNESS
 from ..scene.lock import lock_text
 from ..scene.meshes import mesh_files
 from ..scene.render import Render
-from ..scene.scene import Accuracy, Save, SceneRecord
+from ..scene.scene import Accuracy, LiquidModel, Save, SceneRecord
 
 LADDERS = ("time step", "resolution", "sweeps", "contact")
 LARGEST = 0.9
@@ -130,10 +130,10 @@ def ladders(scene: SceneRecord, ready: Prepared, own: Setting) -> tuple[list[Lad
     cells = sorted({n, *(max(1, round(n * x)) for x in (0.5, 0.75, 1.5, 2.0))})
     cells = [c for c in cells if c == n or abs(c - n) >= 0.5]
     out.append(Ladder("resolution", tuple(replace(own, cells=c) for c in cells)))
-    if ready.plan.grid is not None:
+    if ready.plan.grid is not None and scene.liquid.model is not LiquidModel.WAVES:
         out.append(Ladder("sweeps", tuple(replace(own, sweeps=k) for k in (1, 2, 4, 8, 16))))
     else:
-        left["sweeps"] = "no liquid"
+        left["sweeps"] = "no automaton"
     if any(ready.verdicts[name].on for name in TOUCHING):
         factors = (
             x for k in (-2, -1, 0, 1, 2, 3) if CONTACT_STIFFNESS.least <= (x := own.contact * 2.0**k) <= CONTACT_STIFFNESS.most

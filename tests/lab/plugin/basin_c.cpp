@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Plain C functions over a Basin of unit cells at the origin, for tests: solids are particles that fill their cells in part.
+// Plain C functions over an AutomatonBasin of unit cells at the origin, for tests: solids are particles that fill their cells in
+// part.
 
 #include "c_api/abi.h"
 #include "c_api/guarded.h"
-#include "liquid/basin.h"
+#include "liquid/automaton_basin.h"
 
 #include <cmath>
 #include <vector>
 
+using mdanim::AutomatonBasin;
 using mdanim::Basin;
 
 namespace {
@@ -28,11 +30,11 @@ class EqualRanks : public mdanim::RankSums {
 
 struct TestBasin {
   EqualRanks ranks;
-  Basin basin;
+  AutomatonBasin basin;
 
   TestBasin(int nx, int ny, int nz, int ranks_count)
       : ranks(ranks_count),
-        basin({nx, ny, nz, {}, {1.0, 1.0, 1.0}}, 1.0, 1, mdanim::Vertical::LOWER, Basin::Model::SURFACE, ranks)
+        basin({nx, ny, nz, {}, {1.0, 1.0, 1.0}}, 1.0, 1, mdanim::Vertical::LOWER, AutomatonBasin::Model::SURFACE, ranks)
   {
   }
 };
@@ -62,7 +64,7 @@ MDANIM_EXPORT void mdanim_basin_free(void *b) { delete &of(b); }
 // Solids (count, 4), and units of liquid into what they leave. Returns how many find no room.
 MDANIM_EXPORT long mdanim_basin_pour(void *b, const double *solids, int count, long units)
 {
-  Basin &basin = of(b).basin;
+  AutomatonBasin &basin = of(b).basin;
   basin.mark_moving(bodies(solids, count));
   return basin.pour(units, std::vector<std::uint8_t>(basin.cells().nx * basin.cells().ny * basin.cells().nz, 1), 0);
 }

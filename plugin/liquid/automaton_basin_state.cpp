@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Output of a basin, and its state as bytes.
 
-#include "liquid/basin.h"
+#include "liquid/automaton_basin.h"
 
 #include <cmath>
 #include <cstring>
@@ -13,10 +13,10 @@ namespace mdanim {
 static constexpr double STATE_VERSION = 2.0;
 static constexpr std::uint8_t SOLID_CODE = 255, STILL_CODE = 254;
 
-double Basin::bytes() const
+double AutomatonBasin::bytes() const
 { return 3.0 * static_cast<double>(cells().content.size()) + solid.bytes() + columns() * (2.0 * sizeof(double) + 1.0); }
 
-double Basin::mean_level() const
+double AutomatonBasin::mean_level() const
 {
   double all = 0.0;
   for (const double h : eta) all += h;
@@ -36,7 +36,7 @@ static int air_below(const Cells &cells, int x, int y, double height)
 
 // Of the columns without a height those with air below the surface count as kept dry, as a hull keeps its inside, where the
 // air is two cells deep, and all around as far as it goes on: over what has just gone under the liquid closes a little late.
-void Basin::surface(double *smooth, double *raw) const
+void AutomatonBasin::surface(double *smooth, double *raw) const
 {
   const int nx = shape.nx;
   std::vector<int> air(columns(), 0), dry;
@@ -59,7 +59,7 @@ void Basin::surface(double *smooth, double *raw) const
   }
 }
 
-void Basin::contents(std::uint8_t *out) const
+void AutomatonBasin::contents(std::uint8_t *out) const
 {
   cells().each([&](int x, int y, int z) {
     const std::size_t c = cells().at(x, y, z);
@@ -87,7 +87,7 @@ std::string grid(std::int64_t nx, std::int64_t ny, std::int64_t nz)
 }    // namespace
 
 // The head, raw heights, and a byte for each cell: what it holds, or a code.
-std::vector<std::uint8_t> Basin::state(const Energies &energies) const
+std::vector<std::uint8_t> AutomatonBasin::state(const Energies &energies) const
 {
   const StateHead head{STATE_VERSION, shape.nx, shape.ny, shape.nz, units, swept, waited, calm, travel, crossed, energies};
   const std::size_t heights = height.size() * sizeof(double), count = solid.codes().size();
@@ -101,7 +101,7 @@ std::vector<std::uint8_t> Basin::state(const Energies &energies) const
   return bytes;
 }
 
-Basin::Energies Basin::set_state(const std::uint8_t *bytes, std::size_t size)
+Basin::Energies AutomatonBasin::set_state(const std::uint8_t *bytes, std::size_t size)
 {
   StateHead head;
   const std::size_t heights = height.size() * sizeof(double), count = solid.codes().size();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // When the automaton and the level rule work, and the surface that comes of it. Reasons and measurements: docs/physics-liquid.md.
 
-#include "liquid/basin.h"
+#include "liquid/automaton_basin.h"
 
 #include "engine/stopwatch.h"
 #include "liquid/surface.h"
@@ -16,11 +16,12 @@ namespace mdanim {
 static constexpr double SWEEPS_PER_CELL = 8.0;    // that the fastest solid travels
 static constexpr double LEVEL_RATE = 0.11;        // share of exposed cells moved while a shallow-water wave crosses one cell
 static constexpr double SAMPLED = 4.0;            // cells above the liquid up to which solids are marked
+static constexpr double SPLASH = 1.5;             // cells below the surface within which an empty cell is taken for a ripple
 static constexpr double ANYWHERE = std::numeric_limits<double>::infinity();
 
 // The automaton numbers cells and its rim around them by 32 bits; the state, of a byte a cell and 8 a column, goes into a restart
 // file, whose parts LAMMPS counts by an int.
-std::string Basin::too_large(int nx, int ny, int nz)
+std::string AutomatonBasin::too_large(int nx, int ny, int nz)
 {
   const double cells = 1.0 * nx * ny * nz, with_rim = (nx + 3.0) * (ny + 2.0) * (nz + 2.0);
   const double state = cells + 8.0 * nx * ny + 1024.0;
@@ -34,35 +35,35 @@ std::string Basin::too_large(int nx, int ny, int nz)
   return text;
 }
 
-Basin::Basin(const Shape &shape, double g, std::uint64_t seed, Vertical vertical, Model model, const RankSums &ranks)
-    : shape(shape), model(model), g(g), shortest(std::min({shape.cell.x, shape.cell.y, shape.cell.z})), ranks(ranks), seed(seed),
-      automaton(shape.nx, shape.ny, shape.nz, seed, vertical), solid(shape.nx, shape.ny, shape.nz), height(columns(), 0.0),
-      eta(columns(), 0.0), blocked(columns(), 0)
+AutomatonBasin::AutomatonBasin(const Shape &shape, double g, std::uint64_t seed, Vertical vertical, Model model,
+                               const RankSums &ranks)
+    : Basin(shape, g), model(model), ranks(ranks), seed(seed), automaton(shape.nx, shape.ny, shape.nz, seed, vertical),
+      solid(shape.nx, shape.ny, shape.nz), height(columns(), 0.0), eta(columns(), 0.0), blocked(columns(), 0)
 {
 }
 
 // --- solids ---
 
-long Basin::mark_still(const AddBodies &bodies)
+long AutomatonBasin::mark_still(const AddBodies &bodies)
 {
   const Lap lap(occupancy_seconds);
   return solid.mark_still([&](Occupancy &into) { bodies(into, ANYWHERE); }, ranks);
 }
 
-void Basin::mark_moving(const AddBodies &bodies)
+void AutomatonBasin::mark_moving(const AddBodies &bodies)
 {
   const Lap lap(occupancy_seconds);
   solid.mark_moving([&](Occupancy &into) { bodies(into, poured ? top_layer + SAMPLED : ANYWHERE); }, ranks);
 }
 
 // Liquid leaves the cells that have become solid; returns how many have changed.
-long Basin::make_room(std::uint64_t when)
+long AutomatonBasin::make_room(std::uint64_t when)
 {
-  const Lap lap(automaton_seconds);
+  const Lap lap(liquid_seconds);
   return automaton.displace(solid.codes().data(), when);
 }
 
-void Basin::settle(std::uint64_t when)
+void AutomatonBasin::settle(std::uint64_t when)
 {
   make_room(when);
   raise_surface(false);
@@ -71,7 +72,7 @@ void Basin::settle(std::uint64_t when)
 // --- the start ---
 
 // Whole layers below the height, and of the layer that it cuts the same part of the open cells.
-std::int64_t Basin::units_up_to(double level, const std::vector<std::uint8_t> &within) const
+std::int64_t AutomatonBasin::units_up_to(double level, const std::vector<std::uint8_t> &within) const
 {
   const double depth = (level - shape.low.z) / shape.cell.z;
   std::int64_t all = 0;
@@ -87,11 +88,15 @@ std::int64_t Basin::units_up_to(double level, const std::vector<std::uint8_t> &w
   return all;
 }
 
-std::int64_t Basin::units_of(double volume) const
-{ return static_cast<std::int64_t>(volume / (shape.cell.x * shape.cell.y * shape.cell.z) + 0.5); }
+Basin::Filled AutomatonBasin::fill(const Amount &amount, const std::vector<std::uint8_t> &within, std::uint64_t when)
+{
+  const std::int64_t wanted =
+      amount.by_level ? units_up_to(amount.value, within) : static_cast<std::int64_t>(amount.value / cell_volume() + 0.5);
+  return {wanted, wanted < 1 ? 0 : pour(wanted, within, when)};
+}
 
 // Solids first, then liquid into what they leave.
-long Basin::pour(std::int64_t wanted, const std::vector<std::uint8_t> &within, std::uint64_t when)
+long AutomatonBasin::pour(std::int64_t wanted, const std::vector<std::uint8_t> &within, std::uint64_t when)
 {
   automaton.displace(solid.codes().data(), when);
   units = wanted;
@@ -103,7 +108,7 @@ long Basin::pour(std::int64_t wanted, const std::vector<std::uint8_t> &within, s
 
 // --- time ---
 
-bool Basin::is_due(double fastest, double dt)
+bool AutomatonBasin::is_due(double fastest, double dt)
 {
   if (!calm) waited += pace.every;
   if (fastest >= 0.0)
@@ -114,7 +119,7 @@ bool Basin::is_due(double fastest, double dt)
   return !calm && waited * dt >= pace.period * std::sqrt(shortest / g);
 }
 
-void Basin::update(const AddBodies &bodies, std::uint64_t when, double dt)
+void AutomatonBasin::update(const AddBodies &bodies, std::uint64_t when, double dt)
 {
   mark_moving(bodies);
   const long changed = make_room(when);
@@ -124,12 +129,12 @@ void Basin::update(const AddBodies &bodies, std::uint64_t when, double dt)
 }
 
 // Lets the liquid move: sweeps, and the level rule as often as a wave has gone half a cell or solids have changed cells.
-void Basin::flow(long changed, std::uint64_t when, double dt)
+void AutomatonBasin::flow(long changed, std::uint64_t when, double dt)
 {
   bool levelled = false;
   int most = 0;
   {
-    const Lap lap(automaton_seconds);
+    const Lap lap(liquid_seconds);
     // A front goes on by one cell in a move: half a cell of wave between moves makes its speed 2 sqrt(g depth), that of the front
     // of a broken dam.
     crossed += std::sqrt(g * top_layer * shape.cell.z) * waited * dt / shortest;
@@ -148,14 +153,14 @@ void Basin::flow(long changed, std::uint64_t when, double dt)
 // --- the surface ---
 
 // Heights and the smooth surface from the cells as they are now.
-void Basin::raise_surface(bool just_levelled)
+void AutomatonBasin::raise_surface(bool just_levelled)
 {
-  const Lap lap(automaton_seconds);
+  const Lap lap(liquid_seconds);
   calm = leveller.heights(automaton.cells, height.data(), just_levelled);
   smooth();
 }
 
-void Basin::smooth()
+void AutomatonBasin::smooth()
 {
   const auto dry = [&](int z) {
     const std::uint8_t *const layer = &cells().content[cells().at(-1, -1, z)];
@@ -177,7 +182,7 @@ void Basin::smooth()
 }
 
 // Whether what ends the liquid of a column without a height never moves: each side of a wall has a level of its own.
-bool Basin::is_parted(int x, int y) const
+bool AutomatonBasin::is_parted(int x, int y) const
 {
   const Cells &c = cells();
   int z = top_layer - 1;
@@ -192,7 +197,7 @@ bool Basin::is_parted(int x, int y) const
 }
 
 // Height up to which open cells, from the lowest layer up, hold all the liquid.
-double Basin::shut_in_height() const
+double AutomatonBasin::shut_in_height() const
 {
   std::int64_t left = automaton.total();
   for (int z = 0; z < shape.nz; ++z) {
@@ -208,7 +213,7 @@ double Basin::shut_in_height() const
 // --- what acts on solids ---
 
 // The paper's own words: liquid in any of the cells around.
-double Basin::liquid_around(const Vec3 &place) const
+double AutomatonBasin::liquid_around(const Vec3 &place) const
 {
   if (!(place.z >= 0.0 && place.z < shape.nz)) return 0.0;
   const int x = std::min(static_cast<int>(place.x), shape.nx - 1), y = std::min(static_cast<int>(place.y), shape.ny - 1),
@@ -220,8 +225,21 @@ double Basin::liquid_around(const Vec3 &place) const
   return 0.0;
 }
 
+double AutomatonBasin::pressing_depth(const Vec3 &middle, const Vec3 &area) const
+{
+  if (!over_floor(&middle.x)) return 0.0;
+  const Vec3 place = in_cells(&middle.x);
+  const double depth = surface_at(place) - place.z;
+  if (depth <= 0.0) return 0.0;
+  if (depth > SPLASH) {
+    const double size = std::sqrt(dot(area, area));
+    if (size == 0.0 || air_before(middle, (1.0 / size) * area)) return 0.0;
+  }
+  return depth;
+}
+
 // The nearest cells may be solid, for they are only roughly where the face is.
-bool Basin::air_before(const Vec3 &middle, const Vec3 &normal) const
+bool AutomatonBasin::air_before(const Vec3 &middle, const Vec3 &normal) const
 {
   const Cells &c = cells();
   for (const double far : {0.75, 1.25, 1.75, 2.25}) {

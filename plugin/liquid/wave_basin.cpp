@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// When waves go on, what of the basin is solid, and what a particle finds.
+
+#include "liquid/wave_basin.h"
+
+#include "engine/stopwatch.h"
+#include "laws/buoyancy.h"
+
+#include <climits>
+#include <cmath>
+#include <cstdio>
+
+namespace mdanim {
+
+namespace {
+
+constexpr double SAMPLED = 4.0;             // cells above the liquid up to which solids are marked
+constexpr double LONGEST = 0.2;             // update, in sqrt(cell/g)
+constexpr double ASLEEP = 1.0 / 64.0;       // cells that a solid may go before liquid at rest looks
+constexpr double SLOW = 1.0;                // time in which what pushes sideways follows, in sqrt(cell/g)
+constexpr double MASS_STEP = 1.0 / 64.0;    // so that what shakes a little does not wake the liquid
+constexpr double FLATTEST = 1.25;           // longest edge of a cell over the shortest
+constexpr double IMPULSE_UNIT = 1.0 / (1LL << 40);
+constexpr double ANYWHERE = std::numeric_limits<double>::infinity();
+
+}    // namespace
+
+// A state, of 2 bytes a cell and some 200 a column, goes into a restart file, whose parts LAMMPS counts by an int.
+std::string WaveBasin::unusable(const Shape &shape)
+{
+  char text[300];
+  const Vec3 &c = shape.cell;
+  const double longest = std::max({c.x, c.y, c.z}), shortest = std::min({c.x, c.y, c.z});
+  const double state = 2.0 * shape.nx * shape.ny * shape.nz + 200.0 * shape.nx * shape.ny;
+  if (longest > FLATTEST * shortest)
+    std::snprintf(
+        text, sizeof text,
+        "cells of %.4g x %.4g x %.4g are too far from cubes for waves; the longest edge may be %.4g of the shortest: use "
+        "another number of cells, or model surface",
+        c.x, c.y, c.z, FLATTEST);
+  else if (state > INT_MAX)
+    std::snprintf(
+        text, sizeof text,
+        "a grid of %d x %d x %d cells is too large for waves: %.3g bytes of state, %d is the limit; use fewer, larger cells",
+        shape.nx, shape.ny, shape.nz, state, INT_MAX);
+  else
+    return "";
+  return text;
+}
+
+WaveBasin::WaveBasin(const Shape &shape, double g, double calm, const RankSums &ranks)
+    : Basin(shape, g), ranks(ranks), unit_of_time(std::sqrt(shape.cell.x * shape.cell.y / (g * shape.cell.z))),
+      waves(shape.nx, shape.ny, shape.nz), push(shape.nx, shape.ny, shape.nz), still(shape.nx, shape.ny, shape.nz),
+      mobile(shape.nx, shape.ny, shape.nz), part(still.count.size(), 0), mass(columns(), 0.0), impulses(2 * columns(), 0),
+      heads(columns(), 0.0), tops(columns(), 0.0), hollow(columns(), 0)
+{ waves.law.calm = calm * unit_of_time; }
+
+// --- solids ---
+
+long WaveBasin::mark_still(const AddBodies &bodies)
+{
+  const Lap lap(occupancy_seconds);
+  marked.take_in(still.touched);
+  still.clear();
+  bodies(still, ANYWHERE);
+  still.sum_over(ranks);
+  std::uint64_t sum = 1469598103934665603ULL;
+  still.touched.each([&](int x, int y, int z) {
+    const std::size_t cell = still.number(x, y, z);
+    if (still.count[cell]) sum = (sum ^ (static_cast<std::uint64_t>(cell) << 20 ^ still.count[cell])) * 1099511628211ULL;
+  });
+  const bool changed = sum != still_known;
+  still_known = sum;
+  return changed;
+}
+
+void WaveBasin::mark_moving(const AddBodies &bodies)
+{
+  const Lap lap(occupancy_seconds);
+  marked.take_in(mobile.touched);
+  mobile.clear();
+  bodies(mobile, poured ? top_layer + SAMPLED : ANYWHERE);
+  mobile.sum_over(ranks);
+  count_parts();
+}
+
+// Parts of cells from counts, where there is something or was.
+void WaveBasin::count_parts()
+{
+  marked.take_in(still.touched);
+  marked.take_in(mobile.touched);
+  marked.each([&](int x, int y, int z) {
+    const std::size_t cell = cell_number(x, y, z);
+    const std::int64_t count = static_cast<std::int64_t>(still.count[cell]) + mobile.count[cell];
+    part[cell] = static_cast<std::uint16_t>(std::min<std::int64_t>(
+        SolidParts::FULL, (count * SolidParts::FULL + Occupancy::FULL_SPREAD / 2) / Occupancy::FULL_SPREAD));
+  });
+  marked = CellBox();
+  marked.take_in(still.touched);
+  marked.take_in(mobile.touched);
+  moving = 0;
+  mobile.touched.each([&](int x, int y, int z) { moving += mobile.count[cell_number(x, y, z)] > 0; });
+  for (int c = 0; c < columns(); ++c) {
+    // What is elastic yields more than its mass says, and overshoots: by twice its compression, taken over an update.
+    const double own = mobile.mass_of(c), soft = 2.0 * mobile.softness_of(c) / (pace.period * pace.period);
+    mass[c] = own > 0.0 ? std::max(MASS_STEP, std::floor(own / (1.0 + own * soft) / MASS_STEP + 0.5) * MASS_STEP) : 0.0;
+  }
+}
+
+// --- the start ---
+
+Basin::Filled WaveBasin::fill(const Amount &amount, const std::vector<std::uint8_t> &within, std::uint64_t)
+{
+  waves.set_solids(part.data(), mass.data());
+  std::vector<double> low(columns(), 0.0), high(columns(), 0.0), height(columns(), 0.0);
+  for (int c = 0; c < columns(); ++c) {
+    int z = 0;
+    const auto wanted = [&](int layer) { return within[static_cast<std::size_t>(layer) * columns() + c] != 0; };
+    while (z < shape.nz && !wanted(z)) ++z;
+    low[c] = z;
+    while (z < shape.nz && wanted(z)) ++z;
+    high[c] = z;
+  }
+  // Up to a level, in units, and by one unit more in the first columns.
+  const auto pour = [&](std::int64_t level, int first) {
+    for (int c = 0; c < columns(); ++c)
+      height[c] = std::clamp(static_cast<double>(level + (c < first)) / UNITS_PER_CELL, low[c], high[c]);
+    waves.pour(height.data(), low.data());
+    return waves.total();
+  };
+  const std::int64_t most = static_cast<std::int64_t>(shape.nz) * UNITS_PER_CELL;
+  std::int64_t wanted = 0;    // whole cells
+  if (amount.by_level) {
+    const double level = (amount.value - shape.low.z) / shape.cell.z * UNITS_PER_CELL;
+    wanted = (pour(static_cast<std::int64_t>(level + 0.5), 0) + UNITS_PER_CELL / 2) / UNITS_PER_CELL;
+  } else
+    wanted = static_cast<std::int64_t>(amount.value / cell_volume() + 0.5);
+  if (wanted < 1) return {wanted, 0};
+  const Units want = wanted * UNITS_PER_CELL, room = pour(most, 0);
+  const auto highest = [&](std::int64_t low_end, std::int64_t high_end, const auto &poured_to) {    // that holds no more
+    while (high_end - low_end > 1) {
+      const std::int64_t middle = low_end + (high_end - low_end) / 2;
+      (poured_to(middle) <= want ? low_end : high_end) = middle;
+    }
+    return low_end;
+  };
+  const std::int64_t level = highest(0, most + 1, [&](std::int64_t l) { return pour(l, 0); });
+  pour(level, static_cast<int>(highest(0, columns() + 1, [&](std::int64_t n) { return pour(level, static_cast<int>(n)); })));
+  units = waves.total();
+  energy_at_start = energy_now();
+  poured = true;
+  stale = true;    // so that the first look updates
+  look();
+  push.find(waves, mass.data(), 1.0);
+  return {wanted, room < want ? static_cast<long>((want - room + UNITS_PER_CELL - 1) / UNITS_PER_CELL) : 0};
+}
+
+// --- time ---
+
+bool WaveBasin::is_due(double fastest, double dt)
+{
+  waited += pace.every;
+  if (fastest >= 0.0)
+    travel += std::sqrt(fastest) * pace.every * dt / shortest;
+  else if (moving)
+    return true;    // the last solid has just left
+  if (is_calm()) return travel >= ASLEEP;
+  return travel >= pace.stride || static_cast<double>(waited) * dt >= pace.period * unit_of_time;
+}
+
+void WaveBasin::update(const AddBodies &bodies, std::uint64_t, double dt)
+{
+  mark_moving(bodies);
+  const Lap lap(liquid_seconds);
+  waves.set_solids(part.data(), mass.data());
+  std::vector<std::int64_t> all = impulses;
+  ranks.add_wide(all.data(), static_cast<int>(all.size()));
+  std::vector<double> given(all.size());
+  for (std::size_t n = 0; n < all.size(); ++n) given[n] = static_cast<double>(all[n]) * IMPULSE_UNIT;
+  waves.add_impulse(given.data(), given.data() + columns());
+  std::fill(impulses.begin(), impulses.end(), 0);
+  const double time = std::min(LONGEST, static_cast<double>(waited) * dt / unit_of_time);
+  waves.update(time);
+  ++updates;
+  look();
+  push.find(waves, mass.data(), waves.at_rest() ? 1.0 : time / (time + SLOW));
+  travel = 0.0;
+  waited = 0;
+  stale = false;
+}
+
+// --- what a particle finds ---
+
+Basin::AtPlace WaveBasin::at(const Vec3 &place) const
+{
+  if (!(place.x >= 0.0 && place.x <= shape.nx && place.y >= 0.0 && place.y <= shape.ny)) return {};
+  const int x = std::min(static_cast<int>(place.x), shape.nx - 1), y = std::min(static_cast<int>(place.y), shape.ny - 1);
+  const int z = std::clamp(static_cast<int>(place.z), 0, shape.nz - 1);
+  const WavePush::OnCell *on = push.at(cell_number(x, y, z));
+  if (!on) {
+    const double s = immersed_part(heads[y * shape.nx + x], place.z);
+    return {s, {0.0, 0.0, s}, {}};
+  }
+  const double s = on->share > 0.0 ? std::clamp(on->head - place.z + 0.5, 0.0, 1.0) * on->share : 0.0;
+  const double all = s + on->over - on->on_top, speed = 1.0 / unit_of_time;
+  return {s,
+          {on->along_x * all * (shape.cell.z / shape.cell.x), on->along_y * all * (shape.cell.z / shape.cell.y), all},
+          {on->flow_x * shape.cell.x * speed, on->flow_y * shape.cell.y * speed, 0.0}};
+}
+
+// `impulse` is over the liquid's density.
+void WaveBasin::take_impulse(const Vec3 &place, const Vec3 &impulse)
+{
+  if (!(place.x >= 0.0 && place.x <= shape.nx && place.y >= 0.0 && place.y <= shape.ny)) return;
+  const int x = std::min(static_cast<int>(place.x), shape.nx - 1), y = std::min(static_cast<int>(place.y), shape.ny - 1);
+  const double unit = cell_volume() / unit_of_time * IMPULSE_UNIT;
+  const int column = y * shape.nx + x;
+  impulses[column] += std::llround(impulse.x / (unit * shape.cell.x));
+  impulses[columns() + column] += std::llround(impulse.y / (unit * shape.cell.y));
+}
+
+}    // namespace mdanim

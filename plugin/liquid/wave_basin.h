@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The liquid with momentum in its basin. docs/physics-liquid.md, "Waves".
+
+#ifndef MDANIM_WAVE_BASIN_H
+#define MDANIM_WAVE_BASIN_H
+
+#include "liquid/basin.h"
+#include "liquid/wave_push.h"
+#include "liquid/waves.h"
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace mdanim {
+
+// Waves, the cells that solids fill, and the push of the one on the other. The unit of time of the waves is sqrt(cell/g).
+class WaveBasin : public Basin {
+ public:
+  // Empty when there can be such a basin, else why not.
+  static std::string unusable(const Shape &shape);
+
+  // `calm` [1/time] is the rate at which waves die besides. Throws std::bad_alloc. `ranks` stays where it is.
+  WaveBasin(const Shape &shape, double g, double calm, const RankSums &ranks);
+
+  long mark_still(const AddBodies &bodies) override;
+  void mark_moving(const AddBodies &bodies) override;
+  Filled fill(const Amount &amount, const std::vector<std::uint8_t> &within, std::uint64_t when) override;
+  void settle(std::uint64_t) override { stale = true; }
+  bool is_due(double fastest, double dt) override;
+  void update(const AddBodies &bodies, std::uint64_t when, double dt) override;
+
+  AtPlace at(const Vec3 &place) const override;
+  double all_below() const override { return -std::numeric_limits<double>::infinity(); }
+  bool takes_impulses() const override { return true; }
+  void take_impulse(const Vec3 &place, const Vec3 &impulse) override;
+
+  bool is_smooth() const override { return true; }
+  int top() const override { return top_layer; }
+  bool is_poured() const override { return poured; }
+  bool is_calm() const override { return waves.at_rest() && !stale; }
+  long moving_solid() const override { return moving; }
+  long solid_cells() const override;
+  double cells_now() const override { return static_cast<double>(waves.total()) / UNITS_PER_CELL; }
+  double cells_at_start() const override { return static_cast<double>(units) / UNITS_PER_CELL; }
+  std::int64_t updates_so_far() const override { return updates; }
+  double energy() const override { return energy_now() - energy_at_start; }
+  double highest() const override { return crest; }
+  double bytes() const override;
+  double mean_level() const override;
+  void surface(double *smooth, double *raw) const override;
+  double smooth_height(int column) const override { return shape.low.z + heads[column] * shape.cell.z; }
+  double raw_height(int column) const override { return shape.low.z + tops[column] * shape.cell.z; }
+  void contents(std::uint8_t *out) const override;
+  std::vector<std::uint8_t> state(const Energies &energies) const override;
+  Energies set_state(const std::uint8_t *bytes, std::size_t size) override;
+
+ private:
+  double energy_now() const;
+  void count_parts();
+  void take_solids();
+  void look();
+  void look_at_column(int column);
+
+  const RankSums &ranks;
+  const double unit_of_time;
+  Waves waves;
+  WavePush push;
+  Occupancy still, mobile;
+  CellBox marked;                     // cells outside are open
+  std::vector<std::uint16_t> part;    // solid, of each cell, see SolidParts
+  std::vector<double> mass;           // of what floats in each column, in cells of liquid
+
+  // state
+  bool poured = false, stale = false;    // stale: solids have changed that the liquid does not know of
+  double travel = 0.0;                   // of the fastest particle near the liquid since the last update, in cells
+  std::int64_t waited = 0;               // steps since then
+  std::int64_t updates = 0;
+  Units units = 0;    // of liquid at the start
+  double energy_at_start = 0.0;
+  long moving = 0;                       // cells with something in them that moves
+  std::uint64_t still_known = 0;         // a checksum of what never moves
+  std::vector<std::int64_t> impulses;    // along x, then along y, of each column, since the last update; this rank's part
+
+  // what follows from it
+  std::vector<double> heads, tops;     // of columns: the surface that solids feel, and the topmost liquid, see surface()
+  std::vector<std::uint8_t> hollow;    // columns that a hull keeps dry below the surface
+  int top_layer = 0;
+  double crest = 0.0;    // the highest head under open sky
+};
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Output of a basin with waves, and its state as bytes.
+
+#include "liquid/wave_basin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+namespace mdanim {
+
+namespace {
+
+constexpr double STATE_VERSION = 3.0;    // the automaton's is 2
+constexpr std::uint8_t SOLID_CODE = 255;
+constexpr double PUDDLE = 1.0 / 64.0;    // cells of liquid that are no surface yet
+
+struct WaveBasinHead {
+  double version;
+  std::int64_t nx, ny, nz, units, updates, waited, stale, moving;
+  std::uint64_t still_known;
+  Basin::Energies energies;
+  double travel, energy_at_start;
+};
+
+}    // namespace
+
+double WaveBasin::bytes() const
+{ return static_cast<double>(part.size()) * (2.0 * sizeof(int) + sizeof(std::uint16_t)) + push.bytes() + columns() * 600.0; }
+
+long WaveBasin::solid_cells() const
+{
+  return std::count_if(part.begin(), part.end(), [](std::uint16_t p) { return 2 * p >= SolidParts::FULL; });
+}
+
+double WaveBasin::energy_now() const
+{
+  const Waves::Energy now = waves.energy();
+  return now.height + now.motion;
+}
+
+double WaveBasin::mean_level() const
+{
+  double all = 0.0;
+  for (const double head : heads) all += head;
+  return shape.low.z + shape.cell.z * all / columns();
+}
+
+// Heads of all columns; those without liquid that solids hide have the mean of those around.
+void WaveBasin::look()
+{
+  std::vector<int> left, later;
+  for (int c = 0; c < columns(); ++c) {
+    look_at_column(c);
+    if (std::isnan(heads[c])) left.push_back(c);
+  }
+  while (!left.empty()) {
+    std::vector<double> found;
+    later.clear();
+    std::vector<int> now;
+    for (const int c : left) {
+      double sum = 0.0;
+      int count = 0;
+      const int x = c % shape.nx, y = c / shape.nx;
+      const auto take = [&](bool there, int other) {
+        if (!there || std::isnan(heads[other])) return;
+        sum += heads[other];
+        ++count;
+      };
+      take(x > 0, c - 1);
+      take(x + 1 < shape.nx, c + 1);
+      take(y > 0, c - shape.nx);
+      take(y + 1 < shape.ny, c + shape.nx);
+      if (count == 0) {
+        later.push_back(c);
+        continue;
+      }
+      now.push_back(c);
+      found.push_back(sum / count);
+    }
+    if (now.empty()) break;
+    for (std::size_t n = 0; n < now.size(); ++n) heads[now[n]] = found[n];
+    left.swap(later);
+  }
+  for (const int c : left) heads[c] = 0.0;    // solid from wall to wall
+  const double highest = heads.empty() ? 0.0 : *std::max_element(heads.begin(), heads.end());
+  crest = 0.0;
+  for (const double head : tops)
+    if (head > crest) crest = head;
+  top_layer = std::clamp(static_cast<int>(std::ceil(highest)), 0, shape.nz);
+}
+
+// The head of the topmost liquid, NaN where there is none below a solid. Its top is told where nothing is above it.
+void WaveBasin::look_at_column(int column)
+{
+  const int spans = waves.spans_of(column);
+  hollow[column] = 0;
+  heads[column] = tops[column] = std::numeric_limits<double>::quiet_NaN();
+  for (int n = spans - 1; n >= 0; --n) {
+    const Waves::SpanView span = waves.span_view(column, n);
+    const bool last = n == spans - 1 && span.high == shape.nz;
+    const bool dry = !span.wet || span.phi - span.floor < PUDDLE;
+    if (dry && n > 0) continue;
+    if (dry && (span.floor >= PUDDLE || !last)) continue;
+    heads[column] = std::min(span.phi, shape.nz + 1.0);
+    if (last) tops[column] = heads[column];
+    if (last || spans == 0) return;
+    const Waves::SpanView above = waves.span_view(column, spans - 1);
+    hollow[column] = above.high == shape.nz && heads[column] > above.floor + 1.0;
+    return;
+  }
+}
+
+void WaveBasin::surface(double *smooth, double *raw) const
+{
+  for (int c = 0; c < columns(); ++c) {
+    smooth[c] = smooth_height(c);
+    raw[c] = hollow[c] ? -std::numeric_limits<double>::infinity() : raw_height(c);
+  }
+}
+
+void WaveBasin::contents(std::uint8_t *out) const
+{
+  for (std::size_t cell = 0; cell < part.size(); ++cell) out[cell] = 2 * part[cell] >= SolidParts::FULL ? SOLID_CODE : 0;
+  for (int c = 0; c < columns(); ++c)
+    for (int n = 0; n < waves.spans_of(c); ++n) {
+      const Waves::SpanView span = waves.span_view(c, n);
+      if (!span.wet) continue;
+      for (int z = span.low; z < span.high && z + 0.5 < span.phi; ++z) {
+        std::uint8_t &cell = out[static_cast<std::size_t>(z) * columns() + c];
+        if (cell != SOLID_CODE) cell = 1;
+      }
+    }
+}
+
+// --- state ---
+
+// The head, masses, impulses and heads of columns, the waves.
+std::vector<std::uint8_t> WaveBasin::state(const Energies &energies) const
+{
+  std::vector<std::int64_t> all = impulses;
+  ranks.add_wide(all.data(), static_cast<int>(all.size()));
+  const WaveBasinHead head{STATE_VERSION, shape.nx, shape.ny,    shape.nz, units,  updates,        waited,
+                           stale,         moving,   still_known, energies, travel, energy_at_start};
+  const std::vector<std::uint8_t> of_waves = waves.state();
+  std::vector<std::uint8_t> bytes;
+  const auto add = [&](const void *from, std::size_t size) {
+    const auto *first = static_cast<const std::uint8_t *>(from);
+    bytes.insert(bytes.end(), first, first + size);
+  };
+  add(&head, sizeof head);
+  add(mass.data(), mass.size() * sizeof mass[0]);
+  add(all.data(), all.size() * sizeof all[0]);
+  add(push.state().data(), push.state().size() * sizeof push.state()[0]);
+  add(of_waves.data(), of_waves.size());
+  return bytes;
+}
+
+Basin::Energies WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
+{
+  const std::string whose = "the liquid's state ";
+  WaveBasinHead head;
+  const std::size_t of_mass = mass.size() * sizeof mass[0], of_impulses = impulses.size() * sizeof impulses[0];
+  if (size < sizeof head) throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few");
+  std::memcpy(&head, bytes, sizeof head);
+  if (head.version != STATE_VERSION)
+    throw std::runtime_error(whose + "has another version than " + std::to_string(static_cast<int>(STATE_VERSION)) +
+                             ", that of waves; it was written by another version of the plugin or for another model");
+  if (head.nx != shape.nx || head.ny != shape.ny || head.nz != shape.nz)
+    throw std::runtime_error(whose + "is of a grid of " + std::to_string(head.nx) + " x " + std::to_string(head.ny) + " x " +
+                             std::to_string(head.nz) + " cells, this one has " + std::to_string(shape.nx) + " x " +
+                             std::to_string(shape.ny) + " x " + std::to_string(shape.nz));
+  const std::size_t of_push = push.state().size() * sizeof push.state()[0];
+  const std::size_t before = sizeof head + of_mass + of_impulses + of_push;
+  if (size < before) throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few");
+  waves.set_state(bytes + before, size - before);
+  std::memcpy(mass.data(), bytes + sizeof head, of_mass);
+  std::memcpy(impulses.data(), bytes + sizeof head + of_mass, of_impulses);
+  if (!ranks.first()) std::fill(impulses.begin(), impulses.end(), 0);    // the first has those of all
+  poured = true;
+  stale = head.stale != 0;
+  travel = head.travel;
+  waited = head.waited;
+  updates = head.updates;
+  units = head.units;
+  energy_at_start = head.energy_at_start;
+  moving = static_cast<long>(head.moving);
+  still_known = head.still_known;
+  part = waves.solids().part;
+  marked = CellBox();
+  for (int z = 0; z < shape.nz; ++z)
+    for (int y = 0; y < shape.ny; ++y)
+      for (int x = 0; x < shape.nx; ++x)
+        if (part[cell_number(x, y, z)]) marked.take_in(x, y, z);
+  look();
+  std::memcpy(push.state().data(), bytes + sizeof head + of_mass + of_impulses, of_push);
+  push.find(waves, mass.data(), 0.0);
+  return head.energies;
+}
+
+}    // namespace mdanim

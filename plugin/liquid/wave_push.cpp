@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The pressure of spans on the solid runs between them.
+
+#include "liquid/wave_push.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mdanim {
+
+namespace {
+
+constexpr int LEAST_PART = SolidParts::FULL / 8;    // a cell that is less solid feels what its neighbours feel
+constexpr double GAP = 0.25;                        // so thin a dry gap is none: liquid seeps in
+constexpr double HIGHEST = 8.0;                     // cells of liquid that press on a body beyond what it displaces
+constexpr int SMOOTHINGS = 4;
+
+}    // namespace
+
+int WavePush::neighbour(int column, int side) const
+{
+  const int x = column % nx, y = column / nx;
+  switch (side) {
+    case 0:
+      return x > 0 ? column - 1 : -1;
+    case 1:
+      return x < nx - 1 ? column + 1 : -1;
+    case 2:
+      return y > 0 ? column - nx : -1;
+    default:
+      return y < ny - 1 ? column + nx : -1;
+  }
+}
+
+void WavePush::find(const Waves &waves, const double *mass, double part)
+{
+  for (const std::size_t cell : cells) known[cell] = -1;
+  found.clear();
+  cells.clear();
+  runs.clear();
+  columns.clear();
+  first_run.assign(static_cast<std::size_t>(nx) * ny, -1);
+  for (int column = 0; column < nx * ny; ++column)
+    if (mass[column] > 0.0) {
+      columns.push_back(column);
+      cut(waves, column);
+    }
+  seep(waves);
+  follow(waves, part);
+  for (Run &run : runs) press(waves, run);
+  for (const int column : columns) fill(waves, column);
+  spread(waves.solids());
+}
+
+void WavePush::cut(const Waves &waves, int column)
+{
+  const int spans = waves.spans_of(column);
+  first_run[column] = static_cast<int>(runs.size());
+  double bottom = 0.0;
+  for (int n = 0; n <= spans; ++n) {
+    Run run{};
+    run.column = column;
+    run.below = n - 1;
+    run.above = n < spans ? n : -1;
+    run.bottom = bottom;
+    run.top = nz;
+    if (n < spans) {
+      const Waves::SpanView above = waves.span_view(column, n);
+      run.top = above.floor;
+      bottom = above.roof;
+    }
+    run.floor = run.bottom;
+    if (run.below >= 0) {
+      const Waves::SpanView below = waves.span_view(column, run.below);
+      run.wet = below.wet;
+      run.told = below.wet || below.roof - below.floor > GAP;
+      run.phi = below.phi;
+      run.floor = below.floor;
+    }
+    runs.push_back(run);    // one above each span and one below the lowest, some of them empty
+  }
+}
+
+// Head of the liquid beside a run, in another column.
+bool WavePush::beside(const Waves &waves, int column, double bottom, double top, double &phi) const
+{
+  bool any = false;
+  for (int n = 0; n < waves.spans_of(column); ++n) {
+    const Waves::SpanView span = waves.span_view(column, n);
+    if (span.floor >= top || span.roof <= bottom) continue;
+    if (!any || span.wet) phi = span.wet ? span.phi : span.floor;
+    any = true;
+    if (span.wet) return true;
+  }
+  if (any || first_run[column] < 0) return any;
+  for (int n = 0; n <= waves.spans_of(column); ++n) {
+    const Run &run = runs[first_run[column] + n];
+    if (run.bottom >= top || run.top <= bottom || !run.told) continue;
+    phi = run.wet ? run.phi : run.floor;
+    return true;
+  }
+  return false;
+}
+
+// Liquid seeps below what stands on something: its head there is between those around.
+void WavePush::seep(const Waves &waves)
+{
+  std::vector<int> dry;
+  for (std::size_t n = 0; n < runs.size(); ++n)
+    if (!runs[n].told && runs[n].top > runs[n].bottom) dry.push_back(static_cast<int>(n));
+  const auto mean = [&](const Run &run, double &phi) {
+    double sum = 0.0;
+    int count = 0;
+    for (int side = 0; side < 4; ++side) {
+      const int other = neighbour(run.column, side);
+      double there = 0.0;
+      if (other < 0 || !beside(waves, other, run.bottom, run.top, there)) continue;
+      sum += std::max(there, run.bottom);
+      ++count;
+    }
+    if (count > 0) phi = sum / count;
+    return count > 0;
+  };
+  std::vector<int> left = dry, later, now;
+  while (!left.empty()) {
+    now.clear();
+    later.clear();
+    for (const int n : left) (mean(runs[n], runs[n].phi) ? now : later).push_back(n);
+    if (now.empty()) break;
+    for (const int n : now) runs[n].told = runs[n].wet = true;
+    left.swap(later);
+  }
+  for (int pass = 0; pass < SMOOTHINGS; ++pass)
+    for (const int n : dry)
+      if (runs[n].told) mean(runs[n], runs[n].phi);
+}
+
+// Head of each column with bodies and of those beside them.
+void WavePush::follow(const Waves &waves, double part)
+{
+  std::vector<double> was(ambient.size(), std::numeric_limits<double>::quiet_NaN());
+  was.swap(ambient);
+  const auto take = [&](int column) {
+    if (column < 0 || !std::isnan(ambient[column])) return;
+    const int spans = waves.spans_of(column);
+    double now = std::numeric_limits<double>::quiet_NaN();    // solid throughout
+    for (int n = 0; n < spans; ++n) {
+      const Waves::SpanView span = waves.span_view(column, n);
+      if (span.wet || n == 0) now = span.wet ? span.phi : span.floor;
+    }
+    if (first_run[column] >= 0)
+      for (int n = spans; n >= 0; --n) {
+        const Run &run = runs[first_run[column] + n];
+        if (run.wet && run.top > run.bottom) now = run.phi;
+      }
+    ambient[column] = std::isnan(was[column]) ? now : was[column] + part * (now - was[column]);
+  };
+  for (const int column : columns) {
+    take(column);
+    for (int side = 0; side < 4; ++side) take(neighbour(column, side));
+  }
+}
+
+void WavePush::press(const Waves &waves, Run &run)
+{
+  const double thickness = run.top - run.bottom;
+  if (!(thickness > 0.0)) return;
+  if (run.below >= 0 && waves.span_view(run.column, run.below).wet)
+    std::copy_n(waves.around(run.column, run.below).u, 4, run.u);
+  else if (run.above >= 0)
+    std::copy_n(waves.around(run.column, run.above).u, 4, run.u);
+  if (run.above < 0) return;
+  if (run.wet) run.over = std::clamp(run.phi - run.top, 0.0, HIGHEST) / thickness;
+  const Waves::SpanView above = waves.span_view(run.column, run.above);
+  if (above.wet) run.on_top = std::clamp(above.phi - run.top, 0.0, HIGHEST) / thickness;
+}
+
+// The rise of a head across a face acts on what is solid on both sides of it.
+void WavePush::put(const SolidParts &solid, int column, int z, OnCell on)
+{
+  const std::size_t cell = static_cast<std::size_t>(z) * nx * ny + column;
+  const auto rise = [&](int side) {
+    const int other = neighbour(column, side);
+    if (other < 0 || std::isnan(ambient[other]) || std::isnan(ambient[column])) return 0.0;
+    const double both = (solid.at(column, z) + solid.at(other, z)) / static_cast<double>(SolidParts::FULL);
+    return std::clamp(ambient[other] - ambient[column], -HIGHEST, HIGHEST) / std::max(1.0, both);
+  };
+  on.along_x = rise(0) - rise(1);
+  on.along_y = rise(2) - rise(3);
+  known[cell] = static_cast<int>(found.size());
+  found.push_back(on);
+  cells.push_back(cell);
+}
+
+void WavePush::fill(const Waves &waves, int column)
+{
+  const SolidParts &solid = waves.solids();
+  const auto of_run = [&](int z, const Run &run) {
+    OnCell on;
+    on.head = run.phi;
+    on.share = run.wet ? std::clamp(run.phi - run.floor, 0.0, 1.0) : 0.0;
+    on.over = run.over;
+    on.on_top = run.on_top;
+    on.flow_x = 0.5 * (run.u[0] + run.u[1]);
+    on.flow_y = 0.5 * (run.u[2] + run.u[3]);
+    put(solid, column, z, on);
+  };
+  const Run *run = &runs[first_run[column]];
+  int z = 0;
+  for (int n = 0; n < waves.spans_of(column); ++n, ++run) {
+    const Waves::SpanView span = waves.span_view(column, n);
+    for (; z < span.low; ++z)
+      if (solid.at(column, z) >= LEAST_PART) of_run(z, *run);
+    bool looked = false;
+    Waves::Sides sides{};
+    for (; z < span.high; ++z) {
+      if (solid.at(column, z) < LEAST_PART) continue;
+      if (z == span.low && span.floor > z) {
+        of_run(z, *run);
+        continue;
+      }
+      if (z == span.high - 1 && span.roof < z + 1.0) {
+        of_run(z, run[1]);
+        continue;
+      }
+      if (!looked) sides = waves.around(column, n);
+      looked = true;
+      OnCell on;
+      on.head = span.phi;
+      on.share = span.wet ? std::clamp(span.phi - span.floor, 0.0, 1.0) : 0.0;
+      on.flow_x = 0.5 * (sides.u[0] + sides.u[1]);
+      on.flow_y = 0.5 * (sides.u[2] + sides.u[3]);
+      put(solid, column, z, on);
+    }
+  }
+  for (; z < nz; ++z)
+    if (solid.at(column, z) >= LEAST_PART) of_run(z, *run);
+}
+
+// Cells next to bodies feel the mean of what is known around them.
+void WavePush::spread(const SolidParts &solid)
+{
+  struct Sum {
+    OnCell on;
+    double weight, wet;
+  };
+  std::vector<Sum> sums;
+  std::vector<std::size_t> where;
+  const std::size_t own = found.size();
+  for (std::size_t n = 0; n < own; ++n) {
+    const int column = static_cast<int>(cells[n] % (static_cast<std::size_t>(nx) * ny));
+    const int z = static_cast<int>(cells[n] / (static_cast<std::size_t>(nx) * ny)), x = column % nx, y = column / nx;
+    for (int dz = -1; dz <= 1; ++dz)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          if (x + dx < 0 || x + dx >= nx || y + dy < 0 || y + dy >= ny || z + dz < 0 || z + dz >= nz) continue;
+          const std::size_t cell = (static_cast<std::size_t>(z + dz) * ny + y + dy) * nx + x + dx;
+          int &number = known[cell];
+          if (number >= 0 && number < static_cast<int>(own)) continue;
+          if (number < 0) {
+            number = static_cast<int>(own + sums.size());
+            sums.push_back({});
+            where.push_back(cell);
+          }
+          Sum &sum = sums[number - own];
+          const OnCell &from = found[n];
+          const double weight = solid.at(column, z) * (dx ? 0.5 : 1.0) * (dy ? 0.5 : 1.0) * (dz ? 0.5 : 1.0);
+          sum.weight += weight;
+          sum.on.share += weight * from.share;
+          if (from.share > 0.0) {
+            sum.wet += weight;
+            sum.on.head += weight * from.head;
+          }
+          sum.on.over += weight * from.over;
+          sum.on.along_x += weight * from.along_x;
+          sum.on.along_y += weight * from.along_y;
+          sum.on.on_top += weight * from.on_top;
+          sum.on.flow_x += weight * from.flow_x;
+          sum.on.flow_y += weight * from.flow_y;
+        }
+  }
+  for (std::size_t n = 0; n < sums.size(); ++n) {
+    OnCell &on = sums[n].on;
+    if (sums[n].wet > 0.0) on.head /= sums[n].wet;
+    for (double *value : {&on.share, &on.over, &on.on_top, &on.along_x, &on.along_y, &on.flow_x, &on.flow_y})
+      *value /= sums[n].weight;
+    found.push_back(on);
+    cells.push_back(where[n]);
+  }
+}
+
+}    // namespace mdanim

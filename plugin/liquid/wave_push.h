@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// What a liquid with momentum does to the bodies in it, cell by cell. docs/physics-liquid.md, "Bodies in waves".
+
+#ifndef MDANIM_WAVE_PUSH_H
+#define MDANIM_WAVE_PUSH_H
+
+#include "liquid/waves.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace mdanim {
+
+// Found once for each update, for the cells that bodies fill and those around them; looked up for each particle in each step.
+class WavePush {
+ public:
+  // On a volume in a cell, over the weight of as much liquid. s is the part below `head`.
+  struct OnCell {
+    double head = 0.0, share = 0.0;         // s counts by this: 0 where it is dry below
+    double over = 0.0;                      // of the liquid that stands higher below than the body does, by the body's thickness
+    double along_x = 0.0, along_y = 0.0;    // push, times s + over - on_top
+    double on_top = 0.0;                    // of the liquid that stands on the body, by the body's thickness
+    double flow_x = 0.0, flow_y = 0.0;      // velocity of the liquid
+  };
+
+  WavePush(int nx, int ny, int nz)
+      : nx(nx), ny(ny), nz(nz), known(static_cast<std::size_t>(nx) * ny * nz, -1),
+        ambient(static_cast<std::size_t>(nx) * ny, std::numeric_limits<double>::quiet_NaN())
+  {
+  }
+
+  // For all columns with mass in them, `mass` as Waves::set_solids takes it. What pushes sideways follows the liquid by a part of
+  // what has changed: a body is stiffer sideways than the time of an update shows.
+  void find(const Waves &waves, const double *mass, double part);
+  // Null far from all bodies.
+  const OnCell *at(std::size_t cell) const { return known[cell] < 0 ? nullptr : &found[known[cell]]; }
+  std::vector<double> &state() { return ambient; }    // of the columns; all that find() depends on besides
+  const std::vector<double> &state() const { return ambient; }
+  double bytes() const
+  { return static_cast<double>(known.size() * sizeof known[0] + found.capacity() * (sizeof(OnCell) + sizeof(std::size_t))); }
+
+ private:
+  // Solid from one height to another in a column, between two spans or beside one; -1 where there is none.
+  struct Run {
+    int column, below, above;
+    double bottom, top;
+    bool wet, told;    // liquid below; whether that is known: where no liquid gets below, from the columns around
+    double phi, floor;
+    double u[4], over, on_top;
+  };
+
+  void cut(const Waves &waves, int column);
+  bool beside(const Waves &waves, int column, double bottom, double top, double &phi) const;
+  void seep(const Waves &waves);
+  void follow(const Waves &waves, double part);
+  void press(const Waves &waves, Run &run);
+  void put(const SolidParts &solid, int column, int z, OnCell on);
+  void fill(const Waves &waves, int column);
+  void spread(const SolidParts &solid);
+  int neighbour(int column, int side) const;
+
+  const int nx, ny, nz;
+  std::vector<int> known;    // of each cell, its number in `found`, or -1
+  std::vector<OnCell> found;
+  std::vector<std::size_t> cells;    // of each in `found`
+  std::vector<Run> runs;
+  std::vector<int> first_run, columns;    // of each column, or -1; those with mass
+  std::vector<double> ambient;            // head around each column, as it acts sideways; NaN far from bodies
+};
+
+}    // namespace mdanim
+
+#endif

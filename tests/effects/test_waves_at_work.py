@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Elastic bodies in a liquid with momentum, from scene text to LAMMPS, against closed forms.
+
+Units of scenes/lab/cube.txt: spacing 1, liquid of density 1000, elasticity 1000 Pa is a wave speed of about 1.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from mdanim_lammps.effects.liquid import WAVES
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.results.expect import immersed_share
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.parse import load_scene
+from mdanim_lammps.scene.scene import LiquidModel
+from paths import SCENES
+
+CUBE = SCENES / "lab" / "cube.txt"
+UNITS, START = 0, 1
+
+
+def scene(drag=0.02, calm=200.0, model=LiquidModel.WAVES, **lets):
+    """A cube of 6^3 cells over a pool of 20 x 20 cells; ``lets`` as in the file."""
+    found = load_scene(CUBE, overrides=lets)
+    return prepare(replace(found, liquid=replace(found.liquid, drag=drag, calm=calm, model=model)))
+
+
+def force(ready, instance) -> np.ndarray:
+    """Force of the liquid on all that floats, over the weight of the liquid that it could displace, shape (3,)."""
+    system, dt = ready.system, ready.certificate.timestep
+    before = system.center_of_mass(instance.array("v"))[0]
+    instance.run(1)
+    gained = (system.center_of_mass(instance.array("v"))[0] - before) / dt - np.array(ready.scene.gravity)
+    return system.mass.sum() * gained / (1000.0 * system.volume.sum() * -ready.scene.gravity[2])
+
+
+@pytest.mark.parametrize("way", [dict(roll=20, pitch=35, yaw=10), dict(z=8.3), dict(z=5.0, roll=45)])
+def test_at_rest_lift_is_archimedes_and_nothing_pushes_sideways(way):
+    """Under water, in any attitude, near the floor too: the weight of what is displaced within 1 %, and straight up to a unit of liquid."""
+    ready = scene(density=500, **{"z": 7.5, **way})
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        found = force(ready, instance)
+    assert found[2] == pytest.approx(1.0, abs=0.01)
+    assert np.abs(found[:2]).max() < 1e-6
+
+
+def test_energy_goes_from_a_body_to_waves_and_is_accounted():
+    """A cube falls in: waves have what it lost, the sum of the ledger stays, and to the unit the liquid does."""
+    ready = scene(density=800, z=22, young=3000)
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        gravity = lambda: -(ready.system.mass @ instance.array("x")[:, 2]) * ready.scene.gravity[2]
+        start, found = gravity(), []
+        for _ in range(30):
+            instance.run(int(10 / ready.certificate.timestep))
+            assert instance.fix_value("liquid", UNITS) == instance.fix_value("liquid", START)
+            found.append((gravity() - start, instance.fix_value("liquid", WAVES), -instance.fix_scalar("liquid")))
+        lost, waves, work = np.array(found).T
+    potential = 1000 * 216 * 0.01  # weight of as much liquid, times a cell
+    # Waves have what the liquid's push has taken from the body; a part of it may come of the impact, docs/physics-liquid.md.
+    assert (waves + work < 0.15 * waves.max()).all(), "the liquid has more than it got"
+    assert waves.max() > 5 * potential
+    assert lost.min() < -5 * potential
+
+
+@pytest.mark.parametrize("density", [300, 700])
+def test_a_cube_from_the_bottom_floats_as_deep_as_archimedes_says(density):
+    """Within 2 % of the side, what a body of 6 cells can do, when it has come to rest."""
+    ready = scene(drag=0.1, calm=50.0, density=density, z=3.2)
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(int(3000 / ready.certificate.timestep))
+        x = instance.array("x")
+        found = immersed_share(x[ready.system.hexahedron], ready.system.grid, instance.liquid_heights()[0])
+        assert np.abs(instance.array("v")).max() < 2e-2
+    assert found == pytest.approx(density / 1000, abs=0.02)
+
+
+def test_a_flow_carries_what_floats_along():
+    """A dam breaks beside a float: the flow takes it along, and the waves that come back turn it round."""
+    found = load_scene(CUBE, overrides=dict(half=16, level=8, top=20, z=9.0, density=300))
+    dam = replace(found.liquid, drag=0.05, model=LiquidModel.WAVES, fill=((-16.0, -16.0, 0.0), (4.0, 16.0, 20.0)), level=14.0)
+    ready = prepare(replace(found, liquid=dam))
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        way = []
+        for _ in range(20):
+            instance.run(int(10 / ready.certificate.timestep))
+            way.append(ready.system.center_of_mass(instance.array("x"))[0, 0] - 0.3)
+        aside = ready.system.center_of_mass(instance.array("x"))[0, 1] + 0.2
+    assert max(way) > 3.0
+    assert abs(aside) < 1.0
