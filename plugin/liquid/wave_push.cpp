@@ -47,7 +47,7 @@ void WavePush::find(const Waves &waves, const double *mass, double part)
     }
   seep(waves);
   follow(waves, part);
-  for (Run &run : runs) press(waves, run);
+  for (SolidRun &run : runs) press(waves, run);
   for (const int column : columns) fill(waves, column);
   spread(waves.solids());
 }
@@ -58,7 +58,7 @@ void WavePush::cut(const Waves &waves, int column)
   first_run[column] = static_cast<int>(runs.size());
   double bottom = 0.0;
   for (int n = 0; n <= spans; ++n) {
-    Run run{};
+    SolidRun run{};
     run.column = column;
     run.below = n - 1;
     run.above = n < spans ? n : -1;
@@ -94,7 +94,7 @@ bool WavePush::beside(const Waves &waves, int column, double bottom, double top,
   }
   if (any || first_run[column] < 0) return any;
   for (int n = 0; n <= waves.spans_of(column); ++n) {
-    const Run &run = runs[first_run[column] + n];
+    const SolidRun &run = runs[first_run[column] + n];
     if (run.bottom >= top || run.top <= bottom || !run.told) continue;
     phi = run.wet ? run.phi : run.floor;
     return true;
@@ -108,7 +108,7 @@ void WavePush::seep(const Waves &waves)
   std::vector<int> dry;
   for (std::size_t n = 0; n < runs.size(); ++n)
     if (!runs[n].told && runs[n].top > runs[n].bottom) dry.push_back(static_cast<int>(n));
-  const auto mean = [&](const Run &run, double &phi) {
+  const auto mean = [&](const SolidRun &run, double &phi) {
     double sum = 0.0;
     int count = 0;
     for (int side = 0; side < 4; ++side) {
@@ -150,7 +150,7 @@ void WavePush::follow(const Waves &waves, double part)
     }
     if (first_run[column] >= 0)
       for (int n = spans; n >= 0; --n) {
-        const Run &run = runs[first_run[column] + n];
+        const SolidRun &run = runs[first_run[column] + n];
         if (run.wet && run.top > run.bottom) now = run.phi;
       }
     ambient[column] = std::isnan(was[column]) ? now : was[column] + part * (now - was[column]);
@@ -161,7 +161,7 @@ void WavePush::follow(const Waves &waves, double part)
   }
 }
 
-void WavePush::press(const Waves &waves, Run &run)
+void WavePush::press(const Waves &waves, SolidRun &run)
 {
   const double thickness = run.top - run.bottom;
   if (!(thickness > 0.0)) return;
@@ -195,7 +195,7 @@ void WavePush::put(const SolidParts &solid, int column, int z, OnCell on)
 void WavePush::fill(const Waves &waves, int column)
 {
   const SolidParts &solid = waves.solids();
-  const auto of_run = [&](int z, const Run &run) {
+  const auto of_run = [&](int z, const SolidRun &run) {
     OnCell on;
     on.head = run.phi;
     on.share = run.wet ? std::clamp(run.phi - run.floor, 0.0, 1.0) : 0.0;
@@ -205,7 +205,7 @@ void WavePush::fill(const Waves &waves, int column)
     on.flow_y = 0.5 * (run.u[2] + run.u[3]);
     put(solid, column, z, on);
   };
-  const Run *run = &runs[first_run[column]];
+  const SolidRun *run = &runs[first_run[column]];
   int z = 0;
   for (int n = 0; n < waves.spans_of(column); ++n, ++run) {
     const Waves::SpanView span = waves.span_view(column, n);

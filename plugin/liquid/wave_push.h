@@ -43,7 +43,7 @@ class WavePush {
 
  private:
   // Solid from one height to another in a column, between two spans or beside one; -1 where there is none.
-  struct Run {
+  struct SolidRun {
     int column, below, above;
     double bottom, top;
     bool wet, told;    // liquid below; whether that is known: where no liquid gets below, from the columns around
@@ -55,7 +55,7 @@ class WavePush {
   bool beside(const Waves &waves, int column, double bottom, double top, double &phi) const;
   void seep(const Waves &waves);
   void follow(const Waves &waves, double part);
-  void press(const Waves &waves, Run &run);
+  void press(const Waves &waves, SolidRun &run);
   void put(const SolidParts &solid, int column, int z, OnCell on);
   void fill(const Waves &waves, int column);
   void spread(const SolidParts &solid);
@@ -65,7 +65,7 @@ class WavePush {
   std::vector<int> known;    // of each cell, its number in `found`, or -1
   std::vector<OnCell> found;
   std::vector<std::size_t> cells;    // of each in `found`
-  std::vector<Run> runs;
+  std::vector<SolidRun> runs;
   std::vector<int> first_run, columns;    // of each column, or -1; those with mass
   std::vector<double> ambient;            // head around each column, as it acts sideways; NaN far from bodies
 };

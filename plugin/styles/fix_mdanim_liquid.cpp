@@ -153,8 +153,8 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   const std::string refused = model == Model::WAVES ? WaveBasin::unusable(shape) : AutomatonBasin::too_large(n[0], n[1], n[2]);
   if (!refused.empty()) error->all(FLERR, 6, "fix mdanim/liquid: {}", refused);
   try {
-    if (model == Model::WAVES)    // an amplitude falls at half the rate of friction
-      basin = std::make_unique<WaveBasin>(shape, g, calm > 0.0 ? 2.0 / calm : 0.0, sums);
+    if (model == Model::WAVES)
+      basin = std::make_unique<WaveBasin>(shape, g, calm > 0.0 ? calm_rate(calm) : 0.0, sums);
     else
       basin = std::make_unique<AutomatonBasin>(
           shape, g, static_cast<std::uint64_t>(seed), vertical,

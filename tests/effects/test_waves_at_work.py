@@ -37,7 +37,7 @@ def force(ready, instance) -> np.ndarray:
 
 @pytest.mark.parametrize("way", [dict(roll=20, pitch=35, yaw=10), dict(z=8.3), dict(z=5.0, roll=45)])
 def test_at_rest_lift_is_archimedes_and_nothing_pushes_sideways(way):
-    """Under water, in any attitude, near the floor too: the weight of what is displaced within 1 %, and straight up to a unit of liquid."""
+    """Under water, in any attitude: the weight of what is displaced within 1 %; straight up to a unit of liquid."""
     ready = scene(density=500, **{"z": 7.5, **way})
     with Instance(ready.plan) as instance:
         instance.setup()

@@ -166,7 +166,8 @@ class LiquidWaves(LiquidAutomaton):
 
     def words(self, scene):
         calm = scene.liquid.calm or calm_time(scene)
-        return f"model waves calm {calm!r} cells i2_cell softness d_softness still held every {EVERY} stride {STRIDE} period {WAVE_PERIOD}"
+        solids = "cells i2_cell softness d_softness still held"
+        return f"model waves calm {calm!r} {solids} every {EVERY} stride {STRIDE} period {WAVE_PERIOD}"
 
     def warnings(self, scene, system):
         liquid, cell = scene.liquid, system.grid.cell[2]

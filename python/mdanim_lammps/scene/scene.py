@@ -188,8 +188,8 @@ class Liquid:
         None,
         "`surface`: draft after Archimedes, occupancy by hexahedra, level rule. `pressure`: the same with the liquid's pressure "
         "on every outer face, so that an open hull floats by the air in it. `paper`: the literal rules of the paper, with a "
-        "warning: not Archimedes, objects denser than about 0.4 of the liquid sink. `waves`: a liquid with momentum that splashes, "
-        "sloshes and pushes; open hulls float dry.",
+        "warning: not Archimedes, objects denser than about 0.4 of the liquid sink. `waves`: a liquid with momentum that "
+        "splashes, sloshes and pushes; open hulls float dry.",
         "surface", default=LiquidModel.SURFACE, codec=Words(LiquidModel))  # fmt: skip
     calm: float | None = setting(
         "auto | <T:s>",
@@ -197,7 +197,8 @@ class Liquid:
         "20 s", Rule.POSITIVE, default=None)  # fmt: skip
     """Time in which waves die to 1/e [s]; None is ``auto``."""
     sweeps: int | None = setting(
-        "auto | <n>", "Sweeps of the automaton per update; not with `model waves`.", "4", Rule.COUNT, default=None, limit=SWEEPS)  # fmt: skip
+        "auto | <n>", "Sweeps of the automaton per update; not with `model waves`.",
+        "4", Rule.COUNT, default=None, limit=SWEEPS)  # fmt: skip
     """Automaton sweeps per update; None is ``auto``."""
     color: str | None = setting("<color>", f"Colour in pictures: {COLOR}", "deepskyblue", default=None)
     """``#rrggbb``; None lets the renderer choose."""
