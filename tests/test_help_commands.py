@@ -93,7 +93,7 @@ def test_gallery(tmp_path):
     before = movie.stat().st_mtime_ns
     run("gallery", folder, "-o", tmp_path / "g")
     assert movie.stat().st_mtime_ns == before  # what is there is kept
-    empty = run("gallery", tmp_path)
+    empty = run("gallery", tmp_path, cwd=tmp_path)
     assert empty.returncode == 7 and "holds no scenes" in empty.stderr
 
 

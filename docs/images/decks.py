@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Make the pictures of the input scripts in scenes/lammps: ``python docs/images/decks.py [NAME ...]`` (runs them; default all)."""
+"""Make the pictures of the input scripts in scenes/lammps: ``python docs/images/decks.py [NAME ...]`` runs them; default all."""
 
 import shutil
 import subprocess
