@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""How deep elastic cubes float, and how fast they sink: ``python bench/drafts.py [drafts] [cells] [models] [speed] [drift]``.
+"""How deep elastic cubes float, and how fast they sink: ``python bench/drafts.py [WORD ...]``.
 
 drafts   share of a cube of 6^3 cells below the surface, after five ways to get there, against its density over the liquid's;
          beside it how far the nearest axis of the cube leans from the vertical (45 = on an edge, 54.7 = on a corner)
 cells    the same for one tilted drop and cubes of 3 to 10 cells a side
 models   the same for a cube of 6^3 cells set upright onto the surface, by `liquid { model … }`; ten times stiffer,
          because pressure squeezes: softer ones shrink and lie deeper
+waves    the first table for ``model waves``, with a calm time of 10 sqrt(L/g)
 speed    terminal speed under the liquid's drag over (rho_s - rho_l) g / (gamma rho_l)
 drift    what a floating cube moves sideways in 20 s, and the sweeps of the automaton in that time
 
@@ -34,7 +35,7 @@ SWEEPS = 4  # entry of the fix's vector
 class Pool:
     """A cube over a pool, in LAMMPS; a context manager."""
 
-    def __init__(self, fast=0.0, drag=None, model="surface", **lets):
+    def __init__(self, fast=0.0, drag=None, model="surface", calm=None, **lets):
         from mdanim_lammps.engine.instance import Instance
         from mdanim_lammps.run.prepare import prepare
         from mdanim_lammps.scene.parse import load_scene
@@ -43,7 +44,7 @@ class Pool:
         if fast:  # in wave speeds c
             lets["v"] = -fast * (1.2 * 1000 / lets["density"]) ** 0.5
         scene = load_scene(CUBE, overrides=lets)
-        self.ready = prepare(replace(scene, liquid=replace(scene.liquid, drag=drag, model=LiquidModel(model))))
+        self.ready = prepare(replace(scene, liquid=replace(scene.liquid, drag=drag, model=LiquidModel(model), calm=calm)))
         self.instance = Instance(self.ready.plan)
         self.instance.setup()
 
@@ -110,6 +111,15 @@ def models() -> None:
         print(f"{model:20}" + "   ".join(settled(density=d, z=17.1, young=10000, model=model) for d in DENSITIES), flush=True)
 
 
+def waves() -> None:
+    """Print the table of drafts in a liquid with momentum."""
+    print("the first table for model waves")
+    for name, way in WAYS.items():
+        calm = 10 * (6 / way.get("g", 0.01)) ** 0.5
+        cells = (settled(density=d, model="waves", calm=calm, **way) for d in DENSITIES)
+        print(f"{name:20}" + "   ".join(cells), flush=True)
+
+
 def speed() -> None:
     """Print terminal speeds."""
     gamma, g = 0.1, 0.01
@@ -135,7 +145,7 @@ def drift() -> None:
         )
 
 
-WORDS = {"drafts": drafts, "cells": cells, "models": models, "speed": speed, "drift": drift}
+WORDS = {"drafts": drafts, "cells": cells, "models": models, "waves": waves, "speed": speed, "drift": drift}
 
 if __name__ == "__main__":
     for what in sys.argv[1:] or WORDS:

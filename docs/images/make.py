@@ -37,6 +37,8 @@ PICTURES = {
     "billiard": 0.5,
     "cradle": 0.8,
     "pile": 1.2,
+    "dam": 0.72,
+    "ripples": 0.5,
 }
 """Scene and the moment to show [s]."""
 SIZE = (720, 405)

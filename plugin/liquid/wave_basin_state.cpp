@@ -14,7 +14,8 @@ namespace {
 
 constexpr double STATE_VERSION = 3.0;    // the automaton's is 2
 constexpr std::uint8_t SOLID_CODE = 255;
-constexpr double PUDDLE = 1.0 / 64.0;    // cells of liquid that are no surface yet
+constexpr double PUDDLE = 1.0 / 64.0;    // cells that are part of the floor
+constexpr double ON_BODY = 0.5;          // cells of liquid on a body that are no surface yet
 
 struct WaveBasinHead {
   double version;
@@ -100,9 +101,9 @@ void WaveBasin::look_at_column(int column)
   for (int n = spans - 1; n >= 0; --n) {
     const Waves::SpanView span = waves.span_view(column, n);
     const bool last = n == spans - 1 && span.high == shape.nz;
-    const bool dry = !span.wet || span.phi - span.floor < PUDDLE;
-    if (dry && n > 0) continue;
-    if (dry && (span.floor >= PUDDLE || !last)) continue;
+    // A little that stands on a body is no surface; on the open floor dry ground is.
+    const bool on_floor = n == 0 && last && span.floor < PUDDLE;
+    if (!on_floor && span.volume < ON_BODY) continue;
     heads[column] = std::min(span.phi, shape.nz + 1.0);
     if (last) tops[column] = heads[column];
     if (last || spans == 0) return;

@@ -82,7 +82,7 @@ class Waves {
   // The n-th span of a column, from the lowest up.
   struct SpanView {
     int low, high;
-    double floor, roof, phi;
+    double floor, roof, phi, volume;
     bool wet, full;
   };
   int spans_of(int column) const { return spans_in[column]; }

@@ -12,7 +12,9 @@ Waves::SpanView Waves::span_view(int column, int n) const
 {
   const long i = place(column, n);
   const bool wet = static_cast<double>(content[i]) > law.film * law.units_per_cell;
-  return {span[i].low, span[i].high, span[i].floor, span[i].roof, arrays.phi[i], wet, arrays.full[i] > 0.0};
+  return {span[i].low,  span[i].high,        span[i].floor,
+          span[i].roof, arrays.phi[i],       static_cast<double>(content[i]) / UNITS_PER_CELL,
+          wet,          arrays.full[i] > 0.0};
 }
 
 Waves::Sides Waves::around(int column, int n) const

@@ -65,10 +65,18 @@ def test_energy_goes_from_a_body_to_waves_and_is_accounted():
     assert lost.min() < -5 * potential
 
 
+def test_a_shallow_liquid_is_told():
+    """Under four cells deep at the start, a dam's part of the basin counted; a deep one is not told."""
+    told = [w for w in scene(level=3).warnings if "deep" in w.message]
+    assert len(told) == 1 and "3 cells deep" in told[0].message and "resolution" in told[0].hint
+    assert not [w for w in scene(level=5).warnings if "deep" in w.message]
+
+
 @pytest.mark.parametrize("density", [300, 700])
-def test_a_cube_from_the_bottom_floats_as_deep_as_archimedes_says(density):
+@pytest.mark.parametrize("way", [dict(z=3.2), dict(z=6.0, roll=20, pitch=30)], ids=["upright", "tilted"])
+def test_a_cube_from_the_bottom_floats_as_deep_as_archimedes_says(way, density):
     """Within 2 % of the side, what a body of 6 cells can do, when it has come to rest."""
-    ready = scene(drag=0.1, calm=50.0, density=density, z=3.2)
+    ready = scene(drag=0.1, calm=50.0, density=density, **way)
     with Instance(ready.plan) as instance:
         instance.setup()
         instance.run(int(3000 / ready.certificate.timestep))

@@ -171,13 +171,15 @@ class LiquidWaves(LiquidAutomaton):
 
     def warnings(self, scene, system):
         liquid, cell = scene.liquid, system.grid.cell[2]
-        depth = (liquid_level(liquid) - liquid.low[2]) / cell
+        low, high = liquid.fill or (liquid.low, liquid.high)
+        area = (high[0] - low[0]) * (high[1] - low[1])
+        depth = (liquid.volume / area if liquid.level is None else liquid.level - low[2]) / cell
         if depth >= SHALLOW:
             return []
         return [
             Problem(
                 liquid.spans.get("level") or liquid.spans.get("volume"),
-                f"{liquid.name} is {number(depth, 2)} cells deep when it lies flat; waves need {SHALLOW}",
+                f"{liquid.name} is {number(depth, 2)} cells deep at the start; waves need {SHALLOW}",
                 f"more liquid, or resolution {say(depth * cell / SHALLOW, 'm')}",
                 severity="warning",
             )

@@ -83,6 +83,8 @@ UNEVEN = FLYING.split("control")[0].replace("1 .. 4", "1 .. 3") + "control { tim
 """A last frame that is shorter than the others."""
 POOL = RAFTS.replace("time 0.24 s", "time 0.16 s")
 """The same, shorter."""
+WAVES = POOL.replace("volume 45 l", "volume 45 l model waves")
+"""The same in a liquid with momentum."""
 APART = (
     GRAVITY
     + solid("falling", "box (10, 10, 10) cm", "(0, 0, 0) m", "density 900", "velocity (0, 0, -2) m/s")

@@ -141,6 +141,7 @@ def test_only_what_meets_others_begins_again(scene):
     [
         pytest.param(films.HEAVY, "central", 3, id="solid"),
         pytest.param(films.POOL, "peers", 2, id="liquid"),
+        pytest.param(films.WAVES, "peers", 2, id="waves"),
         pytest.param(films.POOL, "central", 3, id="liquid of three", marks=pytest.mark.soak),
         pytest.param(films.FLYING, "central", 3, id="islands"),
     ],
