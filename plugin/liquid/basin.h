@@ -8,6 +8,7 @@
 #include "liquid/occupancy.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -48,6 +49,7 @@ class Basin {
     double immersed = 0.0;    // part of the volume around it that is below the surface
     Vec3 push;                // force on a volume, over the weight of as much liquid
     Vec3 flow;                // velocity of the liquid [distance/time]
+    double rising = 0.0;      // upward velocity of the solid around [distance/time]
   };
   // Adds this rank's bodies, as far as they reach below a height.
   using AddBodies = std::function<void(Occupancy &, double below)>;
@@ -84,6 +86,8 @@ class Basin {
   virtual double all_below() const = 0;
   // Whether solids pass on what they do to the liquid; this rank's part of that.
   virtual bool takes_impulses() const { return false; }
+  // Rate [1/time] at which what is immersed loses the velocity that differs from that of the solid around.
+  virtual double calms_solids() const { return 0.0; }
   virtual void take_impulse(const Vec3 & /*place*/, const Vec3 & /*impulse*/) {}
 
   Vec3 in_cells(const double *x) const
@@ -100,6 +104,7 @@ class Basin {
   // --- output ---
 
   int columns() const { return shape.nx * shape.ny; }
+  double speed_of_waves() const { return std::sqrt(g * shape.cell.z); }    // as deep as a cell [distance/time]
   double cell_volume() const { return shape.cell.x * shape.cell.y * shape.cell.z; }
   virtual bool is_smooth() const = 0;    // whether samples of bodies are spread, and columns know the mass in them
   virtual int top() const = 0;           // no liquid in layers from this one up

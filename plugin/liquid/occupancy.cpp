@@ -128,17 +128,18 @@ void Occupancy::spread_cell(const Vec3 corner[8])
   each_sample(corner, [&](const Vec3 &place) { spread(place, reach, weight); });
 }
 
-void Occupancy::add_mass(const Vec3 &place, double mass, double softness)
+void Occupancy::add_mass(const Vec3 &place, double mass, double softness, double rising)
 {
   if (!(place.x >= 0.0 && place.x <= nx && place.y >= 0.0 && place.y <= ny)) return;
-  if (sums.empty()) sums.assign(static_cast<std::size_t>(2) * nx * ny, 0);
+  if (sums.empty()) sums.assign(static_cast<std::size_t>(3) * nx * ny, 0);
   const double x = std::clamp(place.x - 0.5, 0.0, nx - 1.0), y = std::clamp(place.y - 0.5, 0.0, ny - 1.0);
   const int x0 = static_cast<int>(x), y0 = static_cast<int>(y), x1 = std::min(x0 + 1, nx - 1), y1 = std::min(y0 + 1, ny - 1);
   const double u = x - x0, v = y - y0;
   const auto give = [&](int cx, int cy, double part) {
-    std::int64_t *const of_column = &sums[2 * (static_cast<std::size_t>(cy) * nx + cx)];
+    std::int64_t *const of_column = &sums[3 * (static_cast<std::size_t>(cy) * nx + cx)];
     of_column[0] += static_cast<std::int64_t>(mass * part / SUM_UNIT + 0.5);
     of_column[1] += static_cast<std::int64_t>(softness * part / SUM_UNIT + 0.5);
+    of_column[2] += static_cast<std::int64_t>(std::floor(mass * part * rising / SUM_UNIT + 0.5));
   };
   give(x0, y0, (1.0 - u) * (1.0 - v));
   give(x1, y0, u * (1.0 - v));
@@ -169,7 +170,7 @@ void Occupancy::sum_over(const RankSums &ranks)
   bounds[6] = sums.empty() ? 0 : -1;
   ranks.lowest(bounds, 7);
   if (bounds[6]) {    // some rank has mass
-    sums.resize(static_cast<std::size_t>(2) * nx * ny, 0);
+    sums.resize(static_cast<std::size_t>(3) * nx * ny, 0);
     ranks.add_wide(sums.data(), static_cast<int>(sums.size()));
   }
   for (int d = 0; d < 3; ++d) {

@@ -44,9 +44,9 @@ class Occupancy {
   // The same, but each sample is spread over all cells that the box around its part of the lattice cell overlaps, in proportion:
   // counts change smoothly as a body moves. Cells inside a body of any attitude get 0.98 of FULL_SPREAD and more.
   void spread_cell(const Vec3 corner[8]);
-  // Mass at a place, in cells of liquid, and by how much it is compressed by a cell of liquid that stands on the column, in cells:
-  // shared among the four columns around, in whole numbers.
-  void add_mass(const Vec3 &place, double mass, double softness);
+  // Mass at a place, in cells of liquid, by how much it is compressed by a cell of liquid that stands on the column, in cells,
+  // and its upward velocity, of at most some 1000: shared among the four columns around, in whole numbers.
+  void add_mass(const Vec3 &place, double mass, double softness, double rising);
   // The paper's literal rule: the cell that holds a particle is full.
   void add_particle(const Vec3 &place);
 
@@ -60,15 +60,18 @@ class Occupancy {
   int nx, ny, nz;
   std::vector<int> count;    // x fastest
   CellBox touched;           // all counts outside are 0
-  double mass_of(int column) const { return sums.empty() ? 0.0 : static_cast<double>(sums[2 * column]) * SUM_UNIT; }
-  double softness_of(int column) const { return sums.empty() ? 0.0 : static_cast<double>(sums[2 * column + 1]) * SUM_UNIT; }
+  double mass_of(int column) const { return sum_of(column, 0); }
+  double softness_of(int column) const { return sum_of(column, 1); }
+  double momentum_of(int column) const { return sum_of(column, 2); }    // upward
 
  private:
   void add(const Vec3 &place, int weight);
   void spread(const Vec3 &place, const Vec3 &half, int weight);
 
   static constexpr double SUM_UNIT = 1.0 / (1 << 24);
-  std::vector<std::int64_t> sums;    // mass and softness of each column, in units; empty before any is added
+  double sum_of(int column, int which) const
+  { return sums.empty() ? 0.0 : static_cast<double>(sums[3 * column + which]) * SUM_UNIT; }
+  std::vector<std::int64_t> sums;    // mass, softness and momentum of each column, in units; empty before any is added
 };
 
 }    // namespace mdanim

@@ -18,6 +18,8 @@ constexpr double SAMPLED = 4.0;             // cells above the liquid up to whic
 constexpr double LONGEST = 0.2;             // update, in sqrt(cell/g)
 constexpr double ASLEEP = 1.0 / 64.0;       // cells that a solid may go before liquid at rest looks
 constexpr double SLOW = 1.0;                // time in which what pushes sideways follows, in sqrt(cell/g)
+constexpr double CALMING = 1.0;             // rate at which columns of solids lose their vibration, in sqrt(g/cell)
+constexpr double SOFT = 0.5;                // part of its compression by which the end of a column yields within an update
 constexpr double MASS_STEP = 1.0 / 64.0;    // so that what shakes a little does not wake the liquid
 constexpr double FLATTEST = 1.25;           // longest edge of a cell over the shortest
 constexpr double IMPULSE_UNIT = 1.0 / (1LL << 40);
@@ -51,8 +53,8 @@ std::string WaveBasin::unusable(const Shape &shape)
 WaveBasin::WaveBasin(const Shape &shape, double g, double calm, const RankSums &ranks)
     : Basin(shape, g), ranks(ranks), unit_of_time(std::sqrt(shape.cell.x * shape.cell.y / (g * shape.cell.z))),
       waves(shape.nx, shape.ny, shape.nz), push(shape.nx, shape.ny, shape.nz), still(shape.nx, shape.ny, shape.nz),
-      mobile(shape.nx, shape.ny, shape.nz), part(still.count.size(), 0), mass(columns(), 0.0), impulses(2 * columns(), 0),
-      heads(columns(), 0.0), tops(columns(), 0.0), hollow(columns(), 0)
+      mobile(shape.nx, shape.ny, shape.nz), part(still.count.size(), 0), mass(columns(), 0.0), rising(columns(), 0.0),
+      impulses(2 * columns(), 0), heads(columns(), 0.0), tops(columns(), 0.0), hollow(columns(), 0)
 { waves.law.calm = calm * unit_of_time; }
 
 // --- solids ---
@@ -101,9 +103,10 @@ void WaveBasin::count_parts()
   moving = 0;
   mobile.touched.each([&](int x, int y, int z) { moving += mobile.count[cell_number(x, y, z)] > 0; });
   for (int c = 0; c < columns(); ++c) {
-    // What is elastic yields more than its mass says, and overshoots: by twice its compression, taken over an update.
-    const double own = mobile.mass_of(c), soft = 2.0 * mobile.softness_of(c) / (pace.period * pace.period);
+    // What is elastic yields more than its mass says.
+    const double own = mobile.mass_of(c), soft = SOFT * mobile.softness_of(c) / (pace.period * pace.period);
     mass[c] = own > 0.0 ? std::max(MASS_STEP, std::floor(own / (1.0 + own * soft) / MASS_STEP + 0.5) * MASS_STEP) : 0.0;
+    rising[c] = own > 0.0 ? mobile.momentum_of(c) / own : 0.0;
   }
 }
 
@@ -205,7 +208,26 @@ Basin::AtPlace WaveBasin::at(const Vec3 &place) const
   const double all = s + on->over - on->on_top, speed = 1.0 / unit_of_time;
   return {s,
           {on->along_x * all * (shape.cell.z / shape.cell.x), on->along_y * all * (shape.cell.z / shape.cell.y), all},
-          {on->flow_x * shape.cell.x * speed, on->flow_y * shape.cell.y * speed, 0.0}};
+          {on->flow_x * shape.cell.x * speed, on->flow_y * shape.cell.y * speed, 0.0},
+          rising_at(place)};
+}
+
+double WaveBasin::calms_solids() const { return CALMING / unit_of_time; }
+
+// Mean of the columns around with something in them.
+double WaveBasin::rising_at(const Vec3 &place) const
+{
+  const double px = std::clamp(place.x - 0.5, 0.0, shape.nx - 1.0), py = std::clamp(place.y - 0.5, 0.0, shape.ny - 1.0);
+  const int x0 = static_cast<int>(px), y0 = static_cast<int>(py);
+  double sum = 0.0, weights = 0.0;
+  for (int y = y0; y < std::min(y0 + 2, shape.ny); ++y)
+    for (int x = x0; x < std::min(x0 + 2, shape.nx); ++x) {
+      const int column = y * shape.nx + x;
+      const double weight = mass[column] > 0.0 ? (1.0 - std::fabs(px - x)) * (1.0 - std::fabs(py - y)) : 0.0;
+      sum += weight * rising[column];
+      weights += weight;
+    }
+  return weights > 0.0 ? sum / weights * speed_of_waves() : 0.0;
 }
 
 // `impulse` is over the liquid's density.

@@ -34,6 +34,7 @@ class WaveBasin : public Basin {
   AtPlace at(const Vec3 &place) const override;
   double all_below() const override { return -std::numeric_limits<double>::infinity(); }
   bool takes_impulses() const override { return true; }
+  double calms_solids() const override;
   void take_impulse(const Vec3 &place, const Vec3 &impulse) override;
 
   bool is_smooth() const override { return true; }
@@ -62,6 +63,7 @@ class WaveBasin : public Basin {
   void take_solids();
   void look();
   void look_at_column(int column);
+  double rising_at(const Vec3 &place) const;
 
   const RankSums &ranks;
   const double unit_of_time;
@@ -71,6 +73,7 @@ class WaveBasin : public Basin {
   CellBox marked;                     // cells outside are open
   std::vector<std::uint16_t> part;    // solid, of each cell, see SolidParts
   std::vector<double> mass;           // of what floats in each column, in cells of liquid
+  std::vector<double> rising;         // its upward velocity, over speed_of_waves()
 
   // state
   bool poured = false, stale = false;    // stale: solids have changed that the liquid does not know of

@@ -137,7 +137,7 @@ void WaveBasin::contents(std::uint8_t *out) const
 
 // --- state ---
 
-// The head, masses, impulses and heads of columns, the waves.
+// The head, masses, velocities, impulses and heads of columns, the waves.
 std::vector<std::uint8_t> WaveBasin::state(const Energies &energies) const
 {
   std::vector<std::int64_t> all = impulses;
@@ -152,6 +152,7 @@ std::vector<std::uint8_t> WaveBasin::state(const Energies &energies) const
   };
   add(&head, sizeof head);
   add(mass.data(), mass.size() * sizeof mass[0]);
+  add(rising.data(), rising.size() * sizeof rising[0]);
   add(all.data(), all.size() * sizeof all[0]);
   add(push.state().data(), push.state().size() * sizeof push.state()[0]);
   add(of_waves.data(), of_waves.size());
@@ -173,11 +174,12 @@ Basin::Energies WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size
                              std::to_string(head.nz) + " cells, this one has " + std::to_string(shape.nx) + " x " +
                              std::to_string(shape.ny) + " x " + std::to_string(shape.nz));
   const std::size_t of_push = push.state().size() * sizeof push.state()[0];
-  const std::size_t before = sizeof head + of_mass + of_impulses + of_push;
+  const std::size_t before = sizeof head + 2 * of_mass + of_impulses + of_push;
   if (size < before) throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few");
   waves.set_state(bytes + before, size - before);
   std::memcpy(mass.data(), bytes + sizeof head, of_mass);
-  std::memcpy(impulses.data(), bytes + sizeof head + of_mass, of_impulses);
+  std::memcpy(rising.data(), bytes + sizeof head + of_mass, of_mass);
+  std::memcpy(impulses.data(), bytes + sizeof head + 2 * of_mass, of_impulses);
   if (!ranks.first()) std::fill(impulses.begin(), impulses.end(), 0);    // the first has those of all
   poured = true;
   stale = head.stale != 0;
@@ -195,7 +197,7 @@ Basin::Energies WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size
       for (int x = 0; x < shape.nx; ++x)
         if (part[cell_number(x, y, z)]) marked.take_in(x, y, z);
   look();
-  std::memcpy(push.state().data(), bytes + sizeof head + of_mass + of_impulses, of_push);
+  std::memcpy(push.state().data(), bytes + sizeof head + 2 * of_mass + of_impulses, of_push);
   push.find(waves, mass.data(), 0.0);
   return head.energies;
 }

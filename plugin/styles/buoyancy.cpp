@@ -126,7 +126,7 @@ void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
   const double floor = basin.shape.low.z, height = basin.shape.cell.z;
   const double above = floor + (basin.top() + 1.0) * height;    // nothing is immersed from here up
   const double below = basin.all_below();                       // most particles of a large body need not look up the surface
-  const double scale = update->dt * force->ftm2v / rho;
+  const double calming = basin.calms_solids(), scale = update->dt * force->ftm2v / rho;
   for (std::size_t n = 0; n < near.size(); ++n) {
     const int i = near[n];
     const double z = x[i][2];
@@ -146,6 +146,8 @@ void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
       push = {lift(rho, own, at.push.x, basin.g), lift(rho, own, at.push.y, basin.g), lift(rho, own, at.push.z, basin.g)};
     else
       for (int k = face_of_first[n]; k < face_of_first[n + 1]; ++k) push += faces[face_of[k]].push;
+    if (calming > 0.0 && s > 0.0)
+      push.z -= calming * s * mass_of(atom->rmass, atom->mass, atom->type, i) / force->ftm2v * (v[i][2] - at.rising);
     if (own_lambda > 0.0 && basin.takes_impulses()) {
       // Drag is against the liquid, not against the floor, and takes it along.
       const double strength = liquid_lambda(gammas ? gammas[i] : gamma.number, rho, own, s);

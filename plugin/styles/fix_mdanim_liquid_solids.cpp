@@ -74,6 +74,7 @@ void FixMdanimLiquid::add_lattice_cells(Occupancy &into, bool still, double belo
     if (mask[i] & groupbit && !(mask[i] & still_bit)) {
       const Vec3 place = basin->in_cells(atom->x[i]);
       if (place.z <= below)
-        into.add_mass(place, mass_of(atom->rmass, atom->mass, atom->type, i) / liquid, soft ? soft[i] * pressure / base : 0.0);
+        into.add_mass(place, mass_of(atom->rmass, atom->mass, atom->type, i) / liquid, soft ? soft[i] * pressure / base : 0.0,
+                      atom->v[i][2] / basin->speed_of_waves());
     }
 }
