@@ -1,6 +1,8 @@
 # make demo   set up .venv, run scenes/beam.txt, end with the path of the movie
 # make test   set up .venv, run the tests
 # make develop  set up .venv, build the plugin into the working tree: PYTHONPATH=python .venv/bin/python -m pytest tests/scene/test_units.py
+# make smoke   build sdist and wheel, install the wheel into an empty environment, do there what a stranger does first (tests/smoke.py)
+# make docs    the docs as a site: build/docs/index.html; notebooks are run, a warning is an error
 # make soak   set up .venv, run the long form of the hard cases (all tests marked soak)
 # make sanitize  set up .venv, build the plugin with sanitizers, run its tests and six scenes under them (tests/sanitize.py)
 # make bench  set up .venv, measure all of docs/performance.md (ten minutes; python bench/all.py --quick takes one)
@@ -11,7 +13,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 SOURCES := pyproject.toml CMakeLists.txt $(shell find plugin python -name '*.so' -prune -o -name __pycache__ -prune -o -type f -print)
 
-.PHONY: demo lint test develop soak sanitize bench bench-peers setup clean
+.PHONY: demo lint test docs smoke develop soak sanitize bench bench-peers setup clean
 .DEFAULT_GOAL := demo
 
 setup: $(VENV)/.installed
@@ -21,8 +23,12 @@ $(VENV)/.installed: $(SOURCES)
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || { echo "Python >= 3.10 is needed, $(PYTHON) is $$($(PYTHON) -V); try: make PYTHON=python3.11"; exit 1; }
 	@command -v c++ >/dev/null || { echo "a C++17 compiler is needed (Debian: apt install g++)"; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV) || { echo "no venv module (Debian: apt install python3-venv)"; exit 1; }
-	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet '.[test]'
+	$(BIN)/python -m pip install --quiet --upgrade pip build
+	rm -rf dist
+	$(BIN)/python -m build >dist.log 2>&1 || { cat dist.log; exit 1; }
+	$(BIN)/python -m pip install --quiet "$$(echo dist/*.whl)[test]"
+	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps dist/*.whl
+	rm dist.log
 	@touch $@
 
 demo: setup
@@ -41,6 +47,16 @@ $(VENV)/.linters: pyproject.toml $(VENV)/.installed
 test: setup
 	$(BIN)/python tests/lab/plugin_library.py
 	$(BIN)/python -m pytest -n 2 --dist loadfile
+
+# The wheel is built from the sdist when .venv is set up; PYTHON=python3.13 makes the empty environment with another Python.
+smoke: setup
+	rm -rf build/smoke
+	$(PYTHON) -m venv build/smoke
+	build/smoke/bin/python -m pip install --quiet dist/*.whl
+	build/smoke/bin/python tests/smoke.py
+
+docs: setup
+	$(BIN)/python -m sphinx -b html -W --keep-going -d build/doctrees docs build/docs
 
 # Ninja builds what has changed only. The file is renamed, as a process may have the old one loaded.
 develop: setup
@@ -74,4 +90,4 @@ bench-peers: setup .venv-peers/.installed
 	@touch $@
 
 clean:
-	rm -rf $(VENV) .venv-peers build dist
+	rm -rf $(VENV) .venv-peers build dist dist.log

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The docs as a site: ``make docs`` (Sphinx, MyST, furo). The pages are plain Markdown; their order is in toc.yml."""
+
+import re
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE.parent / "python"))
+
+project = "mdanim-lammps"
+author = "the authors of mdanim-lammps"
+release = re.search(r'__version__ = "(.*)"', (HERE.parent / "python/mdanim_lammps/__init__.py").read_text())[1]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_external_toc"]
+external_toc_path = "toc.yml"
+exclude_patterns = ["images/*.py", "_build"]
+html_theme = "furo"
+html_title = f"{project} {release}"
+html_logo = None
+html_static_path = []
+html_theme_options = {"source_repository": "", "top_of_page_buttons": []}
+templates_path = []
+
+myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 4
+nb_execution_mode = "force"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 180
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_default_options = {"members": True, "show-inheritance": False}
+
+# Colours of code that Pygments does not know: scenes, and input scripts of LAMMPS.
+highlight_language = "text"
+
+REPOSITORY = HERE.parent
+
+
+def lead_outside(app, docname, source):
+    """Links to files of the repository that are no pages become their names: the site does not hold them."""
+    pattern = re.compile(r"(?<![!`])\[([^\]`]*(?:`[^`]*`[^\]`]*)*)\]\((\.\./[^)\s]+)\)")
+    page = HERE / f"{docname}.md"
+
+    def replace(match):
+        target = (page.parent / match[2].partition("#")[0]).resolve()
+        return match[0] if target.is_relative_to(HERE) else f"{match[1]} (`{target.relative_to(REPOSITORY)}`)"
+
+    source[0] = pattern.sub(replace, source[0])
+
+
+def setup(app):
+    app.connect("source-read", lead_outside)
