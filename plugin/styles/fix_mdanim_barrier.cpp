@@ -49,7 +49,11 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
   comm_forward = 4;
   filter = &best_kernels(false).pair_filter;
 
-  if (narg < 7) utils::missing_cmd_args(FLERR, "fix mdanim/barrier", error);
+  if (narg < 7)
+    error->all(FLERR, Error::ARGZERO,
+               "fix mdanim/barrier: missing arguments, it is written as 'fix ID group mdanim/barrier BOUNDARY BARRIER k rc'; got "
+               "{} of them",
+               narg - 3);
   boundary_bit = group_bit(3, arg[3]);
   barrier_bit = group_bit(4, arg[4]);
   stiffness = ParticleValue(lmp, "fix mdanim/barrier: k", 5, arg[5]);

@@ -52,7 +52,11 @@ FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
   global_freq = 1;
   restart_global = 1;
 
-  if (narg < 6) utils::missing_cmd_args(FLERR, "fix mdanim/contact", error);
+  if (narg < 6)
+    error->all(FLERR, Error::ARGZERO,
+               "fix mdanim/contact: missing arguments, it is written as 'fix ID group mdanim/contact BODY YOUNG FRICTION'; got "
+               "{} of them",
+               narg - 3);
   kind = ParticleValue(lmp, "fix mdanim/contact: BODY", 3, arg[3]);
   young = ParticleValue(lmp, "fix mdanim/contact: YOUNG", 4, arg[4]);
   friction = ParticleValue(lmp, "fix mdanim/contact: FRICTION", 5, arg[5]);

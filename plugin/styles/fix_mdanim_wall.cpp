@@ -39,7 +39,10 @@ FixMdanimWall::FixMdanimWall(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg,
   global_freq = 1;
   dynamic_group_allow = 1;
 
-  if (narg < 5) utils::missing_cmd_args(FLERR, "fix mdanim/wall", error);
+  if (narg < 5)
+    error->all(FLERR, Error::ARGZERO,
+               "fix mdanim/wall: missing arguments, it is written as 'fix ID group mdanim/wall REGION k'; got {} of them",
+               narg - 3);
   if (narg > 5) error->all(FLERR, 5, "fix mdanim/wall: region and k are all it takes, got also {}", arg[5]);
   region_id = arg[3];
   region = domain->get_region_by_id(region_id);

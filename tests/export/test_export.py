@@ -69,10 +69,12 @@ def corners(folder, run, frame, index):
     return np.unique(np.round(vertices[run.metadata.skin.object_of_vertex == index], 5), axis=0)
 
 
-def test_usd(folder, run, tmp_path):
+@pytest.mark.parametrize("flush", [1, 10**9], ids=["saved frame by frame", "saved at once"])
+def test_usd(folder, run, tmp_path, monkeypatch, flush):
     """Meshes, times, units, materials, liquid and camera, as pxr reads them."""
     from pxr import Usd, UsdGeom, UsdShade
 
+    monkeypatch.setattr("mdanim_lammps.export.usd.FLUSH", flush)
     stage = Usd.Stage.Open(str(exported(folder, "usd", tmp_path)))
     assert UsdGeom.GetStageMetersPerUnit(stage) == 1.0 and UsdGeom.GetStageUpAxis(stage) == "Z"
     assert stage.GetTimeCodesPerSecond() == pytest.approx(20.0)
