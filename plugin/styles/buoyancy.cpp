@@ -146,8 +146,7 @@ void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
       push = {lift(rho, own, at.push.x, basin.g), lift(rho, own, at.push.y, basin.g), lift(rho, own, at.push.z, basin.g)};
     else
       for (int k = face_of_first[n]; k < face_of_first[n + 1]; ++k) push += faces[face_of[k]].push;
-    if (calming > 0.0 && s > 0.0)
-      push.z -= calming * s * mass_of(atom->rmass, atom->mass, atom->type, i) / force->ftm2v * (v[i][2] - at.rising);
+    const double own_calming = calming * s * mass_of(atom->rmass, atom->mass, atom->type, i) / force->ftm2v;
     if (own_lambda > 0.0 && basin.takes_impulses()) {
       // Drag is against the liquid, not against the floor, and takes it along.
       const double strength = liquid_lambda(gammas ? gammas[i] : gamma.number, rho, own, s);
@@ -157,7 +156,8 @@ void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
     }
     if (s == 0.0 && dot(push, push) == 0.0) continue;
     add_to(f[i], push);
-    wet.push_back({i, push, own_lambda});
+    if (own_calming > 0.0) f[i][2] -= own_calming * (v[i][2] - at.rising);
+    wet.push_back({i, push, own_lambda, own_calming, at.rising});
   }
 }
 
@@ -180,7 +180,7 @@ Basin::Energies Buoyancy::power() const
   Basin::Energies now;
   for (const Wet &w : wet) {
     const Vec3 v = vec3(atom->v[w.i]);
-    now.work += dot(w.push, v);
+    now.work += dot(w.push, v) - w.calming * (v.z - w.rising) * v.z;
     now.lost += w.lambda * dot(v, v);
   }
   return now;

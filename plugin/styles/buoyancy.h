@@ -51,6 +51,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
     int i;
     Vec3 push;
     double lambda;
+    double calming, rising;    // see Basin::calms_solids(): force over velocity; velocity that is left
   };
   struct Face {
     int corner[4];    // counter-clockwise seen from outside
