@@ -31,7 +31,7 @@ def own_lammps(place):
             found = re.search(r'LAMMPS_VERSION "(\d+) (\w{3})\w* (\d{4})"', (folder / "version.h").read_text())
             if found and found[2] in MONTHS:
                 return folder.resolve().as_posix(), (int(found[3]), MONTHS.index(found[2]) + 1, int(found[1]))
-            sys.exit(f"{folder / 'version.h'} names no version such as \"22 Jul 2025\"")
+            sys.exit(f'{folder / "version.h"} names no version such as "22 Jul 2025"')
     sys.exit(f"LAMMPS_DIR={place}: no fix.h and version.h in it, in src or include/lammps; name a source tree of LAMMPS")
 
 

@@ -363,3 +363,13 @@ def test_the_command_says_what_it_wrote(folder, tmp_path):
     command = [sys.executable, "-m", "mdanim_lammps", "export", folder, "--to", "csv", "-o", tmp_path / "a.csv", "--frames", ":3"]
     said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     assert said.startswith(f"export   {tmp_path}/a.csv   3 frames, ") and "contact_force is left out" in said
+
+
+def test_types_of_particles_are_those_of_the_data_file(tmp_path):
+    """Layers, and four more where particles are held."""
+    text = TEXT.replace('color "#ff0000"', "hold face -x").replace("velocity (0, 1, 0) m/s", "")
+    scene = Scene.from_text(text)
+    scene.run(tmp_path / "r")
+    first = export(tmp_path / "r", "lammpstrj", frames=slice(0, 1)).files[0].read_text().split("ITEM: ATOMS")[1]
+    kinds = [int(line.split()[2]) for line in first.splitlines()[1:]]
+    assert kinds == scene.prepared.plan.kind.tolist() and max(kinds) > 4
