@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the liquid costs in a run: ``python bench/liquid.py [cells across the body] [cells across the basin] [steps]``.
+"""What the liquid costs in a run: ``python bench/liquid.py [cells across the body] [cells across the basin] [steps] [model]``.
 
 A cube in a basin half full: while it plunges in, while it bobs, at rest, and while it is still far above (the liquid sleeps).
 Printed are microseconds per step and the liquid's share of the step, in all and by part.
@@ -14,6 +14,7 @@ liquid water {{
   basin from ({a}, {a}, 0) to ({b}, {b}, {n})
   density 1000
   level {half}
+  model {model}
 }}
 object cube {{
   shape box ({m}, {m}, {m})
@@ -28,7 +29,7 @@ control {{
   resolution 1
 }}
 """
-PARTS = {"automaton": 7, "occupancy": 8, "coupling": 9, "liquid": 10}
+PARTS = {"flow": 7, "occupancy": 8, "coupling": 9, "liquid": 10}
 
 
 def measure(what: str, warm: int, steps: int, **scene) -> None:
@@ -52,11 +53,11 @@ def measure(what: str, warm: int, steps: int, **scene) -> None:
     print(f"{what:22s} {1e6 * wall / steps:9.1f} us/step   {shares}   {swept / steps:.2f} sweeps/step", flush=True)
 
 
-def main(body: int = 46, basin: int = 128, steps: int = 200) -> None:
+def main(body: int = 46, basin: int = 128, steps: int = 200, model: str = "surface") -> None:
     """Measure and print."""
     # A stiff body, so that the time step is small against what the liquid has to follow: the usual case.
-    common = dict(a=-basin / 2, b=basin / 2, n=basin, half=basin / 2, m=body, young=1000.0 * 9.81 * body * 50)
-    print(f"{(body + 1) ** 3:,} particles, {basin**3:,} cells; liquid = automaton + occupancy + coupling")
+    common = dict(a=-basin / 2, b=basin / 2, n=basin, half=basin / 2, m=body, model=model, young=1000.0 * 9.81 * body * 50)
+    print(f"{(body + 1) ** 3:,} particles, {basin**3:,} cells; liquid = automaton or waves, occupancy and coupling")
     fast = -((2 * 9.81 * body) ** 0.5)
     measure("plunging in", 20, steps, z=basin / 2 + 0.3 * body, v=fast, **common)
     measure("half in, at rest", 400, steps, z=basin / 2, v=0.0, **common)
@@ -64,4 +65,4 @@ def main(body: int = 46, basin: int = 128, steps: int = 200) -> None:
 
 
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:]))
+    main(*map(int, sys.argv[1:4]), *sys.argv[4:])
