@@ -11,11 +11,18 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "lab"))
+import heave
 import waves_forms as forms
 import waves_lab as lab
 from timing import markdown
 
 STANDING = [(64, 4, 1), (64, 10, 1), (64, 20, 1), (40, 20, 1), (64, 20, 2), (40, 40, 1), (64, 20, 4), (64, 20, 8)]
+BOBBING = [
+    ("cube of 6 cells, density 0.5", (6, 6, 6), 0.5, False, 32, 1),
+    ("box 6 × 6 × 5, density 0.4", (6, 6, 5), 0.4, False, 32, 1),
+    ("plate 16 × 16 × 4, density 0.5", (16, 16, 4), 0.5, False, 40, 1),
+    ("endless beam 6 × 6, density 0.5", (6, 6, 6), 0.5, True, 96, 2),
+]
 VESSELS = [(8, 16, 4, 16), (8, 32, 4, 16), (16, 8, 4, 16), (4, 48, 4, 12), (1, 64, 1, 12)]
 
 
@@ -53,11 +60,13 @@ def bodies() -> list[tuple]:
     for density in (0.3, 0.5, 0.7, 0.9):
         on, off = forms.draft(density), forms.draft(density, (16.3, 16.1))
         rows.append(("draft of a cube of 6 cells over its side; off the grid", f"{on:.4f}; {off:.4f}", f"{density}"))
-    for density in (0.5, 0.9):
-        found = forms.bobbing(density)
-        turns = ", ".join(f"{turn:.2f}" for turn in found.turns)
-        rows.append((f"cube of density {density} bobbing: period over 2π√draft", f"{found.period:.2f}", "above 1: added mass"))
-        rows.append((f"cube of density {density}: turning points of 1", turns, ""))
+    for name, size, density, flat, width, fine in BOBBING:
+        exact = forms.swings(heave.bobbing(size[0], size[2] * density, width, 12, flat=flat, fine=fine), size[2] * density)
+        found = forms.bobbing(density, size, cells=width, flat=flat, updates=240)
+        told = [
+            f"{one.fall:.2f}; {one.period:.2f}; " + ", ".join(f"{turn:.2f}" for turn in one.turns[:2]) for one in (found, exact)
+        ]
+        rows.append((f"{name} bobbing: first fall and period over those of its mass alone; turning points of 1", *told))
     lift, inside = forms.hull()
     rows.append(
         ("dry hull, bottom 6 below the surface: lift over Archimedes'; liquid inside", f"{lift:.5f}; {inside:.0f}", "1; 0")

@@ -52,10 +52,38 @@ std::string WaveBasin::unusable(const Shape &shape)
 
 WaveBasin::WaveBasin(const Shape &shape, double g, double calm, const RankSums &ranks)
     : Basin(shape, g), ranks(ranks), unit_of_time(std::sqrt(shape.cell.x * shape.cell.y / (g * shape.cell.z))),
-      waves(shape.nx, shape.ny, shape.nz), push(shape.nx, shape.ny, shape.nz), still(shape.nx, shape.ny, shape.nz),
-      mobile(shape.nx, shape.ny, shape.nz), part(still.count.size(), 0), mass(columns(), 0.0), rising(columns(), 0.0),
-      impulses(2 * columns(), 0), heads(columns(), 0.0), tops(columns(), 0.0), hollow(columns(), 0)
+      waves(shape.nx, shape.ny, shape.nz), push(shape.nx, shape.ny, shape.nz), makers(shape.nx, shape.ny),
+      still(shape.nx, shape.ny, shape.nz), mobile(shape.nx, shape.ny, shape.nz), part(still.count.size(), 0),
+      mass(columns(), 0.0), rising(columns(), 0.0), impulses(2 * columns(), 0), heads(columns(), 0.0), tops(columns(), 0.0),
+      hollow(columns(), 0)
 { waves.law.calm = calm * unit_of_time; }
+
+// --- makers of waves ---
+
+void WaveBasin::add_wave(int side, double amplitude, double period, double depth)
+{ makers.add_paddle(static_cast<WaveMakers::Side>(side), amplitude / shape.cell.z, period / unit_of_time, depth / shape.cell.z); }
+
+void WaveBasin::add_current(int side, double speed)
+{
+  const double cell = side == WaveMakers::WEST || side == WaveMakers::EAST ? shape.cell.x : shape.cell.y;
+  makers.add_current(static_cast<WaveMakers::Side>(side), speed * unit_of_time / cell);
+}
+
+void WaveBasin::add_flow(const Vec3 &low, const Vec3 &high, double rate, double ux, double uy)
+{
+  const double cells = std::fabs(rate) * unit_of_time / cell_volume();
+  WaveMakers::Mouth mouth{{0, 0}, {0, 0}, (0.5 * (low.z + high.z) - shape.low.z) / shape.cell.z};
+  const auto columns_of = [&](int d, double from, double to, int n) {
+    mouth.low[d] = std::clamp(static_cast<int>(std::ceil(from - 0.5)), 0, n - 1);
+    mouth.high[d] = std::clamp(static_cast<int>(std::ceil(to - 0.5)), mouth.low[d] + 1, n);
+  };
+  columns_of(0, (low.x - shape.low.x) / shape.cell.x, (high.x - shape.low.x) / shape.cell.x, shape.nx);
+  columns_of(1, (low.y - shape.low.y) / shape.cell.y, (high.y - shape.low.y) / shape.cell.y, shape.ny);
+  if (rate < 0.0)
+    makers.add_drain(mouth, cells);
+  else
+    makers.add_inflow(mouth, cells, ux * unit_of_time / shape.cell.x, uy * unit_of_time / shape.cell.y);
+}
 
 // --- solids ---
 
@@ -183,6 +211,7 @@ void WaveBasin::update(const AddBodies &bodies, std::uint64_t, double dt)
   waves.add_impulse(given.data(), given.data() + columns());
   std::fill(impulses.begin(), impulses.end(), 0);
   const double time = std::min(LONGEST, static_cast<double>(waited) * dt / unit_of_time);
+  makers.apply(waves, time);
   waves.update(time);
   ++updates;
   look();

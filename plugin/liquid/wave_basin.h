@@ -5,6 +5,7 @@
 #define MDANIM_WAVE_BASIN_H
 
 #include "liquid/basin.h"
+#include "liquid/wave_makers.h"
 #include "liquid/wave_push.h"
 #include "liquid/waves.h"
 
@@ -24,6 +25,13 @@ class WaveBasin : public Basin {
   // `calm` [1/time] is the rate at which waves die besides. Throws std::bad_alloc. `ranks` stays where it is.
   WaveBasin(const Shape &shape, double g, double calm, const RankSums &ranks);
 
+  // What makes waves, before the first update; lengths, times and volumes in units of the world. Sides are those of WaveMakers.
+  void add_wave(int side, double amplitude, double period, double depth);
+  void add_current(int side, double speed);
+  // In with a velocity, or out where `rate` [volume/time] is negative: columns whose middle lies between the corners, or one at
+  // least, at the height of the middle.
+  void add_flow(const Vec3 &low, const Vec3 &high, double rate, double ux, double uy);
+
   long mark_still(const AddBodies &bodies) override;
   void mark_moving(const AddBodies &bodies) override;
   Filled fill(const Amount &amount, const std::vector<std::uint8_t> &within, std::uint64_t when) override;
@@ -40,11 +48,11 @@ class WaveBasin : public Basin {
   bool is_smooth() const override { return true; }
   int top() const override { return top_layer; }
   bool is_poured() const override { return poured; }
-  bool is_calm() const override { return waves.at_rest() && !stale; }
+  bool is_calm() const override { return waves.at_rest() && !stale && makers.none(); }
   long moving_solid() const override { return moving; }
   long solid_cells() const override;
   double cells_now() const override { return static_cast<double>(waves.total()) / UNITS_PER_CELL; }
-  double cells_at_start() const override { return static_cast<double>(units) / UNITS_PER_CELL; }
+  double cells_at_start() const override { return static_cast<double>(units + makers.in() - makers.out()) / UNITS_PER_CELL; }
   std::int64_t updates_so_far() const override { return updates; }
   double energy() const override { return energy_now() - energy_at_start; }
   double highest() const override { return crest; }
@@ -69,6 +77,7 @@ class WaveBasin : public Basin {
   const double unit_of_time;
   Waves waves;
   WavePush push;
+  WaveMakers makers;
   Occupancy still, mobile;
   CellBox marked;                     // cells outside are open
   std::vector<std::uint16_t> part;    // solid, of each cell, see SolidParts

@@ -12,7 +12,7 @@ namespace mdanim {
 
 namespace {
 
-constexpr double STATE_VERSION = 3.0;    // the automaton's is 2
+constexpr double STATE_VERSION = 4.0;    // the automaton's is 2
 constexpr std::uint8_t SOLID_CODE = 255;
 constexpr double PUDDLE = 1.0 / 64.0;    // cells that are part of the floor
 constexpr double ON_BODY = 0.5;          // cells of liquid on a body that are no surface yet
@@ -105,7 +105,7 @@ void WaveBasin::look_at_column(int column)
     const bool on_floor = n == 0 && last && span.floor < PUDDLE;
     if (!on_floor && span.volume < ON_BODY) continue;
     heads[column] = std::min(span.phi, shape.nz + 1.0);
-    if (last) tops[column] = heads[column];
+    if (last) tops[column] = std::min(span.surface, shape.nz + 1.0);
     if (last || spans == 0) return;
     const Waves::SpanView above = waves.span_view(column, spans - 1);
     hollow[column] = above.high == shape.nz && heads[column] > above.floor + 1.0;
@@ -137,14 +137,14 @@ void WaveBasin::contents(std::uint8_t *out) const
 
 // --- state ---
 
-// The head, masses, velocities, impulses and heads of columns, the waves.
+// The head, masses, velocities, impulses and heads of columns, the makers, the waves.
 std::vector<std::uint8_t> WaveBasin::state(const Energies &energies) const
 {
   std::vector<std::int64_t> all = impulses;
   ranks.add_wide(all.data(), static_cast<int>(all.size()));
   const WaveBasinHead head{STATE_VERSION, shape.nx, shape.ny,    shape.nz, units,  updates,        waited,
                            stale,         moving,   still_known, energies, travel, energy_at_start};
-  const std::vector<std::uint8_t> of_waves = waves.state();
+  const std::vector<std::uint8_t> of_makers = makers.state(), of_waves = waves.state();
   std::vector<std::uint8_t> bytes;
   const auto add = [&](const void *from, std::size_t size) {
     const auto *first = static_cast<const std::uint8_t *>(from);
@@ -155,6 +155,7 @@ std::vector<std::uint8_t> WaveBasin::state(const Energies &energies) const
   add(rising.data(), rising.size() * sizeof rising[0]);
   add(all.data(), all.size() * sizeof all[0]);
   add(push.state().data(), push.state().size() * sizeof push.state()[0]);
+  add(of_makers.data(), of_makers.size());
   add(of_waves.data(), of_waves.size());
   return bytes;
 }
@@ -174,9 +175,11 @@ Basin::Energies WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size
                              std::to_string(head.nz) + " cells, this one has " + std::to_string(shape.nx) + " x " +
                              std::to_string(shape.ny) + " x " + std::to_string(shape.nz));
   const std::size_t of_push = push.state().size() * sizeof push.state()[0];
-  const std::size_t before = sizeof head + 2 * of_mass + of_impulses + of_push;
+  const std::size_t of_makers = makers.state().size();
+  const std::size_t before = sizeof head + 2 * of_mass + of_impulses + of_push + of_makers;
   if (size < before) throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few");
-  waves.set_state(bytes + before, size - before);
+  waves.set_state(bytes + before, size - before);    // which also tells other makers, by its size
+  makers.set_state(bytes + before - of_makers, of_makers);
   std::memcpy(mass.data(), bytes + sizeof head, of_mass);
   std::memcpy(rising.data(), bytes + sizeof head + of_mass, of_mass);
   std::memcpy(impulses.data(), bytes + sizeof head + 2 * of_mass, of_impulses);

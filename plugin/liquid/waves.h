@@ -82,7 +82,8 @@ class Waves {
   // The n-th span of a column, from the lowest up.
   struct SpanView {
     int low, high;
-    double floor, roof, phi, volume;
+    double floor, roof, phi, surface;    // of heads the one that pushes, and the one that is seen
+    double volume;
     bool wet, full;
   };
   int spans_of(int column) const { return spans_in[column]; }

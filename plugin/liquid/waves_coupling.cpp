@@ -12,9 +12,10 @@ Waves::SpanView Waves::span_view(int column, int n) const
 {
   const long i = place(column, n);
   const bool wet = static_cast<double>(content[i]) > law.film * law.units_per_cell;
-  return {span[i].low,  span[i].high,        span[i].floor,
-          span[i].roof, arrays.phi[i],       static_cast<double>(content[i]) / UNITS_PER_CELL,
-          wet,          arrays.full[i] > 0.0};
+  const bool full = arrays.full[i] > 0.0;
+  const double seen = full ? arrays.phi[i] : head_of(solid, span[i], content[i]).height;
+  const double volume = static_cast<double>(content[i]) / UNITS_PER_CELL;
+  return {span[i].low, span[i].high, span[i].floor, span[i].roof, arrays.phi[i], seen, volume, wet, full};
 }
 
 Waves::Sides Waves::around(int column, int n) const

@@ -88,6 +88,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   bigint seed = 1;
   Vertical vertical = Vertical::LOWER;
   double calm = 0.0;
+  std::vector<int> makers;    // where the words of each stand
   Basin::Pace pace;
   for (int iarg = 9; iarg < narg;) {
     if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", arg[iarg]), error);
@@ -119,6 +120,10 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
     } else if (strcmp(word, "calm") == 0) {
       calm = utils::numeric(FLERR, value, false, lmp);
       if (!(calm > 0.0)) error->all(FLERR, iarg + 1, "fix mdanim/liquid: calm must be > 0, got {}", value);
+    } else if (const int words = maker_words(word)) {
+      makers.push_back(iarg);
+      used = words;
+      if (iarg + used > narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", word), error);
     } else if (strcmp(word, "vertical") == 0) {
       if (strcmp(value, "lower") == 0)
         vertical = Vertical::LOWER;
@@ -132,8 +137,9 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
       used = keyword(iarg, narg, arg, pace);
       if (!used)
         error->all(FLERR, iarg,
-                   "fix mdanim/liquid: unknown keyword {}; it knows volume, level, fill, gravity, model, calm, vertical, "
-                   "seed, buoyancy, drag, lambda, base, cells, faces, softness, still, sweeps, every, stride and period",
+                   "fix mdanim/liquid: unknown keyword {}; it knows volume, level, fill, gravity, model, calm, wave, "
+                   "current, inflow, drain, vertical, seed, buoyancy, drag, lambda, base, cells, faces, softness, still, sweeps, "
+                   "every, stride and period",
                    word);
     }
     iarg += used;
@@ -150,12 +156,17 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   const Basin::Shape shape{n[0], n[1], n[2], low, cell};
   if (calm > 0.0 && model != Model::WAVES)
     error->all(FLERR, "fix mdanim/liquid: calm is for model waves; leave it out, or write model waves");
+  if (!makers.empty() && model != Model::WAVES)
+    error->all(FLERR, makers[0], "fix mdanim/liquid: {} is for model waves; leave it out, or write model waves", arg[makers[0]]);
   const std::string refused = model == Model::WAVES ? WaveBasin::unusable(shape) : AutomatonBasin::too_large(n[0], n[1], n[2]);
   if (!refused.empty()) error->all(FLERR, 6, "fix mdanim/liquid: {}", refused);
   try {
-    if (model == Model::WAVES)
-      basin = std::make_unique<WaveBasin>(shape, g, calm > 0.0 ? calm_rate(calm) : 0.0, sums);
-    else
+    if (model == Model::WAVES) {
+      auto waves = std::make_unique<WaveBasin>(shape, g, calm > 0.0 ? calm_rate(calm) : 0.0, sums);
+      const double area = cell.x * n[0] * cell.y * n[1], depth = has_level ? level_asked - low.z : volume_asked / area;
+      for (const int iarg : makers) add_maker(*waves, iarg, arg, depth);
+      basin = std::move(waves);
+    } else
       basin = std::make_unique<AutomatonBasin>(
           shape, g, static_cast<std::uint64_t>(seed), vertical,
           model == Model::PAPER ? AutomatonBasin::Model::PAPER : AutomatonBasin::Model::SURFACE, sums);

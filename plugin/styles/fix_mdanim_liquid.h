@@ -16,6 +16,10 @@
 #include <string>
 #include <vector>
 
+namespace mdanim {
+class WaveBasin;
+}    // namespace mdanim
+
 namespace LAMMPS_NS {
 
 // Supplies the basin (liquid/basin.h) with solids and time, and Buoyancy (buoyancy.h) with the particles near the liquid.
@@ -62,6 +66,8 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   };
 
   std::string name() const;    // begins messages
+  static int maker_words(const char *word);
+  void add_maker(mdanim::WaveBasin &waves, int iarg, char **arg, double depth);
   int keyword(int iarg, int narg, char **arg, mdanim::Basin::Pace &pace);
   int group_bit(int iarg, const char *word);
   mdanim::Basin::AddBodies bodies(bool still) const;

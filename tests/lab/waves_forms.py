@@ -211,23 +211,31 @@ class Body:
 
 
 class Bobbing(NamedTuple):
-    """Period over 2 pi sqrt(draft), without the liquid that moves along; turning points over the first one."""
+    """Four times the time to the first passage of rest and the first period, over 2 pi sqrt(draft); turning points of 1."""
 
+    fall: float
     period: float
     turns: np.ndarray
 
 
-def bobbing(density: float, side=6, cells=96, depth=12, updates=330, **settings) -> Bobbing:
-    """A cube let go a cell above its draft."""
-    w = Waves((32, cells, cells), **settings)
-    rest = depth + side / 2 - side * density
-    body = Body((side,) * 3, (cells / 2, cells / 2, rest + 1), density, free=(0, 0, 1))
+def swings(z, draft: float, dt=DT) -> Bobbing:
+    """Of a box let go from above its rest; z over the first height, after each dt."""
+    down = np.flatnonzero((z[:-1] > 0) & (z[1:] <= 0))
+    times = dt * (down + 1 + z[down] / (z[down] - z[down + 1]))
+    turns = [z[n] for n in range(1, len(z) - 1) if (z[n] - z[n - 1]) * (z[n + 1] - z[n]) < 0]
+    alone = 2 * np.pi * np.sqrt(draft)
+    return Bobbing(4 * times[0] / alone, np.diff(times)[0] / alone, np.array(turns[:4]))
+
+
+def bobbing(density: float, size=(6, 6, 6), cells=48, depth=12, updates=300, flat=False, above=1.0, **settings) -> Bobbing:
+    """A box let go above its draft; where `flat`, endless along y."""
+    across = 1 if flat else cells
+    w = Waves((32, across, cells), **settings)
+    rest = depth + size[2] / 2 - size[2] * density
+    body = Body((size[0], 1 if flat else size[1], size[2]), (cells / 2, across / 2, rest + above), density, free=(0, 0, 1))
     body.solids(w)
     w.pour(depth)
-    z = body.move(w, updates)[:, 2] - rest
-    down = np.flatnonzero((z[:-1] > 0) & (z[1:] <= 0))
-    turns = [z[n] for n in range(1, len(z) - 1) if (z[n] - z[n - 1]) * (z[n + 1] - z[n]) < 0]
-    return Bobbing(4 * down[0] * DT / (2 * np.pi * np.sqrt(side * density)), np.array(turns[:5]))
+    return swings((body.move(w, updates)[:, 2] - rest) / above, size[2] * density)
 
 
 def draft(density: float, at=(16, 16), side=6, updates=800, **settings) -> float:

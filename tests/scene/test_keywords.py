@@ -22,6 +22,10 @@ OF_SURFACES = ("friction", "contact-damping")
 """Settings that the contact of the paper has only as 0."""
 
 
+OF_WAVES = ("calm", "wave", "current", "inflow", "drain")
+"""Settings of a liquid with momentum."""
+
+
 def scene(block: str, **settings: str):
     """A small scene in which one block has these settings in place of, or beside, its usual ones."""
     blocks = {"object": dict(BALL), "liquid": dict(WATER), "control": {"time": "3 s"}, "render": {}, "effects": {}}
@@ -29,7 +33,7 @@ def scene(block: str, **settings: str):
         blocks |= {"contact": {}, "floor": dict(BALL)}
     if block == "contact" or any(settings.get(word, "0") != "0" for word in OF_SURFACES):
         blocks["control"]["contact-model"] = "surface"
-    if block == "liquid" and settings.get("calm", "auto") != "auto":
+    if block == "liquid" and any(settings.get(word, "auto") != "auto" for word in OF_WAVES):
         blocks["liquid"]["model"] = "waves"
     top = {"gravity": "(0, 0, -9.81) m/s^2"}
     chosen = blocks[block] if block else top
@@ -75,7 +79,9 @@ def test_default_gravity_is_none():
 @pytest.mark.parametrize("k", [k for k in WORDS if k.rule is not Rule.ANY], ids=lambda k: f"{k.block}.{k.name}")
 def test_rule_of_each_keyword_is_kept(k):
     """A number that breaks the rule is refused in the words of the table."""
-    bad = {"shape": "sphere -1 m", "size": "(0, 5)"}.get(k.name, f"-{k.example}")
+    bad = {"shape": "sphere -1 m", "size": "(0, 5)", "wave": "-x amplitude -2 cm period 1 s", "current": "+y speed -2 m/s"}.get(
+        k.name, f"-{k.example}"
+    )
     with pytest.raises(SceneError) as error:
         scene(k.block, **{k.name: bad})
     assert any(f"must be {k.rule.value}, found" in p.message for p in error.value.problems)

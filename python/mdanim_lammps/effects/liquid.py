@@ -167,7 +167,11 @@ class LiquidWaves(LiquidAutomaton):
     def words(self, scene):
         calm = scene.liquid.calm or calm_time(scene)
         solids = "cells i2_cell softness d_softness still held"
-        return f"model waves calm {calm!r} {solids} every {EVERY} stride {STRIDE} period {WAVE_PERIOD}"
+        return f"model waves calm {calm!r} {solids} every {EVERY} stride {STRIDE} period {WAVE_PERIOD}{_makers(scene.liquid)}"
+
+    def commands(self, scene, system):
+        regions = [f"region {name} {_block(flow.low, flow.high)}" for name, flow in _flows(scene.liquid)]
+        return [*regions, *super().commands(scene, system)]
 
     def warnings(self, scene, system):
         liquid, cell = scene.liquid, system.grid.cell[2]
@@ -350,6 +354,23 @@ def _reached(name: str, scene) -> Verdict:
 def _is_wavy(scene) -> bool:
     """Whether the liquid has momentum."""
     return scene.liquid is not None and scene.liquid.model is LiquidModel.WAVES
+
+
+def _flows(liquid):
+    """What comes in and goes out through boxes, with the names of their regions."""
+    for word in ("inflow", "drain"):
+        for n, flow in enumerate(getattr(liquid, word)):
+            yield f"{word}-{n}", flow
+
+
+def _makers(liquid) -> str:
+    """Words of the fix for what makes waves."""
+    words = [f" wave {w.side} {w.amplitude!r} {w.period!r}" for w in liquid.wave]
+    words += [f" current {c.side} {c.speed!r}" for c in liquid.current]
+    for name, flow in _flows(liquid):
+        velocity = f" {flow.velocity[0]!r} {flow.velocity[1]!r}" if name.startswith("inflow") else ""
+        words.append(f" {name.split('-')[0]} {name} {flow.rate!r}{velocity}")
+    return "".join(words)
 
 
 def _block(low, high) -> str:

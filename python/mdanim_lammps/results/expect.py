@@ -58,6 +58,8 @@ class Measured:
     """What `recorded` names, at each frame, each of shape (F,)."""
     cells: np.ndarray | None = None
     """Whole cells of liquid at each frame, shape (F,); None without liquid."""
+    due: np.ndarray | None = None
+    """Those at the start, and what has come since; None where none does."""
     cell_volume: float = 0.0
     """[m^3]"""
     level: np.ndarray | None = None
@@ -161,7 +163,7 @@ def _measure(expect: Expect, m: Measured) -> float:
         case "penetration", "max":
             return m.penetration
         case "liquid", "residual":
-            return _largest(m, m.cells - m.cells[0], expect.time)
+            return _largest(m, m.cells - (m.cells[0] if m.due is None else m.due), expect.time)
         case "liquid", "volume":
             return _at(m, m.cells, expect.time) * m.cell_volume
         case "liquid", "level":

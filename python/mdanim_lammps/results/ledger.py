@@ -16,7 +16,9 @@ from ..scene.keywords import did_you_mean
 
 POTENTIALS = ("gravity", "buoyancy", "waves")
 """Energies whose zero is arbitrary: only how far they have changed says how much is in play."""
-WHOLE = ("liquid_cells",)
+DUE = "liquid_due"
+"""Extra of a liquid that comes and goes: whole cells at the start, and what has come since less what has gone."""
+WHOLE = ("liquid_cells", DUE)
 """Extras that are whole numbers, and written as such."""
 
 

@@ -32,7 +32,7 @@ class LiquidFrame:
     cells: int
     """Whole cells of liquid now."""
     start: int
-    """The same before step 0."""
+    """The same before step 0, and what has come since less what has gone."""
 
 
 @dataclass(frozen=True)

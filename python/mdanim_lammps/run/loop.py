@@ -23,7 +23,7 @@ from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
 from ..results.expect import Measured, Outcome, evaluate, record, recorded
 from ..results.files import CHECKPOINT, PAUSE, STOP, disk_errors, write_json, write_whole
-from ..results.ledger import Ledger
+from ..results.ledger import DUE, Ledger
 from ..results.progress import ProgressLog
 from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
@@ -175,9 +175,10 @@ class _Run:
             raise OutputError(f"{folder / CHECKPOINT} is damaged; run the scene again with --force")
         self.recorded = recorded(ready.scene.expects)
         self.grid = ready.plan.grid
+        self.fed = ready.scene.liquid is not None and ready.scene.liquid.fed
         self.ledger = Ledger(
             ledger_terms(ready.plan),
-            (*self.recorded.values(), *(("liquid_cells",) if self.grid else ())),
+            (*self.recorded.values(), *(("liquid_cells",) if self.grid else ()), *((DUE,) if self.fed else ())),
             rounding_energy(ready.system),
         )
 
@@ -291,6 +292,7 @@ class _Run:
                 if self.grid is None
                 else {
                     "cells": self.ledger.array("liquid_cells"),
+                    "due": self.ledger.array(DUE) if self.fed else None,
                     "cell_volume": self.grid.cell_volume,
                     "level": trajectory.liquid_levels,
                 }
@@ -368,10 +370,12 @@ class _Run:
         }
         if liquid:
             extras["liquid_cells"] = liquid.cells
+            if self.fed:
+                extras[DUE] = liquid.start
             if liquid.cells != liquid.start:
                 raise DivergedError(
                     f"step {now.step}, t = {number(when, 4)} s: {liquid.cells} cells of liquid, "
-                    f"{liquid.start} at the start: this must "
+                    f"{liquid.start} at the start{' and come since' if self.fed else ''}: this must "
                     f"never be, please report it. The last good frame is kept in {self.folder}"
                 )
         # Losses before a resume are carried over.
@@ -383,9 +387,9 @@ class _Run:
         log.frame(frame, row, self.seconds["simulation"], self.source.new_owners())
 
     def _gained(self) -> int | None:
-        """Whole cells of liquid more than at the start: 0, or something is wrong; None without a liquid."""
+        """Whole cells of liquid more than at the start and come since: 0, or something is wrong; None without a liquid."""
         rows = self.ledger.rows
-        return int(rows[-1]["liquid_cells"] - rows[0]["liquid_cells"]) if self.grid else None
+        return int(rows[-1]["liquid_cells"] - rows[-1].get(DUE, rows[0]["liquid_cells"])) if self.grid else None
 
     def _save(self, out: TrajectoryWriter, frame: int, now: Frame) -> None:
         """Make everything up to this frame safe; the checkpoint last, so that it never is ahead of the trajectory."""

@@ -52,6 +52,7 @@ LIMITS = {
     "N/m": Limit("a spring constant", 1e15, 1e-9),
     "N*s/m": Limit("a drag coefficient", 1e15),
     "m^3": Limit("a volume", 1e27, 1e-27),
+    "m^3/s": Limit("a flow", 1e18, 1e-18),
     "rad": Limit("an angle", 1e6),
     "rad/s": Limit("an angular speed", 1e9),
     "1/s": Limit("a rate", 1e9, 1e-9),

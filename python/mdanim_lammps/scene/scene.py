@@ -155,6 +155,56 @@ class LiquidModel(Enum):
 
 
 @dataclass(frozen=True, slots=True)
+class Wave:
+    """A paddle along a side of the basin."""
+
+    FORMS: ClassVar = ("<-x|+x|-y|+y> amplitude <a:m> period <T:s>",)
+    side: str
+    amplitude: float
+    """Of the waves that run off [m]."""
+    period: float
+    """[s]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Current:
+    """What goes out at the opposite side comes in at this one."""
+
+    FORMS: ClassVar = ("<-x|+x|-y|+y> speed <u:m/s>",)
+    side: str
+    speed: float
+    """[m/s]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Inflow:
+    """Liquid from outside."""
+
+    FORMS: ClassVar = (f"{BOX} rate <q:m^3/s> [velocity <(vx, vy, vz):m/s>]",)
+    low: Vector
+    """[m]"""
+    high: Vector
+    """[m]"""
+    rate: float
+    """[m^3/s]"""
+    velocity: Vector = (0.0, 0.0, 0.0)
+    """[m/s]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Drain:
+    """Liquid to outside."""
+
+    FORMS: ClassVar = (f"{BOX} rate <q:m^3/s>",)
+    low: Vector
+    """[m]"""
+    high: Vector
+    """[m]"""
+    rate: float
+    """[m^3/s]"""
+
+
+@dataclass(frozen=True, slots=True)
 class Liquid:
     """The one liquid of a scene."""
 
@@ -196,6 +246,18 @@ class Liquid:
         "With `model waves`: time in which waves die to 1/e, besides what drag and depth do; `auto` is 50 √(depth/g).",
         "20 s", Rule.POSITIVE, default=None)  # fmt: skip
     """Time in which waves die to 1/e [s]; None is ``auto``."""
+    wave: tuple[Wave, ...] = setting(
+        None, "With `model waves`: waves of this amplitude and period run into the basin from a side.",
+        "-x amplitude 2 cm period 1 s", Rule.POSITIVE, default=(), many=True, codec=OneOf(Wave))  # fmt: skip
+    current: tuple[Current, ...] = setting(
+        None, "With `model waves`: liquid comes in at this side, and as much goes out at the opposite one.",
+        "-x speed 20 cm/s", Rule.POSITIVE, default=(), many=True, codec=OneOf(Current))  # fmt: skip
+    inflow: tuple[Inflow, ...] = setting(
+        None, "With `model waves`: liquid comes into the columns of this box, at the height of its middle.",
+        "from (-1, -1, 1) m to (-0.8, 1, 1) m rate 0.002 m^3/s", default=(), many=True, codec=OneOf(Inflow))  # fmt: skip
+    drain: tuple[Drain, ...] = setting(
+        None, "With `model waves`: liquid goes out of the columns of this box, at the height of its middle.",
+        "from (0.8, -1, 0) m to (1, 1, 0) m rate 0.002 m^3/s", default=(), many=True, codec=OneOf(Drain))  # fmt: skip
     sweeps: int | None = setting(
         "auto | <n>", "Sweeps of the automaton per update; not with `model waves`.",
         "4", Rule.COUNT, default=None, limit=SWEEPS)  # fmt: skip
@@ -203,6 +265,11 @@ class Liquid:
     color: str | None = setting("<color>", f"Colour in pictures: {COLOR}", "deepskyblue", default=None)
     """``#rrggbb``; None lets the renderer choose."""
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def fed(self) -> bool:
+        """Whether liquid comes from outside or goes there."""
+        return bool(self.wave or self.current or self.inflow or self.drain)
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,6 +20,7 @@ from .expand import EvaluatedBlock, EvaluatedSetting
 from .formatting import number, say, vector, whole
 from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example
 from .limits import MOST_FRAMES, MOST_PAIRS
+from .makers import check_waves
 from .meshes import refusal_of_mesh
 from .scene import GLOBALS, IMMERSION, QUANTITIES, Vector
 from .source import Problems, SceneFile
@@ -384,9 +385,7 @@ class Validator:
             cause = f"the level {say(liquid.level, 'm', 6)} is outside {where}, which goes from "
             cause += f"{say(bottom[2], 'm', 6)} to {say(top[2], 'm', 6)}"
             self.problem(block.first("level").span(0), cause, "the level is a height, not a depth")
-        stray = "sweeps" if liquid.model is records.LiquidModel.WAVES else "calm"
-        if getattr(liquid, stray) is not None:
-            self.problem(block.first(stray).span(), f"model {liquid.model.value} has no {stray}", "leave the line out")
+        check_waves(liquid, block, self.problem)
         if liquid.model is records.LiquidModel.PAPER:
             self.problem(
                 block.first("model").span(0),

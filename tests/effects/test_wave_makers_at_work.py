@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Waves, currents, inflows and drains of a scene, from its text to LAMMPS: each accounted to the unit."""
+
+import numpy as np
+import pytest
+from mdanim_lammps.effects.liquid import CELLS, CELLS_AT_START, CREST
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.errors import SceneError
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.parse import parse_scene
+
+TANK = """
+gravity (0, 0, -10) m/s^2
+control { resolution 10 cm  time 10 s  frames 10 fps }
+liquid water {
+  basin from (0, 0, 0) m to (4, 1, 1.6) m
+  density 1000 kg/m^3
+  level 0.8 m
+  MODEL
+  MAKERS
+}
+object cork { shape box (30 cm, 30 cm, 30 cm)  position (2, 0.5, 0.8) m  density 300 kg/m^3  elasticity 100 kPa }
+"""
+
+
+def tank(*makers, model="model waves"):
+    """A tank of 40 x 10 columns, half full, with a cork."""
+    return prepare(parse_scene(TANK.replace("MODEL", model).replace("MAKERS", "\n  ".join(makers))))
+
+
+def run(ready, seconds, looks=10):
+    """Cells of liquid, cells that must be there and the crest at each look, shape (looks, 3)."""
+    found = []
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        for _ in range(looks):
+            instance.run(round(seconds / looks / ready.certificate.timestep))
+            found.append([instance.fix_value("liquid", n) for n in (CELLS, CELLS_AT_START, CREST)])
+        return np.array(found)
+
+
+def test_an_inflow_and_a_drain_run_at_their_rates():
+    """2 l/s in and 0.5 l/s out: 1.5 cells a second, to the unit at any time."""
+    found = run(
+        tank(
+            "inflow from (3, 0.2, 1) m to (3.5, 0.8, 1) m  rate 0.002 m^3/s  velocity (1, 0, 0) m/s",
+            "drain from (0, 0, 0) m to (1, 1, 0.1) m  rate 0.0005 m^3/s",
+        ),
+        2.0,
+    )
+    assert (found[:, 0] == found[:, 1]).all()
+    assert found[-1, 0] - found[0, 0] == pytest.approx(1.5 * 1.8, rel=0.02)
+
+
+def test_a_wave_runs_through_the_tank():
+    """With crests of its amplitude, before it comes back from the other end; and none without it."""
+    calm = run(tank(), 3.0, looks=30)
+    found = run(tank("wave -x amplitude 5 cm period 1 s"), 3.0, looks=30)
+    assert (found[:, 0] == found[:, 1]).all() and (calm[:, 0] == calm[0, 0]).all()
+    assert 0.03 < (found[:, 2] - calm[:, 2]).max() < 0.08
+
+
+def test_a_current_carries_a_cork_and_changes_no_sum():
+    """Along with the liquid."""
+    ready = tank("current -x speed 0.3 m/s")
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        before = ready.system.center_of_mass(instance.array("x"))[0]
+        cells = instance.fix_value("liquid", CELLS)
+        instance.run(round(4.0 / ready.certificate.timestep))
+        after = ready.system.center_of_mass(instance.array("x"))[0]
+        assert instance.fix_value("liquid", CELLS) == cells == instance.fix_value("liquid", CELLS_AT_START)
+    assert after[0] - before[0] > 0.3 and abs(after[1] - before[1]) < 0.1
+
+
+@pytest.mark.parametrize(
+    ("maker", "model", "message"),
+    [
+        ("wave -x amplitude 5 cm period 1 s", "model surface", "model surface has no wave"),
+        ("wave -x amplitude 0 cm period 1 s", "model waves", "must be > 0"),
+        ("wave -z amplitude 5 cm period 1 s", "model waves", "-z"),
+        ("current +y speed -1 m/s", "model waves", "must be > 0"),
+        ("drain from (5, 0, 0) m to (6, 1, 1) m rate 0.001 m^3/s", "model waves", "is not a part of the basin"),
+        ("inflow from (1, 0, 0) m to (0.5, 1, 1) m rate 0.001 m^3/s", "model waves", "is not a part of the basin"),
+        ("inflow from (1, 0, 0) m to (2, 1, 1) m rate 0 m^3/s", "model waves", "the rate of the inflow must be > 0"),
+    ],
+)
+def test_makers_that_cannot_be_are_refused(maker, model, message):
+    """At their line, with what was found."""
+    with pytest.raises(SceneError, match=message.replace("(", r"\(")):
+        tank(maker, model=model)
