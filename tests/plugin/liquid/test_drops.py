@@ -49,8 +49,9 @@ def test_walls_stop_drops():
     drops = Drops(w, share=0.0)
     put(drops, ((2, 2, 10), (5, -5, 0), UNIT // 8))
     while len(drops.all):
-        x = drops.all["x"][0]
-        assert 0 <= x[0] < 4 and 0 <= x[1] < 4
+        (drop,) = drops.all
+        assert (drop["x"][:2] >= 0).all() and (drop["x"][:2] < 4).all()
+        assert drop["v"][0] == (5 if drop["x"][0] < 3.99 else 0) and drop["v"][1] == (-5 if drop["x"][1] > 0 else 0)
         drops.update(0.1)
     assert (w.volume - before)[0, 3] == 1 / 8 and (w.volume - before).sum() == 1 / 8
 
