@@ -47,7 +47,7 @@ def test_walls_stop_drops():
     w.pour(2)
     before = w.volume
     drops = Drops(w, share=0.0)
-    put(drops, ((2, 2, 10), (5, -5, 0), UNIT // 8))
+    put(drops, ((2.1, 2.1, 10), (5, -5, 0), UNIT // 8))
     while len(drops.all):
         (drop,) = drops.all
         assert (drop["x"][:2] >= 0).all() and (drop["x"][:2] < 4).all()
