@@ -3,7 +3,9 @@
 
 A scene is ``cube N``, of N particles along an edge, or the name of a file in scenes/. Told is the wall time of a step by one
 thread and by several, in turns, beside the machine's own ceiling in the same rounds: what as many independent processes with one
-thread each do at once, over one alone. Figures are medians over rounds. A scene is run from its own beginning on, without frames.
+thread each do at once, over one alone. Where others use the processors, none of this says much; then the processor time of the
+thread that calls does, which falls by what others do for it. Figures are medians over rounds. A scene is run from its own
+beginning on, without frames.
 """
 
 from __future__ import annotations
@@ -26,7 +28,10 @@ ROUNDS, PARTICLE_STEPS, NAMES = 9, 8_000_000, ("cube 30", "cube 60", "beam", "cr
 
 
 def serve(pipe: Connection, name: str, threads: dict[str, int]) -> None:
-    """Run the next steps of an instance with so many threads when asked for it by its name, and tell the seconds."""
+    """Run the next steps of an instance with so many threads when asked for it by its name.
+
+    Tell the seconds that passed, and those that this thread had a processor.
+    """
     from mdanim_lammps.engine.instance import Instance
     from mdanim_lammps.engine.threads import with_threads
     from mdanim_lammps.run.prepare import prepare
@@ -42,9 +47,9 @@ def serve(pipe: Connection, name: str, threads: dict[str, int]) -> None:
     steps = max(20, PARTICLE_STEPS // ready.system.particles)
     pipe.send((ready.system.particles, steps))
     while (who := pipe.recv()) is not None:
-        start = time.perf_counter()
+        start, start_here = time.perf_counter(), time.thread_time()
         instances[who].run(steps)
-        pipe.send(time.perf_counter() - start)
+        pipe.send((time.perf_counter() - start, time.thread_time() - start_here))
 
 
 def measure(name: str, threads: int, rounds: int) -> None:
@@ -61,7 +66,7 @@ def measure(name: str, threads: int, rounds: int) -> None:
     ready = [pipe.recv() for pipe in pipes]
     particles, steps = ready[0]
 
-    def seconds(asked: list[Connection], who: str) -> float:
+    def seconds(asked: list[Connection], who: str) -> tuple[float, float]:
         for pipe in asked:
             pipe.send(who)
         return max(pipe.recv() for pipe in asked)
@@ -74,19 +79,27 @@ def measure(name: str, threads: int, rounds: int) -> None:
     for pipe, process in zip(pipes, processes):
         pipe.send(None)
         process.join()
-    one, many, both = (1e6 * statistics.median(t) / steps for t in (alone, shared, at_once))
+
+    def median(told: list[tuple[float, float]], n: int) -> float:
+        return 1e6 * statistics.median(t[n] for t in told) / steps
+
+    one, many, both = (median(told, 0) for told in (alone, shared, at_once))
+    one_here, many_here = median(alone, 1), median(shared, 1)
     ceiling, faster = threads * one / both, one / many
     print(
         f"| {name} | {particles} | {one:.0f} | {many:.0f} | {faster:.2f} | {ceiling:.2f} | {faster / ceiling:.2f} "
-        f"| {os.getloadavg()[0]:.1f} |",
+        f"| {one_here:.0f} | {many_here:.0f} | {one_here / many_here:.2f} | {os.getloadavg()[0]:.1f} |",
         flush=True,
     )
 
 
 def main(rounds: int = ROUNDS, threads: int = 2, names: tuple[str, ...] = NAMES) -> None:
     """Measure scenes and print a table in Markdown."""
-    print(f"| scene | particles | us a step, 1 thread | {threads} threads | times as fast | ceiling | over the ceiling | load |")
-    print("|---|---|---|---|---|---|---|---|")
+    print(
+        f"| scene | particles | us a step, 1 thread | {threads} threads | times as fast | ceiling | over the ceiling "
+        f"| us of the calling thread, 1 thread | {threads} threads | ratio | load |"
+    )
+    print("|---|---|---|---|---|---|---|---|---|---|---|")
     for name in names:
         measure(name, threads, rounds)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The plugin under the address and the undefined-behaviour sanitizer: its tests, and scenes on one and two ranks; and passes that
-threads share under the thread sanitizer, without LAMMPS and Python, which do not run under it.
+"""The plugin under the address and the undefined-behaviour sanitizer: its tests, and scenes on one and two ranks; and passes and
+contact that threads share under the thread sanitizer, without LAMMPS and Python, which do not run under it.
 
 ``make sanitize`` runs it. Exit code 0 means that both sanitizers report a planted error, that all tests and scenes pass, and that
 no process has reported anything else. Reports lie in build/sanitize/reports.
@@ -70,8 +70,13 @@ object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1,
 """,
 }
 END = "control {{ time 0.2 s frames 50 fps resolution 1 cm  {} }}\n"
-NO_PASS = ("kernels.cpp", "contact_search.cpp")
-"""Files of plugin/engine that a pass with one set of instructions does without."""
+THREADS = {
+    "threads_of_passes": ("engine/*.cpp",),
+    "threads_of_contact": ("contact/*.cpp", "engine/team.cpp", "engine/contact_search.cpp", "engine/positions.cpp"),
+}
+"""Programs of tests/lab, and what of plugin/ they need."""
+LEFT_OUT = ("kernels.cpp", "contact_kernel.cpp", "bodies_file.cpp")
+"""Files that choose among sets of instructions, where there is one, or read files."""
 WORDS = {"friction": "friction 0.4", "surface": "contact-model surface"}
 """Of control, of those of TEXT that need more; the others are under the paper's own law of contact."""
 
@@ -163,14 +168,14 @@ def run_scenes() -> bool:
     return done
 
 
-def run_threads() -> bool:
-    """Passes by several threads under the thread sanitizer; a data race or another bit makes the program fail."""
-    program = WORK / "threads_of_passes"
-    engine = [path for path in sorted((ROOT / "plugin" / "engine").glob("*.cpp")) if path.name not in NO_PASS]
+def run_threads(name: str) -> bool:
+    """A program of several threads under the thread sanitizer; a data race or another bit makes it fail."""
+    program = WORK / name
+    parts = sorted(path for pattern in THREADS[name] for path in (ROOT / "plugin").glob(pattern) if path.name not in LEFT_OUT)
     options = ["-std=c++17", "-g", "-O1", "-fsanitize=thread", "-ffp-contract=off", "-Wno-psabi"]
     options += ["-DMDANIM_SET=common", "-DMDANIM_LANES=4", f"-I{ROOT / 'plugin'}", "-pthread"]
-    source = ROOT / "tests" / "lab" / "threads_of_passes.cpp"
-    subprocess.run([compiler(), *options, source, *engine, "-o", program], check=True)
+    source = ROOT / "tests" / "lab" / f"{name}.cpp"
+    subprocess.run([compiler(), *options, source, *parts, "-o", program], check=True)
     print("+", program, flush=True)
     return subprocess.run([program], env={**os.environ, "TSAN_OPTIONS": f"log_path={REPORTS}/report"}).returncode == 0
 
@@ -179,7 +184,7 @@ def main() -> None:
     """Build, prove that errors are seen, run all, and fail on anything that was reported."""
     build()
     find_planted()
-    done = all([run_threads(), run_tests(), run_scenes()])
+    done = all([*map(run_threads, THREADS), run_tests(), run_scenes()])
     found = reports()
     for name, text in found.items():
         print(f"=== {REPORTS / name}", text[:8000], sep="\n")

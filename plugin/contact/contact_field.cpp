@@ -60,14 +60,24 @@ void ContactField::forget()
   budget = 0.0;
 }
 
-void ContactField::settle(const ContactArrays &arrays, ContactAccount &account)
+void ContactField::settle(const ContactArrays &arrays)
 {
   for (std::size_t q = 0; q < near.size(); ++q)
-    if (wake[q] < NEVER && wake[q] <= budget) look(q, arrays, false, account);
+    if (wake[q] < NEVER && wake[q] <= budget) look(q, arrays, false);
   next = AT_ONCE;
 }
 
+// A point that is looked at now and then, and a contact.
+int ContactField::cost() const
+{
+  constexpr std::size_t POINT = 5, CONTACT = 150;
+  return static_cast<int>(POINT * near.size() + CONTACT * contacts.size());
+}
+
 // --- contacts ---
+
+// Of a block of contacts from number c on.
+static int lanes_of(std::size_t c, std::size_t end) { return static_cast<int>(std::min<std::size_t>(CONTACT_LANES, end - c)); }
 
 PushTask ContactField::task(PointKind kind, const ContactArrays &arrays, double dt) const
 {
@@ -216,58 +226,87 @@ void ContactField::end(const FieldContact &contact, std::size_t q, Fate fate, co
   } else {
     watch[q].cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
     watch[q].X = contact.state.X;
-    look(q, arrays, false, account);
+    look(q, arrays, false);
   }
   next = std::min(next, wake[q]);
 }
 
-void ContactField::add_forces(ContactArrays &arrays, double nearer, double dt, ContactAccount &account)
+void ContactField::look(const ContactArrays &arrays, double nearer, double dt)
 {
   budget += nearer;
-  const bool moves = dt > 0.0;
-  if (moves && next < budget) {
+  if (dt > 0.0 && next < budget) {
     next = NEVER;
     for (std::size_t q = 0; q < wake.size(); ++q) {
-      if (wake[q] < budget) look(q, arrays, true, account);
+      if (wake[q] < budget) look(q, arrays, true);
       next = std::min(next, wake[q]);
     }
   }
   now.clear();
   for (const std::size_t q : of_contact) now.push_back(point_now(q, arrays));
-  std::size_t left = 0;
+  known_ahead = 0;
+}
+
+// run(first, end, task) for contacts from `first` to `end` - 1, all of points of one kind, from the first kind to the last.
+template <class Do> void ContactField::each_run(double dt, const ContactArrays &arrays, const Do &run) const
+{
   for (std::size_t first = 0, end = 0; first < contacts.size(); first = end) {
     const PointKind kind = surface_point(of_contact[first]).kind;
     while (end < contacts.size() && surface_point(of_contact[end]).kind == kind) ++end;
-    const PushTask law_of_kind = task(kind, arrays, dt);
+    run(first, end, task(kind, arrays, dt));
+  }
+}
+
+void ContactField::work_ahead(const ContactArrays &arrays, double dt)
+{
+  if (!arrays.kernels) return;
+  each_run(dt, arrays, [&](std::size_t first, std::size_t end, const PushTask &task) {
+    for (std::size_t c = first; c < end; c += CONTACT_LANES) {
+      if (known_ahead == ahead.size()) ahead.emplace_back();
+      arrays.kernels->push(task, &contacts[c], &now[c], lanes_of(c, end), ahead[known_ahead++]);
+    }
+  });
+}
+
+void ContactField::add_forces(ContactArrays &arrays, double dt, ContactAccount &account)
+{
+  const bool moves = dt > 0.0;
+  std::size_t left = 0, block = 0;
+  each_run(dt, arrays, [&](std::size_t first, std::size_t end, const PushTask &task) {
     if (moves)
-      push_run(first, end, left, law_of_kind, arrays, account);
+      push_run(first, end, left, block, task, arrays, account);
     else
       for (std::size_t c = first; c < end; ++c) {    // what is known stays as it is
         FieldContact copy = contacts[c];
         copy.state.change = {};
-        push(copy, of_contact[c], law_of_kind, now[c], arrays, account);
+        push(copy, of_contact[c], task, now[c], arrays, account);
       }
-  }
+  });
   if (moves) contacts.resize(left), of_contact.resize(left);
+  account.looks += looks;
+  looks = 0;
 }
 
-// Of contacts from `first` to `end` - 1, those that stay go to the places from `left` on.
-void ContactField::push_run(std::size_t first, std::size_t end, std::size_t &left, const PushTask &task, ContactArrays &arrays,
-                            ContactAccount &account)
+// Of contacts from `first` to `end` - 1, those that stay go to the places from `left` on; `block` counts those that were worked
+// out ahead.
+void ContactField::push_run(std::size_t first, std::size_t end, std::size_t &left, std::size_t &block, const PushTask &task,
+                            ContactArrays &arrays, ContactAccount &account)
 {
-  PushedBlock pushed;
+  PushedBlock scratch;
+  const PushedBlock *pushed = &scratch;
   for (std::size_t c = first; c < end; ++c) {
     const std::size_t lane = (c - first) % CONTACT_LANES;
     if (lane == 0 && arrays.kernels) {
-      const int lanes = static_cast<int>(std::min<std::size_t>(CONTACT_LANES, end - c));
-      arrays.kernels->push(task, &contacts[c], &now[c], lanes, pushed);
-      if (!pushed.hard) arrays.kernels->add_to_nodes(pushed, 0, lanes, arrays.force());
+      if (known_ahead == 0)
+        arrays.kernels->push(task, &contacts[c], &now[c], lanes_of(c, end), scratch);
+      else
+        pushed = &ahead[block++];
+      if (!pushed->hard) arrays.kernels->add_to_nodes(*pushed, 0, lanes_of(c, end), arrays.force());
     }
     Fate fate = Fate::STAYS;
-    if (!arrays.kernels || pushed.hard >> lane & 1)
+    if (!arrays.kernels || pushed->hard >> lane & 1)
       fate = push(contacts[c], of_contact[c], task, now[c], arrays, account);
     else
-      take(contacts[c], of_contact[c], pushed, static_cast<int>(lane), arrays, account);
+      take(contacts[c], of_contact[c], *pushed, static_cast<int>(lane), arrays, account);
     if (fate != Fate::STAYS) {
       this->end(contacts[c], of_contact[c], fate, arrays, account);
       continue;
@@ -280,7 +319,7 @@ void ContactField::push_run(std::size_t first, std::size_t end, std::size_t &lef
 std::size_t ContactField::bytes() const
 {
   return near.bytes() + wake.capacity() * sizeof(double) + watch.capacity() * sizeof(Watch) +
-         contacts.capacity() * sizeof(FieldContact) + now.capacity() * sizeof(PointNow) +
+         contacts.capacity() * sizeof(FieldContact) + now.capacity() * sizeof(PointNow) + ahead.capacity() * sizeof(PushedBlock) +
          of_contact.capacity() * sizeof(std::size_t);
 }
 

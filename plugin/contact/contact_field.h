@@ -31,10 +31,17 @@ class ContactField {
   // Nothing is known of points but of those in contact; to be followed by list().
   void forget();
   // Looks at every point without a contact as it is now; nothing is born. For the setup of a run.
-  void settle(const ContactArrays &arrays, ContactAccount &account);
-  // `nearer`: how much the objects have come nearer at most in this step [m]. dt = 0: nothing moves, as at the setup of a run.
-  void add_forces(ContactArrays &arrays, double nearer, double dt, ContactAccount &account);
+  void settle(const ContactArrays &arrays);
+  // The part of a step that fields may do side by side: contacts begin. `nearer`: how much the objects have come nearer at most
+  // in this step [m]. dt = 0: nothing moves, as at the setup of a run.
+  void look(const ContactArrays &arrays, double nearer, double dt);
+  // After that, what contacts come to, for add_forces(), which else works it out itself.
+  void work_ahead(const ContactArrays &arrays, double dt);
+  // The part that fields do one after the other.
+  void add_forces(ContactArrays &arrays, double dt, ContactAccount &account);
 
+  bool has_something() const { return !contacts.empty() || looks > 0; }    // to add, after look()
+  int cost() const;                                                        // of a step, about, when lists were made [ns]
   bool is_idle() const { return contacts.empty(); }
   const std::vector<FieldContact> &touching() const { return contacts; }
   void restore(std::vector<FieldContact> those) { contacts = std::move(those); }
@@ -63,7 +70,7 @@ class ContactField {
   Placed placed(const ContactArrays &arrays) const { return {*host->body, host->slot.data(), arrays.place()}; }
   const SurfacePoint &surface_point(std::size_t q) const { return owner->body->points()[near.point(q)]; }
   bool is_smooth(PointKind kind) const { return kind != PointKind::FLAT && host->body->is_cuboid(); }
-  bool look(std::size_t q, const ContactArrays &arrays, bool may_begin, ContactAccount &account);
+  bool look(std::size_t q, const ContactArrays &arrays, bool may_begin);
   bool find(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X);
   void guess(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X, double &off);
   std::array<int, 3> cell_of(const Vec3 &X) const;
@@ -91,8 +98,9 @@ class ContactField {
   void take(const FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,
             ContactAccount &account) const;
   void count(const FieldContact &contact, double heat, double damped, ContactAccount &account) const;
-  void push_run(std::size_t first, std::size_t end, std::size_t &left, const PushTask &task, ContactArrays &arrays,
-                ContactAccount &account);
+  void push_run(std::size_t first, std::size_t end, std::size_t &left, std::size_t &block, const PushTask &task,
+                ContactArrays &arrays, ContactAccount &account);
+  template <class Do> void each_run(double dt, const ContactArrays &arrays, const Do &run) const;
   void end(const FieldContact &contact, std::size_t q, Fate fate, const ContactArrays &arrays, ContactAccount &account);
 
   ContactObject *owner, *host;
@@ -103,6 +111,9 @@ class ContactField {
   std::vector<FieldContact> contacts;     // by ascending points
   std::vector<std::size_t> of_contact;    // their near points
   std::vector<PointNow> now;              // and their points in this step
+  std::vector<PushedBlock> ahead;         // what they come to, four at a time, kind by kind,
+  std::size_t known_ahead = 0;            // so many of these in this step
+  int looks = 0;                          // in this step
   double budget = 0.0, next = 0.0;        // the least of `wake`, or less
 };
 

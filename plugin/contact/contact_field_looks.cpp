@@ -211,9 +211,9 @@ ContactField::Verdict ContactField::judge(const SurfacePoint &point, const Vec3 
 }
 
 // Whether a contact begins; else when to look again.
-bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_begin, ContactAccount &account)
+bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_begin)
 {
-  account.looks += 1.0;
+  ++looks;
   Watch &known = watch[q];
   const SurfacePoint &point = surface_point(q);
   const Vec3 x = near.place(q, arrays.place());
@@ -226,8 +226,7 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
     return false;
   };
   if (known.cell[0] < 0) {
-    if (!host->outer) host->outer = std::make_shared<const OuterCells>(*host, arrays);
-    const std::array<int, 3> cell = host->outer->nearest(x);
+    const std::array<int, 3> cell = host->outer->of(*host, arrays).nearest(x);
     Spot<double> there;
     const Vec3 middle = {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
     if (cell[0] >= 0 && !evaluate(at, trilinear(middle, cell, at.body), there)) return lost();

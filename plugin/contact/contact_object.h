@@ -13,12 +13,14 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 namespace mdanim {
 
 struct ContactKernels;
-class OuterCells;
+class LateOuterCells;
 
 struct ContactObject {
   int id;    // ascending in the order of the scene
@@ -30,10 +32,10 @@ struct ContactObject {
   std::vector<int>
       slot;    // of its particles by their places in the grid, in the arrays of ContactWorld; -1 for what is not there
   int first_slot = 0, last_slot = 0;
-  std::shared_ptr<const OuterCells> outer;    // made when it is first asked for; none after lists were made
-  Vec3 way;                                   // of its first particle in this step
-  double stir = 0.0;                          // the most that another has gone otherwise in this step
-  bool is_pushed = false;                     // in the last step, by contacts
+  std::shared_ptr<LateOuterCells> outer;    // none of them after lists were made
+  Vec3 way;                                 // of its first particle in this step
+  double stir = 0.0;                        // the most that another has gone otherwise in this step
+  bool is_pushed = false;                   // in the last step, by contacts
 };
 
 // What contacts did in a step, and since the beginning.
@@ -183,6 +185,21 @@ class OuterCells {
   std::vector<std::array<int, 3>> cell;
   std::vector<Vec3> middle;
   Grid grid;
+};
+
+// The same, made when they are first asked for, by whichever thread does.
+class LateOuterCells {
+ public:
+  const OuterCells &of(const ContactObject &owner, const ContactArrays &arrays)
+  {
+    std::call_once(made, [&] { cells.emplace(owner, arrays); });
+    return *cells;
+  }
+  std::size_t bytes() const { return cells ? cells->bytes() : 0; }
+
+ private:
+  std::once_flag made;
+  std::optional<OuterCells> cells;
 };
 
 // Ends contacts with points whose particles are not there; `of_contact` numbers those that are among the points near by.

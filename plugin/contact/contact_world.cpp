@@ -16,7 +16,10 @@ static constexpr double AT_A_PLANE = 0.75;       // of the skin: half for partic
 static constexpr double BETWEEN_POINTS = 0.6;    // spacings by which a round surface may stand out of its points
 static constexpr double MOST_SKINS = 32.0;
 static constexpr double ONSET = 0.05;    // eps over the spacing
-static constexpr double ALONE = 2.0;     // stiffness where only the dense points of one act, over that of points of both
+// What one thread takes at least, for others to be asked.
+static constexpr long LEAST_OBJECTS = 4, LEAST_FIELDS = 4, LEAST_PARTICLES = 400, LEAST_COST = 5000;    // of cost()
+static constexpr int FIELD_COST = 20;                                                                   // of one without points
+static constexpr double ALONE = 2.0;    // stiffness where only the dense points of one act, over that of points of both
 
 void ContactWorld::take(std::vector<ContactObject> now, std::vector<char> moves)
 {
@@ -204,7 +207,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
   for (int n = 0; n < objects(); ++n) {
     ContactObject &one = all[n];
     const std::vector<int> slot_before = std::move(one.slot);
-    one.outer.reset();
+    one.outer = std::make_shared<LateOuterCells>();
     one.slot.assign(sights[n].empty() ? 0 : one.body->places(), -1);
     one.first_slot = static_cast<int>(from);
     changes.clear();    // since the last step, of those that were there
@@ -220,24 +223,14 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
     one.way = motion.way, one.stir = std::sqrt(motion.square);
   }
 
-  std::vector<std::optional<PointFinder>> finders(all.size());
-  const auto finder = [&](int n) -> const PointFinder & { return finders[n] ? *finders[n] : finders[n].emplace(all[n], arrays); };
   active.clear();
   std::map<PairKey, Both> kept;
   for (const NearPair &pair : near_pairs) {
-    ContactObject &a = all[pair.a], &b = all[pair.b];
-    const PairKey key{a.id, b.id};
+    const PairKey key{all[pair.a].id, all[pair.b].id};
     const auto old = fields.find(key);
     Both &both = kept.emplace(key, old == fields.end() ? new_pair(pair.a, pair.b) : std::move(old->second)).first->second;
-    const auto where_points_touch = [&](const ContactObject &owner, const ContactObject &host, int n, const Zone &of_host) {
-      const double out = ContactField::stands_out(*owner.body, *host.body);
-      Zone zone = of_host.grown(out);
-      zone.from = finder(n).least_along(zone.across) - (host.body->is_cuboid() ? out : BETWEEN_POINTS * host.body->spacing());
-      return zone;
-    };
-    both.lower.list(a, b, finder(pair.a), where_points_touch(a, b, pair.b, pair.of_b), arrays, skin, nearer(a, b));
-    both.higher.list(b, a, finder(pair.b), where_points_touch(b, a, pair.a, pair.of_a), arrays, skin, nearer(a, b));
-    active.push_back({pair.a, pair.b, &both, nullptr});
+    active.push_back({pair.a, pair.b, &both.lower, nullptr, &pair.of_b, false});
+    active.push_back({pair.b, pair.a, &both.higher, nullptr, &pair.of_a, false});
   }
   fields = std::move(kept);
   std::map<std::pair<int, int>, PlaneField> kept_planes;
@@ -246,27 +239,58 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
     const auto old = plane_fields.find(key);
     PlaneField &field =
         kept_planes.emplace(key, old == plane_fields.end() ? new_plane(n, p) : std::move(old->second)).first->second;
-    field.list(all[n], finder(n), arrays, AT_A_PLANE * skin);
-    active.push_back({n, n, nullptr, &field});
+    active.push_back({n, n, nullptr, &field, nullptr, false});
   }
   plane_fields = std::move(kept_planes);
+  find_points();
+}
+
+// Of all fields, those that may come in. Objects and fields do not depend on each other here.
+void ContactWorld::find_points()
+{
+  std::vector<std::optional<PointFinder>> finder(all.size());
+  threads.parts(objects(), LEAST_OBJECTS, [&](long first, long end) {
+    for (long n = first; n < end; ++n)
+      if (!sights[n].empty()) finder[n].emplace(all[n], arrays);
+  });
+  threads.parts(static_cast<long>(active.size()), LEAST_FIELDS, [&](long first, long end) {
+    for (long k = first; k < end; ++k) {
+      const Active &one = active[k];
+      ContactObject &owner = all[one.a], &host = all[one.b];
+      const PointFinder &points = *finder[one.a];
+      if (one.plane) {
+        one.plane->list(owner, points, arrays, AT_A_PLANE * skin);
+        continue;
+      }
+      const double out = ContactField::stands_out(*owner.body, *host.body);
+      Zone zone = one.of_host->grown(out);
+      zone.from =
+          finder[one.b]->least_along(zone.across) - (host.body->is_cuboid() ? out : BETWEEN_POINTS * host.body->spacing());
+      one.field->list(owner, host, points, zone, arrays, skin, nearer(owner, host));
+    }
+  });
+  costs.assign(1, 0);
+  for (const Active &one : active)
+    costs.push_back(costs.back() + FIELD_COST + (one.plane ? one.plane->cost() : one.field->cost()));
 }
 
 // --- steps ---
 
 void ContactWorld::move_to(const Coordinates &places)
 {
-  for (ContactObject &one : all) {
-    if (one.first_slot == one.last_slot) continue;
-    Motion motion{place(places, one.first_slot) - arrays.place()[one.first_slot].value};
-    for (int s = one.first_slot; s < one.last_slot; ++s) {
-      const Vec3 x = place(places, s);
-      motion.include(x - arrays.place()[s].value);
-      arrays.place()[s].value = x;
+  threads.parts(static_cast<long>(arrays.size()), LEAST_PARTICLES, [&](long from, long to) {
+    for (ContactObject &one : all) {
+      if (one.first_slot == one.last_slot || one.first_slot < from || one.first_slot >= to) continue;
+      Motion motion{place(places, one.first_slot) - arrays.place()[one.first_slot].value};
+      for (int s = one.first_slot; s < one.last_slot; ++s) {
+        const Vec3 x = place(places, s);
+        motion.include(x - arrays.place()[s].value);
+        arrays.place()[s].value = x;
+      }
+      one.way = motion.way, one.stir = std::sqrt(motion.square);
+      clear_forces(one);
     }
-    one.way = motion.way, one.stir = std::sqrt(motion.square);
-    clear_forces(one);
-  }
+  });
 }
 
 void ContactWorld::step(const Coordinates &places, double dt)
@@ -274,20 +298,49 @@ void ContactWorld::step(const Coordinates &places, double dt)
   account.begin_step();
   if (arrays.size() == 0) return;
   move_to(places);
-  for (const Active &one : active) {
-    ContactObject &a = all[one.a], &b = all[one.b];
-    if (one.plane) {
-      if (dt == 0.0) one.plane->settle(arrays);
-      one.plane->add_forces(arrays, dt, account);
-      a.is_pushed |= !one.plane->touching().empty();
-      continue;
-    }
-    for (ContactField *field : {&one.both->lower, &one.both->higher}) {
-      if (dt == 0.0) field->settle(arrays, account);
-      field->add_forces(arrays, nearer(a, b), dt, account);
-      if (!field->is_idle()) a.is_pushed = b.is_pushed = true;
-    }
+  const bool ahead = dt > 0.0 && threads.many() > 1 && costs.back() >= 2 * LEAST_COST;
+  if (ahead) look_and_work_ahead(dt);
+  for (Active &one : active) {
+    if (!ahead) look(one, dt);
+    if (!ahead || one.has_something) add_forces(one, dt);
   }
+}
+
+void ContactWorld::look(Active &one, double dt)
+{
+  if (one.plane) {
+    if (dt == 0.0) one.plane->settle(arrays);
+    one.plane->look(arrays, dt);
+  } else {
+    if (dt == 0.0) one.field->settle(arrays);
+    one.field->look(arrays, nearer(all[one.a], all[one.b]), dt);
+  }
+}
+
+// What fields do by themselves; what they add to the same particles and sums comes afterwards, in one order.
+void ContactWorld::look_and_work_ahead(double dt)
+{
+  threads.parts(costs.back(), LEAST_COST, [&](long from, long to) {
+    const auto number = [&](long cost) { return std::lower_bound(costs.begin(), costs.end() - 1, cost) - costs.begin(); };
+    for (long k = number(from), end = number(to); k < end; ++k) {
+      Active &one = active[k];
+      look(one, dt);
+      one.plane ? one.plane->work_ahead(arrays, dt) : one.field->work_ahead(arrays, dt);
+      one.has_something = one.plane ? !one.plane->touching().empty() : one.field->has_something();
+    }
+  });
+}
+
+void ContactWorld::add_forces(const Active &one, double dt)
+{
+  ContactObject &a = all[one.a], &b = all[one.b];
+  if (one.plane) {
+    one.plane->add_forces(arrays, dt, account);
+    a.is_pushed |= !one.plane->touching().empty();
+    return;
+  }
+  one.field->add_forces(arrays, dt, account);
+  if (!one.field->is_idle()) a.is_pushed = b.is_pushed = true;
 }
 
 Vec3 ContactWorld::force_on_planes() const
@@ -320,7 +373,7 @@ ContactWorld::PlaneContacts ContactWorld::plane_contacts() const
 
 void ContactWorld::restore(const PairContacts &pairs, const PlaneContacts &planes)
 {
-  active.clear();
+  active.clear(), costs.assign(1, 0);
   fields.clear();
   plane_fields.clear();
   for (const auto &[key, contacts] : pairs) {

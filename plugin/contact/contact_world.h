@@ -9,6 +9,7 @@
 #include "contact/contact_object.h"
 #include "contact/plane_field.h"
 #include "engine/boxes.h"
+#include "engine/team.h"
 
 #include <array>
 #include <map>
@@ -72,8 +73,12 @@ class ContactWorld {
   void forget();
 
   // --- steps ---
-  // Null: contacts one at a time, with the same bits.
-  void use(const ContactKernels *kernels) { arrays.kernels = kernels; }
+  // Null: contacts one at a time, with the same bits. The number of threads changes no bit either.
+  void use(const ContactKernels *kernels, const Threads &now)
+  {
+    arrays.kernels = kernels;
+    threads = now;
+  }
   // The forces with all particles at these places. dt = 0 at the setup of a run: nothing changes.
   void step(const Coordinates &places, double dt);
   const Row *forces() const { return arrays.force(); }
@@ -110,11 +115,13 @@ class ContactWorld {
     Zone zone;
     int end;    // of its pair: that of the other object; -1 for a plane
   };
-  // A field between two objects, or at a plane, with their numbers.
+  // A field of points of object a against object b, or a plane.
   struct Active {
     int a, b;
-    Both *both;
+    ContactField *field;
     PlaneField *plane;
+    const Zone *of_host;    // for lists
+    bool has_something;     // to add in this step
   };
   double range(int a, int b) const;
   void find_sights();
@@ -124,6 +131,10 @@ class ContactWorld {
   bool can_touch(int a, int b) const { return movable[a] || movable[b]; }
   bool near_plane(const Box &box, const ContactPlane &plane, double gap) const;
   void move_to(const Coordinates &places);
+  void find_points();
+  void look(Active &one, double dt);
+  void look_and_work_ahead(double dt);
+  void add_forces(const Active &one, double dt);
   void clear_forces(ContactObject &one);
 
   std::vector<ContactObject> all;
@@ -135,7 +146,9 @@ class ContactWorld {
   std::vector<std::vector<Sight>> sights;                    // of each object
   std::map<PairKey, Both> fields;                            // by ids
   std::map<std::pair<int, int>, PlaneField> plane_fields;    // by id and plane
-  std::vector<Active> active;                                // what steps go through, in the order of sums
+  std::vector<Active> active;                                // what steps go through, in the order of sums,
+  std::vector<long> costs = {0};                             // and what all before each of them costs; at the end, what all cost
+  Threads threads;
   ContactArrays arrays;
 };
 

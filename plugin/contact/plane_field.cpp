@@ -71,50 +71,73 @@ bool PlaneField::look(std::size_t q, const ContactArrays &arrays, bool may_begin
   return true;
 }
 
-void PlaneField::add_forces(ContactArrays &arrays, double dt, ContactAccount &account)
+int PlaneField::cost() const
 {
-  budget += owner->stir - dot(plane.normal(), owner->way);
+  constexpr std::size_t CONTACT = 30;
+  return static_cast<int>(near.size() + CONTACT * contacts.size());
+}
+
+void PlaneField::look(const ContactArrays &arrays, double dt)
+{
   on_plane = {};
-  const bool moves = dt > 0.0;
-  if (moves && next < budget) {
+  ahead.clear();
+  budget += owner->stir - dot(plane.normal(), owner->way);
+  if (dt > 0.0 && next < budget) {
     next = NEVER;
     for (std::size_t q = 0; q < wake.size(); ++q) {
       if (wake[q] < budget) look(q, arrays, true);
       next = std::min(next, wake[q]);
     }
   }
+}
+
+// What a contact comes to in a step; one that is over stays as it is.
+PlaneField::Pushed PlaneField::push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const
+{
   const Vec3 downward = -1.0 * plane.normal();    // gradient of the depth
+  const Vec3 x = near.place(q, arrays.place());
+  const double depth = plane.depth(x);
+  if (depth <= 0.0) return {{}, depth, 0.0, 0.0, 0.0};
+  const double area = owner->body->points()[near.point(q)].area;
+  ContactForce<double> force = contact_pressure(law, area, 1.0, depth, dt, contact.memory);
+  if (law.friction > 0.0) {
+    Vec3 away = x - contact.anchor;
+    away -= dot(away, downward) * downward;
+    contact_friction(law, area, 1.0, away, downward, dt, contact.memory, force);
+    contact.anchor = x - force.kept * away;
+  }
+  return {-force.press * downward + force.pull + force.drag, depth, force.surface_energy, force.heat, force.damped};
+}
+
+void PlaneField::work_ahead(const ContactArrays &arrays, double dt)
+{
+  for (std::size_t c = 0; c < contacts.size(); ++c) ahead.push_back(push(contacts[c], of_contact[c], arrays, dt));
+}
+
+void PlaneField::add_forces(ContactArrays &arrays, double dt, ContactAccount &account)
+{
+  const bool moves = dt > 0.0, is_known = !ahead.empty();
   std::size_t left = 0;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     PlaneContact contact = contacts[c];
     const std::size_t q = of_contact[c];
-    const Vec3 x = near.place(q, arrays.place());
-    const double depth = plane.depth(x);
-    if (depth <= 0.0) {
+    const Pushed pushed = is_known ? ahead[c] : push(contact, q, arrays, dt);
+    if (pushed.depth <= 0.0) {
       if (!moves) continue;
       account.heat += contact.memory.stick_energy;
-      account.damped += last_damping_work(contact.memory, depth);
+      account.damped += last_damping_work(contact.memory, pushed.depth);
       was_below[q] = 0;
-      wake[q] = budget - depth;
+      wake[q] = budget - pushed.depth;
       next = std::min(next, wake[q]);
       continue;
     }
-    const double area = owner->body->points()[near.point(q)].area;
-    ContactForce<double> force = contact_pressure(law, area, 1.0, depth, dt, contact.memory);
-    if (law.friction > 0.0) {
-      Vec3 away = x - contact.anchor;
-      away -= dot(away, downward) * downward;
-      contact_friction(law, area, 1.0, away, downward, dt, contact.memory, force);
-      contact.anchor = x - force.kept * away;
-    }
-    const Vec3 on_point = -force.press * downward + force.pull + force.drag;
-    near.add_force(q, on_point, arrays.force());
-    on_plane -= on_point;
-    account.energy += force.surface_energy;
+    near.add_force(q, pushed.on_point, arrays.force());
+    on_plane -= pushed.on_point;
+    account.energy += pushed.energy;
     account.stick_energy += contact.memory.stick_energy;
-    account.heat += force.heat;
-    account.damped += force.damped;
-    account.deepest = std::max(account.deepest, depth);
+    account.heat += pushed.heat;
+    account.damped += pushed.damped;
+    account.deepest = std::max(account.deepest, pushed.depth);
     ++account.touching;
     if (!moves) continue;
     contacts[left] = contact, of_contact[left] = of_contact[c];
@@ -126,7 +149,7 @@ void PlaneField::add_forces(ContactArrays &arrays, double dt, ContactAccount &ac
 std::size_t PlaneField::bytes() const
 {
   return near.bytes() + wake.capacity() * sizeof(double) + was_below.capacity() + contacts.capacity() * sizeof(PlaneContact) +
-         of_contact.capacity() * sizeof(std::size_t);
+         ahead.capacity() * sizeof(Pushed) + of_contact.capacity() * sizeof(std::size_t);
 }
 
 }    // namespace mdanim

@@ -47,7 +47,10 @@ class PlaneField {
   void list(ContactObject &points_of, const PointFinder &finder, const ContactArrays &arrays, double reach);
   void forget();
   void settle(const ContactArrays &arrays);
+  void look(const ContactArrays &arrays, double dt);
+  void work_ahead(const ContactArrays &arrays, double dt);
   void add_forces(ContactArrays &arrays, double dt, ContactAccount &account);
+  int cost() const;
 
   const std::vector<PlaneContact> &touching() const { return contacts; }
   void restore(std::vector<PlaneContact> those) { contacts = std::move(those); }
@@ -55,6 +58,11 @@ class PlaneField {
   std::size_t bytes() const;
 
  private:
+  struct Pushed {
+    Vec3 on_point;
+    double depth, energy, heat, damped;
+  };
+  Pushed push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const;
   bool look(std::size_t q, const ContactArrays &arrays, bool may_begin);
 
   ContactObject *owner;
@@ -66,6 +74,7 @@ class PlaneField {
   std::vector<std::uint8_t> was_below;    // when a near point was looked at last
   std::vector<PlaneContact> contacts;     // by ascending points
   std::vector<std::size_t> of_contact;
+  std::vector<Pushed> ahead;
   double budget = 0.0, next = 0.0;    // the least of `wake`, or less
   Vec3 on_plane;
 };

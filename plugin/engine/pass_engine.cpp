@@ -11,14 +11,8 @@ namespace mdanim {
 // Fewer particles take less time than a thread to wake up.
 static constexpr int LEAST_PARTICLES = 1000;    // of a range
 
-void PassEngine::set_threads(int many)
-{
-  threads = many;
-  team = Team::of(many);
-}
-
 RangeCut PassEngine::ranges_of(Cut &cut)
-{ return cut_into_ranges(cutter, cut, std::min({threads, cut.particles / LEAST_PARTICLES, Team::MOST_TASKS})); }
+{ return cut_into_ranges(cutter, cut, std::min({threads.many(), cut.particles / LEAST_PARTICLES, Team::MOST_TASKS})); }
 
 bool PassEngine::begin_run(const Kernels &now)
 {
@@ -27,7 +21,7 @@ bool PassEngine::begin_run(const Kernels &now)
   kernels = &now;
   motion_for = NONE;
   for (const auto *participants : {&crew.early, &crew.late})
-    for (PassParticipant *p : *participants) p->set_kernels(*kernels);
+    for (PassParticipant *p : *participants) p->equip(*kernels, threads);
   return others;
 }
 
@@ -84,7 +78,7 @@ LaneUse PassEngine::cut(const Bonded &known)
 
 PassRun &PassEngine::start(const AtomArrays &atoms, double dt, bool positions, long long build)
 {
-  run.emplace(*blocks, *kernels, *team, crew, atoms, dt, PassRun::Fresh{positions, motion_for != build});
+  run.emplace(*blocks, *kernels, threads, crew, atoms, dt, PassRun::Fresh{positions, motion_for != build});
   motion_for = build;
   return *run;
 }

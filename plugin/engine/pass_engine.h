@@ -9,7 +9,6 @@
 #include "engine/simd_blocks.h"
 #include "engine/tag_order.h"
 
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -22,7 +21,7 @@ class PassEngine {
   PassCrew crew;
 
   // So many threads take passes, where there is enough for each of them to do. The caller of all other functions is one of them.
-  void set_threads(int threads);
+  void set_threads(int many) { threads = Threads(many); }
 
   // The crew is complete: with these kernels, and what only this run knows forgotten. Whether the kernels are others than before.
   bool begin_run(const Kernels &kernels);
@@ -53,8 +52,7 @@ class PassEngine {
 
   RangeCut ranges_of(Cut &cut);
 
-  int threads = 1;
-  std::shared_ptr<Team> team = Team::of(1);
+  Threads threads;
   const Kernels *kernels = nullptr;
   long long cut_for = NONE;            // version of the springs
   long long motion_for = NONE;         // build of lists

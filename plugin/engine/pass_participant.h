@@ -17,6 +17,7 @@ namespace mdanim {
 
 class Loss;
 struct Kernels;
+class Threads;
 
 // Where a particle is at home: the rank, and the index in its arrays.
 struct Home {
@@ -113,8 +114,8 @@ class PassParticipant : public PassMember {
   // append_required_atoms() names, in that order, those of ghosts without meaning.
   virtual bool depends_on_positions_only() const { return false; }
   virtual void add_forces(const Positions & /*place*/, const ForceSums & /*force*/) {}
-  // Of the instructions to compute with.
-  virtual void set_kernels(const Kernels &) {}
+  // What to compute with in this run.
+  virtual void equip(const Kernels &, const Threads &) {}
   // Whether it will read any particle in this step. Asked once, when the step has begun, unless positions are all that it needs.
   virtual bool needs_all_atoms() { return false; }
   // How far particles may go from where they stood when lists were made before it must look again, as far as it can tell: one

@@ -15,9 +15,9 @@ namespace mdanim {
 // (bench/effects.py shares, which goes from 13 and 3 springs for each particle to none). The springs have the rest.
 static constexpr double OF_LEAPFROG = 0.35, OF_DRAG = 0.14, OF_GRAVITY = 0.01;
 
-PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, Team &team, const PassCrew &crew, const AtomArrays &atoms, double dt,
-                 Fresh fresh)
-    : blocks(blocks), kernels(kernels), team(team), crew(crew), atoms(atoms), dt(dt)
+PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const Threads &threads, const PassCrew &crew,
+                 const AtomArrays &atoms, double dt, Fresh fresh)
+    : blocks(blocks), kernels(kernels), threads(threads), crew(crew), atoms(atoms), dt(dt)
 {
   if (fresh.positions) blocks.take_in(atoms.x, atoms.v);
   if (fresh.motion)
@@ -87,11 +87,7 @@ void PassRun::take_pass()
   const std::vector<Range> &ranges = blocks.ranges();
   of_range.assign(ranges.size(), pass);
   for (std::size_t n = 0; n < ranges.size(); ++n) of_range[n].range = &ranges[n];
-  const auto of_one = [](void *run, int n) {
-    auto &self = *static_cast<PassRun *>(run);
-    self.kernels.pass(self.of_range[n]);
-  };
-  team.share_out(static_cast<int>(ranges.size()), of_one, this);
+  threads.each(static_cast<int>(ranges.size()), [this](int n) { kernels.pass(of_range[n]); });
   blocks.end_pass(pass);
   pass.fastest = pass.squares = 0.0;
   for (const Pass &one : of_range) {

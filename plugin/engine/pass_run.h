@@ -27,8 +27,8 @@ class PassRun {
   struct Fresh {
     bool positions, motion;
   };
-  PassRun(SimdBlocks &blocks, const Kernels &kernels, Team &team, const PassCrew &crew, const AtomArrays &atoms, double dt,
-          Fresh fresh);
+  PassRun(SimdBlocks &blocks, const Kernels &kernels, const Threads &threads, const PassCrew &crew, const AtomArrays &atoms,
+          double dt, Fresh fresh);
 
   // Whether a participant reads particles in the arrays, besides those that are held back.
   bool participants_look() const { return look; }
@@ -55,7 +55,7 @@ class PassRun {
 
   SimdBlocks &blocks;
   const Kernels &kernels;
-  Team &team;
+  const Threads &threads;
   const PassCrew &crew;
   const AtomArrays atoms;
   const double dt;

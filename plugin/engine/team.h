@@ -4,6 +4,7 @@
 #ifndef MDANIM_TEAM_H
 #define MDANIM_TEAM_H
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
@@ -54,6 +55,35 @@ class Team {
   std::atomic<bool> over{false};
   std::mutex door;
   std::condition_variable bell;
+};
+
+// What an instance has of the team of its process: so many threads.
+class Threads {
+ public:
+  explicit Threads(int many = 1) : number(many), team(Team::of(many)) {}
+  int many() const { return number; }
+
+  // work(n) for n from 0 to tasks - 1, of which there are MOST_TASKS at most.
+  template <class Work> void each(int tasks, const Work &work) const
+  {
+    const auto one = [](void *of_whom, int n) { (*static_cast<const Work *>(of_whom))(n); };
+    team->share_out(tasks, one, const_cast<Work *>(&work));
+  }
+  // work(first, end) for parts of all numbers from 0 to size - 1: several for each thread, for one may cost more than another,
+  // and none shorter than `least`.
+  template <class Work> void parts(long size, long least, const Work &work) const
+  {
+    const long wanted = number < 2 ? 1 : std::min<long>(number * PARTS_OF_ONE, Team::MOST_TASKS);
+    const long many = std::min(wanted, size / least);
+    if (many < 2) return work(0L, size);
+    each(static_cast<int>(many), [&](int n) { work(size * n / many, size * (n + 1) / many); });
+  }
+
+ private:
+  static constexpr int PARTS_OF_ONE = 4;
+
+  int number;
+  std::shared_ptr<Team> team;
 };
 
 }    // namespace mdanim

@@ -34,7 +34,7 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
   void append_required_atoms(std::vector<int> &particles) const override;
   bool depends_on_positions_only() const override { return damping == 0.0; }
   void add_forces(const mdanim::Positions &place, const mdanim::ForceSums &force) override;
-  void set_kernels(const mdanim::Kernels &kernels) override { filter = &kernels.pair_filter; }
+  void equip(const mdanim::Kernels &kernels, const mdanim::Threads &) override { filter = &kernels.pair_filter; }
   bool needs_all_atoms() override { return damping > 0.0 && !loss.idle(); }
   double safe_displacement() const override { return clear; }
   bool sees_absolute_position() const override { return false; }

@@ -33,6 +33,7 @@ using namespace FixConst;
 using namespace mdanim;
 
 static constexpr int LARGEST_FILE = 1 << 30;    // bytes
+static constexpr long LEAST_PARTICLES = 400;    // of a thread, for others to be asked
 static constexpr double USUAL_DAMPING = 0.3;    // beta
 
 // --- the command ---
@@ -168,7 +169,8 @@ void FixMdanimContact::take_body(int number, const ContactBodyArrays &arrays)
 void FixMdanimContact::init()
 {
   need_objects_in_open_box(this, lmp, "surfaces may meet");
-  world_of_contact.use(nullptr);    // until passes tell those of their instructions
+  threads_now = Threads();
+  world_of_contact.use(nullptr, threads_now);    // until passes tell those of their instructions
 }
 
 // --- objects ---
@@ -347,11 +349,13 @@ Coordinates FixMdanimContact::places_of_all(const Coordinates &of_mine)
 template <class Add> void FixMdanimContact::give_forces(const Add &add) const
 {
   const Row *forces = world_of_contact.forces();
-  for (std::size_t n = 0; n < mine.size(); ++n) {
-    if (!world_of_contact.is_pushed(object[mine[n]])) continue;
-    const Vec3 &force = forces[slot[first_entry + n]].value;
-    if ((force.x != 0.0 || force.y != 0.0 || force.z != 0.0) && atom->mask[mine[n]] & groupbit) add(n, force);
-  }
+  threads_now.parts(static_cast<long>(mine.size()), LEAST_PARTICLES, [&](long first, long end) {
+    for (long n = first; n < end; ++n) {
+      if (!world_of_contact.is_pushed(object[mine[n]])) continue;
+      const Vec3 &force = forces[slot[first_entry + n]].value;
+      if ((force.x != 0.0 || force.y != 0.0 || force.z != 0.0) && atom->mask[mine[n]] & groupbit) add(n, force);
+    }
+  });
 }
 
 // With particles where LAMMPS has them.

@@ -35,7 +35,11 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
 
   void append_required_atoms(std::vector<int> &particles) const override;
   bool depends_on_positions_only() const override { return true; }
-  void set_kernels(const mdanim::Kernels &kernels) override { world_of_contact.use(&mdanim::contact_kernels(kernels.name)); }
+  void equip(const mdanim::Kernels &kernels, const mdanim::Threads &threads) override
+  {
+    world_of_contact.use(&mdanim::contact_kernels(kernels.name), threads);
+    threads_now = threads;
+  }
   void add_forces(const mdanim::Positions &place, const mdanim::ForceSums &force) override;
   double safe_displacement() const override { return world_of_contact.distance_apart(); }
   bool sees_absolute_position() const override { return !world_of_contact.settings.planes.empty(); }
@@ -80,6 +84,7 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
   std::vector<int> counts, starts;    // of the numbers that ranks send, three for each particle
   std::vector<double> sent, received;
   mdanim::Positions my_places, all_places;
+  mdanim::Threads threads_now;
   double seconds = 0.0;
 };
 

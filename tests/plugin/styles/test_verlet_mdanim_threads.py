@@ -24,6 +24,34 @@ LARGE = {
     },
 }
 
+HEAP = f"""
+ground z 0 m
+walls from (-8, -8, -10) cm to (8.5, 20, 100) cm
+repeat i in 0 .. 2 {{ repeat j in 0 .. 2 {{ repeat k in 0 .. 1 {{
+  object a[9*k + 3*i + j] {{ shape box (4, 4, 4) cm position (4.02*i - 4, 4*j - 4, 2 + 4.01*k) cm {SOLID} friction 0.4
+    velocity (rand(-1, 1), rand(-1, 1), -0.5) spin (0, 0, 9 * rand(-1, 1)) rad/s }} }}
+  object b[3*i + j] {{ shape sphere 2 cm position (4*i - 4, 4*j - 4, 10.1) cm {SOFT} friction 0.3 velocity (0, 1, -1) }} }} }}
+"""
+"""Cubes and balls in a bin that press and rub each other, the ground and a wall: many pairs, and points of all kinds."""
+
+
+def heap(style: str) -> tuple[list[bytes], float, float]:
+    """As film() of the heap, with what contacts remember; the most points in touch; bytes of what is known of points."""
+    ready = prepare(parse_scene(FALL + HEAP + "\n" + FINE.format(10, "surface")))
+    with Instance(ready.plan) as instance:
+        instance._lmp.command(f"run_style {style}")
+        instance.setup()
+        told, most = [], 0.0
+        for many in (1, 150, 149):
+            instance.run(many)
+            told += [instance.array(a).tobytes() for a in "xvf"]
+            most = max(most, instance.fix_value("contact", 5))
+            books = [instance.fix_value(fix, n) for fix in ("contact", "ground") for n in (0, 1, 2, 3, 4, 5, 6, 8, 9, 10, 14)]
+            told.append(np.array([instance.fix_scalar("contact"), instance.fix_scalar("ground"), *books]).tobytes())
+            told += [found.data.tobytes() for _, found in sorted(instance.state().records.items())]
+        assert instance.fix_value("contact", 1) > 0.0 and instance.fix_value("ground", 1) > 0.0  # friction
+        return told, most, instance.fix_value("contact", 12)
+
 
 def film(text: str, style: str, end: str, steps=(1, 40, 39)) -> tuple[list[bytes], int]:
     """All that a run tells, byte for byte, and how many ranges there were."""
@@ -67,6 +95,27 @@ def test_threads_and_widths_change_no_bit(name):
     for width in [w for w in WIDTHS if supported(w)]:
         found, many = film(LARGE[name], f"threads 3 width {width}", end)
         assert many > 1 and found == alone, width
+
+
+@pytest.fixture(scope="module")
+def heap_alone():
+    """By one thread, with the narrowest vectors."""
+    return heap("verlet/mdanim threads 1 width common")
+
+
+@pytest.mark.parametrize("threads", [2, 3, 4, 8])
+def test_threads_that_share_contact_change_no_bit(heap_alone, threads):
+    """Forces, sums, looks and what contacts remember are those of one thread. What fields work out ahead takes room."""
+    found, touching, room = heap(f"verlet/mdanim threads {threads}")
+    assert found == heap_alone[0] and touching > 100
+    assert room > 1.2 * heap_alone[2]
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_threads_that_share_contact_and_widths_change_no_bit(heap_alone, width):
+    """The same for every width that runs here."""
+    if supported(width):
+        assert heap(f"verlet/mdanim threads 3 width {width}")[0] == heap_alone[0]
 
 
 def test_a_small_scene_has_one_range():
