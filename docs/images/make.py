@@ -39,6 +39,10 @@ PICTURES = {
     "pile": 1.2,
     "dam": 0.72,
     "ripples": 0.5,
+    "slosh": 1.0,
+    "swell": 3.0,
+    "utube": 0.6,
+    "weir": 5.6,
 }
 """Scene and the moment to show [s]."""
 SIZE = (720, 405)
