@@ -39,7 +39,7 @@ PICTURES = {
     "pile": 1.2,
     "dam": 0.72,
     "ripples": 0.5,
-    "slosh": 1.0,
+    "slosh": 0.5,
     "swell": 3.0,
     "utube": 0.6,
     "weir": 5.6,
