@@ -13,7 +13,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 SOURCES := pyproject.toml CMakeLists.txt $(shell find plugin python -name '*.so' -prune -o -name __pycache__ -prune -o -type f -print)
 
-.PHONY: demo lint test docs smoke develop soak sanitize bench bench-peers setup clean
+.PHONY: demo lint test docs smoke develop soak sanitize bench bench-peers setup tools clean
 .DEFAULT_GOAL := demo
 
 setup: $(VENV)/.installed
@@ -26,25 +26,32 @@ $(VENV)/.installed: $(SOURCES)
 	$(BIN)/python -m pip install --quiet --upgrade pip build
 	rm -rf dist
 	$(BIN)/python -m build >dist.log 2>&1 || { cat dist.log; exit 1; }
-	$(BIN)/python -m pip install --quiet "$$(echo dist/*.whl)[test]"
+	$(BIN)/python -m pip install --quiet dist/*.whl
 	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps dist/*.whl
 	rm dist.log
+	@touch $@
+
+# Libraries of tests, docs and measurements, which the demo does without.
+tools: $(VENV)/.tools
+
+$(VENV)/.tools: $(VENV)/.installed
+	$(BIN)/python -m pip install --quiet "$$(echo dist/*.whl)[test]"
 	@touch $@
 
 demo: setup
 	$(BIN)/mdanim-lammps scenes/beam.txt --force
 
-lint: setup $(VENV)/.linters
+lint: tools $(VENV)/.linters
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/clang-format --dry-run --Werror $(shell find plugin tests/lab/plugin -name '*.cpp' -o -name '*.h')
 	$(BIN)/mypy
 
-$(VENV)/.linters: pyproject.toml $(VENV)/.installed
+$(VENV)/.linters: pyproject.toml $(VENV)/.tools
 	$(BIN)/python -m pip install --quiet --group lint
 	@touch $@
 
-test: setup
+test: tools
 	$(BIN)/python tests/lab/plugin_library.py
 	$(BIN)/python -m pytest -n 2 --dist loadfile
 
@@ -55,11 +62,11 @@ smoke: setup
 	build/smoke/bin/python -m pip install --quiet dist/*.whl
 	build/smoke/bin/python tests/smoke.py
 
-docs: setup
+docs: tools
 	$(BIN)/python -m sphinx -b html -W --keep-going -d build/doctrees docs build/docs
 
 # Ninja builds what has changed only. The file is renamed, as a process may have the old one loaded.
-develop: setup
+develop: tools
 	$(BIN)/python -m pip install --quiet cmake ninja
 	$(BIN)/cmake -S . -B build/develop -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja \
 		-DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python
@@ -68,19 +75,19 @@ develop: setup
 	cp build/develop/mdanimplugin.so python/mdanim_lammps/plugin/mdanimplugin.so.tmp
 	mv python/mdanim_lammps/plugin/mdanimplugin.so.tmp python/mdanim_lammps/plugin/mdanimplugin.so
 
-soak: setup
+soak: tools
 	$(BIN)/python tests/lab/plugin_library.py
 	$(BIN)/python -m pytest -n 2 -m soak
 
 # The CMake that pip builds the package with is not kept in .venv.
-sanitize: setup
+sanitize: tools
 	$(BIN)/python -m pip install --quiet 'cmake>=3.18,<5'
 	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/python tests/sanitize.py
 
-bench: setup
+bench: tools
 	$(BIN)/python bench/all.py --write
 
-bench-peers: setup .venv-peers/.installed
+bench-peers: tools .venv-peers/.installed
 	$(BIN)/python bench/peers/all.py --write
 
 # A peer that cannot be installed here is left out of it, and its row says so.
