@@ -57,8 +57,8 @@ Head head_of(const SolidParts &solid, const Span &span, Units content);
 // In cells. The content of a span that is level at a height is its whole units.
 double volume_below(const SolidParts &solid, const Span &span, double height);
 
-// How much of the faces between two spans of neighbouring columns is open below a height, layer by layer. Below the floor of one of
-// them nothing is.
+// How much of the faces between two spans of neighbouring columns is open below a height, layer by layer. Below the floor of one
+// of them nothing is.
 double open_below(const SolidParts &solid, const Span &a, const Span &b, double height);
 
 }    // namespace mdanim
