@@ -11,8 +11,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cfenv>
 #include <chrono>
 #include <map>
+#include <mutex>
+#include <set>
+#include <thread>
 #include <vector>
 
 using namespace mdanim;
@@ -88,18 +92,14 @@ MDANIM_EXPORT void mdanim_ranges_tell(void *p, int *first, int *end_of_border, i
   }
 }
 
-// Shares out so many tasks among so many threads, `calls` times: `count` tells how often each task was done. A task waits so many
-// microseconds; in between the caller waits for as many as `nap` tells.
-MDANIM_EXPORT void mdanim_team_count(int threads, int tasks, int calls, int task_us, int nap_us, int *count)
+// Shares out so many tasks among so many threads, `calls` times: `count` tells how often each task was done. A task takes so many
+// microseconds.
+MDANIM_EXPORT void mdanim_team_count(int threads, int tasks, int calls, int task_us, int *count)
 {
   const std::shared_ptr<Team> team = Team::of(threads);
   struct Work {
     int *count, us;
   } work = {count, task_us};
-  const auto wait = [](int us) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(us);
-    while (std::chrono::steady_clock::now() < end) {}
-  };
   for (int n = 0; n < calls; ++n) {
     team->share_out(
         tasks,
@@ -110,8 +110,39 @@ MDANIM_EXPORT void mdanim_team_count(int threads, int tasks, int calls, int task
           ++of->count[task];
         },
         &work);
-    wait(nap_us);
   }
+}
+
+// One call after all others had time to fall asleep, with tasks that leave their processors free. How many threads took tasks,
+// and how many tasks did not round as the caller does, upward.
+MDANIM_EXPORT void mdanim_team_wakes(int threads, int tasks, int nap_us, int task_us, int *found)
+{
+  const std::shared_ptr<Team> team = Team::of(threads);
+  const auto sleep = [](int us) { std::this_thread::sleep_for(std::chrono::microseconds(us)); };
+  team->share_out(tasks, [](void *, int) {}, nullptr);
+  sleep(nap_us);
+  struct Work {
+    int us;
+    std::mutex door;
+    std::set<std::thread::id> threads;
+    int other_mode;
+  } work{task_us, {}, {}, 0};
+  const int mode = std::fegetround();
+  std::fesetround(FE_UPWARD);
+  team->share_out(
+      tasks,
+      [](void *whose, int) {
+        auto *of = static_cast<Work *>(whose);
+        std::this_thread::sleep_for(std::chrono::microseconds(of->us));
+        const std::lock_guard<std::mutex> lock(of->door);
+        of->threads.insert(std::this_thread::get_id());
+        volatile double one = 1.0, least = 1e-30;
+        of->other_mode += one + least == 1.0;
+      },
+      &work);
+  std::fesetround(mode);
+  found[0] = static_cast<int>(work.threads.size());
+  found[1] = work.other_mode;
 }
 
 MDANIM_EXPORT void mdanim_cut_delete(void *made) { delete static_cast<MadeCut *>(made); }
