@@ -7,8 +7,8 @@
 #include "liquid/wave_makers.h"
 #include "liquid/waves.h"
 
+#include <algorithm>
 #include <cstdint>
-#include <cstring>
 
 using mdanim::Drops;
 using mdanim::guarded;
@@ -38,7 +38,7 @@ MDANIM_EXPORT std::int64_t mdanim_drops_count(void *d) { return static_cast<std:
 MDANIM_EXPORT void mdanim_drops_state(void *d, std::uint8_t *bytes)
 {
   const std::vector<std::uint8_t> state = drops(d).state();
-  std::memcpy(bytes, state.data(), state.size());
+  std::copy(state.begin(), state.end(), bytes);
 }
 
 // 0, or 1 with a message.
@@ -85,7 +85,7 @@ MDANIM_EXPORT std::int64_t mdanim_makers_state_size(void *m) { return static_cas
 MDANIM_EXPORT void mdanim_makers_state(void *m, std::uint8_t *bytes)
 {
   const std::vector<std::uint8_t> state = makers(m).state();
-  std::memcpy(bytes, state.data(), state.size());
+  std::copy(state.begin(), state.end(), bytes);
 }
 
 // 0, or 1 with a message.

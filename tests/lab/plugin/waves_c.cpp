@@ -5,8 +5,8 @@
 #include "c_api/guarded.h"
 #include "liquid/waves.h"
 
+#include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <ctime>
 
 using mdanim::guarded;
@@ -114,7 +114,7 @@ MDANIM_EXPORT std::int64_t mdanim_waves_state_size(void *w) { return static_cast
 MDANIM_EXPORT void mdanim_waves_state(void *w, std::uint8_t *bytes)
 {
   const std::vector<std::uint8_t> state = waves(w).state();
-  std::memcpy(bytes, state.data(), state.size());
+  std::copy(state.begin(), state.end(), bytes);
 }
 
 // 0, or 1 with a message.
