@@ -3,6 +3,7 @@
 #include "liquid/drops.h"
 
 #include "laws/counter_rng.h"
+#include "liquid/columns.h"
 #include "liquid/waves.h"
 
 #include <algorithm>
@@ -56,15 +57,12 @@ void Drops::leave(Waves &waves, double dt, std::uint64_t when)
       const Waves::Top &own = top[column];
       double around = 0.0;
       int neighbours = 0;
-      const auto look = [&](bool there, int other) {
-        if (!there) return;
+      for (int side = 0; side < 4; ++side) {
+        const int other = neighbour(column, side, nx, ny);
+        if (other < 0) continue;
         around += std::max(0.0, top[other].rising);
         ++neighbours;
-      };
-      look(x > 0, column - 1);
-      look(x < nx - 1, column + 1);
-      look(y > 0, column - nx);
-      look(y < ny - 1, column + nx);
+      }
       const double up = std::min(own.rising - around / std::max(1, neighbours), own.jet);
       const double excess = up - STEEP * std::sqrt(std::min(own.volume, DEEPEST));
       const double volume = std::min(SHED * share * excess * dt, 0.5 * own.volume);

@@ -3,6 +3,8 @@
 
 #include "liquid/wave_basin.h"
 
+#include "liquid/columns.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -51,39 +53,25 @@ double WaveBasin::mean_level() const
 // Heads of all columns; those without liquid that solids hide have the mean of those around.
 void WaveBasin::look()
 {
-  std::vector<int> left, later;
+  std::vector<int> unknown;
   for (int c = 0; c < columns(); ++c) {
     look_at_column(c);
-    if (std::isnan(heads[c])) left.push_back(c);
+    if (std::isnan(heads[c])) unknown.push_back(c);
   }
-  while (!left.empty()) {
-    std::vector<double> found;
-    later.clear();
-    std::vector<int> now;
-    for (const int c : left) {
-      double sum = 0.0;
-      int count = 0;
-      const int x = c % shape.nx, y = c / shape.nx;
-      const auto take = [&](bool there, int other) {
-        if (!there || std::isnan(heads[other])) return;
-        sum += heads[other];
-        ++count;
-      };
-      take(x > 0, c - 1);
-      take(x + 1 < shape.nx, c + 1);
-      take(y > 0, c - shape.nx);
-      take(y + 1 < shape.ny, c + shape.nx);
-      if (count == 0) {
-        later.push_back(c);
-        continue;
-      }
-      now.push_back(c);
-      found.push_back(sum / count);
+  std::vector<double> found(unknown.empty() ? 0 : columns());
+  const auto mean = [&](int c) {
+    double sum = 0.0;
+    int count = 0;
+    for (int side = 0; side < 4; ++side) {
+      const int other = neighbour(c, side, shape.nx, shape.ny);
+      if (other < 0 || std::isnan(heads[other])) continue;
+      sum += heads[other];
+      ++count;
     }
-    if (now.empty()) break;
-    for (std::size_t n = 0; n < now.size(); ++n) heads[now[n]] = found[n];
-    left.swap(later);
-  }
+    if (count > 0) found[c] = sum / count;
+    return count > 0;
+  };
+  const std::vector<int> left = learn_inward(unknown, mean, [&](int c) { heads[c] = found[c]; });
   for (const int c : left) heads[c] = 0.0;    // solid from wall to wall
   const double highest = heads.empty() ? 0.0 : *std::max_element(heads.begin(), heads.end());
   crest = 0.0;
@@ -106,7 +94,7 @@ void WaveBasin::look_at_column(int column)
     if (!on_floor && span.volume < ON_BODY) continue;
     heads[column] = std::min(span.phi, shape.nz + 1.0);
     if (last) tops[column] = std::min(span.surface, shape.nz + 1.0);
-    if (last || spans == 0) return;
+    if (last) return;
     const Waves::SpanView above = waves.span_view(column, spans - 1);
     hollow[column] = above.high == shape.nz && heads[column] > above.floor + 1.0;
     return;

@@ -3,6 +3,8 @@
 
 #include "liquid/wave_push.h"
 
+#include "liquid/columns.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,21 +18,6 @@ constexpr double HIGHEST = 8.0;                     // cells of liquid that pres
 constexpr int SMOOTHINGS = 4;
 
 }    // namespace
-
-int WavePush::neighbour(int column, int side) const
-{
-  const int x = column % nx, y = column / nx;
-  switch (side) {
-    case 0:
-      return x > 0 ? column - 1 : -1;
-    case 1:
-      return x < nx - 1 ? column + 1 : -1;
-    case 2:
-      return y > 0 ? column - nx : -1;
-    default:
-      return y < ny - 1 ? column + nx : -1;
-  }
-}
 
 void WavePush::find(const Waves &waves, const double *mass, double part)
 {
@@ -112,7 +99,7 @@ void WavePush::seep(const Waves &waves)
     double sum = 0.0;
     int count = 0;
     for (int side = 0; side < 4; ++side) {
-      const int other = neighbour(run.column, side);
+      const int other = neighbour(run.column, side, nx, ny);
       double there = 0.0;
       if (other < 0 || !beside(waves, other, run.bottom, run.top, there)) continue;
       sum += std::max(there, run.bottom);
@@ -121,15 +108,7 @@ void WavePush::seep(const Waves &waves)
     if (count > 0) phi = sum / count;
     return count > 0;
   };
-  std::vector<int> left = dry, later, now;
-  while (!left.empty()) {
-    now.clear();
-    later.clear();
-    for (const int n : left) (mean(runs[n], runs[n].phi) ? now : later).push_back(n);
-    if (now.empty()) break;
-    for (const int n : now) runs[n].told = runs[n].wet = true;
-    left.swap(later);
-  }
+  learn_inward(dry, [&](int n) { return mean(runs[n], runs[n].phi); }, [&](int n) { runs[n].told = runs[n].wet = true; });
   for (int pass = 0; pass < SMOOTHINGS; ++pass)
     for (const int n : dry)
       if (runs[n].told) mean(runs[n], runs[n].phi);
@@ -157,7 +136,7 @@ void WavePush::follow(const Waves &waves, double part)
   };
   for (const int column : columns) {
     take(column);
-    for (int side = 0; side < 4; ++side) take(neighbour(column, side));
+    for (int side = 0; side < 4; ++side) take(neighbour(column, side, nx, ny));
   }
 }
 
@@ -180,7 +159,7 @@ void WavePush::put(const SolidParts &solid, int column, int z, OnCell on)
 {
   const std::size_t cell = static_cast<std::size_t>(z) * nx * ny + column;
   const auto rise = [&](int side) {
-    const int other = neighbour(column, side);
+    const int other = neighbour(column, side, nx, ny);
     if (other < 0 || std::isnan(ambient[other]) || std::isnan(ambient[column])) return 0.0;
     const double both = (solid.at(column, z) + solid.at(other, z)) / static_cast<double>(SolidParts::FULL);
     return std::clamp(ambient[other] - ambient[column], -HIGHEST, HIGHEST) / std::max(1.0, both);

@@ -59,7 +59,6 @@ class WavePush {
   void put(const SolidParts &solid, int column, int z, OnCell on);
   void fill(const Waves &waves, int column);
   void spread(const SolidParts &solid);
-  int neighbour(int column, int side) const;
 
   const int nx, ny, nz;
   std::vector<int> known;    // of each cell, its number in `found`, or -1

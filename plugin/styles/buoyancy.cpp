@@ -149,10 +149,9 @@ void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
     const double own_calming = calming * s * mass_of(atom->rmass, atom->mass, atom->type, i) / force->ftm2v;
     if (own_lambda > 0.0 && basin.takes_impulses()) {
       // Drag is against the liquid, not against the floor, and takes it along.
-      const double strength = liquid_lambda(gammas ? gammas[i] : gamma.number, rho, own, s);
-      push += strength / force->ftm2v * at.flow;
+      push += own_lambda * at.flow;
       const Vec3 relative = vec3(v[i]) - at.flow;
-      if (in_step) basin.take_impulse(basin.in_cells(x[i]), scale * strength / force->ftm2v * Vec3{relative.x, relative.y, 0.0});
+      if (in_step) basin.take_impulse(basin.in_cells(x[i]), scale * own_lambda * Vec3{relative.x, relative.y, 0.0});
     }
     if (s == 0.0 && dot(push, push) == 0.0) continue;
     add_to(f[i], push);

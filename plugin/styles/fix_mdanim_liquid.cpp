@@ -182,8 +182,8 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
 int FixMdanimLiquid::keyword(int iarg, int narg, char **arg, Basin::Pace &pace)
 {
   const char *word = arg[iarg];
-  static const char *const known[] = {"buoyancy", "drag",   "lambda", "base",   "cells",  "faces",   "softness",
-                                      "still",    "sweeps", "every",  "stride", "period", "softness"};
+  static const char *const known[] = {"buoyancy", "drag",  "lambda", "base",  "cells",  "faces",
+                                      "softness", "still", "sweeps", "every", "stride", "period"};
   if (std::none_of(std::begin(known), std::end(known), [&](const char *k) { return strcmp(k, word) == 0; })) return 0;
   if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", word), error);
   const char *value = arg[iarg + 1];

@@ -170,7 +170,7 @@ class LiquidWaves(LiquidAutomaton):
         return f"model waves calm {calm!r} {solids} every {EVERY} stride {STRIDE} period {WAVE_PERIOD}{_makers(scene.liquid)}"
 
     def commands(self, scene, system):
-        regions = [f"region {name} {_block(flow.low, flow.high)}" for name, flow in _flows(scene.liquid)]
+        regions = [f"region {name} {_block(flow.low, flow.high)}" for _, name, flow in _flows(scene.liquid)]
         return [*regions, *super().commands(scene, system)]
 
     def warnings(self, scene, system):
@@ -357,19 +357,19 @@ def _is_wavy(scene) -> bool:
 
 
 def _flows(liquid):
-    """What comes in and goes out through boxes, with the names of their regions."""
-    for word in ("inflow", "drain"):
-        for n, flow in enumerate(getattr(liquid, word)):
-            yield f"{word}-{n}", flow
+    """What comes in and goes out through boxes: the word, the name of the region, the record."""
+    for word, flows in (("inflow", liquid.inflow), ("drain", liquid.drain)):
+        for n, flow in enumerate(flows):
+            yield word, f"{word}-{n}", flow
 
 
 def _makers(liquid) -> str:
     """Words of the fix for what makes waves."""
     words = [f" wave {w.side} {w.amplitude!r} {w.period!r}" for w in liquid.wave]
     words += [f" current {c.side} {c.speed!r}" for c in liquid.current]
-    for name, flow in _flows(liquid):
-        velocity = f" {flow.velocity[0]!r} {flow.velocity[1]!r}" if name.startswith("inflow") else ""
-        words.append(f" {name.split('-')[0]} {name} {flow.rate!r}{velocity}")
+    for word, name, flow in _flows(liquid):
+        velocity = f" {flow.velocity[0]!r} {flow.velocity[1]!r}" if word == "inflow" else ""
+        words.append(f" {word} {name} {flow.rate!r}{velocity}")
     return "".join(words)
 
 

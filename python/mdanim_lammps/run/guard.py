@@ -47,6 +47,8 @@ class Guard:
     def __init__(self, ready: Prepared, folder: Path):
         self.ready, self.folder = ready, folder
         self.geometry = Geometry(ready.system)
+        self.cells = np.diff(self.geometry.first_cell)
+        """Of each solid, shape (M,)."""
         effects = ready.plan.effects
         self.sides = [p for e in effects for p in e.planes(ready.scene)]
         self.apart = any(e.keeps_apart for e in effects)
@@ -97,12 +99,12 @@ class Guard:
         stuck = np.bincount(owner[step - self.since[cells] > self.patience[owner]], minlength=len(self.patience))
         for m in np.flatnonzero(stuck).tolist():
             self.dents[m] = max(self.dents.get(m, 0), int(stuck[m]))
-        parts = stuck / np.maximum(np.diff(self.geometry.first_cell), 1)
+        parts = stuck / np.maximum(self.cells, 1)
         m = int(parts.argmax())
         if parts[m] > CRUMPLED and not self.ready.insist:
             raise self.error_at(
                 step,
-                f"{stuck[m]} of its {np.diff(self.geometry.first_cell)[m]} cells have been inside out since step "
+                f"{stuck[m]} of its {self.cells[m]} cells have been inside out since step "
                 f"{self.since[cells[owner == m]].min()}; springs cannot tell mirrored from right, so they would stay so",
                 m,
                 "amplitude",
@@ -184,14 +186,14 @@ class Guard:
         """Of a finished run: where bodies have got dents, and whether it has missed the class of energy of its accuracy."""
         scene, goal, found = self.ready.scene, energy_class(self.ready.scene), []
         if self.dents:
-            m = max(self.dents, key=lambda m: self.dents[m] / np.diff(self.geometry.first_cell)[m])
+            m = max(self.dents, key=lambda m: self.dents[m] / self.cells[m])
             cause, cure = self._why(("amplitude", "load"), SQUEEZED)
             others = f" and {len(self.dents) - 1} more" if len(self.dents) > 1 else ""
             found.append(
                 Problem(
                     scene.solids[m].spans.get("elasticity"),
                     f"{self.ready.system.names[m]}{others} got a dent: {self.dents[m]} of its "
-                    f"{np.diff(self.geometry.first_cell)[m]} cells have been turned inside out by a blow; {cause}",
+                    f"{self.cells[m]} cells have been turned inside out by a blow; {cause}",
                     cure,
                     severity="warning",
                 )
