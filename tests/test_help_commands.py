@@ -7,7 +7,7 @@ import subprocess
 from dataclasses import replace
 
 import pytest
-from command_line import GOOD, run
+from command_line import GOOD, call, run
 from mdanim_lammps import doctor
 from mdanim_lammps.scene.explain import MARGINS, explain, words
 from mdanim_lammps.scene.grammar import grammar
@@ -17,19 +17,19 @@ from paths import REPOSITORY, SCENES
 
 def test_init_writes_a_scene_that_runs(tmp_path):
     """As it is and with its remarks taken out; a second time it is refused."""
-    said = run("init", "first", cwd=tmp_path)
+    said = call("init", "first", cwd=tmp_path)
     assert said.returncode == 0 and "mdanim-lammps check first.txt" in said.stdout
     text = (tmp_path / "first.txt").read_text()
     (tmp_path / "wet.txt").write_text(re.sub(r"^# (?=liquid|  |\})", "", text, flags=re.M).replace("ground z 0 m", "#"))
     for name in ("first.txt", "wet.txt"):
-        checked = run("check", name, "--json", cwd=tmp_path)
+        checked = call("check", name, "--json", cwd=tmp_path)
         assert checked.returncode == 0, checked.stdout
         assert json.loads(checked.stdout)["problems"] == []
     assert json.loads(checked.stdout)["liquid"]["name"] == "water"
-    again = run("init", "first", cwd=tmp_path)
+    again = call("init", "first", cwd=tmp_path)
     assert again.returncode == 7 and "first.txt exists; overwrite it with --force" in again.stderr
-    assert run("init", "first", "--force", cwd=tmp_path).returncode == 0
-    assert run("init", "no/first", cwd=tmp_path).returncode == 7
+    assert call("init", "first", "--force", cwd=tmp_path).returncode == 0
+    assert call("init", "no/first", cwd=tmp_path).returncode == 7
 
 
 def test_every_word_is_explained():
@@ -65,16 +65,16 @@ def test_every_margin_of_the_shipped_scenes_is_explained():
 
 def test_explain_on_the_command_line():
     """A near word is suggested; without a word all are listed."""
-    assert "a unit of pressure" in run("explain", "kPa").stdout
-    assert "the bound of each object" in run("explain", "time", "step").stdout
-    unknown = run("explain", "elastisity")
+    assert "a unit of pressure" in call("explain", "kPa").stdout
+    assert "the bound of each object" in call("explain", "time", "step").stdout
+    unknown = call("explain", "elastisity")
     assert unknown.returncode == 2 and "did you mean 'elasticity'" in unknown.stderr
-    assert "torus" in run("explain").stdout
+    assert "torus" in call("explain").stdout
 
 
 def test_completion():
     """The script is one that the shell can read, and knows the commands."""
-    script = run("completion", "bash").stdout
+    script = call("completion", "bash").stdout
     assert "export" in script and "--accuracy" in script
     assert subprocess.run(["bash", "-n"], input=script, text=True).returncode == 0
 
@@ -85,15 +85,15 @@ def test_gallery(tmp_path):
     folder.mkdir()
     (folder / "good.txt").write_text('title "A <cube>"\n' + GOOD)
     (folder / "bad.txt").write_text(GOOD.replace("100 kPa", "100 kg"))
-    said = run("gallery", folder, "-o", tmp_path / "g", "--size", "64", "48", "--accuracy", "preview")
+    said = call("gallery", folder, "-o", tmp_path / "g", "--size", "64", "48", "--accuracy", "preview")
     assert said.returncode == 6 and "2 scenes, 1 of them failed" in said.stdout
     page = (tmp_path / "g" / "index.html").read_text()
     assert '<video src="good/movie.mp4"' in page and "A &lt;cube&gt;" in page and "bad.txt:8" in page
     movie = tmp_path / "g" / "good" / "movie.mp4"
     before = movie.stat().st_mtime_ns
-    run("gallery", folder, "-o", tmp_path / "g")
+    call("gallery", folder, "-o", tmp_path / "g")
     assert movie.stat().st_mtime_ns == before  # what is there is kept
-    empty = run("gallery", tmp_path, cwd=tmp_path)
+    empty = call("gallery", tmp_path, cwd=tmp_path)
     assert empty.returncode == 7 and "holds no scenes" in empty.stderr
 
 
@@ -123,12 +123,12 @@ def test_doctor_names_a_cure(monkeypatch, tmp_path):
 def test_problems_as_json(tmp_path):
     """Each with its place, for editors; exit codes are those of check."""
     (tmp_path / "bad.txt").write_text(GOOD.replace("100 kPa", "100 kg"))
-    bad = run("check", "bad.txt", "--json", cwd=tmp_path)
+    bad = call("check", "bad.txt", "--json", cwd=tmp_path)
     (problem,) = json.loads(bad.stdout)["problems"]
     assert bad.returncode == 3 and (problem["file"], problem["line"], problem["severity"]) == ("bad.txt", 8, "error")
     assert problem["column"] > 1 and problem["width"] > 1 and problem["message"] and problem["hint"]
     (tmp_path / "fast.txt").write_text(GOOD.replace("time 0.1 s", "time 0.1 s\n timestep 1 s"))
-    fast = run("check", "fast.txt", "--format", "json", cwd=tmp_path)
+    fast = call("check", "fast.txt", "--format", "json", cwd=tmp_path)
     assert fast.returncode == 4 and "certified bound" in json.loads(fast.stdout)["problems"][0]["message"]
 
 
@@ -173,6 +173,6 @@ def test_the_problem_matcher_reads_what_check_prints(tmp_path):
     package = json.loads((REPOSITORY / "editors" / "vscode" / "package.json").read_text())
     pattern = package["contributes"]["problemMatchers"][0]["pattern"]
     (tmp_path / "bad.txt").write_text(GOOD.replace("100 kPa", "100 kg"))
-    first = run("check", "bad.txt", cwd=tmp_path).stderr.splitlines()[0]
+    first = call("check", "bad.txt", cwd=tmp_path).stderr.splitlines()[0]
     file, line, column, severity, message = re.match(pattern["regexp"], first).groups()
     assert (file, line, severity) == ("bad.txt", "8", "error") and int(column) > 1 and "elasticity" in message

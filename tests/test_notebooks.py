@@ -9,15 +9,28 @@ import pytest
 NOTEBOOKS = sorted((Path(__file__).parents[1] / "docs" / "notebooks").glob("*.ipynb"))
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
-def test_runs(path, tmp_path):
-    """Every cell, in a fresh kernel; scenes and results show a picture, runs a bar."""
+@pytest.fixture(scope="module")
+def outputs(tmp_path_factory):
+    """What the cells of each notebook show: all run in one kernel, where each begins without names of the one before it."""
     import nbformat
     from nbclient import NotebookClient
 
-    notebook = nbformat.read(path, as_version=4)
-    NotebookClient(notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}).execute()
-    shown = [output.get("data", {}) for cell in notebook.cells for output in cell.get("outputs", ())]
+    notebooks = [nbformat.read(path, as_version=4) for path in NOTEBOOKS]
+    together = nbformat.v4.new_notebook()
+    forget = nbformat.v4.new_code_cell("%reset -f")
+    together.cells = [cell for notebook in notebooks for cell in (forget.copy(), *notebook.cells)]
+    place = {"metadata": {"path": str(tmp_path_factory.mktemp("notebooks"))}}
+    NotebookClient(together, timeout=120, kernel_name="python3", resources=place).execute()
+    return {
+        path.stem: [output.get("data", {}) for cell in notebook.cells for output in cell.get("outputs", ())]
+        for path, notebook in zip(NOTEBOOKS, notebooks)
+    }
+
+
+@pytest.mark.parametrize("name", [path.stem for path in NOTEBOOKS])
+def test_runs(name, outputs):
+    """Every cell; scenes and results show a picture, runs a bar."""
+    shown = outputs[name]
     text = "".join("".join(data.get("text/html", "")) for data in shown)
     assert "<progress " in text and ("<img " in text or "<table" in text)
     assert any("image/png" in data for data in shown), "no plot"

@@ -8,11 +8,13 @@ from pathlib import Path
 import numpy as np
 import pandas
 import pytest
+from command_line import call
 from mdanim_lammps import Scene, Trajectory, Universe
 from mdanim_lammps.errors import OutputError, UsageError
 from mdanim_lammps.export import FORMATS, export
 from mdanim_lammps.results.ledger import Ledger
-from paths import SCENES
+
+pytestmark = pytest.mark.filterwarnings("error")
 
 TEXT = """
 gravity (0, 0, -9.81) m/s^2
@@ -109,15 +111,22 @@ def test_usd_paints_what_a_mesh_file_paints(tmp_path):
     """Colours of a mesh's points reach its vertices; a name that is taken gets another one."""
     from pxr import Usd, UsdGeom
 
-    duck = SCENES / "meshes" / "duck.ply"
+    corner = [(x, y, z, 200 * x, 90 * y, 50 + z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    side = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    header = "ply\nformat ascii 1.0\nelement vertex 8\n" + "".join(f"property float {axis}\n" for axis in "xyz")
+    header += "".join(f"property uchar {name}\n" for name in ("red", "green", "blue"))
+    header += "element face 6\nproperty list uchar int vertex_indices\nend_header\n"
+    rows = [" ".join(map(str, row)) for row in (*corner, *((4, *face) for face in side))]
+    (tmp_path / "box.ply").write_text(header + "\n".join(rows) + "\n")
     text = (
-        f'object a[1] {{ shape mesh "{duck}" scale 0.03 position (0, 0, 0) m mass 1 kg elasticity 1 MPa }}\n'
+        f'object a[1] {{ shape mesh "{tmp_path / "box.ply"}" scale 0.2 position (0, 0, 0) m mass 1 kg elasticity 1 MPa }}\n'
         "object a_1_ { shape sphere 5 cm position (1, 0, 0) m mass 1 kg elasticity 1 MPa }\n"
         "control { time 0.04 s  resolution 5 cm }"
     )
     Scene.from_text(text).run(tmp_path / "r")
     with Trajectory(tmp_path / "r") as t:
         wanted = np.unique(t.metadata.skin.paint, axis=0)
+    assert len(wanted) == 8
     stage = Usd.Stage.Open(str(export(tmp_path / "r", "usd").files[0]))
     color = UsdGeom.Mesh.Get(stage, "/scene/a_1_").GetDisplayColorPrimvar()
     assert color.GetInterpolation() == "vertex" and UsdGeom.Mesh.Get(stage, "/scene/a_1__")
@@ -208,7 +217,8 @@ def test_xtc(folder, run, tmp_path):
 
     done = export(folder, "xtc", tmp_path / "a.xtc")
     assert "1 m of the scene is 100 angstrom, 1 s is 1 ps" in done.notes
-    universe = MDAnalysis.Universe(str(tmp_path / "a.gro"), str(tmp_path / "a.xtc"))
+    # GRO has no masses; guesses from the names of atoms would be wrong.
+    universe = MDAnalysis.Universe(str(tmp_path / "a.gro"), str(tmp_path / "a.xtc"), to_guess=())
     assert list(universe.residues.resnames) == ["block", "stone"]
     times = []
     for frame, step in enumerate(universe.trajectory):
@@ -249,7 +259,7 @@ def made_by_lmp(folder, tmp_path_factory):
     """A folder that ``build`` has made and in which plain ``lmp`` has run."""
     place = tmp_path_factory.mktemp("lmp") / "pond.out"
     scene = folder.parent / "pond.txt"
-    subprocess.run([sys.executable, "-m", "mdanim_lammps", "build", scene, "-o", place, "-q"], check=True)
+    assert call("build", scene, "-o", place, "-q").returncode == 0
     subprocess.run([Path(sys.executable).parent / "lmp", "-in", "in.pond"], cwd=place, check=True, capture_output=True)
     return place
 
@@ -266,16 +276,19 @@ def test_lammpstrj_is_what_lmp_writes(folder, made_by_lmp, tmp_path):
 def test_a_dump_of_plain_lmp_is_drawn_and_reported(run, made_by_lmp):
     """``render`` and ``report`` take the dump; its frames are those of the run, to the last bit. The liquid is not in it."""
     (made_by_lmp / "trajectory.h5").unlink(missing_ok=True)
-    command = [sys.executable, "-m", "mdanim_lammps", "render", made_by_lmp, "--size", "64", "48"]
-    said = subprocess.run(command, check=True, capture_output=True, text=True)
-    assert "adopted  5 frames of pond.lammpstrj" in said.stdout and "the liquid is not in a dump" in said.stdout
+    said = call("render", made_by_lmp, "--size", "64", "48")
+    assert (
+        said.returncode == 0
+        and "adopted  5 frames of pond.lammpstrj" in said.stdout
+        and "the liquid is not in a dump" in said.stdout
+    )
     assert (made_by_lmp / "movie.mp4").stat().st_size > 1000
     with Trajectory(made_by_lmp) as adopted:
         np.testing.assert_allclose(adopted.times, run.times, rtol=1e-15)
         for frame in range(len(run)):
             np.testing.assert_array_equal(adopted.position(frame), run.position(frame))
             np.testing.assert_array_equal(adopted.velocity(frame), run.velocity(frame))
-    subprocess.run([sys.executable, "-m", "mdanim_lammps", "report", made_by_lmp, "-q"], check=True)
+    assert call("report", made_by_lmp, "-q").returncode == 0
     assert (made_by_lmp / "report.html").stat().st_size > 10_000
 
 
@@ -286,7 +299,7 @@ def test_a_dump_of_something_else_is_refused(made_by_lmp, tmp_path):
             (tmp_path / p.name).write_bytes(p.read_bytes())
     text = (tmp_path / "pond.lammpstrj").read_text()
     (tmp_path / "pond.lammpstrj").write_text(text.replace("id mol type", "id type mol"))
-    said = subprocess.run([sys.executable, "-m", "mdanim_lammps", "render", tmp_path], capture_output=True, text=True)
+    said = call("render", tmp_path)
     assert said.returncode == 7 and "its columns are not 'id mol type x y z vx vy vz'" in said.stderr
     assert not (tmp_path / "trajectory.h5").exists()
 
@@ -360,8 +373,7 @@ def test_a_failed_export_leaves_nothing(folder, tmp_path, to):
 
 def test_the_command_says_what_it_wrote(folder, tmp_path):
     """Files, frames, and what the format cannot hold."""
-    command = [sys.executable, "-m", "mdanim_lammps", "export", folder, "--to", "csv", "-o", tmp_path / "a.csv", "--frames", ":3"]
-    said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    said = call("export", folder, "--to", "csv", "-o", tmp_path / "a.csv", "--frames", ":3").stdout
     assert said.startswith(f"export   {tmp_path}/a.csv   3 frames, ") and "contact_force is left out" in said
 
 

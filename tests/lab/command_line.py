@@ -3,8 +3,14 @@
 
 from __future__ import annotations
 
+import gc
+import io
+import os
+import signal
 import subprocess
 import sys
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from pathlib import Path
 
 GOOD = """
 gravity (0, 0, -9.81) m/s^2
@@ -27,3 +33,32 @@ def run(*arguments, cwd=None):
     return subprocess.run(
         [sys.executable, "-m", "mdanim_lammps", *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=200
     )
+
+
+@contextmanager
+def inside(folder: str | Path | None):
+    """Work in a folder for a while."""
+    before = Path.cwd()
+    os.chdir(folder or before)
+    try:
+        yield
+    finally:
+        os.chdir(before)
+
+
+def call(*arguments, cwd=None) -> subprocess.CompletedProcess[str]:
+    """What `run` does, without the second that a process takes to start: for tests of what commands say and leave."""
+    from mdanim_lammps.cli import main
+
+    words, said, complained, code = [str(word) for word in arguments], io.StringIO(), io.StringIO(), 0
+    threshold, handler = gc.get_threshold(), signal.getsignal(signal.SIGTERM)
+    try:
+        with inside(cwd), redirect_stdout(said), redirect_stderr(complained):
+            main(words)
+    except SystemExit as end:
+        code = int(end.code or 0)
+    finally:
+        gc.set_threshold(*threshold)
+        gc.unfreeze()
+        signal.signal(signal.SIGTERM, handler)
+    return subprocess.CompletedProcess(words, code, said.getvalue(), complained.getvalue())
