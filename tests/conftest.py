@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Fixtures that every test may use: small scenes from text, prepared and run."""
 
+import json
+import os
 import signal
 from pathlib import Path
 
@@ -11,6 +13,21 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 SCENES = Path(__file__).parent.parent / "scenes"
+
+
+CALIBRATION = {"widths_ns": {"avx512": (31.0, 40.0), "avx2": (30.0, 50.0), "common": (50.0, 90.0)}, "waking_ns": 15e3}
+"""Of the tests: no clock decides which vectors they take nor how many threads. A range has 1000 particles or more."""
+
+
+@pytest.fixture(scope="session", autouse=True)
+def calibration(tmp_path_factory):
+    """The calibration of all processes of the tests; and they have one thread unless they ask for more."""
+    from mdanim_lammps.engine import calibration, threads
+
+    path = tmp_path_factory.mktemp("calibration") / "calibration.json"
+    path.write_text(json.dumps(calibration.holds_for() | CALIBRATION))
+    os.environ[calibration.CALIBRATION] = str(path)
+    os.environ[threads.THREADS] = "1"
 
 
 @pytest.fixture(scope="session")

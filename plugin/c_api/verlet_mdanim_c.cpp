@@ -26,6 +26,13 @@ MDANIM_EXPORT int mdanim_ranges(void *handle) noexcept
   return run ? run->ranges() : 0;
 }
 
+// The width of the vectors of this rank's passes; empty before any.
+MDANIM_EXPORT const char *mdanim_width(void *handle) noexcept
+{
+  const VerletMdanim *run = run_of(handle);
+  return run ? run->width() : "";
+}
+
 // How many particles were held back in passes of this rank and moved one by one, all passes together.
 MDANIM_EXPORT long long mdanim_held_back(void *handle) noexcept
 {

@@ -17,9 +17,9 @@ static constexpr double BETWEEN_POINTS = 0.6;    // spacings by which a round su
 static constexpr double MOST_SKINS = 32.0;
 static constexpr double ONSET = 0.05;    // eps over the spacing
 // What one thread takes at least, for others to be asked.
-static constexpr long LEAST_OBJECTS = 4, LEAST_FIELDS = 4, LEAST_PARTICLES = 400, LEAST_COST = 5000;    // of cost()
-static constexpr int FIELD_COST = 20;                                                                   // of one without points
-static constexpr double ALONE = 2.0;    // stiffness where only the dense points of one act, over that of points of both
+static constexpr long LEAST_OBJECTS = 4, LEAST_FIELDS = 4, LEAST_PARTICLES = 400;
+static constexpr int FIELD_COST = 20;    // of one without points
+static constexpr double ALONE = 2.0;     // stiffness where only the dense points of one act, over that of points of both
 
 void ContactWorld::take(std::vector<ContactObject> now, std::vector<char> moves)
 {
@@ -298,7 +298,7 @@ void ContactWorld::step(const Coordinates &places, double dt)
   account.begin_step();
   if (arrays.size() == 0) return;
   move_to(places);
-  const bool ahead = dt > 0.0 && threads.many() > 1 && costs.back() >= 2 * LEAST_COST;
+  const bool ahead = dt > 0.0 && threads.many() > 1 && static_cast<double>(costs.back()) >= threads.least();
   if (ahead) look_and_work_ahead(dt);
   for (Active &one : active) {
     if (!ahead) look(one, dt);
@@ -320,7 +320,8 @@ void ContactWorld::look(Active &one, double dt)
 // What fields do by themselves; what they add to the same particles and sums comes afterwards, in one order.
 void ContactWorld::look_and_work_ahead(double dt)
 {
-  threads.parts(costs.back(), LEAST_COST, [&](long from, long to) {
+  constexpr double PART = 0.25;    // of the least task: parts are not equal, a thread has several
+  threads.parts(costs.back(), std::max(1L, static_cast<long>(PART * threads.least())), [&](long from, long to) {
     const auto number = [&](long cost) { return std::lower_bound(costs.begin(), costs.end() - 1, cost) - costs.begin(); };
     for (long k = number(from), end = number(to); k < end; ++k) {
       Active &one = active[k];

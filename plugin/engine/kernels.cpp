@@ -17,24 +17,21 @@ static const Kernels *const ALL[] = {&kernels_avx512, &kernels_avx2, &kernels_co
 static const Kernels *const ALL[] = {&kernels_common};
 #endif
 
-template <class Wanted> static const Kernels *first(Wanted wanted)
+const std::vector<const Kernels *> &kernels_here()
 {
-  const auto found = std::find_if(std::begin(ALL), std::end(ALL), [&](const Kernels *k) { return wanted(*k) && k->runs_here(); });
-  return found == std::end(ALL) ? nullptr : *found;
-}
-
-// The divider gives as many numbers a cycle to wide vectors as to narrow ones, and of wide ones more lanes are idle. Dashpots are
-// more to do besides.
-const Kernels &best_kernels(bool damped)
-{
-  return *first([damped](const Kernels &k) { return damped || k.lanes == kernels_common.lanes; });
+  static const std::vector<const Kernels *> here = [] {
+    std::vector<const Kernels *> found;
+    std::copy_if(std::begin(ALL), std::end(ALL), std::back_inserter(found), [](const Kernels *k) { return k->runs_here(); });
+    return found;
+  }();
+  return here;
 }
 
 const Kernels *kernels_named(const char *name)
 {
-  return first([name](const Kernels &k) { return std::strcmp(k.name, name) == 0; });
+  for (const Kernels *kernels : kernels_here())
+    if (std::strcmp(kernels->name, name) == 0) return kernels;
+  return nullptr;
 }
-
-const Kernels &widest_kernels() { return best_kernels(true); }
 
 }    // namespace mdanim

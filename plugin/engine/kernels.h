@@ -7,6 +7,8 @@
 #include "engine/pair_filter.h"
 #include "engine/pass.h"
 
+#include <vector>
+
 namespace mdanim {
 
 // One set of instructions: the same bits from each of them. CMake compiles kernels_of_set.cpp once for each; `runs_here` must be
@@ -23,12 +25,11 @@ struct Kernels {
   void (*spring_energies)(int n, const double *x, const double *y, const double *z, const double *r0, double *K);
 };
 
-// This processor's best: for passes over springs with or without dashpots, and of a name; null when that is unknown or does not
-// run here.
-const Kernels &best_kernels(bool damped);
+// All that run here, the widest vectors first: of those a pass takes the fastest (calibration.h), other loops the widest.
+const std::vector<const Kernels *> &kernels_here();
+inline const Kernels &widest_kernels() { return *kernels_here().front(); }
+// Null when the name is unknown or does not run here.
 const Kernels *kernels_named(const char *name);
-// For loops that are no passes: of the widest vectors.
-const Kernels &widest_kernels();
 
 }    // namespace mdanim
 

@@ -3,16 +3,18 @@
 
 #include "engine/pass_engine.h"
 
+#include "engine/calibration.h"
+
 #include <algorithm>
 #include <utility>
 
 namespace mdanim {
 
-// Fewer particles take less time than a thread to wake up.
-static constexpr int LEAST_PARTICLES = 1000;    // of a range
-
 RangeCut PassEngine::ranges_of(Cut &cut)
-{ return cut_into_ranges(cutter, cut, std::min({threads.many(), cut.particles / LEAST_PARTICLES, Team::MOST_TASKS})); }
+{
+  const int least = threads.many() > 1 ? particles_of(threads.least(), *kernels, cutter.damped()) : cut.particles + 1;
+  return cut_into_ranges(cutter, cut, std::min({threads.many(), cut.particles / least, Team::MOST_TASKS}));
+}
 
 bool PassEngine::begin_run(const Kernels &now)
 {

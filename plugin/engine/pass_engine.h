@@ -20,8 +20,9 @@ class PassEngine {
  public:
   PassCrew crew;
 
-  // So many threads take passes, where there is enough for each of them to do. The caller of all other functions is one of them.
-  void set_threads(int many) { threads = Threads(many); }
+  // So many threads take passes, where each of them has a task of `least` ns to do. The caller of all other functions is one of
+  // them.
+  void set_threads(int many, double least) { threads = Threads(many, least); }
 
   // The crew is complete: with these kernels, and what only this run knows forgotten. Whether the kernels are others than before.
   bool begin_run(const Kernels &kernels);
@@ -44,6 +45,7 @@ class PassEngine {
   SimdBlocks &laid_out() { return *blocks; }
 
   long long held_back() const { return moved_alone; }    // particles, all passes together
+  const char *width() const { return kernels ? kernels->name : ""; }
   int ranges() const { return blocks ? static_cast<int>(blocks->ranges().size()) : 0; }
   std::size_t bytes() const;
 

@@ -60,8 +60,10 @@ class Team {
 // What an instance has of the team of its process: so many threads.
 class Threads {
  public:
-  explicit Threads(int many = 1) : number(many), team(Team::of(many)) {}
+  // `least`: the least that a thread is asked for [ns]. Two tasks that take less had better be done by one thread.
+  explicit Threads(int many = 1, double least = 0.0) : number(many), least_task(least), team(Team::of(many)) {}
   int many() const { return number; }
+  double least() const { return least_task; }
 
   // work(n) for n from 0 to tasks - 1, of which there are MOST_TASKS at most.
   template <class Work> void each(int tasks, const Work &work) const
@@ -83,6 +85,7 @@ class Threads {
   static constexpr int PARTS_OF_ONE = 4;
 
   int number;
+  double least_task;
   std::shared_ptr<Team> team;
 };
 

@@ -47,7 +47,7 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
   extlist = extensive;
   global_freq = 1;
   comm_forward = 4;
-  filter = &best_kernels(false).pair_filter;
+  filter = &widest_kernels().pair_filter;
 
   if (narg < 7)
     error->all(FLERR, Error::ARGZERO,

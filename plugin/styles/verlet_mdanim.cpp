@@ -7,6 +7,7 @@
 
 #include "styles/verlet_mdanim.h"
 
+#include "engine/calibration.h"
 #include "engine/loss.h"
 #include "styles/patience.h"
 
@@ -65,7 +66,7 @@ void VerletMdanim::set_threads(const char *word)
   const int threads = utils::inumeric(FLERR, word, false, lmp);
   if (threads < 1 || threads > MOST_THREADS)
     error->all(FLERR, "run_style verlet/mdanim: threads is a number from 1 to {}, not {}", MOST_THREADS, threads);
-  engine.set_threads(threads);
+  engine.set_threads(threads, threads > 1 ? least_task() : 0.0);
 }
 
 void VerletMdanim::set_width(const char *word)
@@ -156,7 +157,7 @@ bool VerletMdanim::find_crew()
   // Without that check LAMMPS does not keep where particles stood.
   if (!crew.integrator || (lists_matter && !neighbor->dist_check)) return false;
   if (springs->refresh_coefficients()) decided_for = -1;
-  if (engine.begin_run(told ? *told : best_kernels(springs->account() != nullptr))) decided_for = -1;
+  if (engine.begin_run(told ? *told : *calibration().fastest(springs->account() != nullptr).kernels)) decided_for = -1;
   return true;
 }
 

@@ -25,6 +25,7 @@ class VerletMdanim : public SplitVerlet {
   double memory_usage() override;
   long long passes() const { return passed; }
   int ranges() const { return engine.ranges(); }
+  const char *width() const { return engine.width(); }          // of the latest run that took passes; empty before any
   long long held_back() const { return engine.held_back(); }    // particles, all passes together
 
  private:

@@ -3,6 +3,7 @@
 // with the thread sanitizer. Exit code 0: positions, velocities, boxes and sums are the same to the bit.
 
 #include "engine/boxes.h"
+#include "engine/calibration.h"
 #include "engine/loss.h"
 #include "engine/pass_engine.h"
 
@@ -17,7 +18,13 @@ using namespace mdanim;
 
 namespace mdanim {
 extern const Kernels kernels_common;
+// Those of kernels.cpp, which chooses among sets of instructions.
+const std::vector<const Kernels *> &kernels_here()
+{
+  static const std::vector<const Kernels *> here{&kernels_common};
+  return here;
 }
+}    // namespace mdanim
 
 namespace {
 
@@ -106,7 +113,7 @@ std::vector<double> film(int threads)
   springs.loss.forces(PARTICLES);
   springs.loss.step(v, Integrator::DT, true);
   PassEngine engine;
-  engine.set_threads(threads);
+  engine.set_threads(threads, least_task());
   springs.join(engine.crew);
   integrator.join(engine.crew);
   engine.begin_run(kernels_common);
@@ -130,6 +137,7 @@ std::vector<double> film(int threads)
 
 int main()
 {
+  give_calibration({{{&kernels_common, 50.0, 50.0}}, 12500.0});    // 500 particles for each range
   const std::vector<double> alone = film(1);
   for (const int threads : {2, 4, 5}) {
     const std::vector<double> shared = film(threads);

@@ -13,10 +13,11 @@ from functools import lru_cache
 from pathlib import Path
 
 from ..errors import SetupError
+from .calibration import calibrate
 
 VERSION = 20250722
 """The LAMMPS version whose headers the plugin was compiled with; its ABI is that of one version."""
-ABI = 10
+ABI = 11
 """Number of the plugin's own C interface, `mdanim_abi`."""
 STYLES = (
     ("bond", "mdanim/harmonic"),
@@ -67,6 +68,7 @@ def open_lammps(log: Path | None = None, comm=None):
         raise SetupError(f"{_FILE} was not loaded by LAMMPS ({', '.join(missing)} missing); reinstall with 'pip install .'")
     if library.mdanim_abi() != ABI:
         raise SetupError(f"{_FILE} has interface {library.mdanim_abi()}, {ABI} is needed; reinstall with 'pip install .'")
+    calibrate(library)
     return lmp, library
 
 
