@@ -19,7 +19,7 @@ from tempfile import TemporaryDirectory
 
 from .certificate import Certificate
 from .effects import Verdict
-from .engine.threads import with_threads
+from .engine.threads import asked_threads, with_threads
 from .errors import MdanimError, OutputError, UsageError
 from .parallel.limits import check_executors
 from .picture.marks import Marks
@@ -130,7 +130,7 @@ class Scene:
         """Simulate into ``folder`` (default: ``NAME.out`` beside the scene); returns ledger, outcomes and cost.
 
         On several ``executors``, ``control`` is ``central`` (the default) or ``peers``: the frames are the same to the last bit.
-        So they are for any number of ``threads``, of which each process has one unless it is told.
+        So they are for any number of ``threads``; unless told, a process has as many as pay of all cores divided by executors.
         ``progress`` shows a bar, by default in a notebook only; ``on_progress`` is called with a Progress after every frame.
         A scene with ``accuracy error p %`` and no setting stored beside it is studied first, for two minutes at most.
         Raises SceneError, RefusedError, DivergedError, OutputError.
@@ -197,6 +197,7 @@ class Scene:
         quiet = not (in_notebook() if progress is None else progress)
         # Spawned: a forked process cannot use the MPI of its parent.
         with (
+            with_threads(asked_threads() or max(1, cores() // processes)),
             ProcessPoolExecutor(processes, get_context("spawn"), begin_worker) as pool,
             progress_bar("sweep", quiet=quiet) as bar,
         ):
@@ -370,7 +371,7 @@ def run_frames(
     **options,
 ) -> Result:
     """Simulate in this process, or on executors of their own when there is more than one or a ``control`` is named, each with so
-    many threads.
+    many threads; None: as many as pay, of all cores divided by executors.
 
     ``options`` are those of `run.loop.simulate`. Raises what that does, and UsageError for less than one executor or thread or
     more than this machine can hold.

@@ -46,7 +46,13 @@ def thread_count(_, tokens) -> int:
         raise ValueError(error) from None
 
 
-Threads = Annotated[int | None, Parameter(converter=thread_count, help="Threads of each process that simulates; 1 if left out.")]
+Threads = Annotated[
+    int | None,
+    Parameter(
+        converter=thread_count,
+        help="Threads of each process that simulates; if left out, as many as pay of all cores divided by executors.",
+    ),
+]
 Control = Annotated[
     Literal["central", "peers"] | None,
     Parameter(help="What assigns objects to executors: the supervisor, or each executor alike."),

@@ -9,6 +9,7 @@ from pathlib import Path
 from .certificate import margin_lines, note_lines
 from .cost.speedup_forecast import SpeedupForecast
 from .effects import Verdict
+from .engine.threads import ThreadChoice
 from .errors import DivergedError, problem_json
 from .model import plan_spacing
 from .results.cost import Cost
@@ -193,8 +194,24 @@ def _about(seconds: float) -> str:
     return f"{float(f'{seconds / size:.{digits}g}'):g} {unit}"
 
 
-def check_lines(ready: Prepared, forecast: Cost | DivergedError | None, speedup: SpeedupForecast | None = None) -> list[str]:
-    """What ``check`` prints: scene, certificate, limits, output, cost, what executors gain, and every effect."""
+def threads_line(choice: ThreadChoice) -> str:
+    """How many threads there will be, and why."""
+    head = f"threads  {choice.threads}"
+    if choice.asked:
+        return f"{head}, as asked for"
+    if choice.cores == 1:
+        return f"{head}: there is one core for each process"
+    if not choice.pays_from:
+        return f"threads  as many as pay, of {choice.cores} cores: this machine is measured when LAMMPS is loaded first"
+    pays = f"a thread pays from {count(choice.pays_from, 'particle')} on"
+    of_pass = f"a pass over {count(choice.particles, 'particle')} takes {1e-3 * choice.step:.0f} us"
+    return f"{head} of {choice.cores} cores: {of_pass}, {pays}"
+
+
+def check_lines(
+    ready: Prepared, forecast: Cost | DivergedError | None, threads: ThreadChoice, speedup: SpeedupForecast | None = None
+) -> list[str]:
+    """What ``check`` prints: scene, certificate, limits, output, cost, threads, what executors gain, and every effect."""
     return [
         *scene_lines(ready),
         certificate_line(ready),
@@ -203,15 +220,21 @@ def check_lines(ready: Prepared, forecast: Cost | DivergedError | None, speedup:
         *note_lines(ready.certificate),
         output_line(ready),
         forecast_line(forecast),
+        threads_line(threads),
         *([] if speedup is None else [executors_line(speedup.executors, None), *speedup_lines(speedup)]),
         "effects",
         *map(effect_line, ready.verdicts.values()),
     ]
 
 
-def check_json(ready: Prepared, forecast: Cost | DivergedError | None = None, speedup: SpeedupForecast | None = None) -> dict:
-    """What ``check --format json`` prints; with the expected cost (cost/forecast.py),
-    and what executors gain (cost/speedup_forecast.py)."""
+def check_json(
+    ready: Prepared,
+    forecast: Cost | DivergedError | None = None,
+    threads: ThreadChoice | None = None,
+    speedup: SpeedupForecast | None = None,
+) -> dict:
+    """What ``check --format json`` prints; with the expected cost (cost/forecast.py), how many threads there will be
+    (engine/threads.py), and what executors gain (cost/speedup_forecast.py)."""
     return {
         "scene": str(ready.scene.path) if ready.scene.path else ready.scene.name,
         "objects": [
@@ -226,6 +249,7 @@ def check_json(ready: Prepared, forecast: Cost | DivergedError | None = None, sp
         "certificate": ready.certificate.to_json(),
         "cost": forecast.to_json() if isinstance(forecast, Cost) else None,
         "stops": forecast.why if isinstance(forecast, DivergedError) else None,
+        "threads": None if threads is None else asdict(threads),
         "spread": None if speedup is None else asdict(speedup),
         "problems": [problem_json(w) for w in ready.warnings],
         "warnings": [{"message": w.message, "hint": w.hint, "place": str(w.span) if w.span else None} for w in ready.warnings],

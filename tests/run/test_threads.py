@@ -1,13 +1,23 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Threads of a run: whatever their number, the frames and the ledger are the same; where the number comes from."""
 
+import math
 import os
+import re
 
 import numpy as np
+import plugin_path
 import pytest
+from filming import ranges
 from mdanim_lammps import Scene, Trajectory
-from mdanim_lammps.engine.threads import THREADS, check_threads, threads_of_instance, with_threads
+from mdanim_lammps.engine.calibration import Calibration
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.engine.threads import THREADS, asked_threads, check_threads, choose_threads, share_of_cores, with_threads
 from mdanim_lammps.errors import UsageError
+from mdanim_lammps.processes import cores, quota
+from mdanim_lammps.report import threads_line
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.parse import parse_scene
 
 TEXT = """
 gravity (0, 0, -9.81)
@@ -37,18 +47,157 @@ def test_a_run_does_not_depend_on_threads(tmp_path, executors):
 
 
 def test_the_environment_tells_the_number(monkeypatch):
-    """One where it says nothing; inside of with_threads what that says, and after it what was there before."""
+    """Nothing where it says nothing; inside of with_threads what that says, and after it what was there before."""
     monkeypatch.delenv(THREADS, raising=False)
-    assert threads_of_instance() == 1
+    assert asked_threads() is None
     with with_threads(3):
-        assert threads_of_instance() == 3
+        assert asked_threads() == 3
         with with_threads(None):
-            assert threads_of_instance() == 3
+            assert asked_threads() == 3
     assert THREADS not in os.environ
     monkeypatch.setenv(THREADS, "2")
     with with_threads(5):
         assert os.environ[THREADS] == "5"
-    assert threads_of_instance() == 2
+    assert asked_threads() == 2
+
+
+BLOCK = "object a {{ shape box ({0}, {0}, {0}) cm position (0, 0, 0) density 1000 elasticity 0.2 MPa {1} }}\n"
+BLOCK += "control {{ time 0.1 s resolution 1 cm }}\n"
+KNOWN = Calibration({"avx512": (40.0, 80.0), "avx2": (30.0, 100.0)}, 15e3)
+"""A thread pays from 1000 particles on, with dashpots from 375 on."""
+
+
+@pytest.mark.parametrize(
+    ("edge", "damping", "known", "cores", "asked", "threads", "line"),
+    [
+        pytest.param(
+            15, "", KNOWN, 2, None, 2, "2 of 2 cores: a pass over 4 096 particles takes 123 us, a thread", id="all cores"
+        ),
+        pytest.param(15, "", KNOWN, 16, None, 4, "4 of 16 cores", id="no more than pay"),
+        pytest.param(9, "", KNOWN, 4, None, 1, "1 of 4 cores: .* 30 us, a thread pays from 1 000 particles on", id="too small"),
+        pytest.param(9, "damping 0.1", KNOWN, 4, None, 2, "pays from 375 particles on", id="dashpots take longer"),
+        pytest.param(15, "", Calibration(KNOWN.widths, None), 9, None, 5, "pays from 800", id="waking unknown"),
+        pytest.param(15, "", KNOWN, 1, None, 1, "1: there is one core", id="one core"),
+        pytest.param(15, "", None, 2, None, 1, "as many as pay, of 2 cores", id="not calibrated"),
+        pytest.param(5, "", KNOWN, 1, "7", 7, "7, as asked for", id="asked for"),
+    ],
+)
+def test_threads_are_taken_where_they_pay(monkeypatch, edge, damping, known, cores, asked, threads, line):
+    """One for each core, but each has as many particles as pay; what is asked for stands. `check` tells which and why."""
+    monkeypatch.delenv(THREADS, raising=False)
+    if asked:
+        monkeypatch.setenv(THREADS, asked)
+    choice = choose_threads(prepare(parse_scene(BLOCK.format(edge, damping))).plan, known, cores)
+    assert choice.threads == threads
+    assert re.match(f"threads  .*{line}", threads_line(choice))
+
+
+@pytest.mark.parametrize(("edge", "cores", "expected"), [(15, 3, 3), (15, 1, 1), (9, 3, 1)])
+def test_an_instance_takes_the_cores_that_pay(monkeypatch, edge, cores, expected):
+    """Unless a number is asked for."""
+    monkeypatch.delenv(THREADS, raising=False)
+    monkeypatch.setattr("mdanim_lammps.engine.instance.cores", lambda: cores)
+    with Instance(prepare(parse_scene(BLOCK.format(edge, ""))).plan) as instance:
+        instance.setup()
+        instance.run(2)
+        assert ranges(instance) == expected
+
+
+class Node:
+    """Ranks on one host, as mpi4py tells of them."""
+
+    def __init__(self, *masks):
+        self.masks = masks
+
+    def Split_type(self, _):
+        return self
+
+    def allgather(self, _):
+        return self.masks
+
+    def Free(self):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("masks", "quota", "expected"),
+    [
+        ([{0, 1, 2, 3}], math.inf, 4),
+        ([{0, 1, 2, 3}] * 2, math.inf, 2),
+        ([{0, 1, 2, 3}] * 3, math.inf, 1),
+        ([{0, 1}] * 5, math.inf, 1),
+        ([{0, 1}, {2, 3}], math.inf, 2),
+        ([{0, 1, 2, 3}, {2, 3}], math.inf, 3),
+        ([{0, 1, 2, 3}] * 2, 3.0, 1),
+        ([{0, 1, 2, 3}] * 2, 0.5, 1),
+    ],
+)
+def test_ranks_of_a_host_share_its_cores(monkeypatch, masks, quota, expected):
+    """Those that a launcher has bound to cores have them; a limit of time is for all of them together."""
+    monkeypatch.setattr("mdanim_lammps.engine.threads.affinity", lambda: masks[0])
+    monkeypatch.setattr("mdanim_lammps.engine.threads.quota", lambda: quota)
+    assert share_of_cores(Node(*masks)) == expected
+
+
+def test_executors_share_the_cores(monkeypatch):
+    """Each of two has half, the supervisor none; a number that was asked for stands."""
+    monkeypatch.delenv(THREADS, raising=False)
+    code = (
+        "import os\nfrom mpi4py import MPI\nfrom mdanim_lammps.engine import threads\n"
+        "from mdanim_lammps.parallel.runtime.ranks import share_out_cores\n"
+        "threads.affinity, threads.quota = (lambda: set(range(6))), (lambda: float('inf'))\n"
+        "share_out_cores(MPI.COMM_WORLD)\nprint(MPI.COMM_WORLD.rank, os.environ.get(threads.THREADS), flush=True)"
+    )
+    done = plugin_path.python(code, ranks=3)
+    assert sorted(done.stdout.splitlines()) == ["0 None", "1 3", "2 3"], done.stderr
+    monkeypatch.setenv(THREADS, "5")
+    assert sorted(plugin_path.python(code, ranks=2).stdout.splitlines()) == ["0 5", "1 5"]
+
+
+@pytest.mark.parametrize(
+    ("files", "expected"),
+    [
+        pytest.param({}, math.inf, id="no groups"),
+        pytest.param({"proc/self/cgroup": "0::/\n"}, math.inf, id="no limit"),
+        pytest.param({"proc/self/cgroup": "0::/\n", "sys/fs/cgroup/cpu.max": "max 100000\n"}, math.inf, id="max"),
+        pytest.param({"proc/self/cgroup": "0::/\n", "sys/fs/cgroup/cpu.max": "150000 100000\n"}, 1.5, id="one and a half"),
+        pytest.param(
+            {
+                "proc/self/cgroup": "0::/a/b\n",
+                "sys/fs/cgroup/a/cpu.max": "200000 100000\n",
+                "sys/fs/cgroup/a/b/cpu.max": "900000 100000\n",
+            },
+            2.0,
+            id="of the group above",
+        ),
+        pytest.param(
+            {
+                "proc/self/cgroup": "5:memory:/x\n4:cpu,cpuacct:/c\n",
+                "sys/fs/cgroup/cpu/c/cpu.cfs_quota_us": "300000\n",
+                "sys/fs/cgroup/cpu/c/cpu.cfs_period_us": "100000\n",
+                "sys/fs/cgroup/cpu/cpu.cfs_quota_us": "-1\n",
+                "sys/fs/cgroup/cpu/cpu.cfs_period_us": "100000\n",
+            },
+            3.0,
+            id="the old form",
+        ),
+        pytest.param({"proc/self/cgroup": "nonsense\n0::/\n", "sys/fs/cgroup/cpu.max": "many\n"}, math.inf, id="nonsense"),
+    ],
+)
+def test_the_limit_of_a_container_counts(tmp_path, files, expected):
+    """As the kernel tells it."""
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    assert quota(tmp_path) == expected
+
+
+def test_cores_are_those_of_the_mask_within_the_limit(monkeypatch):
+    """At least one."""
+    monkeypatch.setattr("mdanim_lammps.processes.affinity", lambda: {1, 5, 6})
+    for limit, expected in ((math.inf, 3), (2.7, 2), (0.2, 1)):
+        monkeypatch.setattr("mdanim_lammps.processes.quota", lambda limit=limit: limit)
+        assert cores() == expected
 
 
 @pytest.mark.parametrize("number", [0, -1, 33, "many", "1.5"])

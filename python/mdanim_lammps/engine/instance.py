@@ -10,13 +10,15 @@ import numpy as np
 
 from ..errors import DivergedError, SetupError
 from ..model.basin import Grid
+from ..processes import cores
 from .c_arrays import body_arguments, pointer
+from .calibration import calibrate
 from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude, told_once
 from .cut import box_to_cut, shorter_along_rows
 from .plan import Ends, Plan
 from .plugin import open_lammps
 from .state import NO_RECORDS, Records, State, StateRecords
-from .threads import threads_of_instance
+from .threads import choose_threads, share_of_cores
 
 LIQUID = b"liquid"
 """ID of the liquid's fix (effects/liquid.py)."""
@@ -144,7 +146,8 @@ class Instance:
             kind, rest = last.split(" ", 1)
             # LAMMPS wants all types set.
             self._lmp.commands_list([f"bond_coeff {row}" for row in (*rows, f"{kind}*{self._types} {rest}")])
-        self._lmp.commands_list(physics(plan, threads_of_instance()))
+        threads = choose_threads(plan, calibrate(self._library), share_of_cores(self._comm) if self._comm else cores()).threads
+        self._lmp.commands_list(physics(plan, threads))
         for fix in plan.body_fixes:
             for kind, body in plan.contact_bodies.items():
                 arguments = body_arguments(kind, body)

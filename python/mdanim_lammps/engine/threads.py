@@ -3,11 +3,18 @@
 
 from __future__ import annotations
 
+import math
 import os
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
+from fractions import Fraction
 
 from ..errors import UsageError
+from ..processes import affinity, quota
+from .calibration import Calibration
+from .plan import Plan
 
 THREADS = "MDANIM_THREADS"
 """Environment variable with the number of threads of an instance: the processes of executors inherit it."""
@@ -26,9 +33,47 @@ def check_threads(threads: int | str) -> int:
     return number
 
 
-def threads_of_instance() -> int:
-    """What the environment says, else 1. Raises UsageError."""
-    return check_threads(os.environ.get(THREADS) or 1)
+def asked_threads() -> int | None:
+    """What the environment says; None where it says nothing. Raises UsageError."""
+    return check_threads(os.environ[THREADS]) if os.environ.get(THREADS) else None
+
+
+@dataclass(frozen=True)
+class ThreadChoice:
+    """How many threads take the steps of an instance, and why."""
+
+    threads: int
+    asked: bool
+    """By ``--threads`` or the environment: nothing else counts then."""
+    cores: int
+    """For this process."""
+    particles: int
+    step: float
+    """Nanoseconds that one thread takes for a pass over all particles; 0 where this machine is not calibrated."""
+    pays_from: int
+    """Particles for each thread below which it costs more than it brings; 0 where this machine is not calibrated."""
+
+
+def choose_threads(plan: Plan, calibration: Calibration | None, most: int) -> ThreadChoice:
+    """What is asked for, or else one thread for each of so many cores, where each has enough to do. Raises UsageError."""
+    asked, particles, step, pays_from = asked_threads(), plan.system.particles, 0.0, 0
+    if calibration:
+        of_particle = calibration.widths[calibration.fastest(plan.damped)][plan.damped]
+        step, pays_from = particles * of_particle, math.ceil(calibration.least_task / of_particle)
+    threads = asked or max(1, min(most, MOST_THREADS, particles // pays_from if pays_from else 1))
+    return ThreadChoice(threads, asked is not None, most, particles, step, pays_from)
+
+
+def share_of_cores(comm) -> int:
+    """Cores for this rank of an mpi4py communicator, at least one: ranks on a host that may use the same cores share them."""
+    from mpi4py import MPI
+
+    node = comm.Split_type(MPI.COMM_TYPE_SHARED)
+    masks = node.allgather(affinity())
+    node.Free()
+    ranks_of = Counter(core for mask in masks for core in mask)
+    own = sum(Fraction(1, ranks_of[core]) for core in affinity())
+    return max(1, min(int(own), int(quota() // len(masks)) if quota() < math.inf else int(own)))
 
 
 @contextmanager

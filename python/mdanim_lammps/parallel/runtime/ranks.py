@@ -17,6 +17,7 @@ import traceback
 from dataclasses import asdict
 from pathlib import Path
 
+from ...engine.threads import THREADS, share_of_cores
 from ...errors import MdanimError, OutputError
 from .launch import RESULT_SIGN, Task, lost
 
@@ -32,6 +33,7 @@ def main() -> None:
 
     world, done = MPI.COMM_WORLD, False
     try:
+        share_out_cores(world)
         if world.rank == SUPERVISOR:
             _supervise(world, Path(sys.argv[1]))
             done = True
@@ -48,6 +50,16 @@ def main() -> None:
         if not done:  # MPI's own end would wait for all other ranks, which may wait for this one
             sys.stderr.flush()
             world.Abort(1)
+
+
+def share_out_cores(world) -> None:
+    """Unless a number of threads was asked for, an executor has those of its host's cores that the others there leave; the
+    supervisor mostly waits."""
+    from .messages import SUPERVISOR
+
+    executors = world.Split(world.rank == SUPERVISOR)
+    if world.rank != SUPERVISOR:
+        os.environ.setdefault(THREADS, str(share_of_cores(executors)))
 
 
 def _supervise(world, job: Path) -> None:
