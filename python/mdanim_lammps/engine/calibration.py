@@ -60,7 +60,7 @@ def stored() -> Calibration | None:
         waking = float(data["waking_ns"])
         good = all(0.0 < ns < math.inf for ns in (waking, *(ns for pair in widths.values() for ns in pair)))
         return Calibration(widths, waking) if good and {k: data[k] for k in holds_for()} == holds_for() else None
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+    except (OSError, RuntimeError, ValueError, KeyError, TypeError, AttributeError):  # RuntimeError: there is no home folder
         return None
 
 
@@ -85,7 +85,7 @@ def calibrate(library: ctypes.CDLL) -> Calibration:
     if found is None or not set(names) <= set(found.widths):
         found = _measure(library, names)
         if found.waking:
-            with suppress(OSError):  # where no file can be written each process measures for itself
+            with suppress(OSError, RuntimeError):  # where no file can be written each process measures for itself
                 _store(found)
     _call(library.mdanim_give_calibration, [*(ns for name in names for ns in found.widths[name]), found.waking or 0.0])
     return Calibration({name: found.widths[name] for name in names}, found.waking)
