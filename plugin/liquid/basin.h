@@ -4,6 +4,7 @@
 #ifndef MDANIM_BASIN_H
 #define MDANIM_BASIN_H
 
+#include "engine/team.h"
 #include "laws/vec3.h"
 #include "liquid/occupancy.h"
 
@@ -75,6 +76,7 @@ class Basin {
   // run change it.
   virtual bool is_due(double fastest, double dt) = 0;
   virtual void update(const AddBodies &bodies, std::uint64_t when, double dt) = 0;
+  virtual void use(const Threads &) {}    // for updates
 
   // --- what acts on solids, and they on the liquid ---
 

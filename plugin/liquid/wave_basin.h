@@ -38,6 +38,7 @@ class WaveBasin : public Basin {
   void settle(std::uint64_t) override { stale = true; }
   bool is_due(double fastest, double dt) override;
   void update(const AddBodies &bodies, std::uint64_t when, double dt) override;
+  void use(const Threads &threads) override { waves.use(threads); }
 
   AtPlace at(const Vec3 &place) const override;
   double all_below() const override { return -std::numeric_limits<double>::infinity(); }

@@ -5,9 +5,11 @@
 #ifndef MDANIM_WAVES_H
 #define MDANIM_WAVES_H
 
+#include "engine/team.h"
 #include "liquid/span.h"
 #include "liquid/waves_kernels.h"
 
+#include <atomic>
 #include <cstddef>
 #include <vector>
 
@@ -106,6 +108,8 @@ class Waves {
 
   bool at_rest() const { return resting; }    // nothing will move before a solid does
 
+  void use(const Threads &now) { threads = now; }    // for updates; the bits are the same for any number of them
+
   // For tests and benchmarks.
   bool use_kernels(int number);    // false where this processor lacks them
   void use_general_form();         // for everything
@@ -166,6 +170,23 @@ class Waves {
   long place(int column, int n) const { return n == 0 ? place(column) : further_start + further[column] + n - 1; }
   long along(int d) const { return d == 0 ? 1 : stride; }
   long end_row() const { return 1 + ny + further_rows; }
+  // f(first, end) for parts of all rows, which threads share: no row writes where another reads or writes.
+  template <class F> void rows(const F &f) const
+  {
+    constexpr double LOOP = 2.0,
+                     PART = 0.25;    // ns of a column in a loop, about; of the least task: loops come one after the other
+    const long least = 1 + static_cast<long>(PART * threads.least() / (LOOP * static_cast<double>(stride)));
+    threads.parts(end_row() - 1, least, [&](long from, long to) { f(1 + from, 1 + to); });
+  }
+  // The same for a number of each part: whether any part says so, and the largest of all.
+  template <class F> bool any_row(const F &f) const
+  {
+    std::atomic<bool> any{false};
+    rows([&](long first, long end) {
+      if (f(first, end)) any.store(true, std::memory_order_relaxed);
+    });
+    return any;
+  }
   bool is_link(const LinkPlace &link) const { return arrays.links[link.d].edge[link.at] < WaveArrays::NOWHERE; }
   bool is_layered(const LinkPlace &link) const
   { return link.at < links_start ? layered[link.d][link.at] != 0 : further_links[link.d][link.at - links_start].layered; }
@@ -225,6 +246,7 @@ class Waves {
   double fastest() const;
   void sub_update(double dt, double share);
   bool let_go();
+  bool let_go(long first, long end);
   void solve(bool again);
   double sum_of_rows() const;
   void limit();
@@ -248,6 +270,7 @@ class Waves {
   long further_rows = 0;
   SolidParts solid;
   const WaveKernels *kernels;
+  Threads threads;
   bool all_general = false, resting = false, some_full = false;
 
   std::vector<int> spans_in, further;    // of each column: how many spans, and the number of its first further one

@@ -3,6 +3,7 @@
 
 #include "liquid/waves.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace mdanim {
@@ -18,7 +19,12 @@ double Waves::sum_of_rows() const
 void Waves::solve(bool again)
 {
   constexpr double NOTHING = 1e-20;
-  const long end = end_row();
+  const auto start_from_zero = [&](bool with_r) {
+    rows([&](long first, long end) {
+      std::fill(arrays.x + first * stride, arrays.x + end * stride, 0.0);
+      if (with_r) std::copy(arrays.rhs + first * stride, arrays.rhs + end * stride, arrays.r + first * stride);
+    });
+  };
   // A x where there are further links, and the sums of rows in which these are.
   const auto complete = [&](double *product, const double *x, const double *with) {
     for (const long i : branched) product[i] = general_product(i, x);
@@ -26,31 +32,26 @@ void Waves::solve(bool again)
   };
 
   ++counts.solutions;
-  kernels->guess(arrays, again, 1, end);
+  rows([&](long first, long end) { kernels->guess(arrays, again, first, end); });
   const double size = sum_of_rows();
-  if (!(size > NOTHING)) {
-    for (long i = stride; i < end * stride; ++i) arrays.x[i] = 0.0;
-    return;
-  }
-  kernels->start(arrays, 1, end);
+  if (!(size > NOTHING)) return start_from_zero(false);
+  rows([&](long first, long end) { kernels->start(arrays, first, end); });
   for (const long i : branched) arrays.r[i] = arrays.rhs[i] - general_product(i, arrays.x);
   for (const long row : branched_rows) kernels->sum(arrays, arrays.r, arrays.r, row, row + 1);
   double left = sum_of_rows();
   if (left > size) {    // a poor guess
-    for (long i = stride; i < end * stride; ++i) {
-      arrays.x[i] = 0.0;
-      arrays.r[i] = arrays.rhs[i];
-    }
+    start_from_zero(true);
     left = size;
   }
   const double enough = tolerance * tolerance * size;
   double beta = 0.0;
   for (int iteration = 0; iteration < most_iterations && left > enough && left > 0.01 * NOTHING; ++iteration) {
-    kernels->turn(arrays, beta, 1, end);
+    rows([&](long first, long end) { kernels->turn(arrays, beta, first, end); });
     complete(arrays.ap, arrays.next_p, arrays.next_p);
     const double curvature = sum_of_rows();
     if (!(curvature > 0.0)) break;
-    kernels->advance(arrays, left / curvature, 1, end);
+    const double alpha = left / curvature;
+    rows([&](long first, long end) { kernels->advance(arrays, alpha, first, end); });
     std::swap(arrays.p, arrays.next_p);
     const double now = sum_of_rows();
     beta = now / left;

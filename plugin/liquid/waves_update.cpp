@@ -34,7 +34,12 @@ bool Waves::hardly_flows() const
 
 double Waves::fastest() const
 {
-  double most = kernels->fastest(arrays, 1, end_row());
+  std::atomic<double> most_of_rows{0.0};
+  rows([&](long first, long end) {
+    const double of_part = kernels->fastest(arrays, first, end);
+    for (double known = most_of_rows; of_part > known && !most_of_rows.compare_exchange_weak(known, of_part);) {}
+  });
+  double most = most_of_rows;
   for (int d = 0; d < 2; ++d)
     for (std::size_t n = 0; n < further_links[d].size(); ++n)
       most = std::max(most, std::fabs(arrays.links[d].u[links_start + n]));
@@ -43,37 +48,45 @@ double Waves::fastest() const
 
 void Waves::sub_update(double dt, double share)
 {
-  const long end = end_row();
   ++counts.sub_updates;
   law.dt = dt;
   law.share = share;
 
   const bool were_full = some_full;
-  some_full = kernels->surfaces(arrays, law, 1, end);
+  some_full = any_row([&](long first, long end) { return kernels->surfaces(arrays, law, first, end); });
   for (const long i : listed_spans) {
     general_surface(i);
     some_full = some_full || arrays.full[i] > 0.0;
   }
-  for (int d = 0; d < 2; ++d) kernels->open_links(arrays, law, d, 1, end);
+  rows([&](long first, long end) {
+    for (int d = 0; d < 2; ++d) kernels->open_links(arrays, law, d, first, end);
+  });
   for (const LinkPlace &link : listed_links) general_opening(link);
-  for (int d = 0; d < 2; ++d) kernels->advect(arrays, law, d, 1, end);
+  rows([&](long first, long end) {
+    for (int d = 0; d < 2; ++d) kernels->advect(arrays, law, d, first, end);
+  });
   for (const LinkPlace &link : listed_links) general_advection(link);
 
   constexpr int MOST_PASSES = 4;
   for (int pass = 0; pass < MOST_PASSES; ++pass) {
-    kernels->assemble(arrays, law, some_full || were_full, 1, end);
+    rows([&](long first, long end) { kernels->assemble(arrays, law, some_full || were_full, first, end); });
     for (const long i : listed_spans) general_assembly(i);
-    kernels->couple(arrays, 1, end);
+    rows([&](long first, long end) { kernels->couple(arrays, first, end); });
     for (const LinkPlace &link : listed_links) general_coupling(link);
     solve(pass > 0);
     if (!some_full || !let_go()) break;
-    if (pass == MOST_PASSES - 1) kernels->guess(arrays, true, 1, end);
+    if (pass == MOST_PASSES - 1) rows([&](long first, long end) { kernels->guess(arrays, true, first, end); });
   }
-  kernels->heads(arrays, law, 1, end);
+  rows([&](long first, long end) { kernels->heads(arrays, law, first, end); });
 
-  for (int d = 0; d < 2; ++d) kernels->push(arrays, law, d, 1, end);
+  rows([&](long first, long end) {
+    for (int d = 0; d < 2; ++d) kernels->push(arrays, law, d, first, end);
+  });
   for (const LinkPlace &link : listed_links) general_push(link);
-  bool fits = kernels->balance(arrays, law, 1, end);
+  const auto balance_rows = [&] {
+    return !any_row([&](long first, long end) { return !kernels->balance(arrays, law, first, end); });
+  };
+  bool fits = balance_rows();
   const auto balance = [&](long i) {
     const SpanFluxes<double> fluxes = fluxes_of(i);
     const double units = static_cast<double>(content[i]), most = (arrays.capacity[i] + 0.25) * law.units_per_cell;
@@ -83,10 +96,10 @@ void Waves::sub_update(double dt, double share)
   for (const long i : listed_spans) balance(i);
   if (!fits) {
     limit();
-    kernels->balance(arrays, law, 1, end);
+    balance_rows();
     for (const long i : listed_spans) balance(i);
   }
-  kernels->settle(arrays, law, 1, end);
+  rows([&](long first, long end) { kernels->settle(arrays, law, first, end); });
   for (int d = 0; d < 2; ++d)
     for (std::size_t n = 0; n < further_links[d].size(); ++n)
       arrays.links[d].q[links_start + n] = arrays.links[d].units[links_start + n] * (1.0 / (law.units_per_cell * law.dt));
@@ -96,9 +109,14 @@ void Waves::sub_update(double dt, double share)
 // for all heads is in p.
 bool Waves::let_go()
 {
+  return any_row([this](long first, long end) { return let_go(first, end); });
+}
+
+bool Waves::let_go(long first, long end)
+{
   constexpr double ROUNDING = 1e-6;
   bool any = false;
-  for (long i = stride; i < end_row() * stride; ++i) {
+  for (long i = first * stride; i < end * stride; ++i) {
     arrays.p[i] = arrays.scale[i] * arrays.x[i];
     if (arrays.full[i] == 0.0 || arrays.head[i] + arrays.p[i] >= arrays.roof[i] - ROUNDING) continue;
     const Head head = head_of(solid, span[i], content[i]);

@@ -41,6 +41,7 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   int modify_param(int, char **) override;
   void append_required_atoms(std::vector<int> &particles) const override;
   bool needs_all_atoms() override;
+  void equip(const mdanim::Kernels &, const mdanim::Threads &threads) override { basin->use(threads); }
   double safe_displacement() const override;
   void write_restart(FILE *) override;
   void restart(char *) override;

@@ -30,6 +30,7 @@ FUNCTIONS = {
     "free": (None, [HANDLE]),
     "set": (INT, [HANDLE, TEXT, DOUBLE]),
     "use": (INT, [HANDLE, INT]),
+    "threads": (None, [HANDLE, INT]),
     "use_general_form": (None, [HANDLE]),
     "solids": (INT, [HANDLE, array(np.uint16), HANDLE, TEXT, INT]),
     "pour": (None, [HANDLE, DOUBLES]),
@@ -119,6 +120,10 @@ class Waves:
     def use(self, instruction_set: int) -> bool:
         """Choose kernels by number; False where this processor lacks them."""
         return bool(function("use")(self.handle, instruction_set))
+
+    def threads(self, number: int):
+        """Let so many threads take updates, each one row or more."""
+        function("threads")(self.handle, number)
 
     def use_general_form(self):
         """Leave nothing to the kernels alone."""

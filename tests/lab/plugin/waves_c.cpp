@@ -57,6 +57,9 @@ MDANIM_EXPORT int mdanim_waves_set(void *w, const char *name, double value)
 // False where this processor lacks the instruction set of this number.
 MDANIM_EXPORT int mdanim_waves_use(void *w, int number) { return waves(w).use_kernels(number); }
 
+// Updates by so many threads, of which each takes one row or more.
+MDANIM_EXPORT void mdanim_waves_threads(void *w, int threads) { waves(w).use(mdanim::Threads(threads)); }
+
 MDANIM_EXPORT void mdanim_waves_use_general_form(void *w) { waves(w).use_general_form(); }
 
 // 0, or 1 with a message.
