@@ -9,6 +9,7 @@
 #include "lammps.h"
 #include "modify.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -27,6 +28,21 @@ static FixMdanimLiquid &liquid(void *handle, const char *fix)
 MDANIM_EXPORT int mdanim_liquid_heights(void *handle, const char *fix, double *smooth, double *raw, char *error, int error_size)
 {
   return guarded(error, error_size, [&] { liquid(handle, fix).liquid().surface(smooth, raw); });
+}
+
+// Liquid that flies: x, y, z and radius of each droplet; `rows` has room for `most`. Tells how many there are.
+MDANIM_EXPORT int mdanim_liquid_drops(void *handle, const char *fix, int most, double *rows, int *count, char *error,
+                                      int error_size)
+{
+  return guarded(error, error_size, [&] {
+    const auto drops = liquid(handle, fix).liquid().droplets();
+    *count = static_cast<int>(drops.size());
+    for (int n = 0; n < *count && n < most; ++n) {
+      const auto &[place, radius] = drops[n];
+      const double row[] = {place.x, place.y, place.z, radius};
+      std::copy(row, row + 4, rows + 4 * n);
+    }
+  });
 }
 
 // Content of every cell (nz, ny, nx), 255 where it is solid.

@@ -45,6 +45,11 @@ class Basin {
     std::int64_t wanted;
     long left;
   };
+  // Liquid that flies.
+  struct Droplet {
+    Vec3 place;    // [distance], as the radius
+    double radius;
+  };
   // What acts on a solid at a place.
   struct AtPlace {
     double immersed = 0.0;    // part of the volume around it that is below the surface
@@ -126,6 +131,8 @@ class Basin {
   virtual void surface(double *smooth, double *raw) const = 0;
   virtual double smooth_height(int column) const = 0;    // the same of one column, but dry ones that a hull hides have no height
   virtual double raw_height(int column) const = 0;
+  // Droplets in the order in which they left the liquid.
+  virtual std::vector<Droplet> droplets() const { return {}; }
   // Content of each cell, 255 where it is solid; x fastest, then y.
   virtual void contents(std::uint8_t *out) const = 0;
 

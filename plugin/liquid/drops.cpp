@@ -18,10 +18,11 @@ namespace {
 
 constexpr double STEEP = 0.35;      // sqrt(depth): by so much more than its neighbours a surface rises before it sheds drops
 constexpr double DEEPEST = 8.0;     // cells that count for that: a crown does not know of deeper liquid
-constexpr double SHED = 0.2;        // of what rises faster than that
-constexpr double LARGEST = 0.02;    // drop, in cells
-constexpr double SMALLEST = 1e-4;
+constexpr double SHED = 0.6;        // of what rises faster than that
+constexpr double LARGEST = 0.15;    // drop, in cells
+constexpr double SMALLEST = 2e-3;
 constexpr int AT_ONCE = 4;          // drops of a column and an update
+constexpr double UNEVEN = 0.8;      // drops differ from their mean by this part of it at most
 constexpr double SCATTER = 0.35;    // of a drop's velocity, over that of its rise
 
 // From -1 to 1.
@@ -35,13 +36,20 @@ void Drops::update(Waves &waves, double dt, std::uint64_t when)
   fly(dt);
   land(waves);
   if (share > 0.0 && !waves.at_rest()) leave(waves, dt, when);
-  if (drops.size() > most) merge();
+  while (drops.size() > most) merge();
 }
 
 Units Drops::total() const
 {
   Units sum = 0;
   for (const Drop &drop : drops) sum += drop.units;
+  return sum;
+}
+
+double Drops::energy() const
+{
+  double sum = 0.0;
+  for (const Drop &drop : drops) sum += static_cast<double>(drop.units) / UNITS_PER_CELL * (drop.x.z + 0.5 * dot(drop.v, drop.v));
   return sum;
 }
 
@@ -71,7 +79,8 @@ void Drops::leave(Waves &waves, double dt, std::uint64_t when)
       for (int n = 0; n < parts; ++n) {
         const std::uint64_t number = (static_cast<std::uint64_t>(column) * AT_ONCE + n) * 8;
         const auto random = [&](int k) { return scatter(key, number + k); };
-        const Units units = waves.take(column, own.head, static_cast<Units>(volume / parts * UNITS_PER_CELL));
+        const double size = volume / parts * (1.0 + UNEVEN * random(5));
+        const Units units = waves.take(column, own.head, static_cast<Units>(size * UNITS_PER_CELL));
         if (units == 0) continue;
         const double spread = SCATTER * up;
         drops.push_back({{x + 0.5 + 0.5 * random(0), y + 0.5 + 0.5 * random(1), own.head},

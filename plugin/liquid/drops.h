@@ -30,12 +30,13 @@ class Drops {
 
   const std::vector<Drop> &all() const { return drops; }
   Units total() const;
+  double energy() const;    // as Waves::Energy
   std::vector<std::uint8_t> state() const;
   // Throws std::runtime_error, and changes nothing, when it is damaged.
   void set_state(const std::uint8_t *bytes, std::size_t size);
 
   double share = 0.0;         // of what rises too fast that leaves: 0 none, 1 all
-  std::size_t most = 4096;    // drops; where there are more, neighbours in the order become one
+  std::size_t most = 2048;    // drops; where there are more, neighbours in the order become one
 
  private:
   void leave(Waves &waves, double dt, std::uint64_t when);
@@ -43,8 +44,8 @@ class Drops {
   void land(Waves &waves);
   void merge();
 
-  const int nx, ny;
-  const std::uint64_t seed;
+  int nx, ny;
+  std::uint64_t seed;
   std::vector<Drop> drops;
 };
 

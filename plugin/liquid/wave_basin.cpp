@@ -50,13 +50,16 @@ std::string WaveBasin::unusable(const Shape &shape)
   return text;
 }
 
-WaveBasin::WaveBasin(const Shape &shape, double g, double calm, const RankSums &ranks)
+WaveBasin::WaveBasin(const Shape &shape, double g, double calm, double spray, std::uint64_t seed, const RankSums &ranks)
     : Basin(shape, g), ranks(ranks), unit_of_time(std::sqrt(shape.cell.x * shape.cell.y / (g * shape.cell.z))),
       waves(shape.nx, shape.ny, shape.nz), push(shape.nx, shape.ny, shape.nz), makers(shape.nx, shape.ny),
-      still(shape.nx, shape.ny, shape.nz), mobile(shape.nx, shape.ny, shape.nz), part(still.count.size(), 0),
-      mass(columns(), 0.0), rising(columns(), 0.0), impulses(2 * columns(), 0), heads(columns(), 0.0), tops(columns(), 0.0),
-      hollow(columns(), 0)
-{ waves.law.calm = calm * unit_of_time; }
+      drops(shape.nx, shape.ny, seed), still(shape.nx, shape.ny, shape.nz), mobile(shape.nx, shape.ny, shape.nz),
+      part(still.count.size(), 0), mass(columns(), 0.0), rising(columns(), 0.0), impulses(2 * columns(), 0),
+      heads(columns(), 0.0), tops(columns(), 0.0), hollow(columns(), 0)
+{
+  waves.law.calm = calm * unit_of_time;
+  drops.share = spray;
+}
 
 // --- makers of waves ---
 
@@ -213,6 +216,7 @@ void WaveBasin::update(const AddBodies &bodies, std::uint64_t, double dt)
   const double time = std::min(LONGEST, static_cast<double>(waited) * dt / unit_of_time);
   makers.apply(waves, time);
   waves.update(time);
+  drops.update(waves, time, static_cast<std::uint64_t>(updates));
   ++updates;
   look();
   push.find(waves, mass.data(), waves.at_rest() ? 1.0 : time / (time + SLOW));

@@ -5,6 +5,7 @@
 #define MDANIM_WAVE_BASIN_H
 
 #include "liquid/basin.h"
+#include "liquid/drops.h"
 #include "liquid/wave_makers.h"
 #include "liquid/wave_push.h"
 #include "liquid/waves.h"
@@ -22,8 +23,9 @@ class WaveBasin : public Basin {
   // Empty when there can be such a basin, else why not.
   static std::string unusable(const Shape &shape);
 
-  // `calm` [1/time] is the rate at which waves die besides. Throws std::bad_alloc. `ranks` stays where it is.
-  WaveBasin(const Shape &shape, double g, double calm, const RankSums &ranks);
+  // `calm` [1/time] is the rate at which waves die besides, `spray` the share of drops, see Drops. Throws std::bad_alloc. `ranks`
+  // stays where it is.
+  WaveBasin(const Shape &shape, double g, double calm, double spray, std::uint64_t seed, const RankSums &ranks);
 
   // What makes waves, before the first update; lengths, times and volumes in units of the world. Sides are those of WaveMakers.
   void add_wave(int side, double amplitude, double period, double depth);
@@ -49,10 +51,10 @@ class WaveBasin : public Basin {
   bool is_smooth() const override { return true; }
   int top() const override { return top_layer; }
   bool is_poured() const override { return poured; }
-  bool is_calm() const override { return waves.at_rest() && !stale && makers.none(); }
+  bool is_calm() const override { return waves.at_rest() && !stale && makers.none() && drops.all().empty(); }
   long moving_solid() const override { return moving; }
   long solid_cells() const override;
-  double cells_now() const override { return static_cast<double>(waves.total()) / UNITS_PER_CELL; }
+  double cells_now() const override { return static_cast<double>(waves.total() + drops.total()) / UNITS_PER_CELL; }
   double cells_at_start() const override { return static_cast<double>(units + makers.in() - makers.out()) / UNITS_PER_CELL; }
   std::int64_t updates_so_far() const override { return updates; }
   double energy() const override { return energy_now() - energy_at_start; }
@@ -62,6 +64,7 @@ class WaveBasin : public Basin {
   void surface(double *smooth, double *raw) const override;
   double smooth_height(int column) const override { return shape.low.z + heads[column] * shape.cell.z; }
   double raw_height(int column) const override { return shape.low.z + tops[column] * shape.cell.z; }
+  std::vector<Droplet> droplets() const override;
   void contents(std::uint8_t *out) const override;
   std::vector<std::uint8_t> state(const Energies &energies) const override;
   Energies set_state(const std::uint8_t *bytes, std::size_t size) override;
@@ -79,6 +82,7 @@ class WaveBasin : public Basin {
   Waves waves;
   WavePush push;
   WaveMakers makers;
+  Drops drops;
   Occupancy still, mobile;
   CellBox marked;                     // cells outside are open
   std::vector<std::uint16_t> part;    // solid, of each cell, see SolidParts

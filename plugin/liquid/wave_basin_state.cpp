@@ -14,10 +14,11 @@ namespace mdanim {
 
 namespace {
 
-constexpr double STATE_VERSION = 4.0;    // the automaton's is 2
+constexpr double STATE_VERSION = 5.0;    // the automaton's is 2
 constexpr std::uint8_t SOLID_CODE = 255;
 constexpr double PUDDLE = 1.0 / 64.0;    // cells that are part of the floor
 constexpr double ON_BODY = 0.5;          // cells of liquid on a body that are no surface yet
+constexpr double PI = 3.14159265358979323846;
 
 struct WaveBasinHead {
   double version;
@@ -25,6 +26,7 @@ struct WaveBasinHead {
   std::uint64_t still_known;
   Basin::Energies energies;
   double travel, energy_at_start;
+  std::uint64_t of_drops;    // bytes
 };
 
 }    // namespace
@@ -40,7 +42,7 @@ long WaveBasin::solid_cells() const
 double WaveBasin::energy_now() const
 {
   const Waves::Energy now = waves.energy();
-  return now.height + now.motion;
+  return now.height + now.motion + drops.energy();
 }
 
 double WaveBasin::mean_level() const
@@ -109,6 +111,17 @@ void WaveBasin::surface(double *smooth, double *raw) const
   }
 }
 
+std::vector<Basin::Droplet> WaveBasin::droplets() const
+{
+  std::vector<Droplet> found;
+  found.reserve(drops.all().size());
+  const Vec3 &low = shape.low, &cell = shape.cell;
+  for (const Drops::Drop &drop : drops.all())
+    found.push_back({{low.x + drop.x.x * cell.x, low.y + drop.x.y * cell.y, low.z + drop.x.z * cell.z},
+                     std::cbrt(0.75 / PI * static_cast<double>(drop.units) / UNITS_PER_CELL * cell_volume())});
+  return found;
+}
+
 void WaveBasin::contents(std::uint8_t *out) const
 {
   for (std::size_t cell = 0; cell < part.size(); ++cell) out[cell] = 2 * part[cell] >= SolidParts::FULL ? SOLID_CODE : 0;
@@ -125,14 +138,14 @@ void WaveBasin::contents(std::uint8_t *out) const
 
 // --- state ---
 
-// The head, masses, velocities, impulses and heads of columns, the makers, the waves.
+// The head, masses, velocities, impulses and heads of columns, the makers, the drops, the waves.
 std::vector<std::uint8_t> WaveBasin::state(const Energies &energies) const
 {
   std::vector<std::int64_t> all = impulses;
   ranks.add_wide(all.data(), static_cast<int>(all.size()));
-  const WaveBasinHead head{STATE_VERSION, shape.nx, shape.ny,    shape.nz, units,  updates,        waited,
-                           stale,         moving,   still_known, energies, travel, energy_at_start};
-  const std::vector<std::uint8_t> of_makers = makers.state(), of_waves = waves.state();
+  const std::vector<std::uint8_t> of_makers = makers.state(), of_drops = drops.state(), of_waves = waves.state();
+  const WaveBasinHead head{STATE_VERSION, shape.nx, shape.ny,    shape.nz, units,  updates,         waited,
+                           stale,         moving,   still_known, energies, travel, energy_at_start, of_drops.size()};
   std::vector<std::uint8_t> bytes;
   const auto add = [&](const void *from, std::size_t size) {
     const auto *first = static_cast<const std::uint8_t *>(from);
@@ -144,6 +157,7 @@ std::vector<std::uint8_t> WaveBasin::state(const Energies &energies) const
   add(all.data(), all.size() * sizeof all[0]);
   add(push.state().data(), push.state().size() * sizeof push.state()[0]);
   add(of_makers.data(), of_makers.size());
+  add(of_drops.data(), of_drops.size());
   add(of_waves.data(), of_waves.size());
   return bytes;
 }
@@ -164,10 +178,15 @@ Basin::Energies WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size
                              std::to_string(shape.ny) + " x " + std::to_string(shape.nz));
   const std::size_t of_push = push.state().size() * sizeof push.state()[0];
   const std::size_t of_makers = makers.state().size();
-  const std::size_t before = sizeof head + 2 * of_mass + of_impulses + of_push + of_makers;
-  if (size < before) throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few");
+  const std::size_t to_drops = sizeof head + 2 * of_mass + of_impulses + of_push + of_makers;
+  if (size < to_drops || size - to_drops < head.of_drops)
+    throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few");
+  Drops taken(drops);
+  taken.set_state(bytes + to_drops, head.of_drops);
+  const std::size_t before = to_drops + head.of_drops;
   waves.set_state(bytes + before, size - before);    // which also tells other makers, by its size
-  makers.set_state(bytes + before - of_makers, of_makers);
+  drops = taken;
+  makers.set_state(bytes + to_drops - of_makers, of_makers);
   std::memcpy(mass.data(), bytes + sizeof head, of_mass);
   std::memcpy(rising.data(), bytes + sizeof head + of_mass, of_mass);
   std::memcpy(impulses.data(), bytes + sizeof head + 2 * of_mass, of_impulses);

@@ -87,7 +87,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   double g = -1.0;
   bigint seed = 1;
   Vertical vertical = Vertical::LOWER;
-  double calm = 0.0;
+  double calm = 0.0, spray = 0.0;
   std::vector<int> makers;    // where the words of each stand
   Basin::Pace pace;
   for (int iarg = 9; iarg < narg;) {
@@ -120,6 +120,10 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
     } else if (strcmp(word, "calm") == 0) {
       calm = utils::numeric(FLERR, value, false, lmp);
       if (!(calm > 0.0)) error->all(FLERR, iarg + 1, "fix mdanim/liquid: calm must be > 0, got {}", value);
+    } else if (strcmp(word, "drops") == 0) {
+      spray = utils::numeric(FLERR, value, false, lmp);
+      if (!(spray >= 0.0 && spray <= 1.0))
+        error->all(FLERR, iarg + 1, "fix mdanim/liquid: drops must be a share from 0 to 1, got {}", value);
     } else if (const int words = maker_words(word)) {
       makers.push_back(iarg);
       used = words;
@@ -137,7 +141,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
       used = keyword(iarg, narg, arg, pace);
       if (!used)
         error->all(FLERR, iarg,
-                   "fix mdanim/liquid: unknown keyword {}; it knows volume, level, fill, gravity, model, calm, wave, "
+                   "fix mdanim/liquid: unknown keyword {}; it knows volume, level, fill, gravity, model, calm, drops, wave, "
                    "current, inflow, drain, vertical, seed, buoyancy, drag, lambda, base, cells, faces, softness, still, sweeps, "
                    "every, stride and period",
                    word);
@@ -156,13 +160,16 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   const Basin::Shape shape{n[0], n[1], n[2], low, cell};
   if (calm > 0.0 && model != Model::WAVES)
     error->all(FLERR, "fix mdanim/liquid: calm is for model waves; leave it out, or write model waves");
+  if (spray > 0.0 && model != Model::WAVES)
+    error->all(FLERR, "fix mdanim/liquid: drops is for model waves; leave it out, or write model waves");
   if (!makers.empty() && model != Model::WAVES)
     error->all(FLERR, makers[0], "fix mdanim/liquid: {} is for model waves; leave it out, or write model waves", arg[makers[0]]);
   const std::string refused = model == Model::WAVES ? WaveBasin::unusable(shape) : AutomatonBasin::too_large(n[0], n[1], n[2]);
   if (!refused.empty()) error->all(FLERR, 6, "fix mdanim/liquid: {}", refused);
   try {
     if (model == Model::WAVES) {
-      auto waves = std::make_unique<WaveBasin>(shape, g, calm > 0.0 ? calm_rate(calm) : 0.0, sums);
+      auto waves = std::make_unique<WaveBasin>(shape, g, calm > 0.0 ? calm_rate(calm) : 0.0, spray,
+                                               static_cast<std::uint64_t>(seed), sums);
       const double area = cell.x * n[0] * cell.y * n[1], depth = has_level ? level_asked - low.z : volume_asked / area;
       for (const int iarg : makers) add_maker(*waves, iarg, arg, depth);
       basin = std::move(waves);

@@ -15,6 +15,7 @@ from .model import plan_spacing
 from .results.cost import Cost
 from .results.timeline import Timeline
 from .results.trajectory_file import trajectory_bytes
+from .results.trajectory_metadata import most_drops
 from .run.loop import Progress
 from .run.prepare import Prepared
 from .run.result import Result
@@ -104,7 +105,7 @@ def output_line(ready: Prepared) -> str:
     """One line: how large the trajectory will be."""
     c, control = ready.certificate, ready.scene.control
     frames = 1 + c.last_frame
-    size = trajectory_bytes(ready.models, frames, control.save, control.single, ready.plan.grid)
+    size = trajectory_bytes(ready.models, frames, control.save, control.single, ready.plan.grid, most_drops(ready.scene.liquid))
     return f"output   {count(frames, 'frame')}, trajectory of {number(size / 1e6)} MB"
 
 

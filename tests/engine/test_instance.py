@@ -18,7 +18,7 @@ from mdanim_lammps.run.prepare import Prepared
 from scene_texts import MEETING, SPLASH
 from twin import world
 
-WAVES = SPLASH.replace("volume 45 l", "volume 45 l model waves")
+WAVES = SPLASH.replace("volume 45 l", "volume 45 l model waves drops 1 wave -x amplitude 2 cm period 0.5 s")
 SCENES = [pytest.param(MEETING, id="solids"), pytest.param(SPLASH, id="liquid"), pytest.param(WAVES, id="waves")]
 
 
@@ -170,6 +170,8 @@ def test_restore_goes_on_bit_for_bit(prepared, text):
             if ready.plan.grid:
                 assert np.array_equal(first.liquid_cells(), second.liquid_cells())
                 assert np.array_equal(first.liquid_heights(), second.liquid_heights(), equal_nan=True)
+                assert np.array_equal(first.liquid_drops(), second.liquid_drops())
+                assert (len(first.liquid_drops()) > 0) == (ready.scene.liquid.drops > 0.0)
                 assert second.fix_scalar("liquid") == pytest.approx(first.fix_scalar("liquid"), rel=1e-12)
 
 

@@ -10,7 +10,7 @@ import pytest
 from mdanim_lammps.model.basin import Grid
 from mdanim_lammps.picture import tank
 from mdanim_lammps.picture.camera import action_of
-from mdanim_lammps.picture.liquid import Blocks, Sheet
+from mdanim_lammps.picture.liquid import Blocks, Drops, Sheet
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera, Render
@@ -284,6 +284,37 @@ def test_liquid_takes_the_scenes_colour(tmp_path):
     with Trajectory(path) as t, Painter(t, SIDE, size=SIZE) as painter:
         color = spot(painter.frame(0) / 255.0, painter.view(0.0), (-0.7, -0.7, 0.25))
     assert color[1] > color[0] + 0.1 and color[1] > color[2] + 0.05
+
+
+def test_drops_are_balls():
+    """As closed as a ball is, with outward normals, and as large to a few hundredths; those that do not fly have no size."""
+    drops = Drops(5)
+    rows = np.array([(0.1, 0.2, 0.3, 0.05), (1.0, -2.0, 3.0, 0.01)])
+    points, normals = drops.mesh(rows)
+    apart = points.reshape(5, -1, 3) - np.pad(rows, ((0, 3), (0, 0)))[:, None, :3]
+    assert np.linalg.norm(apart, axis=2) == pytest.approx(np.array([0.05, 0.01, 0, 0, 0])[:, None].repeat(apart.shape[1], 1))
+    assert (apart[:2] * normals.reshape(5, -1, 3)[:2]).sum(axis=2).min() > 0.0
+    corners = points[drops.triangle.reshape(5, -1, 3)]
+    volume = np.einsum("dti,dti->d", corners[:, :, 0], np.cross(corners[:, :, 1], corners[:, :, 2])) / 6.0
+    assert volume == pytest.approx(4.0 / 3.0 * np.pi * np.array([0.05, 0.01, 0, 0, 0]) ** 3, rel=0.15)
+
+
+def test_drops_are_seen_where_they_fly(tmp_path):
+    """One large drop over the pool: other pixels there, the same elsewhere; the next frame has none."""
+    scene, models, grid = pool_scene()
+    scene = replace(scene, liquid=replace(scene.liquid, drops=1.0))
+    place = np.array([0.0, -0.5, 0.8])
+    drops = [np.zeros((0, 4)), np.array([[*place, 0.04]]), np.zeros((0, 4))]
+    frames = wet_frames(models, *[(flat(grid), raw_of(grid, flat(grid), models))] * 3)
+    path = write(tmp_path / "t.h5", scene, models, [(*f, d) for f, d in zip(frames, drops)], grid)
+    with Trajectory(path) as t, Painter(t, SIDE, size=SIZE) as painter:
+        without, one, after = (painter.frame(n)[:-30].astype(float) / 255 for n in range(3))  # the time stands below
+        (x, y), _ = (a[0] for a in project(painter.view(1), place[None], SIZE[0] / SIZE[1]))
+    changed = np.abs(one - without).max(axis=2) > 0.02
+    rows, columns = np.nonzero(changed)
+    assert len(rows) > 10 and np.array_equal(without, after)
+    assert abs(columns.mean() - (x + 1) / 2 * SIZE[0]) < 2 and abs(rows.mean() - (1 - y) / 2 * SIZE[1]) < 2
+    assert max(np.ptp(rows), np.ptp(columns)) < 12
 
 
 def test_camera_holds_the_basin(tmp_path):

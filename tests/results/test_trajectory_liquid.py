@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 import pytest
 from mdanim_lammps.errors import OutputError
-from mdanim_lammps.model.basin import Grid
+from mdanim_lammps.model.basin import MOST_DROPS, Grid
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.results.trajectory_file import trajectory_bytes
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
@@ -55,6 +55,37 @@ def test_heights_are_h5md_observables(tmp_path):
             np.testing.assert_array_equal(liquid[name]["time"][:], [0.0, 0.1, 0.2])
     with Trajectory(path) as t:
         np.testing.assert_array_equal(t.universe.trajectory[1].data["liquid/height"], t.liquid_height(1))
+
+
+def test_drops_come_back(tmp_path):
+    """As many as flew in each frame, to float32; one too many, none at all and three numbers for a drop are refused."""
+    scene, models, grid, frames = pool()
+    scene = replace(scene, liquid=replace(scene.liquid, drops=0.5))
+    random = np.random.default_rng(1)
+    drops = [random.uniform(0.1, 1.0, (n, 4)) for n in (0, 7, MOST_DROPS)]
+    with Trajectory(write(tmp_path / "t.h5", scene, models, [(*f, d) for f, d in zip(frames, drops)], grid)) as t:
+        for n, expected in enumerate(drops):
+            np.testing.assert_array_equal(t.liquid_drops(n), expected.astype(np.float32))
+            t.check(n)
+    with TrajectoryWriter(tmp_path / "u.h5", scene, models, frames=1, dt=0.01, steps_per_frame=10, grid=grid) as out:
+        for wrong in (None, np.ones((MOST_DROPS + 1, 4)), np.ones((2, 3))):
+            with pytest.raises(ValueError, match=r"shape \(D, 4\) with D <= 2048"):
+                out.write(*frames[0], wrong)
+        out.write(*frames[0], drops[1])
+
+
+def test_a_liquid_without_drops_has_none(tmp_path):
+    """Nor room for any: drops are refused."""
+    scene, models, grid, frames = pool()
+    path = write(tmp_path / "t.h5", scene, models, frames[:1], grid)
+    with Trajectory(path) as t:
+        assert t.liquid_drops(0).shape == (0, 4)
+    with h5py.File(path) as file:
+        assert "drops" not in file["observables/liquid"]
+    with TrajectoryWriter(tmp_path / "u.h5", scene, models, frames=1, dt=0.01, steps_per_frame=10, grid=grid) as out:
+        with pytest.raises(ValueError, match="be None without"):
+            out.write(*frames[0], np.ones((1, 4)))
+        out.write(*frames[0])
 
 
 @pytest.mark.parametrize("heights", [None, (np.zeros((14, 20)),), (np.zeros((20, 14)), np.zeros((20, 14)))])

@@ -22,7 +22,7 @@ OF_SURFACES = ("friction", "contact-damping")
 """Settings that the contact of the paper has only as 0."""
 
 
-OF_WAVES = ("calm", "wave", "current", "inflow", "drain")
+OF_WAVES = ("calm", "drops", "wave", "current", "inflow", "drain")
 """Settings of a liquid with momentum."""
 
 
@@ -33,7 +33,7 @@ def scene(block: str, **settings: str):
         blocks |= {"contact": {}, "floor": dict(BALL)}
     if block == "contact" or any(settings.get(word, "0") != "0" for word in OF_SURFACES):
         blocks["control"]["contact-model"] = "surface"
-    if block == "liquid" and any(settings.get(word, "auto") != "auto" for word in OF_WAVES):
+    if block == "liquid" and any(settings.get(word, "auto") not in ("auto", "0") for word in OF_WAVES):
         blocks["liquid"]["model"] = "waves"
     top = {"gravity": "(0, 0, -9.81) m/s^2"}
     chosen = blocks[block] if block else top

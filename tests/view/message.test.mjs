@@ -41,13 +41,13 @@ test("a scene has its arrays", () => {
 });
 
 test("a frame has all layers at their places", () => {
-  const head = new DataView(new ArrayBuffer(28));
-  [5, , , m.STRAIN | m.PARTICLES, 3, 1, 2].forEach((value, k) => value !== undefined && head.setUint32(4 * k, value, true));
+  const head = new DataView(new ArrayBuffer(32));
+  [5, , , m.STRAIN | m.PARTICLES, 3, 1, 2, 2].forEach((value, k) => value !== undefined && head.setUint32(4 * k, value, true));
   head.setFloat64(4, 1.25, true);
-  const parts = [new Float32Array(12).fill(7), Uint16Array.from({ length: 9 }, (_, k) => k), Uint16Array.of(1000, 2000), Uint8Array.of(0, 2), Uint8Array.of(9, 8, 7), Float32Array.of(1, 2, 3)];
+  const parts = [new Float32Array(12).fill(7), Uint16Array.from({ length: 9 }, (_, k) => k), Uint16Array.of(1000, 2000), Uint8Array.of(0, 2), Float32Array.of(1, 2, 3, 0.5, 4, 5, 6, 0.25), Uint8Array.of(9, 8, 7), Float32Array.of(1, 2, 3)];
   const f = m.readFrame(message("MDF1", new Uint8Array(head.buffer), parts));
   assert.deepEqual([f.frame, f.time, f.layers], [5, 1.25, 3]);
-  assert.deepEqual([f.object, f.position, f.liquid, f.columns, f.strain, f.particles].map((a) => [...a]), parts.map((a) => [...a]));
+  assert.deepEqual([f.object, f.position, f.liquid, f.columns, f.drops, f.strain, f.particles].map((a) => [...a]), parts.map((a) => [...a]));
 });
 
 test("vertices lie within the box of their object", () => {

@@ -27,7 +27,8 @@ from scene_texts import SPLASH
 def folder(tmp_path_factory):
     """A finished run with a liquid."""
     made = tmp_path_factory.mktemp("splash")
-    (made / "splash.txt").write_text(SPLASH + "expect raft.position.z at 0.1 s = 0.1 +- 1 m\n")
+    wavy = SPLASH.replace("volume 45 l", "volume 45 l  model waves  drops 1")
+    (made / "splash.txt").write_text(wavy + "expect raft.position.z at 0.1 s = 0.1 +- 1 m\n")
     return Scene.load(made / "splash.txt").run().folder
 
 
@@ -61,7 +62,12 @@ def unpacked(block: bytes) -> dict:
         found[name] = restored(block[at : at + 2 * row * frames], row, frames)
         at += 2 * row * frames
     found["states"] = np.frombuffer(block, "u1", columns * frames, at).reshape(frames, columns)
-    assert at + columns * frames == len(block)
+    at += columns * frames
+    found["drops"] = []
+    for count in head["replay"]["drops"]:
+        found["drops"].append(np.frombuffer(block, "<f4", 4 * count, at).reshape(count, 4))
+        at += 16 * count
+    assert at == len(block)
     return found
 
 
@@ -73,7 +79,7 @@ def test_differences_can_be_undone():
 
 @pytest.mark.parametrize("exact", [False, True])
 def test_the_frames_are_those_of_the_run(folder, tmp_path, exact):
-    """Vertices within half a step of each object's box, times to the bit, the liquid within half a step of the basin."""
+    """Vertices within half a step of each object's box, times to the bit, the liquid within half a step of the basin, drops."""
     assert write_report(folder, tmp_path / "r.html", exact=exact) == 1
     found, steps = unpacked(block_of((tmp_path / "r.html").read_text())), 65535 if exact else 4095
     with Trajectory(folder) as t:
@@ -88,6 +94,8 @@ def test_the_frames_are_those_of_the_run(folder, tmp_path, exact):
             assert (np.abs(at - mesh.vertices(t.position(n))[order]) <= 0.51 * unit + 1e-6).all()
             height = liquid.low[2] + found["heights"][n] / 65535 * (liquid.high[2] - liquid.low[2])
             assert np.abs(height - t.liquid_height(n).ravel()).max() < 1e-5
+            np.testing.assert_array_equal(found["drops"][n], t.liquid_drops(n))
+        assert max(map(len, found["drops"])) > 0
         assert (found["states"] == 1).any() and found["head"]["replay"]["steps"] == steps
 
 

@@ -16,7 +16,7 @@ from mdanim_lammps.scene.render import Camera, Floor, Render
 from mdanim_lammps.view.feed import ASPECT, DRY, HIDDEN, MOST_STRAIN, OPEN, PARTICLES, STRAIN, Feed, first_action
 from picture_samples import falling, flat, pool_scene, raw_of, slab_scene, wet_frames, write
 
-HEAD = 32
+HEAD = 36
 
 
 def unpacked(message: bytes) -> tuple[dict, dict[str, np.ndarray]]:
@@ -33,7 +33,7 @@ def unpacked(message: bytes) -> tuple[dict, dict[str, np.ndarray]]:
 def parts(message: bytes) -> tuple:
     """Numbers of the header of a frame, and the rest as bytes."""
     assert message[:4] == b"MDF1" and len(message) % 4 == 0
-    return struct.unpack_from("<IdIIII", message, 4), message[HEAD:]
+    return struct.unpack_from("<IdIIIII", message, 4), message[HEAD:]
 
 
 @pytest.fixture(scope="module")
@@ -55,8 +55,8 @@ def test_vertices_are_where_the_surfaces_are(slab):
     with Trajectory(folder) as t:
         mesh = shaded_mesh(t.metadata, t.position(0))
         for n in range(len(t)):
-            (frame, time, layers, V, count, C), data = parts(feed.frame(n))
-            assert (frame, time, layers, V, count, C) == (n, t.times[n], 0, len(of), 3, 0)
+            (frame, time, layers, V, count, C, D), data = parts(feed.frame(n))
+            assert (frame, time, layers, V, count, C, D) == (n, t.times[n], 0, len(of), 3, 0, 0)
             objects = np.frombuffer(data, "<f4", 12 * count).reshape(count, 12)
             within = np.frombuffer(data, "<u2", 3 * V, 48 * count).reshape(V, 3)
             at = objects[of, :3] + within * (objects[of, 3:6] / 65535.0)
@@ -188,7 +188,7 @@ def test_strain_is_that_of_the_springs(slab):
     wanted = np.clip((mesh.carry @ np.array([np.mean(s) if s else 0.0 for s in strain]))[order] * 255 / MOST_STRAIN, 0, 255)
     V = len(wanted)
     for n, expected in ((0, np.zeros(V)), (3, wanted)):
-        (*_, layers, _, count, _), data = parts(feed.frame(n, STRAIN))
+        (*_, layers, _, count, _, _), data = parts(feed.frame(n, STRAIN))
         found = np.frombuffer(data, "u1", V, 48 * count + (6 * V + 3) // 4 * 4)
         assert layers == STRAIN and np.abs(found - expected).max() <= 0.51
     assert wanted.max() > 20
@@ -204,20 +204,24 @@ def test_particles_are_sent_when_asked_for(slab):
 
 
 def test_liquid(tmp_path):
-    """Heights within half a step of the basin's height; where a body hides the liquid and where a hull keeps it dry."""
+    """Heights within half a step of the basin's height; where a body hides the liquid where a hull keeps it dry; and drops."""
     scene, models, grid = pool_scene()
     smooth = flat(grid, 0.45)
     raw = raw_of(grid, smooth, models[:1])
     raw[3:5, 30:33] = -np.inf
-    write(tmp_path / "trajectory.h5", scene, models, wet_frames(models, (smooth, raw), (smooth, raw)), grid)
+    scene = replace(scene, liquid=replace(scene.liquid, drops=1.0))
+    drops = [np.full((n, 4), 0.25 * n) for n in (1, 3)]
+    frames = zip(wet_frames(models, (smooth, raw), (smooth, raw)), drops)
+    write(tmp_path / "trajectory.h5", scene, models, [(*frame, flying) for frame, flying in frames], grid)
     feed = Feed(tmp_path)
     head, arrays = unpacked(feed.scene())
-    (_, _, _, V, count, C), data = parts(feed.frame(1))
+    (_, _, _, V, count, C, D), data = parts(feed.frame(1))
     at = 48 * count + (6 * V + 3) // 4 * 4
     height = np.frombuffer(data, "<u2", C, at) / 65535.0
     state = np.frombuffer(data, "u1", C, at + (2 * C + 3) // 4 * 4).reshape(raw.shape)
     assert grid.shape[0] * grid.shape[1] == C and np.abs(height - 0.45).max() <= 0.51 / 65535
     assert (state[3:5, 30:33] == DRY).all() and (state[np.isnan(raw)] == HIDDEN).all() and state[0, 0] == OPEN
+    assert D == 3 and (np.frombuffer(data, "<f4", 12, len(data) - 48) == 0.75).all()
     assert head["liquid"]["shape"] == list(grid.shape) and arrays["sheet"].max() < len(head["buffers"]) + 10 * C
     feed.close()
 

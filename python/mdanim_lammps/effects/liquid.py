@@ -167,7 +167,9 @@ class LiquidWaves(LiquidAutomaton):
     def words(self, scene):
         calm = scene.liquid.calm or calm_time(scene)
         solids = "cells i2_cell softness d_softness still held"
-        return f"model waves calm {calm!r} {solids} every {EVERY} stride {STRIDE} period {WAVE_PERIOD}{_makers(scene.liquid)}"
+        drops = f" drops {scene.liquid.drops!r}" if scene.liquid.drops else ""
+        pace = f"every {EVERY} stride {STRIDE} period {WAVE_PERIOD}"
+        return f"model waves calm {calm!r}{drops} {solids} {pace}{_makers(scene.liquid)}"
 
     def commands(self, scene, system):
         regions = [f"region {name} {_block(flow.low, flow.high)}" for _, name, flow in _flows(scene.liquid)]

@@ -9,8 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..errors import DivergedError, SetupError
-from ..model.basin import Grid
-from ..processes import cores
+from ..model.basin import MOST_DROPS, Grid
 from .c_arrays import body_arguments, pointer
 from .calibration import calibrate
 from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude, told_once
@@ -23,8 +22,7 @@ from .threads import choose_threads, share_of_cores
 LIQUID = b"liquid"
 """ID of the liquid's fix (effects/liquid.py)."""
 MANY = 20_000
-"""Particles from which on what making them has left free in the heap goes back to the system: 100 to 400 bytes each, in
-10 ns each."""
+"""Particles from which on what making them has left free in the heap goes back to the system: 100 to 400 bytes each."""
 SMALL = 8000
 """Particles up to which an instance is worth being filled anew: with more, putting them in takes longer than all the rest."""
 TYPES = 256
@@ -146,7 +144,7 @@ class Instance:
             kind, rest = last.split(" ", 1)
             # LAMMPS wants all types set.
             self._lmp.commands_list([f"bond_coeff {row}" for row in (*rows, f"{kind}*{self._types} {rest}")])
-        threads = choose_threads(plan, calibrate(self._library), share_of_cores(self._comm) if self._comm else cores()).threads
+        threads = choose_threads(plan, calibrate(self._library), share_of_cores(self._comm)).threads
         self._lmp.commands_list(physics(plan, threads))
         for fix in plan.body_fixes:
             for kind, body in plan.contact_bodies.items():
@@ -450,10 +448,15 @@ class Instance:
         The second is NaN where a body hides it, minus infinity where one keeps the column dry below the surface, as a
         hull does its inside. Raises SetupError without a liquid.
         """
-        nx, ny, _ = self._grid().shape
-        smooth, raw = np.empty((ny, nx)), np.empty((ny, nx))
+        smooth, raw = np.empty((2, *self._grid().shape[1::-1]))
         self._call("tell the surface", self._library.mdanim_liquid_heights, LIQUID, pointer(smooth), pointer(raw))
         return smooth, raw
+
+    def liquid_drops(self) -> np.ndarray:
+        """Middle and radius of each drop that flies [m], shape (D, 4), oldest first. Raises SetupError without a liquid."""
+        rows, count = np.empty((MOST_DROPS, 4)), ctypes.c_int()
+        self._call("tell drops", self._library.mdanim_liquid_drops, LIQUID, MOST_DROPS, pointer(rows), ctypes.byref(count))
+        return rows[: count.value]
 
     def liquid_cells(self) -> np.ndarray:
         """Content of every cell, 255 where it is solid; uint8, shape (nz, ny, nx). Raises SetupError without a liquid."""

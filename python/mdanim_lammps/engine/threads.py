@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from ..errors import UsageError
-from ..processes import affinity, quota
+from ..processes import affinity, cores, quota
 from .calibration import Calibration
 from .plan import Plan
 
@@ -65,7 +65,10 @@ def choose_threads(plan: Plan, calibration: Calibration | None, most: int) -> Th
 
 
 def share_of_cores(comm) -> int:
-    """Cores for this rank of an mpi4py communicator, at least one: ranks on a host that may use the same cores share them."""
+    """Cores for this rank of an mpi4py communicator, at least one: ranks on a host that may use the same cores share them. All
+    cores where there is none."""
+    if comm is None:
+        return cores()
     from mpi4py import MPI
 
     node = comm.Split_type(MPI.COMM_TYPE_SHARED)

@@ -20,6 +20,8 @@ BYTES_PER_CELL = 20.0
 """What fix mdanim/liquid keeps per cell, measured 18 to 21: content, masks, counts of samples, marks."""
 NARROWEST = 3
 """Fewest cells along a side: with two, no cell is off the walls, and a slope has no middle."""
+MOST_DROPS = 2048
+"""Drops of a liquid that fly at once, as in plugin/liquid/drops.h: where there are more, they merge."""
 
 
 @dataclass(frozen=True, slots=True)

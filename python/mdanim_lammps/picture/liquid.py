@@ -57,6 +57,37 @@ class Sheet:
         return np.concatenate([side[:-1] for side in self._sides])
 
 
+class Drops:
+    """Drops as balls of a few triangles.
+
+    Args:
+        most: drops. V vertices: as many for each of them; without a radius they are one point.
+    """
+
+    def __init__(self, most: int):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkFiltersModeling import vtkLinearSubdivisionFilter
+        from vtkmodules.vtkFiltersSources import vtkPlatonicSolidSource
+
+        ball, fine = vtkPlatonicSolidSource(), vtkLinearSubdivisionFilter()
+        ball.SetSolidTypeToIcosahedron()
+        fine.SetInputConnection(ball.GetOutputPort())
+        fine.Update()
+        points = vtk_to_numpy(fine.GetOutput().GetPoints().GetData()).astype(float)
+        triangle = vtk_to_numpy(fine.GetOutput().GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        self._ball = points / np.linalg.norm(points, axis=1, keepdims=True)
+        self._most = most
+        self.triangle = (triangle + len(points) * np.arange(most)[:, None, None]).reshape(-1, 3).astype(np.int32)
+        """Vertex indices, int32, shape (T, 3)."""
+
+    def mesh(self, drops: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Vertices [m] and outward unit normals, each of shape (V, 3), for middles and radii of drops [m], shape (D, 4)."""
+        rows = np.zeros((self._most, 4))
+        rows[: len(drops)] = drops
+        points = rows[:, None, :3] + rows[:, None, 3:] * self._ball
+        return points.reshape(-1, 3), np.tile(self._ball, (self._most, 1))
+
+
 class Blocks:
     """Every column as a box up to its raw height; a column that tells nothing, or is kept dry, has none.
 

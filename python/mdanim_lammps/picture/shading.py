@@ -249,6 +249,22 @@ PATTERN
 }
 """
 
+# A drop of the liquid: clear in the middle, bright where it mirrors the sky, and with the lamp's glint.
+FRAGMENT_DROP = """//VTK::Light::Impl
+{
+  vec3 n = normalize(worldNormal);
+  vec3 toEye = normalize(eye - worldPosition);
+  vec3 toLamp = normalize(lamp);
+  float lit = shadow(worldPosition, n, 0.0);
+  float graze = pow(1.0 - max(dot(n, toEye), 0.0), 2.0);
+  vec3 mirrored = reflect(-toEye, n);
+  vec3 color = liquidColor * (0.85 + 0.40 * max(dot(n, toLamp), 0.0) * (0.45 + 0.55 * lit));
+  color = mix(color, vec3(0.96, 0.99, 1.0), min(1.0, 0.25 + 0.55 * graze + 0.25 * smoothstep(0.0, 1.0, mirrored.z)));
+  float glint = lit * pow(max(dot(normalize(toLamp + toEye), n), 0.0), 40.0);
+  fragOutput0 = vec4(min(color + glint, vec3(1.0)), min(1.0, 0.55 + 0.45 * graze + glint));
+}
+"""
+
 # The skin of the liquid, laid over what `seen` has coloured already: what it mirrors, and the lamp's glint.
 # Where it is thinner than half a cell it fades out, so that a dry floor is bare.
 FRAGMENT_LIQUID = """//VTK::Light::Impl

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..results.trajectory import Trajectory
 from . import shading
-from .liquid import Blocks, Sheet, kept_dry, undersides
+from .liquid import Blocks, Drops, Sheet, kept_dry, undersides
 from .palette import LIQUID, rgb
 from .pieces import Field, MovingLine, MovingMesh, box_edges, lit_actor, plane
 
@@ -60,7 +60,7 @@ class Tank:
             above = 0.5 * pool.grid.cell[2] if look == "smooth" else float(np.finfo(np.float32).max)
             uniforms.SetUniformf("sheetAbove", above)
         self.skin = [inner, outer]
-        """The liquid's own faces."""
+        """The liquid's own faces, and its drops."""
         glass = HAIR * np.linalg.norm(self._high - self._low) * np.array([1.0, 1.0, 0.0])
         edges = box_edges(self._low - glass, self._high + glass, 0.85 if dark else 0.25, 0.55, 2.0)
         self.actors = [inner, outer, edges]
@@ -68,6 +68,14 @@ class Tank:
         if look == "smooth":
             self._rim = MovingLine(len(self._form.rim), (1.0, 1.0, 1.0), 2.0)
             self.actors.append(self._rim.actor)
+        self._drops = Drops(pool.most_drops) if pool.most_drops else None
+        if self._drops:
+            self._spray = MovingMesh(len(self._drops.mesh(np.zeros((0, 4)))[0]), self._drops.triangle)
+            drops = lit_actor(self._spray.data, shading.FRAGMENT_DROP, liquid=True, sky=False)
+            drops.ForceTranslucentOn()
+            drops.GetProperty().BackfaceCullingOn()
+            self.skin.append(drops)
+            self.actors.append(drops)
         self._through: Sequence = ()
 
     def colour_through(self, actors: Sequence) -> None:
@@ -95,6 +103,8 @@ class Tank:
         points, normals = self._form.mesh(smooth if self._look == "smooth" else raw)
         points[:, :2] += HAIR * ((self._low + self._high)[:2] / 2 - points[:, :2])
         self._mesh.move(points, normals)
+        if self._drops:
+            self._spray.move(*self._drops.mesh(self._trajectory.liquid_drops(frame)))
         if self._look == "smooth":
             self._rim.move(points[self._form.rim], self._rim_opacity(smooth, raw))
         # What is seen through a column that tells nothing is seen through liquid all the same.

@@ -87,7 +87,8 @@ def _rise(first: Trajectory, second: Trajectory, frame: int) -> float | None:
     if first.liquid is None:
         return None
     pairs = [(t.liquid_height(frame), t.liquid_raw(frame)) for t in (first, second)]
-    if all(np.array_equal(x, y, equal_nan=True) for x, y in zip(*pairs)):
+    drops = [t.liquid_drops(frame) for t in (first, second)]
+    if all(np.array_equal(x, y, equal_nan=True) for x, y in (*zip(*pairs), drops)):
         return None
     # A raw height that only one of them has (NaN, minus infinity) is no height.
     both = [np.isfinite(x) & np.isfinite(y) for x, y in zip(*pairs)]

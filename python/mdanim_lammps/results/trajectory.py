@@ -18,6 +18,7 @@ from ..scene.scene import Save
 from .html import html_table
 from .trajectory_file import (
     CHECKSUM,
+    DROPS,
     LIQUID,
     NOT_WRITTEN,
     STEP,
@@ -166,6 +167,13 @@ class Trajectory:
         """Top of the topmost liquid cell of each column, z [m], float32, shape (ny, nx); NaN where a solid
         hides it, minus infinity where one keeps the column dry, as a hull does."""
         return self._liquid(LIQUID[1], frame)
+
+    def liquid_drops(self, frame: int) -> np.ndarray:
+        """Middle and radius of each drop of the liquid that flies [m], float32, shape (D, 4)."""
+        if self.liquid is None or not self.liquid.most_drops:
+            return np.zeros((0, 4), np.float32)
+        rows = self._liquid(DROPS, frame)
+        return rows[rows[:, 3] > 0.0]
 
     @cached_property
     def liquid_levels(self) -> np.ndarray:

@@ -36,6 +36,8 @@ FORMAT = 3
 
 LIQUID = ("liquid/height", "liquid/raw")
 """Heights of a liquid: smooth, and of the topmost cells; below ``/observables``."""
+DROPS = "liquid/drops"
+"""Middle and radius of each drop; a radius of 0 is none."""
 
 STEP, TIME, CHECKSUM = "step", "time", "checksum"
 _ROW = (STEP, TIME, CHECKSUM)
@@ -69,7 +71,7 @@ class FrameTable:
 
 
 def trajectory_bytes(
-    models: Sequence[Model], frames: int, save: Save = Save.ALL, single: bool = False, grid: Grid | None = None
+    models: Sequence[Model], frames: int, save: Save = Save.ALL, single: bool = False, grid: Grid | None = None, drops: int = 0
 ) -> int:
     """Size of the trajectory file [bytes] before anything is run, rather too large than too small.
 
@@ -79,11 +81,12 @@ def trajectory_bytes(
         save: which particles are stored.
         single: whether positions and velocities take 4 bytes a number instead of 8.
         grid: cells of the liquid, if there is one.
+        drops: that a frame has room for.
     """
     stored = sum(int(stored_particles(model, save).sum()) for model in models)
     per_frame = stored * 6 * (4 if single else 8) + len(models) * 6 * 8 + 16 + 4 * 7
     if grid:
-        per_frame += 2 * 4 * grid.shape[0] * grid.shape[1]
+        per_frame += 2 * 4 * grid.shape[0] * grid.shape[1] + 4 * 4 * drops
     surfaces = distinct_surfaces(models, [stored_particles(model, save) for model in models])[0]
     springs = sum(len(model.spring) for model in models)
     return frames * per_frame + _fixed_bytes(stored, springs, surfaces) + _METADATA_BYTES
@@ -152,7 +155,9 @@ def datasets_of_frames(file: h5py.File) -> dict[str, h5py.Dataset]:
     if CHECKSUM in own:
         found[CHECKSUM] = own[CHECKSUM]
     found |= {name: particles[f"{name}/value"] for name in ("position", "velocity")}
-    names = ("center_of_mass", "center_of_mass_velocity", *(LIQUID if "observables/liquid" in file else ()))
+    names = ["center_of_mass", "center_of_mass_velocity"]
+    if "observables/liquid" in file:
+        names += [*LIQUID, *([DROPS] if DROPS in file["observables"] else [])]
     return found | {name: file[f"observables/{name}/value"] for name in names}
 
 
@@ -181,6 +186,8 @@ def _quantities(metadata: TrajectoryMetadata) -> Iterator[tuple[str, str, tuple[
     yield "center_of_mass_velocity", "observables", (objects, 3), np.float64, "m s-1"
     for name in LIQUID if liquid else ():
         yield name, "observables", liquid.shape[1::-1], np.float32, "m"
+    if liquid and liquid.most_drops:
+        yield DROPS, "observables", (liquid.most_drops, 4), np.float32, "m"
 
 
 def _fixed_bytes(particles: int, springs: int, surfaces: Sequence[Surface]) -> int:
@@ -378,7 +385,8 @@ def _read_liquid(file: h5py.File) -> LiquidMetadata | None:
     attributes = file["observables/liquid"].attrs
     low, high, shape = (tuple(attributes[key].tolist()) for key in ("low", "high", "shape"))
     name, color = (_string(attributes[key]) for key in ("name", "color"))
-    return LiquidMetadata(name, low, high, shape, float(attributes["density"]), color)
+    drops = file[f"observables/{DROPS}/value"].shape[1] if DROPS in file["observables"] else 0
+    return LiquidMetadata(name, low, high, shape, float(attributes["density"]), color, drops)
 
 
 def _version() -> str:

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..model.basin import Grid
+from ..model.basin import MOST_DROPS, Grid
 from ..model.model import Layer, Model, Surface
 from ..scene.scene import Liquid, Save, SceneRecord, Vector
 from .weights import Weights
@@ -30,6 +30,8 @@ class LiquidMetadata:
     """[kg/m^3]"""
     color: str = ""
     """``#rrggbb``, or empty where the renderer chooses."""
+    most_drops: int = 0
+    """Drops that a frame has room for."""
 
     @property
     def grid(self) -> Grid:
@@ -169,7 +171,12 @@ def metadata_of(
 
 def liquid_metadata(liquid: Liquid, grid: Grid) -> LiquidMetadata:
     """What a trajectory must know of a scene's liquid."""
-    return LiquidMetadata(liquid.name, grid.low, grid.high, grid.shape, liquid.density, liquid.color or "")
+    return LiquidMetadata(liquid.name, grid.low, grid.high, grid.shape, liquid.density, liquid.color or "", most_drops(liquid))
+
+
+def most_drops(liquid: Liquid | None) -> int:
+    """Drops that a frame of a scene needs room for."""
+    return MOST_DROPS if liquid and liquid.drops else 0
 
 
 def distinct_surfaces(models: Sequence[Model], stored: Sequence[np.ndarray]) -> tuple[tuple[Surface, ...], np.ndarray]:

@@ -17,6 +17,7 @@ from .files import disk_errors, rename
 from .trajectory import Trajectory
 from .trajectory_file import (
     CHECKSUM,
+    DROPS,
     FORMAT,
     LIQUID,
     NOT_WRITTEN,
@@ -141,6 +142,7 @@ class TrajectoryWriter:
         position: np.ndarray,
         velocity: np.ndarray,
         liquid: tuple[np.ndarray, np.ndarray] | None = None,
+        drops: np.ndarray | None = None,
     ) -> None:
         """Add a frame.
 
@@ -152,18 +154,20 @@ class TrajectoryWriter:
             liquid: heights z of the liquid over the columns of its cells, smooth and raw [m], each of shape
                 (ny, nx); raw ones are NaN where a solid hides
                 the liquid, minus infinity where one keeps the column dry, as a hull does. None without liquid.
+            drops: middle and radius of drops of a liquid that sheds some [m], shape (D, 4); None for another.
 
         Raises:
             OutputError: the frame cannot be written; those before it are kept.
             ValueError: an array has another shape, the step is not larger, or the file has all its frames.
         """
-        self._check_frame(step, position, velocity, liquid)
+        self._check_frame(step, position, velocity, liquid, drops)
         values = {
             "position": position[self._stored],
             "velocity": velocity[self._stored],
             "center_of_mass": self._mean(position),
             "center_of_mass_velocity": self._mean(velocity),
             **(dict(zip(LIQUID, liquid)) if liquid else {}),
+            **({} if drops is None else {DROPS: np.pad(drops, ((0, self._most_drops - len(drops)), (0, 0)))}),
         }
         values = {name: np.ascontiguousarray(value, self._tables[name].dtype) for name, value in values.items()}
         sums = [row_checksum(step, time), *map(checksum, values.values())]
@@ -174,7 +178,13 @@ class TrajectoryWriter:
         self._last_step = int(step)
         self._pending.append(self._last_step)
 
-    def _check_frame(self, step: int, position: np.ndarray, velocity: np.ndarray, liquid: tuple | None) -> None:
+    @property
+    def _most_drops(self) -> int:
+        return self.metadata.liquid.most_drops if self.metadata.liquid else 0
+
+    def _check_frame(
+        self, step: int, position: np.ndarray, velocity: np.ndarray, liquid: tuple | None, drops: np.ndarray | None
+    ) -> None:
         for name, array in (("position", position), ("velocity", velocity)):
             if np.shape(array) != (self.metadata.total, 3):
                 raise ValueError(f"{name} must have shape ({self.metadata.total}, 3), found {np.shape(array)}")
@@ -182,6 +192,9 @@ class TrajectoryWriter:
         found = [np.shape(height) for height in liquid or ()]
         if found != expected:
             raise ValueError(f"liquid must be heights of shapes {expected}, found {found}")
+        most, shape = self._most_drops, None if drops is None else np.shape(drops)
+        if (shape is None) != (most == 0) or (shape and (shape[1:] != (4,) or shape[0] > most)):
+            raise ValueError(f"drops must have shape (D, 4) with D <= {most}, or be None without, found {shape}")
         if step <= self._last_step:
             raise ValueError(f"step must be larger than that of the frame before ({self._last_step}), found {step}")
         if self._count == self._frames:

@@ -29,6 +29,8 @@ class LiquidFrame:
 
     heights: tuple[np.ndarray, np.ndarray]
     """As `Instance.liquid_heights`."""
+    drops: np.ndarray | None
+    """As `Instance.liquid_drops`; None where the liquid sheds none."""
     cells: int
     """Whole cells of liquid now."""
     start: int
@@ -191,7 +193,8 @@ def liquid_frame(instance: Instance) -> LiquidFrame | None:
     if instance.plan.grid is None:
         return None
     cells, start = (int(instance.fix_value(LiquidAutomaton.fix, n)) for n in (CELLS, CELLS_AT_START))
-    return LiquidFrame(instance.liquid_heights(), cells, start)
+    drops = instance.liquid_drops() if instance.plan.scene.liquid.drops else None
+    return LiquidFrame(instance.liquid_heights(), drops, cells, start)
 
 
 def add_clocks(account: Account, instance: Instance) -> None:

@@ -115,7 +115,7 @@ def write_start(ready: Prepared, folder: Path) -> Path:
         else:
             with Sequential(ready.plan) as source:
                 now = source.begin(None)
-                out.write(now.step, 0.0, now.x, now.v, now.liquid.heights)
+                out.write(now.step, 0.0, now.x, now.v, now.liquid.heights, now.liquid.drops)
         out.flush()
         return out.close()
 
@@ -383,7 +383,7 @@ class _Run:
         self.guard.energy(now.step, row["residual"], now.v)
         self.ledger.rows.append(row)
         self.penetration = max(self.penetration, now.penetration)
-        out.write(now.step, when, now.x, now.v, liquid and liquid.heights)
+        out.write(now.step, when, now.x, now.v, liquid and liquid.heights, liquid and liquid.drops)
         log.frame(frame, row, self.seconds["simulation"], self.source.new_owners())
 
     def _gained(self) -> int | None:

@@ -75,6 +75,7 @@ FRICTION = Limit(
 CONTACT_DAMPING = Limit("contact-damping", 1.0, way_out="1 is critical damping: nothing chatters any more")
 MOST_PAIRS = 10**5
 """Pairs of objects that all contact blocks of a scene name together."""
+DROPS = Limit("drops", 1.0, way_out="1 lets all of it fly")
 SWEEPS = Limit("sweeps", 4096, way_out="write sweeps auto, which takes 8 for each cell that the fastest solid travels")
 """What fix mdanim/liquid takes."""
 SPEED = Limit("speed", 1e4, 1e-4, "speed 0.1 shows a second of the scene in ten seconds, speed 10 ten seconds in one")

@@ -12,7 +12,7 @@ def check_waves(liquid: Liquid, block, problem) -> None:
     stray = "sweeps" if liquid.model is LiquidModel.WAVES else "calm"
     if getattr(liquid, stray) is not None:
         problem(block.first(stray).span(), f"model {liquid.model.value} has no {stray}", "leave the line out")
-    for word in ("wave", "current", "inflow", "drain"):
+    for word in ("drops", "wave", "current", "inflow", "drain"):
         if getattr(liquid, word) and liquid.model is not LiquidModel.WAVES:
             problem(block.first(word).span(), f"model {liquid.model.value} has no {word}", "write model waves")
     for word in ("inflow", "drain"):

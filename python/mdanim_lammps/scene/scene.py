@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 
 from ..errors import Span
 from .formatting import vector
-from .limits import CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, FRICTION, SWEEPS
+from .limits import CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DROPS, FRICTION, SWEEPS
 from .render import COLOR, Camera, Render  # noqa: F401
 from .rotation import IDENTITY, departure, rotation_about, rotation_euler
 from .schema import Codec, Keyword, OneOf, Rule, Vector, Words, setting
@@ -242,10 +242,12 @@ class Liquid:
         "splashes, sloshes and pushes; open hulls float dry.",
         "surface", default=LiquidModel.SURFACE, codec=Words(LiquidModel))  # fmt: skip
     calm: float | None = setting(
-        "auto | <T:s>",
-        "With `model waves`: time in which waves die to 1/e, besides what drag and depth do; `auto` is 50 √(depth/g).",
+        "auto | <T:s>", "With `model waves`: time in which waves die to 1/e, besides by drag and depth; `auto` is 50 √(depth/g).",
         "20 s", Rule.POSITIVE, default=None)  # fmt: skip
     """Time in which waves die to 1/e [s]; None is ``auto``."""
+    drops: float = setting(
+        "<share>", "With `model waves`: share of what shoots up from impacts and fronts that flies as drops, and comes back.",
+        "0.5", Rule.NOT_NEGATIVE, default=0.0, limit=DROPS)  # fmt: skip
     wave: tuple[Wave, ...] = setting(
         None, "With `model waves`: waves of this amplitude and period run into the basin from a side.",
         "-x amplitude 2 cm period 1 s", Rule.POSITIVE, default=(), many=True, codec=OneOf(Wave))  # fmt: skip

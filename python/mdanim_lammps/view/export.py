@@ -114,6 +114,7 @@ class _Frames:
             on_progress(count + n + 1, 2 * count)
         liquid = [feed.liquid(n) for n in range(count)] if feed.metadata.liquid else []
         self.heights, self.states = (np.array([frame[k] for frame in liquid]) for k in (0, 1)) if liquid else (None, None)
+        self.drops = [feed.drops(n).astype("<f4") for n in range(count)]
 
     def block(self, news: dict, every: int) -> bytes:
         """Scene, then times, centres and velocities, positions and liquid of every n-th frame."""
@@ -127,12 +128,14 @@ class _Frames:
         head = self.feed.head()
         head |= {"particles": 0, "springs": 0, "frames": len(times), "frameTime": head["frameTime"] * every}
         columns = 0 if self.heights is None else self.heights.shape[1]
+        drops = self.drops[kept]
         head["replay"] = {"news": news, "steps": self.steps, "columns": columns, "vertices": self.places.shape[1] // 3}
+        head["replay"]["drops"] = list(map(len, drops))
         scene = packed(_cleaned(head), self.feed.buffers() | {"boxes": self.boxes})
         parts = [struct.pack("<I", len(scene)), scene, times.astype("<f8").tobytes(), self.moving[kept].tobytes()]
         parts.append(differences(self.places[kept]))
         if columns:
-            parts += [differences(self.heights[kept]), self.states[kept].tobytes()]
+            parts += [differences(self.heights[kept]), self.states[kept].tobytes(), *(rows.tobytes() for rows in drops)]
         return b"".join(parts)
 
 

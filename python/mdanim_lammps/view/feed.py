@@ -4,10 +4,12 @@
 All numbers are little endian, and every array is padded to a multiple of four bytes. Both messages begin with eight bytes:
 
     scene  "MDS1", u32 length of the header in bytes; the header, JSON (`Feed.head`); the arrays that it lists as "buffers"
-    frame  "MDF1", u32 frame; f64 time [s], u32 layers, u32 vertices V, u32 objects O, u32 columns C of liquid
+    frame  "MDF1", u32 frame; f64 time [s], u32 layers, u32 vertices V, u32 objects O, u32 columns C of liquid,
+           u32 drops D of it
            f32 (O, 12): corner and size of each object's box [m], its centre of mass [m], the velocity of that [m/s]
            u16 (V, 3): vertices within the box of their object
            u16 (C), u8 (C): heights of the liquid within its basin, and `OPEN`, `HIDDEN` or `DRY`
+           f32 (D, 4): middle and radius of each drop [m]
            u8 (V): strain, 255 is `MOST_STRAIN`, where asked for; f32 (N, 3): particles [m], where asked for
 """
 
@@ -29,6 +31,7 @@ from ..picture.rays import direction
 from ..picture.render import grid_spacing
 from ..picture.surfaces import shaded_mesh
 from ..results.trajectory import Trajectory
+from ..results.trajectory_file import DROPS
 from ..results.trajectory_file import LIQUID as LIQUID_TABLES
 from ..results.written_frames import WrittenFrames
 from ..scene.render import Floor, Render
@@ -110,6 +113,7 @@ class Feed:
         if m.liquid:
             color = (255 * rgb(m.liquid.color or LIQUID)).round().tolist()
             liquid = {"name": m.liquid.name, "low": m.liquid.low, "high": m.liquid.high, "shape": m.liquid.shape, "color": color}
+            liquid["drops"] = m.liquid.most_drops
         return {
             "title": self.title,
             "frames": self.frames.total,
@@ -192,13 +196,14 @@ class Feed:
         scale = np.divide(STEPS, size, out=np.zeros_like(size), where=size > 0.0)
         within = (vertices - np.repeat(low, self.count, axis=0)) * np.repeat(scale, self.count, axis=0)
         liquid = self.liquid(n)
-        columns = len(liquid[0]) if liquid else 0
+        columns, drops = len(liquid[0]) if liquid else 0, self.drops(n)
         parts = [
             b"MDF1",
-            struct.pack("<IdIIII", n, frames.time(n), layers, len(vertices), len(low), columns),
+            struct.pack("<IdIIIII", n, frames.time(n), layers, len(vertices), len(low), columns, len(drops)),
             padded(np.hstack([low, size, center, speed]).astype("<f4")),
             padded(np.rint(within).astype("<u2")),
             *map(padded, liquid or ()),
+            padded(drops.astype("<f4")),
         ]
         if layers & STRAIN:
             parts.append(padded(self._strain(x)))
@@ -215,6 +220,13 @@ class Feed:
         height = np.rint(np.clip((smooth - low) / (high - low), 0.0, 1.0) * STEPS).astype("<u2")
         state = np.where(kept_dry(raw), DRY, np.where(np.isfinite(raw), OPEN, HIDDEN)).astype("u1")
         return height.ravel(), state.ravel()
+
+    def drops(self, n: int) -> np.ndarray:
+        """Middle and radius of each drop of a frame [m], shape (D, 4)."""
+        if self.metadata.liquid is None or not self.metadata.liquid.most_drops:
+            return np.zeros((0, 4), np.float32)
+        rows = self.frames.value(DROPS, n)
+        return rows[rows[:, 3] > 0.0]
 
     def heights(self, k: int, count: int) -> tuple[list[float], list[float]]:
         """Times [s] and heights of an object's centre of mass [m], in at most `MOST_POINTS` of the first ``count`` frames."""

@@ -338,6 +338,8 @@ def test_a_lid_from_wall_to_wall_still_floats(tmp_path):
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 model wave", "surface, paper or waves"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 calm 3", "calm is for model waves; leave it out"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 model waves calm 0", "calm must be > 0, got 0"),
+        ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 drops 0.5", "drops is for model waves; leave it out"),
+        ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 model waves drops 2", "a share from 0 to 1, got 2"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 6 level 2 gravity 1 model waves", "too far from cubes.*another number"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 model waves\nrun 0", "add cells i2_NAME"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 0.1 gravity 1\nrun 0", "level 0.1 is less than half a cell"),

@@ -4,6 +4,7 @@ import {
   BackSide, BufferAttribute, BufferGeometry, DynamicDrawUsage, FrontSide, LineBasicMaterial, LineLoop, Mesh, MeshLambertMaterial,
   MeshPhongMaterial, PlaneGeometry, Vector3,
 } from "./vendor.js";
+import { Drops } from "./drops.js";
 import { box } from "./extras.js";
 import { DRY } from "./message.js";
 
@@ -59,6 +60,8 @@ export class Liquid {
     plate.position.set((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]);
     plate.receiveShadow = true;
     this.colourThrough(plate.material);
+    this.drops = this.basin.drops ? new Drops(world, { most: this.basin.drops, color: hex }, scene.fieldOfView) : null;
+    if (this.drops) this.parts.push(this.drops.points);
     world.add(plate, box([low, high], scene.dark ? 0xaebac2 : 0x7f93a3), ...this.parts);
   }
 
@@ -78,7 +81,8 @@ export class Liquid {
   }
 
   // Heights of a frame; below a hull there is no surface.
-  show({ liquid, columns }) {
+  show({ liquid, columns, drops }) {
+    this.drops?.show(drops ?? new Float32Array(0));
     const { low, high, shape: [nx, ny] } = this.basin, W = nx + 2, H = ny + 2, scale = (high[2] - low[2]) / 65535, { at, normal, cover, x, y } = this;
     const column = (j, i) => Math.min(ny - 1, Math.max(0, j - 1)) * nx + Math.min(nx - 1, Math.max(0, i - 1));
     const z = (j, i) => low[2] + scale * liquid[column(j, i)];

@@ -18,9 +18,9 @@ export function readScene(buffer) {
 
 export function readFrame(buffer) {
   if (kind(buffer) !== "MDF1") throw new Error("not a frame");
-  const head = new DataView(buffer), [layers, V, O, C] = [16, 20, 24, 28].map((at) => head.getUint32(at, true));
+  const head = new DataView(buffer), [layers, V, O, C, D] = [16, 20, 24, 28, 32].map((at) => head.getUint32(at, true));
   const frame = { frame: head.getUint32(4, true), time: head.getFloat64(8, true), layers, bytes: buffer.byteLength };
-  let at = 32;
+  let at = 36;
   const next = (type, count) => {
     const array = new type(buffer, at, count);
     at += padded(array.byteLength);
@@ -29,6 +29,7 @@ export function readFrame(buffer) {
   frame.object = next(Float32Array, 12 * O);
   frame.position = next(Uint16Array, 3 * V);
   if (C) [frame.liquid, frame.columns] = [next(Uint16Array, C), next(Uint8Array, C)];
+  if (D) frame.drops = next(Float32Array, 4 * D);
   if (layers & STRAIN) frame.strain = next(Uint8Array, V);
   if (layers & PARTICLES) frame.particles = next(Float32Array, (buffer.byteLength - at) / 4);
   return frame;

@@ -89,6 +89,7 @@ export class Embedded {
     this.moving = new Float32Array(next(24 * O * F));
     this.places = undoDifferences(new Uint8Array(next(6 * V * F)), 3 * V, F);
     if (C) [this.heights, this.states] = [undoDifferences(new Uint8Array(next(2 * C * F)), C, F), new Uint8Array(next(C * F))];
+    this.drops = Array.from(this.head.replay.drops, (D) => new Float32Array(next(16 * D)));
     Object.assign(this, { O, V, C });
     return this;
   }
@@ -109,6 +110,6 @@ export class Embedded {
     const { O, V, C, head } = this, part = (array, size) => array.subarray(size * frame, size * (frame + 1));
     const solids = inOwnBoxes(head.objects, part(this.places, 3 * V), head.replay.steps, head.data.boxes, part(this.moving, 6 * O));
     const found = { frame, time: this.times[frame], layers: 0, bytes: 0, ...solids };
-    return C ? { ...found, liquid: part(this.heights, C), columns: part(this.states, C) } : found;
+    return C ? { ...found, liquid: part(this.heights, C), columns: part(this.states, C), drops: this.drops[frame] } : found;
   }
 }
