@@ -96,7 +96,7 @@ def test_threads_are_taken_where_they_pay(monkeypatch, edge, damping, known, cor
 def test_an_instance_takes_the_cores_that_pay(monkeypatch, edge, cores, expected):
     """Unless a number is asked for."""
     monkeypatch.delenv(THREADS, raising=False)
-    monkeypatch.setattr("mdanim_lammps.engine.instance.cores", lambda: cores)
+    monkeypatch.setattr("mdanim_lammps.engine.threads.cores", lambda: cores)
     with Instance(prepare(parse_scene(BLOCK.format(edge, ""))).plan) as instance:
         instance.setup()
         instance.run(2)

@@ -17,7 +17,7 @@ from .calibration import calibrate
 
 VERSION = 20250722
 """The LAMMPS version whose headers the plugin was compiled with; its ABI is that of one version."""
-ABI = 11
+ABI = 12
 """Number of the plugin's own C interface, `mdanim_abi`."""
 STYLES = (
     ("bond", "mdanim/harmonic"),
