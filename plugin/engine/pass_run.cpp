@@ -121,7 +121,7 @@ void PassRun::late_participants_turn(const std::function<void(bool at_end)> &lat
   const std::vector<int> &waiting = blocks.held_back();
   moved_alone += static_cast<long long>(waiting.size());
   if (!waiting.empty()) {
-    blocks.give_out_held_back(atoms.x, atoms.v);
+    blocks.give_out_held_back(threads, atoms.x, atoms.v);
     blocks.give_out_forces(atoms.f);
   }
   late(false);
@@ -130,7 +130,7 @@ void PassRun::late_participants_turn(const std::function<void(bool at_end)> &lat
   if (waiting.empty()) return;
   crew.integrator->begin_step(waiting);
   if (blocks.damped()) blocks.count_held_back(atoms.v, sums.dashpots);
-  blocks.take_in_held_back(atoms.x, atoms.v);
+  blocks.take_in_held_back(threads, atoms.x, atoms.v);
   for (const int i : waiting) {
     const double square = dot(vec3(atoms.v[i]), vec3(atoms.v[i]));
     pass.fastest = std::max(pass.fastest, square);

@@ -186,22 +186,24 @@ void SimdBlocks::give_out(double *const *to_x, double *const *to_v) const
   if (to_v) give(v, to_v);
 }
 
-void SimdBlocks::take_in_held_back(const double *const *from_x, const double *const *from_v)
+void SimdBlocks::take_in_held_back(const Threads &threads, const double *const *from_x, const double *const *from_v)
 {
-  for (const int i : outside)
+  each_outside(threads, [&](int i) {
     for (int d = 0; d < 3; ++d) {
       x[d][i] = from_x[at(i)][d];
       v[d][i] = from_v[at(i)][d];
     }
+  });
 }
 
-void SimdBlocks::give_out_held_back(double *const *to_x, double *const *to_v) const
+void SimdBlocks::give_out_held_back(const Threads &threads, double *const *to_x, double *const *to_v) const
 {
-  for (const int i : outside)
+  each_outside(threads, [&](int i) {
     for (int d = 0; d < 3; ++d) {
       to_x[at(i)][d] = x[d][i];
       to_v[at(i)][d] = v[d][i];
     }
+  });
 }
 
 void SimdBlocks::take_in_dashpots(const std::vector<Vec3> &from_force, const std::vector<Vec3> &from_seen)

@@ -9,6 +9,7 @@
 #include "engine/pass_participant.h"
 #include "engine/positions.h"
 #include "engine/range_cut.h"
+#include "engine/team.h"
 #include "laws/vec3.h"
 
 #include <vector>
@@ -49,8 +50,8 @@ class SimdBlocks {
   void take_in(const double *const *x, const double *const *v);
   void give_out(double *const *x, double *const *v) const;    // null for what is not wanted
   // The same for the particles that are held back.
-  void take_in_held_back(const double *const *x, const double *const *v);
-  void give_out_held_back(double *const *x, double *const *v) const;
+  void take_in_held_back(const Threads &threads, const double *const *x, const double *const *v);
+  void give_out_held_back(const Threads &threads, double *const *x, double *const *v) const;
 
   // Where damped: forces of dashpots in the last step, and the velocities that they saw, of all own particles.
   void take_in_dashpots(const std::vector<Vec3> &force, const std::vector<Vec3> &seen);
@@ -76,6 +77,15 @@ class SimdBlocks {
   std::size_t bytes() const;
 
  private:
+  // work(i) for all that are held back, which threads share.
+  template <class Work> void each_outside(const Threads &threads, const Work &work) const
+  {
+    constexpr double PARTICLE = 8.0, PART = 0.25;    // ns, about; of the least task: these loops come one after the other
+    threads.parts(static_cast<long>(outside.size()), 1 + static_cast<long>(PART * threads.least() / PARTICLE),
+                  [&](long from, long to) {
+                    for (long n = from; n < to; ++n) work(outside[n]);
+                  });
+  }
   int at(int i) const { return reordered ? index[i] : i; }
   int ours(int i) const { return reordered ? place[i] : i; }    // the way back
   bool is_ghost(int place) const { return reordered && place >= owned; }

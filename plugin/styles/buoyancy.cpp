@@ -113,51 +113,78 @@ void Buoyancy::append_required_atoms(std::vector<int> &particles) const
 
 // --- a step ---
 
+// What is the same for all particles in a step.
+struct Buoyancy::Acting {
+  const double *const *x, *const *v;
+  double *const *f;
+  const double *volume, *gamma, *base;
+  double *lambda;
+  double above, below;    // nothing is immersed from `above` up; most particles of a large body need not look up the surface
+  double calming, scale;
+};
+
+// Threads share particles and faces. What all of them do to the liquid and to the account is added up in the order of particles.
 void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
 {
+  constexpr double PARTICLE = 25.0, PART = 0.25;    // ns, about; of the least task, as some particles cost more than others
   wet.clear();
   if (!lifts || near.empty()) return;
   const Lap lap(seconds);
-  double *const *x = atom->x, *const *v = atom->v, *const *f = atom->f;
-  const double *volumes = volume.values(lmp), *gammas = slows ? gamma.values(lmp) : nullptr;
-  double *lambda = slows ? lambda_column.values(lmp) : nullptr;
-  const double *base = base_column.given() ? base_column.values(lmp) : nullptr;
-  for (Face &face : faces) face.push = pressure_on(face, basin);
   const double floor = basin.shape.low.z, height = basin.shape.cell.z;
-  const double above = floor + (basin.top() + 1.0) * height;    // nothing is immersed from here up
-  const double below = basin.all_below();                       // most particles of a large body need not look up the surface
-  const double calming = basin.calms_solids(), scale = update->dt * force->ftm2v / rho;
-  for (std::size_t n = 0; n < near.size(); ++n) {
-    const int i = near[n];
-    const double z = x[i][2];
-    Basin::AtPlace at;
-    if (z < above) {
-      if (z <= below && basin.over_floor(x[i]))
-        at.immersed = at.push.z = 1.0;
-      else
-        at = basin.at(basin.in_cells(x[i]));
-    }
-    const double s = at.immersed;
-    const double own = volumes ? volumes[i] : volume.number;
-    const double own_lambda = slows ? liquid_lambda(gammas ? gammas[i] : gamma.number, rho, own, s) / force->ftm2v : 0.0;
-    if (lambda) lambda[i] = (base ? base[i] : 0.0) + own_lambda;
-    Vec3 push;
-    if (!pressed())
-      push = {lift(rho, own, at.push.x, basin.g), lift(rho, own, at.push.y, basin.g), lift(rho, own, at.push.z, basin.g)};
+  const Acting now{atom->x,
+                   atom->v,
+                   atom->f,
+                   volume.values(lmp),
+                   slows ? gamma.values(lmp) : nullptr,
+                   base_column.given() ? base_column.values(lmp) : nullptr,
+                   slows ? lambda_column.values(lmp) : nullptr,
+                   floor + (basin.top() + 1.0) * height,
+                   basin.all_below(),
+                   basin.calms_solids(),
+                   in_step ? update->dt * force->ftm2v / rho : 0.0};
+  const long least = 1 + static_cast<long>(PART * threads.least() / PARTICLE);
+  threads.parts(static_cast<long>(faces.size()), least, [&](long from, long to) {
+    for (long n = from; n < to; ++n) faces[n].push = pressure_on(faces[n], basin);
+  });
+  wet.resize(near.size());
+  threads.parts(static_cast<long>(near.size()), least, [&](long from, long to) {
+    for (long n = from; n < to; ++n) wet[n] = act_on(now, basin, n, near[n]);
+  });
+  if (!in_step || !basin.takes_impulses()) return;
+  for (const Wet &one : wet)
+    if (one.lambda > 0.0) basin.take_impulse(basin.in_cells(now.x[one.i]), one.impulse);
+}
+
+Buoyancy::Wet Buoyancy::act_on(const Acting &now, const Basin &basin, std::size_t n, int i) const
+{
+  const double *const x = now.x[i], *const v = now.v[i];
+  Basin::AtPlace at;
+  if (x[2] < now.above) {
+    if (x[2] <= now.below && basin.over_floor(x))
+      at.immersed = at.push.z = 1.0;
     else
-      for (int k = face_of_first[n]; k < face_of_first[n + 1]; ++k) push += faces[face_of[k]].push;
-    const double own_calming = calming * s * mass_of(atom->rmass, atom->mass, atom->type, i) / force->ftm2v;
-    if (own_lambda > 0.0 && basin.takes_impulses()) {
-      // Drag is against the liquid, not against the floor, and takes it along.
-      push += own_lambda * at.flow;
-      const Vec3 relative = vec3(v[i]) - at.flow;
-      if (in_step) basin.take_impulse(basin.in_cells(x[i]), scale * own_lambda * Vec3{relative.x, relative.y, 0.0});
-    }
-    if (s == 0.0 && dot(push, push) == 0.0) continue;
-    add_to(f[i], push);
-    if (own_calming > 0.0) f[i][2] -= own_calming * (v[i][2] - at.rising);
-    wet.push_back({i, push, own_lambda, own_calming, at.rising});
+      at = basin.at(basin.in_cells(x));
   }
+  const double s = at.immersed;
+  const double own = now.volume ? now.volume[i] : volume.number;
+  const double own_lambda = slows ? liquid_lambda(now.gamma ? now.gamma[i] : gamma.number, rho, own, s) / force->ftm2v : 0.0;
+  if (now.lambda) now.lambda[i] = (now.base ? now.base[i] : 0.0) + own_lambda;
+  Vec3 push, impulse;
+  if (!pressed())
+    push = {lift(rho, own, at.push.x, basin.g), lift(rho, own, at.push.y, basin.g), lift(rho, own, at.push.z, basin.g)};
+  else
+    for (int k = face_of_first[n]; k < face_of_first[n + 1]; ++k) push += faces[face_of[k]].push;
+  const double own_calming = now.calming * s * mass_of(atom->rmass, atom->mass, atom->type, i) / force->ftm2v;
+  if (own_lambda > 0.0 && basin.takes_impulses()) {
+    // Drag is against the liquid, not against the floor, and takes it along.
+    push += own_lambda * at.flow;
+    const Vec3 relative = vec3(v) - at.flow;
+    impulse = now.scale * own_lambda * Vec3{relative.x, relative.y, 0.0};
+  }
+  if (s == 0.0 && dot(push, push) == 0.0) return {-1, {}, 0.0, 0.0, 0.0, {}};
+  add_to(now.f[i], push);
+  if (own_calming > 0.0) now.f[i][2] -= own_calming * (v[2] - at.rising);
+  return {i, push, own_lambda, own_calming, at.rising, impulse};
 }
 
 // What hydrostatic pressure does to each corner of a face.
@@ -178,6 +205,7 @@ Basin::Energies Buoyancy::power() const
 {
   Basin::Energies now;
   for (const Wet &w : wet) {
+    if (w.i < 0) continue;
     const Vec3 v = vec3(atom->v[w.i]);
     now.work += dot(w.push, v) - w.calming * (v.z - w.rising) * v.z;
     now.lost += w.lambda * dot(v, v);

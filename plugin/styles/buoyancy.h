@@ -4,6 +4,7 @@
 #ifndef MDANIM_STYLES_BUOYANCY_H
 #define MDANIM_STYLES_BUOYANCY_H
 
+#include "engine/team.h"
 #include "liquid/basin.h"
 #include "pointers.h"
 #include "styles/particle_value.h"
@@ -36,6 +37,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   // The account begins at the velocities of now, and goes on by a step.
   void begin_account() { last = power(); }
   void account();
+  void use(const Threads &now) { threads = now; }    // for steps; the bits are the same for any number of them
   // Corners of faces, some perhaps twice.
   void append_required_atoms(std::vector<int> &particles) const;
 
@@ -47,21 +49,26 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   double seconds = 0.0;
 
  private:
-  struct Wet {    // a particle that the liquid acts on in this step
-    int i;
+  struct Wet {    // a particle near the liquid, in this step
+    int i;        // negative where the liquid does not act on it
     Vec3 push;
     double lambda;
     double calming, rising;    // see Basin::calms_solids(): force over velocity; velocity that is left
+    Vec3 impulse;              // on the liquid
   };
   struct Face {
     int corner[4];    // counter-clockwise seen from outside
     Vec3 push;        // on each corner, in this step
   };
 
+  // What acts on a particle, the n-th near the liquid.
+  struct Acting;
+  Wet act_on(const Acting &now, const Basin &basin, std::size_t n, int i) const;
   Vec3 pressure_on(const Face &face, const Basin &basin) const;
   Basin::Energies power() const;
 
   double rho;
+  Threads threads;
   bool lifts = false, slows = false;
   ParticleValue volume, gamma;
   ParticleColumn lambda_column, base_column;

@@ -251,7 +251,7 @@ void FixMdanimLiquid::init()
         name(), lattice_cells.name, lattice_cells.name);
   if ((lattice_cells.given() || buoyancy->pressed()) && atom->map_style == Atom::MAP_NONE)
     error->all(FLERR, "{}: cells and faces need an atom map; use 'atom_modify map array'", name());
-  basin->use(Threads());    // until passes tell how many there are
+  use(Threads());    // until passes tell how many there are
   lists_are_prompt = neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once;
 }
 

@@ -41,7 +41,7 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   int modify_param(int, char **) override;
   void append_required_atoms(std::vector<int> &particles) const override;
   bool needs_all_atoms() override;
-  void equip(const mdanim::Kernels &, const mdanim::Threads &threads) override { basin->use(threads); }
+  void equip(const mdanim::Kernels &, const mdanim::Threads &threads) override { use(threads); }
   double safe_displacement() const override;
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -53,6 +53,12 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   const mdanim::Basin &liquid() const { return *basin; }
 
  private:
+  void use(const mdanim::Threads &threads)
+  {
+    basin->use(threads);
+    buoyancy->use(threads);
+  }
+
   class WorldSums : public mdanim::RankSums {
    public:
     explicit WorldSums(const LAMMPS *lmp) : lmp(lmp) {}
