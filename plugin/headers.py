@@ -10,6 +10,8 @@ from pathlib import Path
 MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"]
 NEEDED = (2025, 7, 22)
 """The LAMMPS version for which the plugin is written."""
+PKGCONFIG = ("lib*/pkgconfig", "lib/*/pkgconfig", "pkgconfig")
+"""Where an installation tells its version, which none of its headers does."""
 
 
 def folder_with(package, ending):
@@ -26,13 +28,19 @@ def folder_with(package, ending):
 
 def own_lammps(place):
     """Folder of headers of a source tree or an installation, and its version as (year, month, day)."""
-    for folder in (Path(place) / "include" / "lammps", Path(place) / "src", Path(place)):
-        if (folder / "fix.h").is_file() and (folder / "version.h").is_file():
+    for folder in (Path(place) / "src", Path(place), Path(place) / "include" / "lammps"):
+        if not (folder / "fix.h").is_file():
+            continue
+        if (folder / "version.h").is_file():  # of a source tree
             found = re.search(r'LAMMPS_VERSION "(\d+) (\w{3})\w* (\d{4})"', (folder / "version.h").read_text())
             if found and found[2] in MONTHS:
                 return folder.resolve().as_posix(), (int(found[3]), MONTHS.index(found[2]) + 1, int(found[1]))
             sys.exit(f'{folder / "version.h"} names no version such as "22 Jul 2025"')
-    sys.exit(f"LAMMPS_DIR={place}: no fix.h and version.h in it, in src or include/lammps; name a source tree of LAMMPS")
+        for file in (file for parts in PKGCONFIG for file in Path(place).glob(f"{parts}/liblammps.pc")):  # of an installation
+            if found := re.search(r"^Version: (\d{4})\.?(\d\d?)\.?(\d\d?)", file.read_text(), flags=re.MULTILINE):
+                return folder.resolve().as_posix(), tuple(map(int, found.groups()))
+        sys.exit(f"LAMMPS_DIR={place}: no version in src/version.h or lib/pkgconfig/liblammps.pc; name a source tree of LAMMPS")
+    sys.exit(f"LAMMPS_DIR={place}: no fix.h in it, in src or include/lammps; name a source tree of LAMMPS, or what it installed")
 
 
 if len(sys.argv) > 1:

@@ -4,6 +4,7 @@
 // the order of particles nor the ranks that hold them.
 
 #include "styles/bond_mdanim_harmonic.h"
+#include "styles/words.h"
 
 #include "engine/stopwatch.h"
 
@@ -52,10 +53,7 @@ void BondMdanimHarmonic::allocate()
 // bond_coeff TYPE K r0 [c]
 void BondMdanimHarmonic::coeff(int narg, char **arg)
 {
-  if (narg < 3)
-    error->all(FLERR, Error::ARGZERO,
-               "bond_style mdanim/harmonic: missing arguments, it is written as 'bond_coeff TYPE K r0 [c]'; got {} of them",
-               narg - 1);
+  need_words(lmp, "bond_style mdanim/harmonic", "bond_coeff TYPE", "K r0 [c]", narg - 1);
   if (narg > 4) error->all(FLERR, 4, "bond_style mdanim/harmonic: coefficients are K r0 [c], got {} words", narg - 1);
   if (!allocated) allocate();
 

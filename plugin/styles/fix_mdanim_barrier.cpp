@@ -10,6 +10,7 @@
 #include "laws/barrier.h"
 #include "styles/object_box.h"
 #include "styles/rank_gather.h"
+#include "styles/words.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -49,19 +50,15 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
   comm_forward = 4;
   filter = &widest_kernels().pair_filter;
 
-  if (narg < 7)
-    error->all(FLERR, Error::ARGZERO,
-               "fix mdanim/barrier: missing arguments, it is written as 'fix ID group mdanim/barrier BOUNDARY BARRIER k rc'; got "
-               "{} of them",
-               narg - 3);
+  need_words(lmp, "fix mdanim/barrier", "fix ID group mdanim/barrier", "BOUNDARY BARRIER k rc", narg - 3);
   boundary_bit = group_bit(3, arg[3]);
   barrier_bit = group_bit(4, arg[4]);
   stiffness = ParticleValue(lmp, "fix mdanim/barrier: k", 5, arg[5]);
   reach = ParticleValue(lmp, "fix mdanim/barrier: rc", 6, arg[6]);
 
   for (int iarg = 7; iarg < narg;) {
-    const int words = strcmp(arg[iarg], "thin") == 0 ? 2 : 1;
-    if (iarg + words >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/barrier {}", arg[iarg]), error);
+    static const std::vector<Keyword> known = {{"thin", "GROUP ratio"}, {"damp", "gn"}, {"power", "2|3"}};
+    const int words = words_of_keyword(lmp, "fix mdanim/barrier", known, iarg, narg, arg);
     if (strcmp(arg[iarg], "thin") == 0) {
       thin_bit = group_bit(iarg + 1, arg[iarg + 1]);
       thin_ratio = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
@@ -69,14 +66,12 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
     } else if (strcmp(arg[iarg], "damp") == 0) {
       damping = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
       if (!(damping >= 0.0)) error->all(FLERR, iarg + 1, "fix mdanim/barrier: damp must be >= 0, got {}", arg[iarg + 1]);
-    } else if (strcmp(arg[iarg], "power") == 0) {
+    } else {
       power = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
       if (power != 2 && power != 3)
         error->all(FLERR, iarg + 1, "fix mdanim/barrier: power must be 2 or 3, got {}", arg[iarg + 1]);
-    } else {
-      error->all(FLERR, iarg, "fix mdanim/barrier: unknown keyword {}; it knows thin, damp and power", arg[iarg]);
     }
-    iarg += 1 + words;
+    iarg += words;
   }
 }
 

@@ -10,6 +10,7 @@
 #include "engine/stopwatch.h"
 #include "styles/object_box.h"
 #include "styles/rank_gather.h"
+#include "styles/words.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -53,11 +54,7 @@ FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
   global_freq = 1;
   restart_global = 1;
 
-  if (narg < 6)
-    error->all(FLERR, Error::ARGZERO,
-               "fix mdanim/contact: missing arguments, it is written as 'fix ID group mdanim/contact BODY YOUNG FRICTION'; got "
-               "{} of them",
-               narg - 3);
+  need_words(lmp, "fix mdanim/contact", "fix ID group mdanim/contact", "BODY YOUNG FRICTION", narg - 3);
   kind = ParticleValue(lmp, "fix mdanim/contact: BODY", 3, arg[3]);
   young = ParticleValue(lmp, "fix mdanim/contact: YOUNG", 4, arg[4]);
   friction = ParticleValue(lmp, "fix mdanim/contact: FRICTION", 5, arg[5]);
@@ -73,9 +70,10 @@ int FixMdanimContact::read_word(int iarg, int narg, char **arg)
 {
   ContactSettings &settings = world_of_contact.settings;
   const auto is = [&](const char *word) { return strcmp(arg[iarg], word) == 0; };
-  const auto want = [&](int words) {
-    if (iarg + words >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/contact {}", arg[iarg]), error);
-  };
+  static const std::vector<Keyword> known = {{"objects", ""},     {"plane", "x|y|z lo|hi at"}, {"stiffness", "f"},
+                                             {"damping", "beta"}, {"pair", "MOL1 MOL2 mu beta"},        {"among", "GROUP"},
+                                             {"bodies", "FILE"}};
+  const int words = words_of_keyword(lmp, "fix mdanim/contact", known, iarg, narg, arg);
   const auto number = [&](int at, const char *what, double least) {
     const double value = utils::numeric(FLERR, arg[at], false, lmp);
     if (!(value >= least)) error->all(FLERR, at, "fix mdanim/contact: {} must be at least {}, got {}", what, least, arg[at]);
@@ -83,10 +81,9 @@ int FixMdanimContact::read_word(int iarg, int narg, char **arg)
   };
   if (is("objects")) {
     settings.objects = true;
-    return 1;
+    return words;
   }
   if (is("plane")) {
-    want(3);
     const int axis = arg[iarg + 1][0] - 'x';
     if (axis < 0 || axis > 2 || arg[iarg + 1][1])
       error->all(FLERR, iarg + 1, "fix mdanim/contact: the axis of a plane is x, y or z, got {}", arg[iarg + 1]);
@@ -95,45 +92,34 @@ int FixMdanimContact::read_word(int iarg, int narg, char **arg)
       error->all(FLERR, iarg + 2, "fix mdanim/contact: a plane is the lower end of what is allowed, lo, or the upper, hi; got {}",
                  arg[iarg + 2]);
     settings.planes.push_back({axis, low ? 1.0 : -1.0, utils::numeric(FLERR, arg[iarg + 3], false, lmp)});
-    return 4;
+    return words;
   }
   if (is("stiffness")) {
-    want(1);
     settings.stiffness = number(iarg + 1, "stiffness", 0.0);
-    return 2;
+    return words;
   }
   if (is("damping")) {
-    want(1);
     settings.damping = number(iarg + 1, "damping", 0.0);
-    return 2;
+    return words;
   }
   if (is("pair")) {
-    want(4);
     int a = utils::inumeric(FLERR, arg[iarg + 1], false, lmp), b = utils::inumeric(FLERR, arg[iarg + 2], false, lmp);
     if (a < 1 || b < 1 || a == b)
       error->all(FLERR, iarg + 1, "fix mdanim/contact: a pair is two different molecule IDs > 0, got {} and {}", arg[iarg + 1],
                  arg[iarg + 2]);
     settings.pairs[{std::min(a, b), std::max(a, b)}] = {number(iarg + 3, "mu of a pair", 0.0),
                                                         number(iarg + 4, "beta of a pair", 0.0)};
-    return 5;
+    return words;
   }
   if (is("among")) {
-    want(1);
     const int index = group->find(arg[iarg + 1]);
     if (index < 0)
       error->all(FLERR, iarg + 1, "fix mdanim/contact: there is no group {}; make it before this fix", arg[iarg + 1]);
     among_bit = group->bitmask[index];
-    return 2;
+    return words;
   }
-  if (is("bodies")) {
-    want(1);
-    read_bodies_of(arg[iarg + 1]);
-    return 2;
-  }
-  error->all(FLERR, iarg,
-             "fix mdanim/contact: unknown keyword {}; it knows objects, plane, stiffness, damping, pair, among and bodies",
-             arg[iarg]);
-  return 0;
+  read_bodies_of(arg[iarg + 1]);
+  return words;
 }
 
 // Rank 0 reads the file, all take the same text apart.

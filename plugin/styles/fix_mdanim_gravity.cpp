@@ -5,6 +5,7 @@
 
 #include "engine/stopwatch.h"
 #include "styles/particle_value.h"
+#include "styles/words.h"
 
 #include "atom.h"
 #include "error.h"
@@ -27,10 +28,7 @@ FixMdanimGravity::FixMdanimGravity(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
   global_freq = 1;
   dynamic_group_allow = 1;
 
-  if (narg < 6)
-    error->all(FLERR, Error::ARGZERO,
-               "fix mdanim/gravity: missing arguments, it is written as 'fix ID group mdanim/gravity gx gy gz'; got {} of them",
-               narg - 3);
+  need_words(lmp, "fix mdanim/gravity", "fix ID group mdanim/gravity", "gx gy gz", narg - 3);
   if (narg > 6) error->all(FLERR, 6, "fix mdanim/gravity: gx gy gz are all it takes, got also {}", arg[6]);
   g = {utils::numeric(FLERR, arg[3], false, lmp), utils::numeric(FLERR, arg[4], false, lmp),
        utils::numeric(FLERR, arg[5], false, lmp)};

@@ -2,6 +2,7 @@
 // fix mdanim/leapfrog: loops over the particles; the half steps are in leapfrog.h.
 
 #include "styles/fix_mdanim_leapfrog.h"
+#include "styles/words.h"
 
 #include "engine/stopwatch.h"
 #include "laws/leapfrog.h"
@@ -44,11 +45,12 @@ FixMdanimLeapfrog::FixMdanimLeapfrog(LAMMPS *lmp, int narg, char **arg) : Fix(lm
 
   int drag_word = 0;
   for (int iarg = 3; iarg < narg; iarg += 2) {
-    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/leapfrog {}", arg[iarg]), error);
+    static const std::vector<Keyword> known = {{"lambda", "L|d_NAME"}, {"drag", "implicit|exp"}};
+    words_of_keyword(lmp, "fix mdanim/leapfrog", known, iarg, narg, arg);
     if (strcmp(arg[iarg], "lambda") == 0) {
       lambda = ParticleValue(lmp, "fix mdanim/leapfrog: lambda", iarg + 1, arg[iarg + 1]);
       has_drag = true;
-    } else if (strcmp(arg[iarg], "drag") == 0) {
+    } else {
       drag_word = iarg;
       if (strcmp(arg[iarg + 1], "exp") == 0)
         exponential = true;
@@ -56,8 +58,6 @@ FixMdanimLeapfrog::FixMdanimLeapfrog(LAMMPS *lmp, int narg, char **arg) : Fix(lm
         exponential = false;
       else
         error->all(FLERR, iarg + 1, "fix mdanim/leapfrog: drag must be implicit or exp, got {}", arg[iarg + 1]);
-    } else {
-      error->all(FLERR, iarg, "fix mdanim/leapfrog: unknown keyword {}; it knows lambda and drag", arg[iarg]);
     }
   }
   if (drag_word && !has_drag)

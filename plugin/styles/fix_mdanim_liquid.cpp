@@ -2,6 +2,7 @@
 // The command, the particles near the liquid, and output.
 
 #include "styles/fix_mdanim_liquid.h"
+#include "styles/words.h"
 
 #include "engine/stopwatch.h"
 #include "laws/vec3.h"
@@ -29,6 +30,27 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
+
+static const char *const STYLE = "fix mdanim/liquid";
+
+// Keywords of the command alone, and those that fix_modify takes as well.
+static const std::vector<Keyword> FIXED = {{"volume", "V"},
+                                           {"level", "Z"},
+                                           {"fill", "REGION2"},
+                                           {"gravity", "G"},
+                                           {"model", "surface|paper|waves"},
+                                           {"calm", "T"},
+                                           {"drops", "SHARE"},
+                                           {"wave", "SIDE a T"},
+                                           {"current", "SIDE u"},
+                                           {"inflow", "REGION2 q ux uy"},
+                                           {"drain", "REGION2 q"},
+                                           {"vertical", "lower|any"},
+                                           {"seed", "N"}};
+static const std::vector<Keyword> FREE = {{"buoyancy", "V|d_NAME"}, {"drag", "gamma|d_NAME"}, {"lambda", "d_NAME"},
+                                          {"base", "d_NAME"},       {"cells", "i2_NAME"},     {"faces", "i2_NAME"},
+                                          {"softness", "d_NAME"},   {"still", "GROUP"},       {"sweeps", "auto|N"},
+                                          {"every", "N"},           {"stride", "s"},          {"period", "p"}};
 
 static constexpr double ANYWHERE = std::numeric_limits<double>::infinity();
 
@@ -65,7 +87,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   nevery = 1;
   restart_global = 1;
 
-  if (narg < 9) utils::missing_cmd_args(FLERR, "fix mdanim/liquid", error);
+  need_words(lmp, STYLE, "fix ID group mdanim/liquid", "REGION rho grid NX NY NZ", narg - 3);
   region_id = arg[3];
   Region *region = domain->get_region_by_id(region_id);
   if (!region) error->all(FLERR, 3, "fix mdanim/liquid: there is no region {}; make it before this fix", arg[3]);
@@ -90,10 +112,11 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   double calm = 0.0, spray = 0.0;
   std::vector<int> makers;    // where the words of each stand
   Basin::Pace pace;
+  std::vector<Keyword> known = FIXED;
+  known.insert(known.end(), FREE.begin(), FREE.end());
   for (int iarg = 9; iarg < narg;) {
-    if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", arg[iarg]), error);
+    const int used = words_of_keyword(lmp, STYLE, known, iarg, narg, arg);
     const char *word = arg[iarg], *value = arg[iarg + 1];
-    int used = 2;
     if (strcmp(word, "volume") == 0) {
       volume_asked = utils::numeric(FLERR, value, false, lmp);
       if (!(volume_asked > 0.0)) error->all(FLERR, iarg + 1, "fix mdanim/liquid: volume must be > 0, got {}", value);
@@ -124,10 +147,8 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
       spray = utils::numeric(FLERR, value, false, lmp);
       if (!(spray >= 0.0 && spray <= 1.0))
         error->all(FLERR, iarg + 1, "fix mdanim/liquid: drops must be a share from 0 to 1, got {}", value);
-    } else if (const int words = maker_words(word)) {
+    } else if (is_maker(word)) {
       makers.push_back(iarg);
-      used = words;
-      if (iarg + used > narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", word), error);
     } else if (strcmp(word, "vertical") == 0) {
       if (strcmp(value, "lower") == 0)
         vertical = Vertical::LOWER;
@@ -137,15 +158,8 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
         error->all(FLERR, iarg + 1, "fix mdanim/liquid: vertical must be lower or any, got {}", value);
     } else if (strcmp(word, "seed") == 0) {
       seed = utils::bnumeric(FLERR, value, false, lmp);
-    } else {
-      used = keyword(iarg, narg, arg, pace);
-      if (!used)
-        error->all(FLERR, iarg,
-                   "fix mdanim/liquid: unknown keyword {}; it knows volume, level, fill, gravity, model, calm, drops, wave, "
-                   "current, inflow, drain, vertical, seed, buoyancy, drag, lambda, base, cells, faces, softness, still, sweeps, "
-                   "every, stride and period",
-                   word);
-    }
+    } else
+      keyword(iarg, arg, pace);
     iarg += used;
   }
   if (has_volume == has_level)
@@ -185,16 +199,12 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   size_array_rows = basin->columns();
 }
 
-// Keywords that fix_modify takes as well; returns how many words it used, 0 for a word it does not know.
-int FixMdanimLiquid::keyword(int iarg, int narg, char **arg, Basin::Pace &pace)
+// Keywords that fix_modify takes as well.
+void FixMdanimLiquid::keyword(int iarg, char **arg, Basin::Pace &pace)
 {
   const char *word = arg[iarg];
-  static const char *const known[] = {"buoyancy", "drag",  "lambda", "base",  "cells",  "faces",
-                                      "softness", "still", "sweeps", "every", "stride", "period"};
-  if (std::none_of(std::begin(known), std::end(known), [&](const char *k) { return strcmp(k, word) == 0; })) return 0;
-  if (iarg + 1 >= narg) utils::missing_cmd_args(FLERR, fmt::format("fix mdanim/liquid {}", word), error);
   const char *value = arg[iarg + 1];
-  if (buoyancy->keyword(iarg, word, value)) return 2;
+  if (buoyancy->keyword(iarg, word, value)) return;
   if (strcmp(word, "cells") == 0) {
     lattice_cells = ParticleTable(lmp, "fix mdanim/liquid: cells", iarg + 1, value);
   } else if (strcmp(word, "softness") == 0) {
@@ -213,10 +223,14 @@ int FixMdanimLiquid::keyword(int iarg, int narg, char **arg, Basin::Pace &pace)
     pace.every = utils::inumeric(FLERR, value, false, lmp);
     if (pace.every < 1) error->all(FLERR, iarg + 1, "fix mdanim/liquid: every must be >= 1, got {}", value);
   }
-  return 2;
 }
 
-int FixMdanimLiquid::modify_param(int narg, char **arg) { return keyword(0, narg, arg, basin->pace); }
+int FixMdanimLiquid::modify_param(int narg, char **arg)
+{
+  const int used = words_of_keyword(lmp, STYLE, FREE, 0, narg, arg);
+  keyword(0, arg, basin->pace);
+  return used;
+}
 
 int FixMdanimLiquid::group_bit(int iarg, const char *word)
 {

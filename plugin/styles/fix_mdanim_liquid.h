@@ -73,9 +73,9 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   };
 
   std::string name() const;    // begins messages
-  static int maker_words(const char *word);
+  static bool is_maker(const char *word);
   void add_maker(mdanim::WaveBasin &waves, int iarg, char **arg, double depth);
-  int keyword(int iarg, int narg, char **arg, mdanim::Basin::Pace &pace);
+  void keyword(int iarg, char **arg, mdanim::Basin::Pace &pace);
   int group_bit(int iarg, const char *word);
   mdanim::Basin::AddBodies bodies(bool still) const;
   void add_particles(mdanim::Occupancy &into, bool still, double below) const;

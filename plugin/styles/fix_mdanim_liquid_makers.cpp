@@ -16,14 +16,8 @@
 using namespace LAMMPS_NS;
 using namespace mdanim;
 
-// wave SIDE amplitude period, current SIDE speed, inflow REGION rate ux uy, drain REGION rate: how many words; 0 for another
-// word.
-int FixMdanimLiquid::maker_words(const char *word)
-{
-  if (strcmp(word, "wave") == 0) return 4;
-  if (strcmp(word, "current") == 0 || strcmp(word, "drain") == 0) return 3;
-  return strcmp(word, "inflow") == 0 ? 5 : 0;
-}
+bool FixMdanimLiquid::is_maker(const char *word)
+{ return strcmp(word, "wave") == 0 || strcmp(word, "current") == 0 || strcmp(word, "inflow") == 0 || strcmp(word, "drain") == 0; }
 
 void FixMdanimLiquid::add_maker(WaveBasin &waves, int iarg, char **arg, double depth)
 {

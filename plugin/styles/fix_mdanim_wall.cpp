@@ -2,6 +2,7 @@
 // fix mdanim/wall: asks the region for the nearest point of its surface; the law is in wall.h.
 
 #include "styles/fix_mdanim_wall.h"
+#include "styles/words.h"
 
 #include "engine/stopwatch.h"
 #include "laws/wall.h"
@@ -39,10 +40,7 @@ FixMdanimWall::FixMdanimWall(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg,
   global_freq = 1;
   dynamic_group_allow = 1;
 
-  if (narg < 5)
-    error->all(FLERR, Error::ARGZERO,
-               "fix mdanim/wall: missing arguments, it is written as 'fix ID group mdanim/wall REGION k'; got {} of them",
-               narg - 3);
+  need_words(lmp, "fix mdanim/wall", "fix ID group mdanim/wall", "REGION k", narg - 3);
   if (narg > 5) error->all(FLERR, 5, "fix mdanim/wall: region and k are all it takes, got also {}", arg[5]);
   region_id = arg[3];
   region = domain->get_region_by_id(region_id);
