@@ -38,7 +38,7 @@ liquid water {
   density 1000 kg/m^3
   level 20 cm
 }
-render { camera from (0, -3, 1) m look (0, 0, 0.3) m }
+render { camera from (0, -3, 1) m look (0, 0, 0.3) m  light from (-3, 0, 4) }
 control { time 0.2 s  frames 20 fps  resolution 5 cm }
 """
 
@@ -74,7 +74,7 @@ def corners(folder, run, frame, index):
 @pytest.mark.parametrize("flush", [1, 10**9], ids=["saved frame by frame", "saved at once"])
 def test_usd(folder, run, tmp_path, monkeypatch, flush):
     """Meshes, times, units, materials, liquid and camera, as pxr reads them."""
-    from pxr import Usd, UsdGeom, UsdShade
+    from pxr import Gf, Usd, UsdGeom, UsdLux, UsdShade
 
     monkeypatch.setattr("mdanim_lammps.export.usd.FLUSH", flush)
     stage = Usd.Stage.Open(str(exported(folder, "usd", tmp_path)))
@@ -105,6 +105,10 @@ def test_usd(folder, run, tmp_path, monkeypatch, flush):
     ahead = np.array((0.0, 3.0, -0.7)) / np.linalg.norm((3.0, 0.7))
     np.testing.assert_allclose(camera.frustum.ComputeViewDirection(), ahead, atol=1e-6)
     assert camera.GetFieldOfView(camera.FOVVertical) == pytest.approx(30.0, abs=1e-3)
+    lamp = UsdLux.DistantLight.Get(stage, "/scene/lamp")
+    shines = UsdGeom.Xformable(lamp.GetPrim()).ComputeLocalToWorldTransform(0.0).TransformDir(Gf.Vec3d(0, 0, -1))
+    np.testing.assert_allclose(shines, np.array((0.3, 0.0, -0.4)) / 0.5, atol=1e-9)  # from where the scene has its light
+    assert lamp.GetIntensityAttr().Get() > 0 and UsdLux.DomeLight.Get(stage, "/scene/sky").GetIntensityAttr().Get() > 0
 
 
 def test_usd_paints_what_a_mesh_file_paints(tmp_path):
@@ -121,6 +125,7 @@ def test_usd_paints_what_a_mesh_file_paints(tmp_path):
     text = (
         f'object a[1] {{ shape mesh "{tmp_path / "box.ply"}" scale 0.2 position (0, 0, 0) m mass 1 kg elasticity 1 MPa }}\n'
         "object a_1_ { shape sphere 5 cm position (1, 0, 0) m mass 1 kg elasticity 1 MPa }\n"
+        "object camera { shape sphere 5 cm position (2, 0, 0) m mass 1 kg elasticity 1 MPa }\n"
         "control { time 0.04 s  resolution 5 cm }"
     )
     Scene.from_text(text).run(tmp_path / "r")
@@ -130,6 +135,7 @@ def test_usd_paints_what_a_mesh_file_paints(tmp_path):
     stage = Usd.Stage.Open(str(export(tmp_path / "r", "usd").files[0]))
     color = UsdGeom.Mesh.Get(stage, "/scene/a_1_").GetDisplayColorPrimvar()
     assert color.GetInterpolation() == "vertex" and UsdGeom.Mesh.Get(stage, "/scene/a_1__")
+    assert UsdGeom.Mesh.Get(stage, "/scene/camera_") and UsdGeom.Camera.Get(stage, "/scene/camera")
     linear = np.array(color.Get(), float)
     shown = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     np.testing.assert_array_equal(np.unique(np.round(255 * shown).astype(int), axis=0), wanted)
@@ -228,11 +234,11 @@ def test_xtc(folder, run, tmp_path):
 
 
 def test_csv(folder, run, tmp_path):
-    """pandas reads a row for each object and frame; energies are those of the ledger, forces are left out with a reason."""
+    """pandas reads a row for each object and frame; energies are those of the ledger. Beside a liquid there are no forces."""
     done = export(folder, "csv", tmp_path / "a.csv")
     table = pandas.read_csv(tmp_path / "a.csv")
-    assert len(table) == 2 * len(run) and "contact_force" not in table
-    assert any("contact_force is left out" in note for note in done.notes)
+    assert len(table) == 2 * len(run) and "contact_fx" not in table
+    assert any("contact forces are left out: lift and drag of the liquid" in note for note in done.notes)
     block = table[table.object == "block[1]"]
     np.testing.assert_array_equal(block.time, run.times)
     np.testing.assert_array_equal(block[["x", "y", "z"]], run.objects["block[1]"].center_of_mass)
@@ -242,6 +248,38 @@ def test_csv(folder, run, tmp_path):
     np.testing.assert_allclose(table.groupby("frame").elastic.sum(), ledger.array("elastic"), rtol=1e-9, atol=1e-15)
     v = run.velocity(4)
     np.testing.assert_allclose(table[table.frame == 4].kinetic.sum(), 0.5 * (run.metadata.mass[:, None] * v**2).sum(), rtol=1e-12)
+
+
+TOUCHING = """
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+object block { shape box (10, 10, 10) cm  position (0, 0, 5) cm  mass 2 kg  elasticity 1 MPa  damping 0.5 }
+object left { shape sphere 5 cm  position (100, -8, 90) cm  mass 1 kg  elasticity 1 MPa  velocity (0, 1, 0) m/s }
+object right { shape sphere 5 cm  position (100, 8, 90) cm  mass 3 kg  elasticity 1 MPa }
+object flies { shape sphere 5 cm  position (200, 0, 90) cm  mass 1 kg  elasticity 1 MPa }
+object held { shape box (10, 10, 10) cm  position (300, 0, 50) cm  mass 1 kg  elasticity 1 MPa  hold face +z }
+object slow { shape sphere 5 cm  position (400, 0, 90) cm  mass 1 kg  elasticity 1 MPa  drag 0.1 N*s/m }
+control { time 0.3 s  frames 30 fps  resolution 5 cm  friction 0.5 }
+"""
+
+
+def test_contact_forces(tmp_path):
+    """A block on the ground is carried, what flies is not, a blow acts on both alike; where other forces act there is none."""
+    run = Scene.from_text(TOUCHING, "touching").run(tmp_path / "r")
+    done = run.export("csv")
+    assert any("are means since the frame before" in note for note in done.notes)
+    table = pandas.read_csv(done.files[0])
+    pandas.testing.assert_frame_equal(table.drop(columns="elastic"), run.trajectory.to_pandas())
+    force = {name: part[["contact_fx", "contact_fy", "contact_fz"]].to_numpy() for name, part in table.groupby("object")}
+    assert np.isnan(force["block"][0]).all() and not np.isnan(force["block"][1:]).any()
+    np.testing.assert_allclose(force["block"][-3:], np.tile((0.0, 0.0, 2.0 * 9.81), (3, 1)), atol=0.02)
+    np.testing.assert_allclose(force["flies"][1:], 0.0, atol=1e-9)
+    np.testing.assert_allclose(force["left"][1:], -force["right"][1:], atol=1e-9)
+    assert force["right"][1:, 1].sum() / 30 > 0.9  # N s, of a blow at 1 m/s of 1 kg and 3 kg
+    assert np.isnan(force["held"]).all() and np.isnan(force["slow"]).all()
+    still = TOUCHING[: TOUCHING.index("object block")] + TOUCHING[TOUCHING.index("object held") :]
+    notes = Scene.from_text(still, "still").run(tmp_path / "s").export("csv").notes
+    assert any("every object is held or has air drag" in note for note in notes)
 
 
 def test_csv_of_boundary_particles_tells_no_spin(tmp_path):
@@ -374,7 +412,7 @@ def test_a_failed_export_leaves_nothing(folder, tmp_path, to):
 def test_the_command_says_what_it_wrote(folder, tmp_path):
     """Files, frames, and what the format cannot hold."""
     said = call("export", folder, "--to", "csv", "-o", tmp_path / "a.csv", "--frames", ":3").stdout
-    assert said.startswith(f"export   {tmp_path}/a.csv   3 frames, ") and "contact_force is left out" in said
+    assert said.startswith(f"export   {tmp_path}/a.csv   3 frames, ") and "contact forces are left out" in said
 
 
 def test_types_of_particles_are_those_of_the_data_file(tmp_path):

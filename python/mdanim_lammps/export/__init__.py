@@ -33,7 +33,7 @@ class Format:
 
 
 FORMATS = {
-    "usd": Format("usd", (".usdc",), "USD: meshes over time, materials, liquid, camera; Blender, Houdini, usdview", "pxr"),
+    "usd": Format("usd", (".usdc",), "USD: meshes over time, materials, liquid, camera, lamp; Blender, Houdini, usdview", "pxr"),
     "gltf": Format("gltf", (".glb",), "glTF: meshes with a morph target for each frame; browsers, slides"),
     "vtk": Format("vtk", (".pvd", ".vtk"), "PVD series: surfaces, particles with velocity and strain, liquid; ParaView, PyVista"),
     "xyz": Format("xyz", (".xyz",), "extended XYZ in metres: particles with velocity and mass, box, time; OVITO, ASE"),

@@ -21,7 +21,10 @@ from .cut import Cut
 def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) -> list[str]:
     table, t = MotionTable(cut.trajectory, cut.objects), cut.trajectory
     notes = ["lengths are metres, velocities m/s, spin (wx, wy, wz) rad/s, energies J"]
-    notes.append("contact_force is left out: no frame holds forces")
+    if table.forces.why:
+        notes.append(f"contact forces are left out: {table.forces.why}")
+    else:
+        notes.append("contact_fx, contact_fy, contact_fz [N] are means since the frame before, by momentum")
     system = system_of(t) if table.whole else None
     if not table.whole:
         notes.append("spin and energy are left out: the run has stored boundary particles only; set 'save all'")
@@ -35,7 +38,8 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
             if system:
                 numbers = np.column_stack([numbers, elastic(system, t.position(frame))[cut.objects]])
             time = float(t.times[frame])
-            writer.writerows((frame, time, name, *row) for name, row in zip(cut.metadata.names, numbers.tolist()))
+            rows = (["" if number != number else number for number in row] for row in numbers.tolist())
+            writer.writerows((frame, time, name, *row) for name, row in zip(cut.metadata.names, rows))
             on_frame(done)
     return notes
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""USD: a mesh with time samples for each object, one for the liquid, materials by colour, the camera. Metres, z up."""
+"""USD: a mesh with time samples for each object, one for the liquid, materials by colour, camera, lamp and sky. Metres, z up."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ FLUSH = 100_000_000
 """Bytes of points after which they go to the disk, so that a long run need not fit in memory."""
 OPACITY = 0.6
 """Of the liquid."""
+SUN, SKY = 3.0, 0.5
+"""Intensities of the lamp, which is far away, and of the sky."""
 
 
 def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) -> list[str]:
@@ -34,7 +36,7 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
     scene = UsdGeom.Xform.Define(stage, "/scene")
     stage.SetDefaultPrim(scene.GetPrim())
     UsdGeom.Scope.Define(stage, "/scene/materials")
-    meshes, used, materials = [], set(), {}
+    meshes, used, materials = [], {"materials", "camera", "lamp", "sky"}, {}
     array = lambda values: Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(values, np.float32))
     for body in cut.bodies:
         name = Tf.MakeValidIdentifier(body.name)
@@ -58,7 +60,9 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
             materials[key] = _material(stage, f"/scene/materials/material_{len(materials)}", body, Sdf, UsdShade)
         UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(materials[key])
         meshes.append((mesh.GetPointsAttr(), mesh.GetNormalsAttr(), mesh.GetExtentAttr()))
-    _camera(stage, cut)
+    render = _render(cut)
+    _camera(stage, cut, render)
+    _lights(stage, render)
     waiting = 0
     for done, (frame, code) in enumerate(zip(cut.frames, codes), 1):
         for (points, normals, extent), (vertices, normal) in zip(meshes, cut.surfaces(frame)):
@@ -102,15 +106,34 @@ def _material(stage, path: str, body: Body, Sdf, UsdShade):
     return material
 
 
-def _camera(stage, cut: Cut) -> None:
+def _render(cut: Cut) -> Render:
+    """How the scene wants to be seen."""
+    try:
+        return parse_scene(cut.trajectory.metadata.scene_text, folder=cut.trajectory.path.parent).render
+    except SceneError:  # of an older language
+        return Render()
+
+
+def _lights(stage, render: Render) -> None:
+    """The lamp and the sky of movies; without them a picture of Blender or usdview is dark."""
+    from pxr import Gf, UsdLux
+
+    lamp, sky = UsdLux.DistantLight.Define(stage, "/scene/lamp"), UsdLux.DomeLight.Define(stage, "/scene/sky")
+    lamp.CreateIntensityAttr(SUN)
+    lamp.CreateAngleAttr(2.0)
+    lamp.CreateNormalizeAttr(True)  # else its brightness is that of a sun as small as its angle
+    sky.CreateIntensityAttr(SKY)
+    toward = np.array(render.light, float)  # a distant light shines along its -z
+    upright = (0.0, 1.0, 0.0) if np.hypot(*toward[:2]) < 1e-9 * toward[2] else (0.0, 0.0, 1.0)
+    view = View(toward, np.zeros(3), np.array(upright))
+    lamp.AddTransformOp().Set(Gf.Matrix4d(camera_matrix(view).tolist()))
+
+
+def _camera(stage, cut: Cut, render: Render) -> None:
     """The camera of the scene, or the one that movies have without one."""
     from pxr import Gf, UsdGeom
 
     t = cut.trajectory
-    try:
-        render = parse_scene(t.metadata.scene_text, folder=t.path.parent).render
-    except SceneError:  # of an older language
-        render = Render()
     width, height = render.size
     camera = UsdGeom.Camera.Define(stage, "/scene/camera")
     # Only the ratio of apertures and focal length counts; those of a film of 24 mm.

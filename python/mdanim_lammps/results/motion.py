@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""How whole objects move: spin and kinetic energy from their particles, and the table of all objects and frames."""
+"""How whole objects move: spin and kinetic energy from their particles, contact forces from their momenta, and the table of
+all objects and frames."""
 
 from __future__ import annotations
 
@@ -7,7 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..scene.scene import Save
+from ..errors import MdanimError
+from ..scene.parse import parse_scene
+from ..scene.scene import Save, Switch
 
 if TYPE_CHECKING:
     from .trajectory import Trajectory
@@ -38,9 +41,49 @@ def kinetic(mass: np.ndarray, first: np.ndarray, velocity: np.ndarray) -> np.nda
     return np.add.reduceat(0.5 * mass * np.einsum("nd,nd->n", velocity, velocity), first)
 
 
+class ContactForces:
+    """What contact with objects, ground and walls has done to each object since the frame before, as a mean force.
+
+    No frame holds forces. But where gravity and contact are all that acts on an object from outside, contact has brought the
+    change of its momentum that gravity has not: exactly, as the leap-frog adds up forces. So the numbers cost nothing in a run.
+
+    Args:
+        trajectory: of the run.
+
+    ``why`` is the reason why there are none for any object, "" where there are.
+    """
+
+    def __init__(self, trajectory: Trajectory):
+        m, self._trajectory, self.why = trajectory.metadata, trajectory, ""
+        self._told = np.zeros(len(m.names), bool)
+        try:
+            scene = parse_scene(m.scene_text, folder=trajectory.path.parent)
+        except MdanimError:  # of an older language, or its meshes are elsewhere
+            self.why = "the scene of this run, or one of its meshes, cannot be read here"
+            return
+        falls = scene.effects.get("gravity") is not Switch.OFF
+        self._gravity = np.array(scene.gravity, float) * falls
+        held = np.add.reduceat(m.held, m.first[:-1]) > 0
+        self._told = ~held & ~m.still & np.array([not solid.drag for solid in scene.solids])
+        if scene.liquid:
+            self.why = "lift and drag of the liquid act as well, and frames do not tell them apart"
+        elif not self._told.any():
+            self.why = "every object is held or has air drag, whose forces frames do not tell apart"
+
+    def since(self, frame: int) -> np.ndarray:
+        """[N], shape (O, 3), mean from the frame before to this one; NaN in the first frame, and for objects that are held or
+        have air drag."""
+        t = self._trajectory
+        force = np.full((len(self._told), 3), np.nan)
+        if frame and not self.why:
+            change = (t.center_velocities[frame] - t.center_velocities[frame - 1]) / (t.times[frame] - t.times[frame - 1])
+            force[self._told] = (t.metadata.object_mass[:, None] * (change - self._gravity))[self._told]
+        return force
+
+
 class MotionTable:
     """A table with a row for each object and frame: frame, time [s], object, centre of mass [m], its velocity [m/s]; where all
-    particles are stored also spin [rad/s] and kinetic energy [J].
+    particles are stored also spin [rad/s] and kinetic energy [J]; where `ContactForces` has them the force of contact [N].
 
     Args:
         trajectory: of the run.
@@ -54,6 +97,9 @@ class MotionTable:
         """Whether all particles are stored."""
         if self.whole:
             self.columns += ["wx", "wy", "wz", "kinetic"]
+        self.forces = ContactForces(trajectory)
+        if not self.forces.why:
+            self.columns += ["contact_fx", "contact_fy", "contact_fz"]
 
     def numbers(self, frame: int) -> np.ndarray:
         """What stands behind frame, time and object in the rows of a frame, shape (O, columns - 3). Raises OutputError."""
@@ -62,4 +108,6 @@ class MotionTable:
         if self.whole:
             x, v = t.position(frame), t.velocity(frame)
             found += [spin(m.mass, m.first[:-1], x, v), kinetic(m.mass, m.first[:-1], v)[:, None]]
+        if not self.forces.why:
+            found.append(self.forces.since(frame))
         return np.hstack(found)[self.objects]

@@ -117,7 +117,8 @@ class Trajectory:
 
     def to_pandas(self) -> pandas.DataFrame:
         """A row for each object and frame: ``frame``, ``time`` [s], ``object``, centre of mass ``x y z`` [m], its velocity
-        ``vx vy vz`` [m/s] and, where all particles are stored, spin ``wx wy wz`` [rad/s] and ``kinetic`` energy [J].
+        ``vx vy vz`` [m/s] and, where all particles are stored, spin ``wx wy wz`` [rad/s] and ``kinetic`` energy [J]; without a
+        liquid also ``contact_fx contact_fy contact_fz`` [N], the mean since the frame before, NaN for objects with hold or drag.
 
         Raises SetupError where pandas is not installed, OutputError.
         """
