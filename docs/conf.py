@@ -13,11 +13,11 @@ author = "the authors of mdanim-lammps"
 release = re.search(r'__version__ = "(.*)"', (HERE.parent / "python/mdanim_lammps/__init__.py").read_text())[1]
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_external_toc"]
 external_toc_path = "toc.yml"
-exclude_patterns = ["images/*.py", "_build"]
+exclude_patterns = ["images/*.py", "_build", "*.out"]
 html_theme = "furo"
 html_title = f"{project} {release}"
 html_logo = None
-html_static_path = []
+html_static_path = ["movies", "../scenes"]
 html_theme_options = {"source_repository": "", "top_of_page_buttons": []}
 templates_path = []
 
@@ -49,5 +49,21 @@ def lead_outside(app, docname, source):
     source[0] = pattern.sub(replace, source[0])
 
 
+def show_movies(app, docname, source):
+    """A picture of which there is a movie becomes the movie on the site; names of scenes in the gallery lead to them."""
+
+    def replace(match):
+        if not (HERE / "movies" / f"{match[1]}.mp4").exists():
+            return match[0]
+        place = "../" * docname.count("/") + f"_static/{match[1]}.mp4"
+        return f'<video src="{place}" width="100%" controls loop muted playsinline preload="metadata"></video>'
+
+    source[0] = re.sub(r"!\[[^\]]*\]\(images/([\w-]+)\.png\)", replace, source[0])
+    if docname == "gallery":
+        link = r'<a href="_static/\1.txt" download><code>\1.txt</code></a>'
+        source[0] = re.sub(r"`(\w+)\.txt`", link, source[0])
+
+
 def setup(app):
     app.connect("source-read", lead_outside)
+    app.connect("source-read", show_movies)

@@ -33,7 +33,7 @@ object cube { shape box (10, 10, 10) cm position (h, 0, 1) m mass 1 kg elasticit
 liquid water { basin from (-1, -1, 0) m to (2, 1, 2) m density 1000 kg/m^3 level 30 cm }
 control { time 0.4 s  frames 30 fps  resolution 10 cm }
 """
-ELSEWHERE = ("git ", "make ", "pip ", "cmake ", "LAMMPS_PLUGIN_PATH=", "MDANIM_MPIEXEC=")
+ELSEWHERE = ("git ", "python3 -m venv ", "source ", "make ", "pip ", "cmake ", "LAMMPS_PLUGIN_PATH=", "MDANIM_MPIEXEC=")
 """Lines that need the network, a compiler or other hosts begin so; of the program's own the words are looked at."""
 BROWSER = ("view", "--view", "--edit")
 """A command with one of these waits for a browser: tests/view runs it."""
@@ -63,7 +63,7 @@ class Newcomer:
 
     def __init__(self, page: str, place: Path):
         self.page, self.place, self.names = page, place, {"text": SCENE.replace("NAME", "ball")}
-        self.done = []
+        self.done, self.runs = [], 0
 
     def read(self) -> None:
         scene = ""
@@ -73,7 +73,7 @@ class Newcomer:
                     small = re.sub(r"^render \{", "render { size (64, 48)", scene, flags=re.M)
                     (self.place / name).write_text(small if small != scene else f"{scene}render {{ size (64, 48) }}\n")
                 else:
-                    self.shell(f"{line} --no-movie")
+                    self.shell(line)
             if code:
                 scene = code if is_scene(code) else scene
                 self.block(language, code)
@@ -116,12 +116,15 @@ class Newcomer:
                     home = {"HOME": str(self.place), "PATH": f"{BIN}:{os.environ['PATH']}"}
                     subprocess.run(["bash", "-ec", step], cwd=place, check=True, capture_output=True, env={**os.environ, **home})
 
-    @staticmethod
-    def program(words: list[str], place: Path) -> None:
+    def program(self, words: list[str], place: Path) -> None:
+        """A command of the program. A page's first run draws its movie; one after it is drawn by other tests."""
         for option, *values in (("--size", "64", "48"), ("--budget", "6 s")):
             if option in words:
                 at = words.index(option) + 1
                 words[at : at + len(values)] = values
+        if words[0].endswith(".txt"):
+            self.runs += 1
+            words = [*words, "--no-movie"] if self.runs > 1 and "--force" not in words else words
         ended = call(*words, cwd=place)
         assert ended.returncode == 0, f"{words}: {ended.stdout}{ended.stderr}"
 

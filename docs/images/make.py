@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Make the pictures of README and docs: ``python docs/images/make.py [SCENE ...]`` (runs the scenes; default all), or, with the
-name ``view``, that of the page, which needs Chromium."""
+"""Make the pictures of README and docs: ``python docs/images/make.py [SCENE ...]`` (runs the scenes; default all); with the name
+``tutorial`` those of docs/tutorial.md, with ``view`` that of the page, which needs Chromium."""
 
 import io
+import re
 import subprocess
 import sys
 import tempfile
@@ -45,6 +46,8 @@ PICTURES = {
     "weir": 5.6,
 }
 """Scene and the moment to show [s]."""
+STEPS = {"falls": 0.0, "stands": 1.0, "pushed": 0.27, "rolls": 0.5, "splashes": 0.4, "show": 0.3}
+"""Scene of each step of the tutorial and the moment to show [s]."""
 SIZE = (720, 405)
 """Two beside each other in the gallery; no file is larger than 200 kB."""
 PAGE = (1280, 940)
@@ -83,21 +86,34 @@ def view() -> None:
     print(HERE / "view.png")
 
 
+def tutorial() -> None:
+    """Write the pictures of docs/tutorial.md from the scenes that stand there."""
+    page = (HERE.parent / "tutorial.md").read_text(encoding="utf-8")
+    found = re.findall(r"^```\n((?:(?!```).)*?control \{.*?)^```.*?[Ss]ave it as `(\w+)\.txt`", page, flags=re.S | re.M)
+    for step, (text, name) in enumerate(found, 1):
+        picture(Scene.from_text(text, name), STEPS[name], HERE / f"tutorial-{step}.webp", (480, 270))
+
+
+def picture(scene: Scene, moment: float, path: Path, size: tuple[int, int]) -> None:
+    """Run a scene and write a picture (PNG, or WebP, which is a tenth as large) of the frame that is nearest to a moment [s]."""
+    with tempfile.TemporaryDirectory() as folder:
+        scene.run(folder, force=True)
+        with Trajectory(folder) as trajectory:
+            frame = int(abs(trajectory.times - moment).argmin())
+            drawn, render = Path(folder) / "picture.png", replace(scene.record.render, quality=Quality.FINAL)
+            render_still(trajectory, frame, drawn, render, size=size)
+        Image.open(drawn).save(path, optimize=True, quality=85)
+    print(path, flush=True)
+
+
 def main(names: list[str]) -> None:
     """Write one picture per scene beside this file."""
-    if names == ["view"]:
-        view()
+    pages = {"view": view, "tutorial": tutorial}
+    if len(names) == 1 and names[0] in pages:
+        pages[names[0]]()
         return
     for name in names or PICTURES:
-        with tempfile.TemporaryDirectory() as folder:
-            scene = Scene.load(SCENES / f"{name}.txt")
-            scene.run(folder, force=True)
-            with Trajectory(folder) as trajectory:
-                frame = int(abs(trajectory.times - PICTURES[name]).argmin())
-                render = replace(scene.record.render, quality=Quality.FINAL)
-                path = render_still(trajectory, frame, HERE / f"{name}.png", render, size=SIZE)
-        Image.open(path).save(path, optimize=True)
-        print(path)
+        picture(Scene.load(SCENES / f"{name}.txt"), PICTURES[name], HERE / f"{name}.png", SIZE)
 
 
 if __name__ == "__main__":
