@@ -24,15 +24,11 @@ class RangeCutter {
   RangeCut found;
 
  private:
-  // Particles whose springs cross a border, from the lowest to one beyond the highest.
-  struct Reach {
-    int low, high;
-  };
   unsigned first_entry(std::size_t block) const { return block ? cut.block[block - 1].end : 0; }
   bool begins_chunk(std::size_t block) const { return cut.block[block].chunk != cut.block[block - 1].chunk; }
   bool begins_object(std::size_t block) const { return cut.block[block].object != cut.block[block - 1].object; }
   std::size_t best_block(long ideal, long near) const;
-  Reach reach(std::size_t block) const;
+  int reach(std::size_t border) const;
   template <class Tell> void split(const Block &block, const Entry &entry, int end, Tell tell) const;
 
   Cutter &cutter;
@@ -58,21 +54,19 @@ template <class Tell> void RangeCutter::split(const Block &block, const Entry &e
   }
 }
 
-RangeCutter::Reach RangeCutter::reach(std::size_t border) const
+// One beyond the highest particle that a spring leads to across a border.
+int RangeCutter::reach(std::size_t border) const
 {
   const int at = cut.block[border].start;
-  Reach reach = {at, at};
+  int high = at;
   for (std::size_t n = border; n-- > 0 && cut.block[n].start + lanes + cut.farthest > at;) {
     const Block &block = cut.block[n];
     for (unsigned e = first_entry(n); e < block.end; ++e) {
       const int last = block.start + block.lanes - 1 + cut.entry[e].offset;
-      if (last < at) continue;
-      reach.low =
-          std::min(reach.low, block.start);    // lanes of it may have no such spring: a border that is refused costs little
-      reach.high = std::max(reach.high, last + 1);
+      if (last >= at) high = std::max(high, last + 1);    // a lane may have no such spring: a border that is refused costs little
     }
   }
-  return reach;
+  return high;
 }
 
 // The block that begins a chunk, and if possible an object, nearest to a cost.
@@ -108,10 +102,9 @@ void RangeCutter::find_borders(int wanted)
     const std::size_t border = best_block(cost.back() * r / wanted, cost.back() / wanted / NEAR);
     if (!border) break;
     const int at = cut.block[border].start;
-    const Reach own = reach(border);
-    if (at <= found.first.back() || own.low < found.first.back() || reached > at) continue;
+    if (at <= found.first.back() || reached > at) continue;
     found.first.push_back(at);
-    reached = own.high + lanes;
+    reached = reach(border) + lanes;
   }
 }
 
