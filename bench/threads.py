@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What threads bring: ``python bench/threads.py [rounds [threads [scene ...]]]``.
 
-A scene is ``cube N``, of N particles along an edge, or the name of a file in scenes/. Told is the wall time of a step by one
-thread and by several, in turns, beside the machine's own ceiling in the same rounds: what as many independent processes with one
-thread each do at once, over one alone. Where others use the processors, none of this says much; then the processor time of the
-thread that calls does, which falls by what others do for it. Figures are medians over rounds. A scene is run from its own
-beginning on, without frames.
+A scene is ``cube N``, of N particles along an edge, ``pool N``, the same cube as it falls into waves of 7 N columns along a side,
+or the name of a file in scenes/. Told is the wall time of a step by one thread and by several, in turns, beside the machine's own
+ceiling in the same rounds: what as many independent processes with one thread each do at once, over one alone. Where others use
+the processors, none of this says much; then the processor time of the thread that calls does, which falls by what others do for
+it. Figures are medians over rounds. A scene is run from its own beginning on, without frames.
 """
 
 from __future__ import annotations
@@ -23,6 +23,11 @@ CUBE = """gravity (0, 0, -9.81)
 object a {{ shape box ({0}, {0}, {0}) cm position (0, 0, 0) density 1000 elasticity 1 MPa drag 1e-3 }}
 control {{ time 1 s  resolution 1 cm }}
 """
+POOL = """gravity (0, 0, -9.81)
+object a {{ shape box ({0}, {0}, {0}) cm position (0, 0, {0}) cm density 500 elasticity 1 MPa velocity (0, 0, -1) }}
+liquid w {{ basin from (-{1}, -{1}, 0) cm to ({1}, {1}, {2}) cm density 1000 level {3} cm model waves }}
+control {{ time 1 s  resolution 1 cm }}
+"""
 ALONE, SHARED, AT_ONCE = "alone", "shared", "at once"
 ROUNDS, PARTICLE_STEPS, NAMES = 9, 8_000_000, ("cube 30", "cube 60", "beam", "crowd", "pile")
 
@@ -38,7 +43,13 @@ def serve(pipe: Connection, name: str, threads: dict[str, int]) -> None:
     from mdanim_lammps.scene.parse import load_scene, parse_scene
 
     kind, _, edge = name.partition(" ")
-    ready = prepare(parse_scene(CUBE.format(int(edge) - 1)) if kind == "cube" else load_scene(SCENES / f"{name}.txt"))
+    if kind == "cube":
+        scene = parse_scene(CUBE.format(int(edge) - 1))
+    elif kind == "pool":
+        scene = parse_scene(POOL.format(n := int(edge) - 1, 7 * n // 2, 2 * n, n // 2))
+    else:
+        scene = load_scene(SCENES / f"{name}.txt")
+    ready = prepare(scene)
     instances = {}
     for who, number in threads.items():
         with with_threads(number):
