@@ -94,6 +94,15 @@ def test_borders_lie_where_chunks_or_objects_begin():
     assert all(n == 0 or objects[n] != objects[n - 1] for n in first)
 
 
+@pytest.mark.parametrize(("layers", "border"), [((159, 143), 36 * 159), ((171, 131), 11 * CHUNK), ((290,), 10 * CHUNK)])
+def test_a_border_moves_to_an_object_that_begins_near(layers, border):
+    """Half of two bars is nearer to a chunk than to the second bar: the border is at the bar within a sixteenth of a range.
+    Else it is at the nearest chunk, on either side."""
+    particles, springs, krc, objects = several(*(lattice((5, 5, n - 1)) for n in layers))
+    _, first = cut_into_ranges(4, particles, springs, krc, objects, 2)
+    assert list(first) == [0, border]
+
+
 def test_ranges_cost_alike():
     """Of a long bar each of four ranges has a quarter of the particles, up to a chunk."""
     particles, springs, krc, objects = several(lattice((5, 5, 300)))
