@@ -15,6 +15,7 @@ import textwrap
 from dataclasses import replace
 from pathlib import Path
 
+import one_thread  # noqa: F401
 from timoshenko import mean_sag
 
 ROOT = Path(__file__).resolve().parent.parent

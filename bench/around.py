@@ -12,6 +12,7 @@ import tempfile
 import time
 from pathlib import Path
 
+import one_thread  # noqa: F401
 from timing import interleaved, markdown
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"

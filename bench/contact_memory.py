@@ -8,6 +8,7 @@ and of points near by, and places of particles and forces on them. ``fix mdanim/
 from dataclasses import replace
 from pathlib import Path
 
+import one_thread  # noqa: F401
 from contact_world import STUFF
 from timing import markdown
 

@@ -17,6 +17,8 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+import one_thread  # noqa: F401
+
 SCENES = Path(__file__).parent.parent / "scenes"
 ROUNDS = 15
 ROUND = 0.05

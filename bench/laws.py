@@ -9,6 +9,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+import one_thread  # noqa: F401
 from timing import markdown
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"

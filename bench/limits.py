@@ -11,6 +11,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+import one_thread  # noqa: F401
 from timing import markdown
 
 SOURCE = Path(__file__).with_suffix(".cpp")

@@ -8,6 +8,8 @@ Printed are microseconds per step and the liquid's share of the step, in all and
 import sys
 import time
 
+import one_thread  # noqa: F401
+
 SCENE = """
 gravity (0, 0, -9.81)
 liquid water {{

@@ -12,6 +12,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import one_thread  # noqa: F401
 from timing import markdown
 
 SCENE = """

@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import one_thread  # noqa: F401
 
 SCENE = """
 gravity (0, 0, -9.81) m/s^2

@@ -9,6 +9,8 @@ import sys
 import time
 from pathlib import Path
 
+import one_thread  # noqa: F401
+
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "lab"))
 
 

@@ -12,6 +12,7 @@ import sys
 import time
 
 import numpy as np
+import one_thread  # noqa: F401
 from timing import Sample, interleaved, markdown
 
 STUFF = "density 1000  elasticity 1 MPa"

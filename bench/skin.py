@@ -9,6 +9,7 @@ import sys
 import time
 from pathlib import Path
 
+import one_thread  # noqa: F401
 from mdanim_lammps.engine import commands
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.run.prepare import prepare

@@ -13,6 +13,7 @@ import sys
 import time
 
 import numpy as np
+import one_thread  # noqa: F401
 from mdanim_lammps.engine.commands import physics
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.run.prepare import prepare

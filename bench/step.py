@@ -20,6 +20,8 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+import one_thread  # noqa: F401
+
 HEAD = "gravity (0, 0, -9.81)\ncontrol { time 1 s  resolution 1 cm }\neffects { contact off }\n"
 SOLID = "density 1000 elasticity 1 MPa drag 1e-3"
 SCENES = {

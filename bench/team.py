@@ -12,6 +12,7 @@ import sys
 import time
 from pathlib import Path
 
+import one_thread  # noqa: F401
 from timing import markdown
 
 

@@ -24,6 +24,7 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+import one_thread  # noqa: F401
 from websockets.sync.client import connect
 
 ROOT = Path(__file__).parents[1]

@@ -18,7 +18,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-
+import one_thread  # noqa: E402, F401
 from timing import markdown, replace_between  # noqa: E402
 from timoshenko import mean_sag  # noqa: E402
 
