@@ -19,7 +19,9 @@ def barrier_forces(x, solid, boundary, thin, s, reach):
     """The cubic barrier U = kc rc^2/3 (1 - r/rc)^3 between boundary and inner (or thin) particles of different solids."""
     f, energy = np.zeros_like(x), 0.0
     for i in range(len(x)):
-        for j in np.flatnonzero(solid > solid[i]):
+        others = np.flatnonzero(solid > solid[i])
+        apart = np.linalg.norm(x[i] - x[others], axis=1)
+        for j in others[apart < np.maximum(reach[i], reach[others])]:  # none acts from farther
             rc = max(reach[i], reach[j])
             if boundary[i] and boundary[j]:
                 if not (thin[i] or thin[j]):
