@@ -13,7 +13,7 @@ from mdanim_lammps import Scene
 from mdanim_lammps.picture.movie import render_movie
 
 DOCS = Path(__file__).resolve().parents[1]
-SCENES = ("cradle", "drop", "stairs", "tower")
+SCENES = ("cradle", "dominoes", "drop", "plates", "race", "stairs", "tower")
 SIZE = (384, 216)
 LOSS = "33"
 """H.264's rate factor: 18 shows no loss, 33 is enough for a movie as large as a thumb; none is larger than 200 kB."""
