@@ -57,6 +57,13 @@ class Basin {
     Vec3 flow;                // velocity of the liquid [distance/time]
     double rising = 0.0;      // upward velocity of the solid around [distance/time]
   };
+  // What acts on the eight parts of a lattice cell, each nearest to one of its corners. The push along z is over[k] = s[k] + more.
+  struct InCell {
+    double s[8];               // part of each that is below the surface
+    double more, beside;       // push upwards besides; the same of the surface around
+    double along_x, along_y;   // push sideways, times s[k] + beside where that is positive
+    double flow_x, flow_y;     // velocity of the liquid [distance/time]
+  };
   // Adds this rank's bodies, as far as they reach below a height.
   using AddBodies = std::function<void(Occupancy &, double below)>;
 
@@ -86,6 +93,10 @@ class Basin {
   // --- what acts on solids, and they on the liquid ---
 
   virtual AtPlace at(const Vec3 &place) const = 0;
+  // Whether in_cell() is to be asked, and not at(); and upward velocity of the solid around a place [distance/time].
+  virtual bool acts_on_cells() const { return false; }
+  virtual void in_cell(const Vec3 & /*middle*/, const double * /*z of the corners*/, InCell & /*found*/) const {}
+  virtual double rising_at(const Vec3 & /*place*/) const { return 0.0; }
   // Depth of the liquid that presses on a face of a solid with a middle [distance] and twice its area; 0 where air is
   // before the face.
   virtual double pressing_depth(const Vec3 & /*middle*/, const Vec3 & /*area*/) const { return 0.0; }

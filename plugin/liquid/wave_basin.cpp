@@ -19,6 +19,7 @@ constexpr double LONGEST = 0.2;             // update, in sqrt(cell/g)
 constexpr double ASLEEP = 1.0 / 64.0;       // cells that a solid may go before liquid at rest looks
 constexpr double SLOW = 1.0;                // time in which what pushes sideways follows, in sqrt(cell/g)
 constexpr double CALMING = 1.0;             // rate at which columns of solids lose their vibration, in sqrt(g/cell)
+constexpr double YIELDING = 16.0;           // times what its mass says
 constexpr double SOFT = 0.5;                // part of its compression by which the end of a column yields within an update
 constexpr double MASS_STEP = 1.0 / 64.0;    // so that what shakes a little does not wake the liquid
 constexpr double FLATTEST = 1.25;           // longest edge of a cell over the shortest
@@ -136,7 +137,7 @@ void WaveBasin::count_parts()
   for (int c = 0; c < columns(); ++c) {
     // What is elastic yields more than its mass says.
     const double own = mobile.mass_of(c), soft = SOFT * mobile.softness_of(c) / (pace.period * pace.period);
-    mass[c] = own > 0.0 ? std::max(MASS_STEP, std::floor(own / (1.0 + own * soft) / MASS_STEP + 0.5) * MASS_STEP) : 0.0;
+    mass[c] = own > 0.0 ? std::max(MASS_STEP, std::floor(own / (YIELDING + own * soft) / MASS_STEP + 0.5) * MASS_STEP) : 0.0;
     rising[c] = own > 0.0 ? mobile.momentum_of(c) / own : 0.0;
   }
 }
@@ -206,14 +207,14 @@ void WaveBasin::update(const AddBodies &bodies, std::uint64_t, double dt)
 {
   mark_moving(bodies);
   const Lap lap(liquid_seconds);
-  waves.set_solids(part.data(), mass.data());
+  const double since = static_cast<double>(waited) * dt / unit_of_time, time = std::min(LONGEST, since);
+  waves.set_solids(part.data(), mass.data(), since > 0.0 ? time / since : 0.0);
   std::vector<std::int64_t> all = impulses;
   ranks.add_wide(all.data(), static_cast<int>(all.size()));
   std::vector<double> given(all.size());
   for (std::size_t n = 0; n < all.size(); ++n) given[n] = static_cast<double>(all[n]) * IMPULSE_UNIT;
   waves.add_impulse(given.data(), given.data() + columns());
   std::fill(impulses.begin(), impulses.end(), 0);
-  const double time = std::min(LONGEST, static_cast<double>(waited) * dt / unit_of_time);
   makers.apply(waves, time);
   waves.update(time);
   drops.update(waves, time, static_cast<std::uint64_t>(updates));
@@ -238,11 +239,30 @@ Basin::AtPlace WaveBasin::at(const Vec3 &place) const
     return {s, {0.0, 0.0, s}, {}};
   }
   const double s = on->share > 0.0 ? std::clamp(on->head - place.z + 0.5, 0.0, 1.0) * on->share : 0.0;
-  const double all = s + on->over - on->on_top, speed = 1.0 / unit_of_time;
+  const double all = s + on->over - on->on_top, beside = std::max(0.0, s + on->beside), speed = 1.0 / unit_of_time;
   return {s,
-          {on->along_x * all * (shape.cell.z / shape.cell.x), on->along_y * all * (shape.cell.z / shape.cell.y), all},
+          {on->along_x * beside * (shape.cell.z / shape.cell.x), on->along_y * beside * (shape.cell.z / shape.cell.y), all},
           {on->flow_x * shape.cell.x * speed, on->flow_y * shape.cell.y * speed, 0.0},
           rising_at(place)};
+}
+
+// The eight parts of a lattice cell are as high as half a cell. Their middles lie half way from the middle of the cell to its
+// corners.
+void WaveBasin::in_cell(const Vec3 &middle, const double *z, InCell &found) const
+{
+  found = {};
+  if (!(middle.x >= 0.0 && middle.x <= shape.nx && middle.y >= 0.0 && middle.y <= shape.ny)) return;
+  const int x = std::min(static_cast<int>(middle.x), shape.nx - 1), y = std::min(static_cast<int>(middle.y), shape.ny - 1);
+  const WavePush::OnCell *on = push.at(cell_number(x, y, std::clamp(static_cast<int>(middle.z), 0, shape.nz - 1)));
+  const double head = on ? on->head : heads[y * shape.nx + x], share = on ? on->share : std::clamp(head, 0.0, 1.0);
+  for (int k = 0; k < 8; ++k) found.s[k] = std::clamp(2.0 * head - middle.z - z[k] + 0.5, 0.0, 1.0) * share;
+  if (!on) return;
+  found.more = on->over - on->on_top;
+  found.beside = on->beside;
+  found.along_x = on->along_x * (shape.cell.z / shape.cell.x);
+  found.along_y = on->along_y * (shape.cell.z / shape.cell.y);
+  found.flow_x = on->flow_x * shape.cell.x / unit_of_time;
+  found.flow_y = on->flow_y * shape.cell.y / unit_of_time;
 }
 
 double WaveBasin::calms_solids() const { return CALMING / unit_of_time; }

@@ -43,6 +43,9 @@ class WaveBasin : public Basin {
   void use(const Threads &threads) override { waves.use(threads); }
 
   AtPlace at(const Vec3 &place) const override;
+  bool acts_on_cells() const override { return true; }
+  void in_cell(const Vec3 &middle, const double *z, InCell &found) const override;
+  double rising_at(const Vec3 &place) const override;
   double all_below() const override { return -std::numeric_limits<double>::infinity(); }
   bool takes_impulses() const override { return true; }
   double calms_solids() const override;
@@ -75,7 +78,6 @@ class WaveBasin : public Basin {
   void take_solids();
   void look();
   void look_at_column(int column);
-  double rising_at(const Vec3 &place) const;
 
   const RankSums &ranks;
   const double unit_of_time;

@@ -13,9 +13,11 @@ namespace mdanim {
 namespace {
 
 constexpr int LEAST_PART = SolidParts::FULL / 8;    // a cell that is less solid feels what its neighbours feel
-constexpr double GAP = 0.25;                        // so thin a dry gap is none: liquid seeps in
+constexpr double NARROW = 1.0;                      // gaps below bodies that cells do not resolve: liquid seeps in
+constexpr double ON_BODY = 0.5;                     // cells of liquid on a body that are no surface yet
 constexpr double HIGHEST = 8.0;                     // cells of liquid that press on a body beyond what it displaces
 constexpr int SMOOTHINGS = 4;
+constexpr double HIDDEN = std::numeric_limits<double>::quiet_NaN();
 
 }    // namespace
 
@@ -59,8 +61,8 @@ void WavePush::cut(const Waves &waves, int column)
     run.floor = run.bottom;
     if (run.below >= 0) {
       const Waves::SpanView below = waves.span_view(column, run.below);
-      run.wet = below.wet;
-      run.told = below.wet || below.roof - below.floor > GAP;
+      run.told = below.roof - below.floor > NARROW;
+      run.wet = run.told && below.wet;
       run.phi = below.phi;
       run.floor = below.floor;
     }
@@ -114,30 +116,59 @@ void WavePush::seep(const Waves &waves)
       if (runs[n].told) mean(runs[n], runs[n].phi);
 }
 
-// Head of each column with bodies and of those beside them.
+// Head of the surface that is seen from above; NaN where a body hides it or breaks it.
+double WavePush::seen_at(const Waves &waves, int column) const
+{
+  const int spans = waves.spans_of(column);
+  if (spans == 0) return HIDDEN;
+  const bool has_body = first_run[column] >= 0;
+  if (!has_body) {
+    for (int n = spans - 1; n >= 0; --n)
+      if (const Waves::SpanView span = waves.span_view(column, n); span.wet) return span.phi;
+    return waves.span_view(column, 0).floor;
+  }
+  const Waves::SpanView top = waves.span_view(column, spans - 1);
+  if (top.high < nz || !top.wet || top.volume < ON_BODY) return HIDDEN;
+  for (int z = top.low + 1; z < nz && z < top.phi; ++z)
+    if (waves.solids().at(column, z) > 0) return HIDDEN;
+  return top.phi;
+}
+
+// Head around bodies, as it acts sideways: where they hide the surface, it is between those around.
 void WavePush::follow(const Waves &waves, double part)
 {
-  std::vector<double> was(ambient.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> was(ambient.size(), HIDDEN);
   was.swap(ambient);
+  std::vector<std::uint8_t> looked(ambient.size(), 0);
+  std::vector<int> hidden;
   const auto take = [&](int column) {
-    if (column < 0 || !std::isnan(ambient[column])) return;
-    const int spans = waves.spans_of(column);
-    double now = std::numeric_limits<double>::quiet_NaN();    // solid throughout
-    for (int n = 0; n < spans; ++n) {
-      const Waves::SpanView span = waves.span_view(column, n);
-      if (span.wet || n == 0) now = span.wet ? span.phi : span.floor;
-    }
-    if (first_run[column] >= 0)
-      for (int n = spans; n >= 0; --n) {
-        const SolidRun &run = runs[first_run[column] + n];
-        if (run.wet && run.top > run.bottom) now = run.phi;
-      }
-    ambient[column] = std::isnan(was[column]) ? now : was[column] + part * (now - was[column]);
+    if (column < 0 || looked[column]) return;
+    looked[column] = 1;
+    const double now = seen_at(waves, column);
+    ambient[column] = std::isnan(was[column]) || std::isnan(now) ? now : was[column] + part * (now - was[column]);
+    if (std::isnan(now)) hidden.push_back(column);
   };
   for (const int column : columns) {
     take(column);
     for (int side = 0; side < 4; ++side) take(neighbour(column, side, nx, ny));
   }
+  std::vector<double> mean(ambient.size());
+  const auto between = [&](int column) {
+    double sum = 0.0;
+    int count = 0;
+    for (int side = 0; side < 4; ++side) {
+      const int other = neighbour(column, side, nx, ny);
+      if (other < 0 || std::isnan(ambient[other])) continue;
+      sum += ambient[other];
+      ++count;
+    }
+    mean[column] = sum / count;
+    return count > 0;
+  };
+  learn_inward(hidden, between, [&](int column) { ambient[column] = mean[column]; });
+  for (int pass = 0; pass < SMOOTHINGS; ++pass)
+    for (const int column : hidden)
+      if (between(column)) ambient[column] = mean[column];
 }
 
 void WavePush::press(const Waves &waves, SolidRun &run)
@@ -149,9 +180,12 @@ void WavePush::press(const Waves &waves, SolidRun &run)
   else if (run.above >= 0)
     std::copy_n(waves.around(run.column, run.above).u, 4, run.u);
   if (run.above < 0) return;
+  const double around = ambient[run.column];
+  if (run.wet && around > run.top) run.beside = std::min(around - run.top, HIGHEST) / thickness;
   if (run.wet) run.over = std::clamp(run.phi - run.top, 0.0, HIGHEST) / thickness;
   const Waves::SpanView above = waves.span_view(run.column, run.above);
   if (above.wet) run.on_top = std::clamp(above.phi - run.top, 0.0, HIGHEST) / thickness;
+  run.beside -= run.on_top;
 }
 
 // The rise of a head across a face acts on what is solid on both sides of it.
@@ -179,6 +213,7 @@ void WavePush::fill(const Waves &waves, int column)
     on.head = run.phi;
     on.share = run.wet ? std::clamp(run.phi - run.floor, 0.0, 1.0) : 0.0;
     on.over = run.over;
+    on.beside = run.beside;
     on.on_top = run.on_top;
     on.flow_x = 0.5 * (run.u[0] + run.u[1]);
     on.flow_y = 0.5 * (run.u[2] + run.u[3]);
@@ -251,6 +286,7 @@ void WavePush::spread(const SolidParts &solid)
             sum.on.head += weight * from.head;
           }
           sum.on.over += weight * from.over;
+          sum.on.beside += weight * from.beside;
           sum.on.along_x += weight * from.along_x;
           sum.on.along_y += weight * from.along_y;
           sum.on.on_top += weight * from.on_top;
@@ -261,7 +297,7 @@ void WavePush::spread(const SolidParts &solid)
   for (std::size_t n = 0; n < sums.size(); ++n) {
     OnCell &on = sums[n].on;
     if (sums[n].wet > 0.0) on.head /= sums[n].wet;
-    for (double *value : {&on.share, &on.over, &on.on_top, &on.along_x, &on.along_y, &on.flow_x, &on.flow_y})
+    for (double *value : {&on.share, &on.over, &on.beside, &on.on_top, &on.along_x, &on.along_y, &on.flow_x, &on.flow_y})
       *value /= sums[n].weight;
     found.push_back(on);
     cells.push_back(where[n]);

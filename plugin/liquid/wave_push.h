@@ -20,7 +20,8 @@ class WavePush {
   struct OnCell {
     double head = 0.0, share = 0.0;         // s counts by this: 0 where it is dry below
     double over = 0.0;                      // of the liquid that stands higher below than the body does, by the body's thickness
-    double along_x = 0.0, along_y = 0.0;    // push, times s + over - on_top
+    double beside = 0.0;                    // the same by the surface around, less what stands on the body
+    double along_x = 0.0, along_y = 0.0;    // push sideways, times s + beside where that is positive
     double on_top = 0.0;                    // of the liquid that stands on the body, by the body's thickness
     double flow_x = 0.0, flow_y = 0.0;      // velocity of the liquid
   };
@@ -48,12 +49,13 @@ class WavePush {
     double bottom, top;
     bool wet, told;    // liquid below; whether that is known: where no liquid gets below, from the columns around
     double phi, floor;
-    double u[4], over, on_top;
+    double u[4], over, beside, on_top;
   };
 
   void cut(const Waves &waves, int column);
   bool beside(const Waves &waves, int column, double bottom, double top, double &phi) const;
   void seep(const Waves &waves);
+  double seen_at(const Waves &waves, int column) const;
   void follow(const Waves &waves, double part);
   void press(const Waves &waves, SolidRun &run);
   void put(const SolidParts &solid, int column, int z, OnCell on);

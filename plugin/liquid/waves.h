@@ -28,8 +28,8 @@ class Waves {
 
   // Solid parts of all cells, in 1/4096, and for each column the mass of what floats in it, in cells of liquid, 0 where it is
   // held (null: everywhere). Liquid makes way. Throws std::runtime_error when there is no room for it; nothing can be done with
-  // the waves any more after that.
-  void set_solids(const std::uint16_t *part, const double *mass);
+  // the waves any more after that. `again`: the part of what has changed that will change once more in the next update.
+  void set_solids(const std::uint16_t *part, const double *mass, double again = 1.0);
   // Fills all spans of each column up to a height; those that are full get the pressure of that height. `from`: what would be
   // below this height is left out.
   void pour(const double *height, const double *from = nullptr);

@@ -18,7 +18,7 @@ constexpr Units MOST_OVERFULL = 2 * UNITS_PER_CELL;
 
 }    // namespace
 
-void Waves::set_solids(const std::uint16_t *part, const double *mass)
+void Waves::set_solids(const std::uint16_t *part, const double *mass, double again)
 {
   const std::vector<int> changed = differing(part);
   if (!changed.empty()) {
@@ -36,6 +36,8 @@ void Waves::set_solids(const std::uint16_t *part, const double *mass)
       for (std::size_t cell = column; cell < solid.part.size(); cell += nx * ny) solid.part[cell] = part[cell];
     find_homes(carry_over(columns, changed, was));
     join(changed);
+    if (again != 1.0)
+      for (std::size_t i = 0; i < content.size(); ++i) arrays.coming[i] *= again;
   }
   for (int column = 0; column < nx * ny; ++column)
     for (int n = 0; n < spans_in[column]; ++n) {

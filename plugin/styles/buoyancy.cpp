@@ -109,9 +109,49 @@ void Buoyancy::find_faces(const std::vector<int> &near, const std::string &fix)
 void Buoyancy::append_required_atoms(std::vector<int> &particles) const
 {
   for (const Face &face : faces) particles.insert(particles.end(), face.corner, face.corner + 4);
+  for (const NearCells::Cell &cell : cells.cells) particles.insert(particles.end(), cell.corner, cell.corner + 8);
 }
 
 // --- a step ---
+
+Basin::InCell Buoyancy::look_at_cell(const Basin &basin, const NearCells::Cell &cell, double above) const
+{
+  const double *const *x = atom->x;
+  Vec3 sum;
+  double z[8], lowest = x[cell.corner[0]][2];
+  for (int k = 0; k < 8; ++k) {
+    const double *const own = x[cell.corner[k]];
+    const Vec3 at = basin.in_cells(own);
+    sum += at;
+    z[k] = at.z;
+    lowest = std::min(lowest, own[2]);
+  }
+  Basin::InCell in{};
+  if (lowest < above) basin.in_cell(0.125 * sum, z, in);
+  return in;
+}
+
+// The mean of what acts on its parts of lattice cells.
+Basin::AtPlace Buoyancy::at_particle(const Basin &basin, std::size_t n, const double *x) const
+{
+  Basin::AtPlace at;
+  int parts = 0;
+  cells.each_of(n, [&](int cell, int corner) {
+    const Basin::InCell &in = in_cells[cell];
+    const double all = in.s[corner] + in.more, beside = std::max(0.0, in.s[corner] + in.beside);
+    at.immersed += in.s[corner];
+    at.push += Vec3{in.along_x * beside, in.along_y * beside, all};
+    at.flow += Vec3{in.flow_x, in.flow_y, 0.0};
+    ++parts;
+  });
+  if (parts == 0) return at;
+  const double part = 1.0 / parts;
+  at.immersed *= part;
+  at.push = part * at.push;
+  at.flow = part * at.flow;
+  if (at.immersed > 0.0) at.rising = basin.rising_at(basin.in_cells(x));
+  return at;
+}
 
 // What is the same for all particles in a step.
 struct Buoyancy::Acting {
@@ -146,6 +186,10 @@ void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
   threads.parts(static_cast<long>(faces.size()), least, [&](long from, long to) {
     for (long n = from; n < to; ++n) faces[n].push = pressure_on(faces[n], basin);
   });
+  in_cells.resize(cells.cells.size());
+  threads.parts(static_cast<long>(in_cells.size()), least, [&](long from, long to) {
+    for (long n = from; n < to; ++n) in_cells[n] = look_at_cell(basin, cells.cells[n], now.above);
+  });
   wet.resize(near.size());
   threads.parts(static_cast<long>(near.size()), least, [&](long from, long to) {
     for (long n = from; n < to; ++n) wet[n] = act_on(now, basin, n, near[n]);
@@ -159,7 +203,9 @@ Buoyancy::Wet Buoyancy::act_on(const Acting &now, const Basin &basin, std::size_
 {
   const double *const x = now.x[i], *const v = now.v[i];
   Basin::AtPlace at;
-  if (x[2] < now.above) {
+  if (basin.acts_on_cells())
+    at = at_particle(basin, n, x);
+  else if (x[2] < now.above) {
     if (x[2] <= now.below && basin.over_floor(x))
       at.immersed = at.push.z = 1.0;
     else

@@ -7,6 +7,7 @@
 #include "engine/team.h"
 #include "liquid/basin.h"
 #include "pointers.h"
+#include "styles/near_cells.h"
 #include "styles/particle_value.h"
 
 #include <string>
@@ -20,7 +21,7 @@ namespace mdanim {
 class Buoyancy : protected LAMMPS_NS::Pointers {
  public:
   // `rho` is the liquid's density.
-  Buoyancy(LAMMPS_NS::LAMMPS *lmp, double rho) : Pointers(lmp), rho(rho) {}
+  Buoyancy(LAMMPS_NS::LAMMPS *lmp, double rho) : Pointers(lmp), rho(rho), cells(lmp) {}
 
   // Takes a keyword of the command; false when it is none of buoyancy, drag, lambda, base and faces.
   bool keyword(int iarg, const char *word, const char *value);
@@ -32,6 +33,8 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   // liquid.
   void clear_friction(int groupbit) const;
   void find_faces(const std::vector<int> &near, const std::string &fix);
+  void find_cells(const std::vector<int> &near, const ParticleTable &table, const std::string &fix)
+  { cells.find(near, table, fix); }
   // Adds forces and sets friction; in a step the liquid feels what it does.
   void act(Basin &basin, const std::vector<int> &near, bool in_step);
   // The account begins at the velocities of now, and goes on by a step.
@@ -45,7 +48,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   Basin::Energies energies() const;
   void set_energies(const Basin::Energies &energies);
   double density() const { return rho; }
-  double bytes() const { return static_cast<double>(wet.capacity() * sizeof(Wet)); }
+  double bytes() const { return static_cast<double>(wet.capacity() * sizeof(Wet) + in_cells.capacity() * sizeof in_cells[0]) + cells.bytes(); }
   double seconds = 0.0;
 
  private:
@@ -65,6 +68,8 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   struct Acting;
   Wet act_on(const Acting &now, const Basin &basin, std::size_t n, int i) const;
   Vec3 pressure_on(const Face &face, const Basin &basin) const;
+  void look_at_cells(const Basin &basin, double above);
+  Basin::AtPlace at_particle(const Basin &basin, std::size_t n) const;
   Basin::Energies power() const;
 
   double rho;
@@ -78,6 +83,8 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   std::vector<Wet> wet;
   std::vector<Face> faces;                    // of the particles near the liquid
   std::vector<int> face_of, face_of_first;    // those of the n-th: face_of[face_of_first[n]] …
+  NearCells cells;
+  std::vector<Basin::InCell> in_cells;
   Basin::Energies sum, last;                  // on this rank: energies; powers at the last step
 };
 

@@ -376,6 +376,7 @@ void FixMdanimLiquid::find_near(double margin)
     if (atom->x[i][2] < below) near.push_back(i);
   }
   if (buoyancy->pressed()) buoyancy->find_faces(near, name());
+  if (basin->acts_on_cells()) buoyancy->find_cells(near, lattice_cells, name());
   int here = !near.empty(), any = here;
   if (comm->nprocs > 1) MPI_Allreduce(&here, &any, 1, MPI_INT, MPI_MAX, world);
   none_near = !any;

@@ -15,16 +15,17 @@ def push(w: lab.Waves, part: np.ndarray) -> np.ndarray:
     """Force on all that is solid, the sum over its cells, shape (3,)."""
     nz, ny, nx = w.shape
     mass = np.ascontiguousarray((part > 0).any(axis=0), float)
-    out = np.empty((*w.shape, 7))
+    out = np.empty((*w.shape, 8))
     found = library().mdanim_wave_push
     found.restype, found.argtypes = None, [lab.HANDLE, lab.INT, lab.INT, lab.INT, lab.DOUBLES, ctypes.c_void_p]
     found(w.handle, nx, ny, nz, mass, out.ctypes.data)
-    known, head, share, over, on_top, along_x, along_y = np.moveaxis(out, -1, 0)
+    known, head, share, over, on_top, along_x, along_y, beside = np.moveaxis(out, -1, 0)
     assert known[part > 512].all(), "no push on a body"
     z = np.arange(nz)[:, None, None]
-    every = np.clip(head - z, 0.0, 1.0) * share + over - on_top
+    below = np.clip(head - z, 0.0, 1.0) * share
+    every, aside = below + over - on_top, np.maximum(0.0, below + beside)
     solid = part / lab.SOLID * (known > 0)
-    return np.array([(solid * along_x * every).sum(), (solid * along_y * every).sum(), (solid * every).sum()])
+    return np.array([(solid * along_x * aside).sum(), (solid * along_y * aside).sum(), (solid * every).sum()])
 
 
 def faces(w: lab.Waves, part: np.ndarray) -> np.ndarray:
