@@ -21,7 +21,7 @@ struct WaveLaw {
   double quick = 0.125;               // part of the dispersive head that does not push
   double breaking = 0.3;              // difference of heads from which on a front loses its inertia, 0 at twice that
   double overfull = 0.15;             // part of what a full span holds too much that is turned into motion
-  double mean_over = 64.0;            // updates over which the head of a full span at rest is taken
+  double mean_over = 16.0;            // updates over which the head of a full span at rest is taken
   double slam = 100.0;                // most that a head falls below its surface, and rises above the basin
   double height = 1.0;                // of the basin
   double fastest = 16.0;              // velocity

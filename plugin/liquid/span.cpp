@@ -10,6 +10,9 @@ namespace {
 
 double share(int part) { return part / static_cast<double>(SolidParts::FULL); }
 
+// Whether a span that ends below a shut cell has what is open of it. Of one between two spans the upper one has it.
+bool has_shut_roof(const SolidParts &solid, int column, int high) { return high < solid.nz && solid.shut(column, high + 1); }
+
 // The open part of a cell of a span, and between which heights the cell takes liquid in.
 struct Slice {
   double low, high, open;
@@ -24,7 +27,7 @@ Slice slice(const SolidParts &solid, const Span &span, int z)
   }
   if (z == span.high - 1) {
     s.high = span.roof;
-    s.open += std::max(0.0, span.roof - span.high);
+    if (has_shut_roof(solid, span.column, span.high)) s.open += share(SolidParts::FULL - solid.at(span.column, span.high));
   }
   return s;
 }
@@ -45,8 +48,7 @@ Span cut(const SolidParts &solid, int column, int low, int high)
     span.capacity += open * SolidParts::UNITS;
     span.floor -= share(open);
   }
-  // Of a shut cell between two spans, the upper one has what is open.
-  if (high < solid.nz && solid.shut(column, high + 1)) {
+  if (has_shut_roof(solid, column, high)) {
     const int open = SolidParts::FULL - part(high);
     span.capacity += open * SolidParts::UNITS;
     span.roof += share(open);

@@ -144,16 +144,19 @@ std::vector<Waves::SpanState> Waves::share_out(const std::vector<SpanState> &was
       if (!to.span.overlaps(old.span)) continue;
       pour(to, static_cast<Units>(volume_below(solid, to.span, old.level) * UNITS_PER_CELL));
       to.phi = to.rest = std::max(to.span.floor, old.phi);
+      to.full = std::max(to.full, old.full > 0.0 && old.phi >= to.span.roof ? 1.0 : 0.0);
     }
     for (SpanState &to : now)
       if (to.span.overlaps(old.span)) pour(to, left);
     if (left > 0) homeless.push_back({old.span.column, std::min(old.span.high - 1, static_cast<int>(old.level)), left});
   }
-  for (SpanState &to : now)
+  for (SpanState &to : now) {
+    if (to.content < to.span.capacity - UNITS_PER_CELL) to.full = 0.0;    // as (W1) has it
     if (to.content > to.span.capacity + MOST_OVERFULL) {
       homeless.push_back({to.span.column, to.span.high - 1, to.content - to.span.capacity});
       to.content = to.span.capacity;
     }
+  }
   return now;
 }
 
