@@ -65,7 +65,7 @@ class WaveBasin : public Basin {
   double bytes() const override;
   double mean_level() const override;
   void surface(double *smooth, double *raw) const override;
-  double smooth_height(int column) const override { return shape.low.z + heads[column] * shape.cell.z; }
+  double smooth_height(int column) const override;
   double raw_height(int column) const override { return shape.low.z + tops[column] * shape.cell.z; }
   std::vector<Droplet> droplets() const override;
   void contents(std::uint8_t *out) const override;

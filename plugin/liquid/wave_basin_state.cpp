@@ -103,6 +103,13 @@ void WaveBasin::look_at_column(int column)
   }
 }
 
+// At bodies the surface around them: the head of the liquid below them is that of the pressure there.
+double WaveBasin::smooth_height(int column) const
+{
+  const double around = push.state()[column];
+  return shape.low.z + shape.cell.z * (mass[column] > 0.0 && !std::isnan(around) ? around : heads[column]);
+}
+
 void WaveBasin::surface(double *smooth, double *raw) const
 {
   for (int c = 0; c < columns(); ++c) {
