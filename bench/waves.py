@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Waves against closed forms, and what an update costs: ``python bench/waves.py [forms|bodies|cost]``.
+"""Waves against closed forms, and what an update costs: ``python bench/waves.py [forms|bodies|coupling|cost]``.
 
 Printed are the tables of docs/physics-liquid.md. Cell, g and the density of the liquid are 1. Costs are times of one core, the
 least of several rounds, for a small swell in an open basin; `obstacles` has a block, a shelf and porous cells in it.
@@ -79,6 +79,43 @@ def bodies() -> list[tuple]:
     return rows
 
 
+def growth(
+    inertia: float, turn: float, yielding: float, dt: float = 0.1, overfull: float = 0.15, mean_over: float = 16.0
+) -> float:
+    """Growth in an update of a roof of mass 1 on a spring, above a full span, by (W6).
+
+    Args:
+        inertia: of the liquid that it moves.
+        turn: frequency of the roof times dt.
+        yielding: 1/M of (W6).
+    """
+
+    def update(state):
+        down, speed, moved, excess, flow, rest = state
+        phi = ((overfull * excess + moved - flow * dt) / dt**2 + yielding * rest) / (1 / inertia + yielding)
+        flow += phi * dt / inertia
+        if turn > 0:
+            middle = -phi * dt**2 / turn**2
+            there, swing = (down - middle) * np.cos(turn), speed * dt / turn * np.sin(turn)
+            now = middle + there + swing
+            speed = speed * np.cos(turn) - (down - middle) * turn / dt * np.sin(turn)
+        else:
+            now = down + speed * dt - 0.5 * phi * dt**2
+            speed -= phi * dt
+        return now, speed, now - down, excess - flow * dt + now - down, flow, rest + (phi - rest) / mean_over
+
+    return float(np.abs(np.linalg.eigvals(np.array([update(row) for row in np.eye(6)]).T)).max())
+
+
+def coupling() -> list[tuple]:
+    """Rows of how a vibrating roof grows in an update."""
+    return [
+        (yielding, inertia, " ".join(f"{growth(inertia, turn, yielding):.3f}" for turn in (0, 0.1, 0.5, 1, 2, 3, 5, 10)))
+        for yielding in (1, 4, 16)
+        for inertia in (0.1, 1, 10, 100)
+    ]
+
+
 def basin(cells: int, depth: int, obstacles: bool) -> lab.Waves:
     """A basin of cells^2 columns with a small swell from its middle."""
     w = lab.Waves((64, cells, cells))
@@ -122,6 +159,8 @@ def main(which: str = "") -> None:
         print(markdown(["what", "found", "closed form"], closed_forms()), end="\n\n")
     if which in ("", "bodies"):
         print(markdown(["what", "found", "expected"], bodies()), end="\n\n")
+    if which in ("", "coupling"):
+        print(markdown(["1/M", "a", "growth for ωΔt = 0, 0.1, 0.5, 1, 2, 3, 5, 10"], coupling()), end="\n\n")
     if which in ("", "cost"):
         print(markdown(["columns", "ms an update", "goal", "ns a column", "iterations"], cost()))
 

@@ -57,12 +57,13 @@ class Basin {
     Vec3 flow;                // velocity of the liquid [distance/time]
     double rising = 0.0;      // upward velocity of the solid around [distance/time]
   };
-  // What acts on the eight parts of a lattice cell, each nearest to one of its corners. The push along z is over[k] = s[k] + more.
+  // What acts on the eight parts of a lattice cell, each nearest to one of its corners. The push along z is over[k] = s[k] +
+  // more.
   struct InCell {
-    double s[8];               // part of each that is below the surface
-    double more, beside;       // push upwards besides; the same of the surface around
-    double along_x, along_y;   // push sideways, times s[k] + beside where that is positive
-    double flow_x, flow_y;     // velocity of the liquid [distance/time]
+    double s[8];                // part of each that is below the surface
+    double more, beside;        // push upwards besides; the same of the surface around
+    double along_x, along_y;    // push sideways, times s[k] + beside where that is positive
+    double flow_x, flow_y;      // velocity of the liquid [distance/time]
   };
   // Adds this rank's bodies, as far as they reach below a height.
   using AddBodies = std::function<void(Occupancy &, double below)>;

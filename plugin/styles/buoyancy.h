@@ -48,7 +48,8 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   Basin::Energies energies() const;
   void set_energies(const Basin::Energies &energies);
   double density() const { return rho; }
-  double bytes() const { return static_cast<double>(wet.capacity() * sizeof(Wet) + in_cells.capacity() * sizeof in_cells[0]) + cells.bytes(); }
+  double bytes() const
+  { return static_cast<double>(wet.capacity() * sizeof(Wet) + in_cells.capacity() * sizeof in_cells[0]) + cells.bytes(); }
   double seconds = 0.0;
 
  private:
@@ -85,7 +86,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   std::vector<int> face_of, face_of_first;    // those of the n-th: face_of[face_of_first[n]] …
   NearCells cells;
   std::vector<Basin::InCell> in_cells;
-  Basin::Energies sum, last;                  // on this rank: energies; powers at the last step
+  Basin::Energies sum, last;    // on this rank: energies; powers at the last step
 };
 
 }    // namespace mdanim

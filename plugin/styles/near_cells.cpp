@@ -28,9 +28,8 @@ void NearCells::find(const std::vector<int> &near, const ParticleTable &table, c
     }
     if (!any) continue;
     if (lost >= 0)
-      error->one(FLERR,
-                 "{}: particle {}, a corner of the lattice cell of particle {}, is out of reach; raise comm_modify cutoff", fix,
-                 corners[i][lost - 1], atom->tag[i]);
+      error->one(FLERR, "{}: particle {}, a corner of the lattice cell of particle {}, is out of reach; raise comm_modify cutoff",
+                 fix, corners[i][lost - 1], atom->tag[i]);
     for (int k = 0; k < 8; ++k)
       if (const int at = cell.corner[k]; at < atom->nlocal && number[at] >= 0)
         of_particle[8 * number[at] + k] = static_cast<int>(cells.size());
