@@ -249,6 +249,10 @@ class WavePush(Buoyancy):
     ledger = "waves"
     further_ledger = ("wave_loss",)
 
+    def rate(self, scene, system):
+        # It acts on parts of lattice cells that are half as high; those of a particle at a face lie at one height.
+        return 2.0 * super().rate(scene, system)
+
     def energy(self, readings):
         return readings.fix_value(LiquidAutomaton.fix, WAVES)
 

@@ -28,7 +28,7 @@ def test_water_that_a_roof_shuts_in_keeps_its_pressure_when_it_wakes():
     part[8, 4, 4] -= 4
     w.solids(part)
     w.update(1)
-    spans = w.spans()
+    spans = w.spans
     below = (spans.low == 0) & (spans.roof < 10)
     assert below.sum() == 9 and (spans.phi[below] > 11.8).all() and spans.full[below].all()
 
@@ -44,6 +44,6 @@ def test_water_that_is_parted_keeps_its_pressure():
     part[3, 4, 4] = 3990  # what it takes is less than what the roof gives
     part[9, 3:6, 3:6] = 4096
     w.solids(part)
-    spans = w.spans()
+    spans = w.spans
     parted = (spans.column == 4 * 9 + 4) & (spans.high <= 8)
     assert parted.sum() == 2 and spans.full[parted].all() and spans.phi[parted] == pytest.approx(12.0)
