@@ -69,8 +69,8 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   struct Acting;
   Wet act_on(const Acting &now, const Basin &basin, std::size_t n, int i) const;
   Vec3 pressure_on(const Face &face, const Basin &basin) const;
-  void look_at_cells(const Basin &basin, double above);
-  Basin::AtPlace at_particle(const Basin &basin, std::size_t n) const;
+  Basin::InCell look_at_cell(const Basin &basin, const NearCells::Cell &cell, double above) const;
+  Basin::AtPlace at_particle(const Basin &basin, std::size_t n, const double *x) const;
   Basin::Energies power() const;
 
   double rho;
