@@ -4,9 +4,12 @@
 #ifndef MDANIM_COLUMNS_H
 #define MDANIM_COLUMNS_H
 
+#include <cmath>
 #include <vector>
 
 namespace mdanim {
+
+inline constexpr double ON_BODY = 0.5;    // cells of liquid on a body that are no surface yet
 
 // The column at a side, 0 to 3: -x, +x, -y, +y; -1 beyond the basin.
 inline int neighbour(int column, int side, int nx, int ny)
@@ -38,6 +41,28 @@ template <class Find, class Take> std::vector<int> learn_inward(std::vector<int>
     left.swap(later);
   }
   return left;
+}
+
+// Mean of what is known, not NaN, in the columns beside one; NaN where nothing is.
+inline double mean_beside(const std::vector<double> &values, int column, int nx, int ny)
+{
+  double sum = 0.0;
+  int count = 0;
+  for (int side = 0; side < 4; ++side) {
+    const int other = neighbour(column, side, nx, ny);
+    if (other < 0 || std::isnan(values[other])) continue;
+    sum += values[other];
+    ++count;
+  }
+  return sum / count;
+}
+
+// Columns without a value, NaN, get the mean of those beside them. Returns those that never get one.
+inline std::vector<int> fill_inward(std::vector<double> &values, const std::vector<int> &empty, int nx, int ny)
+{
+  std::vector<double> found(empty.empty() ? 0 : values.size());
+  const auto find = [&](int column) { return !std::isnan(found[column] = mean_beside(values, column, nx, ny)); };
+  return learn_inward(empty, find, [&](int column) { values[column] = found[column]; });
 }
 
 }    // namespace mdanim

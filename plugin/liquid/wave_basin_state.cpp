@@ -17,7 +17,6 @@ namespace {
 constexpr double STATE_VERSION = 5.0;    // the automaton's is 2
 constexpr std::uint8_t SOLID_CODE = 255;
 constexpr double PUDDLE = 1.0 / 64.0;    // cells that are part of the floor
-constexpr double ON_BODY = 0.5;          // cells of liquid on a body that are no surface yet
 constexpr double PI = 3.14159265358979323846;
 
 struct WaveBasinHead {
@@ -60,21 +59,7 @@ void WaveBasin::look()
     look_at_column(c);
     if (std::isnan(heads[c])) unknown.push_back(c);
   }
-  std::vector<double> found(unknown.empty() ? 0 : columns());
-  const auto mean = [&](int c) {
-    double sum = 0.0;
-    int count = 0;
-    for (int side = 0; side < 4; ++side) {
-      const int other = neighbour(c, side, shape.nx, shape.ny);
-      if (other < 0 || std::isnan(heads[other])) continue;
-      sum += heads[other];
-      ++count;
-    }
-    if (count > 0) found[c] = sum / count;
-    return count > 0;
-  };
-  const std::vector<int> left = learn_inward(unknown, mean, [&](int c) { heads[c] = found[c]; });
-  for (const int c : left) heads[c] = 0.0;    // solid from wall to wall
+  for (const int c : fill_inward(heads, unknown, shape.nx, shape.ny)) heads[c] = 0.0;    // solid from wall to wall
   const double highest = heads.empty() ? 0.0 : *std::max_element(heads.begin(), heads.end());
   crest = 0.0;
   for (const double head : tops)

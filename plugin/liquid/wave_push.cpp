@@ -14,7 +14,6 @@ namespace {
 
 constexpr int LEAST_PART = SolidParts::FULL / 8;    // a cell that is less solid feels what its neighbours feel
 constexpr double NARROW = 1.0;                      // gaps below bodies that cells do not resolve: liquid seeps in
-constexpr double ON_BODY = 0.5;                     // cells of liquid on a body that are no surface yet
 constexpr double HIGHEST = 8.0;                     // cells of liquid that press on a body beyond what it displaces
 constexpr int SMOOTHINGS = 4;
 constexpr double HIDDEN = std::numeric_limits<double>::quiet_NaN();
@@ -152,23 +151,12 @@ void WavePush::follow(const Waves &waves, double part)
     take(column);
     for (int side = 0; side < 4; ++side) take(neighbour(column, side, nx, ny));
   }
-  std::vector<double> mean(ambient.size());
-  const auto between = [&](int column) {
-    double sum = 0.0;
-    int count = 0;
-    for (int side = 0; side < 4; ++side) {
-      const int other = neighbour(column, side, nx, ny);
-      if (other < 0 || std::isnan(ambient[other])) continue;
-      sum += ambient[other];
-      ++count;
-    }
-    mean[column] = sum / count;
-    return count > 0;
-  };
-  learn_inward(hidden, between, [&](int column) { ambient[column] = mean[column]; });
+  fill_inward(ambient, hidden, nx, ny);
   for (int pass = 0; pass < SMOOTHINGS; ++pass)
-    for (const int column : hidden)
-      if (between(column)) ambient[column] = mean[column];
+    for (const int column : hidden) {
+      const double mean = mean_beside(ambient, column, nx, ny);
+      if (!std::isnan(mean)) ambient[column] = mean;
+    }
 }
 
 void WavePush::press(const Waves &waves, SolidRun &run)
