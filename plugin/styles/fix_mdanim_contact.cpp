@@ -70,8 +70,8 @@ int FixMdanimContact::read_word(int iarg, int narg, char **arg)
 {
   ContactSettings &settings = world_of_contact.settings;
   const auto is = [&](const char *word) { return strcmp(arg[iarg], word) == 0; };
-  static const std::vector<Keyword> known = {{"objects", ""},     {"plane", "x|y|z lo|hi at"}, {"stiffness", "f"},
-                                             {"damping", "beta"}, {"pair", "MOL1 MOL2 mu beta"},        {"among", "GROUP"},
+  static const std::vector<Keyword> known = {{"objects", ""},     {"plane", "x|y|z lo|hi at"},   {"stiffness", "f"},
+                                             {"damping", "beta"}, {"pair", "MOL1 MOL2 mu beta"}, {"among", "GROUP"},
                                              {"bodies", "FILE"}};
   const int words = words_of_keyword(lmp, "fix mdanim/contact", known, iarg, narg, arg);
   const auto number = [&](int at, const char *what, double least) {
