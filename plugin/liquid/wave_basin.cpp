@@ -113,7 +113,7 @@ void WaveBasin::mark_moving(const AddBodies &bodies)
   const Lap lap(occupancy_seconds);
   marked.take_in(mobile.touched);
   mobile.clear();
-  bodies(mobile, poured ? top_layer + SAMPLED : ANYWHERE);
+  bodies(mobile, poured ? top_layer + SAMPLED : shape.nz);    // what is above the basin has no place in the liquid
   mobile.sum_over(ranks);
   count_parts();
 }

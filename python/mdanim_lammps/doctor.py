@@ -98,7 +98,9 @@ def _mpi() -> tuple[int, str]:
     from .parallel.runtime.launch import launcher
 
     command = launcher()
-    done = subprocess.run([*command, "-n", "1", "true"], capture_output=True, text=True, timeout=30, stdin=subprocess.DEVNULL)
+    # What ends at once may be gone before mpiexec has spoken to it, and then mpiexec dies of SIGPIPE.
+    hello = [sys.executable, "-c", "pass"]
+    done = subprocess.run([*command, "-n", "1", *hello], capture_output=True, text=True, timeout=30, stdin=subprocess.DEVNULL)
     library = MPI.Get_library_version().split("\n")[0].strip(" \0")
     if done.returncode:
         return FAIL, f"{' '.join(command)} ends with {done.returncode}: {done.stderr.strip()}"
