@@ -146,7 +146,7 @@ def test_executors_share_the_cores(monkeypatch):
         "import os\nfrom mpi4py import MPI\nfrom mdanim_lammps.engine import threads\n"
         "from mdanim_lammps.parallel.runtime.ranks import share_out_cores\n"
         "threads.affinity, threads.quota = (lambda: set(range(6))), (lambda: float('inf'))\n"
-        "share_out_cores(MPI.COMM_WORLD)\nprint(MPI.COMM_WORLD.rank, os.environ.get(threads.THREADS), flush=True)"
+        "share_out_cores(MPI.COMM_WORLD)\nos.write(1, f'{MPI.COMM_WORLD.rank} {os.environ.get(threads.THREADS)}\\n'.encode())"
     )
     done = plugin_path.python(code, ranks=3)
     assert sorted(done.stdout.splitlines()) == ["0 None", "1 3", "2 3"], done.stderr
