@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Speed over the number of executors, the paper's fig. 18: ``python bench/scaling.py [run|plot|goals|model] [options]``.
+"""Speed over executors, the paper's fig. 18: ``python bench/scaling.py [run|plot|goals|supervisor|model] [options]``.
 
 run: scenes/crowd.txt and a hail of 64 blocks by 1000 particles, in one process and on executors under both controls, in
 interleaved rounds; prints a table of medians, writes scaling.json and docs/images/scaling.png (plot draws it again). goals: 64
-blocks that meet nothing, and one object of 64 000 particles that two executors run as a team. model: what scaling.json says about
-more ranks than are here.
+blocks that meet nothing, and one object of 64 000 particles that two executors run as a team. supervisor: what a frame takes of
+the supervisor, for few and many particles and objects; into scaling.json too. model: what scaling.json says about more ranks than
+are here.
 
 Options: ``--executors 1,2,4``, ``--rounds 3``, ``--frames 14`` (of the hail; four times as many of the crowd), ``--json FILE``,
 ``--plot FILE``.
@@ -15,10 +16,12 @@ frames per second of processor time of the executor that takes most, which other
 
 import argparse
 import json
+import math
 import multiprocessing
 import os
 import pickle
 import statistics
+import subprocess
 import sys
 import tempfile
 import time
@@ -89,22 +92,22 @@ def measure(ready, executors: int, control: str) -> dict:
 
 
 def _measure(ready, executors: int, control: str) -> dict:
-    """``executors`` 0: the program in one process, whose clock stands while it writes."""
+    """``executors`` 0: the program in one process, whose clock stands while it does what a supervisor would do."""
     from mdanim_lammps.parallel.runtime.launch import simulate_on
     from mdanim_lammps.results.timeline import Timeline
     from mdanim_lammps.run.frame_source import Sequential
     from mdanim_lammps.run.loop import simulate
 
     class Clocked(Sequential):
-        """Sums the processor time of what an executor would do."""
+        """Sums the processor time of what an executor would do, its own rows of frames among that."""
 
         cpu = 0.0
 
         def __enter__(self):
             return self.timed(super().__enter__)
 
-        def begin(self, resume):
-            return self.timed(super().begin, resume)
+        def begin(self, resume, rows):
+            return self.timed(super().begin, resume, rows)
 
         def advance(self, frame, steps):
             return self.timed(super().advance, frame, steps)
@@ -236,13 +239,18 @@ def run(options) -> None:
     )
     print(table(runs, known, cases))
     print(note)
-    data = {
+    data = stored(options) | {
         "note": note,
         "known": known,
         "runs": {name: {f"{k} {c}".strip(): r for (k, c), r in of.items()} for name, of in runs.items()},
     }
     options.json.write_text(json.dumps(data, indent=1) + "\n")
     plot(options)
+
+
+def stored(options) -> dict:
+    """What other parts have written."""
+    return json.loads(options.json.read_text()) if options.json.exists() else {}
 
 
 def plot(options) -> None:
@@ -265,6 +273,59 @@ def goals(options) -> None:
             found = ratio(runs[name][case], runs[name][cases[0]], "by_cpu")
             verdict = "met" if found >= goal else "missed"
             print(f"{name}, {label(case)}: {found:.2f} times as fast by processor time, goal {goal}: {verdict}")
+
+
+# --- supervisor -------------------------------------------------------------------------------------------------------
+
+SHARES = {"few": (8, 4), "large": (8, 16), "many": (32, 2)}
+"""Blocks along a side of a field of blocks that meet nothing, and edge of each [cm]."""
+
+
+def supervisor(options) -> None:
+    """Processor time that a frame takes of the supervisor of two executors, besides looks for messages while there is none."""
+    runs: dict[str, list[dict]] = {name: [] for name in SHARES}
+    for _ in range(options.rounds):
+        for name in SHARES:
+            runs[name].append(_share(*SHARES[name], options.frames))
+    print("| objects | particles | steps | supervisor, median of a frame [ms] | least |\n|---|---|---|---|---|")
+    for found in runs.values():
+        seconds = [s for r in found for s in r["seconds"]]
+        print(
+            f"| {found[0]['objects']} | {found[0]['particles']} | {found[0]['steps']} | {1e3 * statistics.median(seconds):.2f} "
+            f"| {1e3 * min(seconds):.2f} |"
+        )
+    options.json.write_text(json.dumps(stored(options) | {"supervisor": runs}, indent=1) + "\n")
+
+
+def _share(side: int, edge: int, frames: int) -> dict:
+    """A run of two executors: seconds of each frame but the first ones and the last, which is kept."""
+    rows = ROWS.replace("0 .. 7", f"0 .. {side - 1}").format(n=f"i*{side} + j", place="(i, j, 0)", edge=edge, more="")
+    with tempfile.TemporaryDirectory() as where:
+        (Path(where) / "blocks.txt").write_text(GRAVITY + rows + END.replace("4 s", f"{frames / 50} s"))
+        command = [Path(sys.executable).parent / "mpiexec", "-n", "3", sys.executable, "-m", "mpi4py", __file__, "--rank", where]
+        subprocess.run(list(map(str, command)), check=True)
+        return json.loads((Path(where) / "seconds.json").read_text())
+
+
+def rank(folder: Path) -> None:
+    """What every rank of such a run does."""
+    from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions
+    from mdanim_lammps.parallel.runtime import supervisor
+    from mdanim_lammps.parallel.runtime.executor import serve
+    from mdanim_lammps.run.loop import simulate
+    from mdanim_lammps.run.prepare import prepare
+    from mdanim_lammps.scene.parse import load_scene
+    from mpi4py import MPI
+
+    if MPI.COMM_WORLD.rank:
+        serve(MPI.COMM_WORLD)
+        return
+    ready = prepare(load_scene(folder / "blocks.txt"))
+    supervisor.KEEP_SECONDS = math.inf  # a checkpoint is no part of a frame
+    source, ends = supervisor.Distributed(ready, MPI.COMM_WORLD, "central", PlannerOptions()), []
+    simulate(ready, folder, source=source, on_progress=lambda _: ends.append(source.cpu))
+    known = {"objects": len(ready.system.names), "particles": ready.system.particles, "steps": ready.certificate.steps_per_frame}
+    (folder / "seconds.json").write_text(json.dumps(known | {"seconds": np.diff(ends)[2:-1].tolist()}))
 
 
 # --- model ------------------------------------------------------------------------------------------------------------
@@ -293,6 +354,7 @@ def model(options) -> None:
 def fit(data: dict) -> dict:
     """Costs per unit, out of the runs where they show, else measured now."""
     from mdanim_lammps.parallel.plan.orders import Order
+    from scipy.optimize import nnls
 
     hail, crowd = (data["runs"][name] for name in ("hail", "crowd"))
     known = data["known"]
@@ -301,13 +363,10 @@ def fit(data: dict) -> dict:
         name: [(int(case.split()[0]), r) for case, runs in of.items() if case != "0" for r in runs]
         for name, of in (("hail", hail), ("crowd", crowd))
     }
-    # Of the supervisor: so much for a frame, so much for a particle in it.
-    seen = {
-        name: (known[name]["particles"], statistics.median(r["supervisor_cpu"] / r["frames"] for _, r in runs))
-        for name, runs in distributed.items()
-    }
-    per_particle = (seen["hail"][1] - seen["crowd"][1]) / (seen["hail"][0] - seen["crowd"][0])
-    per_frame = max(0.0, seen["crowd"][1] - per_particle * seen["crowd"][0])
+    # Of the supervisor: so much for a frame, for an object in it, and for a particle.
+    seen = np.array([(1, r[0]["objects"], r[0]["particles"]) for r in data["supervisor"].values()])
+    medians = np.array([statistics.median(s for r in runs for s in r["seconds"]) for runs in data["supervisor"].values()])
+    per_frame, per_object, per_particle = nnls(seen / medians[:, None], np.ones(len(medians)))[0].tolist()
     moving = statistics.median(r["spent"][1] * k / r["moves"] for k, r in distributed["crowd"] if r["moves"])
     scene, order = load("crowd", 4), _plan(10_000, 8)[0]
     message = Order(order, np.zeros((10_000, 3)), np.zeros((10_000, 3)), 100, True)
@@ -315,6 +374,7 @@ def fit(data: dict) -> dict:
     return {
         "work": (work, "s of processor time per particle and frame (hail)"),
         "per_particle": (per_particle, "s of the supervisor per particle and frame"),
+        "per_object": (per_object, "s of the supervisor per object and frame"),
         "per_frame": (per_frame, "s of the supervisor per frame, besides"),
         "moved": (moving, "s of executors for an object that moves, with instances built anew (crowd, wall time)"),
         "order": (seconds / 10_000, "s to pack and unpack an order, per object (central: once for each executor)"),
@@ -329,6 +389,8 @@ def fit(data: dict) -> dict:
 
 LATENCY, BANDWIDTH = 2e-4, 1e9
 """Of a message [s]: mostly the nap of the process that waits for it (messages.NAP); of a network of ten gigabit [bytes/s]."""
+SHARE = 120
+"""Bytes of an executor's share of a frame for each of its objects."""
 MOVES = 0.004
 """Part of the objects that move in a frame: crowds of a thousand, `python bench/planning.py crowd`."""
 
@@ -375,7 +437,8 @@ def row(objects: int, size: int, executors: int, cost: dict) -> str:
         exchange = {"central": 0.0}
     control = min(exchange, key=exchange.get)
     moves = MOVES * objects / executors * cost["moved"] * (executors > 1)
-    supervisor = cost["per_frame"] + (cost["per_particle"] + 48 * cost["wire"]) * particles
+    told = (cost["per_object"] + SHARE * cost["wire"]) * objects
+    supervisor = cost["per_frame"] + told + cost["per_particle"] * particles
     mine = work * imbalance + exchange[control] + moves
     frame = max(mine, supervisor)
     terms = {"work": work * imbalance, f"exchange ({control})": exchange[control], "moves": moves}
@@ -391,7 +454,7 @@ def row(objects: int, size: int, executors: int, cost: dict) -> str:
 def main() -> None:
     """Read the command line."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("part", nargs="?", choices=("run", "plot", "goals", "model"), default="run")
+    parser.add_argument("part", nargs="?", choices=("run", "plot", "goals", "supervisor", "model"), default="run")
     cores = os.cpu_count() or 1
     default = sorted({k for k in (1, 2, 4, 8, 12, 15) if k <= max(2, cores - 1)})
     parser.add_argument("--executors", type=lambda text: [int(k) for k in text.split(",")], default=default)
@@ -400,8 +463,8 @@ def main() -> None:
     parser.add_argument("--json", type=Path, default=HERE / "scaling.json")
     parser.add_argument("--plot", type=Path, default=HERE.parent / "docs" / "images" / "scaling.png")
     options = parser.parse_args()
-    {"run": run, "plot": plot, "goals": goals, "model": model}[options.part](options)
+    {"run": run, "plot": plot, "goals": goals, "supervisor": supervisor, "model": model}[options.part](options)
 
 
 if __name__ == "__main__":
-    main()
+    rank(Path(sys.argv[2])) if sys.argv[1:2] == ["--rank"] else main()

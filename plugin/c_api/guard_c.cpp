@@ -126,15 +126,16 @@ bool centre_inside(const Objects &o, int a, int b, const Box &both)
   return both.contains(&centre.x) && holds(o, b, centre) && holds(o, a, centre);
 }
 
-// Of all pairs of objects the one with the most points of one in the other; how many they are.
-long long deepest_pair(const Objects &o, int *pair)
+// Of all pairs of n objects the one with the most points of one in the other; how many they are.
+long long deepest_pair(const Objects &o, int n, const int *objects, int *pair)
 {
   std::vector<Box> boxes;
-  for (int m = 0; m < o.count; ++m) boxes.push_back(box_of(o, m));
+  for (int k = 0; k < n; ++k) boxes.push_back(box_of(o, objects[k]));
   long long most = 0;
-  for (const auto &[a, b] : meeting_pairs(boxes, 0.0)) {
+  for (const auto &[first, second] : meeting_pairs(boxes, 0.0)) {
+    const int a = objects[first], b = objects[second];
     if (o.still[a] && o.still[b]) continue;
-    const Box both = intersection(boxes[a], boxes[b]);
+    const Box both = intersection(boxes[first], boxes[second]);
     for (const auto &[in, out] : {std::pair{a, b}, std::pair{b, a}}) {
       const long long found = sunk(o, in, out, both) + centre_inside(o, in, out, both);
       if (found <= most) continue;
@@ -146,10 +147,8 @@ long long deepest_pair(const Objects &o, int *pair)
   return most;
 }
 
-}    // namespace
-
 // Number of the first particle whose position or velocity is not finite, -1 where all are; x, v (n, 3).
-MDANIM_EXPORT long long mdanim_not_finite(long long n, const double *x, const double *v) noexcept
+long long not_finite(long long n, const double *x, const double *v)
 {
   // Infinities and NaN have all bits of the exponent set: one more carries into the bit of the sign. Without branches this runs
   // at the speed of memory.
@@ -167,6 +166,11 @@ MDANIM_EXPORT long long mdanim_not_finite(long long n, const double *x, const do
   return -1;
 }
 
+}    // namespace
+
+// Number of the first particle whose position or velocity is not finite, -1 where all are; x, v (n, 3).
+MDANIM_EXPORT long long mdanim_not_finite(long long n, const double *x, const double *v) noexcept { return not_finite(n, x, v); }
+
 // Whether each cell is turned inside out: the volume spanned by the mean of its edges along each axis is not positive. corner (n,
 // 8) in VTK order, inverted (n). Returns how many are.
 MDANIM_EXPORT long long mdanim_inverted(long long n, const int *corner, const double *x, unsigned char *inverted) noexcept
@@ -179,30 +183,46 @@ MDANIM_EXPORT long long mdanim_inverted(long long n, const int *corner, const do
   return count;
 }
 
-// One look at objects whose x and v are (N, 3). Returns 1 when some number is not finite, 2 when some cell is inside out, else 0;
-// and, but for 1, how far each object reaches along x, y, z, -x, -y, -z: reach (M, 6), the corners of eq. (3.14).
-MDANIM_EXPORT int mdanim_glance(const Model *model, const double *x, const double *v, double *reach) noexcept
+// One look at n objects of a model whose x and v are (N, 3). Returns 1 when some number is not finite, 2 when some cell is inside
+// out, else 0; and, but for 1, how far each object reaches along x, y, z, -x, -y, -z: reach (n, 6), the corners of eq. (3.14).
+MDANIM_EXPORT int mdanim_glance(const Model *model, int n, const int *objects, const double *x, const double *v,
+                                double *reach) noexcept
 {
   const Objects o{*model, x};
-  const long long n = o.first_particle[o.count], cells = o.first_cell[o.count];
-  if (mdanim_not_finite(n, x, v) >= 0) return 1;
-  for (int m = 0; m < o.count; ++m) {
-    const Box box = box_of(o, m);
+  for (int k = 0; k < n; ++k) {
+    const long long first = o.first_particle[objects[k]], count = o.first_particle[objects[k] + 1] - first;
+    if (not_finite(count, x + 3 * first, v + 3 * first) >= 0) return 1;
+  }
+  for (int k = 0; k < n; ++k) {
+    const Box box = box_of(o, objects[k]);
     for (int d = 0; d < 3; ++d) {
-      reach[6 * m + d] = box.high(d);
-      reach[6 * m + 3 + d] = -box.low(d);
+      reach[6 * k + d] = box.high(d);
+      reach[6 * k + 3 + d] = -box.low(d);
     }
   }
-  for (long long c = 0; c < cells; ++c)
-    if (inside_out(o.corner + 8 * c, x)) return 2;
+  for (int k = 0; k < n; ++k)
+    for (long long c = o.first_cell[objects[k]]; c < o.first_cell[objects[k] + 1]; ++c)
+      if (inside_out(o.corner + 8 * c, x)) return 2;
   return 0;
 }
 
-// Two objects that are inside each other, more than contact ever lets them: boundary particles of one below the outermost layer
-// of cells of the other, or the centre of one in the body of the other. Writes the one that is inside, and the other, into `pair`
-// and returns how many of its points are; 0 where there are none, -1 without memory. Objects that never move are not looked at
-// with each other.
-MDANIM_EXPORT long long mdanim_sunk(const Model *model, const double *x, int *pair)
+// Largest component of the velocities v (N, 3) of n objects of a model, without its sign: speed (n).
+MDANIM_EXPORT void mdanim_largest_components(const Model *model, int n, const int *objects, const double *v,
+                                             double *speed) noexcept
 {
-  return guarded(-1LL, [=] { return deepest_pair({*model, x}, pair); });
+  for (int k = 0; k < n; ++k) {
+    double most = 0.0;
+    for (long long i = 3 * model->first_particle[objects[k]]; i < 3 * model->first_particle[objects[k] + 1]; ++i)
+      most = std::max(most, std::fabs(v[i]));
+    speed[k] = most;
+  }
+}
+
+// Two of n objects that are inside each other, more than contact ever lets them: boundary particles of one below the outermost
+// layer of cells of the other, or the centre of one in the body of the other. Writes the one that is inside, and the other, into
+// `pair` and returns how many of its points are; 0 where there are none, -1 without memory. Objects that never move are not
+// looked at with each other.
+MDANIM_EXPORT long long mdanim_sunk(const Model *model, int n, const int *objects, const double *x, int *pair)
+{
+  return guarded(-1LL, [=] { return deepest_pair({*model, x}, n, objects, pair); });
 }

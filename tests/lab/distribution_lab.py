@@ -11,6 +11,9 @@ from pathlib import Path
 
 import plugin_path
 import pytest
+from mdanim_lammps.run.loop import write_inputs
+from mdanim_lammps.run.prepare import Prepared, prepare
+from mdanim_lammps.scene.parse import load_scene
 from paths import MPI
 
 MATRIX = MPI / "matrix.py"
@@ -53,6 +56,15 @@ def ways(scene: Path, cases: dict[str, dict], ranks: int = 5, timeout: float = 6
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return {name: folder / case.get("in", name) for name, case in cases.items()}
+
+
+def readied(place: Path, text: str) -> tuple[Prepared, Path]:
+    """A scene that is ready to run, and its output folder with all that LAMMPS reads."""
+    (place / "film.txt").write_text(text)
+    (place / "film.out").mkdir()
+    ready = prepare(load_scene(place / "film.txt"))
+    write_inputs(ready, place / "film.out")
+    return ready, place / "film.out"
 
 
 def matrix(executors=(1, 2, 3, 4), controls=BOTH, name="", **more) -> dict[str, dict]:

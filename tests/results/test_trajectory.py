@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.model.model import Layer
-from mdanim_lammps.results import trajectory_writer
+from mdanim_lammps.results.frame_rows import RowWriter
 from mdanim_lammps.results.trajectory import Trajectory
-from mdanim_lammps.results.trajectory_file import datasets_of_frames, part_of, trajectory_bytes
+from mdanim_lammps.results.trajectory_file import datasets_of_frames, frame_tables, part_of, trajectory_bytes
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
 from mdanim_lammps.scene.scene import Save, Walls
 from paths import LAB
@@ -55,12 +55,16 @@ def test_rows_are_as_h5py_puts_them(slab, tmp_path, monkeypatch, single):
     scene = stored(scene, single=single)
     ours = write(tmp_path / "ours.h5", scene, models, frames)
 
-    def h5py_puts(writer, name, frame, value):
-        rows = value.reshape(-1, *writer._tables[name].shape)
-        with h5py.File(writer._partial, "r+") as file:
+    def h5py_puts(writer, value, offset):
+        with h5py.File(writer.rows.path, "r+") as file:
+            tables = frame_tables(file).items()
+            name, table = next((n, t) for n, t in tables if 0 <= offset - t.offset < t.frames * t.stride)
+            frame, rest = divmod(offset - table.offset, table.stride)
+            rows = value.reshape(-1, *table.shape)
+            assert rest == 0
             datasets_of_frames(file)[name][frame : frame + len(rows)] = rows
 
-    monkeypatch.setattr(TrajectoryWriter, "_put", h5py_puts)
+    monkeypatch.setattr(RowWriter, "_pwrite", h5py_puts)
     theirs = write(tmp_path / "h5py.h5", scene, models, frames)
     with h5py.File(ours) as a, h5py.File(theirs) as b:
         tables = datasets_of_frames(a), datasets_of_frames(b)
@@ -205,7 +209,7 @@ def test_step_vouches_for_data(slab, tmp_path, monkeypatch):
     done = []
     put, sync = TrajectoryWriter._put, os.fdatasync
     monkeypatch.setattr(TrajectoryWriter, "_put", lambda self, name, *what: (done.append(name), put(self, name, *what)))
-    monkeypatch.setattr(trajectory_writer.os, "fdatasync", lambda file: (done.append("sync"), sync(file)))
+    monkeypatch.setattr(os, "fdatasync", lambda file: (done.append("sync"), sync(file)))
     with TrajectoryWriter(tmp_path / "t.h5", scene, models, frames=2, dt=0.01, steps_per_frame=10) as writer:
         writer.write(*frames[0])
         writer.write(*frames[1])

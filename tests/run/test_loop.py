@@ -338,6 +338,7 @@ liquid water {
   basin from (-30, -30, 0) cm to (30, 30, 50) cm
   density 1000
   volume 90 l
+  model surface
 }
 object raft {
   shape box (20, 20, 10) cm
@@ -394,9 +395,9 @@ def test_heights_of_a_liquid_are_stored(splash):
 
 
 def test_cost_of_a_liquid_is_split(splash):
-    """Tell automaton, occupancy and coupling apart, and give no second twice."""
+    """Tell flow, occupancy and coupling apart, and give no second twice."""
     clocks = splash.cost.effects["liquid"].clocks
-    assert set(clocks) == {"automaton", "occupancy"} and all(seconds > 0.0 for seconds in clocks.values())
+    assert set(clocks) == {"flow", "occupancy"} and all(seconds > 0.0 for seconds in clocks.values())
     assert splash.cost.parts["buoyancy"] > 0.0
     assert splash.cost.parts["liquid"] == pytest.approx(sum(clocks.values()))
     summary = json.loads((splash.folder / "summary.json").read_text())

@@ -9,7 +9,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from ..model.system import System
+from ..model.system import System, side_by_side
 from .plugin import open_library
 
 NOT_FINITE, INVERTED = 1, 2
@@ -30,41 +30,58 @@ class _Model(ctypes.Structure):
 
 @dataclass(frozen=True)
 class Geometry:
-    """Questions about the positions of a system's particles; x and v are (N, 3), in tag order [m, m/s]."""
+    """Questions about the positions of a system's particles; x and v are (N, 3), in tag order [m, m/s].
+
+    ``solids``, from 0 and ascending, int64, shape (m,), are those that a question is about; None is all. Rows of others are not
+    read.
+    """
 
     system: System
 
-    def glance(self, x: np.ndarray, v: np.ndarray) -> tuple[int, np.ndarray]:
+    def glance(self, x: np.ndarray, v: np.ndarray, solids: np.ndarray | None = None) -> tuple[int, np.ndarray]:
         """NOT_FINITE where some number is not, INVERTED where some cell is, 0 where all is well; and how far each solid reaches.
 
-        That is along x, y, z, -x, -y and -z, the corners of eq. (3.14) [m], shape (M, 6); valid until the next glance, and only
-        where numbers are finite. A run asks it at every frame, so it is one call, with nothing made anew.
+        That is along x, y, z, -x, -y and -z, the corners of eq. (3.14) [m], shape (m, 6), and only where numbers are finite.
         """
-        library, model, _, reach, address = self._own
-        return library.mdanim_glance(model, _address(x), _address(v), address), reach
+        count, which = self._which(solids)
+        reach = np.empty((count, 6))
+        library, model, _ = self._own
+        return library.mdanim_glance(model, count, _address(which), _address(x), _address(v), _address(reach)), reach
+
+    def largest_components(self, v: np.ndarray, solids: np.ndarray | None = None) -> np.ndarray:
+        """Largest component of the velocities of each solid, without its sign [m/s], shape (m,)."""
+        count, which = self._which(solids)
+        speed = np.empty(count)
+        library, model, _ = self._own
+        library.mdanim_largest_components(model, count, _address(which), _address(v), _address(speed))
+        return speed
 
     def not_finite(self, x: np.ndarray, v: np.ndarray) -> int | None:
         """First particle whose position or velocity is no finite number; None where all are."""
         first = self._own[0].mdanim_not_finite(len(x), _address(x), _address(v))
         return None if first < 0 else int(first)
 
-    def inverted(self, x: np.ndarray) -> np.ndarray:
+    def inverted(self, x: np.ndarray, solids: np.ndarray | None = None) -> np.ndarray:
         """Lattice cells that are turned inside out, bool, shape (C,); a mirrored body has all of them so."""
         found = np.zeros(len(self.system.hexahedron), np.uint8)
-        library, _, arrays, *_ = self._own
-        library.mdanim_inverted(len(found), _address(arrays["corner"]), _address(x), _address(found))
+        library, _, arrays = self._own
+        which = self._which(solids)[1]
+        for (cells,) in side_by_side(np.diff(self.first_cell)[which], self.first_cell[which]):
+            corner, some = arrays["corner"][cells], found[cells]
+            library.mdanim_inverted(len(some), _address(corner), _address(x), _address(some))
         return found.view(bool)
 
-    def sunk(self, x: np.ndarray) -> tuple[int, int] | None:
+    def sunk(self, x: np.ndarray, solids: np.ndarray | None = None) -> tuple[int, int] | None:
         """Two solids of which the first is inside the second, deeper than contact ever lets it; None where there are none.
 
         Boundary particles of the first are below the outermost layer of cells of the second, but not those that stand out of the
         first one's drawn surface; or the centre of the first is in the body of both. Solids that are held entirely may be in each
         other. Raises MemoryError.
         """
-        library, model, *_ = self._own
+        library, model, _ = self._own
+        count, which = self._which(solids)
         pair = np.zeros(2, np.int32)
-        found = library.mdanim_sunk(model, _address(x), _address(pair))
+        found = library.mdanim_sunk(model, count, _address(which), _address(x), _address(pair))
         if found < 0:
             raise MemoryError
         return (int(pair[0]), int(pair[1])) if found else None
@@ -75,9 +92,14 @@ class Geometry:
         owner = self.system.hexahedron[:, 0]
         return np.ascontiguousarray(np.searchsorted(self.system.object[owner], np.arange(len(self.system.names) + 1)), np.int64)
 
+    def _which(self, solids: np.ndarray | None) -> tuple[int, np.ndarray]:
+        """How many, and their numbers as the plugin takes them."""
+        which = np.arange(len(self.system.names), dtype=np.int32) if solids is None else np.ascontiguousarray(solids, np.int32)
+        return len(which), which
+
     @cached_property
-    def _own(self) -> tuple[ctypes.CDLL, object, dict[str, np.ndarray], np.ndarray, int]:
-        """The plugin, the system as it takes it, the arrays of that, and room for reaches with its address."""
+    def _own(self) -> tuple[ctypes.CDLL, object, dict[str, np.ndarray]]:
+        """The plugin, the system as it takes it, and the arrays of that."""
         system = self.system
         drawn = np.concatenate([system.frames[kind].drawn for kind in system.contact_kind.tolist()])
         arrays = {
@@ -94,20 +116,20 @@ class Geometry:
             )
         }
         model = _Model(len(system.names), **{name: _address(array) for name, array in arrays.items()})
-        reach = np.empty((len(system.names), 6))
-        return _library(), ctypes.pointer(model), arrays, reach, _address(reach)
+        return _library(), ctypes.pointer(model), arrays
 
 
 @lru_cache(maxsize=1)
 def _library() -> ctypes.CDLL:
     """The plugin, with its functions declared."""
     library = open_library()
-    number, array, model = ctypes.c_longlong, ctypes.c_void_p, ctypes.POINTER(_Model)
+    number, count, array, model = ctypes.c_longlong, ctypes.c_int, ctypes.c_void_p, ctypes.POINTER(_Model)
     for function, result, arguments in (
-        (library.mdanim_glance, ctypes.c_int, [model, array, array, array]),
+        (library.mdanim_glance, ctypes.c_int, [model, count, array, array, array, array]),
+        (library.mdanim_largest_components, None, [model, count, array, array, array]),
         (library.mdanim_not_finite, number, [number, array, array]),
         (library.mdanim_inverted, number, [number, array, array, array]),
-        (library.mdanim_sunk, number, [model, array, array]),
+        (library.mdanim_sunk, number, [model, count, array, array, array]),
     ):
         function.restype, function.argtypes = result, arguments
     return library

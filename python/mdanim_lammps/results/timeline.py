@@ -44,7 +44,7 @@ class Timeline:
     cpu: list[float] = field(default_factory=list)
     """Processor time of each executor since all began [s]; 0 for one that did not come to its end."""
     supervisor_cpu: float = 0.0
-    """The same of the supervisor, which also writes the frames [s]."""
+    """The same of the supervisor, without that of looking for messages while there is none [s]."""
 
     def __post_init__(self) -> None:
         self.cpu = self.cpu or [0.0] * self.executors

@@ -9,6 +9,7 @@ writes, which fail with an error and nothing else, and a killed writer leaves a 
 from __future__ import annotations
 
 import errno
+import math
 import os
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
@@ -67,7 +68,12 @@ class FrameTable:
     @property
     def stride(self) -> int:
         """Bytes of one frame."""
-        return int(np.prod(self.shape, dtype=np.int64)) * self.dtype.itemsize
+        return math.prod(self.shape) * self.dtype.itemsize
+
+    @property
+    def row(self) -> int:
+        """Bytes of one row of a frame, such as a particle's position."""
+        return math.prod(self.shape[1:]) * self.dtype.itemsize
 
 
 def trajectory_bytes(
@@ -281,6 +287,7 @@ def _room(group: h5py.Group, shape: tuple[int, ...], real: type) -> h5py.Dataset
     create.set_layout(h5py.h5d.CONTIGUOUS)
     create.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
     create.set_fill_time(h5py.h5d.FILL_TIME_NEVER)
+    create.set_obj_track_times(False)  # the same run makes the same bytes
     kind = h5py.h5t.py_create(np.dtype(real))
     return h5py.Dataset(h5py.h5d.create(group.id, b"value", kind, h5py.h5s.create_simple(shape), create))
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,8 +11,10 @@ import numpy as np
 from ..errors import OutputError
 from ..model.basin import Grid
 from ..model.model import Model
+from ..model.system import centers
 from ..scene.scene import SceneRecord
 from .files import disk_errors, rename
+from .frame_rows import FrameRows, RowWriter
 from .trajectory import Trajectory
 from .trajectory_file import (
     CHECKSUM,
@@ -127,13 +128,18 @@ class TrajectoryWriter:
         self._last_step = last_step
         self._pending: list[int] = []
         stored = self.metadata.id
-        self._stored = slice(None) if len(stored) == self.metadata.total else stored - 1
+        self.rows = FrameRows(
+            self._partial,
+            self._partial.stat().st_ino,
+            self._tables["position"],
+            self._tables["velocity"],
+            None if len(stored) == self.metadata.total else stored - 1,
+        )
+        """For processes that write rows of particles themselves (`add`)."""
         # Masses of all particles, stored or not: the centre of mass is that of the whole object.
-        self._mass = np.concatenate([model.mass for model in models])[:, None]
+        self._mass = np.concatenate([model.mass for model in models])
         self._starts = np.cumsum([0] + [len(model.position) for model in models][:-1])
-        self._object_mass = np.add.reduceat(self._mass, self._starts)
-        with disk_errors(self._partial):
-            self._descriptor: int | None = os.open(self._partial, os.O_RDWR)
+        self._writer, self._closed = RowWriter(self.rows), False
 
     def write(
         self,
@@ -160,20 +166,47 @@ class TrajectoryWriter:
             OutputError: the frame cannot be written; those before it are kept.
             ValueError: an array has another shape, the step is not larger, or the file has all its frames.
         """
-        self._check_frame(step, position, velocity, liquid, drops)
+        for name, array in (("position", position), ("velocity", velocity)):
+            if np.shape(array) != (self.metadata.total, 3):
+                raise ValueError(f"{name} must have shape ({self.metadata.total}, 3), found {np.shape(array)}")
+        self._check_frame(step, liquid, drops)
+        checksums = self._writer.write(self._count, [slice(0, self.metadata.total)], position, velocity)
+        means = (centers(self._mass, self._starts, values) for values in (position, velocity))
+        self.add(step, time, checksums, *means, liquid, drops)
+
+    def add(
+        self,
+        step: int,
+        time: float,
+        checksums: np.ndarray,
+        center: np.ndarray,
+        center_velocity: np.ndarray,
+        liquid: tuple[np.ndarray, np.ndarray] | None = None,
+        drops: np.ndarray | None = None,
+    ) -> None:
+        """Add a frame whose rows of particles are written, by one or more `RowWriter` of `rows`.
+
+        Args:
+            step, time, liquid, drops: as in `write`.
+            checksums: of all positions and of all velocities of the frame, as the file has them, uint32, shape (2,).
+            center: centres of mass of all objects [m], shape (O, 3).
+            center_velocity: their velocities [m/s], shape (O, 3).
+
+        Raises:
+            OutputError: the frame cannot be written; those before it are kept.
+            ValueError: as in `write`.
+        """
+        self._check_frame(step, liquid, drops)
         values = {
-            "position": position[self._stored],
-            "velocity": velocity[self._stored],
-            "center_of_mass": self._mean(position),
-            "center_of_mass_velocity": self._mean(velocity),
+            "center_of_mass": center,
+            "center_of_mass_velocity": center_velocity,
             **(dict(zip(LIQUID, liquid)) if liquid else {}),
             **({} if drops is None else {DROPS: np.pad(drops, ((0, self._most_drops - len(drops)), (0, 0)))}),
         }
         values = {name: np.ascontiguousarray(value, self._tables[name].dtype) for name, value in values.items()}
-        sums = [row_checksum(step, time), *map(checksum, values.values())]
-        with disk_errors(self._partial):
-            for name, value in (values | {CHECKSUM: np.array(sums, np.uint32), TIME: np.float64(time)}).items():
-                self._put(name, self._count, value)
+        sums = [row_checksum(step, time), *checksums.tolist(), *map(checksum, values.values())]
+        for name, value in (values | {CHECKSUM: np.array(sums, np.uint32), TIME: np.float64(time)}).items():
+            self._put(name, self._count, value)
         self._count += 1
         self._last_step = int(step)
         self._pending.append(self._last_step)
@@ -182,12 +215,7 @@ class TrajectoryWriter:
     def _most_drops(self) -> int:
         return self.metadata.liquid.most_drops if self.metadata.liquid else 0
 
-    def _check_frame(
-        self, step: int, position: np.ndarray, velocity: np.ndarray, liquid: tuple | None, drops: np.ndarray | None
-    ) -> None:
-        for name, array in (("position", position), ("velocity", velocity)):
-            if np.shape(array) != (self.metadata.total, 3):
-                raise ValueError(f"{name} must have shape ({self.metadata.total}, 3), found {np.shape(array)}")
+    def _check_frame(self, step: int, liquid: tuple | None, drops: np.ndarray | None) -> None:
         expected = [self.metadata.liquid.shape[1::-1]] * 2 if self.metadata.liquid else []
         found = [np.shape(height) for height in liquid or ()]
         if found != expected:
@@ -204,11 +232,10 @@ class TrajectoryWriter:
         """Return when all frames so far are on the disk. Raises OutputError."""
         if not self._pending:
             return
-        with disk_errors(self._partial):
-            # A step makes its frame count, so the data are on the disk before it.
-            os.fdatasync(self._descriptor)
-            self._put(STEP, self._count - len(self._pending), np.array(self._pending, np.int64))
-            os.fdatasync(self._descriptor)
+        # A step makes its frame count, so the data are on the disk before it.
+        self._writer.sync()
+        self._put(STEP, self._count - len(self._pending), np.array(self._pending, np.int64))
+        self._writer.sync()
         self._pending.clear()
 
     def close(self, *, finished: bool = True) -> Path:
@@ -221,14 +248,14 @@ class TrajectoryWriter:
             OutputError: the file cannot be written.
             ValueError: it is said to be finished, and lacks frames.
         """
-        if self._descriptor is not None:
+        if not self._closed:
+            self._closed = True
             try:
                 self.flush()
                 if finished and self._count < self._frames:
                     raise ValueError(f"{self._count} of {self._frames} frames are written: the trajectory is not finished")
             finally:
-                os.close(self._descriptor)
-                self._descriptor = None
+                self._writer.close()
             if finished:
                 with disk_errors(self.path):
                     rename(self._partial, self.path)
@@ -241,23 +268,13 @@ class TrajectoryWriter:
         self.close(finished=kind is None)
 
     def _put(self, name: str, frame: int, value: np.ndarray) -> None:
-        """Write a quantity of a frame, or of several that follow each other. Raises OSError."""
-        table = self._tables[name]
-        data = memoryview(value.reshape(-1).view(np.uint8))
-        offset = table.offset + frame * table.stride
-        while len(data):
-            written = os.pwrite(self._descriptor, data, offset)
-            data, offset = data[written:], offset + written
+        """Write a quantity of a frame, or of several that follow each other. Raises OutputError."""
+        self._writer.put(self._tables[name], frame, value)
 
     def _drop(self, keep: int) -> None:
         """Let no frame from this one on count."""
-        with disk_errors(self._partial):
-            self._put(STEP, keep, np.full(self._frames - keep, NOT_WRITTEN, np.int64))
-            os.fdatasync(self._descriptor)
-
-    def _mean(self, value: np.ndarray) -> np.ndarray:
-        """Mass-weighted mean over each object, shape (O, 3)."""
-        return np.add.reduceat(self._mass * value, self._starts) / self._object_mass
+        self._put(STEP, keep, np.full(self._frames - keep, NOT_WRITTEN, np.int64))
+        self._writer.sync()
 
 
 def _described(grid: Grid | None) -> str:

@@ -34,9 +34,9 @@ def loss_terms(plan: Plan) -> tuple[str, ...]:
     return tuple(dict.fromkeys(term for e in plan.effects for term in e.losses(plan.scene)))
 
 
-def energies(instance: Instance) -> dict[str, float]:
-    """Every term of the ledger [J], at the end of a `run` or after `setup`."""
-    return stored(instance) | potentials(instance.plan, instance.array("x")) | losses(instance)
+def energies(instance: Instance, center: np.ndarray) -> dict[str, float]:
+    """Every term of the ledger [J], at the end of a `run` or after `setup`; ``center`` as for `potentials`."""
+    return stored(instance) | potentials(instance.plan, center) | losses(instance)
 
 
 def stored(instance: Instance) -> dict[str, float]:
@@ -55,9 +55,9 @@ def stored(instance: Instance) -> dict[str, float]:
     return found
 
 
-def potentials(plan: Plan, x: np.ndarray) -> dict[str, float]:
-    """The terms that follow from where all particles of a plan are [J]; x [m], shape (N, 3)."""
-    return {e.ledger: e.potential(plan.scene, plan.system.mass, x) for e in plan.effects if e.has_potential}
+def potentials(plan: Plan, center: np.ndarray) -> dict[str, float]:
+    """The terms that follow from where the objects of a plan are [J], for their centres of mass [m], shape (M, 3)."""
+    return {e.ledger: e.potential(plan.scene, plan.system.mass_of, center) for e in plan.effects if e.has_potential}
 
 
 def losses(instance: Instance) -> dict[str, float]:

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -15,9 +17,12 @@ from ..engine.instance import Instance
 from ..engine.plan import Plan
 from ..engine.state import State
 from ..errors import DivergedError
+from ..model.model import Model
 from ..results.checkpoint import Checkpoint
+from ..results.frame_rows import FrameRows, RowWriter
 from .energy import energies
 from .guard import fastest
+from .observe import Observation, Observer
 
 COST_SECONDS = 0.25
 """Wall time between two words on what a run has cost so far."""
@@ -42,10 +47,10 @@ class Frame:
     """The whole scene at the end of a window."""
 
     step: int
-    x: np.ndarray
-    """[m], in tag order, shape (N, 3); valid until the next frame is asked for, as ``v`` is."""
-    v: np.ndarray
-    """[m/s], shape (N, 3)."""
+    seen: Observation
+    """Of all objects."""
+    checksums: np.ndarray
+    """Of all positions and of all velocities, as the trajectory file has them, uint32, shape (2,)."""
     energies: dict[str, float]
     """Every term of the ledger [J]; what is lost counts from the start of this run, not from before a resume."""
     penetration: float
@@ -81,6 +86,20 @@ class Account:
         for kind, seconds in other.other.items():
             self.other[kind] = self.other.get(kind, 0.0) + share * seconds
 
+    def clock(self, kind: str):
+        """Add the wall seconds of a ``with`` block to other work."""
+        return clock(self.other, kind)
+
+
+@contextmanager
+def clock(seconds: dict[str, float], what: str):
+    """Add the wall seconds of a ``with`` block to an account, also of one that fails."""
+    begin = time.perf_counter()
+    try:
+        yield
+    finally:
+        seconds[what] = seconds.get(what, 0.0) + time.perf_counter() - begin
+
 
 class LammpsFailure(Exception):
     """LAMMPS has ended a run by itself; the guard says why."""
@@ -93,16 +112,17 @@ class LammpsFailure(Exception):
 
 
 class FrameSource(Protocol):
-    """Gives the frames of a run in order. A context manager."""
+    """Gives the frames of a run in order, their rows of particles being in the trajectory file. A context manager."""
 
     executors: int
     """Processes that simulate."""
 
-    def begin(self, resume: Checkpoint | None) -> Frame | None:
-        """Take up the start, and give frame 0; or the state of a checkpoint, and give nothing."""
+    def begin(self, resume: Checkpoint | None, rows: FrameRows) -> Frame | None:
+        """Take up the start, and give frame 0; or the state of a checkpoint, and give nothing. ``rows`` is where rows of
+        particles go. Raises OutputError."""
 
     def advance(self, frame: int, steps: int) -> Frame:
-        """The state so many steps later, which is frame ``frame``. Raises LammpsFailure, DivergedError."""
+        """The state so many steps later, which is frame ``frame``. Raises LammpsFailure, DivergedError, OutputError."""
 
     def stop(self, frame: int) -> int:
         """Make an end soon after frame ``frame``; returns the last frame that will come, which is a kept one."""
@@ -125,26 +145,34 @@ class Sequential:
 
     executors = 1
 
-    def __init__(self, plan: Plan):
-        self.plan = plan
+    def __init__(self, plan: Plan, models: Sequence[Model] = ()):
+        """``models`` as for an `Observer`."""
+        self.plan, self.observer = plan, Observer(plan, models)
+        self.objects = np.arange(len(plan.system.names))
+        self.spent = Account()
+        """On what is no effect's."""
 
     def __enter__(self) -> Sequential:
         self.instance = Instance(self.plan)
+        self.rows: RowWriter | None = None
         return self
 
     def __exit__(self, *_) -> None:
         self.instance.close()
+        if self.rows:
+            self.rows.close()
 
-    def begin(self, resume):
+    def begin(self, resume, rows):
+        self.rows = RowWriter(rows)
         if resume:
             self.instance.put(resume.step, resume.state)
             return None
         self.instance.setup()
-        return self._frame()
+        return self._frame(0)
 
     def advance(self, frame, steps):
         run_window(self.instance, steps)
-        return self._frame()
+        return self._frame(frame)
 
     def stop(self, frame):
         return frame
@@ -154,6 +182,7 @@ class Sequential:
 
     def account(self):
         account = Account()
+        account.add_all(self.spent)
         add_clocks(account, self.instance)
         return account
 
@@ -163,16 +192,14 @@ class Sequential:
     def new_owners(self):
         return []
 
-    def _frame(self) -> Frame:
+    def _frame(self, frame: int) -> Frame:
         instance = self.instance
-        return Frame(
-            instance.step,
-            instance.array("x"),
-            instance.array("v"),
-            energies(instance),
-            penetration(instance),
-            liquid_frame(instance),
-        )
+        x, v, liquid = instance.array("x"), instance.array("v"), liquid_frame(instance)
+        with self.spent.clock("guard"):
+            seen = self.observer.observe(self.objects, self.objects, x, v, liquid and liquid.heights[0])
+        with self.spent.clock("output"):
+            checksums = self.rows.write(frame, [slice(0, self.plan.system.particles)], x, v)
+        return Frame(instance.step, seen, checksums, energies(instance, seen.center), penetration(instance), liquid)
 
 
 def run_window(instance: Instance, steps: int) -> None:

@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from ..effects.envelope import wave_speed
-from ..engine.geometry import INVERTED, NOT_FINITE, Geometry
+from ..engine.geometry import Geometry
 from ..errors import DivergedError, Problem
 from ..model.system import System
 from ..scene.formatting import number, say
 from ..scene.scene import Accuracy, SceneRecord
+from .observe import Observation
 from .prepare import Prepared
 
 CLASSES = {Accuracy.PREVIEW: 1e-2, Accuracy.BALANCED: 1e-3, Accuracy.REFERENCE: 1e-4}
@@ -46,20 +47,17 @@ class Guard:
 
     def __init__(self, ready: Prepared, folder: Path):
         self.ready, self.folder = ready, folder
-        self.geometry = Geometry(ready.system)
-        self.cells = np.diff(self.geometry.first_cell)
+        self.cells = np.diff(Geometry(ready.system).first_cell)
         """Of each solid, shape (M,)."""
-        effects = ready.plan.effects
-        self.sides = [p for e in effects for p in e.planes(ready.scene)]
-        self.apart = any(e.keeps_apart for e in effects)
+        self.sides = [p for e in ready.plan.effects for p in e.planes(ready.scene)]
         self.planes = np.array([s.sign * s.at for s in self.sides])
         self.columns = [s.axis if s.sign > 0 else 3 + s.axis for s in self.sides]
-        """Of what a glance tells of an object's reach: that towards the plane, for what is below it."""
+        """Of an object's reach: that towards the plane, for what is below it."""
         self.allowed = np.where(ready.system.still, np.inf, ready.system.spacing)[:, None]
         """How far beyond a plane solids may be [m], shape (M, 1); those of which nothing can move, anywhere."""
         self.limit = max(LEAST_RESIDUAL, RESIDUAL_FACTOR * energy_class(ready.scene))
-        self.since = np.full(len(ready.system.hexahedron), -1)
-        """Step since which each cell has been inside out at every frame, -1 where it is not, shape (C,)."""
+        self.inverted = self.since = np.zeros(0, np.int64)
+        """Cells that were inside out at the last look, ascending, and the step since which each has been so at every frame."""
         self.crumpled = False
         """Whether some cell was inside out at the last look."""
         self.most_inverted = 0
@@ -69,34 +67,37 @@ class Guard:
         self.patience = RINGS * (high - low).max(1) / wave_speed(ready.system) / ready.certificate.timestep
         """Steps that a cell of each solid may stay inside out, shape (M,)."""
 
-    def check(self, step: int, x: np.ndarray, v: np.ndarray) -> None:
-        """Raise DivergedError when positions [m] and velocities [m/s], both (N, 3), are not those of bodies in their places."""
+    def check(self, step: int, seen: Observation) -> None:
+        """Raise DivergedError when what all objects of the scene tell is not what bodies in their places tell."""
         system = self.ready.system
-        found, reach = self.geometry.glance(x, v)
-        if found == NOT_FINITE:
-            i = self.geometry.not_finite(x, v)
+        if seen.not_finite is not None:
             raise self.error_at(
-                step, "its positions or velocities are NaN or infinite", system.object[i], "time step", "amplitude", "load"
+                step,
+                "its positions or velocities are NaN or infinite",
+                system.object[seen.not_finite],
+                "time step",
+                "amplitude",
+                "load",
             )
-        if found == INVERTED:
-            self._look_at_cells(step, self.geometry.inverted(x))
-        elif self.crumpled:
-            self.crumpled = False
-            self.since[:] = -1
-        self._look_at_sides(step, reach)
-        if self.apart and (pair := self.geometry.sunk(x)):
+        if len(seen.inverted) or self.crumpled:
+            self._look_at_cells(step, seen.inverted)
+        self._look_at_sides(step, seen.reach)
+        if seen.sunk:
+            m, other = seen.sunk
             raise self.error_at(
-                step, f"it is inside {system.names[pair[1]]}", pair[0], "closing speed", "time step", "amplitude", "thinnest part"
+                step, f"it is inside {system.names[other]}", m, "closing speed", "time step", "amplitude", "thinnest part"
             )
 
-    def _look_at_cells(self, step: int, inverted: np.ndarray) -> None:
-        """Cells may be inside out for a moment only."""
-        self.crumpled = True
-        self.most_inverted = max(self.most_inverted, int(np.count_nonzero(inverted)))
-        self.since = np.where(inverted, np.where(self.since < 0, step, self.since), -1)
-        cells = np.flatnonzero(inverted)
+    def _look_at_cells(self, step: int, cells: np.ndarray) -> None:
+        """Cells may be inside out for a moment only; these are so, ascending."""
+        self.crumpled = len(cells) > 0
+        self.most_inverted = max(self.most_inverted, len(cells))
+        since = np.full(len(cells), step)
+        _, now, before = np.intersect1d(cells, self.inverted, assume_unique=True, return_indices=True)
+        since[now] = self.since[before]
+        self.inverted, self.since = cells, since
         owner = self.ready.system.object[self.ready.system.hexahedron[cells, 0]]
-        stuck = np.bincount(owner[step - self.since[cells] > self.patience[owner]], minlength=len(self.patience))
+        stuck = np.bincount(owner[step - since > self.patience[owner]], minlength=len(self.patience))
         for m in np.flatnonzero(stuck).tolist():
             self.dents[m] = max(self.dents.get(m, 0), int(stuck[m]))
         parts = stuck / np.maximum(self.cells, 1)
@@ -105,7 +106,7 @@ class Guard:
             raise self.error_at(
                 step,
                 f"{stuck[m]} of its {self.cells[m]} cells have been inside out since step "
-                f"{self.since[cells[owner == m]].min()}; springs cannot tell mirrored from right, so they would stay so",
+                f"{since[owner == m].min()}; springs cannot tell mirrored from right, so they would stay so",
                 m,
                 "amplitude",
                 "load",
@@ -115,7 +116,7 @@ class Guard:
 
     def _look_at_sides(self, step: int, reach: np.ndarray) -> None:
         """An object has left when all of its box is beyond a plane, by more than a spacing;
-        ``reach`` as `Geometry.glance` tells it."""
+        ``reach`` as in `Observation`."""
         if not self.sides:
             return
         beyond = self.planes - reach[:, self.columns]
@@ -133,13 +134,14 @@ class Guard:
                 "load",
             )
 
-    def energy(self, step: int, residual: float, v: np.ndarray) -> None:
-        """Raise DivergedError when the energies do not add up any more. ``residual`` as in results/ledger.py."""
+    def energy(self, step: int, residual: float, speed: np.ndarray) -> None:
+        """Raise DivergedError when the energies do not add up any more. ``residual`` as in results/ledger.py, ``speed`` as in
+        `Observation`."""
         if not abs(residual) <= self.limit:
             raise self.error_at(
                 step,
                 f"the energies do not add up, residual {number(residual)}; its particles are the fastest",
-                fastest(self.ready.system, v),
+                fastest_for_its_waves(self.ready.system, speed),
                 "time step",
                 "amplitude",
                 "load",
@@ -221,8 +223,12 @@ def fastest(system: System, v: np.ndarray) -> int | None:
     """
     if len(v) < system.particles:
         return None
-    speed = np.nan_to_num(np.maximum.reduceat(np.abs(v).max(1), system.first[:-1]), nan=np.inf)
-    return int((speed / wave_speed(system)).argmax())
+    return fastest_for_its_waves(system, np.maximum.reduceat(np.abs(v).max(1), system.first[:-1]))
+
+
+def fastest_for_its_waves(system: System, speed: np.ndarray) -> int:
+    """The solid with the highest of these speeds over its wave speed, or one whose speed is NaN; [m/s], shape (M,)."""
+    return int((np.nan_to_num(speed, nan=np.inf) / wave_speed(system)).argmax())
 
 
 def _accuracy(scene: SceneRecord) -> Accuracy:

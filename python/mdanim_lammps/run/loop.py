@@ -21,7 +21,7 @@ from ..engine.data_file import write_bodies, write_data
 from ..errors import DivergedError, ExitCode, MdanimError, OutputError
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
-from ..results.expect import Measured, Outcome, evaluate, record, recorded
+from ..results.expect import Measured, Outcome, evaluate, recorded
 from ..results.files import CHECKPOINT, PAUSE, STOP, disk_errors, write_json, write_whole
 from ..results.ledger import DUE, Ledger
 from ..results.progress import ProgressLog
@@ -30,7 +30,7 @@ from ..results.trajectory_writer import TrajectoryWriter
 from ..scene.formatting import number
 from ..scene.meshes import mesh_files
 from .energy import ledger_terms, loss_terms, rounding_energy
-from .frame_source import COST_SECONDS, Account, Frame, FrameSource, LammpsFailure, Sequential
+from .frame_source import COST_SECONDS, Account, Frame, FrameSource, LammpsFailure, Sequential, clock
 from .guard import Guard
 from .prepare import Prepared
 from .result import Result
@@ -102,7 +102,9 @@ def simulate(
     last good frame kept, Interrupted after Ctrl-C or when a file ``stop`` appears in the folder,
     OutputError when the disk is full. While a file ``pause`` is in the folder no frame is begun.
     """
-    run = _Run(ready, folder, resume, time.perf_counter() if started is None else started, source or Sequential(ready.plan))
+    run = _Run(
+        ready, folder, resume, time.perf_counter() if started is None else started, source or Sequential(ready.plan, ready.models)
+    )
     return run.go(on_progress or (lambda progress: None))
 
 
@@ -113,9 +115,8 @@ def write_start(ready: Prepared, folder: Path) -> Path:
             # As the system says; LAMMPS, which takes a quarter of a second to start, is asked for a liquid alone.
             out.write(0, 0.0, ready.system.position, ready.system.velocity, None)
         else:
-            with Sequential(ready.plan) as source:
-                now = source.begin(None)
-                out.write(now.step, 0.0, now.x, now.v, now.liquid.heights, now.liquid.drops)
+            with Sequential(ready.plan, ready.models) as source:
+                _add(out, source.begin(None, out.rows), 0.0)
         out.flush()
         return out.close()
 
@@ -132,6 +133,13 @@ def trajectory_writer(ready: Prepared, folder: Path, frames: int) -> TrajectoryW
         scene_text=ready.lock,
         grid=ready.plan.grid,
     )
+
+
+def _add(out: TrajectoryWriter, now: Frame, when: float) -> None:
+    """Add a frame at a time [s]. Raises OutputError."""
+    seen, liquid = now.seen, now.liquid
+    of_liquid = (liquid.heights, liquid.drops) if liquid else ()
+    out.add(now.step, when, now.checksums, seen.center, seen.center_velocity, *of_liquid)
 
 
 def run_id(ready: Prepared) -> str:
@@ -204,7 +212,7 @@ class _Run:
         lengths = c.lengths
         frame, last = self.resume.frame if self.resume else 0, len(lengths)
         with self.source, _Stop(self.folder) as stop, self._open_trajectory() as out:
-            now = self.source.begin(self.resume)
+            now = self.source.begin(self.resume, out.rows)
             if self.resume:
                 self._reread_ledger(frame)
             else:
@@ -224,7 +232,7 @@ class _Run:
                     with self._clock("simulation"):
                         now = self._advance(frame, lengths[frame - 1])
                     with self._clock("guard"):
-                        self.guard.check(now.step, now.x, now.v)
+                        self.guard.check(now.step, now.seen)
                     with self._clock("output"):
                         self._record(out, log, frame, now)
                         on_progress(self._progress(frame))
@@ -361,13 +369,9 @@ class _Run:
         return TrajectoryWriter.append(path, self.ready.scene, self.ready.models, after_step=self.resume.step, grid=self.grid)
 
     def _record(self, out: TrajectoryWriter, log: ProgressLog, frame: int, now: Frame) -> None:
-        """Check the state, then append it to ledger and trajectory, and tell of it. Raises DivergedError before anything bad is
-        written."""
-        system, when, liquid = self.ready.system, now.step * self.certificate.timestep, now.liquid
-        extras = {
-            column: record(quantity, system, self.ready.models[system.names.index(name)], now.x, liquid and liquid.heights[0])
-            for (name, quantity), column in self.recorded.items()
-        }
+        """Check the energies, then append the frame to ledger and trajectory, and tell of it. Raises DivergedError before a bad
+        frame counts."""
+        when, liquid, extras = now.step * self.certificate.timestep, now.liquid, dict(now.seen.recorded)
         if liquid:
             extras["liquid_cells"] = liquid.cells
             if self.fed:
@@ -380,10 +384,10 @@ class _Run:
                 )
         # Losses before a resume are carried over.
         row = self.ledger.weigh(when, {t: e + self.carried.get(t, 0.0) for t, e in now.energies.items()} | extras)
-        self.guard.energy(now.step, row["residual"], now.v)
+        self.guard.energy(now.step, row["residual"], now.seen.speed)
         self.ledger.rows.append(row)
         self.penetration = max(self.penetration, now.penetration)
-        out.write(now.step, when, now.x, now.v, liquid and liquid.heights, liquid and liquid.drops)
+        _add(out, now, when)
         log.frame(frame, row, self.seconds["simulation"], self.source.new_owners())
 
     def _gained(self) -> int | None:
@@ -419,7 +423,7 @@ class _Run:
     # --- time and signals -------------------------------------------------------------------------------------------
 
     def _clock(self, what: str):
-        return _Clock(self.seconds, what)
+        return clock(self.seconds, what)
 
     def _cost(self, account: Account) -> Cost:
         """The account of the run so far."""
@@ -434,9 +438,10 @@ class _Run:
             other["held"] = max(0.0, other["held"] - other["paused"])
             known -= account.other["held"] - other["held"]
         beside = max(0.0, known - self.seconds["simulation"])
-        for name in ("output", "guard"):  # what executors did meanwhile is theirs: these tell what the run has waited for
-            spared = min(beside, other.get(name, 0.0))
-            other[name], beside = other.get(name, 0.0) - spared, beside - spared
+        for name in ("output", "guard"):  # what executors did meanwhile is theirs: of this process what the run has waited for
+            mine = self.seconds.get(name, 0.0)
+            spared = min(beside, mine)
+            other[name], beside = mine - spared + account.other.get(name, 0.0), beside - spared
         return Cost(
             wall=time.perf_counter() - self.started + other.get("before the resume", 0.0),
             steps=self.certificate.steps,
@@ -444,19 +449,6 @@ class _Run:
             effects=parts,
             other={LEAPFROG: account.leapfrog, "rest of the step": max(0.0, self.seconds["simulation"] - known), **other},
         )
-
-
-class _Clock:
-    """Adds the wall seconds of a ``with`` block to an account."""
-
-    def __init__(self, account: dict[str, float], what: str):
-        self.account, self.what = account, what
-
-    def __enter__(self) -> None:
-        self.start = time.perf_counter()
-
-    def __exit__(self, *_) -> None:
-        self.account[self.what] = self.account.get(self.what, 0.0) + time.perf_counter() - self.start
 
 
 class _Stop:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import plugin_path
 import pytest
+from distribution_lab import readied
 from mdanim_lammps.errors import ExecutorLost, OutputError
 from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions
 from mdanim_lammps.parallel.runtime import launch
@@ -19,9 +20,6 @@ from mdanim_lammps.parallel.runtime.launch import simulate_on
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.timeline import Timeline
 from mdanim_lammps.results.trajectory import Trajectory
-from mdanim_lammps.run.loop import write_inputs
-from mdanim_lammps.run.prepare import prepare
-from mdanim_lammps.scene.parse import load_scene
 from mpi import scenes as films
 from ranks_lab import command, environment, ranks_in
 
@@ -184,14 +182,6 @@ def faulty(place: Path, monkeypatch, **fault) -> None:
     monkeypatch.setenv("PYTHONPATH", environment(place)["PYTHONPATH"])
 
 
-def readied(place: Path, text: str):
-    (place / "film.txt").write_text(text)
-    (place / "film.out").mkdir()
-    ready = prepare(load_scene(place / "film.txt"))
-    write_inputs(ready, place / "film.out")
-    return ready, place / "film.out"
-
-
 @pytest.mark.parametrize("control", ["central", "peers"])
 def test_a_full_disk_ends_all_ranks(place, monkeypatch, control):
     """The error of the writer comes up here, whole."""
@@ -202,7 +192,7 @@ def test_a_full_disk_ends_all_ranks(place, monkeypatch, control):
         rank=0,
         module="results.trajectory_writer",
         kind="TrajectoryWriter",
-        method="write",
+        method="add",
         time=3,
         what="from mdanim_lammps.errors import OutputError; raise OutputError('no room: make room and resume')",
     )

@@ -125,6 +125,15 @@ class Bundle:
             scatter(found, *zip(arrays, parts))
         self.scattered = False
 
+    def gather_state(self, *arrays: np.ndarray) -> None:
+        """Let the leader of its team have in such arrays what each member has told. To be called by all of them together."""
+        if self.comm is None:
+            return
+        places = [there for _, there in self.stretches]
+        told = self.comm.gather((places, gathered(places, *arrays)) if self.comm.rank else None)
+        for found, parts in (told or ())[1:]:
+            scatter(found, *zip(arrays, parts))
+
     def _stretches_of(self, rows: np.ndarray) -> list[tuple[slice, slice]]:
         """Of these particles of its instance, ascending, where its members' are among them, and among all."""
         object_of = self.plan.system.object[rows]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 import traceback
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 
 import numpy as np
 from mpi4py import MPI
@@ -17,8 +17,10 @@ from ...engine.instance_cache import InstanceCache
 from ...engine.state import Records, State, StateRecords, join_all
 from ...engine.sub_plan import SubPlans
 from ...errors import MdanimError
+from ...results.frame_rows import RowWriter
 from ...run.energy import stored
 from ...run.frame_source import COST_SECONDS, Account, LammpsFailure, add_clocks, liquid_frame, penetration
+from ...run.observe import Observer
 from ..plan.orders import Order, Report
 from .bundle import Bundle, Wanted, wanted_bundles
 from .control import Controller, make_control
@@ -64,6 +66,9 @@ class Executor:
         self.parts = SubPlans(job.plan)
         self.system, resume = job.plan.system, job.resume
         self.objects = len(self.system.names)
+        self.rows, self.observer = RowWriter(job.rows), Observer(job.plan, job.models)
+        self.still = self._share_of_still()
+        """Objects that never move of which this executor writes the rows."""
         self.frame = resume.frame if resume else 0
         self.step = resume.step if resume else 0
         # Of all particles, right for those of its own objects; what a team runs is shared out among its members.
@@ -120,6 +125,7 @@ class Executor:
         for bundle in self.bundles:
             self._close(bundle)
         self.cache.close()
+        self.rows.close()
         self.mail.send(SUPERVISOR, Tag.ENDED, Ended(self.account, self.spans, time.process_time() - self.cpu_origin))
         self.mail.flush()
 
@@ -324,17 +330,33 @@ class Executor:
         for term, e in energies.items():
             self.energies[term] = self.energies.get(term, 0.0) + e
 
+    def _share_of_still(self) -> np.ndarray:
+        """Some of the objects that never move: all executors have about as many particles of such, and each object is one's."""
+        still = np.flatnonzero(self.system.still)
+        size = np.diff(self.system.first)[still]
+        middle = np.cumsum(size) - 0.5 * size
+        return still[(middle * self.comm.size / max(1, size.sum())).astype(np.int64) == self.me]
+
     def _send(self, keep: bool) -> None:
-        """The share of a frame."""
-        places = self._held()
+        """Write its rows of a frame, and send its share."""
+        with self._clock("guard"):
+            for bundle in self.bundles:
+                bundle.gather_state(self.x, self.v)
+            objects = np.union1d(self.own, self.still)
+            guests = [bundle.objects[self.system.still[bundle.objects]] for bundle in self.bundles if self._leads(bundle)]
+            near = np.unique(np.concatenate([objects, *guests]))
+            seen = self.observer.observe(objects, near, self.x, self.v, self.liquid and self.liquid.heights[0])
+        with self._clock("output"):
+            places = [*self._held(), *self.system.stretches(self.still)]
+            checksums = self.rows.write(self.frame, places, self.x, self.v)
         self.mail.send(
             SUPERVISOR,
             Tag.FRAME,
             Share(
                 self.frame,
                 self.own,
-                places,
-                *gathered(places, self.x, self.v),
+                seen,
+                checksums,
                 self.energies,
                 self.deepest,
                 self.liquid,
@@ -362,13 +384,19 @@ class Executor:
         return so_far
 
     def _keep(self) -> None:
-        """What a checkpoint needs besides."""
+        """Make its rows durable, and send what a checkpoint needs."""
+        with self._clock("output"):
+            self.rows.sync()
         places = self._held()
-        self.mail.send(SUPERVISOR, Tag.KEPT, Kept(self.frame, places, *gathered(places, self.f), self.records))
+        self.mail.send(SUPERVISOR, Tag.KEPT, Kept(self.frame, places, *gathered(places, self.x, self.v, self.f), self.records))
 
     def _held(self) -> list[slice]:
-        """Particles that it has told at the last frame, where they are among all."""
+        """Particles of which it has the state of the last frame, where they are among all."""
         return [there for bundle in self.bundles for _, there in bundle.stretches]
+
+    def _clock(self, kind: str):
+        """Counts a ``with`` block as such work, if the account has begun."""
+        return self.account.clock(kind) if self.told else nullcontext()
 
     @contextmanager
     def _span(self, kind: str):

@@ -15,8 +15,11 @@ from mpi4py.util import pkl5
 
 from ...engine.plan import Plan
 from ...engine.state import Records
+from ...model.model import Model
 from ...results.checkpoint import Checkpoint
+from ...results.frame_rows import FrameRows
 from ...run.frame_source import Account, LiquidFrame
+from ...run.observe import Observation
 from ..plan.frame_plan import PlannerOptions
 
 SUPERVISOR = 0
@@ -63,6 +66,10 @@ class Job:
     """``central`` or ``peers``."""
     resume: Checkpoint | None
     settings: PlannerOptions
+    rows: FrameRows
+    """Where rows of particles go."""
+    models: tuple[Model, ...]
+    """`recorded_models`."""
 
 
 @dataclass(frozen=True)
@@ -89,15 +96,15 @@ class Moved:
 
 @dataclass(frozen=True)
 class Share:
-    """An executor's part of a frame."""
+    """An executor's part of a frame, of which it has written its rows of particles into the file."""
 
     frame: int
     objects: np.ndarray
     """Its own."""
-    places: list[slice]
-    """Particles that it tells of: those, but for what others of a team tell."""
-    x: np.ndarray
-    v: np.ndarray
+    seen: Observation
+    """Of these, and of its part of those that never move."""
+    checksums: np.ndarray
+    """Of its rows, as `RowWriter.write` gives them."""
     energies: dict[str, float]
     penetration: float
     liquid: LiquidFrame | None
@@ -113,12 +120,17 @@ class Share:
 
 @dataclass(frozen=True)
 class Kept:
-    """What a checkpoint needs beside the `Share` of a frame."""
+    """What a checkpoint needs of a frame; all rows that the executor has written by then are on the disk."""
 
     frame: int
     places: list[slice]
-    """As in `Share`."""
+    """Particles that it tells of: those of its objects, but for what others of a team tell."""
+    x: np.ndarray
+    """[m], shape (n, 3)."""
+    v: np.ndarray
+    """[m/s], shape (n, 3)."""
     f: np.ndarray
+    """[N], shape (n, 3)."""
     records: Records
     """Those that travel with the objects that the executor owns."""
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The supervisor: starts the executors, puts their shares of frames together, and under central control decides for them.
 
-It is the source of a run's frames (run/frame_source.py); what becomes of them is the same as in the sequential program.
+It is the source of a run's frames (run/frame_source.py); what becomes of them is the same as in the sequential program. Executors
+write the rows of particles into the trajectory file themselves, so that what a frame takes here does not grow with particles.
 """
 
 from __future__ import annotations
@@ -17,12 +18,13 @@ import numpy as np
 from mpi4py import MPI
 
 from ... import errors
-from ...engine.state import Records, State, join_all
+from ...engine.state import State, join_all
 from ...engine.sub_plan import SubPlans
 from ...errors import DivergedError
 from ...results.timeline import Timeline
 from ...run.energy import ledger_terms, loss_terms, potentials
 from ...run.frame_source import Account, Frame, LammpsFailure
+from ...run.observe import join, recorded_models
 from ...run.prepare import Prepared
 from ..plan.frame_plan import PlannerOptions
 from ..plan.orders import Report
@@ -58,8 +60,6 @@ class Distributed:
         """Whether an end was asked for after the last frame that was granted."""
         self.clean = False
         """Whether all executors have come to their end; after an error they may be anywhere, and be waiting for each other."""
-        self.used: list[PendingFrame] = []
-        """Pending frames that can be filled again: they are as large as the scene."""
         self.timeline = Timeline(self.executors, control, ready.system.names)
         self.before: Timeline | None = None
         """The log of a run that is resumed: in the end `timeline` begins with it."""
@@ -69,17 +69,20 @@ class Distributed:
     def __enter__(self) -> Distributed:
         return self
 
-    def begin(self, resume):
-        system = self.ready.system
+    def begin(self, resume, rows):
+        ready, system = self.ready, self.ready.system
         self.step = resume.step if resume else 0
         self.start = (
             (resume.x, resume.v, resume.f) if resume else (system.position, system.velocity, np.zeros_like(system.position))
         )
-        self.granted = self.taken = self.resumed_at = resume.frame if resume else 0
-        self.last: PendingFrame | None = None
-        """That of the frame which was given out last."""
-        self.kept_at, self.cpu_begun = time.perf_counter(), time.process_time()
-        self.messages = MessageThread(self.world, Job(self.ready.plan, self.lengths, self.control, resume, self.settings))
+        self.granted = self.resumed_at = resume.frame if resume else 0
+        self.taken = resume.frame if resume else -1
+        self.kept: list[Kept] = []
+        """What executors have sent with the last kept frame."""
+        self.kept_at, self.cpu_begun = time.perf_counter(), time.thread_time()
+        models = recorded_models(ready.models, ready.plan)
+        job = Job(ready.plan, self.lengths, self.control, resume, self.settings, rows, models)
+        self.messages = MessageThread(self.world, job)
         self.messages.start()
         return None if resume else self._frame(0, keep=True)
 
@@ -96,7 +99,10 @@ class Distributed:
         return self.granted
 
     def state(self):
-        return self.last_state
+        x, v, f = (array.copy() for array in self.start)  # right for what never moves
+        for kept in self.kept:
+            scatter(kept.places, (x, kept.x), (v, kept.v), (f, kept.f))
+        return State(x, v, f, join_all(kept.records for kept in self.kept))
 
     def account(self):
         """Where the executors' time went, the mean of all."""
@@ -107,6 +113,11 @@ class Distributed:
     def account_so_far(self):
         """The same, where all executors have told of theirs."""
         return self._mean(self.told.values()) if len(self.told) == self.executors else None
+
+    @property
+    def cpu(self) -> float:
+        """Processor time of this process since the run began, without looks for messages while there is none [s]."""
+        return time.thread_time() - self.cpu_begun + self.messages.cpu
 
     def new_owners(self):
         owners, frame = self.timeline.owners, self.timeline.frames[-1]
@@ -136,7 +147,7 @@ class Distributed:
         for executor, ended in self.ended.items():
             self.timeline.spans += [(executor, *span) for span in ended.spans]
             self.timeline.cpu[executor] = ended.cpu
-        self.timeline.supervisor_cpu = time.process_time() - self.cpu_begun
+        self.timeline.supervisor_cpu = self.cpu
         if self.before:
             self.timeline = self.timeline.after(self.before, self.resumed_at)
 
@@ -151,21 +162,17 @@ class Distributed:
         self.granted = frame
 
     def _pending(self, frame: int) -> PendingFrame:
-        if frame not in self.pending:
-            # What moves is overwritten in every frame, what does not is right in all of them.
-            old = self.used.pop() if self.used else None
-            self.pending[frame] = PendingFrame(old.x, old.v, old.f) if old else PendingFrame(*(a.copy() for a in self.start))
-        return self.pending[frame]
+        return self.pending.setdefault(frame, PendingFrame())
 
     def _frame(self, frame: int, keep: bool) -> Frame:
         """Wait for all shares of a frame. Raises what an executor raised."""
         pending = self._pending(frame)
         while len(pending.shares) < self.executors or (keep and len(pending.kept) < self.executors):
             self._take()
-        if self.last:
-            self.used.append(self.last)
-        self.last, self.taken = self.pending.pop(frame), frame
+        del self.pending[frame]
+        self.taken = frame
         shares = [pending.shares[e] for e in range(self.executors)]
+        seen = join([share.seen for share in shares])
         energies = dict.fromkeys(ledger_terms(self.ready.plan), 0.0)
         for share in shares:
             for term, e in share.energies.items():
@@ -181,13 +188,12 @@ class Distributed:
             [team for s in shares for team in s.teams],
         )
         if keep:
-            self.last_state = State(pending.x, pending.v, pending.f, join_all(pending.kept.values()))
-        energies |= potentials(self.ready.plan, pending.x) | self.losses
+            self.kept = list(pending.kept.values())
         return Frame(
             self.step,
-            pending.x,
-            pending.v,
-            energies,
+            seen,
+            np.bitwise_xor.reduce([share.checksums for share in shares]),
+            energies | potentials(self.ready.plan, seen.center) | self.losses,
             max(s.penetration for s in shares),
             next((s.liquid for s in shares if s.liquid), None),
             keep,
@@ -200,17 +206,12 @@ class Distributed:
         except queue.Empty:
             return
         if isinstance(message, Share):
-            pending = self._pending(message.frame)
-            pending.shares[executor] = message
+            self._pending(message.frame).shares[executor] = message
             if message.account:
                 self.told[executor] = message.account
-            scatter(message.places, (pending.x, message.x), (pending.v, message.v))
         elif isinstance(message, Kept):
-            if message.frame <= self.taken and self.last:  # sent a second time, by an end after a frame that was kept anyway
-                return
-            pending = self._pending(message.frame)
-            pending.kept[executor] = message.records
-            scatter(message.places, (pending.f, message.f))
+            if message.frame > self.taken:  # else sent a second time, by an end after a frame that was kept anyway
+                self._pending(message.frame).kept[executor] = message
         elif isinstance(message, Ended):
             self.gone.add(executor)
             if message.account is not None:
@@ -228,15 +229,12 @@ class Distributed:
 class PendingFrame:
     """A frame of which shares are still to come."""
 
-    x: np.ndarray
-    v: np.ndarray
-    f: np.ndarray
     shares: dict[int, Share] = field(default_factory=dict)
     """By executor."""
     keep: bool = False
     """Whether what a checkpoint needs comes with it."""
-    kept: dict[int, Records] = field(default_factory=dict)
-    """Records of fixes, by the executor that has sent it."""
+    kept: dict[int, Kept] = field(default_factory=dict)
+    """By executor."""
 
 
 class MessageThread(threading.Thread):
@@ -249,6 +247,8 @@ class MessageThread(threading.Thread):
         """(executor, message) that the source of frames is to take."""
         self.outbox: queue.Queue = queue.Queue()
         self.closing = threading.Event()
+        self.cpu = 0.0
+        """Processor time on messages that there were [s]."""
 
     def send_all(self, tag: Tag, message) -> None:
         """Send to all executors."""
@@ -275,6 +275,7 @@ class MessageThread(threading.Thread):
         reports = {}
         nap = NAP
         while True:
+            begin = time.thread_time()
             closing = self.closing.is_set()
             busy = self._send(mail, executors)
             while (message := mail.peek(MPI.ANY_TAG, MPI.ANY_SOURCE)) is not None:
@@ -291,7 +292,9 @@ class MessageThread(threading.Thread):
                 mail.forget_sent()
                 return
             nap = NAP if busy else min(2.0 * nap, LONG_NAP)
-            if not busy:
+            if busy:
+                self.cpu += time.thread_time() - begin
+            else:
                 time.sleep(nap)
 
     def _decide(self, mail: Mail, planner: Planner, reports: list[Report]) -> None:

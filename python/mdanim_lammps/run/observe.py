@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What is read off the particles of a frame: a few numbers of each object, so that the process that has an object reads them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..engine.geometry import INVERTED, NOT_FINITE, Geometry
+from ..engine.plan import Plan
+from ..model.model import Model
+from ..model.system import centers
+from ..results.expect import record, recorded
+
+
+@dataclass(frozen=True)
+class Observation:
+    """What the particles of m objects tell at a frame."""
+
+    objects: np.ndarray
+    """These objects, from 0 and ascending, int64, shape (m,)."""
+    center: np.ndarray
+    """Centres of mass [m], shape (m, 3)."""
+    center_velocity: np.ndarray
+    """[m/s], shape (m, 3)."""
+    reach: np.ndarray
+    """How far each object reaches along x, y, z, -x, -y and -z [m], shape (m, 6); nothing of use where a number is not finite."""
+    speed: np.ndarray
+    """Largest component of the velocities of each object's particles, without its sign [m/s], shape (m,)."""
+    not_finite: int | None
+    """First particle whose position or velocity is NaN or infinite; None where all are finite."""
+    inverted: np.ndarray
+    """Lattice cells of the scene that are inside out, ascending, int64, shape (c,)."""
+    sunk: tuple[int, int] | None
+    """As `Geometry.sunk`."""
+    recorded: dict[str, float]
+    """Quantities that an ``expect`` needs at every frame, by their columns of the ledger."""
+
+
+def recorded_models(models: Sequence[Model], plan: Plan) -> tuple[Model, ...]:
+    """Those of the models that an `Observer` of a plan needs."""
+    wanted = {name for name, _ in recorded(plan.scene.expects)}
+    return tuple(model for model in models if model.name in wanted)
+
+
+class Observer:
+    """Looks at the particles of some objects of a plan.
+
+    Args:
+        plan: of the whole scene.
+        models: `recorded_models` at least.
+    """
+
+    def __init__(self, plan: Plan, models: Sequence[Model]):
+        self.system, self.geometry = plan.system, Geometry(plan.system)
+        self.apart = any(effect.keeps_apart for effect in plan.effects)
+        model_of, number = {model.name: model for model in models}, {name: m for m, name in enumerate(plan.system.names)}
+        self.recorded = [
+            (number[name], quantity, model_of[name], column) for (name, quantity), column in recorded(plan.scene.expects).items()
+        ]
+        grid = plan.grid
+        self.dry = None if grid is None else np.full(grid.shape[1::-1], grid.low[2])
+        """Heights of a liquid that is nowhere, shape (ny, nx)."""
+
+    def observe(
+        self, objects: np.ndarray, near: np.ndarray, x: np.ndarray, v: np.ndarray, height: np.ndarray | None = None
+    ) -> Observation:
+        """Look at some objects.
+
+        Args:
+            objects: from 0 and ascending, int64, shape (m,).
+            near: these and all others that may touch them, ascending, int64.
+            x: positions of all particles, of which only those of ``near`` are read [m], shape (N, 3).
+            v: velocities, of which only those of ``objects`` are read [m/s], shape (N, 3).
+            height: smooth height z of the liquid over each column of cells [m], shape (ny, nx); None without a liquid, and where
+                these objects are out of its reach.
+        """
+        found, reach = self.geometry.glance(x, v, objects)
+        sound = found != NOT_FINITE
+        return Observation(
+            objects,
+            *self._centers(objects, x, v),
+            reach,
+            self.geometry.largest_components(v, objects),
+            None if sound else self._not_finite(objects, x, v),
+            np.flatnonzero(self.geometry.inverted(x, objects)) if found == INVERTED else np.zeros(0, np.int64),
+            self.geometry.sunk(x, near) if self.apart and sound else None,
+            {
+                column: record(quantity, self.system, model, x, self.dry if height is None else height)
+                for m, quantity, model, column in self.recorded
+                if sound and m in objects
+            },
+        )
+
+    def _centers(self, objects: np.ndarray, *vectors: np.ndarray) -> list[np.ndarray]:
+        places = self.system.stretches(objects)
+        if not places:
+            return [np.zeros((0, 3)) for _ in vectors]
+        every = (self.system.mass, *vectors)
+        mass, *vectors = (a[places[0]] if len(places) == 1 else np.concatenate([a[p] for p in places]) for a in every)
+        size = np.diff(self.system.first)[objects]
+        with np.errstate(invalid="ignore", over="ignore"):  # numbers that are not finite are told of
+            return [centers(mass, np.cumsum(size) - size, vector) for vector in vectors]
+
+    def _not_finite(self, objects: np.ndarray, x: np.ndarray, v: np.ndarray) -> int:
+        found = ((place.start, self.geometry.not_finite(x[place], v[place])) for place in self.system.stretches(objects))
+        return next(begin + first for begin, first in found if first is not None)
+
+
+def join(parts: Sequence[Observation]) -> Observation:
+    """What parts of a scene tell, as one; no object is in two of them."""
+    objects = np.concatenate([part.objects for part in parts])
+    order = np.argsort(objects)
+    arrays = ("objects", "center", "center_velocity", "reach", "speed")
+    return Observation(
+        *(np.concatenate([getattr(part, name) for part in parts])[order] for name in arrays),
+        min((part.not_finite for part in parts if part.not_finite is not None), default=None),
+        np.sort(np.concatenate([part.inverted for part in parts])),
+        min((part.sunk for part in parts if part.sunk), default=None),
+        {column: value for part in parts for column, value in part.recorded.items()},
+    )
