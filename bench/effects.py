@@ -50,6 +50,7 @@ liquid water {{
   basin from (-40, -20, 0) cm to (40, 20, 60) cm
   density 1000
   level 20 cm
+  model surface
 }}
 control {{
   time 100 s
@@ -78,7 +79,7 @@ control {{
 }}
 effects {{ {off} }}
 """
-SEA = "liquid water {{ basin from (-50, -50, 0) cm to (50, 50, 60) cm density 1000 level 30 cm drag {drag} }}"
+SEA = "liquid water {{ basin from (-50, -50, 0) cm to (50, 50, 60) cm density 1000 level 30 cm drag {drag} model surface }}"
 
 
 class Runner:

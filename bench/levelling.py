@@ -20,6 +20,7 @@ liquid water {{
   basin from (0, 0, 0) to ({width}, 8, {top})
   density 1000
   {fill}
+  model surface
   drag 0
 }}
 {wall}

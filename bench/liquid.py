@@ -55,7 +55,7 @@ def measure(what: str, warm: int, steps: int, **scene) -> None:
     print(f"{what:22s} {1e6 * wall / steps:9.1f} us/step   {shares}   {swept / steps:.2f} sweeps/step", flush=True)
 
 
-def main(body: int = 46, basin: int = 128, steps: int = 200, model: str = "surface") -> None:
+def main(body: int = 46, basin: int = 128, steps: int = 200, model: str = "waves") -> None:
     """Measure and print."""
     # A stiff body, so that the time step is small against what the liquid has to follow: the usual case.
     common = dict(a=-basin / 2, b=basin / 2, n=basin, half=basin / 2, m=body, model=model, young=1000.0 * 9.81 * body * 50)

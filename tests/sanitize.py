@@ -51,12 +51,15 @@ object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOLID} velocity (1, 0, -1
 object b {{ shape box (5, 5, 1) cm position (6.5, 0, 2) cm orientation euler (20, 40, 0) deg {SOLID} velocity (-1, 0, 0) }}
 object c {{ shape torus 3 cm 1.2 cm position (1, 0, 7) cm {SOLID} velocity (0, 0.5, -1) }}
 """,
-    "liquid": """
+    **{
+        name: f"""
 gravity (0, 0, -9.81)
-liquid w { basin from (-10, -10, 0) cm to (10, 10, 20) cm density 1000 level 8 cm drag 4 }
-object a { shape box (5, 5, 5) cm position (-4, 0, 12) cm density 400 elasticity 0.2 MPa velocity (0, 0, -1) }
-object b { shape sphere 3 cm position (4, 0, 12) cm density 1500 elasticity 0.2 MPa }
-""",
+liquid w {{ basin from (-10, -10, 0) cm to (10, 10, 20) cm density 1000 level 8 cm drag 4 {words} }}
+object a {{ shape box (5, 5, 5) cm position (-4, 0, 12) cm density 400 elasticity 0.2 MPa velocity (0, 0, -1) }}
+object b {{ shape sphere 3 cm position (4, 0, 12) cm density 1500 elasticity 0.2 MPa }}
+"""
+        for name, words in {"liquid": "model surface", "waves": "drops 1 wave -x amplitude 1 cm period 0.3 s"}.items()
+    },
     "damped": f"""
 gravity (0, 0, -9.81)
 ground z 0 m

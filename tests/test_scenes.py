@@ -15,10 +15,11 @@ FRAGMENTS = {"rubber"}
 
 @pytest.mark.parametrize("name", sorted({p.stem for p in SCENES.glob("*.txt")} - FRAGMENTS))
 def test_scene_meets_its_expectations(name, tmp_path):
-    """Run a scene and meet every expect line; there are some."""
+    """Run a scene and meet every expect line; there are some. Energies add up to what `accuracy balanced` stands for."""
     result = Scene.load(SCENES / f"{name}.txt").run(tmp_path / f"{name}.out")
     assert result.outcomes, f"{name}.txt has no expect lines"
     assert not result.missed, "\n".join(map(str, result.missed))
+    assert result.ledger.residual <= 1e-3
 
 
 @pytest.mark.parametrize("name", sorted({p.stem for p in SCENES.glob("*.txt")} - FRAGMENTS))

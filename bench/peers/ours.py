@@ -19,7 +19,7 @@ control {{ time {time} s  resolution {h} m }}
 """,
     "float": """
 gravity (0, 0, -9.81)
-liquid water {{ basin from (0, 0, 0) m to ({width}, {width}, 1.2) m  density 1000  level {level} m  drag 4 }}
+liquid water {{ basin from (0, 0, 0) m to ({width}, {width}, 1.2) m  density 1000  level {level} m  drag 4  model surface }}
 object box {{ shape box ({side}, {side}, {side}) m  position ({middle}, {middle}, {z}) m  density {density}  elasticity 1 MPa }}
 control {{ time {time} s  resolution {h} m }}
 """,

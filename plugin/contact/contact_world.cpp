@@ -320,8 +320,7 @@ void ContactWorld::look(Active &one, double dt)
 // What fields do by themselves; what they add to the same particles and sums comes afterwards, in one order.
 void ContactWorld::look_and_work_ahead(double dt)
 {
-  constexpr double PART = 0.25;    // of the least task: parts are not equal, a thread has several
-  threads.parts(costs.back(), std::max(1L, static_cast<long>(PART * threads.least())), [&](long from, long to) {
+  threads.timed_parts(costs.back(), 1.0, [&](long from, long to) {    // costs are in ns, about
     const auto number = [&](long cost) { return std::lower_bound(costs.begin(), costs.end() - 1, cost) - costs.begin(); };
     for (long k = number(from), end = number(to); k < end; ++k) {
       Active &one = active[k];

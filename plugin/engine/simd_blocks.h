@@ -80,11 +80,10 @@ class SimdBlocks {
   // work(i) for all that are held back, which threads share.
   template <class Work> void each_outside(const Threads &threads, const Work &work) const
   {
-    constexpr double PARTICLE = 8.0, PART = 0.25;    // ns, about; of the least task: these loops come one after the other
-    threads.parts(static_cast<long>(outside.size()), 1 + static_cast<long>(PART * threads.least() / PARTICLE),
-                  [&](long from, long to) {
-                    for (long n = from; n < to; ++n) work(outside[n]);
-                  });
+    constexpr double PARTICLE = 8.0;    // [ns], about
+    threads.timed_parts(static_cast<long>(outside.size()), PARTICLE, [&](long from, long to) {
+      for (long n = from; n < to; ++n) work(outside[n]);
+    });
   }
   int at(int i) const { return reordered ? index[i] : i; }
   int ours(int i) const { return reordered ? place[i] : i; }    // the way back

@@ -80,6 +80,13 @@ class Threads {
     if (many < 2) return work(0L, size);
     each(static_cast<int>(many), [&](int n) { work(size * n / many, size * (n + 1) / many); });
   }
+  // The same where each number takes about so many ns: a part may be shorter than the least task, as some cost more than others
+  // and loops come one after the other.
+  template <class Work> void timed_parts(long size, double ns, const Work &work) const
+  {
+    constexpr double PART = 0.25;    // of the least task
+    parts(size, 1 + static_cast<long>(PART * least_task / ns), work);
+  }
 
  private:
   static constexpr int PARTS_OF_ONE = 4;

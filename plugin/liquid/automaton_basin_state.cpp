@@ -10,7 +10,7 @@
 
 namespace mdanim {
 
-static constexpr double STATE_VERSION = 2.0;
+static constexpr double STATE_VERSION = 3.0;
 static constexpr std::uint8_t SOLID_CODE = 255, STILL_CODE = 254;
 
 double AutomatonBasin::bytes() const
@@ -76,7 +76,7 @@ struct StateHead {
   std::int64_t nx, ny, nz;
   std::int64_t units, swept, waited, calm;
   double travel, crossed;
-  Basin::Energies energies;
+  Basin::Account account;
 };
 
 std::string number(std::int64_t n) { return std::to_string(n); }
@@ -87,9 +87,9 @@ std::string grid(std::int64_t nx, std::int64_t ny, std::int64_t nz)
 }    // namespace
 
 // The head, raw heights, and a byte for each cell: what it holds, or a code.
-std::vector<std::uint8_t> AutomatonBasin::state(const Energies &energies) const
+std::vector<std::uint8_t> AutomatonBasin::state(const Account &account) const
 {
-  const StateHead head{STATE_VERSION, shape.nx, shape.ny, shape.nz, units, swept, waited, calm, travel, crossed, energies};
+  const StateHead head{STATE_VERSION, shape.nx, shape.ny, shape.nz, units, swept, waited, calm, travel, crossed, account};
   const std::size_t heights = height.size() * sizeof(double), count = solid.codes().size();
   std::vector<std::uint8_t> bytes(sizeof head + heights + count);
   std::memcpy(bytes.data(), &head, sizeof head);
@@ -101,7 +101,7 @@ std::vector<std::uint8_t> AutomatonBasin::state(const Energies &energies) const
   return bytes;
 }
 
-Basin::Energies AutomatonBasin::set_state(const std::uint8_t *bytes, std::size_t size)
+Basin::Account AutomatonBasin::set_state(const std::uint8_t *bytes, std::size_t size)
 {
   StateHead head;
   const std::size_t heights = height.size() * sizeof(double), count = solid.codes().size();
@@ -146,7 +146,7 @@ Basin::Energies AutomatonBasin::set_state(const std::uint8_t *bytes, std::size_t
   automaton.touched();
   poured = true;
   smooth();
-  return head.energies;
+  return head.account;
 }
 
 }    // namespace mdanim

@@ -33,8 +33,11 @@ class Basin {
     double period = 0.06;    // between updates while the liquid is not level, in sqrt(cell/g)
   };
   struct Energies {
-    double work = 0.0,
-           lost = 0.0;    // of all that the liquid does to solids but drag, and to drag; the state holds them for the fix
+    double work = 0.0, lost = 0.0;    // of all that the liquid does to solids but drag; to drag
+  };
+  // What the state holds for the fix. Powers cannot be found again: solids are calmed by their velocities of half steps.
+  struct Account {
+    Energies sum, power;    // until now; at the last step, per time
   };
   struct Amount {
     bool by_level;
@@ -57,13 +60,15 @@ class Basin {
     Vec3 flow;                // velocity of the liquid [distance/time]
     double rising = 0.0;      // upward velocity of the solid around [distance/time]
   };
-  // What acts on the eight parts of a lattice cell, each nearest to one of its corners. The push along z is over[k] = s[k] +
-  // more.
+  // What acts on the eight parts of a lattice cell, each nearest to one of its corners, of which the part s is below the surface.
+  struct OnParts {
+    double more = 0.0, beside = 0.0;        // the push upwards is s + more; the surface around makes it s + beside
+    double along_x = 0.0, along_y = 0.0;    // push sideways, times s + beside where that is positive
+    double flow_x = 0.0, flow_y = 0.0;      // velocity of the liquid [distance/time]
+  };
   struct InCell {
-    double s[8];                // part of each that is below the surface
-    double more, beside;        // push upwards besides; the same of the surface around
-    double along_x, along_y;    // push sideways, times s[k] + beside where that is positive
-    double flow_x, flow_y;      // velocity of the liquid [distance/time]
+    const OnParts *on;    // until the next update; null where only s counts
+    double s;             // of all eight parts; negative where they differ
   };
   // Adds this rank's bodies, as far as they reach below a height.
   using AddBodies = std::function<void(Occupancy &, double below)>;
@@ -93,10 +98,11 @@ class Basin {
 
   // --- what acts on solids, and they on the liquid ---
 
-  virtual AtPlace at(const Vec3 &place) const = 0;
+  virtual AtPlace at(const Vec3 & /*place*/) const { return {}; }
   // Whether in_cell() is to be asked, and not at(); and upward velocity of the solid around a place [distance/time].
   virtual bool acts_on_cells() const { return false; }
-  virtual void in_cell(const Vec3 & /*middle*/, const double * /*z of the corners*/, InCell & /*found*/) const {}
+  // Writes s of each part only where they differ. `z`: of the corners [cells].
+  virtual InCell in_cell(const Vec3 & /*middle*/, const double * /*z*/, double * /*s*/) const { return {nullptr, 0.0}; }
   virtual double rising_at(const Vec3 & /*place*/) const { return 0.0; }
   // Depth of the liquid that presses on a face of a solid with a middle [distance] and twice its area; 0 where air is
   // before the face.
@@ -148,10 +154,10 @@ class Basin {
   // Content of each cell, 255 where it is solid; x fastest, then y.
   virtual void contents(std::uint8_t *out) const = 0;
 
-  // Everything that later steps depend on, except positions and velocities, and the energies.
-  virtual std::vector<std::uint8_t> state(const Energies &energies) const = 0;
+  // Everything that later steps depend on, except positions and velocities, and the account.
+  virtual std::vector<std::uint8_t> state(const Account &account) const = 0;
   // Takes it up. Throws std::runtime_error, and changes nothing, when it is not of such a basin or damaged.
-  virtual Energies set_state(const std::uint8_t *bytes, std::size_t size) = 0;
+  virtual Account set_state(const std::uint8_t *bytes, std::size_t size) = 0;
 
   const Shape shape;
   const double g;

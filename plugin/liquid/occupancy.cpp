@@ -45,37 +45,6 @@ void Occupancy::add(const Vec3 &place, int weight)
 
 void Occupancy::add_particle(const Vec3 &place) { add(place, FULL); }
 
-// A box of half edges `half`, each at most half a cell, around a place: along each axis the upper of two cells gets its share, in
-// 1/SHARES, and the lower one all the rest, so that nothing is lost.
-void Occupancy::spread(const Vec3 &place, const Vec3 &half, int weight)
-{
-  constexpr int SHARES = 1024;
-  const int cells[3] = {nx, ny, nz};
-  const double middle[3] = {place.x, place.y, place.z}, reach[3] = {half.x, half.y, half.z};
-  int lower[3], upper_share[3];
-  for (int d = 0; d < 3; ++d) {
-    const double low = middle[d] - reach[d], high = middle[d] + reach[d];
-    if (!(high >= 0.0 && low < cells[d])) return;    // so that a place that is no number is outside
-    const double first = std::floor(low);
-    lower[d] = static_cast<int>(first);
-    const double above = std::max(0.0, high - (first + 1.0));
-    upper_share[d] = static_cast<int>(above / std::max(high - low, 1e-9) * SHARES + 0.5);
-  }
-  const auto parts = [&](int d, int whole, auto &&give) {
-    const int upper = static_cast<int>(static_cast<std::int64_t>(whole) * upper_share[d] / SHARES);
-    if (lower[d] >= 0 && whole > upper) give(lower[d], whole - upper);
-    if (lower[d] + 1 < cells[d] && upper > 0) give(lower[d] + 1, upper);
-  };
-  parts(2, weight, [&](int z, int of_layer) {
-    parts(1, of_layer, [&](int y, int of_row) {
-      parts(0, of_row, [&](int x, int of_cell) {
-        count[number(x, y, z)] += of_cell;
-        touched.take_in(x, y, z);
-      });
-    });
-  });
-}
-
 namespace {
 
 // A lattice cell by its mean edges; their triple product is its volume, whatever way it is turned or squeezed.
@@ -123,9 +92,49 @@ void Occupancy::spread_cell(const Vec3 corner[8])
   const auto half = [](double a, double b, double c) {
     return std::min(0.5, (std::fabs(a) + std::fabs(b) + std::fabs(c)) / 6.0);
   };
-  const Vec3 reach{half(edges.a.x, edges.b.x, edges.c.x), half(edges.a.y, edges.b.y, edges.c.y),
-                   half(edges.a.z, edges.b.z, edges.c.z)};
-  each_sample(corner, [&](const Vec3 &place) { spread(place, reach, weight); });
+  const Spread spread{
+      {half(edges.a.x, edges.b.x, edges.c.x), half(edges.a.y, edges.b.y, edges.c.y), half(edges.a.z, edges.b.z, edges.c.z)},
+      static_cast<std::uint32_t>(weight)};
+  each_sample(corner, [&](const Vec3 &place) { add(place, spread); });
+}
+
+// Along each axis the upper of two cells gets its share, in 1/SHARES, and the lower one all the rest, so that nothing is lost.
+void Occupancy::add(const Vec3 &place, const Spread &spread)
+{
+  const int cells[3] = {nx, ny, nz};
+  const double middle[3] = {place.x, place.y, place.z};
+  int lower[3];
+  std::uint32_t upper_share[3];
+  bool inside = true;
+  for (int d = 0; d < 3; ++d) {
+    const double low = middle[d] - spread.reach[d], high = middle[d] + spread.reach[d];
+    if (!(high >= 0.0 && low < cells[d])) return;    // so that a place that is no number is outside
+    lower[d] = static_cast<int>(low + 1.0) - 1;      // low is -1 at least; several times as fast as std::floor
+    upper_share[d] = static_cast<std::uint32_t>(std::max(0.0, high - (lower[d] + 1)) * spread.shares[d] + 0.5);
+    inside = inside && lower[d] >= 0 && lower[d] + 1 < cells[d];
+  }
+  for (int d = 0; d < 3; ++d) {
+    touched.low[d] = std::min(touched.low[d], std::max(0, lower[d]));
+    touched.high[d] = std::max(touched.high[d], std::min(cells[d], lower[d] + 2));
+  }
+  const auto upper_part = [](std::uint32_t whole, std::uint32_t share) { return whole * share / Spread::SHARES; };
+  const std::uint32_t top = upper_part(spread.weight, upper_share[2]);
+  const auto give = [&](int z, std::uint32_t layer) {
+    const std::uint32_t back = upper_part(layer, upper_share[1]);
+    const auto give_row = [&](int y, std::uint32_t row) {
+      const std::uint32_t right = upper_part(row, upper_share[0]);
+      const std::uint32_t parts[2] = {row - right, right};
+      for (int n = 0; n < 2; ++n) {
+        const int x = lower[0] + n;
+        if (inside || (x >= 0 && x < nx && y >= 0 && y < ny && z >= 0 && z < nz))
+          count[number(x, y, z)] += static_cast<int>(parts[n]);
+      }
+    };
+    give_row(lower[1], layer - back);
+    give_row(lower[1] + 1, back);
+  };
+  give(lower[2], spread.weight - top);
+  give(lower[2] + 1, top);
 }
 
 void Occupancy::add_mass(const Vec3 &place, double mass, double softness, double rising)

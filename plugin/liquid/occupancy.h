@@ -8,6 +8,7 @@
 #include "laws/vec3.h"
 #include "liquid/rank_sums.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -66,7 +67,15 @@ class Occupancy {
 
  private:
   void add(const Vec3 &place, int weight);
-  void spread(const Vec3 &place, const Vec3 &half, int weight);
+  // A box that a weight is spread over; half edges of at most half a cell.
+  struct Spread {
+    static constexpr std::uint32_t SHARES = 1024;
+    double reach[3];
+    std::uint32_t weight;    // so that weight * SHARES is less than 2^32
+    double shares[3] = {SHARES / std::max(2.0 * reach[0], 1e-9), SHARES / std::max(2.0 * reach[1], 1e-9),
+                        SHARES / std::max(2.0 * reach[2], 1e-9)};
+  };
+  void add(const Vec3 &place, const Spread &spread);
 
   static constexpr double SUM_UNIT = 1.0 / (1 << 24);
   double sum_of(int column, int which) const

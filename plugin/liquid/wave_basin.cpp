@@ -4,7 +4,6 @@
 #include "liquid/wave_basin.h"
 
 #include "engine/stopwatch.h"
-#include "laws/buoyancy.h"
 
 #include <climits>
 #include <cmath>
@@ -186,7 +185,7 @@ Basin::Filled WaveBasin::fill(const Amount &amount, const std::vector<std::uint8
   poured = true;
   stale = true;    // so that the first look updates
   look();
-  push.find(waves, mass.data(), 1.0);
+  find_push(1.0);
   return {wanted, room < want ? static_cast<long>((want - room + UNITS_PER_CELL - 1) / UNITS_PER_CELL) : 0};
 }
 
@@ -220,7 +219,7 @@ void WaveBasin::update(const AddBodies &bodies, std::uint64_t, double dt)
   drops.update(waves, time, static_cast<std::uint64_t>(updates));
   ++updates;
   look();
-  push.find(waves, mass.data(), waves.at_rest() ? 1.0 : time / (time + SLOW));
+  find_push(waves.at_rest() ? 1.0 : time / (time + SLOW));
   travel = 0.0;
   waited = 0;
   stale = false;
@@ -228,41 +227,32 @@ void WaveBasin::update(const AddBodies &bodies, std::uint64_t, double dt)
 
 // --- what a particle finds ---
 
-Basin::AtPlace WaveBasin::at(const Vec3 &place) const
-{
-  if (!(place.x >= 0.0 && place.x <= shape.nx && place.y >= 0.0 && place.y <= shape.ny)) return {};
-  const int x = std::min(static_cast<int>(place.x), shape.nx - 1), y = std::min(static_cast<int>(place.y), shape.ny - 1);
-  const int z = std::clamp(static_cast<int>(place.z), 0, shape.nz - 1);
-  const WavePush::OnCell *on = push.at(cell_number(x, y, z));
-  if (!on) {
-    const double s = immersed_part(heads[y * shape.nx + x], place.z);
-    return {s, {0.0, 0.0, s}, {}};
-  }
-  const double s = on->share > 0.0 ? std::clamp(on->head - place.z + 0.5, 0.0, 1.0) * on->share : 0.0;
-  const double all = s + on->over - on->on_top, beside = std::max(0.0, s + on->beside), speed = 1.0 / unit_of_time;
-  return {s,
-          {on->along_x * beside * (shape.cell.z / shape.cell.x), on->along_y * beside * (shape.cell.z / shape.cell.y), all},
-          {on->flow_x * shape.cell.x * speed, on->flow_y * shape.cell.y * speed, 0.0},
-          rising_at(place)};
-}
-
 // The eight parts of a lattice cell are as high as half a cell. Their middles lie half way from the middle of the cell to its
 // corners.
-void WaveBasin::in_cell(const Vec3 &middle, const double *z, InCell &found) const
+Basin::InCell WaveBasin::in_cell(const Vec3 &middle, const double *z, double *s) const
 {
-  found = {};
-  if (!(middle.x >= 0.0 && middle.x <= shape.nx && middle.y >= 0.0 && middle.y <= shape.ny)) return;
+  if (!(middle.x >= 0.0 && middle.x <= shape.nx && middle.y >= 0.0 && middle.y <= shape.ny)) return {nullptr, 0.0};
   const int x = std::min(static_cast<int>(middle.x), shape.nx - 1), y = std::min(static_cast<int>(middle.y), shape.ny - 1);
-  const WavePush::OnCell *on = push.at(cell_number(x, y, std::clamp(static_cast<int>(middle.z), 0, shape.nz - 1)));
-  const double head = on ? on->head : heads[y * shape.nx + x], share = on ? on->share : std::clamp(head, 0.0, 1.0);
-  for (int k = 0; k < 8; ++k) found.s[k] = std::clamp(2.0 * head - middle.z - z[k] + 0.5, 0.0, 1.0) * share;
-  if (!on) return;
-  found.more = on->over - on->on_top;
-  found.beside = on->beside;
-  found.along_x = on->along_x * (shape.cell.z / shape.cell.x);
-  found.along_y = on->along_y * (shape.cell.z / shape.cell.y);
-  found.flow_x = on->flow_x * shape.cell.x / unit_of_time;
-  found.flow_y = on->flow_y * shape.cell.y / unit_of_time;
+  const int n = push.number_of(cell_number(x, y, std::clamp(static_cast<int>(middle.z), 0, shape.nz - 1)));
+  const OnParts *const on = n < 0 ? nullptr : &on_parts[n];
+  const double head = n < 0 ? heads[y * shape.nx + x] : push.all()[n].head;
+  const double share = n < 0 ? std::clamp(head, 0.0, 1.0) : push.all()[n].share;
+  const auto [lowest, highest] = std::minmax_element(z, z + 8);
+  const double above_middle = 2.0 * head - middle.z + 0.5;
+  if (!(above_middle > *lowest)) return {on, 0.0};
+  if (above_middle >= *highest + 1.0) return {on, share};
+  for (int k = 0; k < 8; ++k) s[k] = std::clamp(above_middle - z[k], 0.0, 1.0) * share;
+  return {on, -1.0};
+}
+
+void WaveBasin::find_push(double part)
+{
+  push.find(waves, mass.data(), part);
+  on_parts.clear();
+  for (const WavePush::OnCell &on : push.all())
+    on_parts.push_back({on.over - on.on_top, on.beside, on.along_x * (shape.cell.z / shape.cell.x),
+                        on.along_y * (shape.cell.z / shape.cell.y), on.flow_x * shape.cell.x / unit_of_time,
+                        on.flow_y * shape.cell.y / unit_of_time});
 }
 
 double WaveBasin::calms_solids() const { return CALMING / unit_of_time; }

@@ -42,9 +42,8 @@ class WaveBasin : public Basin {
   void update(const AddBodies &bodies, std::uint64_t when, double dt) override;
   void use(const Threads &threads) override { waves.use(threads); }
 
-  AtPlace at(const Vec3 &place) const override;
   bool acts_on_cells() const override { return true; }
-  void in_cell(const Vec3 &middle, const double *z, InCell &found) const override;
+  InCell in_cell(const Vec3 &middle, const double *z, double *s) const override;
   double rising_at(const Vec3 &place) const override;
   double all_below() const override { return -std::numeric_limits<double>::infinity(); }
   bool takes_impulses() const override { return true; }
@@ -69,20 +68,22 @@ class WaveBasin : public Basin {
   double raw_height(int column) const override { return shape.low.z + tops[column] * shape.cell.z; }
   std::vector<Droplet> droplets() const override;
   void contents(std::uint8_t *out) const override;
-  std::vector<std::uint8_t> state(const Energies &energies) const override;
-  Energies set_state(const std::uint8_t *bytes, std::size_t size) override;
+  std::vector<std::uint8_t> state(const Account &account) const override;
+  Account set_state(const std::uint8_t *bytes, std::size_t size) override;
 
  private:
   double energy_now() const;
   void count_parts();
   void take_solids();
   void look();
+  void find_push(double part);
   void look_at_column(int column);
 
   const RankSums &ranks;
   const double unit_of_time;
   Waves waves;
   WavePush push;
+  std::vector<OnParts> on_parts;    // the same numbers
   WaveMakers makers;
   Drops drops;
   Occupancy still, mobile;

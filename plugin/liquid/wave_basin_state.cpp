@@ -14,7 +14,7 @@ namespace mdanim {
 
 namespace {
 
-constexpr double STATE_VERSION = 5.0;    // the automaton's is 2
+constexpr double STATE_VERSION = 6.0;    // the automaton's is 3
 constexpr std::uint8_t SOLID_CODE = 255;
 constexpr double PUDDLE = 1.0 / 64.0;    // cells that are part of the floor
 constexpr double PI = 3.14159265358979323846;
@@ -23,7 +23,7 @@ struct WaveBasinHead {
   double version;
   std::int64_t nx, ny, nz, units, updates, waited, stale, moving;
   std::uint64_t still_known;
-  Basin::Energies energies;
+  Basin::Account account;
   double travel, energy_at_start;
   std::uint64_t of_drops;    // bytes
 };
@@ -31,7 +31,10 @@ struct WaveBasinHead {
 }    // namespace
 
 double WaveBasin::bytes() const
-{ return static_cast<double>(part.size()) * (2.0 * sizeof(int) + sizeof(std::uint16_t)) + push.bytes() + columns() * 600.0; }
+{
+  return static_cast<double>(part.size()) * (2.0 * sizeof(int) + sizeof(std::uint16_t)) + push.bytes() +
+         static_cast<double>(on_parts.capacity() * sizeof(OnParts)) + columns() * 600.0;
+}
 
 long WaveBasin::solid_cells() const
 {
@@ -131,13 +134,13 @@ void WaveBasin::contents(std::uint8_t *out) const
 // --- state ---
 
 // The head, masses, velocities, impulses and heads of columns, the makers, the drops, the waves.
-std::vector<std::uint8_t> WaveBasin::state(const Energies &energies) const
+std::vector<std::uint8_t> WaveBasin::state(const Account &account) const
 {
   std::vector<std::int64_t> all = impulses;
   ranks.add_wide(all.data(), static_cast<int>(all.size()));
   const std::vector<std::uint8_t> of_makers = makers.state(), of_drops = drops.state(), of_waves = waves.state();
   const WaveBasinHead head{STATE_VERSION, shape.nx, shape.ny,    shape.nz, units,  updates,         waited,
-                           stale,         moving,   still_known, energies, travel, energy_at_start, of_drops.size()};
+                           stale,         moving,   still_known, account, travel, energy_at_start, of_drops.size()};
   std::vector<std::uint8_t> bytes;
   const auto add = [&](const void *from, std::size_t size) {
     const auto *first = static_cast<const std::uint8_t *>(from);
@@ -154,7 +157,7 @@ std::vector<std::uint8_t> WaveBasin::state(const Energies &energies) const
   return bytes;
 }
 
-Basin::Energies WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
+Basin::Account WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
 {
   const std::string whose = "the liquid's state ";
   WaveBasinHead head;
@@ -200,8 +203,8 @@ Basin::Energies WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size
         if (part[cell_number(x, y, z)]) marked.take_in(x, y, z);
   look();
   std::memcpy(push.state().data(), bytes + sizeof head + 2 * of_mass + of_impulses, of_push);
-  push.find(waves, mass.data(), 0.0);
-  return head.energies;
+  find_push(0.0);
+  return head.account;
 }
 
 }    // namespace mdanim

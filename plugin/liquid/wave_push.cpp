@@ -38,6 +38,7 @@ void WavePush::find(const Waves &waves, const double *mass, double part)
   for (SolidRun &run : runs) press(waves, run);
   for (const int column : columns) fill(waves, column);
   spread(waves.solids());
+  sort();
 }
 
 void WavePush::cut(const Waves &waves, int column)
@@ -290,6 +291,25 @@ void WavePush::spread(const SolidParts &solid)
     found.push_back(on);
     cells.push_back(where[n]);
   }
+}
+
+// In the order of cells, in which bodies look them up: it is the memory that makes them slow.
+void WavePush::sort()
+{
+  CellBox box;
+  for (const std::size_t cell : cells)
+    box.take_in(static_cast<int>(cell % nx), static_cast<int>(cell / nx % ny), static_cast<int>(cell / nx / ny));
+  std::vector<OnCell> sorted;
+  sorted.reserve(found.size());
+  cells.clear();
+  box.each([&](int x, int y, int z) {
+    const std::size_t cell = (static_cast<std::size_t>(z) * ny + y) * nx + x;
+    if (known[cell] < 0) return;
+    sorted.push_back(found[known[cell]]);
+    known[cell] = static_cast<int>(cells.size());
+    cells.push_back(cell);
+  });
+  found.swap(sorted);
 }
 
 }    // namespace mdanim

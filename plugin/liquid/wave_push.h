@@ -4,6 +4,7 @@
 #ifndef MDANIM_WAVE_PUSH_H
 #define MDANIM_WAVE_PUSH_H
 
+#include "liquid/occupancy.h"
 #include "liquid/waves.h"
 
 #include <cstddef>
@@ -35,8 +36,9 @@ class WavePush {
   // For all columns with mass in them, `mass` as Waves::set_solids takes it. What pushes sideways follows the liquid by a part of
   // what has changed: a body is stiffer sideways than the time of an update shows.
   void find(const Waves &waves, const double *mass, double part);
-  // Null far from all bodies.
-  const OnCell *at(std::size_t cell) const { return known[cell] < 0 ? nullptr : &found[known[cell]]; }
+  // The number of a cell among all(); -1 far from all bodies.
+  int number_of(std::size_t cell) const { return known[cell]; }
+  const std::vector<OnCell> &all() const { return found; }
   std::vector<double> &state() { return ambient; }    // of the columns; all that find() depends on besides
   const std::vector<double> &state() const { return ambient; }
   double bytes() const
@@ -61,6 +63,7 @@ class WavePush {
   void put(const SolidParts &solid, int column, int z, OnCell on);
   void fill(const Waves &waves, int column);
   void spread(const SolidParts &solid);
+  void sort();
 
   const int nx, ny, nz;
   std::vector<int> known;    // of each cell, its number in `found`, or -1

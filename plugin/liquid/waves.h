@@ -173,12 +173,10 @@ class Waves {
   // f(first, end) for parts of all rows, which threads share: no row writes where another reads or writes.
   template <class F> void rows(const F &f) const
   {
-    constexpr double LOOP = 2.0,
-                     PART = 0.25;    // ns of a column in a loop, about; of the least task: loops come one after the other
-    const long least = 1 + static_cast<long>(PART * threads.least() / (LOOP * static_cast<double>(stride)));
-    threads.parts(end_row() - 1, least, [&](long from, long to) { f(1 + from, 1 + to); });
+    constexpr double COLUMN = 2.0;    // [ns], about
+    threads.timed_parts(end_row() - 1, COLUMN * static_cast<double>(stride), [&](long from, long to) { f(1 + from, 1 + to); });
   }
-  // The same for a number of each part: whether any part says so, and the largest of all.
+  // Whether f(first, end) is true of any part.
   template <class F> bool any_row(const F &f) const
   {
     std::atomic<bool> any{false};

@@ -114,21 +114,21 @@ void Buoyancy::append_required_atoms(std::vector<int> &particles) const
 
 // --- a step ---
 
-Basin::InCell Buoyancy::look_at_cell(const Basin &basin, const NearCells::Cell &cell, double above) const
+Basin::InCell Buoyancy::look_at_cell(const Basin &basin, const NearCells::Cell &cell, double above, double *s) const
 {
   const double *const *x = atom->x;
+  const double bottom = basin.shape.low.z, per_height = 1.0 / basin.shape.cell.z;
   Vec3 sum;
   double z[8], lowest = x[cell.corner[0]][2];
   for (int k = 0; k < 8; ++k) {
     const double *const own = x[cell.corner[k]];
-    const Vec3 at = basin.in_cells(own);
-    sum += at;
-    z[k] = at.z;
+    sum += vec3(own);
+    z[k] = (own[2] - bottom) * per_height;
     lowest = std::min(lowest, own[2]);
   }
-  Basin::InCell in{};
-  if (lowest < above) basin.in_cell(0.125 * sum, z, in);
-  return in;
+  if (!(lowest < above)) return {nullptr, 0.0};
+  const double middle[3] = {0.125 * sum.x, 0.125 * sum.y, 0.125 * sum.z};
+  return basin.in_cell(basin.in_cells(middle), z, s);
 }
 
 // The mean of what acts on its parts of lattice cells.
@@ -138,11 +138,14 @@ Basin::AtPlace Buoyancy::at_particle(const Basin &basin, std::size_t n, const do
   int parts = 0;
   cells.each_of(n, [&](int cell, int corner) {
     const Basin::InCell &in = in_cells[cell];
-    const double all = in.s[corner] + in.more, beside = std::max(0.0, in.s[corner] + in.beside);
-    at.immersed += in.s[corner];
-    at.push += Vec3{in.along_x * beside, in.along_y * beside, all};
-    at.flow += Vec3{in.flow_x, in.flow_y, 0.0};
+    const double s = in.s < 0.0 ? in_parts[8 * static_cast<std::size_t>(cell) + corner] : in.s;
     ++parts;
+    at.immersed += s;
+    at.push.z += s;
+    if (!in.on) return;
+    const double beside = std::max(0.0, s + in.on->beside);
+    at.push += Vec3{in.on->along_x * beside, in.on->along_y * beside, in.on->more};
+    at.flow += Vec3{in.on->flow_x, in.on->flow_y, 0.0};
   });
   if (parts == 0) return at;
   const double part = 1.0 / parts;
@@ -166,7 +169,7 @@ struct Buoyancy::Acting {
 // Threads share particles and faces. What all of them do to the liquid and to the account is added up in the order of particles.
 void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
 {
-  constexpr double PARTICLE = 25.0, PART = 0.25;    // ns, about; of the least task, as some particles cost more than others
+  constexpr double PARTICLE = 25.0;    // or face, or lattice cell [ns], about
   wet.clear();
   if (!lifts || near.empty()) return;
   const Lap lap(seconds);
@@ -182,16 +185,16 @@ void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
                    basin.all_below(),
                    basin.calms_solids(),
                    in_step ? update->dt * force->ftm2v / rho : 0.0};
-  const long least = 1 + static_cast<long>(PART * threads.least() / PARTICLE);
-  threads.parts(static_cast<long>(faces.size()), least, [&](long from, long to) {
+  threads.timed_parts(static_cast<long>(faces.size()), PARTICLE, [&](long from, long to) {
     for (long n = from; n < to; ++n) faces[n].push = pressure_on(faces[n], basin);
   });
   in_cells.resize(cells.cells.size());
-  threads.parts(static_cast<long>(in_cells.size()), least, [&](long from, long to) {
-    for (long n = from; n < to; ++n) in_cells[n] = look_at_cell(basin, cells.cells[n], now.above);
+  in_parts.resize(8 * cells.cells.size());
+  threads.timed_parts(static_cast<long>(in_cells.size()), PARTICLE, [&](long from, long to) {
+    for (long n = from; n < to; ++n) in_cells[n] = look_at_cell(basin, cells.cells[n], now.above, &in_parts[8 * n]);
   });
   wet.resize(near.size());
-  threads.parts(static_cast<long>(near.size()), least, [&](long from, long to) {
+  threads.timed_parts(static_cast<long>(near.size()), PARTICLE, [&](long from, long to) {
     for (long n = from; n < to; ++n) wet[n] = act_on(now, basin, n, near[n]);
   });
   if (!in_step || !basin.takes_impulses()) return;
@@ -227,10 +230,10 @@ Buoyancy::Wet Buoyancy::act_on(const Acting &now, const Basin &basin, std::size_
     const Vec3 relative = vec3(v) - at.flow;
     impulse = now.scale * own_lambda * Vec3{relative.x, relative.y, 0.0};
   }
-  if (s == 0.0 && dot(push, push) == 0.0) return {-1, {}, 0.0, 0.0, 0.0, {}};
+  if (s == 0.0 && dot(push, push) == 0.0) return {-1, {}, 0.0, {}};
+  push.z -= own_calming * (v[2] - at.rising);
   add_to(now.f[i], push);
-  if (own_calming > 0.0) now.f[i][2] -= own_calming * (v[2] - at.rising);
-  return {i, push, own_lambda, own_calming, at.rising, impulse};
+  return {i, push, own_lambda, impulse};
 }
 
 // What hydrostatic pressure does to each corner of a face.
@@ -253,32 +256,41 @@ Basin::Energies Buoyancy::power() const
   for (const Wet &w : wet) {
     if (w.i < 0) continue;
     const Vec3 v = vec3(atom->v[w.i]);
-    now.work += dot(w.push, v) - w.calming * (v.z - w.rising) * v.z;
+    now.work += dot(w.push, v);
     now.lost += w.lambda * dot(v, v);
   }
   return now;
 }
 
+void Buoyancy::begin_account()
+{
+  if (!account_was_set) own.power = power();
+  account_was_set = false;
+}
+
 // Velocities are those of whole steps here, eq. (3.10), which are the means of the half steps before and after: the trapezoidal
 // rule gives the work exactly.
-void Buoyancy::account()
+void Buoyancy::go_on_with_account()
 {
-  if (wet.empty() && last.work == 0.0 && last.lost == 0.0) return;
+  if (wet.empty() && own.power.work == 0.0 && own.power.lost == 0.0) return;
   const Lap lap(seconds);
   const Basin::Energies now = power();
-  sum.work += 0.5 * update->dt * (last.work + now.work);
-  sum.lost += 0.5 * update->dt * (last.lost + now.lost);
-  last = now;
+  own.sum.work += 0.5 * update->dt * (own.power.work + now.work);
+  own.sum.lost += 0.5 * update->dt * (own.power.lost + now.lost);
+  own.power = now;
 }
 
-Basin::Energies Buoyancy::energies() const
+Basin::Account Buoyancy::account() const
 {
-  Basin::Energies all;
-  MPI_Allreduce(&sum.work, &all.work, 1, MPI_DOUBLE, MPI_SUM, world);
-  MPI_Allreduce(&sum.lost, &all.lost, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  double all[] = {own.sum.work, own.sum.lost, own.power.work, own.power.lost};
+  MPI_Allreduce(MPI_IN_PLACE, all, 4, MPI_DOUBLE, MPI_SUM, world);
+  return {{all[0], all[1]}, {all[2], all[3]}};
 }
 
-void Buoyancy::set_energies(const Basin::Energies &energies) { sum = comm->me == 0 ? energies : Basin::Energies{}; }
+void Buoyancy::set_account(const Basin::Account &account)
+{
+  own = comm->me == 0 ? account : Basin::Account{};
+  account_was_set = true;
+}
 
 }    // namespace mdanim

@@ -37,19 +37,23 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   { cells.find(near, table, fix); }
   // Adds forces and sets friction; in a step the liquid feels what it does.
   void act(Basin &basin, const std::vector<int> &near, bool in_step);
-  // The account begins at the velocities of now, and goes on by a step.
-  void begin_account() { last = power(); }
-  void account();
+  // The account begins at the velocities of now, or where it was set, and goes on by a step.
+  void begin_account();
+  void go_on_with_account();
   void use(const Threads &now) { threads = now; }    // for steps; the bits are the same for any number of them
   // Corners of faces, some perhaps twice.
   void append_required_atoms(std::vector<int> &particles) const;
 
   // Of all ranks; and all of it on the first one.
-  Basin::Energies energies() const;
-  void set_energies(const Basin::Energies &energies);
+  Basin::Account account() const;
+  void set_account(const Basin::Account &account);
   double density() const { return rho; }
   double bytes() const
-  { return static_cast<double>(wet.capacity() * sizeof(Wet) + in_cells.capacity() * sizeof in_cells[0]) + cells.bytes(); }
+  {
+    return static_cast<double>(wet.capacity() * sizeof(Wet) + in_cells.capacity() * sizeof in_cells[0] +
+                               in_parts.capacity() * sizeof in_parts[0]) +
+           cells.bytes();
+  }
   double seconds = 0.0;
 
  private:
@@ -57,8 +61,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
     int i;        // negative where the liquid does not act on it
     Vec3 push;
     double lambda;
-    double calming, rising;    // see Basin::calms_solids(): force over velocity; velocity that is left
-    Vec3 impulse;              // on the liquid
+    Vec3 impulse;    // on the liquid
   };
   struct Face {
     int corner[4];    // counter-clockwise seen from outside
@@ -69,7 +72,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   struct Acting;
   Wet act_on(const Acting &now, const Basin &basin, std::size_t n, int i) const;
   Vec3 pressure_on(const Face &face, const Basin &basin) const;
-  Basin::InCell look_at_cell(const Basin &basin, const NearCells::Cell &cell, double above) const;
+  Basin::InCell look_at_cell(const Basin &basin, const NearCells::Cell &cell, double above, double *s) const;
   Basin::AtPlace at_particle(const Basin &basin, std::size_t n, const double *x) const;
   Basin::Energies power() const;
 
@@ -86,7 +89,9 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   std::vector<int> face_of, face_of_first;    // those of the n-th: face_of[face_of_first[n]] …
   NearCells cells;
   std::vector<Basin::InCell> in_cells;
-  Basin::Energies sum, last;    // on this rank: energies; powers at the last step
+  std::vector<double> in_parts;    // of each of the eight parts of cells, where they differ
+  Basin::Account own;              // of this rank
+  bool account_was_set = false;    // since the last step
 };
 
 }    // namespace mdanim

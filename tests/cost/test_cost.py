@@ -101,7 +101,7 @@ def test_no_second_is_counted_twice(pond):
     add_clocks(account, instance)
     assert account.effects == clocks
     assert sum(clocks["springs"].values()) + sum(clocks["damping"].values()) == pytest.approx(100.0)
-    assert clocks["liquid"] == {"automaton": 1.0, "occupancy": 2.0}
+    assert clocks["liquid"] == {"flow": 1.0, "occupancy": 2.0}
     assert clocks["buoyancy"]["coupling"] + clocks["liquid-drag"]["coupling"] == pytest.approx(4.0)
     # Half of the particles have drag of air: each costs the leap-frog 1/(1 - 0.3) = 10/7 times as much as one without.
     assert sum(c.get("leap-frog", 0.0) for c in clocks.values()) == pytest.approx(10.0 * 3.0 / 17.0)
@@ -114,7 +114,7 @@ def test_cost_json_is_the_cost(pond):
     data = json.loads((result.folder / "cost.json").read_text())
     assert Cost.read(result.folder / "cost.json") == result.cost
     assert data["effects"]["springs"]["share"] == pytest.approx(data["effects"]["springs"]["seconds"] / data["wall"])
-    assert set(data["effects"]["liquid"]["clocks"]) == {"automaton", "occupancy"}
+    assert set(data["effects"]["liquid"]["clocks"]) == {"flow", "occupancy"}
     assert data["particles"] == 250 and data["steps"] == pond[0].certificate.steps
 
 

@@ -2,10 +2,13 @@
 """Drops of a scene, from its text to frames: a stone throws liquid up, and every unit of it is accounted for."""
 
 from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
 from mdanim_lammps.run.frame_source import Sequential
+from mdanim_lammps.run.loop import trajectory_writer
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
@@ -28,9 +31,11 @@ def frames(drops: float, seconds: float) -> list:
     scene = parse_scene(STONE)
     ready = prepare(replace(scene, liquid=replace(scene.liquid, drops=drops)))
     each = ready.certificate.steps_per_frame
-    with Sequential(ready.plan) as source:
-        found = [source.begin(None)]
+    with TemporaryDirectory() as folder, Sequential(ready.plan) as source:
+        out = trajectory_writer(ready, Path(folder), round(100 * seconds) + 1)
+        found = [source.begin(None, out.rows)]
         found += [source.advance(n, each) for n in range(1, round(100 * seconds) + 1)]
+        out.close(finished=False)
         return [frame.liquid for frame in found]
 
 

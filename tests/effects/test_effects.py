@@ -205,10 +205,11 @@ def test_walls_of_a_basin_go_on_upward(prepared):
     assert commands(prepared(pool()), "basin")[0] == "region basin block 0.0 1.0 0.0 0.8 0.0 INF"
 
 
-def test_drag_of_a_liquid_is_a_rate(prepared):
-    """Take gamma as it is written; by default sqrt(g/L) with the edge of the cube of equal volume."""
-    plan = prepared(pool()).plan
-    np.testing.assert_allclose(plan.columns["gamma"], np.sqrt(9.81 / 0.2), rtol=1e-12)
+@pytest.mark.parametrize(("model", "part"), [("waves", 1.0 / 3.0), ("surface", 1.0)])
+def test_drag_of_a_liquid_is_a_rate(prepared, model, part):
+    """Take gamma as it is written; by default sqrt(g/L) with the edge of the cube of equal volume, a third of it beside waves."""
+    plan = prepared(pool(f"level 0.25 m\n model {model}")).plan
+    np.testing.assert_allclose(plan.columns["gamma"], part * np.sqrt(9.81 / 0.2), rtol=1e-12)
     assert not plan.columns["lambda"].any() and "air" not in plan.columns
     plan = prepared(pool("level 0.25 m\n drag 4")).plan
     assert (plan.columns["gamma"] == 4.0).all()

@@ -14,6 +14,7 @@ from mdanim_lammps.model.planes import Plane
 from mdanim_lammps.report import check_json, scene_lines
 from mdanim_lammps.run.guard import Guard
 from mdanim_lammps.run.loop import simulate, write_inputs
+from mdanim_lammps.run.observe import Observer
 
 SCENE = """
 title "windy"
@@ -112,7 +113,7 @@ def test_its_plane_is_one_of_the_scene(windy, prepared, tmp_path):
     moved = guard.ready.system.object == 0
     x[moved, 0] += 2.0 * FAR  # below the fence
     with pytest.raises(DivergedError, match="it has left the fence"):
-        guard.check(1, x, np.zeros_like(x))
+        guard.check(1, Observer(guard.ready.plan, ()).observe(np.arange(2), np.arange(2), x, np.zeros_like(x)))
 
 
 def test_without_it_nothing_is_left(prepared):

@@ -18,7 +18,7 @@ from mdanim_lammps.run.prepare import Prepared
 from scene_texts import MEETING, SPLASH
 from twin import world
 
-WAVES = SPLASH.replace("volume 45 l", "volume 45 l model waves drops 1 wave -x amplitude 2 cm period 0.5 s")
+WAVES = SPLASH.replace("model surface", "model waves drops 1 wave -x amplitude 2 cm period 0.5 s")
 SCENES = [pytest.param(MEETING, id="solids"), pytest.param(SPLASH, id="liquid"), pytest.param(WAVES, id="waves")]
 
 
@@ -226,7 +226,7 @@ def test_lmp_gives_the_bits_of_the_driver(prepared, tmp_path, text, ranks):
 @pytest.mark.parametrize("model", ["pressure", "paper"])
 def test_the_other_models_of_the_liquid_give_the_same_bits(prepared, tmp_path, model):
     """Two ranks share the faces that liquid presses on, or the cells around particles; frames stay the driver's."""
-    ready = prepared(SPLASH.replace("volume 45 l", f"volume 45 l model {model}"))
+    ready = prepared(SPLASH.replace("model surface", f"model {model}"))
     film = run_frames(ready, ready.certificate.frames)
     write_inputs(ready, tmp_path)
     run_lmp(tmp_path, "in.small", 2)

@@ -25,8 +25,8 @@ NEARER = MEETING.replace("44) cm", "42.6) cm").replace("-4, 5) cm", "-4, 3.5) cm
 SCENES = {
     "solids": NEARER.replace("drag 0.8", "drag 0.8\n  damping 0.05"),
     "liquid": SPLASH,
-    "pressure": SPLASH.replace("volume 45 l", "volume 45 l model pressure"),
-    "waves": SPLASH.replace("volume 45 l", "volume 45 l model waves drops 1 wave -x amplitude 2 cm period 0.5 s"),
+    "pressure": SPLASH.replace("model surface", "model pressure"),
+    "waves": SPLASH.replace("model surface", "model waves drops 1 wave -x amplitude 2 cm period 0.5 s"),
 }
 MOVING = {
     **{name: SHAPES[name] for name in ("sphere", "held", "damped", "damped beside others", "damped and held")},

@@ -29,6 +29,7 @@ liquid water {{
   basin from (-0.5, -0.5, 0) m to (0.5, 0.5, 2) m
   density 1000
   level {level} m
+  model surface
   {liquid}
 }}
 object cube {{

@@ -12,6 +12,7 @@ import hashlib
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from pathlib import Path
 
@@ -33,13 +34,26 @@ def build() -> Path:
     with (FOLDER / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not FILE.exists() or not stamp.exists() or stamp.read_text() != _digest():
-            part = FOLDER / "part"
-            done = subprocess.run([*_command(), "-o", str(part)], capture_output=True, text=True)
-            if done.returncode:
-                raise RuntimeError(f"the test library does not compile:\n{done.stderr}")
-            part.replace(FILE)
+            _compile()
             stamp.write_text(_digest())
     return FILE
+
+
+def _compile() -> None:
+    """Sources side by side on all cores, then the link. Raises RuntimeError with what the compiler says."""
+    part = FOLDER / "part"
+    objects = [FOLDER / f"{source.parent.name}-{source.stem}.o" for source in SOURCES]
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        commands = ([*_command(), "-c", str(source), "-o", str(o)] for source, o in zip(SOURCES, objects, strict=True))
+        list(pool.map(_run, commands))
+    _run([*_command(), "-shared", *map(str, objects), "-o", str(part)])
+    part.replace(FILE)
+
+
+def _run(command: list[str]) -> None:
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode:
+        raise RuntimeError(f"the test library does not compile:\n{done.stderr}")
 
 
 @cache
@@ -53,14 +67,14 @@ def library() -> ctypes.CDLL:
 
 @cache
 def _command() -> list[str]:
-    """The compiler's command but for the output; the flags are those of the plugin."""
+    """The compiler's command but for what it reads and writes; the flags are those of the plugin."""
     headers = subprocess.run([sys.executable, str(PLUGIN / "headers.py")], capture_output=True, text=True, check=True).stdout
     lammps, mpi, *_ = headers.split(";")
     flags = (PLUGIN / "compile_flags.txt").read_text().split()
     folders = [f"-I{PLUGIN}", "-isystem", lammps, "-isystem", mpi]
-    kind = ["-std=c++17", "-shared", "-fPIC", "-fvisibility=hidden", "-fvisibility-inlines-hidden"]
+    kind = ["-std=c++17", "-fPIC", "-fvisibility=hidden", "-fvisibility-inlines-hidden"]
     more = os.environ.get("CXXFLAGS", "").split()
-    return [os.environ.get("CXX", "c++"), *kind, *flags, *more, *folders, *map(str, SOURCES)]
+    return [os.environ.get("CXX", "c++"), *kind, *flags, *more, *folders]
 
 
 def _digest() -> str:

@@ -48,7 +48,7 @@ SPLASH = (
     + """liquid water {
   basin from (-30, -25, 0) cm to (30, 25, 40) cm
   density 1000
-  volume 45 l
+  volume 45 l model surface
   fill from (-30, -25, 0) cm to (20, 25, 40) cm
 }
 """

@@ -230,17 +230,17 @@ BOAT = Mesh(REPOSITORY / "scenes/meshes/boat.stl", 0.01)
 
 
 def test_an_open_hull_is_told():
-    """Warn of the boat under model surface, not of a duck, nor under model pressure."""
+    """Warn of the boat under model surface, not of a duck, nor under models that know the air in a hull."""
 
     def told(shape, **liquid):
         made = scene(block(shape, "boat"), resolution=0.03, liquid=replace(WATER, high=(2.0, 2.0, 2.0), **liquid))
         return basin.open_hulls(made, build_models(made))
 
-    (warning,) = told(BOAT)
+    (warning,) = told(BOAT, model=LiquidModel.SURFACE)
     assert warning.severity == "warning" and "boat is open and hollow" in warning.message
-    assert "model pressure" in warning.hint
-    assert not told(BOAT, model=LiquidModel.PRESSURE)
-    assert not told(Mesh(BOAT.path.with_name("duck.ply"), 0.03))
+    assert "leave model surface out" in warning.hint
+    assert not told(BOAT) and not told(BOAT, model=LiquidModel.PRESSURE)
+    assert not told(Mesh(BOAT.path.with_name("duck.ply"), 0.03), model=LiquidModel.SURFACE)
 
 
 def test_what_a_hull_encloses():

@@ -22,10 +22,6 @@ OF_SURFACES = ("friction", "contact-damping")
 """Settings that the contact of the paper has only as 0."""
 
 
-OF_WAVES = ("calm", "drops", "wave", "current", "inflow", "drain")
-"""Settings of a liquid with momentum."""
-
-
 def scene(block: str, **settings: str):
     """A small scene in which one block has these settings in place of, or beside, its usual ones."""
     blocks = {"object": dict(BALL), "liquid": dict(WATER), "control": {"time": "3 s"}, "render": {}, "effects": {}}
@@ -33,8 +29,8 @@ def scene(block: str, **settings: str):
         blocks |= {"contact": {}, "floor": dict(BALL)}
     if block == "contact" or any(settings.get(word, "0") != "0" for word in OF_SURFACES):
         blocks["control"]["contact-model"] = "surface"
-    if block == "liquid" and any(settings.get(word, "auto") not in ("auto", "0") for word in OF_WAVES):
-        blocks["liquid"]["model"] = "waves"
+    if settings.get("sweeps", "auto") != "auto":
+        blocks["liquid"]["model"] = "surface"
     top = {"gravity": "(0, 0, -9.81) m/s^2"}
     chosen = blocks[block] if block else top
     for word in settings:

@@ -22,7 +22,8 @@ def pool(density, z=16.0, level=12.0, top=20.0, speed=0.0, young=1000.0, g=0.01,
     """A cube of 5^3 cells over, or in, a pool of 16 x 16 cells; ``speed`` in its own wave speeds, downward; air drag lambda/m."""
     fast = speed * C * (young / density) ** 0.5
     return (
-        f"gravity (0, 0, {-g!r})\nliquid water {{ basin from (-8, -8, 0) m to (8, 8, {top!r}) m density 1000 level {level!r} }}\n"
+        f"gravity (0, 0, {-g!r})\nliquid water {{ basin from (-8, -8, 0) m to (8, 8, {top!r}) m "
+        f"density 1000 model surface level {level!r} }}\n"
         + block(
             "cube",
             (5, 5, 5),
@@ -91,7 +92,8 @@ FLOATS = [
 def tub(amount: str, solid: str) -> str:
     """A basin of 10^3 cells."""
     return (
-        f"gravity (0, 0, -0.01)\nliquid water {{ basin from (0, 0, 0) m to (10, 10, 10) m density 1000 {amount} }}\n"
+        f"gravity (0, 0, -0.01)\nliquid water {{ basin from (0, 0, 0) m to (10, 10, 10) m "
+        f"density 1000 model surface {amount} }}\n"
         f"{solid}{CONTROL}"
     )
 

@@ -17,7 +17,7 @@ from mdanim_lammps.errors import DivergedError, OutputError, RefusedError, Usage
 from mdanim_lammps.run.loop import Interrupted, simulate
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene, parse_scene
-from mdanim_lammps.scene.scene import Accuracy
+from mdanim_lammps.scene.scene import Accuracy, LiquidModel
 from mdanim_lammps.study import bench
 from mdanim_lammps.study.measure import Sample, TooLong, measure
 from mdanim_lammps.study.setting import LADDERS, Setting, ladders, own_setting, scene_hash, with_setting
@@ -242,9 +242,11 @@ def test_help_names_all_ladders():
 
 
 def test_ladders_of_what_a_scene_has(scenes):
-    """Vary sweeps only with a liquid, contact only where something may touch, and say why not elsewhere."""
-    for name, own in (("float", {"sweeps"}), ("beam", {"contact"}), ("crowd", {"contact"}), ("spin", set())):
-        scene = load_scene(scenes / f"{name}.txt")
+    """Vary sweeps only with an automaton, contact only where something may touch, and say why not elsewhere."""
+    pool = load_scene(scenes / "float.txt")
+    automaton = replace(pool, liquid=replace(pool.liquid, model=LiquidModel.SURFACE))
+    others = ((load_scene(scenes / f"{name}.txt"), own) for name, own in (("beam", {"contact"}), ("spin", set())))
+    for scene, own in ((automaton, {"sweeps"}), (pool, set()), *others):
         ready = prepare(scene)
         found, left = ladders(scene, ready, own_setting(scene, ready))
         assert {ladder.name for ladder in found} == {"time step", "resolution", *own}
@@ -297,9 +299,10 @@ def test_contact_ladder_trades_depth_for_time(tmp_path, monkeypatch):
 
 
 def test_liquid_repeats_have_another_seed(scenes, tmp_path):
-    """Let repeats of a scene with a liquid differ, so that the spread of its errors is seen."""
+    """Let repeats of a scene with an automaton differ, so that the spread of its errors is seen."""
     scene = load_scene(scenes / "float.txt")
-    scene = replace(scene, control=replace(scene.control, time=0.4), expects=())
+    liquid = replace(scene.liquid, model=LiquidModel.SURFACE)
+    scene = replace(scene, liquid=liquid, control=replace(scene.control, time=0.4), expects=())
     a, b, again = (measure(scene, Setting(2, 0.5), tmp_path, repeat=k).center for k in (0, 1, 0))
     assert np.array_equal(a, again)
     assert not np.array_equal(a, b)

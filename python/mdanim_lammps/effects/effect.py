@@ -60,7 +60,7 @@ class Effect:
     further_ledger: tuple[str, ...] = ()
     """Further columns of that kind, see `further_energies`."""
     has_potential = False
-    """Whether its energy is a `potential` of single particles; no other effect has the same column then."""
+    """Whether its energy is a `potential`, that of a uniform field; no other effect has the same column then."""
     uses_grid = False
     """Whether it lives in the cells of the basin."""
     keeps_apart = False
@@ -130,7 +130,8 @@ class Effect:
         return {}
 
     def potential(self, scene: SceneRecord, mass: np.ndarray, x: np.ndarray) -> float:
-        """Its energy, where that follows from the places of particles alone [J]; mass [kg], shape (N,), x [m], shape (N, 3)."""
+        """Its energy in a uniform field [J]; mass [kg], shape (n,), and x [m], shape (n, 3), are those of particles or, for
+        the same energy, of objects and their centres of mass."""
         raise NotImplementedError
 
     def losses(self, scene: SceneRecord) -> tuple[str, ...]:

@@ -27,7 +27,7 @@ PERIOD = 0.06
 """Time between updates of a liquid that is not level, over sqrt(cell/g)."""
 NEAR = 8.0
 """Cells above the liquid up to which the motion of solids counts for it; as in the fix."""
-CELLS, CELLS_AT_START, AUTOMATON, OCCUPANCY, COUPLING, WAVES, CREST = 0, 1, 7, 8, 9, 11, 12
+CELLS, CELLS_AT_START, FLOW, OCCUPANCY, COUPLING, WAVES, CREST = 0, 1, 7, 8, 9, 11, 12
 """In the fix's vector: whole cells of liquid now and before step 0, three clocks [s], the energy of a liquid with momentum since
 then [J], its highest point [m]."""
 WAVE_PERIOD = 0.1
@@ -125,7 +125,7 @@ class LiquidAutomaton(Effect):
         return {} if scene.liquid.model is LiquidModel.PAPER else {"cell": lattice_cells(system)}
 
     def clocks(self, readings):
-        return {"automaton": readings.fix_value(self.fix, AUTOMATON), "occupancy": readings.fix_value(self.fix, OCCUPANCY)}
+        return {"flow": readings.fix_value(self.fix, FLOW), "occupancy": readings.fix_value(self.fix, OCCUPANCY)}
 
     def max_timestep(self, scene, system):
         return PERIOD / EVERY * math.sqrt(min(system.grid.cell) / -scene.gravity[2])

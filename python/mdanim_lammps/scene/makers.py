@@ -9,12 +9,11 @@ from .scene import Liquid, LiquidModel
 
 def check_waves(liquid: Liquid, block, problem) -> None:
     """Makers only with waves, only inside the basin, and with a rate; ``problem`` takes a span, a cause and a way out."""
-    stray = "sweeps" if liquid.model is LiquidModel.WAVES else "calm"
-    if getattr(liquid, stray) is not None:
-        problem(block.first(stray).span(), f"model {liquid.model.value} has no {stray}", "leave the line out")
-    for word in ("drops", "wave", "current", "inflow", "drain"):
-        if getattr(liquid, word) and liquid.model is not LiquidModel.WAVES:
-            problem(block.first(word).span(), f"model {liquid.model.value} has no {word}", "write model waves")
+    waves = liquid.model is LiquidModel.WAVES
+    for word in ("sweeps",) if waves else ("calm", "drops", "wave", "current", "inflow", "drain"):
+        if getattr(liquid, word):
+            cause, way_out = f"model {liquid.model.value} has no {word}", "surface" if waves else "waves"
+            problem(block.first(word).span(), cause, f"leave the line out, or write model {way_out}")
     for word in ("inflow", "drain"):
         for s, flow in zip(block.settings.get(word, ()), getattr(liquid, word)):
             corners = list(zip(flow.low, flow.high, liquid.low, liquid.high))

@@ -144,14 +144,14 @@ class ContactPair:
 
 
 class LiquidModel(Enum):
+    WAVES = "waves"
+    """A liquid with momentum."""
     SURFACE = "surface"
-    """Lift by the part of each particle's volume below the surface."""
+    """An automaton without momentum; lift by the part of each particle's volume below the surface."""
     PRESSURE = "pressure"
     """The same liquid, lift by its pressure on the outer faces: for open hulls."""
     PAPER = "paper"
     """The paper's rules, word by word."""
-    WAVES = "waves"
-    """A liquid with momentum."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,11 +236,11 @@ class Liquid:
     """gamma [1/s]; None is ``auto``."""
     model: LiquidModel = setting(
         None,
-        "`surface`: draft after Archimedes, occupancy by hexahedra, level rule. `pressure`: the same with the liquid's pressure "
-        "on every outer face, so that an open hull floats by the air in it. `paper`: the literal rules of the paper, with a "
-        "warning: not Archimedes, objects denser than about 0.4 of the liquid sink. `waves`: a liquid with momentum that "
-        "splashes, sloshes and pushes; open hulls float dry.",
-        "surface", default=LiquidModel.SURFACE, codec=Words(LiquidModel))  # fmt: skip
+        "`waves`: a liquid with momentum that splashes, sloshes and pushes; open hulls float dry. `surface`: the paper's "
+        "automaton, which makes room, levels and lifts, and nothing else: quicker, and at rest at once. `pressure`: the same "
+        "with the liquid's pressure on every outer face, so that an open hull floats by the air in it. `paper`: the literal "
+        "rules of the paper, with a warning: not Archimedes, objects denser than about 0.4 of the liquid sink.",
+        "surface", default=LiquidModel.WAVES, codec=Words(LiquidModel))  # fmt: skip
     calm: float | None = setting(
         "auto | <T:s>", "With `model waves`: time in which waves die to 1/e, besides by drag and depth; `auto` is 50 √(depth/g).",
         "20 s", Rule.POSITIVE, default=None)  # fmt: skip

@@ -13,7 +13,8 @@ MDANIM_EXPORT void mdanim_wave_push(void *waves, int nx, int ny, int nz, const d
   WavePush push(nx, ny, nz);
   push.find(*static_cast<Waves *>(waves), mass, 1.0);
   for (std::size_t cell = 0; cell < static_cast<std::size_t>(nx) * ny * nz; ++cell, out += 8) {
-    const WavePush::OnCell *on = push.at(cell);
+    const int n = push.number_of(cell);
+    const WavePush::OnCell *on = n < 0 ? nullptr : &push.all()[n];
     const double found[] = {on ? 1.0 : 0.0,        on ? on->head : 0.0,    on ? on->share : 0.0,   on ? on->over : 0.0,
                             on ? on->on_top : 0.0, on ? on->along_x : 0.0, on ? on->along_y : 0.0, on ? on->beside : 0.0};
     for (int k = 0; k < 8; ++k) out[k] = found[k];
