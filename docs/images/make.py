@@ -24,10 +24,10 @@ PICTURES = {
     "duck": 0.3,
     "crowd": 0.48,
     "float": 5.0,
-    "densities": 5.0,
+    "densities": 4.0,
     "vessels": 0.3,
     "splash": 0.45,
-    "cork": 0.5,
+    "cork": 0.35,
     "boat": 0.6,
     "dominoes": 1.1,
     "race": 1.4,
@@ -38,7 +38,7 @@ PICTURES = {
     "billiard": 0.5,
     "cradle": 0.8,
     "pile": 1.2,
-    "dam": 0.72,
+    "dam": 1.0,
     "ripples": 0.5,
     "slosh": 0.5,
     "swell": 3.0,
@@ -49,7 +49,7 @@ PICTURES = {
 STEPS = {"falls": 0.0, "stands": 1.0, "pushed": 0.27, "rolls": 0.5, "splashes": 0.4, "show": 0.3}
 """Scene of each step of the tutorial and the moment to show [s]."""
 SIZE = (720, 405)
-"""Two beside each other in the gallery; no file is larger than 200 kB."""
+"""Two beside each other in the gallery; no file is larger than 210 kB."""
 PAGE = (1280, 940)
 """Of the browser's window."""
 

@@ -62,7 +62,7 @@ EFFECTS = {
     "damped, all at once": "walls from (-8, -8, -8) cm to (11, 8, 12) cm\n"
     f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOFT} drag 0.3 velocity (2, 0, -2) }}\n"
     f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}\n"
-    "liquid w { basin from (-7, -7, -7) cm to (10, 7, 20) cm density 1000 level -5 cm drag 4 }",
+    "liquid w { basin from (-7, -7, -7) cm to (10, 7, 20) cm density 1000 level -5 cm drag 4 model surface }",
     "air": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} drag 0.5 velocity (3, 0, 0) }}\n"
     f"object b {{ shape box (5, 5, 5) cm position (1, 0, 0) {SOLID} }}",
     "damped contact": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOFT} velocity (1, 0.1, 0) }}\n"
@@ -74,10 +74,10 @@ EFFECTS = {
     "damped in liquid": "object a { shape box (6, 6, 6) cm position (0, 0, 14) cm density 500 elasticity 0.2 MPa damping 0.1 }\n"
     "object b { shape box (4, 4, 4) cm position (0, 0, 24) cm density 500 elasticity 0.2 MPa "
     "velocity (0, 0, -3) }\n"
-    "liquid w { basin from (-10, -10, 0) cm to (10, 10, 40) cm density 1000 level 12 cm drag 4 }",
+    "liquid w { basin from (-10, -10, 0) cm to (10, 10, 40) cm density 1000 level 12 cm drag 4 model surface }",
     "liquid": "object a { shape box (6, 6, 6) cm position (0, 0, 14) cm density 500 elasticity 0.2 MPa drag 0.1 }\n"
     "object b { shape box (4, 4, 4) cm position (0, 0, 24) cm density 500 elasticity 0.2 MPa velocity (0, 0, -3) }\n"
-    "liquid w { basin from (-10, -10, 0) cm to (10, 10, 40) cm density 1000 level 12 cm drag 4 }",
+    "liquid w { basin from (-10, -10, 0) cm to (10, 10, 40) cm density 1000 level 12 cm drag 4 model surface }",
 }
 
 

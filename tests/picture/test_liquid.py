@@ -10,7 +10,7 @@ import pytest
 from mdanim_lammps.model.basin import Grid
 from mdanim_lammps.picture import tank
 from mdanim_lammps.picture.camera import action_of
-from mdanim_lammps.picture.liquid import Blocks, Drops, Sheet
+from mdanim_lammps.picture.liquid import Blocks, Drops, Sheet, droplets, overhang, without_puddles
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera, Render
@@ -128,6 +128,56 @@ def test_blocks_are_raw():
     middle = faces.mean(axis=1)
     around = (np.abs(middle[:, 0] + 0.25) < 0.16) & (np.abs(middle[:, 1] + 0.05) < 0.16)
     assert around.sum() == 24 and (np.ptp(faces[around][:, :, 2], axis=1) == 0).all()
+
+
+@pytest.mark.parametrize("radius", [0.08, 0.2])
+def test_a_puddle_on_a_body_is_hidden(radius):
+    """On the end of a body in a pool it takes the pool's height and tells nothing; all else stays."""
+    x, y = column_centres(GRID)
+    puddle, body = np.hypot(x, y) < radius, (x < 0.0) & (np.abs(y) < 0.3)
+    smooth = np.where(puddle, 1.0, 0.5)
+    raw = np.where(body & ~puddle, np.nan, smooth)
+    found, told = without_puddles(GRID, smooth, raw)
+    assert puddle.sum() in (4, 12) and (found == 0.5).all()
+    np.testing.assert_array_equal(told, np.where(puddle, np.nan, raw))
+
+
+def test_jets_wells_and_rivers_are_no_puddles():
+    """A jet in open liquid, liquid in a tube, many columns above a weir, and a cavity beside a body stay as they are."""
+    x, y = column_centres(GRID)
+    r = np.hypot(x, y)
+    jet = np.where(r < 0.2, 1.0, 0.5)
+    river = np.where(x < 0.0, 1.0, 0.5)
+    cavity = np.where(r < 0.2, 0.25, 0.5)
+    block = (x < 0.0) & (np.abs(y) < 0.3) & (r > 0.2)
+    hidden = {"jet": r > 9, "tube": (r >= 0.2) & (r < 0.4), "river": (np.abs(x + 0.5) < 0.1) & (y > 0.0), "cavity": block}
+    for name, height in {"jet": jet, "tube": jet, "river": river, "cavity": cavity}.items():
+        raw = np.where(hidden[name], np.nan, height)
+        found, told = without_puddles(GRID, height, raw)
+        assert (found == height).all() and np.array_equal(told, raw, equal_nan=True), name
+
+
+def test_what_falls_off_a_solid_passes_in_front_of_it():
+    """Over a block that ends between two columns the sheet's last point stands half a column farther, clear of its side; nothing
+    moves elsewhere, nor where liquid on both sides is as high."""
+    x, _ = column_centres(GRID)
+    block = np.array([(a, b, c) for a in np.arange(-0.4, 0.01, 0.05) for b in np.arange(-0.7, 0.71, 0.05) for c in (0.2, 0.5)])
+    height = np.where(x < 0.0, 0.6, 0.25)
+    aside = overhang(GRID, height, block)
+    crest = np.isclose(x, -0.05)
+    np.testing.assert_allclose(aside[crest], np.broadcast_to([0.055, 0.0], (14, 2)))
+    assert not aside[~crest].any() and not overhang(GRID, np.full_like(height, 0.6), block).any()
+    assert not overhang(GRID, height, block[:0]).any()
+    sheet = Sheet(GRID)
+    points, _ = sheet.mesh(height)
+    before = points.copy()
+    sheet.move_aside(points, aside)
+    moved = (points != before).any(axis=1)
+    assert (points[moved][:, 0] > 0.0).all() and (points[:, 1:] == before[:, 1:]).all()
+    assert moved.sum() == 16 + 4 and np.ptp(points[:, 0]) == 2.0  # of the sheet, and of the walls before and behind
+    sheet.move_aside(points, np.full((14, 20, 2), 0.01))
+    for end in (np.min, np.max):
+        np.testing.assert_array_equal(end(points[:, :2], axis=0), end(before[:, :2], axis=0))
 
 
 # --- pixels -----------------------------------------------------------------------------------------------
@@ -297,6 +347,19 @@ def test_drops_are_balls():
     corners = points[drops.triangle.reshape(5, -1, 3)]
     volume = np.einsum("dti,dti->d", corners[:, :, 0], np.cross(corners[:, :, 1], corners[:, :, 2])) / 6.0
     assert volume == pytest.approx(4.0 / 3.0 * np.pi * np.array([0.05, 0.01, 0, 0, 0]) ** 3, rel=0.15)
+
+
+def test_droplets_are_the_drop():
+    """As much liquid, the same centre of mass, none a cell away; those of a drop move with it, those of others lie otherwise."""
+    rows = np.array([(0.1, 0.2, 0.3, 0.005), (0.0, 0.1, 0.5, 0.006)], np.float32)
+    found, moved = (droplets(r, 0.04).reshape(2, -1, 4) for r in (rows, rows + np.float32([0.5, 0.0, -0.25, 0.0])))
+    assert (found[:, :, 3] ** 3).sum(axis=1) == pytest.approx(rows[:, 3].astype(float) ** 3)
+    centre = np.einsum("dp,dpi->di", found[:, :, 3] ** 3, found[:, :, :3]) / (found[:, :, 3] ** 3).sum(axis=1)[:, None]
+    np.testing.assert_allclose(centre, rows[:, :3], atol=1e-9)
+    apart = found[:, :, :3] - rows[:, None, :3]
+    assert 0.01 < np.abs(apart).max() < 0.04 and np.abs(apart[0] - apart[1]).max() > 0.01
+    np.testing.assert_allclose(moved[:, :, :3] - found[:, :, :3], np.broadcast_to([0.5, 0.0, -0.25], apart.shape), atol=1e-6)
+    assert droplets(rows[:0], 0.04).shape == (0, 4)
 
 
 def test_drops_are_seen_where_they_fly(tmp_path):

@@ -50,6 +50,13 @@ test("a frame has all layers at their places", () => {
   assert.deepEqual([f.object, f.position, f.liquid, f.columns, f.drops, f.strain, f.particles].map((a) => [...a]), parts.map((a) => [...a]));
 });
 
+test("a column has a state and foam", () => {
+  for (const [byte, state, foam] of [[0, 0, 0], [m.DRY, m.DRY, 0], [252, 0, 1], [85, 1, 1 / 3]]) {
+    assert.equal(m.stateOf(byte), state);
+    assert.equal(m.foamOf(byte), foam);
+  }
+});
+
 test("vertices lie within the box of their object", () => {
   assert.deepEqual([...placed()], [0, 0, 0, 2, 0, 0, 2, 1, 0, 0, 1, 0, 1, 0, 1, 2, 0, 1, 1, 1, 1]);
 });

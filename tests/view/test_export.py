@@ -27,7 +27,7 @@ from scene_texts import SPLASH
 def folder(tmp_path_factory):
     """A finished run with a liquid."""
     made = tmp_path_factory.mktemp("splash")
-    wavy = SPLASH.replace("volume 45 l", "volume 45 l  model waves  drops 1")
+    wavy = SPLASH.replace("model surface", "model waves  drops 1")
     (made / "splash.txt").write_text(wavy + "expect raft.position.z at 0.1 s = 0.1 +- 1 m\n")
     return Scene.load(made / "splash.txt").run().folder
 

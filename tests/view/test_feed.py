@@ -10,11 +10,12 @@ import pytest
 from mdanim_lammps import Trajectory
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.picture.camera import action_of, automatic_view
+from mdanim_lammps.picture.foam import Foam
 from mdanim_lammps.picture.surfaces import shaded_mesh
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
 from mdanim_lammps.scene.render import Camera, Floor, Render
-from mdanim_lammps.view.feed import ASPECT, DRY, HIDDEN, MOST_STRAIN, OPEN, PARTICLES, STRAIN, Feed, first_action
-from picture_samples import falling, flat, pool_scene, raw_of, slab_scene, wet_frames, write
+from mdanim_lammps.view.feed import ASPECT, DRY, HIDDEN, MOST_FOAM, MOST_STRAIN, OPEN, PARTICLES, STRAIN, Feed, first_action
+from picture_samples import column_centres, falling, flat, pool_scene, raw_of, slab_scene, wet_frames, write
 
 HEAD = 36
 
@@ -223,6 +224,23 @@ def test_liquid(tmp_path):
     assert (state[3:5, 30:33] == DRY).all() and (state[np.isnan(raw)] == HIDDEN).all() and state[0, 0] == OPEN
     assert D == 3 and (np.frombuffer(data, "<f4", 12, len(data) - 48) == 0.75).all()
     assert head["liquid"]["shape"] == list(grid.shape) and arrays["sheet"].max() < len(head["buffers"]) + 10 * C
+    feed.close()
+
+
+def test_foam_is_that_of_the_movie(tmp_path):
+    """Within half a step of 63, in the upper six bits of a column's byte; none in the first frame."""
+    scene, models, grid = pool_scene()
+    x, _ = column_centres(grid)
+    fronts = [0.6 - 0.3 * np.clip((x + 0.5 - 0.05 * n) / 0.2 + 0.5, 0.0, 1.0) for n in range(4)]
+    frames = list(wet_frames(models, *[(front, raw_of(grid, front, models)) for front in fronts]))
+    write(tmp_path / "trajectory.h5", scene, models, frames, grid)
+    feed = Feed(tmp_path)
+    with Trajectory(tmp_path) as t:
+        foam = Foam(grid, 0.1, lambda n: (t.liquid_height(n), t.liquid_raw(n), t.liquid_drops(n)))
+        for n in (3, 0, 2):
+            _, column = feed.liquid(n)
+            assert np.abs(column // 4 / MOST_FOAM - foam.at(n).ravel()).max() <= 0.51 / MOST_FOAM
+            assert set(np.unique(column % 4)) == {OPEN, HIDDEN} and (column // 4).any() == (n > 0)
     feed.close()
 
 

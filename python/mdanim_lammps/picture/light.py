@@ -9,7 +9,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from ..scene.render import Quality, Render
-from .pieces import Field
+from .pieces import Field, gl_matrix
 from .rays import FAR, NEAR, ROOM, SKY_PIXELS, axes, direction, sky_axes
 from .window import off_screen_window
 
@@ -131,16 +131,11 @@ class Light:
 
     def _matrix(self):
         """From the world to the lamp's picture: x, y and depth from 0 to 1."""
-        from vtkmodules.vtkCommonMath import vtkMatrix4x4
-
         matrix = np.eye(4)
         scale = np.array([0.5 / ROOM, 0.5 / ROOM, -1.0 / (FAR - NEAR)]) / self._radius
         matrix[:3, :3] = scale[:, None] * axes(self._toward)
         matrix[:3, 3] = [0.5, 0.5, (2.0 - NEAR) / (FAR - NEAR)] - matrix[:3, :3] @ self._centre
-        found = vtkMatrix4x4()
-        # VTK hands its matrices to OpenGL as they lie in memory, and OpenGL reads columns first.
-        found.DeepCopy(matrix.T.ravel())
-        return found
+        return gl_matrix(matrix)
 
 
 def nearest_around(depth: np.ndarray, block: int) -> np.ndarray:

@@ -51,10 +51,48 @@ class Sheet:
         normal /= np.linalg.norm(normal, axis=1, keepdims=True)
         return np.concatenate([surface, *walls]), np.concatenate([normal, self._outward])
 
+    def move_aside(self, points: np.ndarray, by: np.ndarray) -> None:
+        """Move vertices of `mesh` over the columns by x and y [m], shape (ny, nx, 2); those on the edges stay on them."""
+        by = np.pad(by, [(1, 1), (1, 1), (0, 0)], mode="edge")
+        by[:, [0, -1], 0] = by[[0, -1], :, 1] = 0.0
+        by = by.reshape(-1, 2)
+        points[:, :2] += np.concatenate([by, *(np.concatenate([by[side], by[side]]) for side in self._sides)])
+
     @property
     def rim(self) -> np.ndarray:
         """Vertices along which the surface meets the walls, a closed line, int64, shape (R,)."""
         return np.concatenate([side[:-1] for side in self._sides])
+
+
+PUDDLE = 16
+"""Columns of liquid that lies on a body, at most."""
+PARTS = np.array([0.50, 0.22, 0.13, 0.08, 0.05, 0.02])
+"""Of a drop, in the droplets that are drawn of it: single balls of its size look like glass."""
+SCATTERED = 0.4
+"""Cells from the middle of a drop within which its droplets lie along each axis."""
+
+
+def droplets(drops: np.ndarray, cell: float) -> np.ndarray:
+    """What is drawn of drops: as much liquid, in balls that lie apart, with the same centre of mass.
+
+    How they lie follows from the drop's radius, which does not change while it flies, and differs from drop to drop.
+
+    Args:
+        drops: middles and radii [m], shape (D, 4).
+        cell: edge of a cell [m].
+
+    Returns:
+        middles and radii [m], shape (P D, 4).
+    """
+    number = drops[:, 3].astype(np.float32).view(np.uint32).astype(np.uint64)[:, None] * np.uint64(64)
+    number = (number + np.arange(3 * len(PARTS), dtype=np.uint64)) * np.uint64(0x9E3779B97F4A7C15)
+    number = (number ^ (number >> np.uint64(29))) * np.uint64(0xBF58476D1CE4E5B9)
+    chance = (number >> np.uint64(40)).reshape(-1, len(PARTS), 3) / 2.0**23 - 1.0
+    aside = SCATTERED * cell * (chance - np.einsum("p,dpi->di", PARTS, chance)[:, None])
+    rows = np.empty((len(drops), len(PARTS), 4))
+    rows[:, :, :3] = drops[:, None, :3] + aside
+    rows[:, :, 3] = drops[:, 3:] * np.cbrt(PARTS)
+    return rows.reshape(-1, 4)
 
 
 class Drops:
@@ -62,19 +100,21 @@ class Drops:
 
     Args:
         most: drops. V vertices: as many for each of them; without a radius they are one point.
+        fine: whether a ball has 80 triangles; else 20.
     """
 
-    def __init__(self, most: int):
+    def __init__(self, most: int, fine: bool = True):
         from vtkmodules.util.numpy_support import vtk_to_numpy
         from vtkmodules.vtkFiltersModeling import vtkLinearSubdivisionFilter
         from vtkmodules.vtkFiltersSources import vtkPlatonicSolidSource
 
-        ball, fine = vtkPlatonicSolidSource(), vtkLinearSubdivisionFilter()
+        ball, finer = vtkPlatonicSolidSource(), vtkLinearSubdivisionFilter()
         ball.SetSolidTypeToIcosahedron()
-        fine.SetInputConnection(ball.GetOutputPort())
-        fine.Update()
-        points = vtk_to_numpy(fine.GetOutput().GetPoints().GetData()).astype(float)
-        triangle = vtk_to_numpy(fine.GetOutput().GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        finer.SetInputConnection(ball.GetOutputPort())
+        made = finer if fine else ball
+        made.Update()
+        points = vtk_to_numpy(made.GetOutput().GetPoints().GetData()).astype(float)
+        triangle = vtk_to_numpy(made.GetOutput().GetPolys().GetConnectivityArray()).reshape(-1, 3)
         self._ball = points / np.linalg.norm(points, axis=1, keepdims=True)
         self._most = most
         self.triangle = (triangle + len(points) * np.arange(most)[:, None, None]).reshape(-1, 3).astype(np.int32)
@@ -144,6 +184,40 @@ def kept_dry(raw: np.ndarray) -> np.ndarray:
     return dry[j, i]
 
 
+def without_puddles(grid: Grid, smooth: np.ndarray, raw: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Heights in which liquid that lies on a body, with a fall all around, is hidden: the sheet would stand there as a spike.
+
+    Such are at most `PUDDLE` columns that hang together and border on hidden ones, with other neighbours two cells lower.
+
+    Args:
+        grid: the columns.
+        smooth, raw: heights z [m], shape (ny, nx).
+    """
+    from scipy.ndimage import distance_transform_edt
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    fall, count = 2.0 * grid.cell[2], smooth.size
+    index, height, open_ = np.arange(count).reshape(smooth.shape), smooth.ravel(), np.isfinite(raw).ravel()
+    one = np.concatenate([index[:-1].ravel(), index[:, :-1].ravel()])
+    other = np.concatenate([index[1:].ravel(), index[:, 1:].ravel()])
+    apart = np.abs(height[one] - height[other]) >= fall
+    if not (apart & open_[one] & open_[other]).any():
+        return smooth, raw
+    link = open_[one] & open_[other] & ~apart
+    groups, label = connected_components(coo_matrix((link[link], (one[link], other[link])), (count, count)), directed=False)
+    one, other = np.concatenate([one, other]), np.concatenate([other, one])
+    both, at_body = open_[one] & open_[other], open_[one] & ~open_[other]
+    has = lambda pairs: np.bincount(label[one[pairs]], minlength=groups) > 0
+    falls, rises = has(both & (height[one] - height[other] >= fall)), has(both & (height[other] - height[one] >= fall))
+    alone = falls & ~rises & has(at_body) & (np.bincount(label, minlength=groups) <= PUDDLE)
+    puddle = (alone[label] & open_).reshape(smooth.shape)
+    if not puddle.any():
+        return smooth, raw
+    j, i = distance_transform_edt(puddle, return_distances=False, return_indices=True)
+    return smooth[j, i], np.where(puddle, np.nan, raw)
+
+
 def undersides(grid: Grid, position: np.ndarray) -> np.ndarray:
     """Lowest point of any object over each column of cells and those around it; the floor if there is none.
 
@@ -154,16 +228,43 @@ def undersides(grid: Grid, position: np.ndarray) -> np.ndarray:
     Returns:
         z [m], shape (ny, nx).
     """
-    from scipy.ndimage import minimum_filter
+    lowest = -_highest(grid, position * [1.0, 1.0, -1.0])
+    return np.where(np.isfinite(lowest), np.maximum(lowest, grid.low[2]), grid.low[2])
+
+
+def _highest(grid: Grid, position: np.ndarray) -> np.ndarray:
+    """Highest z [m] of the particles over each column and those around it, minus infinity where there are none."""
+    from scipy.ndimage import maximum_filter
 
     nx, ny, _ = grid.shape
     column = np.floor((position[:, :2] - grid.low[:2]) / grid.cell[:2]).astype(int)
     within = ((column >= 0) & (column < (nx, ny))).all(axis=1)
     (i, j), z = column[within].T, position[within, 2]
-    lowest = np.full((ny, nx), np.inf)
-    np.minimum.at(lowest, (j, i), z)
-    lowest = minimum_filter(lowest, 3)
-    return np.where(np.isfinite(lowest), np.maximum(lowest, grid.low[2]), grid.low[2])
+    highest = np.full((ny, nx), -np.inf)
+    np.maximum.at(highest, (j, i), z)
+    return maximum_filter(highest, 3)
+
+
+def overhang(grid: Grid, height: np.ndarray, position: np.ndarray) -> np.ndarray:
+    """How far the sheet's vertices over the columns are moved aside, x and y [m], shape (ny, nx, 2).
+
+    Liquid that runs over a solid falls off its end. A straight line from the last column over the solid to the first one beside
+    it would cut the corner off; half a column farther it passes in front of it.
+
+    Args:
+        grid: the columns.
+        height: of the sheet, z [m], shape (ny, nx).
+        position: of particles [m], shape (N, 3).
+    """
+    highest, aside = _highest(grid, position), np.zeros((*height.shape, 2))
+    on_solid = (highest > grid.low[2]) & (highest < height)
+    for axis in (0, 1):
+        z = np.pad(height, [(1, 1) if k == 1 - axis else (0, 0) for k in (0, 1)], mode="edge")
+        before, after = (np.delete(z, cut, 1 - axis) for cut in ((-2, -1), (0, 1)))
+        # Down to where the solid's end is bare: below its top.
+        falls = [on_solid & (side < np.minimum(highest, height - grid.cell[2])) for side in (before, after)]
+        aside[:, :, axis] = 0.55 * grid.cell[axis] * (falls[1].astype(float) - falls[0])
+    return aside
 
 
 def _centres_and_ends(grid: Grid, axis: int) -> np.ndarray:

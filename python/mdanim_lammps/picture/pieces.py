@@ -12,16 +12,21 @@ class MovingMesh:
     """A triangle mesh whose vertices and normals are overwritten for every frame."""
 
     def __init__(self, vertices: int, triangle: np.ndarray):
+        from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+        self.data = vtkPolyData()
+        self.reshape(vertices, triangle)
+
+    def reshape(self, vertices: int, triangle: np.ndarray) -> None:
+        """Have so many vertices, which are still to be moved, and these triangles, shape (T, 3)."""
         from vtkmodules.util.numpy_support import vtk_to_numpy
         from vtkmodules.vtkCommonCore import vtkFloatArray, vtkPoints
-        from vtkmodules.vtkCommonDataModel import vtkPolyData
 
         points, normals = vtkPoints(), vtkFloatArray()
         points.SetDataTypeToFloat()
         points.SetNumberOfPoints(vertices)
         normals.SetNumberOfComponents(3)
         normals.SetNumberOfTuples(vertices)
-        self.data = vtkPolyData()
         self.data.SetPoints(points)
         self.data.SetPolys(cells(triangle))
         self.data.GetPointData().SetNormals(normals)
@@ -81,6 +86,22 @@ class MovingLine:
         self._data.Modified()
 
 
+def texture(texels, width: int, height: int, smooth: bool):
+    """An image of these texels, a VTK array, and the texture that shows it; ``smooth``: also what lies between."""
+    from vtkmodules.vtkCommonDataModel import vtkImageData
+    from vtkmodules.vtkRenderingCore import vtkTexture
+
+    image, shown = vtkImageData(), vtkTexture()
+    image.SetDimensions(width, height, 1)
+    image.GetPointData().SetScalars(texels)
+    shown.SetInputData(image)
+    shown.SetColorModeToDirectScalars()
+    shown.SetInterpolate(smooth)
+    shown.RepeatOff()
+    shown.EdgeClampOn()
+    return image, shown
+
+
 class Field:
     """Single numbers on a grid for a shader to look up, overwritten for every frame.
 
@@ -95,21 +116,11 @@ class Field:
 
     def __init__(self, width: int, height: int, *, smooth: bool = False, packed: bool = False):
         from vtkmodules.util.numpy_support import numpy_to_vtk
-        from vtkmodules.vtkCommonDataModel import vtkImageData
-        from vtkmodules.vtkRenderingCore import vtkTexture
 
         held = np.zeros((height, width // 4, 4) if packed else (height, width, 3), dtype=np.float32)
         self.numbers = held.reshape(height, width) if packed else held[:, :, 0]
         self._texels = numpy_to_vtk(held.reshape(-1, held.shape[2]))  # the same memory
-        self._image = vtkImageData()
-        self._image.SetDimensions(held.shape[1], height, 1)
-        self._image.GetPointData().SetScalars(self._texels)
-        self.texture = vtkTexture()
-        self.texture.SetInputData(self._image)
-        self.texture.SetColorModeToDirectScalars()
-        self.texture.SetInterpolate(smooth)
-        self.texture.RepeatOff()
-        self.texture.EdgeClampOn()
+        self._image, self.texture = texture(self._texels, held.shape[1], height, smooth)
 
     def fill(self, numbers: np.ndarray) -> None:
         """Overwrite all, shape (height, width)."""
@@ -122,7 +133,7 @@ class Field:
         self._image.Modified()
 
 
-def lit_actor(data, light: str, *, liquid: bool, sky: bool):
+def lit_actor(data, light: str, *, liquid: bool, sky: bool, functions: str = ""):
     """An actor for a mesh, lit by one of the shaders of ``shading``.
 
     Args:
@@ -130,6 +141,7 @@ def lit_actor(data, light: str, *, liquid: bool, sky: bool):
         light: the shader.
         liquid: whether it may be seen through liquid.
         sky: whether it is darker where objects hide the sky.
+        functions: of ``shading``, that only this shader uses.
     """
     from vtkmodules.vtkRenderingCore import vtkActor
     from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
@@ -143,7 +155,7 @@ def lit_actor(data, light: str, *, liquid: bool, sky: bool):
     shader = actor.GetShaderProperty()
     for mark, code in shading.VERTEX.items():
         shader.AddVertexShaderReplacement(mark, True, code, False)
-    for mark, code in shading.fragment_head(liquid, sky).items():
+    for mark, code in shading.fragment_head(liquid, sky, functions).items():
         shader.AddFragmentShaderReplacement(mark, True, code, False)
     shader.AddFragmentShaderReplacement("//VTK::Light::Impl", True, light, False)
     return actor
@@ -226,3 +238,12 @@ def cells(corners: np.ndarray):
     flat = np.ascontiguousarray(corners, dtype=np.int64).ravel()
     cells.SetData(corners.shape[1], numpy_to_vtkIdTypeArray(flat, deep=1))
     return cells
+
+
+def gl_matrix(matrix: np.ndarray):
+    """A matrix, shape (4, 4), as VTK hands it to shaders: as it lies in memory, of which OpenGL reads columns first."""
+    from vtkmodules.vtkCommonMath import vtkMatrix4x4
+
+    found = vtkMatrix4x4()
+    found.DeepCopy(matrix.T.ravel())
+    return found

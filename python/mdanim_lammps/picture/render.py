@@ -9,6 +9,7 @@ from ..errors import UsageError
 from ..results.trajectory import Trajectory
 from ..scene.render import Floor, Quality, Render
 from . import shading
+from .behind import Behind
 from .camera import FIELD_OF_VIEW, Action, CameraPath, View, action_of, automatic_view
 from .light import Light
 from .marks import MarkActors, Marks
@@ -97,6 +98,13 @@ class Painter:
         self._aim(self.view(time))
         # Before the picture: only one window can be drawn into at a time.
         self._light.cast()
+        if self._behind:
+            self._renderer.DrawOn()
+            self._front.DrawOff()
+            self._window.Render()
+            self._behind.take(self._window, self._renderer.GetActiveCamera(), [self._tank.outer])
+            self._renderer.DrawOff()
+            self._front.DrawOn()
         self._window.Render()
         return fewer_pixels(pixels(self._window), self._finer)
 
@@ -130,7 +138,11 @@ class Painter:
         camera.SetViewAngle(FIELD_OF_VIEW)
 
         metadata, dark, sky = self.trajectory.metadata, is_dark(low), render.quality is Quality.FINAL
-        self._tank = Tank(self.trajectory, render.liquid, dark, sky) if metadata.liquid else None
+        width, height = (n * self._finer for n in self.size)
+        # In final quality the liquid's surface looks up what is behind it, so that has to be drawn before.
+        self._behind = Behind((width, height)) if sky and metadata.liquid and render.liquid == "smooth" else None
+        self._front = self._in_front() if self._behind else self._renderer
+        self._tank = Tank(self.trajectory, render.liquid, dark, sky, self._behind) if metadata.liquid else None
         floor = None if render.floor is Floor.NONE else self._floor_height()
         (x, y, _), reach = self.action.centre, FLOOR * self.action.size
         self._surface = MovingMesh(len(self._mesh.carry), self._mesh.triangle)
@@ -149,25 +161,39 @@ class Painter:
         if metadata.walls is not None:
             self._renderer.AddActor(box_edges(*metadata.walls, 0.8 if dark else 0.35))
         if self._tank:
+            self._renderer.AddActor(self._tank.inner)
             for actor in self._tank.actors:
-                self._renderer.AddActor(actor)
+                self._front.AddActor(actor)
             self._actors += self._tank.skin
             self._tank.colour_through(self._actors)
             self._tank.stand_on(0.0 if floor is None else floor, (x, y, 0.0 if floor is None else reach))
         self._marks = MarkActors(marks, metadata, dark, self.size[1] * self._finer)
         for actor in self._marks.actors:
-            self._renderer.AddViewProp(actor)
+            self._front.AddViewProp(actor)
         self._write(render, low)
-        for actor in self._renderer.GetActors():
+        self._renderers = [self._renderer, self._front] if self._behind else [self._renderer]
+        for actor in (actor for renderer in self._renderers for actor in renderer.GetActors()):
             look = actor.GetProperty()
             look.SetLineWidth(look.GetLineWidth() * self._finer)
 
         typical = float(np.median(np.linalg.norm(self.action.high[0] - self.action.low[0], axis=1)))
         with silent():
-            width, height = self.size
-            self._window = off_screen_window([self._renderer], (width * self._finer, height * self._finer), SAMPLES)
+            self._window = off_screen_window(self._renderers, (width, height), SAMPLES)
             self._light = Light(self._surface.data, self.action.centre, self.action.size, typical, render)
         self._light.fall_on(self._actors)
+
+    def _in_front(self):
+        """A renderer that draws over what the other one has drawn, and behind what that holds nearer to the camera."""
+        from vtkmodules.vtkRenderingCore import vtkRenderer
+
+        front = vtkRenderer()
+        front.SetLayer(1)
+        front.PreserveColorBufferOn()
+        front.PreserveDepthBufferOn()
+        front.SetUseHiddenLineRemoval(False)
+        front.SetUseOIT(False)
+        front.SetActiveCamera(self._renderer.GetActiveCamera())
+        return front
 
     def _floor_height(self) -> float | None:
         """The ground; without one the lowest point of the action, unless something falls through there."""
@@ -212,7 +238,7 @@ class Painter:
             look.SetColor(color)
             look.SetOpacity(0.85)
             look.SetJustificationToRight() if right else look.SetJustificationToLeft()
-            self._renderer.AddViewProp(actor)
+            self._front.AddViewProp(actor)
             return actor
 
         text(self.trajectory.metadata.title, (margin, margin), 0.032)
@@ -225,7 +251,8 @@ class Painter:
         camera.SetPosition(view.eye)
         camera.SetFocalPoint(view.look)
         camera.SetViewUp(view.up)
-        self._renderer.ResetCameraClippingRange()
+        bounds = np.array([renderer.ComputeVisiblePropBounds() for renderer in self._renderers])
+        self._renderer.ResetCameraClippingRange(np.where(np.arange(6) % 2, bounds.max(axis=0), bounds.min(axis=0)))
         for actor in self._actors:
             actor.GetShaderProperty().GetFragmentCustomUniforms().SetUniform3f("eye", list(view.eye))
 

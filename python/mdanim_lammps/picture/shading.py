@@ -11,6 +11,9 @@ from .rays import FAR, NEAR, ROOM, SKY_PIXELS, SKY_SIDE, sky_axes
 HIDDEN = 0.75
 """Share of the light that is missing where nothing is seen of the sky; the rest is thrown back by what hides it."""
 
+REFRACTIVE_INDEX = 1.33
+"""Of the liquid, over that of air."""
+
 VERTEX = {
     "//VTK::PositionVC::Dec": """//VTK::PositionVC::Dec
 out vec3 worldPosition;
@@ -23,8 +26,8 @@ worldNormal = normalMC;
 }
 
 
-def fragment_head(liquid: bool, sky: bool) -> dict[str, str]:
-    """Declarations and functions that every fragment shader below uses, by VTK's mark."""
+def fragment_head(liquid: bool, sky: bool, functions: str) -> dict[str, str]:
+    """Declarations and functions that every fragment shader below uses, and those that one uses, by VTK's mark."""
     return {
         "//VTK::PositionVC::Dec": """//VTK::PositionVC::Dec
 in vec3 worldPosition;
@@ -34,7 +37,8 @@ in vec3 worldNormal;
         "//VTK::Picking::Dec": "//VTK::Picking::Dec\n"
         + SHADOW
         + (sky_looked_at() if sky else SKY_NOT_LOOKED_AT)
-        + (THROUGH_LIQUID if liquid else THROUGH_AIR),
+        + (THROUGH_LIQUID if liquid else THROUGH_AIR)
+        + functions,
     }
 
 
@@ -249,7 +253,7 @@ PATTERN
 }
 """
 
-# A drop of the liquid: clear in the middle, bright where it mirrors the sky, and with the lamp's glint.
+# A drop of the liquid: nearly white, as spray is, bluer below, and with the lamp's glint.
 FRAGMENT_DROP = """//VTK::Light::Impl
 {
   vec3 n = normalize(worldNormal);
@@ -258,12 +262,87 @@ FRAGMENT_DROP = """//VTK::Light::Impl
   float lit = shadow(worldPosition, n, 0.0);
   float graze = pow(1.0 - max(dot(n, toEye), 0.0), 2.0);
   vec3 mirrored = reflect(-toEye, n);
-  vec3 color = liquidColor * (0.85 + 0.40 * max(dot(n, toLamp), 0.0) * (0.45 + 0.55 * lit));
-  color = mix(color, vec3(0.96, 0.99, 1.0), min(1.0, 0.25 + 0.55 * graze + 0.25 * smoothstep(0.0, 1.0, mirrored.z)));
+  vec3 color = mix(liquidColor, vec3(0.94, 0.97, 0.99), 0.55 + 0.25 * mirrored.z + 0.2 * max(dot(n, toLamp), 0.0) * lit);
   float glint = lit * pow(max(dot(normalize(toLamp + toEye), n), 0.0), 40.0);
-  fragOutput0 = vec4(min(color + glint, vec3(1.0)), min(1.0, 0.55 + 0.45 * graze + glint));
+  fragOutput0 = vec4(min(color + glint, vec3(1.0)), min(1.0, 0.65 + 0.25 * graze + glint));
 }
 """
+
+# Foam lies in specks, which are the fewer the less of it there is: where it fades, holes grow in it.
+FOAM = """
+float chance(ivec2 at)
+{
+  uint h = uint(at.x) * 73856093u ^ uint(at.y) * 19349663u;
+  h = (h ^ (h >> 13)) * 1274126177u;
+  return float((h ^ (h >> 16)) & 0xffffu) / 65535.0;
+}
+
+float uneven(vec2 p)
+{
+  ivec2 at = ivec2(floor(p));
+  vec2 t = smoothstep(0.0, 1.0, fract(p));
+  return mix(mix(chance(at), chance(at + ivec2(1, 0)), t.x), mix(chance(at + ivec2(0, 1)), chance(at + ivec2(1, 1)), t.x), t.y);
+}
+
+// How much of the skin is white. Seen through a wall it reaches a cell below the surface.
+float foam(vec3 where, float top, vec3 normal)
+{
+  if (foamMost <= 0.0) return 0.0;
+  float there = texture(liquidFoam, (where.xy - basinLow.xy) / (basinHigh.xy - basinLow.xy)).r;
+  bool wall = abs(normal.z) < 1e-3;
+  if (wall) there *= 1.0 - smoothstep(0.0, 1.5 * cell.z, top - where.z);
+  if (there <= 0.0) return 0.0;
+  vec2 p = wall ? vec2(dot(where.xy, vec2(1.0, 1.0)), where.z) / (0.7 * cell.z) : where.xy / (0.7 * cell.xy);
+  float specks = 0.55 * uneven(p) + 0.3 * uneven(2.3 * p + 17.0) + 0.15 * uneven(5.1 * p + 5.0);
+  return smoothstep(0.85, 1.1, specks + there) * smoothstep(0.0, 0.15, there);
+}
+"""
+
+NOT_BENT = """
+bool bentAside(vec3 where, vec3 normal, vec3 toEye, out vec3 found) { return false; }
+"""
+
+# What is behind the surface is seen aside where the surface slopes: by as much as a ray is bent more, or less, than by a level
+# surface, so that through a level one all is seen where it is drawn. What is drawn before the surface is looked up there.
+BENT = """
+vec3 drawnAt(vec2 pixel)
+{
+  vec4 p = pictureInverse * vec4(2.0 * vec3(pixel / pictureSize, numberAt(behindDepth, ivec2(pixel))) - 1.0, 1.0);
+  return p.xyz / p.w;
+}
+
+bool bentAside(vec3 where, vec3 normal, vec3 toEye, out vec3 found)
+{
+  if (abs(normal.z) < 1e-3) return false;
+  // The way to what is behind, or to where the ray leaves the basin.
+  vec3 ray = drawnAt(gl_FragCoord.xy) - where + vec3(1e-9);
+  vec3 out_ = (mix(basinLow, basinHigh, step(0.0, ray)) - where) / ray;
+  ray *= clamp(min(out_.x, min(out_.y, out_.z)), 0.0, 1.0);
+  if (ray.z >= 0.0) return false;
+  vec3 bent = refract(-toEye, normal, 1.0 / REFRACTIVE_INDEX);
+  vec3 level = refract(-toEye, vec3(0.0, 0.0, 1.0), 1.0 / REFRACTIVE_INDEX);
+  vec2 aside = -ray.z * (bent.xy / max(-bent.z, 0.3) - level.xy / max(-level.z, 0.3));
+  // Where an object before or above the surface is in the way half as far aside is tried, then nothing is moved.
+  for (float part = 1.0; part > 0.4; part *= 0.5) {
+    vec4 p = pictureMatrix * vec4(where + ray + vec3(part * aside, 0.0), 1.0);
+    vec2 pixel = clamp((0.5 + 0.5 * p.xy / p.w) * pictureSize, vec2(0.5), pictureSize - 0.5);
+    if (distance(pixel, gl_FragCoord.xy) < 0.25) return false;
+    vec3 there = drawnAt(pixel);
+    bool outside = any(lessThan(there.xy, basinLow.xy)) || any(greaterThan(there.xy, basinHigh.xy));
+    if (dot(there - where, toEye) < 0.0 && (outside || there.z < liquidHeight(there.xy))) {
+      found = texture(behindColor, pixel / pictureSize).rgb;
+      return true;
+    }
+  }
+  return false;
+}
+"""
+
+
+def bent() -> str:
+    """The function above with its number."""
+    return BENT.replace("REFRACTIVE_INDEX", str(REFRACTIVE_INDEX))
+
 
 # The skin of the liquid, laid over what `seen` has coloured already: what it mirrors, and the lamp's glint.
 # Where it is thinner than half a cell it fades out, so that a dry floor is bare.
@@ -290,6 +369,10 @@ FRAGMENT_LIQUID = """//VTK::Light::Impl
   color = mix(color, vec3(0.96, 0.99, 1.0), min(1.0, 0.75 * low + 0.4 * graze));
   float glint = lit * pow(max(dot(normalize(toLamp + toEye), n), 0.0), 120.0);
   float cover = mix(skinCover, 0.80, max(graze, 0.6 * low));
+  float white = inner ? 0.0 : foam(worldPosition, inside, n);
+  color = mix(color, vec3(0.86, 0.88, 0.90) + vec3(0.14, 0.12, 0.10) * max(dot(n, toLamp), 0.0) * lit, white);
+  cover = mix(cover, 0.95, white);
+  glint *= 1.0 - white;
   if (inner) {
     // Behind the inner faces is floor, which `seen` has coloured, or sky, which is still to be coloured.
     vec3 past = worldPosition - toEye * (worldPosition.z - floorHeight) / toEye.z;
@@ -300,6 +383,13 @@ FRAGMENT_LIQUID = """//VTK::Light::Impl
       color = liquidColor;
     }
   }
-  fragOutput0 = vec4(min(color + 0.8 * glint, vec3(1.0)), film * min(1.0, cover + 0.8 * glint));
+  color = min(color + 0.8 * glint, vec3(1.0));
+  cover = min(1.0, cover + 0.8 * glint);
+  vec3 aside;
+  if (!inner && bentAside(worldPosition, n, toEye, aside)) {
+    color = mix(aside, color, cover);
+    cover = 1.0;
+  }
+  fragOutput0 = vec4(color, film * cover);
 }
 """

@@ -9,7 +9,9 @@ import numpy as np
 
 from ..results.trajectory import Trajectory
 from . import shading
-from .liquid import Blocks, Drops, Sheet, kept_dry, undersides
+from .behind import Behind
+from .foam import Foam
+from .liquid import Blocks, Drops, Sheet, droplets, kept_dry, overhang, undersides, without_puddles
 from .palette import LIQUID, rgb
 from .pieces import Field, MovingLine, MovingMesh, box_edges, lit_actor, plane
 
@@ -33,9 +35,10 @@ class Tank:
         look: ``smooth`` for the surface that objects feel, ``cells`` for the raw columns.
         dark: whether the background is.
         sky: whether its floor is darker where objects hide the sky.
+        behind: what is drawn before the liquid's surface, which then shifts it where the surface slopes; None without.
     """
 
-    def __init__(self, trajectory: Trajectory, look: str, dark: bool, sky: bool):
+    def __init__(self, trajectory: Trajectory, look: str, dark: bool, sky: bool, behind: Behind | None = None):
         pool = trajectory.liquid
         self._trajectory, self._look = trajectory, look
         self._low, self._high = np.array(pool.low), np.array(pool.high)
@@ -48,29 +51,37 @@ class Tank:
         """The tank's floor, opaque."""
         self.plate.GetProperty().SetColor((0.28, 0.33, 0.37) if dark else (0.74, 0.78, 0.81))
         # Behind, then in front: a ray meets the inner faces before the outer ones.
-        inner, outer = (lit_actor(self._mesh.data, shading.FRAGMENT_LIQUID, liquid=True, sky=False) for _ in range(2))
+        inner, outer = (
+            lit_actor(self._mesh.data, shading.FRAGMENT_LIQUID, liquid=True, sky=False, functions=shading.FOAM + bent)
+            for bent in (shading.NOT_BENT, shading.bent() if behind else shading.NOT_BENT)
+        )
         inner.GetProperty().FrontfaceCullingOn()
         outer.GetProperty().BackfaceCullingOn()
+        self._foam = Foam(pool.grid, trajectory.dt * trajectory.steps_per_frame, self._liquid) if look == "smooth" else None
+        self._white = Field(*pool.shape[:2], smooth=True)
+        if behind:
+            behind.look_up([outer])
         for actor in (inner, outer):
             actor.ForceTranslucentOn()
+            actor.GetProperty().SetTexture("liquidFoam", self._white.texture)
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
             uniforms.SetUniform3f("cell", list(pool.grid.cell))
             uniforms.SetUniformf("skinCover", COVER[look])
-            # There are no blocks where it is dry.
-            above = 0.5 * pool.grid.cell[2] if look == "smooth" else float(np.finfo(np.float32).max)
-            uniforms.SetUniformf("sheetAbove", above)
+        self.inner, self.outer = inner, outer
+        """The liquid's own faces, seen from inside and from outside; translucent, the inner ones are drawn first."""
         self.skin = [inner, outer]
         """The liquid's own faces, and its drops."""
         glass = HAIR * np.linalg.norm(self._high - self._low) * np.array([1.0, 1.0, 0.0])
         edges = box_edges(self._low - glass, self._high + glass, 0.85 if dark else 0.25, 0.55, 2.0)
-        self.actors = [inner, outer, edges]
-        """What is translucent, in the order in which it is drawn."""
+        self.actors = [outer, edges]
+        """What is translucent, in the order in which it is drawn, but for the inner faces."""
         if look == "smooth":
             self._rim = MovingLine(len(self._form.rim), (1.0, 1.0, 1.0), 2.0)
             self.actors.append(self._rim.actor)
-        self._drops = Drops(pool.most_drops) if pool.most_drops else None
-        if self._drops:
-            self._spray = MovingMesh(len(self._drops.mesh(np.zeros((0, 4)))[0]), self._drops.triangle)
+        self._fine = sky
+        self._spray = None
+        if pool.most_drops:
+            self._spray = MovingMesh(1, np.zeros((0, 3)))
             drops = lit_actor(self._spray.data, shading.FRAGMENT_DROP, liquid=True, sky=False)
             drops.ForceTranslucentOn()
             drops.GetProperty().BackfaceCullingOn()
@@ -99,12 +110,18 @@ class Tank:
 
     def show(self, frame: int, position: np.ndarray) -> None:
         """Move the liquid to a frame, in which particles are there [m], shape (N, 3)."""
-        smooth, raw = self._trajectory.liquid_height(frame), self._trajectory.liquid_raw(frame)
+        smooth, raw, drops = self._liquid(frame)
         points, normals = self._form.mesh(smooth if self._look == "smooth" else raw)
+        if self._look == "smooth":
+            self._form.move_aside(points, overhang(self._trajectory.liquid.grid, smooth, position))
         points[:, :2] += HAIR * ((self._low + self._high)[:2] / 2 - points[:, :2])
         self._mesh.move(points, normals)
-        if self._drops:
-            self._spray.move(*self._drops.mesh(self._trajectory.liquid_drops(frame)))
+        if self._spray:
+            rows = droplets(drops, max(self._trajectory.liquid.grid.cell))
+            balls = Drops(max(1, len(rows)), self._fine)
+            round_ = balls.mesh(rows)
+            self._spray.reshape(len(round_[0]), balls.triangle)
+            self._spray.move(*round_)
         if self._look == "smooth":
             self._rim.move(points[self._form.rim], self._rim_opacity(smooth, raw))
         # What is seen through a column that tells nothing is seen through liquid all the same.
@@ -114,10 +131,26 @@ class Tank:
             # Under a hull there is liquid.
             top = np.where(dry, undersides(self._trajectory.liquid.grid, position), top)
         self._heights.fill(top)
+        if self._foam:
+            self._white.fill(self._foam.at(frame))
+        # There are no blocks where it is dry.
+        above = 0.5 * self._trajectory.liquid.grid.cell[2] if dry.any() and self._look == "smooth" else np.finfo(np.float32).max
+        for actor in (self.inner, self.outer):
+            uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
+            uniforms.SetUniformf("sheetAbove", float(above))
+            uniforms.SetUniformf("foamMost", float(self._white.numbers.max()))
         for actor in self._through:
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
             uniforms.SetUniformf("liquidTop", float(top.max()))
             uniforms.SetUniformf("liquidLow", float(top.min()))
+
+    def _liquid(self, frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Smooth and raw heights, and drops, of a frame."""
+        t = self._trajectory
+        smooth, raw = t.liquid_height(frame), t.liquid_raw(frame)
+        if self._look == "smooth":
+            smooth, raw = without_puddles(t.liquid.grid, smooth, raw)
+        return smooth, raw, t.liquid_drops(frame)
 
     def _rim_opacity(self, smooth: np.ndarray, raw: np.ndarray) -> np.ndarray:
         """How much the line on the glass covers, shape (R,).

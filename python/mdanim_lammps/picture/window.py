@@ -22,6 +22,7 @@ def off_screen_window(renderers: Iterable, size: tuple[int, int], samples: int):
     # Pictures are read from the buffer that is drawn into; the other one is not used.
     window.SwapBuffersOff()
     for renderer in renderers:
+        window.SetNumberOfLayers(max(window.GetNumberOfLayers(), renderer.GetLayer() + 1))
         window.AddRenderer(renderer)
     window.Initialize()
     if not window.SupportsOpenGL():

@@ -8,7 +8,7 @@ All numbers are little endian, and every array is padded to a multiple of four b
            u32 drops D of it
            f32 (O, 12): corner and size of each object's box [m], its centre of mass [m], the velocity of that [m/s]
            u16 (V, 3): vertices within the box of their object
-           u16 (C), u8 (C): heights of the liquid within its basin, and `OPEN`, `HIDDEN` or `DRY`
+           u16 (C), u8 (C): heights of the liquid within its basin, and `OPEN`, `HIDDEN` or `DRY` plus 4 times its foam
            f32 (D, 4): middle and radius of each drop [m]
            u8 (V): strain, 255 is `MOST_STRAIN`, where asked for; f32 (N, 3): particles [m], where asked for
 """
@@ -25,7 +25,8 @@ import numpy as np
 
 from ..errors import OutputError
 from ..picture.camera import FIELD_OF_VIEW, Action, CameraPath, action_of, automatic_view
-from ..picture.liquid import Sheet, kept_dry
+from ..picture.foam import Foam
+from ..picture.liquid import Sheet, kept_dry, without_puddles
 from ..picture.palette import LIQUID, background_colors, is_dark, object_colors, rgb, vertex_colors
 from ..picture.rays import direction
 from ..picture.render import grid_spacing
@@ -41,6 +42,8 @@ LAYERS = STRAIN | PARTICLES
 """Layers of a frame beside the surfaces and the liquid: bits, and all of them."""
 OPEN, HIDDEN, DRY = 0, 1, 2
 """States of a column of liquid: seen from above, below a solid, kept dry by one as by a hull."""
+MOST_FOAM = 63
+"""White all over."""
 STEPS = 65535
 """Of a 16-bit number."""
 MOST_STRAIN = 0.2
@@ -80,6 +83,9 @@ class Feed:
         self.object_of_vertex = of
         self.first = np.searchsorted(of, np.arange(len(m.names)))
         self.count = np.diff(np.append(self.first, len(of)))
+        frame_time = self.frames.dt * self.frames.steps_per_frame
+        read = lambda n: (*without_puddles(m.liquid.grid, *self._liquid(n)[:2]), self.drops(n))
+        self._foam = Foam(m.liquid.grid, frame_time, read) if m.liquid else None
 
     def close(self) -> None:
         """Close the trajectory."""
@@ -212,14 +218,15 @@ class Feed:
         return b"".join(parts)
 
     def liquid(self, n: int) -> tuple[np.ndarray, np.ndarray] | None:
-        """Heights, u16, and states, u8, of the columns of a frame, each of shape (C,); None without a liquid."""
-        if self.metadata.liquid is None:
+        """Heights, u16, and states with foam, u8, of the columns of a frame, each of shape (C,); None without a liquid."""
+        if self._foam is None:
             return None
-        smooth, raw = (self.frames.value(name, n) for name in LIQUID_TABLES)
+        smooth, raw, _ = self._liquid(n)
         low, high = self.metadata.liquid.low[2], self.metadata.liquid.high[2]
         height = np.rint(np.clip((smooth - low) / (high - low), 0.0, 1.0) * STEPS).astype("<u2")
         state = np.where(kept_dry(raw), DRY, np.where(np.isfinite(raw), OPEN, HIDDEN)).astype("u1")
-        return height.ravel(), state.ravel()
+        foam = np.rint(MOST_FOAM * self._foam.at(n)).astype("u1")
+        return height.ravel(), (state + 4 * foam).ravel()
 
     def drops(self, n: int) -> np.ndarray:
         """Middle and radius of each drop of a frame [m], shape (D, 4)."""
@@ -227,6 +234,11 @@ class Feed:
             return np.zeros((0, 4), np.float32)
         rows = self.frames.value(DROPS, n)
         return rows[rows[:, 3] > 0.0]
+
+    def _liquid(self, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Smooth and raw heights, and drops, of a frame."""
+        smooth, raw = (self.frames.value(name, n) for name in LIQUID_TABLES)
+        return smooth, raw, self.drops(n)
 
     def heights(self, k: int, count: int) -> tuple[list[float], list[float]]:
         """Times [s] and heights of an object's centre of mass [m], in at most `MOST_POINTS` of the first ``count`` frames."""

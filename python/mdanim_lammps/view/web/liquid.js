@@ -2,11 +2,11 @@
 // The liquid: a translucent body with a wavy top, and its colour on what is seen through it.
 import {
   BackSide, BufferAttribute, BufferGeometry, DynamicDrawUsage, FrontSide, LineBasicMaterial, LineLoop, Mesh, MeshLambertMaterial,
-  MeshPhongMaterial, PlaneGeometry, Vector3,
+  MeshPhongMaterial, PlaneGeometry, Vector2, Vector3,
 } from "./vendor.js";
 import { Drops } from "./drops.js";
 import { box } from "./extras.js";
-import { DRY } from "./message.js";
+import { DRY, foamOf, stateOf } from "./message.js";
 
 // Light of the liquid's own colour goes farther than other light (Beer and Lambert); the top is taken as level.
 const SEEN = `
@@ -17,6 +17,26 @@ const SEEN = `
   float way = max(0.0, to - from) * length(ray) / clear;
   gl_FragColor.rgb = gl_FragColor.rgb * exp(-way * (1.25 - liquidColor)) + liquidColor * (1.0 - exp(-0.8 * way));
   #include <colorspace_fragment>`;
+
+// Foam lies in specks, which are the fewer the less of it there is.
+const SPECKS = `
+  float chance(ivec2 at) {
+    uint h = uint(at.x) * 73856093u ^ uint(at.y) * 19349663u;
+    h = (h ^ (h >> 13)) * 1274126177u;
+    return float((h ^ (h >> 16)) & 0xffffu) / 65535.0;
+  }
+  float uneven(vec2 p) {
+    ivec2 at = ivec2(floor(p));
+    vec2 t = smoothstep(0.0, 1.0, fract(p));
+    return mix(mix(chance(at), chance(at + ivec2(1, 0)), t.x), mix(chance(at + ivec2(0, 1)), chance(at + ivec2(1, 1)), t.x), t.y);
+  }
+  float foam() {
+    if (whitened <= 0.0) return 0.0;
+    vec2 p = plan / speck;
+    float specks = 0.55 * uneven(p) + 0.3 * uneven(2.3 * p + 17.0) + 0.15 * uneven(5.1 * p + 5.0);
+    return smoothstep(0.85, 1.1, specks + whitened) * smoothstep(0.0, 0.15, whitened);
+  }
+`;
 
 export class Liquid {
   constructor(world, scene) {
@@ -37,13 +57,14 @@ export class Liquid {
     const V = W * H + 4 * (W + H), geometry = (this.geometry = new BufferGeometry());
     [this.at, this.normal] = [new Float32Array(3 * V), new Float32Array(3 * V)];
     this.cover = new Float32Array(V).fill(1);
-    for (const [name, array, size] of [["position", this.at, 3], ["normal", this.normal, 3], ["cover", this.cover, 1]]) {
+    this.white = new Float32Array(V);
+    for (const [name, array, size] of [["position", this.at, 3], ["normal", this.normal, 3], ["cover", this.cover, 1], ["white", this.white, 1]]) {
       geometry.setAttribute(name, new BufferAttribute(array, size).setUsage(DynamicDrawUsage));
     }
     geometry.setIndex(new BufferAttribute(scene.data.sheet, 1));
     this.parts = [[BackSide, 0.1], [FrontSide, 0.3]].map(([side, opacity], order) => {
       const skin = new MeshPhongMaterial({ color: hex, transparent: true, opacity, depthWrite: false, side, specular: 0x99aab4, shininess: 120 });
-      holes(skin);
+      holesAndFoam(skin, this.basin);
       const part = new Mesh(geometry, skin);
       part.renderOrder = order + 1;
       part.frustumCulled = false;
@@ -83,7 +104,7 @@ export class Liquid {
   // Heights of a frame; below a hull there is no surface.
   show({ liquid, columns, drops }) {
     this.drops?.show(drops ?? new Float32Array(0));
-    const { low, high, shape: [nx, ny] } = this.basin, W = nx + 2, H = ny + 2, scale = (high[2] - low[2]) / 65535, { at, normal, cover, x, y } = this;
+    const { low, high, shape: [nx, ny] } = this.basin, W = nx + 2, H = ny + 2, scale = (high[2] - low[2]) / 65535, { at, normal, cover, white, x, y } = this;
     const column = (j, i) => Math.min(ny - 1, Math.max(0, j - 1)) * nx + Math.min(nx - 1, Math.max(0, i - 1));
     const z = (j, i) => low[2] + scale * liquid[column(j, i)];
     for (let j = 0, v = 0; j < H; j++) {
@@ -95,7 +116,8 @@ export class Liquid {
         normal[3 * v + 1] = -(z(below, i) - z(above, i)) / (y[below] - y[above]);
         normal[3 * v + 2] = 1;
         const deep = liquid[column(j, i)] * scale > 0.3 * ((high[2] - low[2]) / this.basin.shape[2]);
-        cover[v] = columns[column(j, i)] !== DRY && deep ? 1 : 0;
+        cover[v] = stateOf(columns[column(j, i)]) !== DRY && deep ? 1 : 0;
+        white[v] = foamOf(columns[column(j, i)]);
       }
     }
     let v = W * H;
@@ -108,17 +130,21 @@ export class Liquid {
         }
       }
     }
-    for (const name of ["position", "normal", "cover"]) this.geometry.attributes[name].needsUpdate = true;
+    for (const name of ["position", "normal", "cover", "white"]) this.geometry.attributes[name].needsUpdate = true;
     this.rim.forEach((vertex, k) => { for (let d = 0; d < 3; d++) this.edge[3 * k + d] = at[3 * vertex + d]; });
     this.parts[2].geometry.attributes.position.needsUpdate = true;
     this.top.z = low[2] + scale * (liquid.reduce((sum, h) => sum + h, 0) / liquid.length);
   }
 }
 
-// The sheet has holes where it is dry.
-function holes(material) {
+// The sheet has holes where it is dry, and foam, in specks as in picture/shading.py.
+function holesAndFoam(material, { low, high, shape: [nx, ny] }) {
   material.onBeforeCompile = (shader) => {
-    shader.vertexShader = "attribute float cover; varying float covered;\n" + shader.vertexShader.replace("#include <begin_vertex>", "#include <begin_vertex>\ncovered = cover;");
-    shader.fragmentShader = "varying float covered;\n" + shader.fragmentShader.replace("#include <clipping_planes_fragment>", "#include <clipping_planes_fragment>\nif (covered < 0.5) discard;");
+    shader.uniforms.speck = { value: new Vector2((0.7 * (high[0] - low[0])) / nx, (0.7 * (high[1] - low[1])) / ny) };
+    shader.vertexShader = "attribute float cover, white; varying float covered, whitened; varying vec2 plan;\n" +
+      shader.vertexShader.replace("#include <begin_vertex>", "#include <begin_vertex>\ncovered = cover; whitened = white; plan = position.xy;");
+    shader.fragmentShader = "varying float covered, whitened; varying vec2 plan; uniform vec2 speck;\n" + SPECKS + shader.fragmentShader
+      .replace("#include <clipping_planes_fragment>", "#include <clipping_planes_fragment>\nif (covered < 0.5) discard;")
+      .replace("#include <opaque_fragment>", "#include <opaque_fragment>\ngl_FragColor = mix(gl_FragColor, vec4(vec3(0.9), 0.95), foam());");
   };
 }

@@ -3,6 +3,7 @@
 
 export const STRAIN = 1, PARTICLES = 2; // layers of a frame
 export const DRY = 2; // state of a column of liquid
+export const stateOf = (column) => column & 3, foamOf = (column) => (column >> 2) / 63;
 const ARRAYS = { u1: Uint8Array, u2: Uint16Array, u4: Uint32Array, f4: Float32Array, f8: Float64Array };
 const padded = (bytes) => bytes + ((4 - (bytes % 4)) % 4);
 const kind = (buffer) => String.fromCharCode(...new Uint8Array(buffer, 0, 4));

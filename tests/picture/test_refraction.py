@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""In final quality what lies under the liquid is seen aside where the surface slopes, by Snell's law, and nothing else moves."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from mdanim_lammps.picture import shading
+from mdanim_lammps.picture.render import Painter
+from mdanim_lammps.results.trajectory import Trajectory
+from mdanim_lammps.scene.render import Camera, Floor, Quality, Render
+from picture_measures import hue_mask, project
+from picture_samples import box, column_centres, flat, pool_scene, raw_of, wet_frames, write
+
+SIZE = (720, 406)
+ABOVE = Render(camera=(Camera((0.0, -0.01, 5.0), (0.0, 0.0, 0.0)),), quality=Quality.FINAL, floor=Floor.PLAIN, shadows=0.0)
+LEVEL = 0.5
+
+
+def picture(path, models, slope, render=ABOVE):
+    """A pool whose surface rises along x, as floats from 0 to 1, and the view."""
+    scene, models, grid = pool_scene(models)
+    height = LEVEL + slope * column_centres(grid)[0]
+    path = write(path, scene, models, wet_frames(models, (height, raw_of(grid, height, models))), grid)
+    with Trajectory(path) as t, Painter(t, render, size=SIZE) as painter:
+        return painter.frame(0).astype(float) / 255, painter.view(0.0)
+
+
+def plate():
+    """A thin plate on the right half of the floor; its left edge is at x = 0."""
+    return [box("plate", (0.8, 1.0, 0.02), (8, 10, 1), (0.4, 0.0, 0.011))]
+
+
+def edge_of(image):
+    """Where along the middle row the plate begins [pixels]: where its colour, orange, is half way there."""
+    row = image[SIZE[1] // 2 - 3 : SIZE[1] // 2 + 4].mean(axis=0)
+    orange = row[:, 0] - row[:, 2]
+    left, right = orange[SIZE[0] // 2 - 60], orange[SIZE[0] // 2 + 60]
+    passed = (orange - left) / (right - left) > 0.5
+    k = int(passed[SIZE[0] // 2 - 60 : SIZE[0] // 2 + 60].argmax()) + SIZE[0] // 2 - 60
+    before, after = ((orange[i] - left) / (right - left) for i in (k - 1, k))
+    return k - 1 + (0.5 - before) / (after - before)
+
+
+@pytest.mark.parametrize("slope", [0.3, -0.3, 0.15])
+def test_a_slope_shifts_what_is_below_by_snells_law(tmp_path, slope):
+    """Straight from above a ray turns by a - asin(sin a / n) on a slope of tangent a; at the depth of the plate it is aside by
+    depth times the tangent of that."""
+    shifted, view = picture(tmp_path / "s.h5", plate(), slope)
+    straight, _ = picture(tmp_path / "l.h5", plate(), 0.0)
+    a = np.arctan(slope)
+    aside = (LEVEL - 0.02) * np.tan(a - np.arcsin(np.sin(a) / 1.33))
+    (x0, x1), _ = project(view, np.array([[0.0, 0.0, 0.02], [aside, 0.0, 0.02]]), SIZE[0] / SIZE[1])
+    pixels = (x1[0] - x0[0]) / 2 * SIZE[0]
+    assert abs(pixels) > 2
+    assert edge_of(shifted) - edge_of(straight) == pytest.approx(-pixels, abs=0.12 * abs(pixels) + 0.2)
+
+
+def test_a_level_surface_and_the_glass_shift_nothing(tmp_path, monkeypatch):
+    """The same picture whatever the liquid's refractive index, to the bit."""
+    side = replace(ABOVE, camera=(Camera((1.5, -4.0, 1.4), (0.0, 0.0, 0.4)),))
+    bent, _ = picture(tmp_path / "b.h5", plate(), 0.0, side)
+    monkeypatch.setattr(shading, "REFRACTIVE_INDEX", 1.0)
+    straight, _ = picture(tmp_path / "s.h5", plate(), 0.0, side)
+    np.testing.assert_array_equal(bent, straight)
+
+
+def test_what_is_above_the_liquid_stays_where_it_is(tmp_path, monkeypatch):
+    """A cube that hovers over a slope has the same outline, and none of its colour is seen beside it in the liquid."""
+    cube = [box("cube", (0.3, 0.3, 0.3), (3, 3, 3), (0.0, 0.0, 1.2))]
+    bent, _ = picture(tmp_path / "b.h5", cube, 0.4)
+    monkeypatch.setattr(shading, "REFRACTIVE_INDEX", 1.0)
+    straight, _ = picture(tmp_path / "s.h5", cube, 0.4)
+    masks = [hue_mask(image, "#e8743b") for image in (bent, straight)]
+    assert masks[1].sum() > 500 and (masks[0] != masks[1]).sum() <= 4
+
+
+def test_draft_quality_shifts_nothing(tmp_path, monkeypatch):
+    """A draft is as fast as it was: it draws everything where it is."""
+    draft = replace(ABOVE, quality=Quality.DRAFT)
+    image, _ = picture(tmp_path / "d.h5", plate(), 0.3, draft)
+    monkeypatch.setattr(shading, "REFRACTIVE_INDEX", 1.0)
+    np.testing.assert_array_equal(image, picture(tmp_path / "e.h5", plate(), 0.3, draft)[0])
+
+
+def test_the_same_frame_is_the_same_picture(tmp_path):
+    """After other frames, with what was drawn before their surfaces, and alone."""
+    scene, models, grid = pool_scene(plate())
+    x, _ = column_centres(grid)
+    heights = [LEVEL + 0.05 * np.sin(8.0 * x), flat(grid), LEVEL - 0.3 * x]
+    frames = wet_frames(models, *[(h, raw_of(grid, h, models)) for h in heights])
+    with Trajectory(write(tmp_path / "t.h5", scene, models, frames, grid)) as t:
+        with Painter(t, ABOVE, size=SIZE) as painter:
+            _, _, after = (painter.frame(n) for n in (1, 2, 0))
+        with Painter(t, ABOVE, size=SIZE) as painter:
+            np.testing.assert_array_equal(painter.frame(0), after)
