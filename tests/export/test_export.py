@@ -111,6 +111,58 @@ def test_usd(folder, run, tmp_path, monkeypatch, flush):
     assert lamp.GetIntensityAttr().Get() > 0 and UsdLux.DomeLight.Get(stage, "/scene/sky").GetIntensityAttr().Get() > 0
 
 
+@pytest.fixture(scope="module")
+def splash(tmp_path_factory):
+    """A run in which drops fly, and a frame that has some."""
+    folder = tmp_path_factory.mktemp("splash") / "a"
+    text = (
+        TEXT.replace("level 20 cm", "level 20 cm  drops 1")
+        .replace("(0, 0, 45)", "(0, 0, 29)")
+        .replace("spin (0, 0, 2) rad/s", "velocity (0, 0, -4) m/s")
+    )
+    Scene.from_text(text).run(folder)
+    with Trajectory(folder) as t:
+        frame = max(range(len(t)), key=lambda frame: len(t.liquid_drops(frame)))
+        assert len(t.liquid_drops(frame)) and not len(t.liquid_drops(0))
+        yield folder, frame, t.liquid_drops(frame)
+
+
+def test_usd_has_drops(splash):
+    """Points as wide as the drops, of the liquid's material; none before the splash."""
+    from pxr import Usd, UsdGeom, UsdShade
+
+    folder, frame, drops = splash
+    stage = Usd.Stage.Open(str(export(folder, "usd").files[0]))
+    points = UsdGeom.Points.Get(stage, "/scene/water_drops")
+    codes = points.GetPointsAttr().GetTimeSamples()
+    np.testing.assert_array_equal(points.GetPointsAttr().Get(codes[frame]), drops[:, :3])
+    np.testing.assert_array_equal(points.GetWidthsAttr().Get(codes[frame]), 2.0 * drops[:, 3])
+    assert not len(points.GetPointsAttr().Get(codes[0]))
+    look, water = (
+        UsdShade.MaterialBindingAPI(p).ComputeBoundMaterial()[0] for p in (points.GetPrim(), stage.GetPrimAtPath("/scene/water"))
+    )
+    assert look.GetPath() == water.GetPath() != ""
+
+
+def test_vtk_has_drops(splash):
+    """A fourth part of each frame; empty before the splash."""
+    import pyvista
+
+    folder, frame, drops = splash
+    reader = pyvista.get_reader(str(export(folder, "vtk").files[0]))
+    for which, expected in ((0, drops[:0]), (frame, drops)):
+        reader.set_active_time_value(reader.time_values[which])
+        found = reader.read()[3]
+        np.testing.assert_array_equal(np.array(found.points).reshape(-1, 3), expected[:, :3])
+        if len(expected):
+            np.testing.assert_array_equal(found["radius"], expected[:, 3])
+
+
+def test_gltf_tells_that_it_has_no_drops(splash):
+    """A note names what the format cannot hold."""
+    assert any("drops" in note for note in export(splash[0], "gltf").notes)
+
+
 def test_usd_paints_what_a_mesh_file_paints(tmp_path):
     """Colours of a mesh's points reach its vertices; a name that is taken gets another one."""
     from pxr import Usd, UsdGeom

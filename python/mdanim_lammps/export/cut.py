@@ -180,6 +180,15 @@ class Cut:
             made.append(self._sheet.mesh(self.trajectory.liquid_height(frame).astype(float)))
         return made
 
+    @property
+    def sheds_drops(self) -> bool:
+        """Whether there is a liquid that drops may fly from."""
+        return self.liquid is not None and self.liquid.most_drops > 0
+
+    def drops(self, frame: int) -> np.ndarray:
+        """Middle and radius of each drop in a frame of the trajectory [m], shape (D, 4)."""
+        return self.trajectory.liquid_drops(frame).astype(float)
+
     @cached_property
     def _mesh(self) -> ShadedMesh:
         return shaded_mesh(self.metadata, self.position(0))

@@ -102,6 +102,11 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
     return [
         f"{total - 1} morph targets for {len(meshes)} meshes; between frames positions are mixed linearly",
         "lengths are metres; the root node turns z to y, which is up in glTF",
+        *(
+            ["drops of the liquid are left out: their number changes, and a mesh of glTF keeps its points"]
+            if cut.sheds_drops
+            else []
+        ),
     ]
 
 

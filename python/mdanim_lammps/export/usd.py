@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""USD: a mesh with time samples for each object, one for the liquid, materials by colour, camera, lamp and sky. Metres, z up."""
+"""USD: a mesh with time samples for each object and the liquid, drops, materials by colour, camera and light. Metres, z up."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SUN, SKY = 3.0, 0.5
 
 
 def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) -> list[str]:
-    from pxr import Sdf, Tf, Usd, UsdGeom, UsdShade, Vt
+    from pxr import Sdf, Usd, UsdGeom, UsdShade, Vt
 
     stage = Usd.Stage.CreateNew(str(folder / f"{stem}.usdc"))
     UsdGeom.SetStageMetersPerUnit(stage, 1.0)
@@ -39,11 +39,7 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
     meshes, used, materials = [], {"materials", "camera", "lamp", "sky"}, {}
     array = lambda values: Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(values, np.float32))
     for body in cut.bodies:
-        name = Tf.MakeValidIdentifier(body.name)
-        while name in used:
-            name += "_"
-        used.add(name)
-        mesh = UsdGeom.Mesh.Define(stage, f"/scene/{name}")
+        mesh = UsdGeom.Mesh.Define(stage, f"/scene/{_free_name(body.name, used)}")
         mesh.GetPrim().SetDisplayName(body.name)
         mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
         mesh.CreateFaceVertexCountsAttr(Vt.IntArray(len(body.triangle), 3))
@@ -60,6 +56,10 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
             materials[key] = _material(stage, f"/scene/materials/material_{len(materials)}", body, Sdf, UsdShade)
         UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(materials[key])
         meshes.append((mesh.GetPointsAttr(), mesh.GetNormalsAttr(), mesh.GetExtentAttr()))
+    drops = None
+    if cut.sheds_drops:
+        drops = UsdGeom.Points.Define(stage, f"/scene/{_free_name(f'{cut.liquid.name}_drops', used)}")
+        UsdShade.MaterialBindingAPI.Apply(drops.GetPrim()).Bind(materials[cut.bodies[-1].color, True])
     render = _render(cut)
     _camera(stage, cut, render)
     _lights(stage, render)
@@ -70,12 +70,28 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
             normals.Set(array(normal), code)
             extent.Set(array([vertices.min(axis=0), vertices.max(axis=0)]), code)
             waiting += 24 * len(vertices)
+        if drops:
+            now = cut.drops(frame)
+            drops.GetPointsAttr().Set(array(now[:, :3]), code)
+            drops.GetWidthsAttr().Set(Vt.FloatArray.FromNumpy((2.0 * now[:, 3]).astype(np.float32)), code)
+            waiting += 16 * len(now)
         if waiting > FLUSH:
             _save(stage, stem)
             waiting = 0
         on_frame(done)
     _save(stage, stem)
     return [f"one time code is a frame, {rate:g} of them a second; lengths are metres, z is up"]
+
+
+def _free_name(wanted: str, used: set[str]) -> str:
+    """What USD may call a thing, unlike all names so far."""
+    from pxr import Tf
+
+    name = Tf.MakeValidIdentifier(wanted)
+    while name in used:
+        name += "_"
+    used.add(name)
+    return name
 
 
 def linear(color: np.ndarray) -> np.ndarray:

@@ -42,6 +42,9 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
         }
         if cut.liquid:
             parts["liquid"] = _mesh(surfaces[-1][0], cut.bodies[-1].triangle, {"Normals": surfaces[-1][1]})
+        if cut.sheds_drops:
+            drops = cut.drops(frame)
+            parts["drops"] = _mesh(drops[:, :3], None, {"radius": drops[:, 3]})
         for part, (name, data) in enumerate(parts.items()):
             file = f"{name}-{frame:06d}.vtp"
             _save(data, pieces / file)
