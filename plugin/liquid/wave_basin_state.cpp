@@ -140,7 +140,7 @@ std::vector<std::uint8_t> WaveBasin::state(const Account &account) const
   ranks.add_wide(all.data(), static_cast<int>(all.size()));
   const std::vector<std::uint8_t> of_makers = makers.state(), of_drops = drops.state(), of_waves = waves.state();
   const WaveBasinHead head{STATE_VERSION, shape.nx, shape.ny,    shape.nz, units,  updates,         waited,
-                           stale,         moving,   still_known, account, travel, energy_at_start, of_drops.size()};
+                           stale,         moving,   still_known, account,  travel, energy_at_start, of_drops.size()};
   std::vector<std::uint8_t> bytes;
   const auto add = [&](const void *from, std::size_t size) {
     const auto *first = static_cast<const std::uint8_t *>(from);
