@@ -65,8 +65,8 @@ class AutomatonBasin : public Basin {
   double smooth_height(int column) const override { return shape.low.z + eta[column] * shape.cell.z; }
   double raw_height(int column) const override { return shape.low.z + height[column] * shape.cell.z; }
   void contents(std::uint8_t *out) const override;
-  std::vector<std::uint8_t> state(const Account &account) const override;
-  Account set_state(const std::uint8_t *bytes, std::size_t size) override;
+  std::vector<std::uint8_t> state(const Ledger &ledger) const override;
+  Ledger set_state(const std::uint8_t *bytes, std::size_t size) override;
 
   const Cells &cells() const { return automaton.cells; }
 

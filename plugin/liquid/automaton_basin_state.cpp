@@ -76,7 +76,7 @@ struct StateHead {
   std::int64_t nx, ny, nz;
   std::int64_t units, swept, waited, calm;
   double travel, crossed;
-  Basin::Account account;
+  Basin::Ledger ledger;
 };
 
 std::string number(std::int64_t n) { return std::to_string(n); }
@@ -87,9 +87,9 @@ std::string grid(std::int64_t nx, std::int64_t ny, std::int64_t nz)
 }    // namespace
 
 // The head, raw heights, and a byte for each cell: what it holds, or a code.
-std::vector<std::uint8_t> AutomatonBasin::state(const Account &account) const
+std::vector<std::uint8_t> AutomatonBasin::state(const Ledger &ledger) const
 {
-  const StateHead head{STATE_VERSION, shape.nx, shape.ny, shape.nz, units, swept, waited, calm, travel, crossed, account};
+  const StateHead head{STATE_VERSION, shape.nx, shape.ny, shape.nz, units, swept, waited, calm, travel, crossed, ledger};
   const std::size_t heights = height.size() * sizeof(double), count = solid.codes().size();
   std::vector<std::uint8_t> bytes(sizeof head + heights + count);
   std::memcpy(bytes.data(), &head, sizeof head);
@@ -101,7 +101,7 @@ std::vector<std::uint8_t> AutomatonBasin::state(const Account &account) const
   return bytes;
 }
 
-Basin::Account AutomatonBasin::set_state(const std::uint8_t *bytes, std::size_t size)
+Basin::Ledger AutomatonBasin::set_state(const std::uint8_t *bytes, std::size_t size)
 {
   StateHead head;
   const std::size_t heights = height.size() * sizeof(double), count = solid.codes().size();
@@ -146,7 +146,7 @@ Basin::Account AutomatonBasin::set_state(const std::uint8_t *bytes, std::size_t 
   automaton.touched();
   poured = true;
   smooth();
-  return head.account;
+  return head.ledger;
 }
 
 }    // namespace mdanim

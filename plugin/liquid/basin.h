@@ -36,7 +36,7 @@ class Basin {
     double work = 0.0, lost = 0.0;    // of all that the liquid does to solids but drag; to drag
   };
   // What the state holds for the fix. Powers cannot be found again: solids are calmed by their velocities of half steps.
-  struct Account {
+  struct Ledger {
     Energies sum, power;    // until now; at the last step, per time
   };
   struct Amount {
@@ -154,10 +154,10 @@ class Basin {
   // Content of each cell, 255 where it is solid; x fastest, then y.
   virtual void contents(std::uint8_t *out) const = 0;
 
-  // Everything that later steps depend on, except positions and velocities, and the account.
-  virtual std::vector<std::uint8_t> state(const Account &account) const = 0;
+  // Everything that later steps depend on, except positions and velocities, and the ledger.
+  virtual std::vector<std::uint8_t> state(const Ledger &ledger) const = 0;
   // Takes it up. Throws std::runtime_error, and changes nothing, when it is not of such a basin or damaged.
-  virtual Account set_state(const std::uint8_t *bytes, std::size_t size) = 0;
+  virtual Ledger set_state(const std::uint8_t *bytes, std::size_t size) = 0;
 
   const Shape shape;
   const double g;

@@ -68,8 +68,8 @@ class WaveBasin : public Basin {
   double raw_height(int column) const override { return shape.low.z + tops[column] * shape.cell.z; }
   std::vector<Droplet> droplets() const override;
   void contents(std::uint8_t *out) const override;
-  std::vector<std::uint8_t> state(const Account &account) const override;
-  Account set_state(const std::uint8_t *bytes, std::size_t size) override;
+  std::vector<std::uint8_t> state(const Ledger &ledger) const override;
+  Ledger set_state(const std::uint8_t *bytes, std::size_t size) override;
 
  private:
   double energy_now() const;

@@ -23,7 +23,7 @@ struct WaveBasinHead {
   double version;
   std::int64_t nx, ny, nz, units, updates, waited, stale, moving;
   std::uint64_t still_known;
-  Basin::Account account;
+  Basin::Ledger ledger;
   double travel, energy_at_start;
   std::uint64_t of_drops;    // bytes
 };
@@ -134,13 +134,13 @@ void WaveBasin::contents(std::uint8_t *out) const
 // --- state ---
 
 // The head, masses, velocities, impulses and heads of columns, the makers, the drops, the waves.
-std::vector<std::uint8_t> WaveBasin::state(const Account &account) const
+std::vector<std::uint8_t> WaveBasin::state(const Ledger &ledger) const
 {
   std::vector<std::int64_t> all = impulses;
   ranks.add_wide(all.data(), static_cast<int>(all.size()));
   const std::vector<std::uint8_t> of_makers = makers.state(), of_drops = drops.state(), of_waves = waves.state();
   const WaveBasinHead head{STATE_VERSION, shape.nx, shape.ny,    shape.nz, units,  updates,         waited,
-                           stale,         moving,   still_known, account,  travel, energy_at_start, of_drops.size()};
+                           stale,         moving,   still_known, ledger,   travel, energy_at_start, of_drops.size()};
   std::vector<std::uint8_t> bytes;
   const auto add = [&](const void *from, std::size_t size) {
     const auto *first = static_cast<const std::uint8_t *>(from);
@@ -157,7 +157,7 @@ std::vector<std::uint8_t> WaveBasin::state(const Account &account) const
   return bytes;
 }
 
-Basin::Account WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
+Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
 {
   const std::string whose = "the liquid's state ";
   WaveBasinHead head;
@@ -204,7 +204,7 @@ Basin::Account WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
   look();
   std::memcpy(push.state().data(), bytes + sizeof head + 2 * of_mass + of_impulses, of_push);
   find_push(0.0);
-  return head.account;
+  return head.ledger;
 }
 
 }    // namespace mdanim

@@ -166,7 +166,7 @@ struct Buoyancy::Acting {
   double calming, scale;
 };
 
-// Threads share particles and faces. What all of them do to the liquid and to the account is added up in the order of particles.
+// Threads share particles and faces. What all of them do to the liquid and to the ledger is added up in the order of particles.
 void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
 {
   constexpr double PARTICLE = 25.0;    // or face, or lattice cell [ns], about
@@ -247,7 +247,7 @@ Vec3 Buoyancy::pressure_on(const Face &face, const Basin &basin) const
   return corner_push(rho * basin.g * depth * basin.shape.cell.z, a, b, c, d);
 }
 
-// --- the account ---
+// --- the ledger ---
 
 // Power of the lift, and what drag takes, at the velocities of now.
 Basin::Energies Buoyancy::power() const
@@ -262,15 +262,15 @@ Basin::Energies Buoyancy::power() const
   return now;
 }
 
-void Buoyancy::begin_account()
+void Buoyancy::begin_ledger()
 {
-  if (!account_was_set) own.power = power();
-  account_was_set = false;
+  if (!ledger_was_set) own.power = power();
+  ledger_was_set = false;
 }
 
 // Velocities are those of whole steps here, eq. (3.10), which are the means of the half steps before and after: the trapezoidal
 // rule gives the work exactly.
-void Buoyancy::go_on_with_account()
+void Buoyancy::go_on_with_ledger()
 {
   if (wet.empty() && own.power.work == 0.0 && own.power.lost == 0.0) return;
   const Lap lap(seconds);
@@ -280,17 +280,17 @@ void Buoyancy::go_on_with_account()
   own.power = now;
 }
 
-Basin::Account Buoyancy::account() const
+Basin::Ledger Buoyancy::ledger() const
 {
   double all[] = {own.sum.work, own.sum.lost, own.power.work, own.power.lost};
   MPI_Allreduce(MPI_IN_PLACE, all, 4, MPI_DOUBLE, MPI_SUM, world);
   return {{all[0], all[1]}, {all[2], all[3]}};
 }
 
-void Buoyancy::set_account(const Basin::Account &account)
+void Buoyancy::set_ledger(const Basin::Ledger &ledger)
 {
-  own = comm->me == 0 ? account : Basin::Account{};
-  account_was_set = true;
+  own = comm->me == 0 ? ledger : Basin::Ledger{};
+  ledger_was_set = true;
 }
 
 }    // namespace mdanim

@@ -15,8 +15,8 @@
 
 namespace mdanim {
 
-// Lift of particles by their volumes, or by the pressure on the outer faces of their lattices, and drag; and the account of both.
-// It is a part of fix mdanim/liquid: it acts on the particles that the fix has found near the liquid, and its account stands in
+// Lift of particles by their volumes, or by the pressure on the outer faces of their lattices, and drag; and the ledger of both.
+// It is a part of fix mdanim/liquid: it acts on the particles that the fix has found near the liquid, and its ledger stands in
 // the liquid's state.
 class Buoyancy : protected LAMMPS_NS::Pointers {
  public:
@@ -37,16 +37,16 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   { cells.find(near, table, fix); }
   // Adds forces and sets friction; in a step the liquid feels what it does.
   void act(Basin &basin, const std::vector<int> &near, bool in_step);
-  // The account begins at the velocities of now, or where it was set, and goes on by a step.
-  void begin_account();
-  void go_on_with_account();
+  // The ledger begins at the velocities of now, or where it was set, and goes on by a step.
+  void begin_ledger();
+  void go_on_with_ledger();
   void use(const Threads &now) { threads = now; }    // for steps; the bits are the same for any number of them
   // Corners of faces, some perhaps twice.
   void append_required_atoms(std::vector<int> &particles) const;
 
   // Of all ranks; and all of it on the first one.
-  Basin::Account account() const;
-  void set_account(const Basin::Account &account);
+  Basin::Ledger ledger() const;
+  void set_ledger(const Basin::Ledger &ledger);
   double density() const { return rho; }
   double bytes() const
   {
@@ -90,8 +90,8 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   NearCells cells;
   std::vector<Basin::InCell> in_cells;
   std::vector<double> in_parts;    // of each of the eight parts of cells, where they differ
-  Basin::Account own;              // of this rank
-  bool account_was_set = false;    // since the last step
+  Basin::Ledger own;               // of this rank
+  bool ledger_was_set = false;     // since the last step
 };
 
 }    // namespace mdanim

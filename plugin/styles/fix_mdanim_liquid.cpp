@@ -385,7 +385,7 @@ void FixMdanimLiquid::find_near(double margin)
 void FixMdanimLiquid::setup(int)
 {
   buoyancy->act(*basin, near, false);
-  buoyancy->begin_account();
+  buoyancy->begin_ledger();
 }
 
 void FixMdanimLiquid::post_force(int)
@@ -394,7 +394,7 @@ void FixMdanimLiquid::post_force(int)
   buoyancy->act(*basin, near, true);
 }
 
-void FixMdanimLiquid::end_of_step() { buoyancy->go_on_with_account(); }
+void FixMdanimLiquid::end_of_step() { buoyancy->go_on_with_ledger(); }
 
 // --- together with run_style verlet/mdanim ---
 
@@ -413,7 +413,7 @@ double FixMdanimLiquid::safe_displacement() const
 
 // --- output ---
 
-double FixMdanimLiquid::compute_scalar() { return -buoyancy->account().sum.work; }
+double FixMdanimLiquid::compute_scalar() { return -buoyancy->ledger().sum.work; }
 
 // 1 cells of liquid; 2 at the start; 3 mean level; 4 solid cells; 5 sweeps, of waves updates; 6 awake; 7 energy lost to drag;
 // wall seconds of the slowest rank for 8 liquid, 9 occupancy, 10 coupling, 11 all; 12 energy of waves; 13 highest liquid
@@ -433,7 +433,7 @@ double FixMdanimLiquid::compute_vector(int n)
     case 5:
       return !(basin->is_calm() && none_near);
     case 6:
-      return buoyancy->account().sum.lost;
+      return buoyancy->ledger().sum.lost;
     case 11:
       return basin->energy() * buoyancy->density() * basin->g * basin->cell_volume() * basin->shape.cell.z;
     case 12:
@@ -469,14 +469,14 @@ double FixMdanimLiquid::memory_usage()
 
 // --- state ---
 
-StateRecords FixMdanimLiquid::pack() const { return {{StateKey{}, basin->state(buoyancy->account())}}; }
+StateRecords FixMdanimLiquid::pack() const { return {{StateKey{}, basin->state(buoyancy->ledger())}}; }
 
 void FixMdanimLiquid::unpack(const StateRecords &records)
 {
   if (records.size() != 1 || records.begin()->first.a != 0)
     throw std::runtime_error(fmt::format("the liquid's state is one record (0, 0), there are {} records", records.size()));
   const Bytes &record = records.begin()->second;
-  buoyancy->set_account(basin->set_state(record.data(), record.size()));
+  buoyancy->set_ledger(basin->set_state(record.data(), record.size()));
   asked = -1;
 }
 
