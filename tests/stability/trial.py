@@ -11,7 +11,8 @@ from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.state import State
 from mdanim_lammps.errors import DivergedError
 from mdanim_lammps.results.ledger import Ledger
-from mdanim_lammps.run.energy import ledger_terms, losses, rounding_energy
+from mdanim_lammps.run.energy import energies as energies_of
+from mdanim_lammps.run.energy import ledger_terms, rounding_energy
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
@@ -75,12 +76,7 @@ class Trial:
     def _look(self, before: np.ndarray) -> None:
         if not (np.isfinite(self.x).all() and np.isfinite(self.v).all()):
             raise DivergedError("positions or velocities are NaN or infinite")
-        energies = dict.fromkeys(self.ledger.terms, 0.0)
-        energies["kinetic"] = self.kinetic(before)
-        for effect in self.ready.plan.effects:
-            if effect.ledger:
-                energies[effect.ledger] += effect.energy(self.instance)
-        energies |= losses(self.instance)
+        energies = {**energies_of(self.instance, self.system.center_of_mass(self.x)), "kinetic": self.kinetic(before)}
         self.ledger.add(self.instance.step * self.timestep, energies)
         if self.ready.plan.grid:
             gained = self.instance.fix_value("liquid", UNITS) - self.instance.fix_value("liquid", START)
