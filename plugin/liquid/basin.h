@@ -60,15 +60,17 @@ class Basin {
     Vec3 flow;                // velocity of the liquid [distance/time]
     double rising = 0.0;      // upward velocity of the solid around [distance/time]
   };
-  // What acts on the eight parts of a lattice cell, each nearest to one of its corners, of which the part s is below the surface.
-  struct OnParts {
+  // A lattice cell has eight parts, each nearest to one of its corners.
+  struct LatticeCell {
+    Vec3 middle;    // [cells]
+    double z[8];    // of the corners [cells]
+  };
+  // What acts on the parts of a lattice cell. One line of memory, as it is the memory that makes looking it up slow.
+  struct alignas(64) OnParts {
+    double s = 0.0;                         // part of each that is below the surface; negative where they differ
     double more = 0.0, beside = 0.0;        // the push upwards is s + more; the surface around makes it s + beside
     double along_x = 0.0, along_y = 0.0;    // push sideways, times s + beside where that is positive
     double flow_x = 0.0, flow_y = 0.0;      // velocity of the liquid [distance/time]
-  };
-  struct InCell {
-    const OnParts *on;    // until the next update; null where only s counts
-    double s;             // of all eight parts; negative where they differ
   };
   // Adds this rank's bodies, as far as they reach below a height.
   using AddBodies = std::function<void(Occupancy &, double below)>;
@@ -99,10 +101,11 @@ class Basin {
   // --- what acts on solids, and they on the liquid ---
 
   virtual AtPlace at(const Vec3 & /*place*/) const { return {}; }
-  // Whether in_cell() is to be asked, and not at(); and upward velocity of the solid around a place [distance/time].
+  // Whether find_on_parts() is to be asked, and not at(); and upward velocity of the solid around a place [distance/time].
   virtual bool acts_on_cells() const { return false; }
-  // Writes s of each part only where they differ. `z`: of the corners [cells].
-  virtual InCell in_cell(const Vec3 & /*middle*/, const double * /*z*/, double * /*s*/) const { return {nullptr, 0.0}; }
+  // Of so many lattice cells, AT_ONCE at most. Writes to s, eight numbers for each, only where parts differ.
+  static constexpr int AT_ONCE = 16;
+  virtual void find_on_parts(int /*count*/, const LatticeCell * /*cells*/, OnParts * /*on*/, double * /*s*/) const {}
   virtual double rising_at(const Vec3 & /*place*/) const { return 0.0; }
   // Depth of the liquid that presses on a face of a solid with a middle [distance] and twice its area; 0 where air is
   // before the face.

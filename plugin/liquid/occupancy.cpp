@@ -61,26 +61,39 @@ struct MeanEdges {
   int weight(double full) const { return static_cast<int>(std::min(1.0e3, std::fabs(dot(cross(a, b), c))) * full + 0.5); }
 };
 
-// Calls f(place) for 3x3x3 points of a lattice cell.
-template <class F> void each_sample(const Vec3 corner[8], const F &f)
-{
-  static constexpr double AT[3] = {1.0 / 6.0, 0.5, 5.0 / 6.0};
-  for (const double w : AT) {
-    const Vec3 p0 = corner[0] + w * (corner[4] - corner[0]), p1 = corner[1] + w * (corner[5] - corner[1]);
-    const Vec3 p2 = corner[2] + w * (corner[6] - corner[2]), p3 = corner[3] + w * (corner[7] - corner[3]);
-    for (const double v : AT) {
-      const Vec3 left = p0 + v * (p3 - p0), right = p1 + v * (p2 - p1), along = right - left;
-      for (const double u : AT) f(left + u * along);
+}    // namespace
+
+// 3x3x3 points of a lattice cell.
+struct Occupancy::Samples {
+  static constexpr int COUNT = 27;
+  double at[3][COUNT];
+
+  explicit Samples(const Vec3 corner[8])
+  {
+    static constexpr double AT[3] = {1.0 / 6.0, 0.5, 5.0 / 6.0};
+    int n = 0;
+    for (const double w : AT) {
+      const Vec3 p0 = corner[0] + w * (corner[4] - corner[0]), p1 = corner[1] + w * (corner[5] - corner[1]);
+      const Vec3 p2 = corner[2] + w * (corner[6] - corner[2]), p3 = corner[3] + w * (corner[7] - corner[3]);
+      for (const double v : AT) {
+        const Vec3 left = p0 + v * (p3 - p0), right = p1 + v * (p2 - p1), along = right - left;
+        for (const double u : AT) {
+          at[0][n] = left.x + u * along.x;
+          at[1][n] = left.y + u * along.y;
+          at[2][n] = left.z + u * along.z;
+          ++n;
+        }
+      }
     }
   }
-}
-
-}    // namespace
+};
 
 void Occupancy::add_cell(const Vec3 corner[8])
 {
   const int weight = MeanEdges(corner).weight(FULL / 27.0);
-  if (weight > 0) each_sample(corner, [&](const Vec3 &place) { add(place, weight); });
+  if (weight == 0) return;
+  const Samples samples(corner);
+  for (int n = 0; n < Samples::COUNT; ++n) add({samples.at[0][n], samples.at[1][n], samples.at[2][n]}, weight);
 }
 
 void Occupancy::spread_cell(const Vec3 corner[8])
@@ -95,46 +108,71 @@ void Occupancy::spread_cell(const Vec3 corner[8])
   const Spread spread{
       {half(edges.a.x, edges.b.x, edges.c.x), half(edges.a.y, edges.b.y, edges.c.y), half(edges.a.z, edges.b.z, edges.c.z)},
       static_cast<std::uint32_t>(weight)};
-  each_sample(corner, [&](const Vec3 &place) { add(place, spread); });
+  const int cells[3] = {nx, ny, nz};
+  double low[3] = {corner[0].x, corner[0].y, corner[0].z}, high[3] = {low[0], low[1], low[2]}, sum = 0.0;
+  for (int k = 0; k < 8; ++k) {
+    const double at[3] = {corner[k].x, corner[k].y, corner[k].z};
+    for (int d = 0; d < 3; ++d) {
+      low[d] = std::min(low[d], at[d]);
+      high[d] = std::max(high[d], at[d]);
+      sum += at[d];
+    }
+  }
+  if (!std::isfinite(sum)) return;
+  bool inside = true;
+  for (int d = 0; d < 3; ++d) {
+    low[d] -= spread.reach[d];
+    high[d] += spread.reach[d];
+    if (high[d] < 0.0 || low[d] >= cells[d]) return;
+    inside = inside && low[d] >= 0.0 && high[d] + 1.0 < cells[d];
+  }
+  for (int d = 0; d < 3; ++d) {
+    touched.low[d] = std::min(touched.low[d], static_cast<int>(std::max(0.0, low[d])));
+    touched.high[d] = std::max(touched.high[d], static_cast<int>(std::min(cells[d] - 1.0, high[d] + 1.0)) + 1);
+  }
+  const Samples samples(corner);
+  if (inside)
+    add<true>(samples, spread);
+  else
+    add<false>(samples, spread);
 }
 
 // Along each axis the upper of two cells gets its share, in 1/SHARES, and the lower one all the rest, so that nothing is lost.
-void Occupancy::add(const Vec3 &place, const Spread &spread)
+template <bool INSIDE> void Occupancy::add(const Samples &samples, const Spread &spread)
 {
+  int lower[3][Samples::COUNT], upper_share[3][Samples::COUNT];
+  for (int d = 0; d < 3; ++d)
+    for (int n = 0; n < Samples::COUNT; ++n) {
+      const double low = samples.at[d][n] - spread.reach[d], high = samples.at[d][n] + spread.reach[d];
+      lower[d][n] = static_cast<int>(low + 1.0) - 1;    // low is -1 at least where any of it is inside
+      upper_share[d][n] = static_cast<int>((high - (lower[d][n] + 1)) * spread.shares[d] + 0.5);
+    }
   const int cells[3] = {nx, ny, nz};
-  const double middle[3] = {place.x, place.y, place.z};
-  int lower[3];
-  std::uint32_t upper_share[3];
-  bool inside = true;
-  for (int d = 0; d < 3; ++d) {
-    const double low = middle[d] - spread.reach[d], high = middle[d] + spread.reach[d];
-    if (!(high >= 0.0 && low < cells[d])) return;    // so that a place that is no number is outside
-    lower[d] = static_cast<int>(low + 1.0) - 1;      // low is -1 at least; several times as fast as std::floor
-    upper_share[d] = static_cast<std::uint32_t>(std::max(0.0, high - (lower[d] + 1)) * spread.shares[d] + 0.5);
-    inside = inside && lower[d] >= 0 && lower[d] + 1 < cells[d];
-  }
-  for (int d = 0; d < 3; ++d) {
-    touched.low[d] = std::min(touched.low[d], std::max(0, lower[d]));
-    touched.high[d] = std::max(touched.high[d], std::min(cells[d], lower[d] + 2));
-  }
-  const auto upper_part = [](std::uint32_t whole, std::uint32_t share) { return whole * share / Spread::SHARES; };
-  const std::uint32_t top = upper_part(spread.weight, upper_share[2]);
-  const auto give = [&](int z, std::uint32_t layer) {
-    const std::uint32_t back = upper_part(layer, upper_share[1]);
-    const auto give_row = [&](int y, std::uint32_t row) {
-      const std::uint32_t right = upper_part(row, upper_share[0]);
-      const std::uint32_t parts[2] = {row - right, right};
-      for (int n = 0; n < 2; ++n) {
-        const int x = lower[0] + n;
-        if (inside || (x >= 0 && x < nx && y >= 0 && y < ny && z >= 0 && z < nz))
-          count[number(x, y, z)] += static_cast<int>(parts[n]);
-      }
-    };
-    give_row(lower[1], layer - back);
-    give_row(lower[1] + 1, back);
+  const auto upper_part = [](std::uint32_t whole, int share) {
+    return whole * static_cast<std::uint32_t>(std::max(0, share)) / Spread::SHARES;
   };
-  give(lower[2], spread.weight - top);
-  give(lower[2] + 1, top);
+  for (int n = 0; n < Samples::COUNT; ++n) {
+    bool outside = false;
+    for (int d = 0; d < 3 && !INSIDE; ++d)
+      outside = outside || samples.at[d][n] + spread.reach[d] < 0.0 || samples.at[d][n] - spread.reach[d] >= cells[d];
+    if (outside) continue;
+    const int x = lower[0][n], y = lower[1][n], z = lower[2][n];
+    const auto give_row = [&](int row, int layer, std::uint32_t part) {
+      const std::uint32_t right = upper_part(part, upper_share[0][n]);
+      if (!INSIDE && (row < 0 || row >= ny || layer < 0 || layer >= nz)) return;
+      const std::size_t at = number(x, row, layer);    // one before the row where x is -1
+      if (INSIDE || x >= 0) count[at] += static_cast<int>(part - right);
+      if (INSIDE || x + 1 < nx) count[at + 1] += static_cast<int>(right);
+    };
+    const auto give_layer = [&](int layer, std::uint32_t part) {
+      const std::uint32_t back = upper_part(part, upper_share[1][n]);
+      give_row(y, layer, part - back);
+      give_row(y + 1, layer, back);
+    };
+    const std::uint32_t top = upper_part(spread.weight, upper_share[2][n]);
+    give_layer(z, spread.weight - top);
+    give_layer(z + 1, top);
+  }
 }
 
 void Occupancy::add_mass(const Vec3 &place, double mass, double softness, double rising)

@@ -75,7 +75,8 @@ class Occupancy {
     double shares[3] = {SHARES / std::max(2.0 * reach[0], 1e-9), SHARES / std::max(2.0 * reach[1], 1e-9),
                         SHARES / std::max(2.0 * reach[2], 1e-9)};
   };
-  void add(const Vec3 &place, const Spread &spread);
+  struct Samples;
+  template <bool INSIDE> void add(const Samples &samples, const Spread &spread);    // whether all of them lie within the grid
 
   static constexpr double SUM_UNIT = 1.0 / (1 << 24);
   double sum_of(int column, int which) const

@@ -54,8 +54,8 @@ WaveBasin::WaveBasin(const Shape &shape, double g, double calm, double spray, st
     : Basin(shape, g), ranks(ranks), unit_of_time(std::sqrt(shape.cell.x * shape.cell.y / (g * shape.cell.z))),
       waves(shape.nx, shape.ny, shape.nz), push(shape.nx, shape.ny, shape.nz), makers(shape.nx, shape.ny),
       drops(shape.nx, shape.ny, seed), still(shape.nx, shape.ny, shape.nz), mobile(shape.nx, shape.ny, shape.nz),
-      part(still.count.size(), 0), mass(columns(), 0.0), rising(columns(), 0.0), impulses(2 * columns(), 0),
-      heads(columns(), 0.0), tops(columns(), 0.0), hollow(columns(), 0)
+      part(still.count.size(), 0), mass(columns(), 0.0), rising(columns()), impulses(2 * columns(), 0), heads(columns(), 0.0),
+      tops(columns(), 0.0), hollow(columns(), 0)
 {
   waves.law.calm = calm * unit_of_time;
   drops.share = spray;
@@ -137,7 +137,7 @@ void WaveBasin::count_parts()
     // What is elastic yields more than its mass says.
     const double own = mobile.mass_of(c), soft = SOFT * mobile.softness_of(c) / (pace.period * pace.period);
     mass[c] = own > 0.0 ? std::max(MASS_STEP, std::floor(own / (YIELDING + own * soft) / MASS_STEP + 0.5) * MASS_STEP) : 0.0;
-    rising[c] = own > 0.0 ? mobile.momentum_of(c) / own : 0.0;
+    rising[c] = own > 0.0 ? Rising{1.0, mobile.momentum_of(c) / own} : Rising{};
   }
 }
 
@@ -227,30 +227,50 @@ void WaveBasin::update(const AddBodies &bodies, std::uint64_t, double dt)
 
 // --- what a particle finds ---
 
-// The eight parts of a lattice cell are as high as half a cell. Their middles lie half way from the middle of the cell to its
-// corners.
-Basin::InCell WaveBasin::in_cell(const Vec3 &middle, const double *z, double *s) const
+// Parts of a lattice cell are as high as half a cell. Their middles lie half way from the middle of the cell to its corners.
+void WaveBasin::find_on_parts(int count, const LatticeCell *cells, OnParts *on, double *s) const
 {
-  if (!(middle.x >= 0.0 && middle.x <= shape.nx && middle.y >= 0.0 && middle.y <= shape.ny)) return {nullptr, 0.0};
-  const int x = std::min(static_cast<int>(middle.x), shape.nx - 1), y = std::min(static_cast<int>(middle.y), shape.ny - 1);
-  const int n = push.number_of(cell_number(x, y, std::clamp(static_cast<int>(middle.z), 0, shape.nz - 1)));
-  const OnParts *const on = n < 0 ? nullptr : &on_parts[n];
-  const double head = n < 0 ? heads[y * shape.nx + x] : push.all()[n].head;
-  const double share = n < 0 ? std::clamp(head, 0.0, 1.0) : push.all()[n].share;
-  const auto [lowest, highest] = std::minmax_element(z, z + 8);
-  const double above_middle = 2.0 * head - middle.z + 0.5;
-  if (!(above_middle > *lowest)) return {on, 0.0};
-  if (above_middle >= *highest + 1.0) return {on, share};
-  for (int k = 0; k < 8; ++k) s[k] = std::clamp(above_middle - z[k], 0.0, 1.0) * share;
-  return {on, -1.0};
+  const double dry = top() + 1.0;
+  double lowest[AT_ONCE], highest[AT_ONCE];
+  int column[AT_ONCE],
+      known[AT_ONCE];    // -1 where nothing acts; the number of what acts, -1 where it is only that below the head
+  for (int n = 0; n < count; ++n) {
+    const LatticeCell &cell = cells[n];
+    lowest[n] = highest[n] = cell.z[0];
+    for (int k = 1; k < 8; ++k) {
+      lowest[n] = std::min(lowest[n], cell.z[k]);
+      highest[n] = std::max(highest[n], cell.z[k]);
+    }
+    const Vec3 &middle = cell.middle;
+    column[n] = -1;
+    if (!(lowest[n] < dry && middle.x >= 0.0 && middle.x <= shape.nx && middle.y >= 0.0 && middle.y <= shape.ny)) continue;
+    const int x = std::min(static_cast<int>(middle.x), shape.nx - 1), y = std::min(static_cast<int>(middle.y), shape.ny - 1);
+    column[n] = y * shape.nx + x;
+    known[n] = push.number_of(cell_number(x, y, std::clamp(static_cast<int>(middle.z), 0, shape.nz - 1)));
+    if (known[n] >= 0) __builtin_prefetch(&on_cells[known[n]]);
+  }
+  for (int n = 0; n < count; ++n) {
+    on[n] = {};
+    if (column[n] < 0) continue;
+    double head = heads[column[n]], share = std::clamp(head, 0.0, 1.0);
+    if (known[n] >= 0) {
+      const OnCell &found = on_cells[known[n]];
+      head = found.head, share = found.share;
+      on[n] = {0.0, found.more, found.beside, found.along_x, found.along_y, found.flow_x, found.flow_y};
+    }
+    const double above_middle = 2.0 * head - cells[n].middle.z + 0.5;
+    if (!(above_middle > lowest[n])) continue;
+    on[n].s = above_middle >= highest[n] + 1.0 ? share : -1.0;
+    for (int k = 0; k < 8 && on[n].s < 0.0; ++k) s[8 * n + k] = std::clamp(above_middle - cells[n].z[k], 0.0, 1.0) * share;
+  }
 }
 
 void WaveBasin::find_push(double part)
 {
   push.find(waves, mass.data(), part);
-  on_parts.clear();
+  on_cells.clear();
   for (const WavePush::OnCell &on : push.all())
-    on_parts.push_back({on.over - on.on_top, on.beside, on.along_x * (shape.cell.z / shape.cell.x),
+    on_cells.push_back({on.head, on.share, on.over - on.on_top, on.beside, on.along_x * (shape.cell.z / shape.cell.x),
                         on.along_y * (shape.cell.z / shape.cell.y), on.flow_x * shape.cell.x / unit_of_time,
                         on.flow_y * shape.cell.y / unit_of_time});
 }
@@ -262,16 +282,23 @@ double WaveBasin::rising_at(const Vec3 &place) const
 {
   const double px = std::clamp(place.x - 0.5, 0.0, shape.nx - 1.0), py = std::clamp(place.y - 0.5, 0.0, shape.ny - 1.0);
   const int x0 = static_cast<int>(px), y0 = static_cast<int>(py);
+  const int to_x = x0 + 1 < shape.nx, to_y = y0 + 1 < shape.ny ? shape.nx : 0;    // to the next column, where there is one
+  const double u = px - x0, v = py - y0;
+  const Rising *const here = &rising[y0 * shape.nx + x0];
   double sum = 0.0, weights = 0.0;
-  for (int y = y0; y < std::min(y0 + 2, shape.ny); ++y)
-    for (int x = x0; x < std::min(x0 + 2, shape.nx); ++x) {
-      const int column = y * shape.nx + x;
-      const double weight = mass[column] > 0.0 ? (1.0 - std::fabs(px - x)) * (1.0 - std::fabs(py - y)) : 0.0;
-      sum += weight * rising[column];
-      weights += weight;
-    }
+  const auto take = [&](const Rising &of, double weight) {
+    sum += weight * of.velocity;
+    weights += weight * of.there;
+  };
+  take(here[0], (1.0 - u) * (1.0 - v));
+  take(here[to_x], u * (1.0 - v));
+  take(here[to_y], (1.0 - u) * v);
+  take(here[to_x + to_y], u * v);
   return weights > 0.0 ? sum / weights * speed_of_waves() : 0.0;
 }
+
+// std::llround is a call.
+static std::int64_t whole(double x) { return static_cast<std::int64_t>(x + (x < 0.0 ? -0.5 : 0.5)); }
 
 // `impulse` is over the liquid's density.
 void WaveBasin::take_impulse(const Vec3 &place, const Vec3 &impulse)
@@ -280,8 +307,8 @@ void WaveBasin::take_impulse(const Vec3 &place, const Vec3 &impulse)
   const int x = std::min(static_cast<int>(place.x), shape.nx - 1), y = std::min(static_cast<int>(place.y), shape.ny - 1);
   const double unit = cell_volume() / unit_of_time * IMPULSE_UNIT;
   const int column = y * shape.nx + x;
-  impulses[column] += std::llround(impulse.x / (unit * shape.cell.x));
-  impulses[columns() + column] += std::llround(impulse.y / (unit * shape.cell.y));
+  impulses[column] += whole(impulse.x / (unit * shape.cell.x));
+  impulses[columns() + column] += whole(impulse.y / (unit * shape.cell.y));
 }
 
 }    // namespace mdanim

@@ -43,7 +43,7 @@ class WaveBasin : public Basin {
   void use(const Threads &threads) override { waves.use(threads); }
 
   bool acts_on_cells() const override { return true; }
-  InCell in_cell(const Vec3 &middle, const double *z, double *s) const override;
+  void find_on_parts(int count, const LatticeCell *cells, OnParts *on, double *s) const override;
   double rising_at(const Vec3 &place) const override;
   double all_below() const override { return -std::numeric_limits<double>::infinity(); }
   bool takes_impulses() const override { return true; }
@@ -83,14 +83,22 @@ class WaveBasin : public Basin {
   const double unit_of_time;
   Waves waves;
   WavePush push;
-  std::vector<OnParts> on_parts;    // the same numbers
+  // What a lattice cell looks up, in one line of memory; the same numbers as in `push`.
+  struct alignas(64) OnCell {
+    double head, share;
+    double more, beside, along_x, along_y, flow_x, flow_y;    // see OnParts
+  };
+  std::vector<OnCell> on_cells;
   WaveMakers makers;
   Drops drops;
   Occupancy still, mobile;
   CellBox marked;                     // cells outside are open
   std::vector<std::uint16_t> part;    // solid, of each cell, see SolidParts
   std::vector<double> mass;           // of what floats in each column, in cells of liquid
-  std::vector<double> rising;         // its upward velocity, over speed_of_waves()
+  struct Rising {
+    double there = 0.0, velocity = 0.0;    // 1 where there is any; upwards, over speed_of_waves()
+  };
+  std::vector<Rising> rising;
 
   // state
   bool poured = false, stale = false;    // stale: solids have changed that the liquid does not know of

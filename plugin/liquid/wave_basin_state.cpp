@@ -33,7 +33,7 @@ struct WaveBasinHead {
 double WaveBasin::bytes() const
 {
   return static_cast<double>(part.size()) * (2.0 * sizeof(int) + sizeof(std::uint16_t)) + push.bytes() +
-         static_cast<double>(on_parts.capacity() * sizeof(OnParts)) + columns() * 600.0;
+         static_cast<double>(on_cells.capacity() * sizeof(OnCell)) + columns() * 600.0;
 }
 
 long WaveBasin::solid_cells() const
@@ -161,7 +161,8 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
 {
   const std::string whose = "the liquid's state ";
   WaveBasinHead head;
-  const std::size_t of_mass = mass.size() * sizeof mass[0], of_impulses = impulses.size() * sizeof impulses[0];
+  const std::size_t of_mass = mass.size() * sizeof mass[0], of_rising = rising.size() * sizeof rising[0];
+  const std::size_t of_impulses = impulses.size() * sizeof impulses[0];
   if (size < sizeof head) throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few");
   std::memcpy(&head, bytes, sizeof head);
   if (head.version != STATE_VERSION)
@@ -173,7 +174,7 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
                              std::to_string(shape.ny) + " x " + std::to_string(shape.nz));
   const std::size_t of_push = push.state().size() * sizeof push.state()[0];
   const std::size_t of_makers = makers.state().size();
-  const std::size_t to_drops = sizeof head + 2 * of_mass + of_impulses + of_push + of_makers;
+  const std::size_t to_drops = sizeof head + of_mass + of_rising + of_impulses + of_push + of_makers;
   if (size < to_drops || size - to_drops < head.of_drops)
     throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few");
   Drops taken(drops);
@@ -183,8 +184,8 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
   drops = taken;
   makers.set_state(bytes + to_drops - of_makers, of_makers);
   std::memcpy(mass.data(), bytes + sizeof head, of_mass);
-  std::memcpy(rising.data(), bytes + sizeof head + of_mass, of_mass);
-  std::memcpy(impulses.data(), bytes + sizeof head + 2 * of_mass, of_impulses);
+  std::memcpy(rising.data(), bytes + sizeof head + of_mass, of_rising);
+  std::memcpy(impulses.data(), bytes + sizeof head + of_mass + of_rising, of_impulses);
   if (!ranks.first()) std::fill(impulses.begin(), impulses.end(), 0);    // the first has those of all
   poured = true;
   stale = head.stale != 0;
@@ -202,7 +203,7 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
       for (int x = 0; x < shape.nx; ++x)
         if (part[cell_number(x, y, z)]) marked.take_in(x, y, z);
   look();
-  std::memcpy(push.state().data(), bytes + sizeof head + 2 * of_mass + of_impulses, of_push);
+  std::memcpy(push.state().data(), bytes + sizeof head + of_mass + of_rising + of_impulses, of_push);
   find_push(0.0);
   return head.ledger;
 }

@@ -240,19 +240,28 @@ void WavePush::fill(const Waves &waves, int column)
     if (solid.at(column, z) >= LEAST_PART) of_run(z, *run);
 }
 
+// Whether a cell and all around it are among the first `own`.
+bool WavePush::is_among(std::size_t own, int x, int y, int z) const
+{
+  if (x < 1 || x + 1 >= nx || y < 1 || y + 1 >= ny || z < 1 || z + 1 >= nz) return false;
+  bool all = true;
+  for (int dz = -1; dz <= 1; ++dz)
+    for (int dy = -1; dy <= 1; ++dy) {
+      const int *const row = &known[(static_cast<std::size_t>(z + dz) * ny + y + dy) * nx + x];
+      for (int dx = -1; dx <= 1; ++dx) all = all && static_cast<unsigned>(row[dx]) < own;
+    }
+  return all;
+}
+
 // Cells next to bodies feel the mean of what is known around them.
 void WavePush::spread(const SolidParts &solid)
 {
-  struct Sum {
-    OnCell on;
-    double weight, wet;
-  };
-  std::vector<Sum> sums;
-  std::vector<std::size_t> where;
+  next_to.clear();
   const std::size_t own = found.size();
   for (std::size_t n = 0; n < own; ++n) {
     const int column = static_cast<int>(cells[n] % (static_cast<std::size_t>(nx) * ny));
     const int z = static_cast<int>(cells[n] / (static_cast<std::size_t>(nx) * ny)), x = column % nx, y = column / nx;
+    if (is_among(own, x, y, z)) continue;
     for (int dz = -1; dz <= 1; ++dz)
       for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {
@@ -261,11 +270,10 @@ void WavePush::spread(const SolidParts &solid)
           int &number = known[cell];
           if (number >= 0 && number < static_cast<int>(own)) continue;
           if (number < 0) {
-            number = static_cast<int>(own + sums.size());
-            sums.push_back({});
-            where.push_back(cell);
+            number = static_cast<int>(own + next_to.size());
+            next_to.push_back({{}, 0.0, 0.0, cell});
           }
-          Sum &sum = sums[number - own];
+          NextTo &sum = next_to[number - own];
           const OnCell &from = found[n];
           const double weight = solid.at(column, z) * (dx ? 0.5 : 1.0) * (dy ? 0.5 : 1.0) * (dz ? 0.5 : 1.0);
           sum.weight += weight;
@@ -283,13 +291,13 @@ void WavePush::spread(const SolidParts &solid)
           sum.on.flow_y += weight * from.flow_y;
         }
   }
-  for (std::size_t n = 0; n < sums.size(); ++n) {
-    OnCell &on = sums[n].on;
-    if (sums[n].wet > 0.0) on.head /= sums[n].wet;
+  for (NextTo &sum : next_to) {
+    OnCell &on = sum.on;
+    if (sum.wet > 0.0) on.head /= sum.wet;
     for (double *value : {&on.share, &on.over, &on.beside, &on.on_top, &on.along_x, &on.along_y, &on.flow_x, &on.flow_y})
-      *value /= sums[n].weight;
+      *value /= sum.weight;
     found.push_back(on);
-    cells.push_back(where[n]);
+    cells.push_back(sum.cell);
   }
 }
 
@@ -299,8 +307,7 @@ void WavePush::sort()
   CellBox box;
   for (const std::size_t cell : cells)
     box.take_in(static_cast<int>(cell % nx), static_cast<int>(cell / nx % ny), static_cast<int>(cell / nx / ny));
-  std::vector<OnCell> sorted;
-  sorted.reserve(found.size());
+  sorted.clear();
   cells.clear();
   box.each([&](int x, int y, int z) {
     const std::size_t cell = (static_cast<std::size_t>(z) * ny + y) * nx + x;

@@ -65,10 +65,19 @@ class WavePush {
   void spread(const SolidParts &solid);
   void sort();
 
+  struct NextTo {
+    OnCell on;
+    double weight, wet;
+    std::size_t cell;
+  };
+  bool is_among(std::size_t own, int x, int y, int z) const;
+
   const int nx, ny, nz;
   std::vector<int> known;    // of each cell, its number in `found`, or -1
   std::vector<OnCell> found;
   std::vector<std::size_t> cells;    // of each in `found`
+  std::vector<OnCell> sorted;        // buffers of spread() and sort()
+  std::vector<NextTo> next_to;
   std::vector<SolidRun> runs;
   std::vector<int> first_run, columns;    // of each column, or -1; those with mass
   std::vector<double> ambient;            // head around each column, as it acts sideways; NaN far from bodies

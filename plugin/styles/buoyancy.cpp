@@ -114,21 +114,25 @@ void Buoyancy::append_required_atoms(std::vector<int> &particles) const
 
 // --- a step ---
 
-Basin::InCell Buoyancy::look_at_cell(const Basin &basin, const NearCells::Cell &cell, double above, double *s) const
+void Buoyancy::look_at_cells(const Basin &basin, long from, long to)
 {
   const double *const *x = atom->x;
   const double bottom = basin.shape.low.z, per_height = 1.0 / basin.shape.cell.z;
-  Vec3 sum;
-  double z[8], lowest = x[cell.corner[0]][2];
-  for (int k = 0; k < 8; ++k) {
-    const double *const own = x[cell.corner[k]];
-    sum += vec3(own);
-    z[k] = (own[2] - bottom) * per_height;
-    lowest = std::min(lowest, own[2]);
+  Basin::LatticeCell looked[Basin::AT_ONCE];
+  for (long first = from; first < to; first += Basin::AT_ONCE) {
+    const int count = static_cast<int>(std::min<long>(Basin::AT_ONCE, to - first));
+    for (int n = 0; n < count; ++n) {
+      Vec3 sum;
+      for (int k = 0; k < 8; ++k) {
+        const double *const own = x[cells.cells[first + n].corner[k]];
+        sum += vec3(own);
+        looked[n].z[k] = (own[2] - bottom) * per_height;
+      }
+      const double middle[3] = {0.125 * sum.x, 0.125 * sum.y, 0.125 * sum.z};
+      looked[n].middle = basin.in_cells(middle);
+    }
+    basin.find_on_parts(count, looked, &on_parts[first], &immersed[8 * first]);
   }
-  if (!(lowest < above)) return {nullptr, 0.0};
-  const double middle[3] = {0.125 * sum.x, 0.125 * sum.y, 0.125 * sum.z};
-  return basin.in_cell(basin.in_cells(middle), z, s);
 }
 
 // The mean of what acts on its parts of lattice cells.
@@ -137,15 +141,13 @@ Basin::AtPlace Buoyancy::at_particle(const Basin &basin, std::size_t n, const do
   Basin::AtPlace at;
   int parts = 0;
   cells.each_of(n, [&](int cell, int corner) {
-    const Basin::InCell &in = in_cells[cell];
-    const double s = in.s < 0.0 ? in_parts[8 * static_cast<std::size_t>(cell) + corner] : in.s;
+    const Basin::OnParts &on = on_parts[cell];
+    const double s = on.s < 0.0 ? immersed[8 * static_cast<std::size_t>(cell) + corner] : on.s;
+    const double beside = std::max(0.0, s + on.beside);
     ++parts;
     at.immersed += s;
-    at.push.z += s;
-    if (!in.on) return;
-    const double beside = std::max(0.0, s + in.on->beside);
-    at.push += Vec3{in.on->along_x * beside, in.on->along_y * beside, in.on->more};
-    at.flow += Vec3{in.on->flow_x, in.on->flow_y, 0.0};
+    at.push += Vec3{on.along_x * beside, on.along_y * beside, s + on.more};
+    at.flow += Vec3{on.flow_x, on.flow_y, 0.0};
   });
   if (parts == 0) return at;
   const double part = 1.0 / parts;
@@ -188,11 +190,9 @@ void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
   threads.timed_parts(static_cast<long>(faces.size()), PARTICLE, [&](long from, long to) {
     for (long n = from; n < to; ++n) faces[n].push = pressure_on(faces[n], basin);
   });
-  in_cells.resize(cells.cells.size());
-  in_parts.resize(8 * cells.cells.size());
-  threads.timed_parts(static_cast<long>(in_cells.size()), PARTICLE, [&](long from, long to) {
-    for (long n = from; n < to; ++n) in_cells[n] = look_at_cell(basin, cells.cells[n], now.above, &in_parts[8 * n]);
-  });
+  on_parts.resize(cells.cells.size());
+  immersed.resize(8 * cells.cells.size());
+  threads.timed_parts(static_cast<long>(on_parts.size()), PARTICLE, [&](long from, long to) { look_at_cells(basin, from, to); });
   wet.resize(near.size());
   threads.timed_parts(static_cast<long>(near.size()), PARTICLE, [&](long from, long to) {
     for (long n = from; n < to; ++n) wet[n] = act_on(now, basin, n, near[n]);

@@ -50,8 +50,8 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   double density() const { return rho; }
   double bytes() const
   {
-    return static_cast<double>(wet.capacity() * sizeof(Wet) + in_cells.capacity() * sizeof in_cells[0] +
-                               in_parts.capacity() * sizeof in_parts[0]) +
+    return static_cast<double>(wet.capacity() * sizeof(Wet) + on_parts.capacity() * sizeof on_parts[0] +
+                               immersed.capacity() * sizeof immersed[0]) +
            cells.bytes();
   }
   double seconds = 0.0;
@@ -72,7 +72,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   struct Acting;
   Wet act_on(const Acting &now, const Basin &basin, std::size_t n, int i) const;
   Vec3 pressure_on(const Face &face, const Basin &basin) const;
-  Basin::InCell look_at_cell(const Basin &basin, const NearCells::Cell &cell, double above, double *s) const;
+  void look_at_cells(const Basin &basin, long from, long to);
   Basin::AtPlace at_particle(const Basin &basin, std::size_t n, const double *x) const;
   Basin::Energies power() const;
 
@@ -88,10 +88,10 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   std::vector<Face> faces;                    // of the particles near the liquid
   std::vector<int> face_of, face_of_first;    // those of the n-th: face_of[face_of_first[n]] …
   NearCells cells;
-  std::vector<Basin::InCell> in_cells;
-  std::vector<double> in_parts;    // of each of the eight parts of cells, where they differ
-  Basin::Ledger own;               // of this rank
-  bool ledger_was_set = false;     // since the last step
+  std::vector<Basin::OnParts> on_parts;    // of each lattice cell
+  std::vector<double> immersed;            // of each of its eight parts, where they differ
+  Basin::Ledger own;                       // of this rank
+  bool ledger_was_set = false;             // since the last step
 };
 
 }    // namespace mdanim
