@@ -43,6 +43,8 @@ PICTURES = {
     "slosh": 0.5,
     "swell": 3.0,
     "utube": 0.6,
+    "wake": 0.8,
+    "bottle": 0.95,
     "weir": 5.6,
 }
 """Scene and the moment to show [s]."""

@@ -24,7 +24,7 @@ inline double lift(double rho, double volume, double s, double g) { return rho *
 inline Vec3 corner_push(double p, const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d)
 { return (-0.125 * p) * cross(c - a, d - b); }
 
-// Friction coefficient of the immersed part, eq. (3.9): F = -gamma rho_l V s v.
+// Friction coefficient of the immersed part, eq. (3.9): F = -gamma rho_l V s v. Quadratic drag is a gamma that grows with |v|.
 inline double liquid_lambda(double gamma, double rho, double volume, double s) { return gamma * rho * volume * s; }
 
 // Value at (x, y) of a field known at the centres of unit cells, bilinear, constant beyond the outermost

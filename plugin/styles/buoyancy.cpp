@@ -36,6 +36,9 @@ bool Buoyancy::keyword(int iarg, const char *word, const char *value)
   } else if (strcmp(word, "drag") == 0) {
     gamma = ParticleValue(lmp, "fix mdanim/liquid: drag", iarg + 1, value);
     slows = true;
+  } else if (strcmp(word, "quadratic") == 0) {
+    per_length = ParticleValue(lmp, "fix mdanim/liquid: quadratic", iarg + 1, value);
+    is_quadratic = true;
   } else if (strcmp(word, "lambda") == 0) {
     lambda_column = ParticleColumn(lmp, STYLE, word, iarg + 1, value);
   } else if (strcmp(word, "base") == 0) {
@@ -53,9 +56,11 @@ void Buoyancy::init(const std::string &fix)
     error->all(FLERR, "{}: drag needs lambda d_NAME, the property that fix mdanim/leapfrog reads", fix);
   if (!slows && (lambda_column.given() || base_column.given()))
     error->all(FLERR, "{}: lambda and base say where drag goes, but there is no drag; add one", fix);
+  if (is_quadratic && !slows) error->all(FLERR, "{}: quadratic is a part of drag; add drag, 0 for no other part", fix);
   if (slows && !lifts) error->all(FLERR, "{}: drag acts on the volume of particles, which buoyancy gives; add buoyancy", fix);
   if (lifts) volume.init(lmp);
   if (slows) gamma.init(lmp);
+  if (is_quadratic) per_length.init(lmp);
   if (!faces_of.given()) return;
   faces_width = faces_of.width(lmp);
   if (faces_width == 0 || faces_width % 3)
@@ -162,7 +167,7 @@ Basin::AtPlace Buoyancy::at_particle(const Basin &basin, std::size_t n, const do
 struct Buoyancy::Acting {
   const double *const *x, *const *v;
   double *const *f;
-  const double *volume, *gamma, *base;
+  const double *volume, *gamma, *per_length, *base;
   double *lambda;
   double above, below;    // nothing is immersed from `above` up; most particles of a large body need not look up the surface
   double calming, scale;
@@ -181,6 +186,7 @@ void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
                    atom->f,
                    volume.values(lmp),
                    slows ? gamma.values(lmp) : nullptr,
+                   is_quadratic ? per_length.values(lmp) : nullptr,
                    base_column.given() ? base_column.values(lmp) : nullptr,
                    slows ? lambda_column.values(lmp) : nullptr,
                    floor + (basin.top() + 1.0) * height,
@@ -199,7 +205,7 @@ void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
   });
   if (!in_step || !basin.takes_impulses()) return;
   for (const Wet &one : wet)
-    if (one.lambda > 0.0) basin.take_impulse(basin.in_cells(now.x[one.i]), one.impulse);
+    if (one.impulse.x != 0.0 || one.impulse.y != 0.0) basin.take_impulse(basin.in_cells(now.x[one.i]), one.impulse);
 }
 
 Buoyancy::Wet Buoyancy::act_on(const Acting &now, const Basin &basin, std::size_t n, int i) const
@@ -224,11 +230,19 @@ Buoyancy::Wet Buoyancy::act_on(const Acting &now, const Basin &basin, std::size_
   else
     for (int k = face_of_first[n]; k < face_of_first[n + 1]; ++k) push += faces[face_of[k]].push;
   const double own_calming = now.calming * s * mass_of(atom->rmass, atom->mass, atom->type, i) / force->ftm2v;
-  if (own_lambda > 0.0 && basin.takes_impulses()) {
+  const Vec3 relative = vec3(v) - at.flow;
+  double all_lambda = own_lambda;
+  if (is_quadratic && s > 0.0) {
+    // A force, as forces are a part of the state and friction is not. Friction that depends on x alone is found again.
+    const double rate = (now.per_length ? now.per_length[i] : per_length.number) * std::sqrt(dot(relative, relative));
+    const double quadratic = liquid_lambda(rate, rho, own, s) / force->ftm2v;
+    push -= quadratic * relative;
+    all_lambda += quadratic;
+  }
+  if (all_lambda > 0.0 && basin.takes_impulses()) {
     // Drag is against the liquid, not against the floor, and takes it along.
     push += own_lambda * at.flow;
-    const Vec3 relative = vec3(v) - at.flow;
-    impulse = now.scale * own_lambda * Vec3{relative.x, relative.y, 0.0};
+    impulse = now.scale * all_lambda * Vec3{relative.x, relative.y, 0.0};
   }
   if (s == 0.0 && dot(push, push) == 0.0) return {-1, {}, 0.0, {}};
   push.z -= own_calming * (v[2] - at.rising);

@@ -78,8 +78,8 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
 
   double rho;
   Threads threads;
-  bool lifts = false, slows = false;
-  ParticleValue volume, gamma;
+  bool lifts = false, slows = false, is_quadratic = false;
+  ParticleValue volume, gamma, per_length;
   ParticleColumn lambda_column, base_column;
   ParticleTable faces_of;
   int faces_width = 0;

@@ -47,10 +47,11 @@ static const std::vector<Keyword> FIXED = {{"volume", "V"},
                                            {"drain", "REGION2 q"},
                                            {"vertical", "lower|any"},
                                            {"seed", "N"}};
-static const std::vector<Keyword> FREE = {{"buoyancy", "V|d_NAME"}, {"drag", "gamma|d_NAME"}, {"lambda", "d_NAME"},
-                                          {"base", "d_NAME"},       {"cells", "i2_NAME"},     {"faces", "i2_NAME"},
-                                          {"softness", "d_NAME"},   {"still", "GROUP"},       {"sweeps", "auto|N"},
-                                          {"every", "N"},           {"stride", "s"},          {"period", "p"}};
+static const std::vector<Keyword> FREE = {{"buoyancy", "V|d_NAME"}, {"drag", "gamma|d_NAME"}, {"quadratic", "k|d_NAME"},
+                                          {"lambda", "d_NAME"},     {"base", "d_NAME"},       {"cells", "i2_NAME"},
+                                          {"faces", "i2_NAME"},     {"softness", "d_NAME"},   {"still", "GROUP"},
+                                          {"sweeps", "auto|N"},     {"every", "N"},           {"stride", "s"},
+                                          {"period", "p"}};
 
 static constexpr double ANYWHERE = std::numeric_limits<double>::infinity();
 

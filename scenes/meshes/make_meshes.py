@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Make the meshes of the scenes: duck.ply, a plump bath duck of smoothly joined ellipsoids, and boat.stl, an open hull;
-contoured and thinned out to small closed meshes.
+"""Make the meshes of the scenes: duck.ply, a plump bath duck of smoothly joined ellipsoids, contoured and thinned out; boat.stl,
+an open hull, and bottle.stl, of rings of points.
 
 Run ``python make_meshes.py`` in this folder; needs only what mdanim-lammps needs. Units are centimetres.
 """
@@ -88,6 +88,16 @@ def boat() -> pyvista.PolyData:
     return pyvista.PolyData.from_regular_faces(points * half, triangles)
 
 
+BOTTLE = ((0, 0), (10, 0), (10, 20), (6, 27), (6, 34), (2.7, 34), (2.7, 26), (7, 19), (7, 3), (0, 3))
+"""Radius and height of the bottle's outline [cm], from the middle of its floor, up outside, over the mouth and down inside."""
+
+
+def bottle() -> pyvista.PolyData:
+    """The bottle as a closed triangle mesh [cm], around its axis along z."""
+    points, triangles = revolve(np.array(BOTTLE, dtype=float), FACETS)
+    return pyvista.PolyData.from_regular_faces(points, triangles)
+
+
 def _distance(points: np.ndarray, centre: np.ndarray, half: np.ndarray) -> np.ndarray:
     """Distance to an ellipsoid to first order: f (f - 1) / |grad|, with f = |(p - c) / half|."""
     q = (points - centre) / half
@@ -96,7 +106,7 @@ def _distance(points: np.ndarray, centre: np.ndarray, half: np.ndarray) -> np.nd
 
 
 if __name__ == "__main__":
-    for make in (duck, boat):
+    for make in (duck, boat, bottle):
         mesh = make()
         colored = "RGB" in mesh.point_data
         path = Path(__file__).with_name(make.__name__ + (".ply" if colored else ".stl"))

@@ -205,14 +205,25 @@ def test_walls_of_a_basin_go_on_upward(prepared):
     assert commands(prepared(pool()), "basin")[0] == "region basin block 0.0 1.0 0.0 0.8 0.0 INF"
 
 
-@pytest.mark.parametrize(("model", "part"), [("waves", 1.0 / 3.0), ("surface", 1.0)])
+@pytest.mark.parametrize(("model", "part"), [("waves", 0.15), ("surface", 1.0)])
 def test_drag_of_a_liquid_is_a_rate(prepared, model, part):
-    """Take gamma as it is written; by default sqrt(g/L) with the edge of the cube of equal volume, a third of it beside waves."""
+    """Take gamma as it is written; by default sqrt(g/L) with the edge of the cube of equal volume, a part of it beside waves."""
     plan = prepared(pool(f"level 0.25 m\n model {model}")).plan
     np.testing.assert_allclose(plan.columns["gamma"], part * np.sqrt(9.81 / 0.2), rtol=1e-12)
     assert not plan.columns["lambda"].any() and "air" not in plan.columns
     plan = prepared(pool("level 0.25 m\n drag 4")).plan
-    assert (plan.columns["gamma"] == 4.0).all()
+    assert (plan.columns["gamma"] == 4.0).all() and "quadratic" not in plan.columns
+
+
+def test_drag_beside_waves_grows_with_speed(prepared):
+    """C/2L with the longest edge of a solid, however it is turned; no part of the automaton."""
+    ready = prepared(pool("level 0.25 m"))
+    system = ready.system
+    size = np.ptp(system.position, axis=0).max()
+    # Particles carry volume by the cells around: their second moments are those of the cube but for (h/side)^2.
+    np.testing.assert_allclose(ready.plan.columns["quadratic"], 0.25 / size, rtol=2.0 / round(size / system.spacing[0]) ** 2)
+    assert commands(ready, "liquid-drag") == ["fix_modify liquid drag d_gamma quadratic d_quadratic lambda d_lambda"]
+    assert "quadratic" not in prepared(pool("level 0.25 m\n model surface")).plan.columns
 
 
 def test_drags_of_air_and_liquid_add_up(prepared):
@@ -221,10 +232,10 @@ def test_drags_of_air_and_liquid_add_up(prepared):
     columns = ready.plan.columns
     np.testing.assert_allclose(columns["air"].sum(), 3.0, rtol=1e-12)
     assert np.array_equal(columns["lambda"], columns["air"])
-    assert commands(ready, "liquid-drag") == ["fix_modify liquid drag d_gamma lambda d_lambda base d_air"]
+    assert commands(ready, "liquid-drag") == ["fix_modify liquid drag d_gamma quadratic d_quadratic lambda d_lambda base d_air"]
     ready = prepared(pool(block="drag 3", top="effects { air-drag off }"))
     assert "air" not in ready.plan.columns and not ready.plan.columns["lambda"].any()
-    assert commands(ready, "liquid-drag") == ["fix_modify liquid drag d_gamma lambda d_lambda"]
+    assert commands(ready, "liquid-drag") == ["fix_modify liquid drag d_gamma quadratic d_quadratic lambda d_lambda"]
 
 
 def test_every_lattice_cell_is_in_the_table(prepared):

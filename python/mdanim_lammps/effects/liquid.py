@@ -34,8 +34,10 @@ WAVE_PERIOD = 0.1
 """As PERIOD, of waves."""
 CALM = 50.0
 """Time in which waves die, over sqrt(depth/g)."""
-WAVE_DRAG = 1.0 / 3.0
+WAVE_DRAG = 0.15
 """Part of the usual drag that is left where waves take energy away."""
+DRAG_COEFFICIENT = 0.5
+"""C of quadratic drag, F = C rho A v^2 / 2: that of a sphere."""
 DRAGGING = 0.07
 """Part of the coupling's time that drag takes (bench/effects.py shares)."""
 SHALLOW = 4
@@ -262,7 +264,7 @@ class WavePush(Buoyancy):
 
 
 class LiquidDrag(Effect):
-    """-gamma rho_l V_i s_i v on the immersed part of a particle, taken by the leap-frog with the drag of air."""
+    """-(gamma + k |v|) rho_l V_i s_i v on the immersed part of a particle, taken by the leap-frog with the drag of air."""
 
     name = "liquid-drag"
     needs = ("liquid", "buoyancy")  # which gives the fix the volumes
@@ -276,14 +278,17 @@ class LiquidDrag(Effect):
     def columns(self, scene, system):
         air = air_drag.felt(scene, system)
         dry = np.zeros(system.particles) if air is None else air
-        return {"gamma": gamma(scene, system), "lambda": dry, **({} if air is None else {"air": air})}
+        quadratic = {"quadratic": per_length(scene, system)} if _has_quadratic_drag(scene) else {}
+        return {"gamma": gamma(scene, system), **quadratic, "lambda": dry, **({} if air is None else {"air": air})}
 
     def friction(self, scene, system):
+        # Quadratic drag is no part of it: a step takes a particle less than a tenth of a spacing, so k v dt is small.
         return gamma(scene, system) * scene.liquid.density * system.volume
 
     def commands(self, scene, system):
         base = "" if air_drag.felt(scene, system) is None else " base d_air"
-        return [f"fix_modify liquid drag d_gamma lambda d_lambda{base}"]
+        quadratic = " quadratic d_quadratic" if _has_quadratic_drag(scene) else ""
+        return [f"fix_modify liquid drag d_gamma{quadratic} lambda d_lambda{base}"]
 
     def losses(self, scene):
         return (air_drag.DRAG_LOSS,)
@@ -306,9 +311,30 @@ def gamma(scene, system: System) -> np.ndarray:
     """Drag rate of each particle [1/s], shape (N,); ``auto`` is sqrt(g/L), L^3 the volume of its solid, or a part of that."""
     if scene.liquid.drag is not None:
         return np.full(system.particles, scene.liquid.drag)
-    size = np.cbrt(np.add.reduceat(system.volume, system.first[:-1]))
     part = WAVE_DRAG if _is_wavy(scene) else 1.0
-    return part * np.sqrt(-scene.gravity[2] / size)[system.object]
+    return part * np.sqrt(-scene.gravity[2] / _size(system))[system.object]
+
+
+def per_length(scene, system: System) -> np.ndarray:
+    """Quadratic drag of each particle over its immersed mass of liquid and its speed squared [1/m], shape (N,): C/2L.
+
+    L is the longest edge of the box with the second moments of its solid, as what is long mostly moves that way.
+    """
+    first = system.first[:-1]
+    total = np.add.reduceat(system.volume, first)
+    away = system.position - system.center_of_mass(system.position)[system.object]
+    moments = np.add.reduceat(system.volume[:, None] * (away[:, :, None] * away[:, None, :]).reshape(-1, 9), first) / total[:, None]
+    longest = np.sqrt(12.0 * np.linalg.eigvalsh(moments.reshape(-1, 3, 3))[:, -1])
+    return (0.5 * DRAG_COEFFICIENT / longest)[system.object]
+
+
+def _has_quadratic_drag(scene) -> bool:
+    return _is_wavy(scene) and scene.liquid.drag is None
+
+
+def _size(system: System) -> np.ndarray:
+    """Edge of the cube of equal volume of each object [m], shape (M,)."""
+    return np.cbrt(np.add.reduceat(system.volume, system.first[:-1]))
 
 
 def calm_time(scene) -> float:

@@ -45,6 +45,23 @@ def test_a_particle_floats_where_archimedes_says(tmp_path, mass):
 
 
 @pytest.mark.parametrize("mass", [2.0, 3.0])
+def test_terminal_speed_under_quadratic_drag(tmp_path, mass):
+    """(m - rho V) g = (gamma + k v) rho V v."""
+    gamma, k = 0.02, 0.1
+    lmp = lab.load(
+        one(9.0, mass), tmp_path,
+        ["region basin block -10 10 -10 10 -300 16", FALL,
+         f"fix water all mdanim/liquid basin 1.0 grid 20 20 316 level 10 gravity 0.01 buoyancy 1.0 drag {gamma} quadratic {k} "
+         "lambda d_lambda",
+         "fix move all mdanim/leapfrog lambda d_lambda", "timestep 0.3", "run 2000"], columns={"lambda": np.zeros(1)},
+    )  # fmt: skip
+    fall = (-gamma + np.sqrt(gamma**2 + 4.0 * k * (mass - 1.0) * G)) / (2.0 * k)
+    # exp(-gamma t / mass) of the start is left, at most.
+    assert lab.by_tag(lmp, "v")[0, 2] == pytest.approx(-fall, rel=1e-3)
+    lmp.close()
+
+
+@pytest.mark.parametrize("mass", [2.0, 3.0])
 def test_terminal_speed_under_drag(tmp_path, mass):
     """(m - rho V) g = gamma rho V v."""
     gamma = 0.05
