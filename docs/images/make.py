@@ -45,7 +45,7 @@ PICTURES = {
     "utube": 0.6,
     "wake": 0.8,
     "bottle": 0.95,
-    "weir": 5.6,
+    "weir": 4.6,
 }
 """Scene and the moment to show [s]."""
 STEPS = {"falls": 0.0, "stands": 1.0, "pushed": 0.27, "rolls": 0.5, "splashes": 0.4, "show": 0.3}
