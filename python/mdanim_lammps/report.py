@@ -20,7 +20,7 @@ from .run.loop import Progress
 from .run.prepare import Prepared
 from .run.result import Result
 from .scene.formatting import number, say, whole
-from .scene.scene import SceneRecord
+from .scene.scene import Accuracy, SceneRecord
 
 
 def count(things: int, noun: str) -> str:
@@ -31,6 +31,8 @@ def count(things: int, noun: str) -> str:
 WIDTH = 110
 """Columns that lists are broken at."""
 MARGIN = " " * len("scene    ")
+LONG = 60.0
+"""Seconds from which `check` tells how a run gets quicker."""
 
 
 def scene_lines(ready: Prepared) -> list[str]:
@@ -187,6 +189,21 @@ def forecast_line(cost: Cost | DivergedError | None) -> str:
     return f"cost     about {_about(cost.total)} here: {largest}"
 
 
+def quicker_line(ready: Prepared, cost: Cost | DivergedError | None) -> str | None:
+    """How a run of more than a minute gets quicker: cost goes with the fourth power of the spacing, and with the time step."""
+    control = ready.scene.control
+    if not isinstance(cost, Cost) or cost.total < LONG:
+        return None
+    ways, now = [], control.accuracy
+    if control.resolution is None and isinstance(now, Accuracy) and now is not Accuracy.PREVIEW:
+        less = (Accuracy.PREVIEW.cells / now.cells) ** 4 * now.fraction / Accuracy.PREVIEW.fraction
+        ways.append(f"--accuracy preview about {_about(less * cost.total)}")
+    edge = max((max(m.cell) for m in ready.models), default=0.0)
+    if edge > 0.0:
+        ways.append(f"resolution {say(1.5 * edge, 'm')} about {_about(cost.total / 1.5**4)}")
+    return f"quicker  {', '.join(ways)}; thin and stiff objects make small cells and short steps" if ways else None
+
+
 def _about(seconds: float) -> str:
     """A time in one digit, two where the first is a 1: no forecast is better than that."""
     units = (("h", 3600.0), ("min", 60.0), ("s", 1.0), ("ms", 1e-3))
@@ -221,6 +238,7 @@ def check_lines(
         *note_lines(ready.certificate),
         output_line(ready),
         forecast_line(forecast),
+        *filter(None, [quicker_line(ready, forecast)]),
         threads_line(threads),
         *([] if speedup is None else [executors_line(speedup.executors, None), *speedup_lines(speedup)]),
         "effects",

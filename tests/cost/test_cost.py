@@ -13,10 +13,12 @@ import pytest
 from mdanim_lammps.cost.forecast import extrapolate, forecast
 from mdanim_lammps.effects import EFFECTS
 from mdanim_lammps.errors import DivergedError, SetupError
-from mdanim_lammps.report import check_json, cost_line, forecast_line
+from mdanim_lammps.report import check_json, cost_line, forecast_line, quicker_line
 from mdanim_lammps.results.cost import Cost, CostShare
 from mdanim_lammps.run.frame_source import Account, add_clocks
 from mdanim_lammps.run.loop import simulate
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.parse import load_scene
 
 POND = """gravity (0, 0, -9.81) m/s^2
 walls from (-1, -1, 0) m to (1, 1, 3) m
@@ -295,6 +297,21 @@ def test_first_steps_that_are_ended_tell_nothing(pond, monkeypatch, fresh):
     monkeypatch.setattr(loop, "simulate", ended)
     with pytest.raises(loop.Interrupted):
         extrapolate(pond[0], fresh())
+
+
+def test_a_long_run_is_told_how_it_gets_quicker(tmp_path):
+    """Cost goes with the fourth power of the spacing: cells and steps."""
+    path = tmp_path / "a.txt"
+    cube = "object a { shape box (8, 8, 8) cm  position (0, 0, 0)  density 1000 kg/m^3  elasticity 1 MPa }\n"
+    path.write_text(cube + "control { time 1 s }\n")
+    ready, cost = prepare(load_scene(path)), Cost(960.0, 1, 1, {}, {})
+    assert quicker_line(ready, cost) == (
+        "quicker  --accuracy preview about 40 s, resolution 3 cm about 3 min; thin and stiff objects make small cells and short "
+        "steps"
+    )
+    assert quicker_line(ready, replace(cost, wall=59.0)) is quicker_line(ready, None) is None
+    path.write_text(cube + "control { time 1 s  resolution 4 cm }\n")
+    assert quicker_line(prepare(load_scene(path)), cost).startswith("quicker  resolution 6 cm about 3 min;")
 
 
 def test_forecast_is_printed(pond):

@@ -82,8 +82,7 @@ def scenes(draw) -> Text:
         text += f"walls from {low} m to {high} m\n"
     elif place == "liquid":
         text += (
-            f"liquid water {{ basin from {low} m to {high} m "
-            f"density {draw(decades(2, 4))} level {draw(st.integers(1, 6))} m }}\n"
+            f"liquid water {{ basin from {low} m to {high} m density {draw(decades(2, 4))} level {draw(st.integers(1, 6))} m }}\n"
         )
     for k, (shape, young, density) in enumerate(bodies):
         x, y = (APART * (side - 0.5) for side in (k & 1, k >> 1 & 1))

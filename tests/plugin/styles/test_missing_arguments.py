@@ -87,7 +87,7 @@ def test_what_is_missing_is_named(tmp_path, command, form, missing):
         (f"{CONTACT} plain", "unknown keyword plain; it knows objects, plane, stiffness, damping, pair, among and bodies"),
         ("fix a all mdanim/leapfrog lamda", "unknown keyword lamda; it knows lambda and drag"),
         (f"{LIQUID} wawe", "unknown keyword wawe; it knows volume, level, fill"),
-        (f"{LIQUID}\nfix_modify a level 3", "unknown keyword level; it knows buoyancy, drag, quadratic, lambda, base, cells, faces"),
+        (f"{LIQUID}\nfix_modify a level 3", "unknown keyword level; it knows buoyancy, drag, quadratic, lambda, base, cells"),
         ("run_style verlet/mdanim thread", "unknown keyword thread; it knows width and threads"),
         ("run_style verlet/mdanim threads", "threads takes a number, e.g. threads 4"),
         ("run_style verlet/mdanim width", "width takes one word, common, avx2 or avx512"),
