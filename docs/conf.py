@@ -37,20 +37,37 @@ highlight_language = "text"
 REPOSITORY = HERE.parent
 
 
+SCENES = REPOSITORY / "scenes"
+
+
+def download(docname, path, shown):
+    """A link of a page to a file of scenes/, which the site holds in _static."""
+    return f'<a href="{"../" * docname.count("/")}_static/{path}" download><code>{shown}</code></a>'
+
+
+def files_of(path):
+    """Files that a scene reads, as paths from scenes/: what its text and its included files name."""
+    named = re.findall(r'^[^#\n]*?\b(?:mesh|include)\s+"([^"]+)"', (SCENES / path).read_text(encoding="utf-8"), flags=re.M)
+    return list(dict.fromkeys(f for name in named for f in (name, *(files_of(name) if name.endswith(".txt") else ()))))
+
+
 def lead_outside(app, docname, source):
-    """Links to files of the repository that are no pages become their names: the site does not hold them."""
+    """Links to scenes become downloads; those to other files of the repository become names: the site does not hold them."""
     pattern = re.compile(r"(?<![!`])\[([^\]`]*(?:`[^`]*`[^\]`]*)*)\]\((\.\./[^)\s]+)\)")
     page = HERE / f"{docname}.md"
 
     def replace(match):
         target = (page.parent / match[2].partition("#")[0]).resolve()
+        if target.is_relative_to(SCENES) and target.is_file():
+            return download(docname, target.relative_to(SCENES), match[1].strip("`"))
         return match[0] if target.is_relative_to(HERE) else f"{match[1]} (`{target.relative_to(REPOSITORY)}`)"
 
     source[0] = pattern.sub(replace, source[0])
 
 
 def show_movies(app, docname, source):
-    """A picture of which there is a movie becomes the movie on the site; names of scenes in the gallery lead to them."""
+    """A picture of which there is a movie becomes the movie on the site; names of scenes in the gallery lead to them
+    and to the files that they read."""
 
     def replace(match):
         if not (HERE / "movies" / f"{match[1]}.mp4").exists():
@@ -60,8 +77,13 @@ def show_movies(app, docname, source):
 
     source[0] = re.sub(r"!\[[^\]]*\]\(images/([\w-]+)\.png\)", replace, source[0])
     if docname == "gallery":
-        link = r'<a href="_static/\1.txt" download><code>\1.txt</code></a>'
-        source[0] = re.sub(r"`(\w+)\.txt`", link, source[0])
+        source[0] = re.sub(r"`(\w+\.txt)`", lead_to_scenes, source[0])
+
+
+def lead_to_scenes(match):
+    """A scene of the gallery with the files that it reads."""
+    links = [download("gallery", path, path) for path in (match[1], *files_of(match[1]))]
+    return links[0] + (f" (with {', '.join(links[1:])})" if links[1:] else "")
 
 
 def setup(app):

@@ -145,9 +145,7 @@ def runs(tmp_path_factory):
             Scene.load(place / f"{name}.txt").run(place / f"{name}.out")
     (place / "bad.txt").write_text(SCENE.replace("300 kPa", "300 kg").replace("NAME", "ball"))
     (place / "other-camera.txt").write_text("render { size (64, 48) camera from (3, -4, 2) m look (0, 0, 0) m }\n")
-    (place / "scenes").mkdir()
-    shutil.copytree(SCENES / "lammps", place / "scenes" / "lammps")
-    shutil.copytree(place / "beam.out", place / "scenes" / "beam.out")
+    shutil.copytree(SCENES / "lammps", place, dirs_exist_ok=True)
     (place / ".vscode" / "extensions").mkdir(parents=True)
     lmp = [BIN / "lmp", "-in", "in.ball"]
     subprocess.run(lmp, cwd=place / "ball.out", check=True, capture_output=True)

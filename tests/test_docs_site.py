@@ -2,15 +2,18 @@
 """The docs as a site: ``make docs`` without the notebooks, which a test of their own runs; and their spelling."""
 
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+from mdanim_lammps import Scene
 from paths import REPOSITORY
 from spellchecker import SpellChecker
 
 DOCS = REPOSITORY / "docs"
-PAGES = [DOCS / "index.md", DOCS / "api.md", DOCS / "gallery.md", DOCS / "notebooks" / "first-scene.ipynb"]
+PAGES = [*(DOCS / f"{name}.md" for name in ("index", "api", "gallery", "input-scripts")), DOCS / "notebooks" / "first-scene.ipynb"]
+DOWNLOAD = r'<a href="_static/([^"]+)" download'
 
 
 def test_the_site_is_built_without_a_warning(tmp_path):
@@ -27,9 +30,24 @@ def test_the_site_is_built_without_a_warning(tmp_path):
     shown = re.findall(r'<video src="_static/([^"]+)"', (tmp_path / "html" / "gallery.html").read_text())
     assert sorted(shown) == [movie.name for movie in movies] and len(shown) > 3
     assert all((tmp_path / "html" / "_static" / name).exists() for name in shown)
-    scenes = re.findall(r'<a href="_static/(\w+\.txt)" download', (tmp_path / "html" / "gallery.html").read_text())
-    assert len(scenes) > 20 and all((tmp_path / "html" / "_static" / name).exists() for name in scenes)
+    check_gallery(tmp_path / "html", tmp_path / "saved")
+    scripts = re.findall(DOWNLOAD, (tmp_path / "html" / "input-scripts.html").read_text())
+    assert {path.name for path in (REPOSITORY / "scenes" / "lammps").iterdir()} == {name.removeprefix("lammps/") for name in scripts}
+    assert all((tmp_path / "html" / "_static" / name).exists() for name in scripts)
     assert max(movie.stat().st_size for movie in movies) < 200_000
+
+
+def check_gallery(site: Path, place: Path) -> None:
+    """Every scene of the gallery is read in a folder that has nothing but the files linked in its cell of the table."""
+    cells = re.findall(r"<td.*?</td>", (site / "gallery.html").read_text(), flags=re.S)
+    linked = [names for cell in cells if (names := re.findall(DOWNLOAD, cell))]
+    assert len(linked) > 20 and sum(len(names) > 1 for names in linked) >= 6
+    for scene, *others in linked:
+        for name in (scene, *others):
+            file = place / scene.removesuffix(".txt") / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(site / "_static" / name, file)
+        assert Scene.load(place / scene.removesuffix(".txt") / scene).record.solids, scene
 
 
 def words_of(page: Path) -> set[str]:
