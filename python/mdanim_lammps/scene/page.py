@@ -81,6 +81,7 @@ include "rubber.txt"            # relative to this file
   `let` inside braces is known up to the closing brace.
 - `repeat i in a .. b { }` repeats its statements for the whole numbers i from a to b; objects, `expect` and
   `camera` lines, `hold` and other repeats may stand inside.
+- An index is one number, which may be computed: of two repeats write `object box[100*r + c]`; `box[r, c]` is refused.
 - `include "file"` reads another file in its place. A file that includes itself, and more than 16 levels,
   are errors that show the chain of files.
 - There are no conditions and no other loops, so the evaluation of a scene always ends.
