@@ -32,6 +32,18 @@ def test_init_writes_a_scene_that_runs(tmp_path):
     assert call("init", "no/first", cwd=tmp_path).returncode == 7
 
 
+def test_the_cube_of_init_comes_to_rest(tmp_path):
+    """Flat on the ground, near where it fell: the last picture shows it as large as the first."""
+    from mdanim_lammps import Trajectory
+
+    assert call("init", "first", cwd=tmp_path).returncode == 0
+    assert call("first.txt", "--no-movie", cwd=tmp_path).returncode == 0
+    cube = Trajectory(tmp_path / "first.out").objects["cube"]
+    x, y, z = cube.center_of_mass[-1]
+    assert abs(x) < 0.2 and abs(y) < 0.2 and abs(z - 0.1) < 0.01
+    assert abs(cube.velocity[-5:]).max() < 0.05
+
+
 def test_every_word_is_explained():
     """All blocks, settings and limits; what is said has the form, the unit, the meaning."""
     for name in (

@@ -25,10 +25,10 @@ ground z 0 m                         # a floor; objects also touch each other, w
 object cube {{
   shape       box (20, 20, 20) cm    # or sphere, ellipsoid, cylinder, cone, torus, mesh "file.stl"
   position    (0 m, 0 m, h)          # of its centre
-  orientation axis (1, 1, 0) angle 20 deg
+  orientation axis (0, 1, 0) angle 40 deg
   density     1000 kg/m^3            # or mass 8 kg
   elasticity  500 kPa                # Young's modulus: 300 kPa is soft rubber, 100 MPa is hard and costs more steps
-  damping     0.1                    # part of critical damping; without it the cube never comes to rest
+  damping     0.5                    # part of critical damping; without it the cube never comes to rest
   color       "#3b8fc4"
 }}
 
@@ -40,7 +40,7 @@ object cube {{
 # }}
 
 control {{
-  time     2 s                       # how long; frames 30 fps unless it says otherwise
+  time     2.5 s                     # how long; frames 30 fps unless it says otherwise
   friction 0.5                       # without it objects slide as on ice
 }}
 
