@@ -11,7 +11,7 @@ from command_line import GOOD, call, run
 from mdanim_lammps import doctor
 from mdanim_lammps.scene.explain import MARGINS, explain, words
 from mdanim_lammps.scene.grammar import grammar
-from mdanim_lammps.scene.keywords import BLOCKS, KEYWORDS
+from mdanim_lammps.scene.keywords import BLOCKS, KEYWORDS, did_you_mean, edits
 from paths import REPOSITORY, SCENES
 
 
@@ -64,6 +64,40 @@ def test_every_word_is_explained():
     assert "`" not in "".join(map(explain, words()))
     with pytest.raises(KeyError, match="did you mean 'friction'"):
         explain("frction")
+
+
+def typos(word):
+    """A word with one letter missing, doubled, swapped with the next, or wrong."""
+    for k in range(len(word)):
+        yield word[:k] + word[k + 1 :]
+        yield word[:k] + word[k] + word[k:]
+        yield word[:k] + word[k + 1 : k + 2] + word[k] + word[k + 2 :]
+        yield from (word[:k] + wrong + word[k + 1 :] for wrong in "aeqx")
+
+
+def test_typos_are_guessed():
+    """One wrong letter in any word of a scene of three letters or more: that word, or one that is as near."""
+    known = words()
+    assert {*BLOCKS, *(k for block in KEYWORDS.values() for k in block)} <= {*known}
+    for word in (w for w in known if len(w) > 2):
+        for typo in {*typos(word)} - {*known}:
+            hint = did_you_mean(typo, known)
+            guess = hint.removeprefix("did you mean '").removesuffix("'?")
+            assert guess in known and (guess == word or edits(typo.lower(), guess.lower()) <= 1), f"{typo}: {hint}"
+            assert edits(typo, word) <= 1
+
+
+@pytest.mark.parametrize("word", ["domino", "unicorn", "table", "water", "jelly", "roughness", "butter"])
+def test_no_guess_that_is_far_off(word):
+    """A word that the language does not have, and of which no word is a typo."""
+    assert did_you_mean(word, words()) == ""
+    with pytest.raises(KeyError, match="explain without a word lists all of them"):
+        explain(word)
+
+
+def test_the_beginning_of_a_word_is_guessed():
+    """Three letters or more."""
+    assert did_you_mean("elast", words()) == "did you mean 'elasticity'?"
 
 
 def test_every_margin_of_the_shipped_scenes_is_explained():

@@ -31,7 +31,9 @@ def explain(word: str) -> str:
     wanted = word.strip().lower().replace("_", " ")
     found = [text for name, text in _entries() if wanted == name.lower() or wanted == name.lower().replace("-", " ")]
     if not found:
-        raise KeyError(f"'{word}' is no word of a scene; {did_you_mean(wanted, words()) or 'docs/language.md lists all of them'}")
+        raise KeyError(
+            f"'{word}' is no word of a scene; {did_you_mean(wanted, words()) or 'explain without a word lists all of them'}"
+        )
     return "\n\n".join(found)
 
 

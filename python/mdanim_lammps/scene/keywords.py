@@ -148,12 +148,26 @@ def example(keyword: Keyword) -> str:
 
 
 def did_you_mean(word: str, choices) -> str:
-    """``did you mean 'mass'?``, or the choices where none is near."""
+    """``did you mean 'mass'?``, or the choices where none is near: a third of the letters may be wrong, and one in any case."""
     choices = list(dict.fromkeys(choices))
-    close = get_close_matches(word, choices, 1, 0.6) or get_close_matches(word.lower(), choices, 1, 0.6)
-    if close:
-        return f"did you mean '{close[0]}'?"
+    close = [*get_close_matches(word, choices, 8, 0.5), *get_close_matches(word.lower(), choices, 8, 0.5)]
+    far = {choice: edits(word.lower(), choice.lower()) for choice in close}
+    near = [c for c in close if far[c] <= max(1, len(word) // 3) or (len(word) >= 3 and c.startswith(word))]
+    if near:
+        return f"did you mean '{min(near, key=far.get)}'?"
     return f"known here: {', '.join(choices)}" if 0 < len(choices) <= 20 else ""
+
+
+def edits(a: str, b: str) -> int:
+    """How many letters must be put in, taken out, replaced or swapped with the next one to make one word of the other."""
+    before, row = [], [*range(len(b) + 1)]
+    for i, letter in enumerate(a, 1):
+        older, before, row = before, row, [i]
+        for j, other in enumerate(b, 1):
+            row.append(min(before[j] + 1, row[j - 1] + 1, before[j - 1] + (letter != other)))
+            if i > 1 and j > 1 and (letter, a[i - 2]) == (b[j - 2], other):
+                row[j] = min(row[j], older[j - 2] + 1)
+    return row[-1]
 
 
 class Named(dict):
