@@ -12,7 +12,10 @@ from paths import REPOSITORY
 from spellchecker import SpellChecker
 
 DOCS = REPOSITORY / "docs"
-PAGES = [*(DOCS / f"{name}.md" for name in ("index", "api", "gallery", "input-scripts")), DOCS / "notebooks" / "first-scene.ipynb"]
+PAGES = [
+    *(DOCS / f"{name}.md" for name in ("index", "api", "gallery", "input-scripts")),
+    DOCS / "notebooks" / "first-scene.ipynb",
+]
 DOWNLOAD = r'<a href="_static/([^"]+)" download'
 
 
@@ -32,7 +35,9 @@ def test_the_site_is_built_without_a_warning(tmp_path):
     assert all((tmp_path / "html" / "_static" / name).exists() for name in shown)
     check_gallery(tmp_path / "html", tmp_path / "saved")
     scripts = re.findall(DOWNLOAD, (tmp_path / "html" / "input-scripts.html").read_text())
-    assert {path.name for path in (REPOSITORY / "scenes" / "lammps").iterdir()} == {name.removeprefix("lammps/") for name in scripts}
+    assert {path.name for path in (REPOSITORY / "scenes" / "lammps").iterdir()} == {
+        name.removeprefix("lammps/") for name in scripts
+    }
     assert all((tmp_path / "html" / "_static" / name).exists() for name in scripts)
     assert max(movie.stat().st_size for movie in movies) < 200_000
 
