@@ -216,6 +216,19 @@ def test_render_refuses(drawn, options, code, words):
     assert {p.name for p in drawn.iterdir()} - before - {"look.txt"} == ({"slow.mp4"} if code == 0 else set())
 
 
+def test_render_tells_of_slow_motion_that_jerks(drawn):
+    """With another render block and the frames of a run that was not meant for it: at its line, with what is smooth."""
+    for speed, warned in (("0.25", True), ("0.5", False), ("1", False)):
+        (drawn / "cam.txt").write_text(f"render {{\n  speed {speed}\n}}\n")
+        done = run("render", "cube.out", "--scene", "cam.txt", "--size", 64, 48, "-q", "-o", "cam.mp4", cwd=drawn)
+        assert done.returncode == 0 and ("warning" in done.stderr) == warned, done.stderr
+        if warned:
+            assert "cam.txt:2:9: warning: at speed 0.25 the movie shows 7.5 pictures a second" in done.stderr
+            assert "write speed 0.25 in the scene" in done.stderr and "frames 120 fps" in done.stderr
+    for name in ("cam.txt", "cam.mp4"):
+        (drawn / name).unlink()
+
+
 @pytest.fixture(scope="module")
 def drawn(tmp_path_factory):
     """A folder with a scene and its output."""

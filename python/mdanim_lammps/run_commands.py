@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+import sys
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
@@ -25,8 +26,11 @@ from .command_steps import (
     simulate_and_draw,
     with_quality,
 )
-from .errors import ExitCode, RefusedError, UsageError
+from .errors import ExitCode, Problem, RefusedError, UsageError
 from .terminal import progress_bar
+
+if TYPE_CHECKING:
+    from .scene.render import Render
 
 
 def resume(
@@ -103,11 +107,26 @@ def render(
 
     stored = adopt(folder, quiet=quiet)
     record = stored if scene is None else replace(stored, render=load_render(scene, [solid.name for solid in stored.solids]))
+    if scene is not None:
+        _warn_of_slow_motion(record.render, stored.control.frames)
     record = with_quality(record, quality)
     path = movie_file(folder, record) if out is None else picture_file(out, ".mp4")
     draw_movie(folder, record, path, quiet=quiet, size=size, fps=fps, frames=folder / "frames" if frames else None)
     if not quiet:
         print(f"movie    {path}" + (f"   pictures in {folder / 'frames'}" if frames else ""))
+
+
+def _warn_of_slow_motion(render: Render, frames: float) -> None:
+    """Say so where a run has too few frames per second for the speed of another render block."""
+    from .scene.formatting import number
+    from .scene.render import SMOOTH_RATE, few_pictures
+
+    if cause := few_pictures(frames, render.speed):
+        smooth = f"{number(SMOOTH_RATE / render.speed)} fps"
+        way_out = (
+            f"for smooth motion write speed {number(render.speed)} in the scene, no frames or frames {smooth}, and run it again"
+        )
+        print(Problem(render.spans.get("speed"), cause, way_out, "warning"), file=sys.stderr)
 
 
 def view(

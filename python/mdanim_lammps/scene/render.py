@@ -12,13 +12,22 @@ from pathlib import Path
 from typing import ClassVar
 
 from ..errors import Span
-from .formatting import vector
+from .formatting import number, vector
 from .limits import PIXELS, SHADOWS, SPEED
 from .schema import Codec, Keyword, OneOf, Rule, Vector, Words, setting
 
 COLOR = 'a CSS name or "#rrggbb". Absent: chosen automatically.'
 LOWEST_LAMP = math.sin(math.radians(5.0))
 """Height of a lamp over its distance; shadows of a lower one are longer than any picture."""
+SMOOTH_RATE, LEAST_RATE = 30.0, 15.0
+"""Pictures per second of a movie, and below how many it jerks."""
+
+
+def few_pictures(frames: float, speed: float) -> str:
+    """What is wrong with a movie in slow motion of a run with so many frames per second; the empty string where nothing is."""
+    if speed >= 1.0 or frames * speed >= LEAST_RATE:
+        return ""
+    return f"at speed {number(speed)} the movie shows {number(frames * speed, 3)} pictures a second"
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,7 @@ from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example
 from .limits import MOST_FRAMES, MOST_PAIRS
 from .makers import check_waves
 from .meshes import refusal_of_mesh
+from .render import SMOOTH_RATE, few_pictures
 from .scene import GLOBALS, IMMERSION, QUANTITIES, Vector
 from .source import Problems, SceneFile
 
@@ -34,10 +35,6 @@ def validate(out: EvaluatedBlock, problems: Problems, name: str, source: SceneFi
 def validate_render(out: EvaluatedBlock, problems: Problems, names: Sequence[str], source: SceneFile) -> records.Render | None:
     """The render block of a file for a scene with objects of these names; None after an error."""
     return Validator(out, problems, Span(source.name, 1, 1), names).render()
-
-
-SMOOTH_RATE, LEAST_RATE = 30.0, 15.0
-"""Pictures per second of a movie, and below how many it jerks."""
 
 
 class Validator:
@@ -244,9 +241,7 @@ class Validator:
         slow = render is not None and render.speed < 1.0
         if slow and "frames" not in control.spans:
             control = replace(control, frames=SMOOTH_RATE / render.speed)
-        elif slow and control.frames * render.speed < LEAST_RATE:
-            shown = number(control.frames * render.speed, 3)
-            cause = f"at speed {number(render.speed)} the movie shows {shown} pictures a second"
+        elif slow and (cause := few_pictures(control.frames, render.speed)):
             way_out = f"for smooth motion write frames {number(SMOOTH_RATE / render.speed)} fps in control, or leave frames out"
             self.problem(control.spans["frames"], cause, way_out, severity="warning")
         frames, rate = control.time * control.frames, f"1/{number(control.frames, 6)} s"
