@@ -21,7 +21,8 @@ def outputs(tmp_path_factory):
     together.cells = [cell for notebook in notebooks for cell in (forget.copy(), *notebook.cells)]
     place = {"metadata": {"path": str(tmp_path_factory.mktemp("notebooks"))}}
     NotebookClient(together, timeout=120, kernel_name="python3", resources=place).execute()
-    return {
+    errors = [output.text for cell in together.cells for output in cell.get("outputs", ()) if output.get("name") == "stderr"]
+    return {"errors": errors} | {
         path.stem: [output.get("data", {}) for cell in notebook.cells for output in cell.get("outputs", ())]
         for path, notebook in zip(NOTEBOOKS, notebooks)
     }
@@ -34,6 +35,11 @@ def test_runs(name, outputs):
     text = "".join("".join(data.get("text/html", "")) for data in shown)
     assert "<progress " in text and ("<img " in text or "<table" in text)
     assert any("image/png" in data for data in shown), "no plot"
+
+
+def test_nothing_is_warned_of(outputs):
+    """A reader's notebook shows results, and no remark of a library with a path of the machine."""
+    assert outputs["errors"] == []
 
 
 def test_are_stored_without_output():

@@ -15,8 +15,9 @@ DECIMALS = 5
 
 
 def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) -> list[str]:
-    import MDAnalysis
-    from MDAnalysis.coordinates.XTC import XTCWriter
+    from ..results.universe import MDAnalysis  # which warns of nothing in notebooks
+
+    XTCWriter = MDAnalysis.coordinates.XTC.XTCWriter
 
     m, start = cut.metadata, cut.position(cut.frames[0])
     scale = scale_of(cut)

@@ -3,15 +3,20 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
-import MDAnalysis
 import numpy as np
-from MDAnalysis.coordinates.H5MD import H5MDReader
 
 from ..errors import OutputError
 from .dump import read_dump
 from .trajectory import Trajectory
+
+with warnings.catch_warnings():
+    # In a notebook without ipywidgets tqdm, which MDAnalysis imports, shows its own path.
+    warnings.filterwarnings("ignore", "IProgress not found")
+    import MDAnalysis
+    from MDAnalysis.coordinates.H5MD import H5MDReader
 
 
 class _Reader(H5MDReader):
