@@ -67,9 +67,9 @@ def test_lift_is_the_weight_of_what_is_below_the_surface(way, z):
 
 @pytest.mark.parametrize("z", [15.5, 7.5])
 def test_forces_are_those_of_the_twin(z):
-    """Lift by parts of cells, quadratic drag and what calms solids, of a cube that moves and turns; a part of it in, and all of it."""
+    """Lift by parts of cells, quadratic drag and what calms solids, of a cube that moves and turns, partly or wholly in."""
     ready = scene(drag=None, density=500, young=1e5, z=z, roll=20, pitch=35, yaw=10)
-    system, low, g = ready.system, np.array(ready.plan.grid.low), -ready.scene.gravity[2]
+    system, grid, g = ready.system, ready.plan.grid, -ready.scene.gravity[2]
     away = system.position - system.center_of_mass(system.position)[system.object]
     v = np.array([0.3, -0.2, -0.5]) + np.cross([0.04, 0.06, -0.1], away)
     with Instance(ready.plan) as instance:
@@ -79,7 +79,7 @@ def test_forces_are_those_of_the_twin(z):
     found -= system.mass[:, None] * np.array(ready.scene.gravity)
     columns = ready.plan.columns
     twin = in_waves.forces(
-        system.position - low, v, system.hexahedron, system.volume, system.mass, 14.0 - low[2], ready.plan.grid.cell[0], g, 1000.0,
+        system.position - grid.low, v, system.hexahedron, system.volume, system.mass, 14.0 - grid.low[2], grid.cell[0], g, 1000.0,
         columns["gamma"], columns["quadratic"],
     )  # fmt: skip
     # The level rises by what is displaced; columns know velocities in units of 2^-24: both below 2e-3 of the largest lift.
