@@ -252,6 +252,27 @@ def test_nothing_is_drawn_where_it_is_dry(tmp_path, look):
         assert np.abs(spot(wet, view, point) - spot(bare, view, point)).max() > 0.1
 
 
+def test_what_falls_is_whole_beside_a_dry_place(tmp_path):
+    """A column that is kept dry cuts the sheet there, and not where liquid falls off a block elsewhere."""
+    block = [box("weir", (0.4, 1.4, 0.5), (4, 14, 5), (-0.2, 0.0, 0.25))]
+    from_below = Render(camera=(Camera((3.0, -1.5, 1.5), (0.2, 0.0, 0.3)),))
+
+    def fall(grid):
+        return np.where(column_centres(grid)[0] < 0.0, 0.6, 0.25)
+
+    def beside(grid):
+        x, y = column_centres(grid)
+        return np.where((x > 0.8) & (y > 0.5), -np.inf, fall(grid))
+
+    wet, view = picture(tmp_path / "wet.h5", fall, block, from_below, raw=fall)
+    dry, _ = picture(tmp_path / "dry.h5", fall, block, from_below, raw=beside)
+    change = np.abs(wet - dry)
+    assert change.max() > 0.02  # at the dry place
+    for z in (0.3, 0.4, 0.5, 0.55):
+        for y in (-0.5, -0.2, 0.1):
+            assert spot(change, view, (0.05, y, z)).max() < 0.005, (y, z)
+
+
 @pytest.mark.parametrize("look", ["smooth", "cells"])
 def test_less_than_a_film_is_not_drawn(tmp_path, look):
     """A twentieth of a cell, as the filter leaves around a puddle, has no skin, whatever its colour."""

@@ -355,7 +355,8 @@ FRAGMENT_LIQUID = """//VTK::Light::Impl
   float inside = liquidHeight(worldPosition.xy - 0.25 * cell.xy * n.xy);
   float top = n.z > 0.5 ? worldPosition.z : inside;
   // The sheet runs on through a hull that is dry inside, where the liquid ends far below it.
-  if (worldPosition.z > inside + sheetAbove) discard;
+  float dry = texture(liquidDry, (worldPosition.xy - basinLow.xy) / (basinHigh.xy - basinLow.xy)).r;
+  if (dry > 0.5 && worldPosition.z > inside + 0.5 * cell.z) discard;
   float film = smoothstep(0.1, 0.5, (top - basinLow.z) / cell.z);
   if (film <= 0.0) discard;
   bool inner = dot(n, toEye) < 0.0;

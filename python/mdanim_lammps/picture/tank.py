@@ -58,12 +58,13 @@ class Tank:
         inner.GetProperty().FrontfaceCullingOn()
         outer.GetProperty().BackfaceCullingOn()
         self._foam = Foam(pool.grid, trajectory.dt * trajectory.steps_per_frame, self._liquid) if look == "smooth" else None
-        self._white = Field(*pool.shape[:2], smooth=True)
+        self._white, self._dry = (Field(*pool.shape[:2], smooth=True) for _ in range(2))
         if behind:
             behind.look_up([outer])
         for actor in (inner, outer):
             actor.ForceTranslucentOn()
             actor.GetProperty().SetTexture("liquidFoam", self._white.texture)
+            actor.GetProperty().SetTexture("liquidDry", self._dry.texture)
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
             uniforms.SetUniform3f("cell", list(pool.grid.cell))
             uniforms.SetUniformf("skinCover", COVER[look])
@@ -134,10 +135,10 @@ class Tank:
         if self._foam:
             self._white.fill(self._foam.at(frame))
         # There are no blocks where it is dry.
-        above = 0.5 * self._trajectory.liquid.grid.cell[2] if dry.any() and self._look == "smooth" else np.finfo(np.float32).max
+        if self._look == "smooth":
+            self._dry.fill(dry.astype(np.float32))
         for actor in (self.inner, self.outer):
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
-            uniforms.SetUniformf("sheetAbove", float(above))
             uniforms.SetUniformf("foamMost", float(self._white.numbers.max()))
         for actor in self._through:
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
