@@ -144,6 +144,7 @@ class Basin {
   virtual double cells_at_start() const = 0;
   virtual std::int64_t updates_so_far() const = 0;    // sweeps of the automaton
   virtual double energy() const { return 0.0; }       // of the liquid since the start, over density g cell^4; 0 without momentum
+  virtual Vec3 momentum() const { return {}; }        // of the liquid, over density [volume * velocity]; sideways
   virtual double highest() const { return top(); }    // liquid
   virtual double bytes() const = 0;
   virtual double mean_level() const = 0;    // [distance]

@@ -53,6 +53,13 @@ double Drops::energy() const
   return sum;
 }
 
+Vec3 Drops::momentum() const
+{
+  Vec3 sum;
+  for (const Drop &drop : drops) sum += static_cast<double>(drop.units) / UNITS_PER_CELL * drop.v;
+  return sum;
+}
+
 // From columns whose surface rises much faster than those around.
 void Drops::leave(Waves &waves, double dt, std::uint64_t when)
 {

@@ -31,6 +31,7 @@ class Drops {
   const std::vector<Drop> &all() const { return drops; }
   Units total() const;
   double energy() const;    // as Waves::Energy
+  Vec3 momentum() const;    // as of Waves, and upwards
   std::vector<std::uint8_t> state() const;
   // Throws std::runtime_error, and changes nothing, when it is damaged.
   void set_state(const std::uint8_t *bytes, std::size_t size);

@@ -60,6 +60,7 @@ class WaveBasin : public Basin {
   double cells_at_start() const override { return static_cast<double>(units + makers.in() - makers.out()) / UNITS_PER_CELL; }
   std::int64_t updates_so_far() const override { return updates; }
   double energy() const override { return energy_now() - energy_at_start; }
+  Vec3 momentum() const override;
   double highest() const override { return crest; }
   double bytes() const override;
   double mean_level() const override;

@@ -47,6 +47,13 @@ double WaveBasin::energy_now() const
   return now.height + now.motion + drops.energy();
 }
 
+Vec3 WaveBasin::momentum() const
+{
+  const Vec3 sum = waves.momentum() + drops.momentum();
+  const double unit = cell_volume() / unit_of_time;
+  return {sum.x * unit * shape.cell.x, sum.y * unit * shape.cell.y, 0.0};
+}
+
 double WaveBasin::mean_level() const
 {
   double all = 0.0;

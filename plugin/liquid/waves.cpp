@@ -172,4 +172,14 @@ Waves::Energy Waves::energy() const
   return energy;
 }
 
+Vec3 Waves::momentum() const
+{
+  Vec3 sum;
+  each_link([&](const LinkPlace &link) {
+    const WaveLinks &l = arrays_of(link);
+    (link.d == 0 ? sum.x : sum.y) += l.height[link.at] * l.u[link.at];
+  });
+  return sum;
+}
+
 }    // namespace mdanim

@@ -6,6 +6,7 @@
 #define MDANIM_WAVES_H
 
 #include "engine/team.h"
+#include "laws/vec3.h"
 #include "liquid/span.h"
 #include "liquid/waves_kernels.h"
 
@@ -63,6 +64,7 @@ class Waves {
     double height, motion;
   };
   Energy energy() const;
+  Vec3 momentum() const;    // along the links
 
   // --- liquid that comes and goes between updates (waves_exchange.cpp) ---
 

@@ -79,7 +79,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   extscalar = 1;
   energy_global_flag = 1;
   vector_flag = 1;
-  size_vector = 13;
+  size_vector = 15;
   extvector = 0;
   array_flag = 1;
   size_array_cols = 4;
@@ -417,7 +417,8 @@ double FixMdanimLiquid::safe_displacement() const
 double FixMdanimLiquid::compute_scalar() { return -buoyancy->ledger().sum.work; }
 
 // 1 cells of liquid; 2 at the start; 3 mean level; 4 solid cells; 5 sweeps, of waves updates; 6 awake; 7 energy lost to drag;
-// wall seconds of the slowest rank for 8 liquid, 9 occupancy, 10 coupling, 11 all; 12 energy of waves; 13 highest liquid
+// wall seconds of the slowest rank for 8 liquid, 9 occupancy, 10 coupling, 11 all; 12 energy of waves; 13 highest liquid;
+// 14, 15 momentum of waves along x and y
 double FixMdanimLiquid::compute_vector(int n)
 {
   switch (n) {
@@ -439,6 +440,10 @@ double FixMdanimLiquid::compute_vector(int n)
       return basin->energy() * buoyancy->density() * basin->g * basin->cell_volume() * basin->shape.cell.z;
     case 12:
       return top_height(basin->highest());
+    case 13:
+      return buoyancy->density() * basin->momentum().x;
+    case 14:
+      return buoyancy->density() * basin->momentum().y;
     default:
       break;
   }

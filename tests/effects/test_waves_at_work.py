@@ -8,9 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mdanim_lammps import Scene, Trajectory
 from mdanim_lammps.effects.liquid import WAVES
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.results.expect import immersed_share
+from mdanim_lammps.results.ledger import LIQUID_MOMENTUM
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 from mdanim_lammps.scene.scene import LiquidModel
@@ -143,6 +145,23 @@ def test_energy_goes_from_a_body_to_waves_and_is_accounted():
     assert (waves + work < 0.15 * waves.max()).all(), "the liquid has more than it got"
     assert waves.max() > 5 * potential
     assert lost.min() < -5 * potential
+
+
+def test_momentum_goes_from_a_body_to_the_liquid(tmp_path):
+    """What a hull that glides loses the liquid has, as long as no wave comes to a wall: to 5 %, as push is smoothed in time."""
+    path = tmp_path / "glide.txt"
+    path.write_text(
+        "gravity (0, 0, -9.81)\nliquid lake { basin from (-2, -1.5, 0) m to (2, 1.5, 0.8) m  density 1000  level 0.4 m }\n"
+        "object hull { shape ellipsoid (50, 16, 16) cm  position (0, 0, 0.4) m  velocity (1.5, 0, 0) m/s  density 500  "
+        "elasticity 400 kPa }\ncontrol { time 0.3 s  resolution 5 cm  frames 40 fps }\n"
+    )
+    result = Scene.load(path).run(tmp_path / "out", movie=False)
+    liquid = np.stack([result.ledger.array(name) for name in LIQUID_MOMENTUM], axis=-1)
+    hull = Trajectory(result.folder).objects["hull"]
+    solid = hull.mass * np.asarray(hull.velocity)[:, :2]
+    assert liquid[0] == pytest.approx(0.0) and liquid[-1, 0] > 0.25 * solid[0, 0]
+    np.testing.assert_allclose(solid[:, 0] + liquid[:, 0], solid[0, 0], rtol=0.05)
+    assert np.abs(solid[:, 1] + liquid[:, 1]).max() < 0.02 * solid[0, 0]
 
 
 def test_a_shallow_liquid_is_told():

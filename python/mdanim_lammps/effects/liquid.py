@@ -27,9 +27,9 @@ PERIOD = 0.06
 """Time between updates of a liquid that is not level, over sqrt(cell/g)."""
 NEAR = 8.0
 """Cells above the liquid up to which the motion of solids counts for it; as in the fix."""
-CELLS, CELLS_AT_START, FLOW, OCCUPANCY, COUPLING, WAVES, CREST = 0, 1, 7, 8, 9, 11, 12
+CELLS, CELLS_AT_START, FLOW, OCCUPANCY, COUPLING, WAVES, CREST, MOMENTUM = 0, 1, 7, 8, 9, 11, 12, (13, 14)
 """In the fix's vector: whole cells of liquid now and before step 0, three clocks [s], the energy of a liquid with momentum since
-then [J], its highest point [m]."""
+then [J], its highest point [m], its momentum along x and y [N s]."""
 WAVE_PERIOD = 0.1
 """As PERIOD, of waves."""
 CALM = 50.0
@@ -88,7 +88,7 @@ class LiquidAutomaton(Effect):
         return Verdict(self.name, True, f"{scene.liquid.name} in a basin", scene.liquid.spans.get("liquid"))
 
     def of(self, scene):
-        return LiquidWaves() if _is_wavy(scene) else self
+        return LiquidWaves() if is_wavy(scene) else self
 
     def margins(self, envelope):
         """Sweeps for each cell that the fastest solid travels: it may go on for EVERY steps before the fix looks."""
@@ -203,7 +203,7 @@ class Buoyancy(Effect):
     if_off = "objects sink like stones"
 
     def of(self, scene):
-        return WavePush() if _is_wavy(scene) else self
+        return WavePush() if is_wavy(scene) else self
 
     def called_for(self, scene, planes=None):
         return _reached(self.name, scene)
@@ -311,7 +311,7 @@ def gamma(scene, system: System) -> np.ndarray:
     """Drag rate of each particle [1/s], shape (N,); ``auto`` is sqrt(g/L), L^3 the volume of its solid, or a part of that."""
     if scene.liquid.drag is not None:
         return np.full(system.particles, scene.liquid.drag)
-    part = WAVE_DRAG if _is_wavy(scene) else 1.0
+    part = WAVE_DRAG if is_wavy(scene) else 1.0
     return part * np.sqrt(-scene.gravity[2] / _size(system))[system.object]
 
 
@@ -340,7 +340,7 @@ def _largest_eigenvalue(matrices: np.ndarray) -> np.ndarray:
 
 
 def _has_quadratic_drag(scene) -> bool:
-    return _is_wavy(scene) and scene.liquid.drag is None
+    return is_wavy(scene) and scene.liquid.drag is None
 
 
 def _size(system: System) -> np.ndarray:
@@ -394,7 +394,7 @@ def _reached(name: str, scene) -> Verdict:
     return Verdict(name, True, f"{solid.name} can reach {scene.liquid.name}", solid.spans.get("object"))
 
 
-def _is_wavy(scene) -> bool:
+def is_wavy(scene) -> bool:
     """Whether the liquid has momentum."""
     return scene.liquid is not None and scene.liquid.model is LiquidModel.WAVES
 

@@ -18,6 +18,8 @@ POTENTIALS = ("gravity", "buoyancy", "waves")
 """Energies whose zero is arbitrary: only how far they have changed says how much is in play."""
 DUE = "liquid_due"
 """Extra of a liquid that comes and goes: whole cells at the start, and what has come since less what has gone."""
+LIQUID_MOMENTUM = ("liquid_momentum.x", "liquid_momentum.y")
+"""Extras of a liquid with momentum [N s]: solids lose what it gains, but for what walls of the basin take."""
 WHOLE = ("liquid_cells", DUE)
 """Extras that are whole numbers, and written as such."""
 

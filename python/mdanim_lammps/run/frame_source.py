@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from ..effects.air_drag import LEAPFROG
-from ..effects.liquid import CELLS, CELLS_AT_START, LiquidAutomaton
+from ..effects.liquid import CELLS, CELLS_AT_START, MOMENTUM, LiquidAutomaton, is_wavy
 from ..engine.instance import Instance
 from ..engine.plan import Plan
 from ..engine.state import State
@@ -40,6 +40,8 @@ class LiquidFrame:
     """Whole cells of liquid now."""
     start: int
     """The same before step 0, and what has come since less what has gone."""
+    momentum: tuple[float, float] | None
+    """Along x and y [N s]; None where the liquid has none."""
 
 
 @dataclass(frozen=True)
@@ -221,7 +223,8 @@ def liquid_frame(instance: Instance) -> LiquidFrame | None:
         return None
     cells, start = (int(instance.fix_value(LiquidAutomaton.fix, n)) for n in (CELLS, CELLS_AT_START))
     drops = instance.liquid_drops() if instance.plan.scene.liquid.drops else None
-    return LiquidFrame(instance.liquid_heights(), drops, cells, start)
+    momentum = tuple(instance.fix_value(LiquidAutomaton.fix, n) for n in MOMENTUM) if is_wavy(instance.plan.scene) else None
+    return LiquidFrame(instance.liquid_heights(), drops, cells, start, momentum)
 
 
 def add_clocks(account: Account, instance: Instance) -> None:

@@ -16,6 +16,7 @@ import numpy as np
 
 from .. import __version__
 from ..effects.air_drag import LEAPFROG
+from ..effects.liquid import is_wavy
 from ..engine.commands import input_script
 from ..engine.data_file import write_bodies, write_data
 from ..errors import DivergedError, ExitCode, MdanimError, OutputError
@@ -23,7 +24,7 @@ from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
 from ..results.expect import Measured, Outcome, evaluate, recorded
 from ..results.files import CHECKPOINT, PAUSE, STOP, disk_errors, write_json, write_whole
-from ..results.ledger import DUE, Ledger
+from ..results.ledger import DUE, LIQUID_MOMENTUM, Ledger
 from ..results.progress import ProgressLog
 from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
@@ -186,7 +187,12 @@ class _Run:
         self.fed = ready.scene.liquid is not None and ready.scene.liquid.fed
         self.ledger = Ledger(
             ledger_terms(ready.plan),
-            (*self.recorded.values(), *(("liquid_cells",) if self.grid else ()), *((DUE,) if self.fed else ())),
+            (
+                *self.recorded.values(),
+                *(("liquid_cells",) if self.grid else ()),
+                *((DUE,) if self.fed else ()),
+                *(LIQUID_MOMENTUM if is_wavy(ready.scene) else ()),
+            ),
             rounding_energy(ready.system),
         )
 
@@ -376,6 +382,8 @@ class _Run:
             extras["liquid_cells"] = liquid.cells
             if self.fed:
                 extras[DUE] = liquid.start
+            if liquid.momentum:
+                extras |= dict(zip(LIQUID_MOMENTUM, liquid.momentum))
             if liquid.cells != liquid.start:
                 raise DivergedError(
                     f"step {now.step}, t = {number(when, 4)} s: {liquid.cells} cells of liquid, "
