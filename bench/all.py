@@ -176,12 +176,15 @@ def main() -> int:
         found[name] = measure(name, rounds, options.quick)
         text += "\n" + told(name, found[name])
         print(told(name, found[name]), flush=True)
-    if options.write:
+    failed = [name for name, f in found.items() if "failed" in f]
+    if options.write and failed:
+        print(f"nothing is written: {', '.join(failed)} could not be measured", file=sys.stderr)
+    elif options.write:
         if draw(found):
             text += "\n![nanoseconds per particle-step](images/performance.png)\n"
         FIGURES.write_text(json.dumps(found, indent=1) + "\n")
         replace_between(PAGE, "bench", text)
-    return 1 if any("failed" in f for f in found.values()) else 0
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":

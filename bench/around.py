@@ -28,7 +28,10 @@ def program(*words: object) -> None:
 
 def start_up(name: str, folder: Path) -> float:
     """Seconds from the program's start to a plan: all but LAMMPS and its steps."""
-    code = "import sys; from mdanim_lammps.cli import load, prepare; prepare(load(sys.argv[1]))"
+    code = (
+        "import sys; from pathlib import Path; from mdanim_lammps.run.prepare import prepare; "
+        "from mdanim_lammps.scene.parse import load_scene; prepare(load_scene(Path(sys.argv[1])))"
+    )
     start = time.perf_counter()
     subprocess.run([sys.executable, "-c", code, str(SCENES / f"{name}.txt")], check=True, timeout=600)
     return time.perf_counter() - start
