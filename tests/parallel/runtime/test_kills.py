@@ -27,6 +27,8 @@ if os.environ.get("PMI_RANK") == "0":
     supervisor.KEEP_SECONDS = 0.0
 """
 """Put into the start of every Python: a checkpoint after every frame."""
+LASTS = 3.0
+"""Seconds that a run takes at least."""
 MOMENTS = ("anywhere", "checkpoint", "movie")
 COMPLETE = "is complete"
 
@@ -52,7 +54,7 @@ def start(folder: Path, eager: bool, *arguments: object) -> subprocess.Popen:
 
 def wait_for(moment: str, out: Path, process: subprocess.Popen, chance: random.Random) -> None:
     """Until the moment at which to kill, or the end of the process."""
-    delay = time.monotonic() + chance.uniform(0.0, 4.0)
+    delay = time.monotonic() + chance.uniform(0.0, LASTS)
     while time.monotonic() < delay and process.poll() is None and moment != "movie":
         time.sleep(0.005)
     names = {"checkpoint": "*checkpoint*part*", "movie": "summary.json"}
@@ -69,7 +71,8 @@ def kill(process: subprocess.Popen, folder: Path, chance: random.Random) -> None
     victims = chance.choice(["all", "program", *(["rank"] if ranks else [])])
     picked = list(ranks) if victims == "all" else [chance.choice(list(ranks))] if victims == "rank" else []
     if victims == "all":
-        os.killpg(process.pid, signal.SIGKILL)
+        with suppress(ProcessLookupError):  # on a quick machine it may have ended by now
+            os.killpg(process.pid, signal.SIGKILL)
     elif victims == "program":
         process.kill()
     for rank in picked:
