@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mdanim_lammps.errors import Span
+from mdanim_lammps.errors import SceneError, Span
 from mdanim_lammps.model import basin, build_models, check_basin, shapes
 from mdanim_lammps.model.system import assemble
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.scene import Box, HoldAll, HoldFaces, Liquid, LiquidModel, Mesh, Side, Switch
 from model_samples import MESHES, SHAPES, scene, shape_id, solid
 from paths import REPOSITORY
@@ -111,6 +112,14 @@ def test_a_basin_too_narrow_is_told():
     assert problem.line == 11 and "2 cells wide along y" in problem.message
     assert "resolution 6 cm" in problem.hint
     assert not problems(block(Box((0.1, 0.1, 0.1))), h=0.06, high=(1.0, 0.2, 1.0), volume=0.01)
+
+
+def test_a_basin_too_large_for_memory_is_told_before_models_are_made(monkeypatch):
+    """Millions of particles take longer than a refusal may."""
+    monkeypatch.setattr(basin, "available_memory", lambda: 1e4)
+    monkeypatch.setattr("mdanim_lammps.run.prepare.build_models", lambda *_, **__: pytest.fail("models are made"))
+    with pytest.raises(SceneError, match="GB are free"):
+        prepare(scene(block(), resolution=0.1, liquid=WATER))
 
 
 def test_a_basin_too_large_for_memory_is_told(monkeypatch):

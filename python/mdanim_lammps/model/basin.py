@@ -95,6 +95,13 @@ def liquid_level(liquid: Liquid) -> float:
 # --- whether all fits ---------------------------------------------------------------------------------------
 
 
+def check_basin_memory(scene: SceneRecord) -> list[Problem]:
+    """Find a basin that does not fit into memory: it need not wait for the models of all solids."""
+    if scene.liquid is None or scene.effects.get("liquid") is Switch.OFF:
+        return []
+    return _too_large(scene.liquid, scene_grid(scene))
+
+
 def check_basin(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
     """Find a basin that is too narrow or too large, a liquid of no cell, and liquid and solids that do not fit into the basin.
 
@@ -106,6 +113,21 @@ def check_basin(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
         return []
     problems = _unusable(liquid, grid)
     return problems or [*_too_full(scene, models, grid), *_too_snug(scene, models, grid)]
+
+
+def _too_large(liquid: Liquid, grid: Grid) -> list[Problem]:
+    needed, free = grid.cells * BYTES_PER_CELL, available_memory()
+    if needed <= free:
+        return []
+    coarser = 1.1 * max(grid.cell) * (needed / free) ** (1 / 3)
+    return [
+        Problem(
+            liquid.spans.get("basin"),
+            f"the basin has {estimate(grid.cells)} cells of {say(max(grid.cell), 'm')}, which need "
+            f"{number(needed * 1e-9)} GB, {number(free * 1e-9)} GB are free",
+            f"try resolution {say(coarser, 'm')}, or a smaller basin",
+        )
+    ]
 
 
 def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
@@ -122,17 +144,8 @@ def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
                 f"write resolution {say(0.9 * side / NARROWEST, 'm')} in control, or make the basin larger",
             )
         ]
-    needed, free = grid.cells * BYTES_PER_CELL, available_memory()
-    if needed > free:
-        coarser = 1.1 * max(grid.cell) * (needed / free) ** (1 / 3)
-        return [
-            Problem(
-                place,
-                f"the basin has {estimate(grid.cells)} cells of {say(max(grid.cell), 'm')}, which need "
-                f"{number(needed * 1e-9)} GB, {number(free * 1e-9)} GB are free",
-                f"try resolution {say(coarser, 'm')}, or a smaller basin",
-            )
-        ]
+    if too_large := _too_large(liquid, grid):
+        return too_large
     low, high = liquid.fill or (liquid.low, liquid.high)
     if not grid.cells_within(low, high):
         thinnest = min(b - a for a, b in zip(low, high))

@@ -14,7 +14,7 @@ from ..effects import Verdict, resolve
 from ..effects.effect import Resolved
 from ..engine.plan import Plan, make_plan
 from ..errors import Problem, SceneError
-from ..model.basin import check_basin, open_hulls
+from ..model.basin import check_basin, check_basin_memory, open_hulls
 from ..model.build import build_models
 from ..model.model import Model
 from ..model.overlap import check_geometry
@@ -66,6 +66,8 @@ def prepare(scene: SceneRecord, *, allow_unstable: bool = False, progress: Calla
                 )
             ]
         )
+    if too_large := check_basin_memory(scene):
+        raise SceneError(too_large)
     models = build_models(scene, progress=progress)
     problems = check_geometry(scene, models) + check_basin(scene, models)
     resolved = resolve(effects.EFFECTS, scene)
