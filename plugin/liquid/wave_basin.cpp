@@ -247,14 +247,14 @@ void WaveBasin::find_on_parts(int count, const LatticeCell *cells, OnParts *on, 
     const int x = std::min(static_cast<int>(middle.x), shape.nx - 1), y = std::min(static_cast<int>(middle.y), shape.ny - 1);
     column[n] = y * shape.nx + x;
     known[n] = push.number_of(cell_number(x, y, std::clamp(static_cast<int>(middle.z), 0, shape.nz - 1)));
-    if (known[n] >= 0) __builtin_prefetch(&on_cells[known[n]]);
+    if (known[n] >= 0) __builtin_prefetch(&cell_pushes[known[n]]);
   }
   for (int n = 0; n < count; ++n) {
     on[n] = {};
     if (column[n] < 0) continue;
     double head = heads[column[n]], share = std::clamp(head, 0.0, 1.0);
     if (known[n] >= 0) {
-      const OnCell &found = on_cells[known[n]];
+      const CellPush &found = cell_pushes[known[n]];
       head = found.head, share = found.share;
       on[n] = {0.0, found.more, found.beside, found.along_x, found.along_y, found.flow_x, found.flow_y};
     }
@@ -268,11 +268,11 @@ void WaveBasin::find_on_parts(int count, const LatticeCell *cells, OnParts *on, 
 void WaveBasin::find_push(double part)
 {
   push.find(waves, mass.data(), part);
-  on_cells.clear();
+  cell_pushes.clear();
   for (const WavePush::OnCell &on : push.all())
-    on_cells.push_back({on.head, on.share, on.over - on.on_top, on.beside, on.along_x * (shape.cell.z / shape.cell.x),
-                        on.along_y * (shape.cell.z / shape.cell.y), on.flow_x * shape.cell.x / unit_of_time,
-                        on.flow_y * shape.cell.y / unit_of_time});
+    cell_pushes.push_back({on.head, on.share, on.over - on.on_top, on.beside, on.along_x * (shape.cell.z / shape.cell.x),
+                           on.along_y * (shape.cell.z / shape.cell.y), on.flow_x * shape.cell.x / unit_of_time,
+                           on.flow_y * shape.cell.y / unit_of_time});
 }
 
 double WaveBasin::calms_solids() const { return CALMING / unit_of_time; }

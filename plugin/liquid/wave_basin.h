@@ -85,11 +85,11 @@ class WaveBasin : public Basin {
   Waves waves;
   WavePush push;
   // What a lattice cell looks up, in one line of memory; the same numbers as in `push`.
-  struct alignas(64) OnCell {
+  struct alignas(64) CellPush {
     double head, share;
     double more, beside, along_x, along_y, flow_x, flow_y;    // see OnParts
   };
-  std::vector<OnCell> on_cells;
+  std::vector<CellPush> cell_pushes;
   WaveMakers makers;
   Drops drops;
   Occupancy still, mobile;

@@ -33,7 +33,7 @@ struct WaveBasinHead {
 double WaveBasin::bytes() const
 {
   return static_cast<double>(part.size()) * (2.0 * sizeof(int) + sizeof(std::uint16_t)) + push.bytes() +
-         static_cast<double>(on_cells.capacity() * sizeof(OnCell)) + columns() * 600.0;
+         static_cast<double>(cell_pushes.capacity() * sizeof(CellPush)) + columns() * 600.0;
 }
 
 long WaveBasin::solid_cells() const

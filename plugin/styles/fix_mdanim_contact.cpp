@@ -162,14 +162,14 @@ void FixMdanimContact::init()
 // --- objects ---
 
 // Of the objects that are here, by ascending IDs; the same on all ranks.
-std::vector<FixMdanimContact::Known> FixMdanimContact::survey() const
+std::vector<FixMdanimContact::SurveyedObject> FixMdanimContact::survey() const
 {
   const double *kinds = kind.values(lmp), *youngs = young.values(lmp), *frictions = friction.values(lmp);
-  std::map<int, Known> here;
+  std::map<int, SurveyedObject> here;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!(atom->mask[i] & among_bit) || atom->molecule[i] <= 0) continue;
     const int object_id = static_cast<int>(atom->molecule[i]);
-    Known &one = here.emplace(object_id, Known{object_id, 0, MAXTAGINT, 0, 0, 0, 0, 0}).first->second;
+    SurveyedObject &one = here.emplace(object_id, SurveyedObject{object_id, 0, MAXTAGINT, 0, 0, 0, 0, 0}).first->second;
     ++one.particles;
     if (atom->mask[i] & groupbit) one.moves = 1;
     if (atom->tag[i] >= one.lowest) continue;
@@ -179,17 +179,17 @@ std::vector<FixMdanimContact::Known> FixMdanimContact::survey() const
     one.friction = frictions ? frictions[i] : friction.number;
     one.mass = mass_of(atom->rmass, atom->mass, atom->type, i);
   }
-  std::vector<Known> mine_only;
+  std::vector<SurveyedObject> mine_only;
   for (const auto &[object_id, one] : here) mine_only.push_back(one);
-  std::map<int, Known> joined;
-  for (const Known &one : gather(world, mine_only)) {
-    Known &total = joined.emplace(one.id, Known{one.id, 0, MAXTAGINT, 0, 0, 0, 0, 0}).first->second;
+  std::map<int, SurveyedObject> joined;
+  for (const SurveyedObject &one : gather(world, mine_only)) {
+    SurveyedObject &total = joined.emplace(one.id, SurveyedObject{one.id, 0, MAXTAGINT, 0, 0, 0, 0, 0}).first->second;
     const long long particles = total.particles + one.particles;
     const int moves = total.moves | one.moves;
     if (one.lowest < total.lowest) total = one;
     total.particles = particles, total.moves = moves;
   }
-  std::vector<Known> all;
+  std::vector<SurveyedObject> all;
   for (const auto &[object_id, one] : joined) all.push_back(one);
   return all;
 }
@@ -202,7 +202,7 @@ void FixMdanimContact::take_objects()
   std::vector<ContactObject> objects;
   std::vector<char> moves;
   ids.clear(), lowest.clear();
-  for (const Known &one : survey()) {
+  for (const SurveyedObject &one : survey()) {
     const auto found = bodies.find(static_cast<int>(one.kind));
     if (found == bodies.end())
       error->all(FLERR, "fix {} mdanim/contact: object {} (molecule ID) has body {}, and no such body was given", id, one.id,

@@ -52,7 +52,7 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
 
  private:
   // What all ranks know of an object, from its particle with the lowest tag.
-  struct Known {
+  struct SurveyedObject {
     int id, moves;
     tagint lowest;
     long long particles;
@@ -60,7 +60,7 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
   };
   int read_word(int iarg, int narg, char **arg);
   void read_bodies_of(const char *file);
-  std::vector<Known> survey() const;
+  std::vector<SurveyedObject> survey() const;
   void take_objects();
   void list();
   mdanim::Coordinates places_now();

@@ -82,7 +82,7 @@ def test_forces_are_those_of_the_twin(z):
     columns = ready.plan.columns
     twin = in_waves.forces(
         system.position - grid.low, v, system.hexahedron, system.volume, system.mass, 14.0 - grid.low[2], grid.cell[0], g, 1000.0,
-        columns["gamma"], columns["quadratic"],
+        columns["quadratic"],
     )  # fmt: skip
     # The level rises by what is displaced; columns know velocities in units of 2^-24: both below 2e-3 of the largest lift.
     np.testing.assert_allclose(found, twin, atol=2e-3 * 1000.0 * g)

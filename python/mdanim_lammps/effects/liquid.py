@@ -264,7 +264,7 @@ class WavePush(Buoyancy):
 
 
 class LiquidDrag(Effect):
-    """-(gamma + k |v|) rho_l V_i s_i v on the immersed part of a particle, taken by the leap-frog with the drag of air."""
+    """-(gamma + k |v|) rho_l V_i s_i v on the immersed part of a particle; the leap-frog takes gamma's with the drag of air."""
 
     name = "liquid-drag"
     needs = ("liquid", "buoyancy")  # which gives the fix the volumes
@@ -278,7 +278,7 @@ class LiquidDrag(Effect):
     def columns(self, scene, system):
         air = air_drag.felt(scene, system)
         dry = np.zeros(system.particles) if air is None else air
-        quadratic = {"quadratic": per_length(scene, system)} if _has_quadratic_drag(scene) else {}
+        quadratic = {"quadratic": per_length(system)} if _has_quadratic_drag(scene) else {}
         return {"gamma": gamma(scene, system), **quadratic, "lambda": dry, **({} if air is None else {"air": air})}
 
     def friction(self, scene, system):
@@ -315,7 +315,7 @@ def gamma(scene, system: System) -> np.ndarray:
     return part * np.sqrt(-scene.gravity[2] / _size(system))[system.object]
 
 
-def per_length(scene, system: System) -> np.ndarray:
+def per_length(system: System) -> np.ndarray:
     """Quadratic drag of each particle over its immersed mass of liquid and its speed squared [1/m], shape (N,): C/2L.
 
     L is the longest edge of the box with the second moments of its solid, as what is long mostly moves that way.

@@ -7,7 +7,7 @@ docs/physics-liquid.md, "Volume by parts of lattice cells", "Drag" and "Solids a
 import numpy as np
 
 
-def forces(x, v, cells, volume, mass, level, edge, g, rho, gamma, quadratic):
+def forces(x, v, cells, volume, mass, level, edge, g, rho, quadratic):
     """Force of the liquid on each particle, without the part of drag that the leap-frog takes, shape (N, 3).
 
     Args:
@@ -16,7 +16,7 @@ def forces(x, v, cells, volume, mass, level, edge, g, rho, gamma, quadratic):
         volume, mass: shape (N,).
         level, edge: height of the surface, and edge of a cell of liquid.
         g, rho: gravity and density of the liquid.
-        gamma, quadratic: drag is -(gamma + quadratic |v|) rho V s v; here is what goes with `quadratic`.
+        quadratic: drag is -(gamma + quadratic |v|) rho V s v, of which the leap-frog takes the part of gamma.
     """
     found = np.zeros_like(x)
     rising = upward(x, v, mass, edge)
