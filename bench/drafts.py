@@ -8,6 +8,7 @@ models   the same for a cube of 6^3 cells set upright onto the surface, by `liqu
          because pressure squeezes: softer ones shrink and lie deeper
 waves    the first table for ``model waves``, with a calm time of 10 sqrt(L/g)
 speed    terminal speed under the liquid's drag over (rho_s - rho_l) g / (gamma rho_l)
+bobbing  first fall and period of a cube that bobs in ``model waves``, over those of its mass alone; in potential flow
 drift    what a floating cube moves sideways in 20 s, and the sweeps of the automaton in that time
 
 Without words all of them. Units as in scenes/lab/cube.txt: spacing 1, liquid of density 1000; elasticity 1000 Pa is a wave speed
@@ -19,6 +20,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "lab"))
+import heave
+import waves_forms
 
 CUBE = Path(__file__).parent.parent / "scenes" / "lab" / "cube.txt"
 DENSITIES = (300, 500, 700, 900)
@@ -120,6 +125,28 @@ def waves() -> None:
         print(f"{name:20}" + "   ".join(cells), flush=True)
 
 
+def bobbing() -> None:
+    """Print how cubes bob in a liquid with momentum."""
+    side, above = 6, 0.9
+    print("| draft; depth and width of the basin | fall; period | in potential flow | over it |")
+    print("|---|---|---|---|")
+    for draft, depth, width in ((2, 10, 24), (3, 10, 24), (5, 10, 24), (3, 24, 48)):
+        rest = depth + side / 2 - draft
+        size = dict(side=side, half=width / 2, level=depth, top=depth + side)
+        path = []
+        with Pool(model="waves", calm=1e6, drag=1e-9, density=1000 * draft / side, z=rest + above, **size) as pool:
+            step = 0.025 / 0.01**0.5
+            for _ in range(1200):
+                pool.run(step)
+                path.append((pool.mean("x")[2] - rest) / above)
+            whole = int(step / pool.ready.certificate.timestep) * pool.ready.certificate.timestep * 0.01**0.5
+        found = waves_forms.swings(np.array(path), draft, whole)
+        exact = waves_forms.swings(heave.bobbing(side, draft, width, depth, fine=2 if depth < 20 else 1, time=40), draft)
+        told = (f"{one.fall:.2f}; {one.period:.2f}" for one in (found, exact))
+        ratio = f"{found.fall / exact.fall:.2f}; {found.period / exact.period:.2f}"
+        print(f"| {draft} of {side}; {depth}, {width} |", " | ".join(told), "|", ratio, "|", flush=True)
+
+
 def speed() -> None:
     """Print terminal speeds."""
     gamma, g = 0.1, 0.01
@@ -145,7 +172,7 @@ def drift() -> None:
         )
 
 
-WORDS = {"drafts": drafts, "cells": cells, "models": models, "waves": waves, "speed": speed, "drift": drift}
+WORDS = {"drafts": drafts, "cells": cells, "models": models, "waves": waves, "bobbing": bobbing, "speed": speed, "drift": drift}
 
 if __name__ == "__main__":
     for what in sys.argv[1:] or WORDS:

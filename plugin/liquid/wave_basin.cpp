@@ -54,8 +54,8 @@ WaveBasin::WaveBasin(const Shape &shape, double g, double calm, double spray, st
     : Basin(shape, g), ranks(ranks), unit_of_time(std::sqrt(shape.cell.x * shape.cell.y / (g * shape.cell.z))),
       waves(shape.nx, shape.ny, shape.nz), push(shape.nx, shape.ny, shape.nz), makers(shape.nx, shape.ny),
       drops(shape.nx, shape.ny, seed), still(shape.nx, shape.ny, shape.nz), mobile(shape.nx, shape.ny, shape.nz),
-      part(still.count.size(), 0), mass(columns(), 0.0), rising(columns()), impulses(2 * columns(), 0), heads(columns(), 0.0),
-      tops(columns(), 0.0), hollow(columns(), 0)
+      part(still.count.size(), 0), mass(columns(), 0.0), afloat(columns()), rising(columns()), impulses(2 * columns(), 0),
+      heads(columns(), 0.0), tops(columns(), 0.0), hollow(columns(), 0)
 {
   waves.law.calm = calm * unit_of_time;
   drops.share = spray;
@@ -137,7 +137,7 @@ void WaveBasin::count_parts()
     // What is elastic yields more than its mass says.
     const double own = mobile.mass_of(c), soft = SOFT * mobile.softness_of(c) / (pace.period * pace.period);
     mass[c] = own > 0.0 ? std::max(MASS_STEP, std::floor(own / (YIELDING + own * soft) / MASS_STEP + 0.5) * MASS_STEP) : 0.0;
-    rising[c] = own > 0.0 ? Rising{1.0, mobile.momentum_of(c) / own} : Rising{};
+    afloat[c] = own > 0.0 ? AddedMass::Solids{own, mobile.momentum_of(c) / own} : AddedMass::Solids{};
   }
 }
 
@@ -185,7 +185,7 @@ Basin::Filled WaveBasin::fill(const Amount &amount, const std::vector<std::uint8
   poured = true;
   stale = true;    // so that the first look updates
   look();
-  find_push(1.0);
+  find_push(1.0, 0.0);
   return {wanted, room < want ? static_cast<long>((want - room + UNITS_PER_CELL - 1) / UNITS_PER_CELL) : 0};
 }
 
@@ -219,7 +219,10 @@ void WaveBasin::update(const AddBodies &bodies, std::uint64_t, double dt)
   drops.update(waves, time, static_cast<std::uint64_t>(updates));
   ++updates;
   look();
-  find_push(waves.at_rest() ? 1.0 : time / (time + SLOW));
+  if (waves.at_rest())
+    find_push(1.0, 0.0);
+  else
+    find_push(time / (time + SLOW), since);
   travel = 0.0;
   waited = 0;
   stale = false;
@@ -265,9 +268,11 @@ void WaveBasin::find_on_parts(int count, const LatticeCell *cells, OnParts *on, 
   }
 }
 
-void WaveBasin::find_push(double part)
+void WaveBasin::find_push(double part, double since)
 {
-  push.find(waves, mass.data(), part);
+  push.find(waves, afloat.data(), part, since);
+  for (int c = 0; c < columns(); ++c)
+    rising[c] = {afloat[c].mass > 0.0 ? 1.0 : 0.0, push.is_close(c) ? std::max(0.0, afloat[c].velocity) : afloat[c].velocity};
   cell_pushes.clear();
   for (const WavePush::OnCell &on : push.all())
     cell_pushes.push_back({on.head, on.share, on.over - on.on_top, on.beside, on.along_x * (shape.cell.z / shape.cell.x),

@@ -77,7 +77,7 @@ class WaveBasin : public Basin {
   void count_parts();
   void take_solids();
   void look();
-  void find_push(double part);
+  void find_push(double part, double since);
   void look_at_column(int column);
 
   const RankSums &ranks;
@@ -95,7 +95,8 @@ class WaveBasin : public Basin {
   Occupancy still, mobile;
   CellBox marked;                     // cells outside are open
   std::vector<std::uint16_t> part;    // solid, of each cell, see SolidParts
-  std::vector<double> mass;           // of what floats in each column, in cells of liquid
+  std::vector<double> mass;           // of what floats in each column, in cells of liquid, as the liquid is told
+  std::vector<AddedMass::Solids> afloat;
   struct Rising {
     double there = 0.0, velocity = 0.0;    // 1 where there is any; upwards, over speed_of_waves()
   };

@@ -14,7 +14,7 @@ namespace mdanim {
 
 namespace {
 
-constexpr double STATE_VERSION = 6.0;    // the automaton's is 3
+constexpr double STATE_VERSION = 7.0;    // the automaton's is 3
 constexpr std::uint8_t SOLID_CODE = 255;
 constexpr double PUDDLE = 1.0 / 64.0;    // cells that are part of the floor
 constexpr double PI = 3.14159265358979323846;
@@ -44,7 +44,7 @@ long WaveBasin::solid_cells() const
 double WaveBasin::energy_now() const
 {
   const Waves::Energy now = waves.energy();
-  return now.height + now.motion + drops.energy();
+  return now.height + now.motion + drops.energy() + push.energy();
 }
 
 Vec3 WaveBasin::momentum() const
@@ -140,7 +140,7 @@ void WaveBasin::contents(std::uint8_t *out) const
 
 // --- state ---
 
-// The head, masses, velocities, impulses and heads of columns, the makers, the drops, the waves.
+// The head, masses, what floats, impulses, heads and added masses of columns, the makers, the drops, the waves.
 std::vector<std::uint8_t> WaveBasin::state(const Ledger &ledger) const
 {
   std::vector<std::int64_t> all = impulses;
@@ -155,9 +155,10 @@ std::vector<std::uint8_t> WaveBasin::state(const Ledger &ledger) const
   };
   add(&head, sizeof head);
   add(mass.data(), mass.size() * sizeof mass[0]);
-  add(rising.data(), rising.size() * sizeof rising[0]);
+  add(afloat.data(), afloat.size() * sizeof afloat[0]);
   add(all.data(), all.size() * sizeof all[0]);
   add(push.state().data(), push.state().size() * sizeof push.state()[0]);
+  add(push.added_state().data(), push.added_state().size() * sizeof push.added_state()[0]);
   add(of_makers.data(), of_makers.size());
   add(of_drops.data(), of_drops.size());
   add(of_waves.data(), of_waves.size());
@@ -168,7 +169,7 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
 {
   const std::string whose = "the liquid's state ";
   WaveBasinHead head;
-  const std::size_t of_mass = mass.size() * sizeof mass[0], of_rising = rising.size() * sizeof rising[0];
+  const std::size_t of_mass = mass.size() * sizeof mass[0], of_afloat = afloat.size() * sizeof afloat[0];
   const std::size_t of_impulses = impulses.size() * sizeof impulses[0];
   if (size < sizeof head) throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few");
   std::memcpy(&head, bytes, sizeof head);
@@ -180,8 +181,8 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
                              std::to_string(head.nz) + " cells, this one has " + std::to_string(shape.nx) + " x " +
                              std::to_string(shape.ny) + " x " + std::to_string(shape.nz));
   const std::size_t of_push = push.state().size() * sizeof push.state()[0];
-  const std::size_t of_makers = makers.state().size();
-  const std::size_t to_drops = sizeof head + of_mass + of_rising + of_impulses + of_push + of_makers;
+  const std::size_t of_added = push.added_state().size() * sizeof push.added_state()[0], of_makers = makers.state().size();
+  const std::size_t to_drops = sizeof head + of_mass + of_afloat + of_impulses + of_push + of_added + of_makers;
   if (size < to_drops || size - to_drops < head.of_drops)
     throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few");
   Drops taken(drops);
@@ -191,8 +192,8 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
   drops = taken;
   makers.set_state(bytes + to_drops - of_makers, of_makers);
   std::memcpy(mass.data(), bytes + sizeof head, of_mass);
-  std::memcpy(rising.data(), bytes + sizeof head + of_mass, of_rising);
-  std::memcpy(impulses.data(), bytes + sizeof head + of_mass + of_rising, of_impulses);
+  std::memcpy(afloat.data(), bytes + sizeof head + of_mass, of_afloat);
+  std::memcpy(impulses.data(), bytes + sizeof head + of_mass + of_afloat, of_impulses);
   if (!ranks.first()) std::fill(impulses.begin(), impulses.end(), 0);    // the first has those of all
   poured = true;
   stale = head.stale != 0;
@@ -210,8 +211,9 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
       for (int x = 0; x < shape.nx; ++x)
         if (part[cell_number(x, y, z)]) marked.take_in(x, y, z);
   look();
-  std::memcpy(push.state().data(), bytes + sizeof head + of_mass + of_rising + of_impulses, of_push);
-  find_push(0.0);
+  std::memcpy(push.state().data(), bytes + sizeof head + of_mass + of_afloat + of_impulses, of_push);
+  std::memcpy(push.added_state().data(), bytes + sizeof head + of_mass + of_afloat + of_impulses + of_push, of_added);
+  find_push(0.0, -1.0);
   return head.ledger;
 }
 

@@ -20,7 +20,7 @@ constexpr double HIDDEN = std::numeric_limits<double>::quiet_NaN();
 
 }    // namespace
 
-void WavePush::find(const Waves &waves, const double *mass, double part)
+void WavePush::find(const Waves &waves, const AddedMass::Solids *solids, double part, double since)
 {
   for (const std::size_t cell : cells) known[cell] = -1;
   found.clear();
@@ -29,12 +29,13 @@ void WavePush::find(const Waves &waves, const double *mass, double part)
   columns.clear();
   first_run.assign(static_cast<std::size_t>(nx) * ny, -1);
   for (int column = 0; column < nx * ny; ++column)
-    if (mass[column] > 0.0) {
+    if (solids[column].mass > 0.0) {
       columns.push_back(column);
       cut(waves, column);
     }
   seep(waves);
   follow(waves, part);
+  take_along(waves, solids, since);
   for (SolidRun &run : runs) press(waves, run);
   for (const int column : columns) fill(waves, column);
   spread(waves.solids());
@@ -110,7 +111,8 @@ void WavePush::seep(const Waves &waves)
     if (count > 0) phi = sum / count;
     return count > 0;
   };
-  learn_inward(dry, [&](int n) { return mean(runs[n], runs[n].phi); }, [&](int n) { runs[n].told = runs[n].wet = true; });
+  learn_inward(
+      dry, [&](int n) { return mean(runs[n], runs[n].phi); }, [&](int n) { runs[n].told = runs[n].wet = runs[n].seeps = true; });
   for (int pass = 0; pass < SMOOTHINGS; ++pass)
     for (const int n : dry)
       if (runs[n].told) mean(runs[n], runs[n].phi);
@@ -160,6 +162,35 @@ void WavePush::follow(const Waves &waves, double part)
     }
 }
 
+// The liquid below and above the topmost run of each column that touches liquid from above.
+void WavePush::take_along(const Waves &waves, const AddedMass::Solids *solids, double since)
+{
+  std::fill(depths.begin(), depths.end(), AddedMass::Depths{});
+  std::fill(close.begin(), close.end(), 0);
+  for (const int column : columns) {
+    int solid_runs = 0, seeping = 0;
+    for (int n = 0; n <= waves.spans_of(column); ++n) {
+      const SolidRun &run = runs[first_run[column] + n];
+      solid_runs += run.top > run.bottom;
+      seeping += run.seeps;
+    }
+    close[column] = solid_runs == 1 && seeping == 1;
+  }
+  for (const int column : columns)
+    for (int n = waves.spans_of(column); n >= 0; --n) {
+      SolidRun &run = runs[first_run[column] + n];
+      if (run.below < 0 || !run.wet || run.top <= run.bottom || !waves.span_view(column, run.below).full) continue;
+      run.moves = true;
+      depths[column].below = run.bottom - run.floor;
+      if (run.above < 0) break;
+      const Waves::SpanView above = waves.span_view(column, run.above);
+      if (above.wet) depths[column].above = std::max(0.0, above.phi - run.top);
+      break;
+    }
+  if (since > 0.0) added.follow(columns, depths.data(), solids, since);
+  if (since == 0.0) added.start(columns, depths.data(), solids);
+}
+
 void WavePush::press(const Waves &waves, SolidRun &run)
 {
   const double thickness = run.top - run.bottom;
@@ -175,6 +206,7 @@ void WavePush::press(const Waves &waves, SolidRun &run)
   const Waves::SpanView above = waves.span_view(run.column, run.above);
   if (above.wet) run.on_top = std::clamp(above.phi - run.top, 0.0, HIGHEST) / thickness;
   run.beside -= run.on_top;
+  if (run.moves) run.over += added.force_on(run.column) / thickness;
 }
 
 // The rise of a head across a face acts on what is solid on both sides of it.

@@ -4,6 +4,7 @@
 #ifndef MDANIM_WAVE_PUSH_H
 #define MDANIM_WAVE_PUSH_H
 
+#include "liquid/added_mass.h"
 #include "liquid/occupancy.h"
 #include "liquid/waves.h"
 
@@ -29,18 +30,26 @@ class WavePush {
 
   WavePush(int nx, int ny, int nz)
       : nx(nx), ny(ny), nz(nz), known(static_cast<std::size_t>(nx) * ny * nz, -1),
-        ambient(static_cast<std::size_t>(nx) * ny, std::numeric_limits<double>::quiet_NaN())
+        ambient(static_cast<std::size_t>(nx) * ny, std::numeric_limits<double>::quiet_NaN()), added(nx, ny),
+        close(static_cast<std::size_t>(nx) * ny, 0), depths(static_cast<std::size_t>(nx) * ny)
   {
   }
 
-  // For all columns with mass in them, `mass` as Waves::set_solids takes it. What pushes sideways follows the liquid by a part of
-  // what has changed: a body is stiffer sideways than the time of an update shows.
-  void find(const Waves &waves, const double *mass, double part);
+  // For all columns with mass in them, `since` the last update: 0 where nothing moves, negative after the state was set. What
+  // pushes sideways follows the liquid by a part of what has changed: a body is stiffer sideways than the time of an update
+  // shows.
+  void find(const Waves &waves, const AddedMass::Solids *solids, double part, double since);
   // The number of a cell among all(); -1 far from all bodies.
   int number_of(std::size_t cell) const { return known[cell]; }
   const std::vector<OnCell> &all() const { return found; }
-  std::vector<double> &state() { return ambient; }    // of the columns; all that find() depends on besides
+  // Of the columns; all that find() depends on besides.
+  std::vector<double> &state() { return ambient; }
   const std::vector<double> &state() const { return ambient; }
+  std::vector<AddedMass::Column> &added_state() { return added.state(); }
+  const std::vector<AddedMass::Column> &added_state() const { return added.state(); }
+  double energy() const { return added.energy(); }
+  // Whether below all that is solid in a column there is liquid in a gap that cells do not resolve.
+  bool is_close(int column) const { return close[column]; }
   double bytes() const
   { return static_cast<double>(known.size() * sizeof known[0] + found.capacity() * (sizeof(OnCell) + sizeof(std::size_t))); }
 
@@ -50,8 +59,10 @@ class WavePush {
     int column, below, above;
     double bottom, top;
     bool wet, told;    // liquid below; whether that is known: where no liquid gets below, from the columns around
+    bool seeps;        // liquid, into a gap that cells do not resolve
     double phi, floor;
     double u[4], over, beside, on_top;
+    bool moves;    // liquid up and down with it
   };
 
   void cut(const Waves &waves, int column);
@@ -59,6 +70,7 @@ class WavePush {
   void seep(const Waves &waves);
   double seen_at(const Waves &waves, int column) const;
   void follow(const Waves &waves, double part);
+  void take_along(const Waves &waves, const AddedMass::Solids *solids, double since);
   void press(const Waves &waves, SolidRun &run);
   void put(const SolidParts &solid, int column, int z, OnCell on);
   void fill(const Waves &waves, int column);
@@ -81,6 +93,9 @@ class WavePush {
   std::vector<SolidRun> runs;
   std::vector<int> first_run, columns;    // of each column, or -1; those with mass
   std::vector<double> ambient;            // head around each column, as it acts sideways; NaN far from bodies
+  AddedMass added;
+  std::vector<std::uint8_t> close;          // see is_close()
+  std::vector<AddedMass::Depths> depths;    // of the run of each column that moves liquid
 };
 
 }    // namespace mdanim

@@ -11,7 +11,9 @@ using mdanim::Waves;
 MDANIM_EXPORT void mdanim_wave_push(void *waves, int nx, int ny, int nz, const double *mass, double *out)
 {
   WavePush push(nx, ny, nz);
-  push.find(*static_cast<Waves *>(waves), mass, 1.0);
+  std::vector<mdanim::AddedMass::Solids> solids;
+  for (int c = 0; c < nx * ny; ++c) solids.push_back({mass[c], 0.0});
+  push.find(*static_cast<Waves *>(waves), solids.data(), 1.0, 0.0);
   for (std::size_t cell = 0; cell < static_cast<std::size_t>(nx) * ny * nz; ++cell, out += 8) {
     const int n = push.number_of(cell);
     const WavePush::OnCell *on = n < 0 ? nullptr : &push.all()[n];

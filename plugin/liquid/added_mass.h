@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The liquid that moves up and down with what floats in it. docs/physics-liquid.md, (W14) to (W16).
+
+#ifndef MDANIM_ADDED_MASS_H
+#define MDANIM_ADDED_MASS_H
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace mdanim {
+
+// Heights and lengths in cells, masses and forces of a column in those of a cell of liquid, times in sqrt(cell/g).
+class AddedMass {
+ public:
+  struct Depths {
+    double below = 0.0, above = 0.0;    // of the liquid that touches solids; nothing is taken along where there is none below
+  };
+  struct Solids {
+    double mass = 0.0, velocity = 0.0;    // of those of a column that move; upwards
+  };
+  struct Column {
+    double mass = 0.0, force = 0.0, velocity = 0.0;    // of the liquid that moves along, and its push on the solids, upwards
+  };
+
+  AddedMass(int nx, int ny);
+
+  // For the columns `with` solids; `depths` and `solids` are of all columns. Where nothing moves, and `since` that or the last
+  // time.
+  void start(const std::vector<int> &with, const Depths *depths, const Solids *solids);
+  void follow(const std::vector<int> &with, const Depths *depths, const Solids *solids, double since);
+  double force_on(int column) const { return columns[column].force; }
+  double energy() const;
+  std::vector<Column> &state() { return columns; }
+  const std::vector<Column> &state() const { return columns; }
+
+ private:
+  double most_at(const Depths &depths, int column) const;
+  void find_distances(const std::vector<int> &with, const Depths *depths);
+  void find_accelerations(const std::vector<int> &with, const Depths *depths, const Solids *solids, double since);
+
+  const int nx, ny;
+  std::vector<Column> columns;
+
+  // buffers
+  std::vector<Column> was;
+  std::vector<double> distances;        // of the middle of each column to the edge of what is wet from below
+  std::vector<double> accelerations;    // of each column
+  std::vector<std::uint8_t> seen;
+  std::vector<int> body;
+};
+
+}    // namespace mdanim
+
+#endif
