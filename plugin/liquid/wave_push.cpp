@@ -162,7 +162,8 @@ void WavePush::follow(const Waves &waves, double part)
     }
 }
 
-// The liquid below and above the topmost run of each column that touches liquid from above.
+// Which columns stand close to what is below them; and the liquid below and above the topmost run of each column that is wet from
+// below.
 void WavePush::take_along(const Waves &waves, const AddedMass::Solids *solids, double since)
 {
   std::fill(depths.begin(), depths.end(), AddedMass::Depths{});
