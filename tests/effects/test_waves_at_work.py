@@ -126,7 +126,7 @@ def test_a_cube_bobs_as_in_a_flow_with_vertical_motion(draft):
     assert found.period == pytest.approx(exact.period, rel=0.1)
 
 
-@pytest.mark.parametrize("density", [1100, 1500])
+@pytest.mark.parametrize("density", [1200, 1500])
 def test_a_body_on_the_floor_gets_no_energy_from_the_liquid(density):
     """It rocks on an edge for a while, lies down, and stays; the liquid never has given more than it had."""
     ready = scene(density=density, z=8, roll=10, pitch=20)
