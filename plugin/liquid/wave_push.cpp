@@ -35,6 +35,7 @@ void WavePush::find(const Waves &waves, const AddedMass::Solids *solids, double 
     }
   seep(waves);
   follow(waves, part);
+  find_close(waves);
   take_along(waves, solids, since);
   for (SolidRun &run : runs) press(waves, run);
   for (const int column : columns) fill(waves, column);
@@ -162,11 +163,8 @@ void WavePush::follow(const Waves &waves, double part)
     }
 }
 
-// Which columns stand close to what is below them; and the liquid below and above the topmost run of each column that is wet from
-// below.
-void WavePush::take_along(const Waves &waves, const AddedMass::Solids *solids, double since)
+void WavePush::find_close(const Waves &waves)
 {
-  std::fill(depths.begin(), depths.end(), AddedMass::Depths{});
   std::fill(close.begin(), close.end(), 0);
   for (const int column : columns) {
     int solid_runs = 0, seeping = 0;
@@ -177,6 +175,12 @@ void WavePush::take_along(const Waves &waves, const AddedMass::Solids *solids, d
     }
     close[column] = solid_runs == 1 && seeping == 1;
   }
+}
+
+// The liquid below and above the topmost run of each column that is wet from below.
+void WavePush::take_along(const Waves &waves, const AddedMass::Solids *solids, double since)
+{
+  std::fill(depths.begin(), depths.end(), AddedMass::Depths{});
   for (const int column : columns)
     for (int n = waves.spans_of(column); n >= 0; --n) {
       SolidRun &run = runs[first_run[column] + n];

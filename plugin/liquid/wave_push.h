@@ -70,6 +70,7 @@ class WavePush {
   void seep(const Waves &waves);
   double seen_at(const Waves &waves, int column) const;
   void follow(const Waves &waves, double part);
+  void find_close(const Waves &waves);
   void take_along(const Waves &waves, const AddedMass::Solids *solids, double since);
   void press(const Waves &waves, SolidRun &run);
   void put(const SolidParts &solid, int column, int z, OnCell on);
