@@ -60,17 +60,14 @@ class Basin {
     Vec3 flow;                // velocity of the liquid [distance/time]
     double rising = 0.0;      // upward velocity of the solid around [distance/time]
   };
-  // A lattice cell has eight parts, each nearest to one of its corners.
-  struct LatticeCell {
-    Vec3 middle;    // [cells]
-    double z[8];    // of the corners [cells]
-  };
-  // What acts on the parts of a lattice cell. One line of memory, as it is the memory that makes looking it up slow.
-  struct alignas(64) OnParts {
-    double s = 0.0;                         // part of each that is below the surface; negative where they differ
+  // What acts on the eight parts of a lattice cell, each nearest to one of its corners. s is the part of a part that is below the
+  // surface: surface - z, z that of the corner [cells], within 0 and 1, times share.
+  struct OnParts {
+    double surface = 0.0, share = 0.0;
     double more = 0.0, beside = 0.0;        // the push upwards is s + more; the surface around makes it s + beside
     double along_x = 0.0, along_y = 0.0;    // push sideways, times s + beside where that is positive
     double flow_x = 0.0, flow_y = 0.0;      // velocity of the liquid [distance/time]
+    double part_below(double z) const { return std::clamp(surface - z, 0.0, 1.0) * share; }
   };
   // Adds this rank's bodies, as far as they reach below a height.
   using AddBodies = std::function<void(Occupancy &, double below)>;
@@ -101,21 +98,21 @@ class Basin {
   // --- what acts on solids, and they on the liquid ---
 
   virtual AtPlace at(const Vec3 & /*place*/) const { return {}; }
-  // Whether find_on_parts() is to be asked, and not at(); and upward velocity of the solid around a place [distance/time].
+  // Whether on_parts() is to be asked after each update, and not at() in each step; and solids pass on what they do to the
+  // liquid.
   virtual bool acts_on_cells() const { return false; }
-  // Of so many lattice cells, AT_ONCE at most. Writes to s, eight numbers for each, only where parts differ.
-  static constexpr int AT_ONCE = 16;
-  virtual void find_on_parts(int /*count*/, const LatticeCell * /*cells*/, OnParts * /*on*/, double * /*s*/) const {}
+  // Of a lattice cell with its middle at a place, in an order that does not matter.
+  virtual OnParts on_parts(const Vec3 & /*middle*/) const { return {}; }
+  // Upward velocity of the solid around a place [distance/time].
   virtual double rising_at(const Vec3 & /*place*/) const { return 0.0; }
   // Depth of the liquid that presses on a face of a solid with a middle [distance] and twice its area; 0 where air is
   // before the face.
   virtual double pressing_depth(const Vec3 & /*middle*/, const Vec3 & /*area*/) const { return 0.0; }
   // From the height returned down, all within the basin is below the surface, and nothing but Archimedes' lift acts.
   virtual double all_below() const = 0;
-  // Whether solids pass on what they do to the liquid; this rank's part of that.
-  virtual bool takes_impulses() const { return false; }
   // Rate [1/time] at which what is immersed loses the velocity that differs from that of the solid around.
   virtual double calms_solids() const { return 0.0; }
+  // On the liquid since the last update, from a solid of this rank.
   virtual void take_impulse(const Vec3 & /*place*/, const Vec3 & /*impulse*/) {}
 
   Vec3 in_cells(const double *x) const

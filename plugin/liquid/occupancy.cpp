@@ -137,6 +137,40 @@ void Occupancy::spread_cell(const Vec3 corner[8])
     add<false>(samples, spread);
 }
 
+// The eight cells that are nearest to the middle are within 1.5 of it along each axis. Their corner may be 2.6 away, but of a
+// cell with its corner so far less than 1 % is further than 2.4. Together they leave no gap where corners of lattice cells are
+// within 1 of a middle. The outermost lattice cells that do so spread their samples as well, for those reach beyond the eight.
+bool Occupancy::fill_inside(const Vec3 corner[8], int layers)
+{
+  constexpr double FURTHEST = 2.4, LONGEST = 1.15;
+  const Vec3 edges[] = {corner[1] - corner[0], corner[3] - corner[0], corner[4] - corner[0]};
+  double shortest = LONGEST * LONGEST;
+  for (const Vec3 &edge : edges) {
+    const double length = dot(edge, edge);
+    if (!(length <= LONGEST * LONGEST)) return false;
+    shortest = std::min(shortest, length);
+  }
+  const double beyond = layers + 0.5 - FURTHEST / std::sqrt(shortest);    // lattice cells
+  if (beyond < 0.0) return false;
+  const Vec3 middle = 0.5 * (corner[0] + corner[6]);
+  const double place[3] = {middle.x, middle.y, middle.z};
+  const int cells[3] = {nx, ny, nz};
+  int low[3], high[3];
+  for (int d = 0; d < 3; ++d) {
+    if (!(place[d] > -1.5 && place[d] < cells[d] + 1.5)) return true;    // all of it is outside
+    const int nearest = static_cast<int>(place[d] + 2.5) - 2;
+    low[d] = std::max(0, nearest - 1);
+    high[d] = std::min(cells[d], nearest + 1);
+    if (low[d] >= high[d]) return true;
+    touched.low[d] = std::min(touched.low[d], low[d]);
+    touched.high[d] = std::max(touched.high[d], high[d]);
+  }
+  for (int z = low[2]; z < high[2]; ++z)
+    for (int y = low[1]; y < high[1]; ++y)
+      for (int x = low[0]; x < high[0]; ++x) count[number(x, y, z)] |= FILLED;
+  return beyond >= 1.0;
+}
+
 // Along each axis the upper of two cells gets its share, in 1/SHARES, and the lower one all the rest, so that nothing is lost.
 template <bool INSIDE> void Occupancy::add(const Samples &samples, const Spread &spread)
 {
@@ -208,7 +242,15 @@ void Occupancy::clear()
 // Only the box that any rank has touched goes from rank to rank.
 void Occupancy::sum_over(const RankSums &ranks)
 {
-  if (ranks.alone()) return;
+  if (!ranks.alone()) add_all(ranks);
+  touched.each([&](int x, int y, int z) {
+    int &own = count[number(x, y, z)];
+    own = std::min(own, FILLED);
+  });
+}
+
+void Occupancy::add_all(const RankSums &ranks)
+{
   int bounds[7];
   for (int d = 0; d < 3; ++d) {
     bounds[d] = touched.low[d];

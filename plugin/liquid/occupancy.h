@@ -45,6 +45,9 @@ class Occupancy {
   // The same, but each sample is spread over all cells that the box around its part of the lattice cell overlaps, in proportion:
   // counts change smoothly as a body moves. Cells inside a body of any attitude get 0.98 of FULL_SPREAD and more.
   void spread_cell(const Vec3 corner[8]);
+  // For a lattice cell with so many layers of others around it: fills the cells near its middle, which are inside the body. False
+  // where its samples are to be spread nevertheless.
+  bool fill_inside(const Vec3 corner[8], int layers);
   // Mass at a place, in cells of liquid, by how much it is compressed by a cell of liquid that stands on the column, in cells,
   // and its upward velocity, of at most some 1000: shared among the four columns around, in whole numbers.
   void add_mass(const Vec3 &place, double mass, double softness, double rising);
@@ -53,7 +56,7 @@ class Occupancy {
 
   // Forget all counts.
   void clear();
-  // The counts of all ranks together, on each of them.
+  // The counts of all ranks together, on each of them. The same on any number of them.
   void sum_over(const RankSums &ranks);
 
   std::size_t number(int x, int y, int z) const { return (static_cast<std::size_t>(z) * ny + y) * nx + x; }
@@ -66,6 +69,7 @@ class Occupancy {
   double momentum_of(int column) const { return sum_of(column, 2); }    // upward
 
  private:
+  void add_all(const RankSums &ranks);
   void add(const Vec3 &place, int weight);
   // A box that a weight is spread over; half edges of at most half a cell.
   struct Spread {
@@ -78,6 +82,7 @@ class Occupancy {
   struct Samples;
   template <bool INSIDE> void add(const Samples &samples, const Spread &spread);    // whether all of them lie within the grid
 
+  static constexpr int FILLED = 1 << 24;    // a bit of a count, far above FULL_SPREAD; a sum of 100 ranks fits
   static constexpr double SUM_UNIT = 1.0 / (1 << 24);
   double sum_of(int column, int which) const
   { return sums.empty() ? 0.0 : static_cast<double>(sums[3 * column + which]) * SUM_UNIT; }

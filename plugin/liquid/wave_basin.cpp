@@ -231,41 +231,27 @@ void WaveBasin::update(const AddBodies &bodies, std::uint64_t, double dt)
 // --- what a particle finds ---
 
 // Parts of a lattice cell are as high as half a cell. Their middles lie half way from the middle of the cell to its corners.
-void WaveBasin::find_on_parts(int count, const LatticeCell *cells, OnParts *on, double *s) const
+Basin::OnParts WaveBasin::on_parts(const Vec3 &middle) const
 {
-  const double dry = top() + 1.0;
-  double lowest[AT_ONCE], highest[AT_ONCE];
-  int column[AT_ONCE],
-      known[AT_ONCE];    // -1 where nothing acts; the number of what acts, -1 where it is only that below the head
-  for (int n = 0; n < count; ++n) {
-    const LatticeCell &cell = cells[n];
-    lowest[n] = highest[n] = cell.z[0];
-    for (int k = 1; k < 8; ++k) {
-      lowest[n] = std::min(lowest[n], cell.z[k]);
-      highest[n] = std::max(highest[n], cell.z[k]);
-    }
-    const Vec3 &middle = cell.middle;
-    column[n] = -1;
-    if (!(lowest[n] < dry && middle.x >= 0.0 && middle.x <= shape.nx && middle.y >= 0.0 && middle.y <= shape.ny)) continue;
-    const int x = std::min(static_cast<int>(middle.x), shape.nx - 1), y = std::min(static_cast<int>(middle.y), shape.ny - 1);
-    column[n] = y * shape.nx + x;
-    known[n] = push.number_of(cell_number(x, y, std::clamp(static_cast<int>(middle.z), 0, shape.nz - 1)));
-    if (known[n] >= 0) __builtin_prefetch(&cell_pushes[known[n]]);
+  OnParts on;
+  if (!(middle.x >= 0.0 && middle.x <= shape.nx && middle.y >= 0.0 && middle.y <= shape.ny)) return on;
+  const int x = std::min(static_cast<int>(middle.x), shape.nx - 1), y = std::min(static_cast<int>(middle.y), shape.ny - 1);
+  double head = heads[y * shape.nx + x];
+  on.share = std::clamp(head, 0.0, 1.0);
+  const int number = push.number_of(cell_number(x, y, std::clamp(static_cast<int>(middle.z), 0, shape.nz - 1)));
+  if (number >= 0) {
+    const WavePush::OnCell &found = push.all()[number];
+    head = found.head;
+    on.share = found.share;
+    on.more = found.over - found.on_top;
+    on.beside = found.beside;
+    on.along_x = found.along_x * (shape.cell.z / shape.cell.x);
+    on.along_y = found.along_y * (shape.cell.z / shape.cell.y);
+    on.flow_x = found.flow_x * shape.cell.x / unit_of_time;
+    on.flow_y = found.flow_y * shape.cell.y / unit_of_time;
   }
-  for (int n = 0; n < count; ++n) {
-    on[n] = {};
-    if (column[n] < 0) continue;
-    double head = heads[column[n]], share = std::clamp(head, 0.0, 1.0);
-    if (known[n] >= 0) {
-      const CellPush &found = cell_pushes[known[n]];
-      head = found.head, share = found.share;
-      on[n] = {0.0, found.more, found.beside, found.along_x, found.along_y, found.flow_x, found.flow_y};
-    }
-    const double above_middle = 2.0 * head - cells[n].middle.z + 0.5;
-    if (!(above_middle > lowest[n])) continue;
-    on[n].s = above_middle >= highest[n] + 1.0 ? share : -1.0;
-    for (int k = 0; k < 8 && on[n].s < 0.0; ++k) s[8 * n + k] = std::clamp(above_middle - cells[n].z[k], 0.0, 1.0) * share;
-  }
+  on.surface = 2.0 * head - middle.z + 0.5;
+  return on;
 }
 
 void WaveBasin::find_push(double part, double since)
@@ -273,11 +259,6 @@ void WaveBasin::find_push(double part, double since)
   push.find(waves, afloat.data(), part, since);
   for (int c = 0; c < columns(); ++c)
     rising[c] = {afloat[c].mass > 0.0 ? 1.0 : 0.0, push.is_close(c) ? std::max(0.0, afloat[c].velocity) : afloat[c].velocity};
-  cell_pushes.clear();
-  for (const WavePush::OnCell &on : push.all())
-    cell_pushes.push_back({on.head, on.share, on.over - on.on_top, on.beside, on.along_x * (shape.cell.z / shape.cell.x),
-                           on.along_y * (shape.cell.z / shape.cell.y), on.flow_x * shape.cell.x / unit_of_time,
-                           on.flow_y * shape.cell.y / unit_of_time});
 }
 
 double WaveBasin::calms_solids() const { return CALMING / unit_of_time; }

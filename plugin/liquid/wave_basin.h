@@ -43,10 +43,9 @@ class WaveBasin : public Basin {
   void use(const Threads &threads) override { waves.use(threads); }
 
   bool acts_on_cells() const override { return true; }
-  void find_on_parts(int count, const LatticeCell *cells, OnParts *on, double *s) const override;
+  OnParts on_parts(const Vec3 &middle) const override;
   double rising_at(const Vec3 &place) const override;
   double all_below() const override { return -std::numeric_limits<double>::infinity(); }
-  bool takes_impulses() const override { return true; }
   double calms_solids() const override;
   void take_impulse(const Vec3 &place, const Vec3 &impulse) override;
 
@@ -84,12 +83,6 @@ class WaveBasin : public Basin {
   const double unit_of_time;
   Waves waves;
   WavePush push;
-  // What a lattice cell looks up, in one line of memory; the same numbers as in `push`.
-  struct alignas(64) CellPush {
-    double head, share;
-    double more, beside, along_x, along_y, flow_x, flow_y;    // see OnParts
-  };
-  std::vector<CellPush> cell_pushes;
   WaveMakers makers;
   Drops drops;
   Occupancy still, mobile;
@@ -109,13 +102,13 @@ class WaveBasin : public Basin {
   std::int64_t updates = 0;
   Units units = 0;    // of liquid at the start
   double energy_at_start = 0.0;
-  long moving = 0;                       // cells with something in them that moves
-  std::uint64_t still_known = 0;         // a checksum of what never moves
-  std::vector<std::int64_t> impulses;    // along x, then along y, of each column, since the last update; this rank's part
+  long moving = 0;                  // cells with something in them that moves
+  std::uint64_t still_known = 0;    // a checksum of what never moves
 
   // what follows from it
-  std::vector<double> heads, tops;     // of columns: the surface that solids feel, and the topmost liquid, see surface()
-  std::vector<std::uint8_t> hollow;    // columns that a hull keeps dry below the surface
+  std::vector<std::int64_t> impulses;    // along x, then along y, of each column, from solids; none between updates
+  std::vector<double> heads, tops;       // of columns: the surface that solids feel, and the topmost liquid, see surface()
+  std::vector<std::uint8_t> hollow;      // columns that a hull keeps dry below the surface
   int top_layer = 0;
   double crest = 0.0;    // the highest head under open sky
 };

@@ -14,7 +14,7 @@ namespace mdanim {
 
 namespace {
 
-constexpr double STATE_VERSION = 7.0;    // the automaton's is 3
+constexpr double STATE_VERSION = 8.0;    // the automaton's is 3
 constexpr std::uint8_t SOLID_CODE = 255;
 constexpr double PUDDLE = 1.0 / 64.0;    // cells that are part of the floor
 constexpr double PI = 3.14159265358979323846;
@@ -31,10 +31,7 @@ struct WaveBasinHead {
 }    // namespace
 
 double WaveBasin::bytes() const
-{
-  return static_cast<double>(part.size()) * (2.0 * sizeof(int) + sizeof(std::uint16_t)) + push.bytes() +
-         static_cast<double>(cell_pushes.capacity() * sizeof(CellPush)) + columns() * 600.0;
-}
+{ return static_cast<double>(part.size()) * (2.0 * sizeof(int) + sizeof(std::uint16_t)) + push.bytes() + columns() * 600.0; }
 
 long WaveBasin::solid_cells() const
 {
@@ -140,11 +137,9 @@ void WaveBasin::contents(std::uint8_t *out) const
 
 // --- state ---
 
-// The head, masses, what floats, impulses, heads and added masses of columns, the makers, the drops, the waves.
+// The head, masses, what floats, heads and added masses of columns, the makers, the drops, the waves.
 std::vector<std::uint8_t> WaveBasin::state(const Ledger &ledger) const
 {
-  std::vector<std::int64_t> all = impulses;
-  ranks.add_wide(all.data(), static_cast<int>(all.size()));
   const std::vector<std::uint8_t> of_makers = makers.state(), of_drops = drops.state(), of_waves = waves.state();
   const WaveBasinHead head{STATE_VERSION, shape.nx, shape.ny,    shape.nz, units,  updates,         waited,
                            stale,         moving,   still_known, ledger,   travel, energy_at_start, of_drops.size()};
@@ -156,7 +151,6 @@ std::vector<std::uint8_t> WaveBasin::state(const Ledger &ledger) const
   add(&head, sizeof head);
   add(mass.data(), mass.size() * sizeof mass[0]);
   add(afloat.data(), afloat.size() * sizeof afloat[0]);
-  add(all.data(), all.size() * sizeof all[0]);
   add(push.state().data(), push.state().size() * sizeof push.state()[0]);
   add(push.added_state().data(), push.added_state().size() * sizeof push.added_state()[0]);
   add(of_makers.data(), of_makers.size());
@@ -168,10 +162,9 @@ std::vector<std::uint8_t> WaveBasin::state(const Ledger &ledger) const
 Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
 {
   const std::string whose = "the liquid's state ";
+  const auto too_few = [&] { throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few"); };
   WaveBasinHead head;
-  const std::size_t of_mass = mass.size() * sizeof mass[0], of_afloat = afloat.size() * sizeof afloat[0];
-  const std::size_t of_impulses = impulses.size() * sizeof impulses[0];
-  if (size < sizeof head) throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few");
+  if (size < sizeof head) too_few();
   std::memcpy(&head, bytes, sizeof head);
   if (head.version != STATE_VERSION)
     throw std::runtime_error(whose + "has another version than " + std::to_string(static_cast<int>(STATE_VERSION)) +
@@ -180,21 +173,30 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
     throw std::runtime_error(whose + "is of a grid of " + std::to_string(head.nx) + " x " + std::to_string(head.ny) + " x " +
                              std::to_string(head.nz) + " cells, this one has " + std::to_string(shape.nx) + " x " +
                              std::to_string(shape.ny) + " x " + std::to_string(shape.nz));
-  const std::size_t of_push = push.state().size() * sizeof push.state()[0];
-  const std::size_t of_added = push.added_state().size() * sizeof push.added_state()[0], of_makers = makers.state().size();
-  const std::size_t to_drops = sizeof head + of_mass + of_afloat + of_impulses + of_push + of_added + of_makers;
-  if (size < to_drops || size - to_drops < head.of_drops)
-    throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few");
+  std::size_t place = sizeof head;
+  const auto skip = [&](std::size_t part_size) {
+    if (size - place < part_size) too_few();
+    const std::uint8_t *const from = bytes + place;
+    place += part_size;
+    return from;
+  };
+  const auto next = [&](const auto &values) { return skip(values.size() * sizeof values[0]); };
+  const std::size_t of_makers = makers.state().size();
+  const std::uint8_t *const masses = next(mass), *const floating = next(afloat), *const ambient = next(push.state());
+  const std::uint8_t *const added = next(push.added_state()), *const made = skip(of_makers), *const flying = skip(head.of_drops);
   Drops taken(drops);
-  taken.set_state(bytes + to_drops, head.of_drops);
-  const std::size_t before = to_drops + head.of_drops;
-  waves.set_state(bytes + before, size - before);    // which also tells other makers, by its size
+  taken.set_state(flying, head.of_drops);
+  waves.set_state(bytes + place, size - place);    // which also tells other makers, by its size
   drops = taken;
-  makers.set_state(bytes + to_drops - of_makers, of_makers);
-  std::memcpy(mass.data(), bytes + sizeof head, of_mass);
-  std::memcpy(afloat.data(), bytes + sizeof head + of_mass, of_afloat);
-  std::memcpy(impulses.data(), bytes + sizeof head + of_mass + of_afloat, of_impulses);
-  if (!ranks.first()) std::fill(impulses.begin(), impulses.end(), 0);    // the first has those of all
+  makers.set_state(made, of_makers);
+  const auto put = [](auto &values, const std::uint8_t *from) {
+    std::memcpy(values.data(), from, values.size() * sizeof values[0]);
+  };
+  put(mass, masses);
+  put(afloat, floating);
+  put(push.state(), ambient);
+  put(push.added_state(), added);
+  std::fill(impulses.begin(), impulses.end(), 0);
   poured = true;
   stale = head.stale != 0;
   travel = head.travel;
@@ -211,9 +213,6 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
       for (int x = 0; x < shape.nx; ++x)
         if (part[cell_number(x, y, z)]) marked.take_in(x, y, z);
   look();
-  std::memcpy(push.state().data(), bytes + sizeof head + of_mass + of_afloat + of_impulses, of_push);
-  std::memcpy(push.added_state().data(), bytes + sizeof head + of_mass + of_afloat + of_impulses + of_push, of_added);
-  find_push(0.0, -1.0);
   return head.ledger;
 }
 

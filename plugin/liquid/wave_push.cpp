@@ -40,7 +40,6 @@ void WavePush::find(const Waves &waves, const AddedMass::Solids *solids, double 
   for (SolidRun &run : runs) press(waves, run);
   for (const int column : columns) fill(waves, column);
   spread(waves.solids());
-  sort();
 }
 
 void WavePush::cut(const Waves &waves, int column)
@@ -192,8 +191,10 @@ void WavePush::take_along(const Waves &waves, const AddedMass::Solids *solids, d
       if (above.wet) depths[column].above = std::max(0.0, above.phi - run.top);
       break;
     }
-  if (since > 0.0) added.follow(columns, depths.data(), solids, since);
-  if (since == 0.0) added.start(columns, depths.data(), solids);
+  if (since > 0.0)
+    added.follow(columns, depths.data(), solids, since);
+  else
+    added.start(columns, depths.data(), solids);
 }
 
 void WavePush::press(const Waves &waves, SolidRun &run)
@@ -336,24 +337,6 @@ void WavePush::spread(const SolidParts &solid)
     found.push_back(on);
     cells.push_back(sum.cell);
   }
-}
-
-// In the order of cells, in which bodies look them up: it is the memory that makes them slow.
-void WavePush::sort()
-{
-  CellBox box;
-  for (const std::size_t cell : cells)
-    box.take_in(static_cast<int>(cell % nx), static_cast<int>(cell / nx % ny), static_cast<int>(cell / nx / ny));
-  sorted.clear();
-  cells.clear();
-  box.each([&](int x, int y, int z) {
-    const std::size_t cell = (static_cast<std::size_t>(z) * ny + y) * nx + x;
-    if (known[cell] < 0) return;
-    sorted.push_back(found[known[cell]]);
-    known[cell] = static_cast<int>(cells.size());
-    cells.push_back(cell);
-  });
-  found.swap(sorted);
 }
 
 }    // namespace mdanim

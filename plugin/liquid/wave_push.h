@@ -15,7 +15,7 @@
 
 namespace mdanim {
 
-// Found once for each update, for the cells that bodies fill and those around them; looked up for each particle in each step.
+// Found once for each update, for the cells that bodies fill and those around them.
 class WavePush {
  public:
   // On a volume in a cell, over the weight of as much liquid. s is the part below `head`.
@@ -35,7 +35,7 @@ class WavePush {
   {
   }
 
-  // For all columns with mass in them, `since` the last update: 0 where nothing moves, negative after the state was set. What
+  // For all columns with mass in them, `since` the last update, 0 where nothing moves. What
   // pushes sideways follows the liquid by a part of what has changed: a body is stiffer sideways than the time of an update
   // shows.
   void find(const Waves &waves, const AddedMass::Solids *solids, double part, double since);
@@ -76,7 +76,6 @@ class WavePush {
   void put(const SolidParts &solid, int column, int z, OnCell on);
   void fill(const Waves &waves, int column);
   void spread(const SolidParts &solid);
-  void sort();
 
   struct NextTo {
     OnCell on;
@@ -89,8 +88,7 @@ class WavePush {
   std::vector<int> known;    // of each cell, its number in `found`, or -1
   std::vector<OnCell> found;
   std::vector<std::size_t> cells;    // of each in `found`
-  std::vector<OnCell> sorted;        // buffers of spread() and sort()
-  std::vector<NextTo> next_to;
+  std::vector<NextTo> next_to;       // a buffer of spread()
   std::vector<SolidRun> runs;
   std::vector<int> first_run, columns;    // of each column, or -1; those with mass
   std::vector<double> ambient;            // head around each column, as it acts sideways; NaN far from bodies

@@ -25,6 +25,7 @@ using namespace LAMMPS_NS;
 namespace mdanim {
 
 static constexpr const char *STYLE = "fix mdanim/liquid";
+static constexpr double PARTICLE = 25.0;    // or face, or lattice cell [ns], about
 
 // --- the command ---
 
@@ -114,53 +115,68 @@ void Buoyancy::find_faces(const std::vector<int> &near, const std::string &fix)
 void Buoyancy::append_required_atoms(std::vector<int> &particles) const
 {
   for (const Face &face : faces) particles.insert(particles.end(), face.corner, face.corner + 4);
-  for (const NearCells::Cell &cell : cells.cells) particles.insert(particles.end(), cell.corner, cell.corner + 8);
 }
 
 // --- a step ---
 
-void Buoyancy::look_at_cells(const Basin &basin, long from, long to)
+void Buoyancy::give_impulses(Basin &basin, const std::vector<int> &near)
 {
-  const double *const *x = atom->x;
-  const double bottom = basin.shape.low.z, per_height = 1.0 / basin.shape.cell.z;
-  Basin::LatticeCell looked[Basin::AT_ONCE];
-  for (long first = from; first < to; first += Basin::AT_ONCE) {
-    const int count = static_cast<int>(std::min<long>(Basin::AT_ONCE, to - first));
-    for (int n = 0; n < count; ++n) {
-      Vec3 sum;
-      for (int k = 0; k < 8; ++k) {
-        const double *const own = x[cells.cells[first + n].corner[k]];
-        sum += vec3(own);
-        looked[n].z[k] = (own[2] - bottom) * per_height;
-      }
-      const double middle[3] = {0.125 * sum.x, 0.125 * sum.y, 0.125 * sum.z};
-      looked[n].middle = basin.in_cells(middle);
-    }
-    basin.find_on_parts(count, looked, &on_parts[first], &immersed[8 * first]);
+  if (!basin.acts_on_cells()) return;
+  for (const int i : near) {
+    Kept &of = kept[i];
+    if (of.impulse_x == 0.0 && of.impulse_y == 0.0) continue;
+    basin.take_impulse(basin.in_cells(atom->x[i]), {of.impulse_x, of.impulse_y, 0.0});
+    of.impulse_x = of.impulse_y = 0.0;
   }
 }
 
-// The mean of what acts on its parts of lattice cells.
-Basin::AtPlace Buoyancy::at_particle(const Basin &basin, std::size_t n, const double *x) const
+void Buoyancy::look(const Basin &basin, const std::vector<int> &near)
 {
-  Basin::AtPlace at;
-  int parts = 0;
-  cells.each_of(n, [&](int cell, int corner) {
-    const Basin::OnParts &on = on_parts[cell];
-    const double s = on.s < 0.0 ? immersed[8 * static_cast<std::size_t>(cell) + corner] : on.s;
-    const double beside = std::max(0.0, s + on.beside);
-    ++parts;
-    at.immersed += s;
-    at.push += Vec3{on.along_x * beside, on.along_y * beside, s + on.more};
-    at.flow += Vec3{on.flow_x, on.flow_y, 0.0};
+  if (!basin.acts_on_cells() || !lifts || near.empty()) return;
+  const Lap lap(seconds);
+  const double *const *x = atom->x;
+  on_parts.resize(cells.cells.size());
+  threads.timed_parts(static_cast<long>(on_parts.size()), PARTICLE, [&](long from, long to) {
+    for (long n = from; n < to; ++n) {
+      Vec3 sum;
+      for (const int corner : cells.cells[n].corner) sum += vec3(x[corner]);
+      const double middle[3] = {0.125 * sum.x, 0.125 * sum.y, 0.125 * sum.z};
+      on_parts[n] = basin.on_parts(basin.in_cells(middle));
+    }
   });
-  if (parts == 0) return at;
+  threads.timed_parts(static_cast<long>(near.size()), PARTICLE, [&](long from, long to) {
+    for (long n = from; n < to; ++n) kept[near[n]] = look_at_particle(basin, n, x[near[n]]);
+  });
+}
+
+// The mean of what acts on its parts of lattice cells. Until the next update s is a straight line between its values where the
+// particle and all around it have gone up or down as far as an update lets them.
+Buoyancy::Kept Buoyancy::look_at_particle(const Basin &basin, std::size_t n, const double *x) const
+{
+  const double per_height = 1.0 / basin.shape.cell.z, z = (x[2] - basin.shape.low.z) * per_height, far = basin.pace.stride;
+  Kept mean;
+  double s = 0.0, lower = 0.0, higher = 0.0;
+  int parts = 0;
+  cells.each_of(n, [&](int cell, int) {
+    const Basin::OnParts &on = on_parts[cell];
+    const double here = on.part_below(z), beside = std::max(0.0, here + on.beside);
+    ++parts;
+    s += here;
+    lower += on.part_below(z - 2.0 * far);    // the middle of the cell goes as far as the corner
+    higher += on.part_below(z + 2.0 * far);
+    mean.more += on.more;
+    mean.along_x += on.along_x * beside;
+    mean.along_y += on.along_y * beside;
+    mean.flow_x += on.flow_x;
+    mean.flow_y += on.flow_y;
+  });
+  if (parts == 0) return mean;
   const double part = 1.0 / parts;
-  at.immersed *= part;
-  at.push = part * at.push;
-  at.flow = part * at.flow;
-  if (at.immersed > 0.0) at.rising = basin.rising_at(basin.in_cells(x));
-  return at;
+  for (double *value : {&mean.more, &mean.along_x, &mean.along_y, &mean.flow_x, &mean.flow_y}) *value *= part;
+  mean.slope = part * (lower - higher) / (2.0 * far) * per_height;
+  mean.base = part * s + mean.slope * x[2];
+  if (mean.acts()) mean.rising = basin.rising_at(basin.in_cells(x));
+  return mean;
 }
 
 // What is the same for all particles in a step.
@@ -169,16 +185,65 @@ struct Buoyancy::Acting {
   double *const *f;
   const double *volume, *gamma, *per_length, *base;
   double *lambda;
+  Kept *kept;             // nullptr where the surface is asked in each step
   double above, below;    // nothing is immersed from `above` up; most particles of a large body need not look up the surface
-  double calming, scale;
+  double calming, per_force, scale;
 };
 
-// Threads share particles and faces. What all of them do to the liquid and to the ledger is added up in the order of particles.
-void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
+__attribute__((always_inline)) inline Buoyancy::Wet Buoyancy::act_on(const Acting &now, const Basin &basin, std::size_t n, int i)
 {
-  constexpr double PARTICLE = 25.0;    // or face, or lattice cell [ns], about
-  wet.clear();
-  if (!lifts || near.empty()) return;
+  const double *const x = now.x[i], *const v = now.v[i];
+  Basin::AtPlace at;
+  if (now.kept) {
+    const Kept &of = now.kept[i];
+    if (of.acts()) {
+      at.immersed = std::clamp(of.base - of.slope * x[2], 0.0, 1.0);
+      at.push = {of.along_x, of.along_y, at.immersed + of.more};
+      at.flow = {of.flow_x, of.flow_y, 0.0};
+      at.rising = of.rising;
+    }
+  } else if (x[2] < now.above) {
+    if (x[2] <= now.below && basin.over_floor(x))
+      at.immersed = at.push.z = 1.0;
+    else
+      at = basin.at(basin.in_cells(x));
+  }
+  const double s = at.immersed;
+  const double own = now.volume ? now.volume[i] : volume.number;
+  const double own_lambda = slows ? liquid_lambda(now.gamma ? now.gamma[i] : gamma.number, rho, own, s) * now.per_force : 0.0;
+  if (now.lambda) now.lambda[i] = (now.base ? now.base[i] : 0.0) + own_lambda;
+  Vec3 push;
+  if (!pressed())
+    push = {lift(rho, own, at.push.x, basin.g), lift(rho, own, at.push.y, basin.g), lift(rho, own, at.push.z, basin.g)};
+  else
+    for (int k = face_of_first[n]; k < face_of_first[n + 1]; ++k) push += faces[face_of[k]].push;
+  const double own_calming = now.calming * s * mass_of(atom->rmass, atom->mass, atom->type, i) * now.per_force;
+  const Vec3 relative = vec3(v) - at.flow;
+  double all_lambda = own_lambda;
+  if (is_quadratic && s > 0.0) {
+    // A force, as forces are a part of the state and friction is not. Friction that depends on x alone is found again.
+    const double rate = (now.per_length ? now.per_length[i] : per_length.number) * std::sqrt(dot(relative, relative));
+    const double quadratic = liquid_lambda(rate, rho, own, s) * now.per_force;
+    push -= quadratic * relative;
+    all_lambda += quadratic;
+  }
+  if (all_lambda > 0.0 && now.kept) {
+    // Drag is against the liquid, not against the floor, and takes it along.
+    push += own_lambda * at.flow;
+    now.kept[i].impulse_x += now.scale * all_lambda * relative.x;
+    now.kept[i].impulse_y += now.scale * all_lambda * relative.y;
+  }
+  if (s == 0.0 && dot(push, push) == 0.0) return {-1, {}, 0.0};
+  push.z -= own_calming * (v[2] - at.rising);
+  add_to(now.f[i], push);
+  return {i, push, own_lambda};
+}
+
+// Threads share particles and faces. What all of them do to the liquid and to the ledger is added up in the order of particles.
+void Buoyancy::act(const Basin &basin, const std::vector<int> &near, bool in_step)
+{
+  wet.resize(lifts ? near.size() : 0);
+  if (wet.empty()) return;
   const Lap lap(seconds);
   const double floor = basin.shape.low.z, height = basin.shape.cell.z;
   const Acting now{atom->x,
@@ -189,65 +254,18 @@ void Buoyancy::act(Basin &basin, const std::vector<int> &near, bool in_step)
                    is_quadratic ? per_length.values(lmp) : nullptr,
                    base_column.given() ? base_column.values(lmp) : nullptr,
                    slows ? lambda_column.values(lmp) : nullptr,
+                   basin.acts_on_cells() ? kept.data() : nullptr,
                    floor + (basin.top() + 1.0) * height,
                    basin.all_below(),
                    basin.calms_solids(),
+                   1.0 / force->ftm2v,
                    in_step ? update->dt * force->ftm2v / rho : 0.0};
   threads.timed_parts(static_cast<long>(faces.size()), PARTICLE, [&](long from, long to) {
     for (long n = from; n < to; ++n) faces[n].push = pressure_on(faces[n], basin);
   });
-  on_parts.resize(cells.cells.size());
-  immersed.resize(8 * cells.cells.size());
-  threads.timed_parts(static_cast<long>(on_parts.size()), PARTICLE, [&](long from, long to) { look_at_cells(basin, from, to); });
-  wet.resize(near.size());
   threads.timed_parts(static_cast<long>(near.size()), PARTICLE, [&](long from, long to) {
     for (long n = from; n < to; ++n) wet[n] = act_on(now, basin, n, near[n]);
   });
-  if (!in_step || !basin.takes_impulses()) return;
-  for (const Wet &one : wet)
-    if (one.impulse.x != 0.0 || one.impulse.y != 0.0) basin.take_impulse(basin.in_cells(now.x[one.i]), one.impulse);
-}
-
-Buoyancy::Wet Buoyancy::act_on(const Acting &now, const Basin &basin, std::size_t n, int i) const
-{
-  const double *const x = now.x[i], *const v = now.v[i];
-  Basin::AtPlace at;
-  if (basin.acts_on_cells())
-    at = at_particle(basin, n, x);
-  else if (x[2] < now.above) {
-    if (x[2] <= now.below && basin.over_floor(x))
-      at.immersed = at.push.z = 1.0;
-    else
-      at = basin.at(basin.in_cells(x));
-  }
-  const double s = at.immersed;
-  const double own = now.volume ? now.volume[i] : volume.number;
-  const double own_lambda = slows ? liquid_lambda(now.gamma ? now.gamma[i] : gamma.number, rho, own, s) / force->ftm2v : 0.0;
-  if (now.lambda) now.lambda[i] = (now.base ? now.base[i] : 0.0) + own_lambda;
-  Vec3 push, impulse;
-  if (!pressed())
-    push = {lift(rho, own, at.push.x, basin.g), lift(rho, own, at.push.y, basin.g), lift(rho, own, at.push.z, basin.g)};
-  else
-    for (int k = face_of_first[n]; k < face_of_first[n + 1]; ++k) push += faces[face_of[k]].push;
-  const double own_calming = now.calming * s * mass_of(atom->rmass, atom->mass, atom->type, i) / force->ftm2v;
-  const Vec3 relative = vec3(v) - at.flow;
-  double all_lambda = own_lambda;
-  if (is_quadratic && s > 0.0) {
-    // A force, as forces are a part of the state and friction is not. Friction that depends on x alone is found again.
-    const double rate = (now.per_length ? now.per_length[i] : per_length.number) * std::sqrt(dot(relative, relative));
-    const double quadratic = liquid_lambda(rate, rho, own, s) / force->ftm2v;
-    push -= quadratic * relative;
-    all_lambda += quadratic;
-  }
-  if (all_lambda > 0.0 && basin.takes_impulses()) {
-    // Drag is against the liquid, not against the floor, and takes it along.
-    push += own_lambda * at.flow;
-    impulse = now.scale * all_lambda * Vec3{relative.x, relative.y, 0.0};
-  }
-  if (s == 0.0 && dot(push, push) == 0.0) return {-1, {}, 0.0, {}};
-  push.z -= own_calming * (v[2] - at.rising);
-  add_to(now.f[i], push);
-  return {i, push, own_lambda, impulse};
 }
 
 // What hydrostatic pressure does to each corner of a face.

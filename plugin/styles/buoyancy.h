@@ -10,6 +10,7 @@
 #include "styles/near_cells.h"
 #include "styles/particle_value.h"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -35,8 +36,12 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   void find_faces(const std::vector<int> &near, const std::string &fix);
   void find_cells(const std::vector<int> &near, const ParticleTable &table, const std::string &fix)
   { cells.find(near, table, fix); }
+  // What the liquid has felt of solids since this was called last.
+  void give_impulses(Basin &basin, const std::vector<int> &near);
+  // What acts on particles until this is called again.
+  void look(const Basin &basin, const std::vector<int> &near);
   // Adds forces and sets friction; in a step the liquid feels what it does.
-  void act(Basin &basin, const std::vector<int> &near, bool in_step);
+  void act(const Basin &basin, const std::vector<int> &near, bool in_step);
   // The ledger begins at the velocities of now, or where it was set, and goes on by a step.
   void begin_ledger();
   void go_on_with_ledger();
@@ -51,17 +56,30 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   double bytes() const
   {
     return static_cast<double>(wet.capacity() * sizeof(Wet) + on_parts.capacity() * sizeof on_parts[0] +
-                               immersed.capacity() * sizeof immersed[0]) +
+                               kept.capacity() * sizeof kept[0]) +
            cells.bytes();
   }
   double seconds = 0.0;
+
+  // Of a particle, from look() to look(); it goes where the particle goes.
+  struct Kept {
+    double base = 0.0, slope = 0.0;             // the part of its volume below the surface is base - slope z, within 0 and 1
+    double more = 0.0;                          // the push upwards is that part and this
+    double along_x = 0.0, along_y = 0.0;        // push sideways
+    double flow_x = 0.0, flow_y = 0.0;          // velocity of the liquid
+    double rising = 0.0;                        // see Basin::AtPlace
+    double impulse_x = 0.0, impulse_y = 0.0;    // on the liquid, not yet given
+    bool are_numbers() const
+    { return std::isfinite(base + slope + more + along_x + along_y + flow_x + flow_y + rising + impulse_x + impulse_y); }
+    bool acts() const { return base != 0.0 || slope != 0.0 || more != 0.0 || along_x != 0.0 || along_y != 0.0; }
+  };
+  std::vector<Kept> kept;    // of all local particles, where the liquid acts on lattice cells
 
  private:
   struct Wet {    // a particle near the liquid, in this step
     int i;        // negative where the liquid does not act on it
     Vec3 push;
     double lambda;
-    Vec3 impulse;    // on the liquid
   };
   struct Face {
     int corner[4];    // counter-clockwise seen from outside
@@ -70,10 +88,9 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
 
   // What acts on a particle, the n-th near the liquid.
   struct Acting;
-  Wet act_on(const Acting &now, const Basin &basin, std::size_t n, int i) const;
+  Wet act_on(const Acting &now, const Basin &basin, std::size_t n, int i);
   Vec3 pressure_on(const Face &face, const Basin &basin) const;
-  void look_at_cells(const Basin &basin, long from, long to);
-  Basin::AtPlace at_particle(const Basin &basin, std::size_t n, const double *x) const;
+  Kept look_at_particle(const Basin &basin, std::size_t n, const double *x) const;
   Basin::Energies power() const;
 
   double rho;
@@ -89,7 +106,6 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   std::vector<int> face_of, face_of_first;    // those of the n-th: face_of[face_of_first[n]] …
   NearCells cells;
   std::vector<Basin::OnParts> on_parts;    // of each lattice cell
-  std::vector<double> immersed;            // of each of its eight parts, where they differ
   Basin::Ledger own;                       // of this rank
   bool ledger_was_set = false;             // since the last step
 };

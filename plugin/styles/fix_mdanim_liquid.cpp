@@ -53,6 +53,7 @@ static const std::vector<Keyword> FREE = {{"buoyancy", "V|d_NAME"}, {"drag", "ga
                                           {"sweeps", "auto|N"},     {"every", "N"},           {"stride", "s"},
                                           {"period", "p"}};
 
+static constexpr std::int64_t STATE_VERSION = 1;    // of rows of particles
 static constexpr double ANYWHERE = std::numeric_limits<double>::infinity();
 
 bool FixMdanimLiquid::WorldSums::alone() const { return lmp->comm->nprocs == 1; }
@@ -198,6 +199,15 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   }
   basin->pace = pace;
   size_array_rows = basin->columns();
+  if (!basin->acts_on_cells()) return;
+  maxexchange = sizeof(Buoyancy::Kept) / sizeof(double);
+  grow_arrays(atom->nmax);
+  atom->add_callback(Atom::GROW);
+}
+
+FixMdanimLiquid::~FixMdanimLiquid()
+{
+  if (basin && basin->acts_on_cells()) atom->delete_callback(id, Atom::GROW);
 }
 
 // Keywords that fix_modify takes as well.
@@ -259,11 +269,12 @@ void FixMdanimLiquid::init()
     error->all(FLERR, "{}: model waves presses on all solids without faces; leave faces out", name());
   if (model == Model::WAVES && !lattice_cells.given())
     error->all(FLERR, "{}: model waves needs the lattice cells of solids; add cells i2_NAME, or write model surface", name());
-  if (lattice_cells.given() && lattice_cells.width(lmp) != 7)
-    error->all(
-        FLERR,
-        "{}: cells names i2_{}, which is no property of 7 integers; make it with 'fix ID all property/atom i2_{} 7 ghost yes'",
-        name(), lattice_cells.name, lattice_cells.name);
+  const int width = lattice_cells.given() ? lattice_cells.width(lmp) : 7;
+  if (width != 7 && width != 8)
+    error->all(FLERR,
+               "{}: cells names i2_{}, which is no property of 7 integers, or 8 with the layers of cells around it; make it with "
+               "'fix ID all property/atom i2_{} 7 ghost yes'",
+               name(), lattice_cells.name, lattice_cells.name);
   if ((lattice_cells.given() || buoyancy->pressed()) && atom->map_style == Atom::MAP_NONE)
     error->all(FLERR, "{}: cells and faces need an atom map; use 'atom_modify map array'", name());
   use(Threads());    // until passes tell how many there are
@@ -332,10 +343,13 @@ double FixMdanimLiquid::fastest_near()
 
 void FixMdanimLiquid::update_liquid()
 {
+  buoyancy->give_impulses(*basin, near);
   in_basin([&] { basin->update(bodies(false), static_cast<std::uint64_t>(update->ntimestep), update->dt); });
-  if (top_height(basin->top()) <= listed_top) return;
-  find_near(neighbor->skin);    // a particle that went one way since lists were made may go as far the other way
-  lowest = -ANYWHERE;           // then, that is not known
+  if (top_height(basin->top()) > listed_top) {
+    find_near(neighbor->skin);    // a particle that went one way since lists were made may go as far the other way
+    lowest = -ANYWHERE;           // then, that is not known
+  }
+  buoyancy->look(*basin, near);
 }
 
 double FixMdanimLiquid::top_height(double cells) const { return basin->shape.low.z + cells * basin->shape.cell.z; }
@@ -385,6 +399,8 @@ void FixMdanimLiquid::find_near(double margin)
 
 void FixMdanimLiquid::setup(int)
 {
+  if (!has_looked) buoyancy->look(*basin, near);
+  has_looked = true;
   buoyancy->act(*basin, near, false);
   buoyancy->begin_ledger();
 }
@@ -473,16 +489,58 @@ double FixMdanimLiquid::compute_array(int row, int column)
 double FixMdanimLiquid::memory_usage()
 { return basin->bytes() + static_cast<double>(near.capacity() * sizeof(int)) + buoyancy->bytes(); }
 
+// --- what acts on particles in waves goes with them ---
+
+void FixMdanimLiquid::grow_arrays(int most) { buoyancy->kept.resize(most); }
+
+void FixMdanimLiquid::copy_arrays(int from, int to, int) { buoyancy->kept[to] = buoyancy->kept[from]; }
+
+void FixMdanimLiquid::set_arrays(int i) { buoyancy->kept[i] = {}; }
+
+int FixMdanimLiquid::pack_exchange(int i, double *into)
+{
+  std::memcpy(into, &buoyancy->kept[i], sizeof(Buoyancy::Kept));
+  return maxexchange;
+}
+
+int FixMdanimLiquid::unpack_exchange(int i, double *from)
+{
+  std::memcpy(static_cast<void *>(&buoyancy->kept[i]), from, sizeof(Buoyancy::Kept));
+  return maxexchange;
+}
+
 // --- state ---
 
-StateRecords FixMdanimLiquid::pack() const { return {{StateKey{}, basin->state(buoyancy->ledger())}}; }
+StateRecords FixMdanimLiquid::pack() const
+{
+  StateRecords records{{StateKey{}, basin->state(buoyancy->ledger())}};
+  if (!basin->acts_on_cells()) return records;
+  ParticleRows rows(lmp, STATE_VERSION, sizeof(Buoyancy::Kept));
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (buoyancy->kept[i].acts()) rows.add(i, &buoyancy->kept[i]);
+  rows.pack(records);
+  return records;
+}
 
 void FixMdanimLiquid::unpack(const StateRecords &records)
 {
-  if (records.size() != 1 || records.begin()->first.a != 0)
-    throw std::runtime_error(fmt::format("the liquid's state is one record (0, 0), there are {} records", records.size()));
-  const Bytes &record = records.begin()->second;
-  buoyancy->set_ledger(basin->set_state(record.data(), record.size()));
+  const auto whole = records.find(StateKey{});
+  if (whole == records.end() || (!basin->acts_on_cells() && records.size() != 1))
+    throw std::runtime_error(fmt::format("the liquid's state is one record (0, 0){}, there are {} records",
+                                         basin->acts_on_cells() ? " and those of objects" : "", records.size()));
+  std::vector<Buoyancy::Kept> kept(buoyancy->kept.size());
+  if (basin->acts_on_cells()) {
+    int bad = 0;
+    ParticleRows(lmp, STATE_VERSION, sizeof(Buoyancy::Kept)).unpack(records, [&](int i, const std::uint8_t *from) {
+      std::memcpy(static_cast<void *>(&kept[i]), from, sizeof kept[i]);
+      bad |= !kept[i].are_numbers();
+    });
+    MPI_Allreduce(MPI_IN_PLACE, &bad, 1, MPI_INT, MPI_MAX, world);
+    if (bad) throw std::runtime_error("the liquid's state of particles has what is no number");
+  }
+  buoyancy->set_ledger(basin->set_state(whole->second.data(), whole->second.size()));
+  buoyancy->kept = std::move(kept);
+  has_looked = true;
   asked = -1;
 }
 

@@ -26,6 +26,7 @@ namespace LAMMPS_NS {
 class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdanim::Stateful {
  public:
   FixMdanimLiquid(class LAMMPS *, int, char **);
+  ~FixMdanimLiquid() override;
 
   int setmask() override;
   void init() override;
@@ -38,6 +39,11 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   double compute_vector(int) override;
   double compute_array(int, int) override;
   double memory_usage() override;
+  void grow_arrays(int most) override;
+  void copy_arrays(int from, int to, int) override;
+  void set_arrays(int i) override;
+  int pack_exchange(int i, double *into) override;
+  int unpack_exchange(int i, double *from) override;
   int modify_param(int, char **) override;
   void append_required_atoms(std::vector<int> &particles) const override;
   bool needs_all_atoms() override;
@@ -45,7 +51,7 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   double safe_displacement() const override;
   void write_restart(FILE *) override;
   void restart(char *) override;
-  // One record, of the whole: the basin's state with the energies.
+  // A record of the whole: the basin's state with the energies. And what acts on the particles of each object in waves.
   mdanim::StateRecords pack() const override;
   void unpack(const mdanim::StateRecords &records) override;
 
@@ -111,7 +117,8 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   double lowest = 0.0;              // particle of this rank when lists were made
   std::vector<int> near;
 
-  bigint asked = -1;    // step for which it is known whether an update is due
+  bool has_looked = false;    // so that it is known what acts on particles until the next update
+  bigint asked = -1;          // step for which it is known whether an update is due
   bool is_due = false;
   double look_seconds = 0.0;
 };

@@ -40,6 +40,7 @@ void FixMdanimLiquid::add_lattice_cells(Occupancy &into, bool still, double belo
 {
   const int *mask = atom->mask;
   int *const *corners = lattice_cells.rows(lmp);
+  const bool knows_layers = lattice_cells.width(lmp) == 8;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!(mask[i] & groupbit) || corners[i][0] == 0) continue;
     int at[8] = {i};
@@ -60,10 +61,10 @@ void FixMdanimLiquid::add_lattice_cells(Occupancy &into, bool still, double belo
       bottom = std::min(bottom, corner[k].z);
     }
     if (bottom > below) continue;
-    if (basin->is_smooth())
-      into.spread_cell(corner);
-    else
+    if (!basin->is_smooth())
       into.add_cell(corner);
+    else if (!knows_layers || !into.fill_inside(corner, corners[i][7]))
+      into.spread_cell(corner);
   }
   if (!basin->is_smooth() || still) return;
   const double *const soft = softness.given() ? softness.values(lmp) : nullptr;

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mdanim_lammps.effects import EFFECTS, decide
 from mdanim_lammps.effects.contact import plane_stiffness
-from mdanim_lammps.effects.liquid import lattice_cells
+from mdanim_lammps.effects.liquid import MOST_LAYERS, lattice_cells, layers_of_cells
 from mdanim_lammps.engine.commands import input_script
 from mdanim_lammps.engine.data_file import data_text
 from mdanim_lammps.engine.instance import Instance
@@ -248,10 +248,27 @@ def test_every_lattice_cell_is_in_the_table(prepared):
     ready = prepared(pool(top="object ball { shape sphere 8 cm position (20, 20, 45) cm density 900 elasticity 100 kPa }"))
     system, table = ready.system, ready.plan.tables["cell"]
     owner = np.flatnonzero(table.any(axis=1))
-    found = np.column_stack([owner, table[owner] - 1])
+    found = np.column_stack([owner, table[owner, :7] - 1])
     assert np.array_equal(found, system.hexahedron[np.argsort(system.hexahedron[:, 0])])
     assert len(found) == sum(len(m.hexahedron) for m in ready.models)
     assert table.dtype == np.int32 and table.min() == 0
+
+
+def test_layers_of_cells_around_each(prepared):
+    """Count from the nearest face of two blocks; a particle that is the corner of no cell has 0."""
+    ready = prepared(
+        pool(top="object slab { shape box (35, 30, 30) cm position (25, 25, 75) cm density 900 elasticity 100 kPa }")
+    )
+    system, table = ready.system, ready.plan.tables["cell"]
+    layers = layers_of_cells(system)
+    of_object = system.object[system.hexahedron[:, 0]]
+    for m in range(2):
+        corner = system.position[system.hexahedron[of_object == m, 0]]
+        place = np.rint((corner - corner.min(axis=0)) / 0.05).astype(int)
+        found = layers[of_object == m]
+        assert np.array_equal(found, np.minimum(np.minimum(place, place.max(axis=0) - place).min(axis=1), MOST_LAYERS))
+    assert layers.max() >= 2
+    assert np.array_equal(table[system.hexahedron[:, 0], 7], layers) and table[:, 7].sum() == layers.sum()
 
 
 def test_a_particle_owns_one_cell_at_most(prepared):

@@ -157,6 +157,12 @@ class LiquidAutomaton(Effect):
 class LiquidWaves(LiquidAutomaton):
     """The same with momentum: columns of whole units that move by pressure."""
 
+    def tables(self, scene, system):
+        cells = lattice_cells(system)
+        layers = np.zeros((system.particles, 1), np.int32)
+        layers[system.hexahedron[:, 0], 0] = layers_of_cells(system)
+        return {"cell": np.hstack([cells, layers])}
+
     def margins(self, envelope):
         return []
 
@@ -364,6 +370,21 @@ def lattice_cells(system: System) -> np.ndarray:
         raise ValueError("a particle is the first corner of two lattice cells")
     table[owner] = system.hexahedron[:, 1:] + 1
     return table
+
+
+MOST_LAYERS = 8
+"""Lattice cells whose layers are told apart, from the surface on."""
+
+
+def layers_of_cells(system: System) -> np.ndarray:
+    """How many lattice cells lie between each one and the surface of its solid, MOST_LAYERS at most, int32, shape (C,)."""
+    reached = np.bincount(system.hexahedron.ravel(), minlength=system.particles) < 8  # a corner of fewer cells than meet inside
+    layer = np.full(len(system.hexahedron), MOST_LAYERS, np.int32)
+    for n in range(MOST_LAYERS):
+        here = reached[system.hexahedron].any(axis=1)
+        layer[here] = np.minimum(layer[here], n)
+        reached[system.hexahedron[here]] = True
+    return layer
 
 
 def outer_faces(system: System) -> np.ndarray:

@@ -9,13 +9,16 @@
 using mdanim::Occupancy;
 using mdanim::Vec3;
 
-// Counts of n lattice cells with eight corners each (VTK order, in cells), samples at points or spread.
-MDANIM_EXPORT void mdanim_occupancy_of_cells(int nx, int ny, int nz, int n, const double *corners, int spread, int *count)
+// Counts of n lattice cells with eight corners each (VTK order, in cells), samples at points or spread; those with `layers` of
+// others around them may fill what is inside. nullptr where none is known.
+MDANIM_EXPORT void mdanim_occupancy_of_cells(int nx, int ny, int nz, int n, const double *corners, const int *layers, int spread,
+                                             int *count)
 {
   Occupancy occupancy(nx, ny, nz);
   for (int cell = 0; cell < n; ++cell) {
     Vec3 corner[8];
     for (int k = 0; k < 8; ++k) corner[k] = mdanim::vec3(corners + 24 * cell + 3 * k);
+    if (layers && occupancy.fill_inside(corner, layers[cell])) continue;
     spread ? occupancy.spread_cell(corner) : occupancy.add_cell(corner);
   }
   std::copy(occupancy.count.begin(), occupancy.count.end(), count);

@@ -13,14 +13,14 @@ CORNERS = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0
 """Of a lattice cell, in VTK order."""
 
 
-def shares(cells, shape=(16, 16, 16), spread=True):
-    """Share of each cell (nz, ny, nx) that lattice cells (n, 8, 3), in cells, fill."""
+def shares(cells, shape=(16, 16, 16), spread=True, layers=None):
+    """Share of each cell (nz, ny, nx) that lattice cells (n, 8, 3), in cells, fill; `layers` (n,) of others are around them."""
     cells = np.ascontiguousarray(cells, np.float64)
     count = np.empty(shape, np.int32)
     nz, ny, nx = shape
-    library().mdanim_occupancy_of_cells(
-        nx, ny, nz, len(cells), ctypes.c_void_p(cells.ctypes.data), int(spread), ctypes.c_void_p(count.ctypes.data)
-    )
+    layers = None if layers is None else np.ascontiguousarray(layers, np.int32)
+    pointers = [ctypes.c_void_p(None if a is None else a.ctypes.data) for a in (cells, layers)]
+    library().mdanim_occupancy_of_cells(nx, ny, nz, len(cells), *pointers, int(spread), ctypes.c_void_p(count.ctypes.data))
     return count / library().mdanim_occupancy_full(int(spread))
 
 
@@ -64,8 +64,34 @@ def test_counts_follow_a_body_smoothly(seed):
     assert np.abs(np.diff(jumps, axis=0)).max() > 3 * change
 
 
+@pytest.mark.parametrize("edge", [1.0, 0.8, 0.6])
+@pytest.mark.parametrize("seed", range(6))
+def test_cells_deep_inside_are_filled_without_samples(seed, edge):
+    """Those that are filled would have been, to 1/32, most of what is full is among them, and no other count changes."""
+    side, at = 14, np.random.default_rng(seed).uniform(9.5, 10.5, 3)
+    turn = Rotation.random(random_state=seed) if seed else None
+    first = np.array(list(product(range(side), repeat=3)))
+    layers = np.minimum(first, side - 1 - first).min(axis=1)
+    cells = edge * block(side, at / edge, turn, bend=0.05 if seed % 2 else 0.0)
+    sampled, found = shares(cells, (20, 20, 20)), shares(cells, (20, 20, 20), layers=layers)
+    filled, full = found > 2.0, sampled > 31 / 32
+    assert full[filled].all()
+    assert np.array_equal(np.minimum(found[~filled], 1.0), np.minimum(sampled[~filled], 1.0))
+    assert filled.sum() / full.sum() > {1.0: 0.55, 0.8: 0.35, 0.6: 0.2}[edge]
+
+
+def test_what_is_stretched_or_near_the_surface_is_sampled():
+    """Longer edges leave gaps, and few layers do not reach: counts are those of samples."""
+    cells = block(6, (8, 8, 8))
+    assert np.array_equal(shares(1.2 * cells, layers=np.full(216, 8)), shares(1.2 * cells))
+    assert np.array_equal(shares(cells, layers=np.full(216, 1)), shares(cells))
+    assert not np.array_equal(shares(cells, layers=np.full(216, 2)), shares(cells))
+
+
 def test_what_is_outside_is_left_out():
     """A cube half out of the basin counts half; one that is nowhere counts nothing."""
     assert shares(block(4, (0, 8, 8))).sum() == pytest.approx(32.0, abs=0.01)
     assert shares(block(4, (-9, 8, 8))).sum() == 0.0
-    assert shares(block(2, (np.nan, 8, 8))).sum() == 0.0
+    for layers in (None, np.full(8, 8)):
+        assert shares(block(2, (np.nan, 8, 8)), layers=layers).sum() == 0.0
+        assert shares(block(2, (1e9, 8, -1e300)), layers=layers).sum() == 0.0
