@@ -175,6 +175,24 @@ def test_restore_goes_on_bit_for_bit(prepared, text):
                 assert second.fix_scalar("liquid") == pytest.approx(first.fix_scalar("liquid"), rel=1e-12)
 
 
+def test_what_waves_do_to_particles_must_be_numbers(prepared):
+    """Refuse a state with NaN in a row of an object, and change nothing. The objects are those that the liquid acts on."""
+    with Instance(prepared(WAVES).plan) as instance:
+        instance.setup()
+        instance.run(151)
+        kept, step = instance.state(), instance.step
+        found = kept.records["liquid"]
+        assert found.keys.tolist() == [[0, 0], [2, 0], [3, 0]]
+        size, row = found.first[2] - found.first[1] - 8, 4 + 10 * 8
+        assert size > 0 and size % row == 0
+        data = found.data.copy()
+        data[found.first[1] + 8 + 4 :][: 8 * 10] = np.frombuffer(np.full(10, np.nan).tobytes(), np.uint8)
+        damaged = {**kept.records, "liquid": replace(found, data=data)}
+        with pytest.raises(SetupError, match="no number"):
+            instance.put(step, replace(kept, records=damaged))
+        assert instance.records()["liquid"] == found
+
+
 def test_a_liquid_state_of_another_grid_is_refused(prepared):
     """Say so instead of going on with other cells."""
     with Instance(prepared(SPLASH).plan) as other:
