@@ -72,7 +72,7 @@ def test_what_pushes_back_tells_an_unusual_stiffness(effect):
     usual, told = (
         verdicts(re.sub(r"control \{", f"control {{ contact-stiffness {f}\n", FULL))[0][effect].reason for f in ("1", "2.5")
     )
-    assert told == usual + ", 2.5 times as stiff as usual"
+    assert told != usual and told.replace(", 2.5 times as stiff as usual", "") == usual
 
 
 @pytest.mark.parametrize("effect", [e.name for e in EFFECTS if e.name != "springs"])

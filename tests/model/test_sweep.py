@@ -88,7 +88,9 @@ def test_contact_is_off_with_the_nearest_pair():
     # 2 m less two radii with a tenth of slack, less 2.5 spacings of reach for each.
     assert "nearest are a and b, with 1.53 m to spare" in verdict.reason
     verdict = decide(EFFECTS, pair(DOWN, a="velocity (9, 0, 0)"))[0]["contact"]
-    assert verdict.on and verdict.reason == "a and b may meet" and verdict.span.line == 10
+    assert verdict.on and verdict.reason == "a and b may meet; no object has friction" and verdict.span.line == 10
+    verdict = decide(EFFECTS, pair(DOWN, a="velocity (9, 0, 0)\n friction 0.3"))[0]["contact"]
+    assert verdict.on and verdict.reason == "a and b may meet"
 
 
 def test_a_parabola_is_exact():

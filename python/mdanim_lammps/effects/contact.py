@@ -97,9 +97,11 @@ class Contact(Effect):
                 f"with {say(apart, 'm')} to spare",
                 second.spans.get("object"),
             )
-        return Verdict(
-            self.name, True, f"{first.name} and {second.name} may meet{stiffness_told(scene)}", second.spans.get("object")
-        )
+        return Verdict(self.name, True, f"{first.name} and {second.name} may meet{self.told(scene)}", second.spans.get("object"))
+
+    def told(self, scene) -> str:
+        """What ``check`` adds about this contact."""
+        return stiffness_told(scene)
 
     def columns(self, scene, system):
         return {"stiffness": system.contact_stiffness, "reach": self.reach(scene, system)[system.object]}

@@ -222,6 +222,9 @@ class SurfaceContact(OnSurfaces, Contact):
     def rubs(self, scene):
         return super().rubs(scene) or any(c.friction for c in scene.contacts)
 
+    def told(self, scene):
+        return super().told(scene) + ("" if self.rubs(scene) else "; no object has friction")
+
     def damping(self, scene):
         return max(super().damping(scene), *(c.contact_damping or 0.0 for c in scene.contacts), 0.0)
 
