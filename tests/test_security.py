@@ -434,4 +434,4 @@ def test_the_crafted_data_are_those_of_a_run(whole, stopped):
     with Trajectory(whole) as t:
         assert len(t) == 9 and len(t.metadata.mass) == 27 and t.liquid
     records = Checkpoint.read(stopped / "checkpoint").records
-    assert {fix: len(r) for fix, r in records.items() if len(r)} == {"liquid": 1}
+    assert {fix: len(r) for fix, r in records.items() if len(r)} == {"liquid": 2}  # of the whole, and of its one object
