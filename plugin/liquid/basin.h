@@ -60,7 +60,7 @@ class Basin {
     Vec3 flow;                // velocity of the liquid [distance/time]
     double rising = 0.0;      // upward velocity of the solid around [distance/time]
   };
-  // What acts on the eight parts of a lattice cell, each nearest to one of its corners. s is the part of a part that is below the
+  // What acts on the eight parts of a lattice cell, each nearest to one of its corners. s is how much of such a part is below the
   // surface: surface - z, z that of the corner [cells], within 0 and 1, times share.
   struct OnParts {
     double surface = 0.0, share = 0.0;

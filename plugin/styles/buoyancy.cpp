@@ -117,7 +117,7 @@ void Buoyancy::append_required_atoms(std::vector<int> &particles) const
   for (const Face &face : faces) particles.insert(particles.end(), face.corner, face.corner + 4);
 }
 
-// --- a step ---
+// --- an update of the liquid ---
 
 void Buoyancy::give_impulses(Basin &basin, const std::vector<int> &near)
 {
@@ -157,7 +157,7 @@ Buoyancy::Kept Buoyancy::look_at_particle(const Basin &basin, std::size_t n, con
   Kept mean;
   double s = 0.0, lower = 0.0, higher = 0.0;
   int parts = 0;
-  cells.each_of(n, [&](int cell, int) {
+  cells.each_of(n, [&](int cell) {
     const Basin::OnParts &on = on_parts[cell];
     const double here = on.part_below(z), beside = std::max(0.0, here + on.beside);
     ++parts;
@@ -179,7 +179,9 @@ Buoyancy::Kept Buoyancy::look_at_particle(const Basin &basin, std::size_t n, con
   return mean;
 }
 
-// What is the same for all particles in a step.
+// --- a step ---
+
+// What is the same for all particles.
 struct Buoyancy::Acting {
   const double *const *x, *const *v;
   double *const *f;

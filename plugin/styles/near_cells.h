@@ -26,11 +26,11 @@ class NearCells : protected LAMMPS_NS::Pointers {
     int corner[8];    // particles, in VTK order
   };
   std::vector<Cell> cells;
-  // Calls f(cell, corner) for the cells of the n-th particle near the liquid.
+  // Calls f(cell) for the cells of the n-th particle near the liquid.
   template <class F> void each_of(std::size_t n, F &&f) const
   {
     for (int k = 0; k < 8; ++k)
-      if (const int cell = of_particle[8 * n + k]; cell >= 0) f(cell, k);
+      if (const int cell = of_particle[8 * n + k]; cell >= 0) f(cell);
   }
   double bytes() const
   { return static_cast<double>(cells.capacity() * sizeof(Cell) + (of_particle.capacity() + number.capacity()) * sizeof(int)); }
