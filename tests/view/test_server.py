@@ -124,6 +124,22 @@ def test_a_run_begun_anew_is_told_anew(folder, tmp_path):
     assert told["file"] == first["file"] + 1 and told["rows"] == first["rows"][:3] and told["count"] == 3 and told["keep"] == 0
 
 
+def test_a_run_that_takes_the_place_of_another(folder, tmp_path):
+    """The tail waits until the old run's file is replaced; the new file counts also where its number is one that became free."""
+    again = tmp_path / "again.out"
+    shutil.copytree(folder, again)
+    data = (again / PROGRESS).read_bytes()
+    tail, known = Tail(folder), Known()
+    for _ in range(3):
+        tail.turn_to(again)
+        tail._look()
+        assert tail.news(known)["state"] == "preparing"
+        (again / PROGRESS).unlink()
+        (again / PROGRESS).write_bytes(data)
+        tail._look()
+        assert tail.news(known)["state"] == "done"
+
+
 def test_runs_of_older_versions(folder, tmp_path):
     """A folder without progress.jsonl is told from its ledger."""
     old = tmp_path / "old.out"

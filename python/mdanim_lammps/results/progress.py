@@ -136,10 +136,10 @@ class ProgressTail:
                 self._take(line)
         return anew
 
-    def is_at(self, file: os.stat_result) -> bool:
-        """Whether the folder's file is this one."""
+    def is_at(self, descriptor: int) -> bool:
+        """Whether the folder's file is this one, which is open."""
         try:
-            return os.path.samestat(os.lstat(self.path), file)
+            return os.path.samestat(os.lstat(self.path), os.fstat(descriptor))
         except FileNotFoundError:
             return False
 

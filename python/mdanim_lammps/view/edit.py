@@ -17,6 +17,7 @@ from ..errors import SceneError
 from ..scene.limits import MOST_BYTES_OF_LOCK
 from ..scene.parse import parse_scene
 from ..scene.source import read_text
+from .tail import Tail
 
 LONGEST_TEXT = 1 << 20
 """Bytes of a message with a scene at most."""
@@ -51,10 +52,12 @@ class Editor:
             for p in found
         ]
 
-    def run(self, text: str, told: Callable[[str], None]) -> None:
-        """Run a text; a run that was started before ends. ``told`` is called with what the program says if it fails."""
+    def run(self, text: str, tail: Tail) -> None:
+        """Run a text, which the tail follows from now on; a run that was started before ends. What the program says if it fails
+        is said by the tail."""
         with self._turn:
             self.end()
+            tail.turn_to(self.out)  # between two runs: what lies there now is of the earlier one
             self.text = text
             command = [sys.executable, "-m", "mdanim_lammps.view.edit", str(self._home), self.name, str(self.out)]
             self._process = subprocess.Popen(
@@ -65,7 +68,7 @@ class Editor:
                 text=True,
                 start_new_session=True,
             )
-            threading.Thread(target=self._wait, args=(self._process, text, told), daemon=True).start()
+            threading.Thread(target=self._wait, args=(self._process, text, tail.say), daemon=True).start()
 
     def end(self) -> None:
         """End the run that was started last: after its frame, with a checkpoint."""

@@ -211,8 +211,7 @@ class ViewServer:
         problems = self.editor.problems(asked["edit"])
         started = asked.get("run") is True and not [p for p in problems if p["severity"] == "error"]
         if started:
-            self.editor.run(asked["edit"], self.tail.say)
-            self.tail.turn_to(self.editor.out)
+            self.editor.run(asked["edit"], self.tail)
         return {"problems": problems, "started": started}
 
 

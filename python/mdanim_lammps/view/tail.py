@@ -66,8 +66,9 @@ class Tail:
         self._message = ""
         self._awaited = False
         """Whether a run is about to begin whose processes have not claimed the folder yet."""
-        self._before: os.stat_result | None = None
-        """The progress.jsonl of an earlier run, which the one that is about to begin will replace."""
+        self._before: int | None = None
+        """Descriptor of the progress.jsonl of an earlier run, which the one that is about to begin will replace: while it is
+        open, no other file is given its number."""
         self._facts: dict = {}
         self._looked = -LOOK_FOR_LIFE
         self._closing = threading.Event()
@@ -82,6 +83,7 @@ class Tail:
         self._closing.set()
         self._thread.join()
         self._progress.close()
+        self._forget_before()
         if self._feed:
             self._feed.close()
 
@@ -92,8 +94,9 @@ class Tail:
             self.folder, self._progress = folder, ProgressTail(folder)
             self._begin_anew()
             self._state, self._message, self._awaited = "preparing", "", True
+            self._forget_before()
             with suppress(OSError):
-                self._before = os.lstat(self._progress.path)
+                self._before = os.open(self._progress.path, os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC | os.O_NONBLOCK)
             self.changes += 1
             self.changed.notify_all()
 
@@ -170,9 +173,9 @@ class Tail:
 
     def _look(self) -> None:
         with self.changed:
-            if self._before and self._progress.is_at(self._before):
+            if self._before is not None and self._progress.is_at(self._before):
                 return
-            self._before = None
+            self._forget_before()
             before = (self._progress.count, self._progress.lives, self._state)
             if self._progress.read() or (self._feed and not self._is_there(self._feed)):
                 self._begin_anew()
@@ -193,6 +196,11 @@ class Tail:
             return feed.frames.is_at(find_trajectory(self.folder))
         except OutputError:
             return False
+
+    def _forget_before(self) -> None:
+        if self._before is not None:
+            os.close(self._before)
+            self._before = None
 
     def _begin_anew(self) -> None:
         if self._feed:
