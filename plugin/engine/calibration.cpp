@@ -98,7 +98,7 @@ class TimedPass {
     Cut all = cutter.cut({&rows, law.data()}, bodies.object.data());
     RangeCut one = cut_into_ranges(cutter, all, 1);
     blocks.emplace(cutter, std::move(all), std::move(one));
-    blocks->set_motion(Friction::IMPLICIT, [](int) { return Mover{1.0, 1.0, 0.5 * STEP, STEP, PHI}; });
+    blocks->set_motion(Friction::IMPLICIT, [](int) { return Mover{1.0, 1.0, 0.5 * STEP, STEP, PHI, false}; });
     double still[3] = {};
     std::vector<const double *> x, v(particles, still);
     for (const auto &place : bodies.place) x.push_back(place.data());

@@ -6,6 +6,7 @@
 #define MDANIM_PASS_H
 
 #include "laws/dashpot_work.h"
+#include "laws/liquid_scales.h"
 
 namespace mdanim {
 
@@ -28,6 +29,7 @@ struct Block {
   unsigned motion;       // row of Pass::motion
   int object;            // molecule - 1
   int chunk;             // row of Pass::sums
+  int immersed;          // row of Pass::kept and of Pass::immersed_of; negative where no particle is near a liquid
   bool at_border;        // of a range of blocks: some of what is loaded with its lanes belongs to another range
   int crossing;          // its row of Pass::crossed; negative where none of its springs cross the border above it
 };
@@ -68,10 +70,23 @@ enum Motion { MASS, KICK, DT, FOREIGN_LANE, OWNED_LANE, STAY, SHARE, PUSH, BRAKE
 // block's own; OWNED_LANE 1 for a particle of this rank. With friction also, see leapfrog.h: STAY 1 - phi or e; SHARE 1 / (1 +
 // phi); PUSH g dt/2m; BRAKED_MASS m, 0 where there is none; PHI.
 
+// A row of Pass::kept, one number for each lane: what waves do to a particle (InWaves), and the impulse on the liquid.
+enum Kept { IN_WAVES = 8, IMPULSE_X = IN_WAVES, IMPULSE_Y, KEPT };
+
+// A row of Pass::immersed, one number for each lane; see Immersed. LAMBDA is friction that a particle has anyway; LISTED is 1 for
+// what is near the liquid.
+enum ImmersedMotion { VOLUME, OWN_MASS, GAMMA, PER_LENGTH, LAMBDA, LISTED, IMMERSED_MOTIONS };
+
+// The same of one particle.
+struct ImmersedMover {
+  double volume, mass, gamma, per_length, lambda;
+};
+
 // What a particle's motion depends on.
 struct Mover {
   double pulled;                 // mass that gravity pulls at
   double mass, kick, dt, phi;    // see Motion
+  bool in_liquid;                // its friction is in ImmersedMotion
 };
 
 // A row of Pass::trace: a box, see boxes.h, and the largest v^2 with its sign changed.
@@ -85,6 +100,7 @@ struct PassSums {
   double final_loss, first_loss;    // to friction in either half step
   double bend;                      // dt v^{n+1/2} . F^n
   DashpotSums dashpots;
+  double liquid_work, liquid_lost;    // power of the liquid's forces but friction's; what its friction takes
 };
 
 struct Pass {
@@ -107,14 +123,21 @@ struct Pass {
   const double *external_force;    // rows of forces from elsewhere, (3, lanes) each, to be added after gravity:
   int force_providers;             // so many in a row for a block that has any
   Friction friction;
-  double *total;     // (N, 3): sum of all forces on the particles of blocks that are held back
-  double *trace;     // rows of TRACE, one of each object: to be grown; null for none
-  bool looks;        // where particles are after this pass; else the trace takes note of their speeds alone
-  bool bends;        // `bend` is asked for
-  PassSums *sums;    // of every chunk, zero before a pass
+  double *kept;                   // rows of KEPT
+  const double *immersed;         // rows of IMMERSED_MOTIONS,
+  const unsigned *immersed_of;    // and which of them goes with a row of `kept`
+  LiquidScales liquid;
+  double top_of_near;    // below it the speed of what is LISTED counts
+  double *total;         // (N, 3): sum of all forces on the particles of blocks that are held back
+  double *trace;         // rows of TRACE, one of each object: to be grown; null for none
+  bool looks;            // where particles are after this pass; else the trace takes note of their speeds alone
+  bool bends;            // `bend` is asked for
+  PassSums *sums;        // of every chunk, zero before a pass
 
-  double fastest;    // largest v^2 of what has moved
-  double squares;    // sum of v^2, with lanes of others: finite where all of them are
+  double fastest;         // largest v^2 of what has moved
+  double squares;         // sum of v^2, with lanes of others: finite where all of them are
+  double fastest_near;    // largest v^2 of what is near the liquid, -1 for nothing
+  double largest_phi;     // of what is near the liquid
 };
 
 }    // namespace mdanim

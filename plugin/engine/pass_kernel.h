@@ -12,6 +12,7 @@
 
 #include "engine/pass.h"
 #include "engine/vectors.h"
+#include "laws/immersed.h"
 #include "laws/leapfrog.h"
 #include "laws/spring.h"
 
@@ -78,6 +79,7 @@ struct Bounds {
 // What a pass tells at its end.
 struct Tally {
   Vector fastest{}, squares{};
+  Vector fastest_near = constant<Vector>(-1.0), largest_phi{};
   PassSums sums{};
   int chunk = -1;    // whose sums these are
   Bounds box;
@@ -202,23 +204,25 @@ template <Friction FRICTION> MDANIM_ALWAYS_INLINE auto half_steps(const double *
     return Frictionless<Vector>{load(motion + KICK * LANES)};
 }
 
-// The second half of a step and the first of the next.
-template <Friction FRICTION, bool TRACED, bool DAMPED>
-MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const double *total, Tally &tally)
+// The same for a phi of this step.
+template <Friction FRICTION> MDANIM_ALWAYS_INLINE auto half_steps(const Vector &phi, const Vector &kick)
+{
+  if constexpr (FRICTION == Friction::IMPLICIT)
+    return Implicit<Vector>::of(phi, kick);
+  else
+    return Exponential<Vector>::of(phi, kick);
+}
+
+// The second half of a step and the first of the next, by a law of leapfrog.h; friction takes from `mass` alone. Sums are those
+// of the block's chunk when then(v^n, v^{n+1/2}, r^{n+1}) is called.
+template <Friction FRICTION, bool TRACED, bool DAMPED, class Law, class Then>
+MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const double *total, const Vector3 &f, const Law &law,
+                                  const Vector &mass, Tally &tally, const Then &then)
 {
   const int i = block.start;
-  if (block.held_back) {
-    for (int lane = 0; lane < block.lanes; ++lane)
-      for (int d = 0; d < 3; ++d) {
-        pass.total[3 * (i + lane) + d] = total[d * LANES + lane];
-        if (DAMPED && block.damped) pass.held_part[d][i + lane] = total[(3 + d) * LANES + lane];
-      }
-    return;
-  }
   const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
   const Vector dt = load(motion + DT * LANES);
-  const auto law = half_steps<FRICTION>(motion);
-  const Vector3 f = load_own(total), first = load(pass.v, i);
+  const Vector3 first = load(pass.v, i);
   const Vector3 middle = law.final_half(first, f), last = law.first_half(middle, f);
   Vector3 place = load(pass.x, i) + dt * last;
   store(pass.v, i, last);
@@ -229,10 +233,10 @@ MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const doubl
   if (pass.bends) add_lanes(tally.sums.bend, dt * dot(last, f));
   if (DAMPED && block.damped) account(pass, block, motion, load_own(total + 3 * LANES), first, last, tally.sums.dashpots);
   if constexpr (FRICTION != Friction::NONE) {    // 0 in lanes of others
-    const Vector mass = load(motion + BRAKED_MASS * LANES);
     add_lanes(tally.sums.final_loss, law.loss(first, middle, f, mass, false));
     add_lanes(tally.sums.first_loss, law.loss(middle, last, f, mass, true));
   }
+  then(middle, last, place);
   if (TRACED) {
     if (block.object != tally.object) tally.turn_to_object(block.object, pass);
     if (block.lanes < LANES) {    // lanes of others go where the first one is, and rest
@@ -246,6 +250,60 @@ MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const doubl
   } else {
     tally.fastest = largest(square, tally.fastest);
   }
+}
+
+// The motion of a block that a liquid acts on (laws/immersed.h). Not inlined: most blocks are dry.
+template <Friction FRICTION, bool TRACED, bool DAMPED>
+__attribute__((noinline)) void move_immersed(const Pass &pass, const Block &block, const double *total, Tally &tally)
+{
+  const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
+  const double *const own =
+      pass.immersed + static_cast<unsigned long>(pass.immersed_of[block.immersed]) * (IMMERSED_MOTIONS * LANES);
+  double *const kept = pass.kept + static_cast<long>(block.immersed) * (KEPT * LANES);
+  const auto of = [own](ImmersedMotion what) { return load(own + what * LANES); };
+  const auto waves = [kept](int n) { return load(kept + n * LANES); };
+  const InWaves<Vector> in_waves{waves(0), waves(1), waves(2), waves(3), waves(4), waves(5), waves(6), waves(7)};
+  const Immersed<Vector> particle{of(VOLUME), of(OWN_MASS), of(GAMMA), of(PER_LENGTH)};
+  const AtPlace<Vector> at = in_waves.at(load(pass.x[2] + block.start));
+  const Vector3 lift = lift_along(pass.liquid, particle.volume, at.push);
+  const auto force = liquid_force(pass.liquid, particle, at, lift, load(pass.v, block.start));
+  store(kept + IMPULSE_X * LANES, waves(IMPULSE_X) + force.impulse_x);
+  store(kept + IMPULSE_Y * LANES, waves(IMPULSE_Y) + force.impulse_y);
+  const Vector kick = load(motion + KICK * LANES), phi = (of(LAMBDA) + force.lambda) * kick;
+  tally.largest_phi = larger(phi, tally.largest_phi);
+  const auto then = [&](const Vector3 &middle, const Vector3 &last, const Vector3 &place) {
+    add_lanes(tally.sums.liquid_work, dot(force.push, middle));
+    add_lanes(tally.sums.liquid_lost, force.lambda * dot(middle, middle));
+    const Vector square = of(LISTED) > 0.0 ? dot(last, last) : constant<Vector>(-1.0);
+    tally.fastest_near = place.z < pass.top_of_near ? larger(square, tally.fastest_near) : tally.fastest_near;
+  };
+  const Vector mass = phi > 0.0 ? particle.mass : Vector{};
+  advance<FRICTION, TRACED, DAMPED>(pass, block, total, load_own(total) + force.push, half_steps<FRICTION>(phi, kick), mass,
+                                    tally, then);
+}
+
+template <Friction FRICTION, bool TRACED, bool DAMPED>
+MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const double *total, Tally &tally)
+{
+  const int i = block.start;
+  if (block.held_back) {
+    for (int lane = 0; lane < block.lanes; ++lane)
+      for (int d = 0; d < 3; ++d) {
+        pass.total[3 * (i + lane) + d] = total[d * LANES + lane];
+        if (DAMPED && block.damped) pass.held_part[d][i + lane] = total[(3 + d) * LANES + lane];
+      }
+    return;
+  }
+  if constexpr (FRICTION != Friction::NONE) {
+    if (__builtin_expect(block.immersed >= 0, 0)) {
+      move_immersed<FRICTION, TRACED, DAMPED>(pass, block, total, tally);
+      return;
+    }
+  }
+  const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
+  advance<FRICTION, TRACED, DAMPED>(pass, block, total, load_own(total), half_steps<FRICTION>(motion),
+                                    load(motion + BRAKED_MASS * LANES), tally,
+                                    [](const Vector3 &, const Vector3 &, const Vector3 &) {});
 }
 
 // --- at the borders of ranges ---
@@ -366,10 +424,13 @@ template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_ALWAYS_INLINE void
 
   if (TRACED) tally.turn_to_object(-1, pass);
   tally.turn_to_chunk(-1, pass);
-  pass.fastest = pass.squares = 0.0;
+  pass.fastest = pass.squares = pass.largest_phi = 0.0;
+  pass.fastest_near = -1.0;
   for (int lane = 0; lane < LANES; ++lane) {
     if (tally.fastest[lane] > pass.fastest) pass.fastest = tally.fastest[lane];
     pass.squares += tally.squares[lane];
+    if (tally.fastest_near[lane] > pass.fastest_near) pass.fastest_near = tally.fastest_near[lane];
+    if (tally.largest_phi[lane] > pass.largest_phi) pass.largest_phi = tally.largest_phi[lane];
   }
 }
 

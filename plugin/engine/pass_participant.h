@@ -7,6 +7,7 @@
 
 #include "engine/displacement_budget.h"
 #include "engine/pass.h"
+#include "engine/pass_liquid.h"
 #include "engine/positions.h"
 #include "engine/spring_rows.h"
 #include "laws/vec3.h"
@@ -87,7 +88,10 @@ class PassIntegrator : public PassMember {
   virtual bool tells_of(long long step) const = 0;                    // whether `bend` will be asked for in that step
   virtual void finish_step(const std::vector<int> &particles) = 0;    // v^{n-1/2} -> v^n
   virtual void begin_step(const std::vector<int> &particles) = 0;     // v^n -> v^{n+1/2}, r^n -> r^{n+1}
-  virtual void moved(double final_loss, double first_loss, double bend, double seconds) = 0;    // by a pass in its name
+  // By a pass in its name.
+  virtual void moved(double final_loss, double first_loss, double bend, double largest_phi, double seconds) = 0;
+  // Friction of particles that have numbers of their own, else null.
+  virtual const double *friction_of_particles() const = 0;
   // All ranks together, after lists were made: own particles that other ranks have as ghosts, and what is known of all particles.
   virtual std::vector<Known> survey_ghosts(std::vector<int> &sent) = 0;
 };
@@ -134,6 +138,7 @@ struct PassCrew {
   PassSprings *springs = nullptr;
   PassIntegrator *integrator = nullptr;
   PassGravity *gravity = nullptr;
+  PassLiquid *liquid = nullptr;    // a late participant too
   std::vector<PassParticipant *> early, late;
 
   // How far particles may go before some participant must look again, of no more than `any`.

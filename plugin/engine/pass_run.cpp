@@ -15,6 +15,9 @@ namespace mdanim {
 // (bench/effects.py shares, which goes from 13 and 3 springs for each particle to none). The springs have the rest.
 static constexpr double OF_LEAPFROG = 0.35, OF_DRAG = 0.14, OF_GRAVITY = 0.01;
 
+// What a pass takes more for a particle that a liquid acts on, over what it takes for any.
+static constexpr double MORE_IN_LIQUID = 0.3;
+
 PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const Threads &threads, const PassCrew &crew,
                  const AtomArrays &atoms, double dt, Fresh fresh)
     : blocks(blocks), kernels(kernels), threads(threads), crew(crew), atoms(atoms), dt(dt)
@@ -24,6 +27,7 @@ PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const Threads &thre
     blocks.set_motion(crew.integrator->friction(), [&](int i) {
       Mover mover = crew.integrator->mover(i);
       if (crew.gravity) mover.pulled = crew.gravity->pulled(i);
+      mover.in_liquid = crew.liquid && crew.liquid->is_near(i);
       return mover;
     });
   if (Loss *account = crew.springs->account()) {
@@ -51,6 +55,10 @@ void PassRun::hold_back()
   wanted.clear();
   for (const PassParticipant *p : crew.late) p->append_required_atoms(wanted);
   blocks.hold_back(wanted, false);
+  if (crew.liquid) {
+    blocks.immerse(*crew.liquid, pass);
+    crew.liquid->split(&blocks.held_back());
+  }
   pass.friction =
       blocks.friction_acts() ? crew.integrator->friction() : Friction::NONE;    // without any it is the same, and faster
 }
@@ -59,7 +67,10 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
 {
   bool needs_all = false;
   for (PassParticipant *p : crew.late) needs_all = p->needs_all_atoms() || needs_all;
-  if (needs_all) blocks.hold_back(wanted, true);
+  if (needs_all) {
+    give_back_to_liquid();
+    blocks.hold_back(wanted, true);
+  }
   early_participants_turn();
   double all = 0.0;
   pass.bends = crew.integrator->tells_of(next);
@@ -68,11 +79,13 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
     const Lap lap(all);
     take_pass();
   }
-  const double moving = (OF_LEAPFROG + (pass.friction == Friction::NONE ? 0.0 : OF_DRAG)) * all;
-  const double pulling = crew.gravity ? OF_GRAVITY * all : 0.0;
-  crew.integrator->moved(sums.final_loss, sums.first_loss, sums.bend, moving);
+  const double share_of_liquid = blocks.share_of_liquid(MORE_IN_LIQUID);
+  const double moving = (1.0 - share_of_liquid) * (OF_LEAPFROG + (pass.friction == Friction::NONE ? 0.0 : OF_DRAG)) * all;
+  const double pulling = crew.gravity ? OF_GRAVITY * all : 0.0, lifting = share_of_liquid * all;
+  crew.integrator->moved(sums.final_loss, sums.first_loss, sums.bend, pass.largest_phi, moving);
   if (crew.gravity) crew.gravity->took(pulling);
-  crew.springs->took(all - moving - pulling);
+  if (crew.liquid) crew.liquid->acted(sums.liquid_work, sums.liquid_lost, pass.fastest_near, lifting);
+  crew.springs->took(all - moving - pulling - lifting);
   if (!crew.late.empty()) {
     late_participants_turn(late);
     if (needs_all) hold_back();    // they may need others now
@@ -89,9 +102,12 @@ void PassRun::take_pass()
   for (std::size_t n = 0; n < ranges.size(); ++n) of_range[n].range = &ranges[n];
   threads.each(static_cast<int>(ranges.size()), [this](int n) { kernels.pass(of_range[n]); });
   blocks.end_pass(pass);
-  pass.fastest = pass.squares = 0.0;
+  pass.fastest = pass.squares = pass.largest_phi = 0.0;
+  pass.fastest_near = -1.0;
   for (const Pass &one : of_range) {
     pass.fastest = std::max(pass.fastest, one.fastest);
+    pass.fastest_near = std::max(pass.fastest_near, one.fastest_near);
+    pass.largest_phi = std::max(pass.largest_phi, one.largest_phi);
     pass.squares += one.squares;
   }
   sums = {};
@@ -102,6 +118,8 @@ void PassRun::take_pass()
     sums.dashpots.work += of_chunk.dashpots.work;
     sums.dashpots.bend += of_chunk.dashpots.bend;
     sums.dashpots.ahead += of_chunk.dashpots.ahead;
+    sums.liquid_work += of_chunk.liquid_work;
+    sums.liquid_lost += of_chunk.liquid_lost;
   }
 }
 
@@ -150,8 +168,17 @@ bool PassRun::in_range(const AtomArrays &atoms, int particles)
   return squares < LARGEST_SQUARE;
 }
 
+// All particles are the liquid's own affair again.
+void PassRun::give_back_to_liquid()
+{
+  if (!crew.liquid) return;
+  blocks.give_out_impulses(*crew.liquid);
+  crew.liquid->split(nullptr);
+}
+
 void PassRun::leave()
 {
+  give_back_to_liquid();
   blocks.give_out(atoms.x, atoms.v);
   Loss *account = crew.springs->account();
   if (!account) return;

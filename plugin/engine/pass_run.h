@@ -49,6 +49,7 @@ class PassRun {
   static constexpr double LARGEST_SQUARE = 1e200;
 
   void hold_back();
+  void give_back_to_liquid();
   void take_pass();
   void early_participants_turn();
   void late_participants_turn(const std::function<void(bool at_end)> &late);

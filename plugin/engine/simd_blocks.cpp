@@ -157,7 +157,7 @@ void SimdBlocks::hold_back(const std::vector<int> &wanted, bool everything)
 bool SimdBlocks::friction_acts() const
 {
   for (std::size_t b = 0; b < all.size(); ++b)
-    if (slowed[b] && !all[b].held_back) return true;
+    if ((slowed[b] || all[b].immersed >= 0) && !all[b].held_back) return true;
   return false;
 }
 
@@ -373,7 +373,8 @@ std::size_t SimdBlocks::bytes() const
   return of_providers + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + motions.bytes() + memory.bytes() +
          (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
              sizeof(int) +
-         total.capacity() * sizeof(double);
+         total.capacity() * sizeof(double) + kept.bytes() + immersed_motions.bytes() + immersed_of.capacity() * sizeof(unsigned) +
+         immersed.capacity() * sizeof(int);
 }
 
 }    // namespace mdanim

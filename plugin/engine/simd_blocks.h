@@ -47,6 +47,13 @@ class SimdBlocks {
   bool friction_acts() const;                                                            // on a block that is not held back
   const std::vector<int> &held_back() const { return reordered ? waiting : outside; }    // all particles of such blocks
 
+  // Which blocks a liquid acts on, and how; those that are held back as well are left out. The impulses on the liquid are the
+  // liquid's again after the second.
+  void immerse(PassLiquid &liquid, Pass &pass);
+  void give_out_impulses(PassLiquid &liquid) const;
+  // Of the time of a pass, where a particle in the liquid takes `more` than another, over that.
+  double share_of_liquid(double more) const { return more * immersed_particles / (particles + more * immersed_particles); }
+
   void take_in(const double *const *x, const double *const *v);
   void give_out(double *const *x, double *const *v) const;    // null for what is not wanted
   // The same for the particles that are held back.
@@ -90,6 +97,8 @@ class SimdBlocks {
   bool is_ghost(int place) const { return reordered && place >= owned; }
   void set_row(const Mover &mover, Friction friction, int lane, double *row) const;
   void fill_ranges(Pass &pass);
+  void list_immersed(const PassLiquid &liquid);
+  template <class Work> void each_immersed(PassLiquid &liquid, const Work &work) const;
   void set_apart(const std::vector<bool> &moves);    // by the first particle of a block: whether any of it moves
 
   const Cutter &cutter;
@@ -115,7 +124,13 @@ class SimdBlocks {
   std::vector<int> index, place;       // of a particle in LAMMPS's arrays, and back
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
   std::vector<double> total;           // see Pass, in our order
-  int owned = 0;                       // in LAMMPS's arrays, ghosts come after them
+  std::vector<int> immersed;           // blocks with particles near a liquid
+  double immersed_particles = 0.0;     // of those that are not held back
+  Doubles kept;                        // see Pass
+  DistinctRows<double> immersed_motions;
+  std::vector<unsigned> immersed_of;    // see Pass
+  long long listed = -1;                // by the liquid
+  int owned = 0;                        // in LAMMPS's arrays, ghosts come after them
   DistinctRows<double> motions;
   Doubles memory;    // of the arrays
   double *x[3] = {}, *v[3] = {};
@@ -135,9 +150,10 @@ template <class Tell> void SimdBlocks::set_motion(Friction friction, Tell mover)
   for (Block &block : all) {
     for (int lane = 0; lane < lanes; ++lane) {
       const int i = lane < block.lanes ? at(block.start + lane) : -1;
-      const Mover of_lane = i < 0 || is_ghost(i) ? Mover{0.0, 0.0, 0.0, 0.0, 0.0} : mover(i);
+      Mover of_lane = i < 0 || is_ghost(i) ? Mover{} : mover(i);
+      if (of_lane.in_liquid) of_lane.phi = 0.0;
       if (of_lane.phi != 0.0) slow[block.start] = true;
-      if (of_lane.dt != 0.0) moves[block.start] = true;
+      if (of_lane.dt != 0.0 || of_lane.in_liquid) moves[block.start] = true;
       set_row(of_lane, friction, lane, row.data());
       row[FOREIGN_LANE * lanes + lane] = lane < block.lanes ? 0.0 : 1.0;
       row[OWNED_LANE * lanes + lane] = i < 0 || is_ghost(i) ? 0.0 : 1.0;
@@ -145,6 +161,7 @@ template <class Tell> void SimdBlocks::set_motion(Friction friction, Tell mover)
     block.motion = motions.find_or_add(row.data(), row.size());
   }
   set_apart(moves);
+  listed = -1;
   slowed.clear();
   for (const Block &block : all) slowed.push_back(slow[block.start]);
 }

@@ -17,7 +17,8 @@ inline double immersed_part(double eta, double z) { return std::clamp(eta - z + 
 
 // Upward force on volume V with the part s immersed: Archimedes, rho_l V s g. Equal to the paper's modified
 // gravity g (1 - s rho_l/rho_s) on a particle of mass rho_s V.
-inline double lift(double rho, double volume, double s, double g) { return rho * volume * s * g; }
+template <class Real> MDANIM_ALWAYS_INLINE Real lift(double rho, const Real &volume, const Real &s, double g)
+{ return rho * volume * s * g; }
 
 // Share of one corner in the force of a pressure p on a quadrilateral whose corners a, b, c, d run
 // counter-clockwise seen from outside: a quarter of -p A, with the area vector A = (c - a) x (d - b) / 2.
@@ -25,7 +26,8 @@ inline Vec3 corner_push(double p, const Vec3 &a, const Vec3 &b, const Vec3 &c, c
 { return (-0.125 * p) * cross(c - a, d - b); }
 
 // Friction coefficient of the immersed part, eq. (3.9): F = -gamma rho_l V s v. Quadratic drag is a gamma that grows with |v|.
-inline double liquid_lambda(double gamma, double rho, double volume, double s) { return gamma * rho * volume * s; }
+template <class Real> MDANIM_ALWAYS_INLINE Real liquid_lambda(const Real &gamma, double rho, const Real &volume, const Real &s)
+{ return gamma * rho * volume * s; }
 
 // Value at (x, y) of a field known at the centres of unit cells, bilinear, constant beyond the outermost
 // centres; a blocked cell (not 0) says what the cell of the point says, so that nothing is mixed across a

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 namespace mdanim {
 
@@ -26,7 +27,7 @@ template <class Real> struct Implicit {
   Real phi, kick;      // [-], eq. (3.13); dt / 2m [velocity/force]
   Real stay, share;    // 1 - phi, 1 / (1 + phi)
 
-  static Implicit of(double phi, double kick) { return {phi, kick, 1.0 - phi, 1.0 / (1.0 + phi)}; }
+  static MDANIM_ALWAYS_INLINE Implicit of(const Real &phi, const Real &kick) { return {phi, kick, 1.0 - phi, 1.0 / (1.0 + phi)}; }
   MDANIM_ALWAYS_INLINE Vec<Real> first_half(const Vec<Real> &v, const Vec<Real> &f) const { return stay * v + kick * f; }
   MDANIM_ALWAYS_INLINE Vec<Real> final_half(const Vec<Real> &v, const Vec<Real> &f) const { return share * (v + kick * f); }
 
@@ -44,7 +45,7 @@ template <class Real> struct Implicit {
 };
 
 // 2^-n for n >= 0, exactly; 0 below the normal range.
-inline double power_of_half(int n)
+MDANIM_ALWAYS_INLINE double power_of_half(int n)
 {
   if (n > 1022) return 0.0;
   const std::uint64_t bits = static_cast<std::uint64_t>(1023 - n) << 52;
@@ -56,7 +57,7 @@ inline double power_of_half(int n)
 // e = exp(-phi) and g = (1 - e) / phi for phi >= 0, to 2 ulp, by + - * / alone: libm may round differently
 // from one CPU to the next. phi = n ln2 + r with |r| <= ln2 / 2; then g(r) = sum (-r)^j / (j+1)! and exp(-r)
 // = 1 - r g(r).
-inline void exponential_decay(double phi, double &e, double &g)
+MDANIM_ALWAYS_INLINE void exponential_decay(double phi, double &e, double &g)
 {
   if (!(phi < 700.0)) {    // exp(-phi) is nothing beside 1
     e = 0.0;
@@ -78,10 +79,17 @@ inline void exponential_decay(double phi, double &e, double &g)
 template <class Real> struct Exponential {
   Real e, push, kick;    // `push` is (1-e)/phi k
 
-  static Exponential of(double phi, double kick)
+  static MDANIM_ALWAYS_INLINE Exponential of(const Real &phi, const Real &kick)
   {
-    double e, g;
-    exponential_decay(phi, e, g);
+    Real e{}, g{};
+    if constexpr (std::is_same_v<Real, double>)
+      exponential_decay(phi, e, g);
+    else
+      for (unsigned lane = 0; lane < sizeof(Real) / sizeof(double); ++lane) {
+        double decay, mean;
+        exponential_decay(phi[lane], decay, mean);
+        e[lane] = decay, g[lane] = mean;
+      }
     return {e, g * kick, kick};
   }
   MDANIM_ALWAYS_INLINE Vec<Real> first_half(const Vec<Real> &v, const Vec<Real> &f) const { return e * v + push * f; }

@@ -5,7 +5,7 @@
 #define MDANIM_BASIN_H
 
 #include "engine/team.h"
-#include "laws/vec3.h"
+#include "laws/immersed.h"
 #include "liquid/occupancy.h"
 
 #include <algorithm>
@@ -53,13 +53,7 @@ class Basin {
     Vec3 place;    // [distance], as the radius
     double radius;
   };
-  // What acts on a solid at a place.
-  struct AtPlace {
-    double immersed = 0.0;    // part of the volume around it that is below the surface
-    Vec3 push;                // force on a volume, over the weight of as much liquid
-    Vec3 flow;                // velocity of the liquid [distance/time]
-    double rising = 0.0;      // upward velocity of the solid around [distance/time]
-  };
+  using AtPlace = mdanim::AtPlace<double>;
   // What acts on the eight parts of a lattice cell, each nearest to one of its corners. s is how much of such a part is below the
   // surface: surface - z, z that of the corner [cells], within 0 and 1, times share.
   struct OnParts {

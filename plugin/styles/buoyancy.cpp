@@ -119,6 +119,19 @@ void Buoyancy::append_required_atoms(std::vector<int> &particles) const
 
 // --- an update of the liquid ---
 
+bool Buoyancy::Kept::are_numbers() const
+{
+  const InWaves<double> &w = waves;
+  return std::isfinite(w.base + w.slope + w.more + w.along_x + w.along_y + w.flow_x + w.flow_y + w.rising + impulse_x +
+                       impulse_y);
+}
+
+bool Buoyancy::Kept::acts() const
+{
+  const InWaves<double> &w = waves;
+  return w.base != 0.0 || w.slope != 0.0 || w.more != 0.0 || w.along_x != 0.0 || w.along_y != 0.0;
+}
+
 void Buoyancy::give_impulses(Basin &basin, const std::vector<int> &near)
 {
   if (!basin.acts_on_cells()) return;
@@ -154,7 +167,8 @@ void Buoyancy::look(const Basin &basin, const std::vector<int> &near)
 Buoyancy::Kept Buoyancy::look_at_particle(const Basin &basin, std::size_t n, const double *x) const
 {
   const double per_height = 1.0 / basin.shape.cell.z, z = (x[2] - basin.shape.low.z) * per_height, far = basin.pace.stride;
-  Kept mean;
+  Kept found;
+  InWaves<double> &mean = found.waves;
   double s = 0.0, lower = 0.0, higher = 0.0;
   int parts = 0;
   cells.each_of(n, [&](int cell) {
@@ -170,85 +184,94 @@ Buoyancy::Kept Buoyancy::look_at_particle(const Basin &basin, std::size_t n, con
     mean.flow_x += on.flow_x;
     mean.flow_y += on.flow_y;
   });
-  if (parts == 0) return mean;
+  if (parts == 0) return found;
   const double part = 1.0 / parts;
   for (double *value : {&mean.more, &mean.along_x, &mean.along_y, &mean.flow_x, &mean.flow_y}) *value *= part;
   mean.slope = part * (lower - higher) / (2.0 * far) * per_height;
   mean.base = part * s + mean.slope * x[2];
-  if (mean.acts()) mean.rising = basin.rising_at(basin.in_cells(x));
-  return mean;
+  if (found.acts()) mean.rising = basin.rising_at(basin.in_cells(x));
+  return found;
 }
 
 // --- a step ---
 
+bool Buoyancy::acts_in_passes(const Basin &basin, const double *lambda) const
+{ return basin.acts_on_cells() && lifts && slows && lambda == lambda_column.values(lmp); }
+
+std::function<ImmersedMover(int)> Buoyancy::immersed(const std::vector<char> &is_near) const
+{
+  const auto of = [this](const ParticleValue &value) {
+    return [values = value.values(lmp), number = value.number](int i) { return values ? values[i] : number; };
+  };
+  const double *const lambda = lambda_column.values(lmp), *const base = base_column.given() ? base_column.values(lmp) : nullptr;
+  return [=, &is_near, volume = of(volume), gamma = of(gamma), per_length = of(per_length)](int i) -> ImmersedMover {
+    const double mass = mass_of(atom->rmass, atom->mass, atom->type, i);
+    if (!is_near[i]) return {0.0, mass, 0.0, 0.0, lambda[i]};
+    return {volume(i), mass, gamma(i), is_quadratic ? per_length(i) : 0.0, base ? base[i] : 0.0};
+  };
+}
+
+LiquidScales Buoyancy::scales(const Basin &basin, bool in_step) const
+{
+  return {rho,
+          basin.g,
+          basin.calms_solids(),
+          1.0 / force->ftm2v,
+          in_step && basin.acts_on_cells() ? update->dt * force->ftm2v / rho : 0.0,
+          is_quadratic};
+}
+
 // What is the same for all particles.
 struct Buoyancy::Acting {
+  LiquidScales liquid;
   const double *const *x, *const *v;
   double *const *f;
   const double *volume, *gamma, *per_length, *base;
   double *lambda;
   Kept *kept;             // nullptr where the surface is asked in each step
   double above, below;    // nothing is immersed from `above` up; most particles of a large body need not look up the surface
-  double calming, per_force, scale;
 };
 
+// On a particle, the n-th of those that are looked at.
 __attribute__((always_inline)) inline Buoyancy::Wet Buoyancy::act_on(const Acting &now, const Basin &basin, std::size_t n, int i)
 {
-  const double *const x = now.x[i], *const v = now.v[i];
+  const double *const x = now.x[i];
   Basin::AtPlace at;
   if (now.kept) {
-    const Kept &of = now.kept[i];
-    if (of.acts()) {
-      at.immersed = std::clamp(of.base - of.slope * x[2], 0.0, 1.0);
-      at.push = {of.along_x, of.along_y, at.immersed + of.more};
-      at.flow = {of.flow_x, of.flow_y, 0.0};
-      at.rising = of.rising;
-    }
+    at = now.kept[i].waves.at(x[2]);
   } else if (x[2] < now.above) {
     if (x[2] <= now.below && basin.over_floor(x))
       at.immersed = at.push.z = 1.0;
     else
       at = basin.at(basin.in_cells(x));
   }
-  const double s = at.immersed;
-  const double own = now.volume ? now.volume[i] : volume.number;
-  const double own_lambda = slows ? liquid_lambda(now.gamma ? now.gamma[i] : gamma.number, rho, own, s) * now.per_force : 0.0;
-  if (now.lambda) now.lambda[i] = (now.base ? now.base[i] : 0.0) + own_lambda;
+  const Immersed<double> particle{now.volume ? now.volume[i] : volume.number, mass_of(atom->rmass, atom->mass, atom->type, i),
+                                  now.gamma ? now.gamma[i] : gamma.number,
+                                  now.per_length ? now.per_length[i] : per_length.number};
   Vec3 push;
   if (!pressed())
-    push = {lift(rho, own, at.push.x, basin.g), lift(rho, own, at.push.y, basin.g), lift(rho, own, at.push.z, basin.g)};
+    push = lift_along(now.liquid, particle.volume, at.push);
   else
     for (int k = face_of_first[n]; k < face_of_first[n + 1]; ++k) push += faces[face_of[k]].push;
-  const double own_calming = now.calming * s * mass_of(atom->rmass, atom->mass, atom->type, i) * now.per_force;
-  const Vec3 relative = vec3(v) - at.flow;
-  double all_lambda = own_lambda;
-  if (is_quadratic && s > 0.0) {
-    // A force, as forces are a part of the state and friction is not. Friction that depends on x alone is found again.
-    const double rate = (now.per_length ? now.per_length[i] : per_length.number) * std::sqrt(dot(relative, relative));
-    const double quadratic = liquid_lambda(rate, rho, own, s) * now.per_force;
-    push -= quadratic * relative;
-    all_lambda += quadratic;
+  const auto force = liquid_force(now.liquid, particle, at, push, vec3(now.v[i]));
+  if (now.lambda) now.lambda[i] = (now.base ? now.base[i] : 0.0) + force.lambda;
+  if (now.kept) {
+    now.kept[i].impulse_x += force.impulse_x;
+    now.kept[i].impulse_y += force.impulse_y;
   }
-  if (all_lambda > 0.0 && now.kept) {
-    // Drag is against the liquid, not against the floor, and takes it along.
-    push += own_lambda * at.flow;
-    now.kept[i].impulse_x += now.scale * all_lambda * relative.x;
-    now.kept[i].impulse_y += now.scale * all_lambda * relative.y;
-  }
-  if (s == 0.0 && dot(push, push) == 0.0) return {-1, {}, 0.0};
-  push.z -= own_calming * (v[2] - at.rising);
-  add_to(now.f[i], push);
-  return {i, push, own_lambda};
+  add_to(now.f[i], force.push);
+  return {i, force.push, force.lambda};
 }
 
 // Threads share particles and faces. What all of them do to the liquid and to the ledger is added up in the order of particles.
-void Buoyancy::act(const Basin &basin, const std::vector<int> &near, bool in_step)
+void Buoyancy::act(const Basin &basin, const std::vector<int> &these, bool in_step)
 {
-  wet.resize(lifts ? near.size() : 0);
+  wet.resize(lifts ? these.size() : 0);
   if (wet.empty()) return;
   const Lap lap(seconds);
   const double floor = basin.shape.low.z, height = basin.shape.cell.z;
-  const Acting now{atom->x,
+  const Acting now{scales(basin, in_step),
+                   atom->x,
                    atom->v,
                    atom->f,
                    volume.values(lmp),
@@ -258,15 +281,12 @@ void Buoyancy::act(const Basin &basin, const std::vector<int> &near, bool in_ste
                    slows ? lambda_column.values(lmp) : nullptr,
                    basin.acts_on_cells() ? kept.data() : nullptr,
                    floor + (basin.top() + 1.0) * height,
-                   basin.all_below(),
-                   basin.calms_solids(),
-                   1.0 / force->ftm2v,
-                   in_step ? update->dt * force->ftm2v / rho : 0.0};
+                   basin.all_below()};
   threads.timed_parts(static_cast<long>(faces.size()), PARTICLE, [&](long from, long to) {
     for (long n = from; n < to; ++n) faces[n].push = pressure_on(faces[n], basin);
   });
-  threads.timed_parts(static_cast<long>(near.size()), PARTICLE, [&](long from, long to) {
-    for (long n = from; n < to; ++n) wet[n] = act_on(now, basin, n, near[n]);
+  threads.timed_parts(static_cast<long>(these.size()), PARTICLE, [&](long from, long to) {
+    for (long n = from; n < to; ++n) wet[n] = act_on(now, basin, n, these[n]);
   });
 }
 
@@ -286,14 +306,19 @@ Vec3 Buoyancy::pressure_on(const Face &face, const Basin &basin) const
 // Power of the lift, and what drag takes, at the velocities of now.
 Basin::Energies Buoyancy::power() const
 {
-  Basin::Energies now;
+  Basin::Energies now = in_passes;
   for (const Wet &w : wet) {
-    if (w.i < 0) continue;
     const Vec3 v = vec3(atom->v[w.i]);
     now.work += dot(w.push, v);
     now.lost += w.lambda * dot(v, v);
   }
   return now;
+}
+
+void Buoyancy::add_power(const Basin::Energies &of_passes, double more_seconds)
+{
+  in_passes = of_passes;
+  seconds += more_seconds;
 }
 
 void Buoyancy::begin_ledger()
@@ -306,12 +331,13 @@ void Buoyancy::begin_ledger()
 // rule gives the work exactly.
 void Buoyancy::go_on_with_ledger()
 {
-  if (wet.empty() && own.power.work == 0.0 && own.power.lost == 0.0) return;
+  if (wet.empty() && in_passes.work == 0.0 && in_passes.lost == 0.0 && own.power.work == 0.0 && own.power.lost == 0.0) return;
   const Lap lap(seconds);
   const Basin::Energies now = power();
   own.sum.work += 0.5 * update->dt * (own.power.work + now.work);
   own.sum.lost += 0.5 * update->dt * (own.power.lost + now.lost);
   own.power = now;
+  in_passes = {};
 }
 
 Basin::Ledger Buoyancy::ledger() const

@@ -4,6 +4,7 @@
 #ifndef MDANIM_STYLES_BUOYANCY_H
 #define MDANIM_STYLES_BUOYANCY_H
 
+#include "engine/pass.h"
 #include "engine/team.h"
 #include "liquid/basin.h"
 #include "pointers.h"
@@ -11,6 +12,7 @@
 #include "styles/particle_value.h"
 
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -49,6 +51,13 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   // Corners of faces, some perhaps twice.
   void append_required_atoms(std::vector<int> &particles) const;
 
+  // For passes (engine/pass_liquid.h): whether they compute the same as act(), with friction in the column that is read; a
+  // particle; all of them; and what passes have found in this step.
+  bool acts_in_passes(const Basin &basin, const double *lambda) const;
+  std::function<ImmersedMover(int)> immersed(const std::vector<char> &is_near) const;
+  LiquidScales scales(const Basin &basin, bool in_step) const;
+  void add_power(const Basin::Energies &of_passes, double more_seconds);
+
   // Of all ranks; and all of it on the first one.
   Basin::Ledger ledger() const;
   void set_ledger(const Basin::Ledger &ledger);
@@ -63,15 +72,10 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
 
   // Of a particle, from look() to look(); it goes where the particle goes.
   struct Kept {
-    double base = 0.0, slope = 0.0;             // the part of its volume below the surface is base - slope z, within 0 and 1
-    double more = 0.0;                          // the push upwards is that part and this
-    double along_x = 0.0, along_y = 0.0;        // push sideways
-    double flow_x = 0.0, flow_y = 0.0;          // velocity of the liquid
-    double rising = 0.0;                        // see Basin::AtPlace
-    double impulse_x = 0.0, impulse_y = 0.0;    // on the liquid, not yet given
-    bool are_numbers() const
-    { return std::isfinite(base + slope + more + along_x + along_y + flow_x + flow_y + rising + impulse_x + impulse_y); }
-    bool acts() const { return base != 0.0 || slope != 0.0 || more != 0.0 || along_x != 0.0 || along_y != 0.0; }
+    InWaves<double> waves;
+    double impulse_x = 0.0, impulse_y = 0.0;    // on the liquid, over its density, not yet given
+    bool are_numbers() const;
+    bool acts() const;
   };
   std::vector<Kept> kept;    // of all local particles, where the liquid acts on lattice cells
 
@@ -86,7 +90,6 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
     Vec3 push;        // on each corner, in this step
   };
 
-  // What acts on a particle, the n-th near the liquid.
   struct Acting;
   Wet act_on(const Acting &now, const Basin &basin, std::size_t n, int i);
   Vec3 pressure_on(const Face &face, const Basin &basin) const;
@@ -107,6 +110,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   NearCells cells;
   std::vector<Basin::OnParts> on_parts;    // of each lattice cell
   Basin::Ledger own;                       // of this rank
+  Basin::Energies in_passes;               // power of those that are not in `wet`, in this step
   bool ledger_was_set = false;             // since the last step
 };
 

@@ -273,11 +273,11 @@ Friction FixMdanimLeapfrog::friction() const
 
 Mover FixMdanimLeapfrog::mover(int i)
 {
-  if (!(atom->mask[i] & groupbit)) return {0.0, 0.0, 0.0, 0.0, 0.0};
+  if (!(atom->mask[i] & groupbit)) return {0.0, 0.0, 0.0, 0.0, 0.0, false};
   const double mass = mass_of(atom->rmass, atom->mass, atom->type, i), kick = half_dt / mass, *own = lambda.values(lmp);
   const double phi = has_drag ? (own ? own[i] : lambda.number) * kick : 0.0;
   largest_phi = std::max(largest_phi, phi);
-  return {0.0, mass, kick, update->dt, phi};
+  return {0.0, mass, kick, update->dt, phi, false};
 }
 
 std::vector<PassIntegrator::Known> FixMdanimLeapfrog::survey_ghosts(std::vector<int> &those_sent)
@@ -329,8 +329,9 @@ void FixMdanimLeapfrog::begin_step(const std::vector<int> &particles)
       if (atom->mask[i] & groupbit) way_of(i).box.include(atom->x[i]);
 }
 
-void FixMdanimLeapfrog::moved(double final_loss, double first_loss, double bend, double more_seconds)
+void FixMdanimLeapfrog::moved(double final_loss, double first_loss, double bend, double phi, double more_seconds)
 {
+  largest_phi = std::max(largest_phi, phi);
   told = tells_of(update->ntimestep + 1);
   bent = -bend;
   lost += force->mvv2e * final_loss;

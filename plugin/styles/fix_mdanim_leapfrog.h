@@ -51,7 +51,8 @@ class FixMdanimLeapfrog : public Fix, public mdanim::PassIntegrator {
   void finish_step(const std::vector<int> &particles) override;
   void begin_step(const std::vector<int> &particles) override;
   bool tells_of(long long step) const override;
-  void moved(double final_loss, double first_loss, double bend, double more_seconds) override;
+  void moved(double final_loss, double first_loss, double bend, double phi, double more_seconds) override;
+  const double *friction_of_particles() const override { return has_drag ? lambda.values(lmp) : nullptr; }
 
  private:
   template <class Visit> void each(Visit visit) const;

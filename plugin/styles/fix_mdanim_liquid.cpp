@@ -329,16 +329,25 @@ bool FixMdanimLiquid::due()
 // Square of the speed of the fastest solid near the liquid; -1 when there is none.
 double FixMdanimLiquid::fastest_near()
 {
-  double fastest = -1.0;
-  if (none_near) return fastest;
+  if (none_near) return -1.0;
   const Lap lap(look_seconds);
-  const double *const *x = atom->x, *const *v = atom->v;
-  const double below = top_height(basin->top() + Basin::NEAR);
-  for (const int i : near)
-    if (x[i][2] < below) fastest = std::max(fastest, dot(vec3(v[i]), vec3(v[i])));
+  double fastest = fastest_in_arrays(in_arrays());
+  if (is_split) fastest = std::max(fastest, fastest_in_passes);
   if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &fastest, 1, MPI_DOUBLE, MPI_MAX, world);
   return fastest;
 }
+
+double FixMdanimLiquid::fastest_in_arrays(const std::vector<int> &these) const
+{
+  double fastest = -1.0;
+  const double *const *x = atom->x, *const *v = atom->v;
+  const double below = top_of_near();
+  for (const int i : these)
+    if (x[i][2] < below) fastest = std::max(fastest, dot(vec3(v[i]), vec3(v[i])));
+  return fastest;
+}
+
+double FixMdanimLiquid::top_of_near() const { return top_height(basin->top() + Basin::NEAR); }
 
 void FixMdanimLiquid::update_liquid()
 {
@@ -377,6 +386,8 @@ void FixMdanimLiquid::post_neighbor()
 void FixMdanimLiquid::find_near(double margin)
 {
   near.clear();
+  ++lists;
+  near_marks.assign(atom->nlocal, 0);
   listed_top = top_height(basin->top());
   const double below = lists_are_prompt ? listed_top + Basin::NEAR * basin->shape.cell.z + margin : ANYWHERE;
   // The box holds all particles as they stood at the last rebuild: where none was near, and all of it is above, none has come.
@@ -387,7 +398,9 @@ void FixMdanimLiquid::find_near(double margin)
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!(atom->mask[i] & groupbit) || atom->mask[i] & still_bit) continue;
     lowest = std::min(lowest, atom->x[i][2]);
-    if (atom->x[i][2] < below) near.push_back(i);
+    if (atom->x[i][2] >= below) continue;
+    near.push_back(i);
+    near_marks[i] = 1;
   }
   if (buoyancy->pressed()) buoyancy->find_faces(near, name());
   if (basin->acts_on_cells()) buoyancy->find_cells(near, lattice_cells, name());
@@ -407,25 +420,10 @@ void FixMdanimLiquid::setup(int)
 void FixMdanimLiquid::post_force(int)
 {
   if (due()) update_liquid();
-  buoyancy->act(*basin, near, true);
+  buoyancy->act(*basin, in_arrays(), true);
 }
 
 void FixMdanimLiquid::end_of_step() { buoyancy->go_on_with_ledger(); }
-
-// --- together with run_style verlet/mdanim ---
-
-void FixMdanimLiquid::append_required_atoms(std::vector<int> &particles) const
-{
-  particles.insert(particles.end(), near.begin(), near.end());
-  buoyancy->append_required_atoms(particles);
-}
-
-// An update of the liquid looks for all bodies.
-bool FixMdanimLiquid::needs_all_atoms() { return due(); }
-
-// While the liquid is level and no particle is near it, until one comes.
-double FixMdanimLiquid::safe_displacement() const
-{ return lists_are_prompt && asleep() ? lowest - (listed_top + Basin::NEAR * basin->shape.cell.z) : 0.0; }
 
 // --- output ---
 

@@ -23,7 +23,7 @@ class WaveBasin;
 namespace LAMMPS_NS {
 
 // Supplies the basin (liquid/basin.h) with solids and time, and Buoyancy (buoyancy.h) with the particles near the liquid.
-class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdanim::Stateful {
+class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdanim::PassLiquid, public mdanim::Stateful {
  public:
   FixMdanimLiquid(class LAMMPS *, int, char **);
   ~FixMdanimLiquid() override;
@@ -48,6 +48,17 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   void append_required_atoms(std::vector<int> &particles) const override;
   bool needs_all_atoms() override;
   void equip(const mdanim::Kernels &, const mdanim::Threads &threads) override { use(threads); }
+  bool join(mdanim::PassCrew &crew) override;
+  bool joins(const double *lambda) override;
+  mdanim::LiquidScales scales() const override { return buoyancy->scales(*basin, true); }
+  double top_of_near() const override;
+  const std::vector<int> &near_particles() const override { return near; }
+  long long listed() const override { return lists; }
+  bool is_near(int i) const override { return near_marks[i]; }
+  std::function<mdanim::ImmersedMover(int)> immersed() const override { return buoyancy->immersed(near_marks); }
+  double *kept(int i) override;
+  void split(const std::vector<int> *in_arrays) override;
+  void acted(double work, double lost, double fastest, double seconds) override;
   double safe_displacement() const override;
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -89,6 +100,8 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   void pour();
   bool due();
   double fastest_near();
+  double fastest_in_arrays(const std::vector<int> &these) const;
+  const std::vector<int> &in_arrays() const { return is_split ? near_in_arrays : near; }    // near the liquid
   void update_liquid();
   template <class Work> void in_basin(Work &&work);
   void find_near(double margin);
@@ -116,6 +129,14 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   double listed_top = 0.0;          // of the liquid when particles were listed
   double lowest = 0.0;              // particle of this rank when lists were made
   std::vector<int> near;
+  long long lists = 0;    // made so far
+
+  // in passes that move particles near the liquid (PassLiquid)
+  bool in_passes = false;
+  std::vector<char> near_marks;       // of all particles of this rank
+  bool is_split = false;              // whether the arrays hold but some particles
+  std::vector<int> near_in_arrays;    // these, as far as they are near the liquid
+  double fastest_in_passes = -1.0;    // of the others: square of the largest speed
 
   bool has_looked = false;    // so that it is known what acts on particles until the next update
   bigint asked = -1;          // step for which it is known whether an update is due

@@ -156,6 +156,7 @@ bool VerletMdanim::find_crew()
   lists_matter = !neighbor->build_once && (modify->n_post_neighbor || modify->n_pre_neighbor || comm->nprocs > 1);
   // Without that check LAMMPS does not keep where particles stood.
   if (!crew.integrator || (lists_matter && !neighbor->dist_check)) return false;
+  if (crew.liquid && !crew.liquid->joins(crew.integrator->friction_of_particles())) crew.liquid = nullptr;
   if (springs->refresh_coefficients()) decided_for = -1;
   if (engine.begin_run(told ? *told : *calibration().fastest(springs->account() != nullptr).kernels)) decided_for = -1;
   return true;

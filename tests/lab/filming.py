@@ -78,6 +78,12 @@ EFFECTS = {
     "liquid": "object a { shape box (6, 6, 6) cm position (0, 0, 14) cm density 500 elasticity 0.2 MPa drag 0.1 }\n"
     "object b { shape box (4, 4, 4) cm position (0, 0, 24) cm density 500 elasticity 0.2 MPa velocity (0, 0, -3) }\n"
     "liquid w { basin from (-10, -10, 0) cm to (10, 10, 40) cm density 1000 level 12 cm drag 4 model surface }",
+    "waves": "object a { shape box (6, 6, 6) cm position (0, 0, 14) cm density 500 elasticity 0.2 MPa drag 0.1 }\n"
+    "object b { shape sphere 3 cm position (2, 1, 22) cm density 700 elasticity 0.2 MPa velocity (0.2, 0, -3) }\n"
+    "liquid w { basin from (-10, -10, 0) cm to (10, 10, 40) cm density 1000 level 12 cm model waves }",
+    "damped in waves": "object a { shape box (6, 6, 6) cm position (0, 0, 14) cm density 500 elasticity 0.2 MPa damping 0.1 }\n"
+    "object b { shape box (4, 4, 4) cm position (0, 0, 20) cm density 500 elasticity 0.2 MPa velocity (0, 0, -3) }\n"
+    "liquid w { basin from (-10, -10, 0) cm to (10, 10, 40) cm density 1000 level 12 cm drag 4 model waves }",
 }
 
 

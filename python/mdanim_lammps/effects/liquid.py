@@ -30,8 +30,8 @@ NEAR = 8.0
 CELLS, CELLS_AT_START, FLOW, OCCUPANCY, COUPLING, WAVES, CREST, MOMENTUM = 0, 1, 7, 8, 9, 11, 12, (13, 14)
 """In the fix's vector: whole cells of liquid now and before step 0, three clocks [s], the energy of a liquid with momentum since
 then [J], its highest point [m], its momentum along x and y [N s]."""
-WAVE_PERIOD = 0.1
-"""As PERIOD, of waves."""
+WAVE_PERIOD, WAVE_STRIDE = 0.1, 0.5
+"""As PERIOD and STRIDE, of waves. With a stride of 0.25 a dive is as deep to 2 % of the body's size, for twice the updates."""
 CALM = 50.0
 """Time in which waves die, over sqrt(depth/g)."""
 WAVE_DRAG = 0.15
@@ -176,7 +176,7 @@ class LiquidWaves(LiquidAutomaton):
         calm = scene.liquid.calm or calm_time(scene)
         solids = "cells i2_cell softness d_softness still held"
         drops = f" drops {scene.liquid.drops!r}" if scene.liquid.drops else ""
-        pace = f"every {EVERY} stride {STRIDE} period {WAVE_PERIOD}"
+        pace = f"every {EVERY} stride {WAVE_STRIDE} period {WAVE_PERIOD}"
         return f"model waves calm {calm!r}{drops} {solids} {pace}{_makers(scene.liquid)}"
 
     def commands(self, scene, system):

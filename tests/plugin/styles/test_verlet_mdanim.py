@@ -95,6 +95,39 @@ def test_no_particle_is_held_back_for_forces_of_places_alone(name, more, some):
         assert name != "beside each other" or instance.fix_value("contact", 1) > 0
 
 
+@pytest.mark.parametrize(("more", "some"), [((), False), (LATER[:1], True)], ids=["alone", "damped contact"])
+def test_what_waves_act_on_moves_in_passes(more, some):
+    """Count particles that do not, beside all in steps with an update: those of fixes that need them. The bits are the same."""
+    ready = prepare(parse_scene(FALL + EFFECTS["damped in waves"] + "\n" + END))
+    with Instance(ready.plan) as instance:
+        for command in more:
+            instance._lmp.command(command)
+        instance.setup()
+        instance.run(300)
+        taken, updates = passes(instance), instance.fix_value("liquid", 4)
+        assert taken > 280 and 0 < updates < 30
+        alone = held_back(instance) - updates * len(ready.system.mass)
+        assert (0 < alone < 0.5 * taken * len(ready.system.mass)) if some else alone <= 0
+    assert np.array_equal(*(film(EFFECTS["damped in waves"], style, more=more)[0] for style in ("verlet", "verlet/mdanim")))
+
+
+@pytest.mark.parametrize("exponential", [False, True])
+def test_friction_of_waves_is_told(exponential):
+    """The largest phi and the bits are those of the plain step in either form of friction; so is what it takes."""
+    plan = replace(prepare(parse_scene(FALL + EFFECTS["waves"] + "\n" + END)).plan, exponential=exponential)
+    told = []
+    for style in ("verlet", "verlet/mdanim"):
+        with Instance(plan) as instance:
+            instance._lmp.command(f"run_style {style}")
+            instance.setup()
+            instance.run(200)
+            bits = instance.fix_value("leapfrog", 0), instance.array("x").tobytes()
+            told.append((bits, [instance.fix_scalar("leapfrog"), instance.fix_value("liquid", 6), instance.fix_scalar("liquid")]))
+            assert instance.fix_value("leapfrog", 0) > 0.0 and all(told[-1][1])
+    assert told[0][0] == told[1][0]
+    np.testing.assert_allclose(told[0][1], told[1][1], rtol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("ground", "least", "most"),
     [pytest.param("", 0, 2, id="alone"), pytest.param("ground z -4.1 cm\n", 20, 100, id="on the ground")],

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Blocks that a liquid acts on.
+
+#include "engine/pass_liquid.h"
+#include "engine/simd_blocks.h"
+
+namespace mdanim {
+
+void SimdBlocks::list_immersed(const PassLiquid &liquid)
+{
+  for (Block &block : all) block.immersed = -1;
+  immersed.clear();
+  immersed_of.clear();
+  immersed_motions = {};
+  for (const int i : liquid.near_particles()) all[home[ours(i)]].immersed = 0;
+  const auto mover = liquid.immersed();
+  std::vector<double> row(IMMERSED_MOTIONS * lanes);
+  for (std::size_t b = 0; b < all.size(); ++b) {
+    Block &block = all[b];
+    if (block.immersed < 0) continue;
+    block.immersed = static_cast<int>(immersed.size());
+    immersed.push_back(static_cast<int>(b));
+    for (int lane = 0; lane < lanes; ++lane) {
+      const int i = lane < block.lanes ? at(block.start + lane) : -1;
+      const bool is_own = i >= 0 && !is_ghost(i);
+      const ImmersedMover of_lane = is_own ? mover(i) : ImmersedMover{};
+      const auto put = [&](ImmersedMotion what, double value) { row[what * lanes + lane] = value; };
+      put(VOLUME, of_lane.volume);
+      put(OWN_MASS, of_lane.mass);
+      put(GAMMA, of_lane.gamma);
+      put(PER_LENGTH, of_lane.per_length);
+      put(LAMBDA, of_lane.lambda);
+      put(LISTED, is_own && liquid.is_near(i) ? 1.0 : 0.0);
+    }
+    immersed_of.push_back(immersed_motions.find_or_add(row.data(), row.size()));
+  }
+  kept.assign(immersed.size() * KEPT * lanes);
+  listed = liquid.listed();
+}
+
+// work(numbers of a particle, its place in a row of `kept`) for all own particles that the liquid acts on in passes.
+template <class Work> void SimdBlocks::each_immersed(PassLiquid &liquid, const Work &work) const
+{
+  for (std::size_t n = 0; n < immersed.size(); ++n) {
+    const Block &block = all[immersed[n]];
+    if (block.held_back) continue;
+    for (int lane = 0; lane < block.lanes; ++lane)
+      if (const int i = at(block.start + lane); !is_ghost(i)) work(liquid.kept(i), n * KEPT * lanes + lane);
+  }
+}
+
+void SimdBlocks::immerse(PassLiquid &liquid, Pass &pass)
+{
+  if (listed != liquid.listed()) list_immersed(liquid);
+  immersed_particles = 0.0;
+  each_immersed(liquid, [this](const double *of, std::size_t to) {
+    for (int k = 0; k < KEPT; ++k) kept.data()[to + static_cast<std::size_t>(k) * lanes] = of[k];
+    ++immersed_particles;
+  });
+  pass.kept = kept.data();
+  pass.immersed = immersed_motions.data();
+  pass.immersed_of = immersed_of.data();
+  pass.liquid = liquid.scales();
+  pass.top_of_near = liquid.top_of_near();
+}
+
+void SimdBlocks::give_out_impulses(PassLiquid &liquid) const
+{
+  each_immersed(liquid, [this](double *of, std::size_t from) {
+    for (const int k : {IMPULSE_X, IMPULSE_Y}) of[k] = kept.data()[from + static_cast<std::size_t>(k) * lanes];
+  });
+}
+
+}    // namespace mdanim

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The liquid's part in passes of run_style verlet/mdanim.
+
+#include "styles/fix_mdanim_liquid.h"
+
+#include "neighbor.h"
+
+using namespace LAMMPS_NS;
+using namespace mdanim;
+
+void FixMdanimLiquid::append_required_atoms(std::vector<int> &particles) const
+{
+  if (in_passes) return;
+  particles.insert(particles.end(), near.begin(), near.end());
+  buoyancy->append_required_atoms(particles);
+}
+
+bool FixMdanimLiquid::join(PassCrew &crew)
+{
+  in_passes = false;
+  if (!crew.liquid) crew.liquid = this;
+  return PassParticipant::join(crew);
+}
+
+bool FixMdanimLiquid::joins(const double *lambda) { return in_passes = buoyancy->acts_in_passes(*basin, lambda); }
+
+double *FixMdanimLiquid::kept(int i)
+{
+  static_assert(sizeof(Buoyancy::Kept) == KEPT * sizeof(double), "a row of Pass::kept");
+  return &buoyancy->kept[i].waves.base;
+}
+
+// In the arrays all are as they were moved last, when this is called.
+void FixMdanimLiquid::split(const std::vector<int> *in_arrays)
+{
+  is_split = in_arrays;
+  if (!is_split) return;
+  near_in_arrays.clear();
+  for (const int i : *in_arrays)
+    if (is_near(i)) near_in_arrays.push_back(i);
+  fastest_in_passes = fastest_in_arrays(near);
+}
+
+void FixMdanimLiquid::acted(double work, double lost, double fastest, double seconds)
+{
+  buoyancy->add_power({work, lost}, seconds);
+  fastest_in_passes = fastest;
+}
+
+// An update of the liquid looks for all bodies.
+bool FixMdanimLiquid::needs_all_atoms() { return due(); }
+
+// While the liquid is level and no particle is near it, until one comes.
+double FixMdanimLiquid::safe_displacement() const
+{ return lists_are_prompt && asleep() ? lowest - (listed_top + Basin::NEAR * basin->shape.cell.z) : 0.0; }
