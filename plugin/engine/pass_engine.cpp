@@ -22,8 +22,7 @@ bool PassEngine::begin_run(const Kernels &now)
   if (others) cut_for = NONE;
   kernels = &now;
   motion_for = NONE;
-  for (const auto *participants : {&crew.early, &crew.late})
-    for (PassParticipant *p : *participants) p->equip(*kernels, threads);
+  crew.equip(*kernels, threads);
   return others;
 }
 

@@ -52,6 +52,8 @@ class PassMember {
  public:
   // Takes its part. False where it cannot, after those that have joined before: each step is then LAMMPS's own.
   virtual bool join(PassCrew &crew) = 0;
+  // What to compute with in this run.
+  virtual void equip(const Kernels &, const Threads &) {}
 
  protected:
   ~PassMember() = default;
@@ -118,8 +120,6 @@ class PassParticipant : public PassMember {
   // append_required_atoms() names, in that order, those of ghosts without meaning.
   virtual bool depends_on_positions_only() const { return false; }
   virtual void add_forces(const Positions & /*place*/, const ForceSums & /*force*/) {}
-  // What to compute with in this run.
-  virtual void equip(const Kernels &, const Threads &) {}
   // Whether it will read any particle in this step. Asked once, when the step has begun, unless positions are all that it needs.
   virtual bool needs_all_atoms() { return false; }
   // How far particles may go from where they stood when lists were made before it must look again, as far as it can tell: one
@@ -141,9 +141,18 @@ struct PassCrew {
   PassLiquid *liquid = nullptr;    // a late participant too
   std::vector<PassParticipant *> early, late;
 
+  void equip(const Kernels &kernels, const Threads &threads) const;
   // How far particles may go before some participant must look again, of no more than `any`.
   SafeDisplacement safe_displacement(double any) const;
 };
+
+inline void PassCrew::equip(const Kernels &kernels, const Threads &threads) const
+{
+  springs->equip(kernels, threads);
+  integrator->equip(kernels, threads);
+  for (const auto *participants : {&early, &late})
+    for (PassParticipant *p : *participants) p->equip(kernels, threads);
+}
 
 inline SafeDisplacement PassCrew::safe_displacement(double any) const
 {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // bond_style mdanim/harmonic. Every particle sums its own bonds in an order that its partners' tags tell, lower tags from the
 // lowest up, higher ones from the highest down, and adds the two sums to its force once: so the bits of a force depend on neither
-// the order of particles nor the ranks that hold them.
+// the order of particles nor the ranks that hold them. Here are coefficients and rows; forces are in
+// bond_mdanim_harmonic_forces.cpp.
 
 #include "styles/bond_mdanim_harmonic.h"
 #include "styles/words.h"
-
-#include "engine/stopwatch.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -28,8 +27,6 @@
 using namespace LAMMPS_NS;
 using namespace mdanim;
 
-// Rows are worked off in stretches that stay in the first-level cache.
-static constexpr int STRETCH = 512;
 static constexpr int RESTART_VERSION = 1;
 
 static bigint versions = 0;    // of the springs of all instances
@@ -153,10 +150,9 @@ void BondMdanimHarmonic::adopt(SpringRows &&now, bool halves)
   rows = std::move(now);
   upper_only = halves;
   made = ++versions;
-  int farthest = 0;
+  farthest = 0;
   for (int i = 0; halves && i < rows.size(); ++i)
     if (rows[i].size()) farthest = std::max(farthest, rows[i].first->offset);
-  received.set_up(farthest);
 }
 
 void BondMdanimHarmonic::lost_partner(int i, int partner) const
@@ -248,178 +244,6 @@ bool BondMdanimHarmonic::halves(HalfBonds &half) const
   return true;
 }
 
-// --- forces ---
-
-// The springs of rows [begin, end), `n` in all, into `stretch`.
-void BondMdanimHarmonic::take_apart(int begin, int end, int n)
-{
-  const double *x = atom->x[0];
-  const size_t room = n;
-  if (n == 0) return;
-  if (stretch.x.size() < room)
-    for (auto *array : {&stretch.x, &stretch.y, &stretch.z, &stretch.push, &stretch.pull}) array->resize(room);
-  for (int i = begin, at = 0; i < end; ++i) {
-    const Vec3 here = vec3(x + 3 * i);
-    for (const SpringRows::Link &link : rows[i]) {
-      const Vec3 d = here - vec3(x + 3 * (i + link.offset));
-      stretch.x[at] = d.x;
-      stretch.y[at] = d.y;
-      stretch.z[at] = d.z;
-      const SpringCoeffs &own = law[link.type];
-      stretch.push[at] = own.push;
-      stretch.pull[at] = own.pull;
-      ++at;
-    }
-  }
-}
-
-// Adds up the energies of the springs in `stretch`; half of a bond's share goes to either end.
-void BondMdanimHarmonic::energies(int begin, int end, int n)
-{
-  stretch.K.resize(stretch.x.size());
-  stretch.r0.resize(stretch.x.size());
-  for (int i = begin, at = 0; i < end; ++i)
-    for (const SpringRows::Link &link : rows[i]) {
-      stretch.K[at] = spring[link.type].K;
-      stretch.r0[at++] = spring[link.type].r0;
-    }
-  kernels.spring_energies(n, stretch.x.data(), stretch.y.data(), stretch.z.data(), stretch.r0.data(), stretch.K.data());
-  const double share = upper_only ? 1.0 : 0.5;
-  for (int at = 0; at < n; ++at) energy += share * stretch.K[at];
-}
-
-// Add the dashpots of rows [begin, end) to `stretch`, and what each particle feels of them to `on`.
-void BondMdanimHarmonic::dashpots(int begin, int end, std::vector<Vec3> &on)
-{
-  for (int i = begin, at = 0; i < end; ++i)
-    for (const SpringRows::Link &link : rows[i]) {
-      const int own = at++, j = i + link.offset;
-      const double c = law[link.type].c;
-      if (c == 0.0) continue;
-      const Vec3 d = vec3(atom->x[i]) - vec3(atom->x[j]), v = vec3(atom->v[i]) - vec3(atom->v[j]);
-      const Vec3 push = dashpot_factor(c, d, v, floored_square(d)) * d;
-      stretch.x[own] += push.x;
-      stretch.y[own] += push.y;
-      stretch.z[own] += push.z;
-      on[i] += push;
-      if (upper_only) on[j] -= push;
-    }
-}
-
-void BondMdanimHarmonic::sum_rows(int begin, int end)
-{
-  double *const *f = atom->f;
-  for (int i = begin, at = 0; i < end; ++i) {
-    Vec3 lower, upper;
-    const int middle = at + rows.lower(i), end = at + rows[i].size();
-    for (; at < middle; ++at) lower += {stretch.x[at], stretch.y[at], stretch.z[at]};
-    for (; at < end; ++at) upper += {stretch.x[at], stretch.y[at], stretch.z[at]};
-    add_to(f[i], lower + upper);
-  }
-}
-
-void BondMdanimHarmonic::Ring::set_up(int farthest)
-{
-  int places = 1;
-  while (places <= farthest) places *= 2;
-  force.assign(places, Vec3());
-  mask = places - 1;
-}
-
-// Half the work, the same bits: F_j = -F_i exactly and a - F = a + (-F), and rows come in ascending order, so that a particle has
-// received from its lower partners in theirs by the time its own row comes.
-void BondMdanimHarmonic::sum_halves(int begin, int end)
-{
-  double *const *f = atom->f;
-  for (int i = begin, at = 0; i < end; ++i) {
-    Vec3 upper;
-    for (const SpringRows::Link &link : rows[i]) {
-      const Vec3 force{stretch.x[at], stretch.y[at], stretch.z[at]};
-      upper += force;
-      received.of(i + link.offset) -= force;
-      ++at;
-    }
-    add_to(f[i], received.of(i) + upper);
-    received.of(i) = Vec3();
-  }
-}
-
-void BondMdanimHarmonic::compute(int eflag, int vflag)
-{
-  const Lap lap(seconds);
-  ev_init(eflag, vflag);
-  const bool other_lists = neighbor->ago == 0 || made_after != neighbor->ncalls;    // made in this step, or between two passes
-  made_after = neighbor->ncalls;
-  const bool remade = other_lists && source_changed();
-  if (remade) make_rows();
-  refresh_coefficients();
-
-  const int nlocal = atom->nlocal;
-  std::vector<Vec3> *on = nullptr;
-  if (damped) {
-    if (other_lists) loss.look(atom->tag, nlocal);
-    on = &loss.forces(nlocal);
-  }
-  for (int begin = 0, end; begin < nlocal; begin = end) {
-    int springs = 0;
-    for (end = begin; end < nlocal; ++end) {
-      const int more = rows[end].size();
-      if (end > begin && springs + more > STRETCH) break;
-      springs += more;
-    }
-    take_apart(begin, end, springs);
-    if (eflag_global) energies(begin, end, springs);
-    kernels.spring_forces(springs, stretch.push.data(), stretch.pull.data(), stretch.x.data(), stretch.y.data(),
-                          stretch.z.data());
-    if (on) dashpots(begin, end, *on);
-    if (upper_only)
-      sum_halves(begin, end);
-    else
-      sum_rows(begin, end);
-  }
-  if (on) loss.step(atom->v, update->dt, update->setupflag);
-  if (eflag_atom || vflag_either) tally();
-}
-
-template <class Visit> void BondMdanimHarmonic::each_spring(Visit visit) const
-{
-  const double *x = atom->x[0];
-  for (int i = 0; i < atom->nlocal; ++i) {
-    const Vec3 here = vec3(x + 3 * i);
-    for (const SpringRows::Link &link : rows[i]) visit(i, i + link.offset, link.type, here - vec3(x + 3 * (i + link.offset)));
-  }
-}
-
-// Virial and energy of each particle on steps that ask for them; half of a bond's share goes to either end, which tallies it in
-// its own row where rows are whole.
-void BondMdanimHarmonic::tally()
-{
-  const double share = upper_only ? 1.0 : 0.5;
-  double sums[6] = {};
-  each_spring([&](int i, int j, int type, const Vec3 &d) {
-    const double r2 = dot(d, d);
-    if (eflag_atom) {
-      const double e = mdanim::energy(spring[type], std::sqrt(r2));
-      eatom[i] += 0.5 * e;
-      if (upper_only) eatom[j] += 0.5 * e;
-    }
-    if (!vflag_either) return;
-    const SpringCoeffs &own = law[type];
-    const double square = floored_square(d);
-    double factor = spring_factor(own.push, own.pull, square);
-    if (own.c > 0.0) factor += dashpot_factor(own.c, d, vec3(atom->v[i]) - vec3(atom->v[j]), square);
-    const double w[6] = {d.x * d.x * factor, d.y * d.y * factor, d.z * d.z * factor,
-                         d.x * d.y * factor, d.x * d.z * factor, d.y * d.z * factor};
-    for (int k = 0; k < 6; ++k) sums[k] += share * w[k];
-    if (!vflag_atom) return;
-    for (int k = 0; k < 6; ++k) {
-      vatom[i][k] += 0.5 * w[k];
-      if (upper_only) vatom[j][k] += 0.5 * w[k];
-    }
-  });
-  if (vflag_global) std::copy(sums, sums + 6, virial);
-}
-
 // --- what LAMMPS asks besides ---
 
 double BondMdanimHarmonic::equilibrium_distance(int type) { return spring[type].r0; }
@@ -475,8 +299,7 @@ void BondMdanimHarmonic::write_data(FILE *fp)
 double BondMdanimHarmonic::memory_usage()
 {
   const auto ints = source.tag.capacity() + source.count.capacity();
-  return Bond::memory_usage() + rows.bytes() + loss.bytes() + ints * sizeof(int) + received.force.capacity() * sizeof(Vec3) +
-         law.capacity() * sizeof(SpringCoeffs) + (5.0 * stretch.x.capacity() + 2.0 * stretch.K.capacity()) * sizeof(double);
+  return Bond::memory_usage() + rows.bytes() + loss.bytes() + ints * sizeof(int) + law.capacity() * sizeof(SpringCoeffs);
 }
 
 // For atoms_c.cpp: "seconds" and "lost" of this rank.

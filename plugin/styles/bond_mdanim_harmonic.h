@@ -9,6 +9,7 @@
 #include "engine/kernels.h"
 #include "engine/loss.h"
 #include "engine/pass_participant.h"
+#include "engine/team.h"
 #include "laws/spring.h"
 #include "laws/vec3.h"
 
@@ -48,6 +49,7 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
   bool refresh_coefficients() override;
   [[noreturn]] void lost_partner(int i, int partner) const override;
   void took(double more) override { seconds += more; }
+  void equip(const mdanim::Kernels &, const mdanim::Threads &now) override { threads = now; }
 
  private:
   // What the rows were made from, besides the bonds themselves, which they hold; while all is unchanged they are kept.
@@ -66,10 +68,16 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
   // farthest partner, in a ring of 2^n places.
   struct Ring {
     std::vector<mdanim::Vec3> force;
-    int mask = 0;    // 2^n - 1
+    int mask;    // 2^n - 1
 
-    void set_up(int farthest);
+    explicit Ring(int farthest);
     mdanim::Vec3 &of(int i) { return force[i & mask]; }
+  };
+  // What a thread needs besides the rows.
+  struct Workspace {
+    Stretch stretch;
+    Ring received;
+    explicit Workspace(int farthest) : received(farthest) {}
   };
 
   void allocate();
@@ -81,11 +89,12 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
   bool has_changed(int i, Row &scratch) const;
   bool has_dashpots() const;
   bool halves_suffice() const;
-  void take_apart(int begin, int end, int n);
-  void energies(int begin, int end, int n);
-  void sum_rows(int begin, int end);
-  void sum_halves(int begin, int end);
-  void dashpots(int begin, int end, std::vector<mdanim::Vec3> &on);
+  void take_apart(int begin, int end, int n, Stretch &stretch) const;
+  void energies(int begin, int end, int n, Stretch &stretch, double &sum) const;
+  void sum_rows(int begin, int end, const Stretch &stretch) const;
+  void sum_halves(int begin, int end, int first, const Stretch &stretch, Ring &received) const;
+  void dashpots(int begin, int end, Stretch &stretch, std::vector<mdanim::Vec3> &on) const;
+  double compute_rows(int begin, int end, int first, std::vector<mdanim::Vec3> *on, Workspace &with) const;
   template <class Visit> void each_spring(Visit visit) const;    // visit(i, j, type, r_ij)
   void tally();
 
@@ -101,8 +110,9 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
   bigint made = 0;                          // version
   bigint made_after = -1;                   // build of lists
   Source source;
-  Stretch stretch;
-  Ring received;
+  int farthest = 0;    // partner of a row, where rows are halves
+  std::vector<double> energy_of_chunk;
+  mdanim::Threads threads;
 
   mdanim::Loss loss;    // to dashpots, on this rank
   double lost = 0.0;    // when it was asked for last

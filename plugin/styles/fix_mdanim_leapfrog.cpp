@@ -26,6 +26,8 @@ using namespace FixConst;
 using namespace mdanim;
 
 static constexpr int RESTART_VERSION = 1;
+static constexpr int CHUNK = 1024;    // particles whose sums are one chain
+static constexpr double NS_OF_CHUNK = 2.0 * CHUNK;
 
 FixMdanimLeapfrog::FixMdanimLeapfrog(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
@@ -103,16 +105,29 @@ double FixMdanimLeapfrog::largest_phi_here() const
   return largest;
 }
 
-template <class Visit> void FixMdanimLeapfrog::each(Visit visit) const
+// visit(i, sums) for the particles that move now. Each chunk has sums of its own, which are added in order: they depend on no
+// thread.
+template <class Visit> FixMdanimLeapfrog::Sums FixMdanimLeapfrog::each(Visit visit) const
 {
   const int *mask = atom->mask, nlocal = atom->nlocal;
+  Sums all;
   if (only) {
     for (const int i : *only)
-      if (mask[i] & groupbit) visit(i);
-  } else {
-    for (int i = 0; i < nlocal; ++i)
-      if (mask[i] & groupbit) visit(i);
+      if (mask[i] & groupbit) visit(i, all);
+    return all;
   }
+  std::vector<Sums> of_chunk((nlocal + CHUNK - 1) / CHUNK);
+  threads.timed_parts(static_cast<long>(of_chunk.size()), NS_OF_CHUNK, [&](long begin, long end) {
+    for (long k = begin; k < end; ++k) {
+      const int first = static_cast<int>(k) * CHUNK;
+      Sums sums;
+      for (int i = first; i < std::min(first + CHUNK, nlocal); ++i)
+        if (mask[i] & groupbit) visit(i, sums);
+      of_chunk[k] = sums;
+    }
+  });
+  for (const Sums &sums : of_chunk) all.add(sums);
+  return all;
 }
 
 // Without drag both halves are v <- v + dt/2m F.
@@ -123,7 +138,7 @@ template <class Half> void FixMdanimLeapfrog::half_step(Half half, bool first)
     double *const *v = atom->v, *const *f = atom->f;
     const double *rmass = atom->rmass, *mass = atom->mass;
     const int *type = atom->type;
-    each([&](int i) { add_to(v[i], half_dt / mass_of(rmass, mass, type, i) * vec3(f[i])); });
+    each([&](int i, Sums &) { add_to(v[i], half_dt / mass_of(rmass, mass, type, i) * vec3(f[i])); });
   } else if (exponential) {
     half_step_with_drag<Exponential<double>>(half, first);
   } else {
@@ -136,8 +151,7 @@ template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Ha
   double *const *v = atom->v, *const *f = atom->f;
   const double *rmass = atom->rmass, *mass = atom->mass, *own = lambda.values(lmp);
   const int *type = atom->type;
-  double loss = 0.0;
-  each([&](int i) {
+  const Sums all = each([&](int i, Sums &sums) {
     const double m = mass_of(rmass, mass, type, i), kick = half_dt / m;
     const double phi = (own ? own[i] : lambda.number) * kick;
     if (phi == 0.0) {    // the same bits, for what is out of the liquid
@@ -150,10 +164,11 @@ template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Ha
     v[i][0] = after.x;
     v[i][1] = after.y;
     v[i][2] = after.z;
-    loss += drag.loss(before, after, push, m, first);
-    largest_phi = std::max(largest_phi, phi);
+    sums.loss += drag.loss(before, after, push, m, first);
+    sums.largest_phi = std::max(sums.largest_phi, phi);
   });
-  lost += force->mvv2e * loss;
+  lost += force->mvv2e * all.loss;
+  largest_phi = std::max(largest_phi, all.largest_phi);
 }
 
 // v^n -> v^{n+1/2}, then r^{n+1} = r^n + dt v^{n+1/2}: the end of eq. (3.12).
@@ -179,7 +194,7 @@ void FixMdanimLeapfrog::drift()
   }
   double *const *x = atom->x, *const *v = atom->v;
   const double dt = update->dt;
-  each([&](int i) { add_to(x[i], dt * vec3(v[i])); });
+  each([&](int i, Sums &) { add_to(x[i], dt * vec3(v[i])); });
 }
 
 // Where the object of a particle has been. Its molecule ID may have changed since the trace was started.
@@ -346,9 +361,7 @@ bool FixMdanimLeapfrog::tells_of(long long step) const { return step == output->
 // dt v . F of the particles that move now.
 double FixMdanimLeapfrog::bend() const
 {
-  double sum = 0.0;
-  each([&](int i) { sum += update->dt * dot(vec3(atom->v[i]), vec3(atom->f[i])); });
-  return sum;
+  return each([&](int i, Sums &sums) { sums.bend += update->dt * dot(vec3(atom->v[i]), vec3(atom->f[i])); }).bend;
 }
 
 // Kinetic energy of this rank's particles, corrected so that the sum of all energies is what leap-frog conserves, to fourth order
@@ -363,14 +376,13 @@ double FixMdanimLeapfrog::kinetic()
                "fix {} mdanim/leapfrog: kinetic energy, f_{}[2], is worked out in steps with output alone; ask for it in "
                "these, as thermo_style does",
                id, id);
-  double swing = 0.0, sum = 0.0;
-  each([&](int i) {
+  const Sums all = each([&](int i, Sums &sums) {
     const double mass = mass_of(atom->rmass, atom->mass, atom->type, i);
     const Vec3 v = vec3(atom->v[i]), f = vec3(atom->f[i]);
-    sum += 0.5 * mass * dot(v, v);
-    swing += half_dt / mass * update->dt * dot(f, f);
+    sums.kinetic += 0.5 * mass * dot(v, v);
+    sums.swing += half_dt / mass * update->dt * dot(f, f);
   });
-  return force->mvv2e * sum - (swing + bent) / 12.0;
+  return force->mvv2e * all.kinetic - (all.swing + bent) / 12.0;
 }
 
 double FixMdanimLeapfrog::compute_scalar()

@@ -6,9 +6,11 @@
 
 #include "engine/boxes.h"
 #include "engine/pass_participant.h"
+#include "engine/team.h"
 #include "fix.h"
 #include "styles/particle_value.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -51,11 +53,25 @@ class FixMdanimLeapfrog : public Fix, public mdanim::PassIntegrator {
   void finish_step(const std::vector<int> &particles) override;
   void begin_step(const std::vector<int> &particles) override;
   bool tells_of(long long step) const override;
+  void equip(const mdanim::Kernels &, const mdanim::Threads &now) override { threads = now; }
   void moved(double final_loss, double first_loss, double bend, double phi, double more_seconds) override;
   const double *friction_of_particles() const override { return has_drag ? lambda.values(lmp) : nullptr; }
 
  private:
-  template <class Visit> void each(Visit visit) const;
+  // Over the particles of a loop.
+  struct Sums {
+    double loss = 0.0, bend = 0.0, kinetic = 0.0, swing = 0.0, largest_phi = 0.0;
+
+    void add(const Sums &more)
+    {
+      loss += more.loss;
+      bend += more.bend;
+      kinetic += more.kinetic;
+      swing += more.swing;
+      largest_phi = std::max(largest_phi, more.largest_phi);
+    }
+  };
+  template <class Visit> Sums each(Visit visit) const;
   void first_half();
   void final_half();
   template <class Half> void half_step(Half half, bool first);
@@ -85,6 +101,7 @@ class FixMdanimLeapfrog : public Fix, public mdanim::PassIntegrator {
   std::vector<Way> trace;    // of the particles of this rank; empty when off
   int look_after = 1;        // passes from one look to the next
   int not_seen = 0;          // passes since the last look
+  mdanim::Threads threads;
 };
 
 }    // namespace LAMMPS_NS
