@@ -15,8 +15,10 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 SCENES = Path(__file__).parent.parent / "scenes"
 
 
-CALIBRATION = {"widths_ns": {"avx512": (31.0, 40.0), "avx2": (30.0, 50.0), "common": (50.0, 90.0)}, "waking_ns": 15e3}
-"""Of the tests: no clock decides which vectors they take nor how many threads. A range has 1000 particles or more."""
+WIDTHS = {"avx512": (31.0, 40.0), "avx2": (30.0, 50.0), "common": (50.0, 90.0)}
+CALIBRATION = {"widths_ns": WIDTHS, "waking_ns": 1.0, "calling_ns": 3e3}
+"""Of the tests: no clock decides which vectors they take nor how many threads. A range has 1000 particles or more, and threads
+that sleep are woken at once."""
 
 
 @pytest.fixture(scope="session", autouse=True)

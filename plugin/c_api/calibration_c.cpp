@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Plain C functions on what this processor takes (engine/calibration.h), for ctypes. Numbers are nanoseconds: of each width
-// without and with dashpots, in the order of mdanim_width_name, and last what it takes a thread to wake up.
+// without and with dashpots, in the order of mdanim_width_name, and last what a call of threads takes that sleep and that are
+// awake.
 
 #include "c_api/abi.h"
 #include "c_api/guarded.h"
@@ -20,7 +21,7 @@ MDANIM_EXPORT int mdanim_calibrate(double *ns, char *error, int error_size) noex
   return guarded(error, error_size, [&] {
     const Calibration found = measure_calibration();
     for (const Calibration::Width &width : found.widths) *ns++ = width.springs, *ns++ = width.dashpots;
-    *ns = found.waking;
+    *ns++ = found.waking, *ns = found.calling;
   });
 }
 
@@ -33,7 +34,7 @@ MDANIM_EXPORT int mdanim_give_calibration(const double *ns, char *error, int err
       known.widths.push_back({kernels, ns[0], ns[1]});
       ns += 2;
     }
-    known.waking = *ns;
+    known.waking = *ns++, known.calling = *ns;
     give_calibration(std::move(known));
   });
 }

@@ -16,8 +16,8 @@ static constexpr double AT_A_PLANE = 0.75;       // of the skin: half for partic
 static constexpr double BETWEEN_POINTS = 0.6;    // spacings by which a round surface may stand out of its points
 static constexpr double MOST_SKINS = 32.0;
 static constexpr double ONSET = 0.05;    // eps over the spacing
-// What one thread takes at least, for others to be asked.
-static constexpr long LEAST_OBJECTS = 4, LEAST_FIELDS = 4, LEAST_PARTICLES = 400;
+// When lists are made, and of a particle when it moves; about.
+static constexpr double NS_OF_OBJECT = 5e3, NS_OF_FIELD = 5e3, NS_OF_PARTICLE = 8.0;
 static constexpr int FIELD_COST = 20;    // of one without points
 static constexpr double ALONE = 2.0;     // stiffness where only the dense points of one act, over that of points of both
 
@@ -249,11 +249,11 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
 void ContactWorld::find_points()
 {
   std::vector<std::optional<PointFinder>> finder(all.size());
-  threads.parts(objects(), LEAST_OBJECTS, [&](long first, long end) {
+  threads.parts(objects(), NS_OF_OBJECT, [&](long first, long end) {
     for (long n = first; n < end; ++n)
       if (!sights[n].empty()) finder[n].emplace(all[n], arrays);
   });
-  threads.parts(static_cast<long>(active.size()), LEAST_FIELDS, [&](long first, long end) {
+  threads.parts(static_cast<long>(active.size()), NS_OF_FIELD, [&](long first, long end) {
     for (long k = first; k < end; ++k) {
       const Active &one = active[k];
       ContactObject &owner = all[one.a], &host = all[one.b];
@@ -278,7 +278,7 @@ void ContactWorld::find_points()
 
 void ContactWorld::move_to(const Coordinates &places)
 {
-  threads.parts(static_cast<long>(arrays.size()), LEAST_PARTICLES, [&](long from, long to) {
+  threads.parts(static_cast<long>(arrays.size()), NS_OF_PARTICLE, [&](long from, long to) {
     for (ContactObject &one : all) {
       if (one.first_slot == one.last_slot || one.first_slot < from || one.first_slot >= to) continue;
       Motion motion{place(places, one.first_slot) - arrays.place()[one.first_slot].value};
@@ -298,7 +298,7 @@ void ContactWorld::step(const Coordinates &places, double dt)
   account.begin_step();
   if (arrays.size() == 0) return;
   move_to(places);
-  const bool ahead = dt > 0.0 && threads.many() > 1 && static_cast<double>(costs.back()) >= threads.least();
+  const bool ahead = dt > 0.0 && threads.pays(static_cast<double>(costs.back()));
   if (ahead) look_and_work_ahead(dt);
   for (Active &one : active) {
     if (!ahead) look(one, dt);
@@ -320,7 +320,7 @@ void ContactWorld::look(Active &one, double dt)
 // What fields do by themselves; what they add to the same particles and sums comes afterwards, in one order.
 void ContactWorld::look_and_work_ahead(double dt)
 {
-  threads.timed_parts(costs.back(), 1.0, [&](long from, long to) {    // costs are in ns, about
+  threads.parts(costs.back(), 1.0, [&](long from, long to) {    // costs are in ns, about
     const auto number = [&](long cost) { return std::lower_bound(costs.begin(), costs.end() - 1, cost) - costs.begin(); };
     for (long k = number(from), end = number(to); k < end; ++k) {
       Active &one = active[k];

@@ -19,7 +19,9 @@
 
 namespace mdanim {
 
-static constexpr double TYPICAL_WAKING = 12e3;    // [ns]
+static constexpr double TYPICAL_WAKING = 12e3, TYPICAL_CALLING = 400.0;    // [ns]
+// The least that a thread is asked for, in calls: so much the data costs that go from one core to another.
+static constexpr double CALLS_OF_TASK = 10.0;
 
 namespace {
 
@@ -137,27 +139,21 @@ class TimedPass {
   double least = std::numeric_limits<double>::max();
 };
 
-// Two tasks that keep a processor each for a while, after both threads had time to fall asleep: what the call takes beyond that.
-// Where the other thread gets no processor in time the caller does both, which says nothing of how long waking takes: 0 if that
-// is always so. Of all other calls the quickest fourth counts.
-double measure_waking()
+// Two tasks that keep a processor each for so many ns, after a nap of both threads: what the call takes beyond that. Where the
+// other thread gets no processor in time the caller does both, which says nothing of how long it takes to come: 0 if that is
+// always so. Of all other calls the quickest fourth counts.
+double measure_call(int calls, double task, std::chrono::microseconds nap)
 {
-  constexpr int CALLS = 40;
-  static constexpr double TASK = 60e3;
-  constexpr std::chrono::microseconds NAP{150};
-  const std::shared_ptr<Team> team = Team::of(2);
+  const Threads two(2);
   std::vector<double> found;
-  for (int n = 0; n < CALLS; ++n) {
-    std::this_thread::sleep_for(NAP);
+  for (int n = 0; n < calls; ++n) {
+    if (nap.count()) std::this_thread::sleep_for(nap);
     const Clock::time_point start = Clock::now();
-    team->share_out(
-        2,
-        [](void *, int) {
-          for (const Clock::time_point began = Clock::now(); ns_since(began) < TASK;) {}
-        },
-        nullptr);
-    const double longer = ns_since(start) - TASK;
-    if (longer < TASK) found.push_back(longer);
+    two.each(2, 2.0 * task, [task](int) {
+      for (const Clock::time_point began = Clock::now(); ns_since(began) < task;) {}
+    });
+    const double longer = ns_since(start) - task;
+    if (longer < task) found.push_back(longer);
   }
   if (found.empty()) return 0.0;
   const auto quartile = found.begin() + static_cast<long>(found.size() / 4);
@@ -181,7 +177,8 @@ Calibration measure_calibration()
   constexpr int ROUNDS = 5;
   const TimedBodies bodies;
   std::vector<std::unique_ptr<TimedPass>> samples;
-  Calibration found{{}, measure_waking()};
+  using std::chrono::microseconds;
+  Calibration found{{}, measure_call(40, 60e3, microseconds(150)), measure_call(200, 3e3, microseconds(0))};
   for (const Kernels *kernels : kernels_here()) {
     found.widths.push_back({kernels, 0.0, 0.0});
     for (const bool damped : {false, true}) samples.push_back(std::make_unique<TimedPass>(bodies, *kernels, damped));
@@ -208,17 +205,18 @@ void give_calibration(Calibration now)
   known = std::move(now);
 }
 
-double least_task()
+Threads threads_here(int many)
 {
-  const double waking = calibration().waking;
-  return 2.0 * (waking > 0.0 ? waking : TYPICAL_WAKING);
+  if (many < 2) return Threads();
+  const double waking = calibration().waking, calling = calibration().calling;
+  return Threads(many, CALLS_OF_TASK * (calling > 0.0 ? calling : TYPICAL_CALLING), waking > 0.0 ? waking : TYPICAL_WAKING);
 }
 
-int particles_of(double ns, const Kernels &kernels, bool damped)
+double ns_of_pass(int particles, const Kernels &kernels, bool damped)
 {
   const std::vector<Calibration::Width> &widths = calibration().widths;
   const auto own = std::find_if(widths.begin(), widths.end(), [&](const auto &width) { return width.kernels == &kernels; });
-  return static_cast<int>(std::clamp(std::ceil(ns / Calibration::of(*own, damped)), 1.0, 1e9));
+  return particles * Calibration::of(*own, damped);
 }
 
 }    // namespace mdanim

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What this processor takes for a pass with each set of instructions, and for a thread to wake up: measured once, in
-// milliseconds.
+// What this processor takes for a pass with each set of instructions, and for threads to come: measured once, in milliseconds.
 
 #ifndef MDANIM_CALIBRATION_H
 #define MDANIM_CALIBRATION_H
 
 #include "engine/kernels.h"
+#include "engine/team.h"
 
 #include <vector>
 
@@ -17,7 +17,9 @@ struct Calibration {
     double springs, dashpots;    // a particle's step in a pass, without and with dashpots [ns]
   };
   std::vector<Width> widths;    // all that run here, the widest first
-  double waking;    // what a call of the team takes longer than its tasks when its threads sleep [ns]; 0 where that is not known
+  // What a call of the team takes longer than its tasks [ns], when its threads sleep and when they are awake; 0 where that is
+  // not known.
+  double waking, calling;
 
   // Of a pass over springs, where some have dashpots or none.
   const Width &fastest(bool damped) const;
@@ -31,11 +33,10 @@ Calibration measure_calibration();
 const Calibration &calibration();
 void give_calibration(Calibration known);
 
-// The least that a thread is asked for [ns]: two such tasks, one for each of two threads, take less than one thread even where
-// the other one has to be woken.
-double least_task();
-// Particles, at least one, that take so long in a pass.
-int particles_of(double ns, const Kernels &kernels, bool damped);
+// For a step of so many threads.
+Threads threads_here(int many);
+// A pass of one thread over so many particles [ns].
+double ns_of_pass(int particles, const Kernels &kernels, bool damped);
 
 }    // namespace mdanim
 

@@ -12,8 +12,8 @@ namespace mdanim {
 
 RangeCut PassEngine::ranges_of(Cut &cut)
 {
-  const int least = threads.many() > 1 ? particles_of(threads.least(), *kernels, cutter.damped()) : cut.particles + 1;
-  return cut_into_ranges(cutter, cut, std::min({threads.many(), cut.particles / least, Team::MOST_TASKS}));
+  const int many = threads.many() > 1 ? threads.most(ns_of_pass(cut.particles, *kernels, cutter.damped())) : 1;
+  return cut_into_ranges(cutter, cut, many);
 }
 
 bool PassEngine::begin_run(const Kernels &now)

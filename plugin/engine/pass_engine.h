@@ -20,9 +20,8 @@ class PassEngine {
  public:
   PassCrew crew;
 
-  // So many threads take passes, where each of them has a task of `least` ns to do. The caller of all other functions is one of
-  // them.
-  void set_threads(int many, double least) { threads = Threads(many, least); }
+  // These threads take passes. The caller of all other functions is one of them.
+  void set_threads(Threads &&now) { threads = std::move(now); }
 
   // The crew is complete: with these kernels, and what only this run knows forgotten. Whether the kernels are others than before.
   bool begin_run(const Kernels &kernels);

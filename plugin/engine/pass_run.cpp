@@ -3,6 +3,7 @@
 
 #include "engine/pass_run.h"
 
+#include "engine/calibration.h"
 #include "engine/loss.h"
 #include "engine/stopwatch.h"
 
@@ -20,7 +21,8 @@ static constexpr double MORE_IN_LIQUID = 0.3;
 
 PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const Threads &threads, const PassCrew &crew,
                  const AtomArrays &atoms, double dt, Fresh fresh)
-    : blocks(blocks), kernels(kernels), threads(threads), crew(crew), atoms(atoms), dt(dt)
+    : blocks(blocks), kernels(kernels), threads(threads), crew(crew), atoms(atoms), dt(dt),
+      ns(blocks.ranges().size() > 1 ? ns_of_pass(blocks.size(), kernels, blocks.damped()) : 0.0)
 {
   if (fresh.positions) blocks.take_in(atoms.x, atoms.v);
   if (fresh.motion)
@@ -100,7 +102,7 @@ void PassRun::take_pass()
   const std::vector<Range> &ranges = blocks.ranges();
   of_range.assign(ranges.size(), pass);
   for (std::size_t n = 0; n < ranges.size(); ++n) of_range[n].range = &ranges[n];
-  threads.each(static_cast<int>(ranges.size()), [this](int n) { kernels.pass(of_range[n]); });
+  threads.each(static_cast<int>(ranges.size()), ns, [this](int n) { kernels.pass(of_range[n]); });
   blocks.end_pass(pass);
   pass.fastest = pass.squares = pass.largest_phi = 0.0;
   pass.fastest_near = -1.0;

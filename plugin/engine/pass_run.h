@@ -60,6 +60,7 @@ class PassRun {
   const PassCrew &crew;
   const AtomArrays atoms;
   const double dt;
+  const double ns;    // that one thread takes for a pass, where several are to take it
   Pass pass = {};
   std::vector<Pass> of_range;          // the pass of each range
   PassSums sums = {};                  // of the last pass,

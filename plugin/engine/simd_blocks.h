@@ -29,6 +29,7 @@ class SimdBlocks {
   SimdBlocks &operator=(const SimdBlocks &) = delete;
   void lay_out_at(const std::vector<int> &places, int own);    // the same blocks when particles are elsewhere again
 
+  int size() const { return particles; }
   bool damped() const { return has_damped; }    // some block is
   int chunks() const { return many_chunks; }
 
@@ -88,7 +89,7 @@ class SimdBlocks {
   template <class Work> void each_outside(const Threads &threads, const Work &work) const
   {
     constexpr double PARTICLE = 8.0;    // [ns], about
-    threads.timed_parts(static_cast<long>(outside.size()), PARTICLE, [&](long from, long to) {
+    threads.parts(static_cast<long>(outside.size()), PARTICLE, [&](long from, long to) {
       for (long n = from; n < to; ++n) work(outside[n]);
     });
   }

@@ -108,6 +108,15 @@ Team::~Team()
   for (std::thread &helper : helpers) helper.join();
 }
 
+bool Team::is_ready(double ns, double worth)
+{
+  if (!asleep.load(std::memory_order_relaxed)) return true;
+  const double left = alone.load(std::memory_order_relaxed) + ns;
+  if (left >= worth) return true;
+  alone.store(left, std::memory_order_relaxed);
+  return false;
+}
+
 void Team::share_out(int tasks, Task what, void *of_whom)
 {
   if (helpers.empty() || tasks < 2 || owner != getpid() || called.test_and_set(std::memory_order_acquire)) {
@@ -126,6 +135,7 @@ void Team::share_out(int tasks, Task what, void *of_whom)
       const std::lock_guard<std::mutex> lock(door);
     }    // a thread between its last look and its sleep
     bell.notify_all();
+    alone.store(0.0, std::memory_order_relaxed);
   }
   work(call, 0);
   const auto all_done = [&] { return done.load(std::memory_order_acquire) == tasks; };

@@ -29,6 +29,9 @@ class Team {
   Team &operator=(const Team &) = delete;
   ~Team();
 
+  // Whether tasks of so many ns together are to be shared out: those who sleep are woken where the caller has done alone, since
+  // they fell asleep, what is worth so many ns. So waking costs a part of what there was to share, however short each call is.
+  bool is_ready(double ns, double worth);
   // Does all tasks and returns. Thread n prefers task n: what it has in its cache. Where another thread of this process is
   // calling, or in a process that was forked, the caller does them alone.
   void share_out(int tasks, Task task, void *whose);
@@ -52,6 +55,7 @@ class Team {
   unsigned rounding = 0;    // the caller's mode of floating-point numbers
 
   alignas(64) std::atomic<int> asleep{0};
+  std::atomic<double> alone{0.0};    // [ns] of work that the caller has done because others slept
   std::atomic<bool> over{false};
   std::mutex door;
   std::condition_variable bell;
@@ -61,38 +65,45 @@ class Team {
 class Threads {
  public:
   // `least`: the least that a thread is asked for [ns]. Two tasks that take less had better be done by one thread.
-  explicit Threads(int many = 1, double least = 0.0) : number(many), least_task(least), team(Team::of(many)) {}
+  // `waking`: what it takes a thread to wake up [ns].
+  explicit Threads(int many = 1, double least = 0.0, double waking = 0.0)
+      : number(many), least_task(least), waking(waking), team(Team::of(many))
+  {
+  }
   int many() const { return number; }
-  double least() const { return least_task; }
+  // How many of them to ask for what takes one thread so many ns.
+  int most(double ns) const
+  { return static_cast<int>(std::clamp(ns / std::max(least_task, 1.0), 1.0, 1.0 * std::min(number, Team::MOST_TASKS))); }
+  // Whether it is better to share it now.
+  bool pays(double ns) const { return most(ns) > 1 && team->is_ready(ns, 2.0 * waking); }
 
-  // work(n) for n from 0 to tasks - 1, of which there are MOST_TASKS at most.
-  template <class Work> void each(int tasks, const Work &work) const
+  // work(n) for n from 0 to tasks - 1, of which there are MOST_TASKS at most; all together they take one thread so many ns.
+  template <class Work> void each(int tasks, double ns, const Work &work) const
   {
-    const auto one = [](void *of_whom, int n) { (*static_cast<const Work *>(of_whom))(n); };
-    team->share_out(tasks, one, const_cast<Work *>(&work));
+    if (pays(ns)) return share_out(tasks, work);
+    for (int n = 0; n < tasks; ++n) work(n);
   }
-  // work(first, end) for parts of all numbers from 0 to size - 1: several for each thread, for one may cost more than another,
-  // and none shorter than `least`.
-  template <class Work> void parts(long size, long least, const Work &work) const
+  // work(first, end) for parts of all numbers from 0 to size - 1, each of which takes about so many ns. There are several parts
+  // for each thread, for one may cost more than another.
+  template <class Work> void parts(long size, double ns, const Work &work) const
   {
-    const long wanted = number < 2 ? 1 : std::min<long>(number * PARTS_OF_ONE, Team::MOST_TASKS);
-    const long many = std::min(wanted, size / least);
-    if (many < 2) return work(0L, size);
-    each(static_cast<int>(many), [&](int n) { work(size * n / many, size * (n + 1) / many); });
-  }
-  // The same where each number takes about so many ns: a part may be shorter than the least task, as some cost more than others
-  // and loops come one after the other.
-  template <class Work> void timed_parts(long size, double ns, const Work &work) const
-  {
-    constexpr double PART = 0.25;    // of the least task
-    parts(size, 1 + static_cast<long>(PART * least_task / ns), work);
+    const double all = ns * static_cast<double>(size);
+    const long many = std::min<long>({size, PARTS_OF_ONE * most(all), Team::MOST_TASKS});
+    if (many < 2 || !pays(all)) return work(0L, size);
+    share_out(static_cast<int>(many), [&](long n) { work(size * n / many, size * (n + 1) / many); });
   }
 
  private:
   static constexpr int PARTS_OF_ONE = 4;
 
+  template <class Work> void share_out(int tasks, const Work &work) const
+  {
+    const auto one = [](void *of_whom, int n) { (*static_cast<const Work *>(of_whom))(n); };
+    team->share_out(tasks, one, const_cast<Work *>(&work));
+  }
+
   int number;
-  double least_task;
+  double least_task, waking;
   std::shared_ptr<Team> team;
 };
 

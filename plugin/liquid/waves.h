@@ -176,7 +176,7 @@ class Waves {
   template <class F> void rows(const F &f) const
   {
     constexpr double COLUMN = 2.0;    // [ns], about
-    threads.timed_parts(end_row() - 1, COLUMN * static_cast<double>(stride), [&](long from, long to) { f(1 + from, 1 + to); });
+    threads.parts(end_row() - 1, COLUMN * static_cast<double>(stride), [&](long from, long to) { f(1 + from, 1 + to); });
   }
   // Whether f(first, end) is true of any part.
   template <class F> bool any_row(const F &f) const

@@ -171,7 +171,7 @@ void BondMdanimHarmonic::compute(int eflag, int vflag)
   if (on)
     compute_chunks(0, chunks);    // a dashpot pushes both its particles
   else
-    threads.timed_parts(chunks, NS_OF_CHUNK, compute_chunks);
+    threads.parts(chunks, NS_OF_CHUNK, compute_chunks);
   for (const double one : energy_of_chunk) energy += one;
   if (on) loss.step(atom->v, update->dt, update->setupflag);
   if (eflag_atom || vflag_either) tally();

@@ -149,7 +149,7 @@ void Buoyancy::look(const Basin &basin, const std::vector<int> &near)
   const Lap lap(seconds);
   const double *const *x = atom->x;
   on_parts.resize(cells.cells.size());
-  threads.timed_parts(static_cast<long>(on_parts.size()), PARTICLE, [&](long from, long to) {
+  threads.parts(static_cast<long>(on_parts.size()), PARTICLE, [&](long from, long to) {
     for (long n = from; n < to; ++n) {
       Vec3 sum;
       for (const int corner : cells.cells[n].corner) sum += vec3(x[corner]);
@@ -157,7 +157,7 @@ void Buoyancy::look(const Basin &basin, const std::vector<int> &near)
       on_parts[n] = basin.on_parts(basin.in_cells(middle));
     }
   });
-  threads.timed_parts(static_cast<long>(near.size()), PARTICLE, [&](long from, long to) {
+  threads.parts(static_cast<long>(near.size()), PARTICLE, [&](long from, long to) {
     for (long n = from; n < to; ++n) kept[near[n]] = look_at_particle(basin, n, x[near[n]]);
   });
 }
@@ -282,10 +282,10 @@ void Buoyancy::act(const Basin &basin, const std::vector<int> &these, bool in_st
                    basin.acts_on_cells() ? kept.data() : nullptr,
                    floor + (basin.top() + 1.0) * height,
                    basin.all_below()};
-  threads.timed_parts(static_cast<long>(faces.size()), PARTICLE, [&](long from, long to) {
+  threads.parts(static_cast<long>(faces.size()), PARTICLE, [&](long from, long to) {
     for (long n = from; n < to; ++n) faces[n].push = pressure_on(faces[n], basin);
   });
-  threads.timed_parts(static_cast<long>(these.size()), PARTICLE, [&](long from, long to) {
+  threads.parts(static_cast<long>(these.size()), PARTICLE, [&](long from, long to) {
     for (long n = from; n < to; ++n) wet[n] = act_on(now, basin, n, these[n]);
   });
 }

@@ -33,9 +33,9 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
-static constexpr int LARGEST_FILE = 1 << 30;    // bytes
-static constexpr long LEAST_PARTICLES = 400;    // of a thread, for others to be asked
-static constexpr double USUAL_DAMPING = 0.3;    // beta
+static constexpr int LARGEST_FILE = 1 << 30;     // bytes
+static constexpr double NS_OF_PARTICLE = 4.0;    // about
+static constexpr double USUAL_DAMPING = 0.3;     // beta
 
 // --- the command ---
 
@@ -335,7 +335,7 @@ Coordinates FixMdanimContact::places_of_all(const Coordinates &of_mine)
 template <class Add> void FixMdanimContact::give_forces(const Add &add) const
 {
   const Row *forces = world_of_contact.forces();
-  threads_now.parts(static_cast<long>(mine.size()), LEAST_PARTICLES, [&](long first, long end) {
+  threads_now.parts(static_cast<long>(mine.size()), NS_OF_PARTICLE, [&](long first, long end) {
     for (long n = first; n < end; ++n) {
       if (!world_of_contact.is_pushed(object[mine[n]])) continue;
       const Vec3 &force = forces[slot[first_entry + n]].value;

@@ -117,7 +117,7 @@ template <class Visit> FixMdanimLeapfrog::Sums FixMdanimLeapfrog::each(Visit vis
     return all;
   }
   std::vector<Sums> of_chunk((nlocal + CHUNK - 1) / CHUNK);
-  threads.timed_parts(static_cast<long>(of_chunk.size()), NS_OF_CHUNK, [&](long begin, long end) {
+  threads.parts(static_cast<long>(of_chunk.size()), NS_OF_CHUNK, [&](long begin, long end) {
     for (long k = begin; k < end; ++k) {
       const int first = static_cast<int>(k) * CHUNK;
       Sums sums;

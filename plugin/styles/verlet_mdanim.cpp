@@ -66,7 +66,7 @@ void VerletMdanim::set_threads(const char *word)
   const int threads = utils::inumeric(FLERR, word, false, lmp);
   if (threads < 1 || threads > MOST_THREADS)
     error->all(FLERR, "run_style verlet/mdanim: threads is a number from 1 to {}, not {}", MOST_THREADS, threads);
-  engine.set_threads(threads, threads > 1 ? least_task() : 0.0);
+  engine.set_threads(threads_here(threads));
 }
 
 void VerletMdanim::set_width(const char *word)

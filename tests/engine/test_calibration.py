@@ -23,14 +23,19 @@ TEXT = FALL + "object a {{ shape box (15, 15, 15) cm position (0, 0, 0) {} drag 
 KNOWN = {"avx512": (30.0, 30.0), "avx2": (30.0, 30.0), "common": (30.0, 30.0)}
 
 
+def numbers(widths, waking, calling):
+    """What the file holds besides what it depends on."""
+    return {"widths_ns": widths, "waking_ns": waking, "calling_ns": calling}
+
+
 @pytest.fixture
 def measured(tmp_path, monkeypatch):
     """Let the plugin know numbers as if they had been measured here; the tests' own come back afterwards."""
     calibrate.cache_clear()
 
-    def tell(widths, waking=15e3):
+    def tell(widths, calling=3e3):
         monkeypatch.setenv(CALIBRATION, str(tmp_path / "calibration.json"))
-        (tmp_path / "calibration.json").write_text(json.dumps(holds_for() | {"widths_ns": widths, "waking_ns": waking}))
+        (tmp_path / "calibration.json").write_text(json.dumps(holds_for() | numbers(widths, 15e3, calling)))
         calibrate.cache_clear()
         return calibrate(open_library())
 
@@ -64,24 +69,24 @@ def test_the_width_follows_the_measurement(measured):
 
 
 @pytest.mark.parametrize(
-    ("ns", "waking", "expected"),
+    ("ns", "calling", "expected"),
     [
-        pytest.param(30.0, 15e3, 4, id="a range of 1000 particles pays"),
-        pytest.param(60.0, 15e3, 4, id="one of 500 as well: there are four threads"),
-        pytest.param(30.0, 30e3, 2, id="one of 2000 pays"),
-        pytest.param(30.0, 32e3, 1, id="one of 2134 pays, half of all is less"),
+        pytest.param(30.0, 3e3, 4, id="a range of 1000 particles pays"),
+        pytest.param(60.0, 3e3, 4, id="one of 500 as well: there are four threads"),
+        pytest.param(30.0, 6e3, 2, id="one of 2000 pays"),
+        pytest.param(30.0, 6.4e3, 1, id="one of 2134 pays, half of all is less"),
     ],
 )
-def test_ranges_follow_the_measurement(measured, ns, waking, expected):
-    """A range takes at least twice as long as a thread takes to wake up."""
-    measured(dict.fromkeys(KNOWN, (ns, 1.0)), waking)
+def test_ranges_follow_the_measurement(measured, ns, calling, expected):
+    """A range takes at least ten times as long as a call of threads that are awake."""
+    measured(dict.fromkeys(KNOWN, (ns, 1.0)), calling)
     assert used(SOLID, threads=4)[1] == expected
 
 
 def test_a_stored_calibration_is_not_measured_again(measured, monkeypatch):
     """What the file holds is taken as it is."""
     monkeypatch.setattr(calibration, "_measure", lambda *_: pytest.fail("measured"))
-    assert measured(KNOWN, 4e3).least_task == 8e3
+    assert measured(KNOWN, 400.0).least_task == 4e3
 
 
 @pytest.mark.parametrize(
@@ -90,22 +95,17 @@ def test_a_stored_calibration_is_not_measured_again(measured, monkeypatch):
         pytest.param("", id="empty"),
         pytest.param("[]", id="no table"),
         pytest.param('{"widths_ns": 3}', id="no widths"),
-        pytest.param(
-            json.dumps(holds_for() | {"widths_ns": KNOWN | {"common": (0.0, 1.0)}, "waking_ns": 1.0}), id="nothing takes no time"
-        ),
-        pytest.param(json.dumps(holds_for() | {"widths_ns": KNOWN, "waking_ns": None}), id="waking unknown"),
-        pytest.param(
-            json.dumps(holds_for() | {"widths_ns": KNOWN, "waking_ns": 1.0, "processor": "Z80"}), id="another processor"
-        ),
-        pytest.param(json.dumps(holds_for() | {"widths_ns": KNOWN, "waking_ns": 1.0, "version": "0"}), id="another version"),
-        pytest.param(
-            json.dumps(holds_for() | {"widths_ns": {"other": (1.0, 1.0)}, "waking_ns": 1.0}), id="another set of widths"
-        ),
+        pytest.param(json.dumps(holds_for() | numbers(KNOWN | {"common": (0.0, 1.0)}, 1.0, 1.0)), id="nothing takes no time"),
+        pytest.param(json.dumps(holds_for() | numbers(KNOWN, None, 1.0)), id="waking unknown"),
+        pytest.param(json.dumps(holds_for() | {"widths_ns": KNOWN, "waking_ns": 1.0}), id="calling unknown"),
+        pytest.param(json.dumps(holds_for() | numbers(KNOWN, 1.0, 1.0) | {"processor": "Z80"}), id="another processor"),
+        pytest.param(json.dumps(holds_for() | numbers(KNOWN, 1.0, 1.0) | {"version": "0"}), id="another version"),
+        pytest.param(json.dumps(holds_for() | numbers({"other": (1.0, 1.0)}, 1.0, 1.0)), id="another set of widths"),
     ],
 )
 def test_what_does_not_hold_here_is_measured_and_stored(tmp_path, monkeypatch, measured, text):
     """The file then has what was measured."""
-    new = Calibration(dict.fromkeys(measured(KNOWN).widths, (7.0, 8.0)), 9.0)
+    new = Calibration(dict.fromkeys(measured(KNOWN).widths, (7.0, 8.0)), 9.0, 1.0)
     monkeypatch.setattr(calibration, "_measure", lambda *_: new)
     monkeypatch.setenv(CALIBRATION, str(tmp_path / "new" / "calibration.json"))
     stored_at().parent.mkdir()
@@ -118,12 +118,13 @@ def test_what_does_not_hold_here_is_measured_and_stored(tmp_path, monkeypatch, m
 def test_what_was_not_seen_is_not_stored(tmp_path, monkeypatch, measured):
     """Where no thread found a processor in time the next process measures again; so it is where no file can be written."""
     names = list(measured(KNOWN).widths)
-    for waking, name in ((None, "none.json"), (5.0, "file/calibration.json")):
+    for waking, calling, name in ((None, 1.0, "none.json"), (5.0, None, "none.json"), (5.0, 1.0, "file/calibration.json")):
         (tmp_path / "file").touch()
         monkeypatch.setenv(CALIBRATION, str(tmp_path / name))
-        monkeypatch.setattr(calibration, "_measure", lambda *_, w=waking: Calibration(dict.fromkeys(names, (7.0, 8.0)), w))
+        found = Calibration(dict.fromkeys(names, (7.0, 8.0)), waking, calling)
+        monkeypatch.setattr(calibration, "_measure", lambda *_, found=found: found)
         calibrate.cache_clear()
-        assert calibrate(open_library()).waking == waking and stored() is None
+        assert calibrate(open_library()) == found and stored() is None
 
 
 def test_the_measurement_measures_every_width(tmp_path):
@@ -131,7 +132,9 @@ def test_the_measurement_measures_every_width(tmp_path):
     code = "from mdanim_lammps.engine.plugin import open_library\nopen_library()\n"
     path = tmp_path / "cache" / "calibration.json"
     code += "from mdanim_lammps.engine.calibration import calibrate\nfound = calibrate(open_library())\n"
-    code += "print(min(ns for pair in found.widths.values() for ns in pair) > 0.1, found.waking is None or found.waking > 0.0)"
+    code += (
+        "print(min(ns for pair in found.widths.values() for ns in pair) > 0.1, (found.waking or 1) > 0 < (found.calling or 1))"
+    )
     done = subprocess.run(
         [sys.executable, "-c", code], env={**os.environ, CALIBRATION: str(path)}, capture_output=True, text=True
     )

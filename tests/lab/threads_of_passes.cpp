@@ -113,7 +113,7 @@ std::vector<double> film(int threads)
   springs.loss.forces(PARTICLES);
   springs.loss.step(v, Integrator::DT, true);
   PassEngine engine;
-  engine.set_threads(threads, least_task());
+  engine.set_threads(threads_here(threads));
   springs.join(engine.crew);
   integrator.join(engine.crew);
   engine.begin_run(kernels_common);
@@ -137,7 +137,7 @@ std::vector<double> film(int threads)
 
 int main()
 {
-  give_calibration({{{&kernels_common, 50.0, 50.0}}, 12500.0});    // 500 particles for each range
+  give_calibration({{{&kernels_common, 50.0, 50.0}}, 1.0, 2500.0});    // 500 particles for each range
   const std::vector<double> alone = film(1);
   for (const int threads : {2, 4, 5}) {
     const std::vector<double> shared = film(threads);

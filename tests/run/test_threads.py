@@ -63,7 +63,7 @@ def test_the_environment_tells_the_number(monkeypatch):
 
 BLOCK = "object a {{ shape box ({0}, {0}, {0}) cm position (0, 0, 0) density 1000 elasticity 0.2 MPa {1} }}\n"
 BLOCK += "control {{ time 0.1 s resolution 1 cm }}\n"
-KNOWN = Calibration({"avx512": (40.0, 80.0), "avx2": (30.0, 100.0)}, 15e3)
+KNOWN = Calibration({"avx512": (40.0, 80.0), "avx2": (30.0, 100.0)}, 15e3, 3e3)
 """A thread pays from 1000 particles on, with dashpots from 375 on."""
 
 
@@ -76,7 +76,7 @@ KNOWN = Calibration({"avx512": (40.0, 80.0), "avx2": (30.0, 100.0)}, 15e3)
         pytest.param(15, "", KNOWN, 16, None, 4, "4 of 16 cores", id="no more than pay"),
         pytest.param(9, "", KNOWN, 4, None, 1, "1 of 4 cores: .* 30 us, a thread pays from 1 000 particles on", id="too small"),
         pytest.param(9, "damping 0.1", KNOWN, 4, None, 2, "pays from 375 particles on", id="dashpots take longer"),
-        pytest.param(15, "", Calibration(KNOWN.widths, None), 9, None, 5, "pays from 800", id="waking unknown"),
+        pytest.param(15, "", Calibration(KNOWN.widths, 15e3, None), 40, None, 30, "pays from 134", id="calling unknown"),
         pytest.param(15, "", KNOWN, 1, None, 1, "1: there is one core", id="one core"),
         pytest.param(15, "", None, 2, None, 1, "as many as pay, of 2 cores", id="not calibrated"),
         pytest.param(5, "", KNOWN, 1, "7", 7, "7, as asked for", id="asked for"),

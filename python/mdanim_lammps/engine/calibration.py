@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What this processor takes for a pass with vectors of each width, and for a thread to wake up: measured in 0.1 s when LAMMPS
+"""What this processor takes for a pass with vectors of each width, and for threads to come: measured in 0.1 s when LAMMPS
 is loaded first on a machine, and kept in a file. It decides how fast a run is, never a bit of it."""
 
 from __future__ import annotations
@@ -21,8 +21,10 @@ from ..errors import SetupError
 
 CALIBRATION = "MDANIM_CALIBRATION"
 """Environment variable with the file, if it is not to be the one in the user's cache."""
-TYPICAL_WAKING = 12e3
+TYPICAL_CALLING = 400.0
 """Nanoseconds, as plugin/engine/calibration.cpp has it."""
+CALLS_OF_TASK = 10.0
+"""The least that a thread is asked for, in calls, as plugin/engine/calibration.cpp has it."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,8 @@ class Calibration:
     """For each width that runs here, the widest first: a particle's step in a pass over springs without and with dashpots."""
     waking: float | None
     """What a call takes longer than its tasks when the other threads sleep; None where no thread found a processor in time."""
+    calling: float | None
+    """The same when they are awake."""
 
     def fastest(self, damped: bool) -> str:
         """The width that is chosen for springs where some have dashpots, or none."""
@@ -41,7 +45,7 @@ class Calibration:
     @property
     def least_task(self) -> float:
         """The least that a thread is asked for [ns]."""
-        return 2.0 * (self.waking or TYPICAL_WAKING)
+        return CALLS_OF_TASK * (self.calling or TYPICAL_CALLING)
 
 
 def stored_at() -> Path:
@@ -57,9 +61,9 @@ def stored() -> Calibration | None:
     try:
         data = json.loads(stored_at().read_text(encoding="utf-8"))
         widths = {str(name): (float(plain), float(damped)) for name, (plain, damped) in data["widths_ns"].items()}
-        waking = float(data["waking_ns"])
-        good = all(0.0 < ns < math.inf for ns in (waking, *(ns for pair in widths.values() for ns in pair)))
-        return Calibration(widths, waking) if good and {k: data[k] for k in holds_for()} == holds_for() else None
+        waking, calling = float(data["waking_ns"]), float(data["calling_ns"])
+        good = all(0.0 < ns < math.inf for ns in (waking, calling, *(ns for pair in widths.values() for ns in pair)))
+        return Calibration(widths, waking, calling) if good and {k: data[k] for k in holds_for()} == holds_for() else None
     except (OSError, RuntimeError, ValueError, KeyError, TypeError, AttributeError):  # RuntimeError: there is no home folder
         return None
 
@@ -84,20 +88,20 @@ def calibrate(library: ctypes.CDLL) -> Calibration:
     names, found = _widths(library), stored()
     if found is None or not set(names) <= set(found.widths):
         found = _measure(library, names)
-        if found.waking:
+        if found.waking and found.calling:
             with suppress(OSError, RuntimeError):  # where no file can be written each process measures for itself
                 _store(found)
-    _call(library.mdanim_give_calibration, [*(ns for name in names for ns in found.widths[name]), found.waking or 0.0])
-    return Calibration({name: found.widths[name] for name in names}, found.waking)
+    numbers = [*(ns for name in names for ns in found.widths[name]), found.waking or 0.0, found.calling or 0.0]
+    _call(library.mdanim_give_calibration, numbers)
+    return Calibration({name: found.widths[name] for name in names}, found.waking, found.calling)
 
 
 def _store(found: Calibration) -> None:
     path = stored_at()
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f"{path.name}.{os.getpid()}")  # processes that begin together each write a whole file
-    part.write_text(
-        json.dumps(holds_for() | {"widths_ns": dict(found.widths), "waking_ns": found.waking}, indent=1) + "\n", encoding="utf-8"
-    )
+    numbers = {"widths_ns": dict(found.widths), "waking_ns": found.waking, "calling_ns": found.calling}
+    part.write_text(json.dumps(holds_for() | numbers, indent=1) + "\n", encoding="utf-8")
     part.replace(path)
 
 
@@ -110,8 +114,8 @@ def _widths(library: ctypes.CDLL) -> list[str]:
 
 
 def _measure(library: ctypes.CDLL, names: list[str]) -> Calibration:
-    *pairs, waking = _call(library.mdanim_calibrate, [0.0] * (2 * len(names) + 1))
-    return Calibration(dict(zip(names, zip(pairs[::2], pairs[1::2]))), waking or None)
+    *pairs, waking, calling = _call(library.mdanim_calibrate, [0.0] * (2 * len(names) + 2))
+    return Calibration(dict(zip(names, zip(pairs[::2], pairs[1::2]))), waking or None, calling or None)
 
 
 def _call(function, numbers: Sequence[float]) -> list[float]:
