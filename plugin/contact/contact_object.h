@@ -47,6 +47,18 @@ struct ContactAccount {
   double looks = 0.0;                               // at points of objects without a contact, since the beginning
 
   void begin_step() { energy = stick_energy = 0.0, touching = 0; }
+  // What some of them did in this step.
+  void add(const ContactAccount &some)
+  {
+    energy += some.energy;
+    stick_energy += some.stick_energy;
+    touching += some.touching;
+    heat += some.heat;
+    damped += some.damped;
+    let_go += some.let_go;
+    deepest = std::max(deepest, some.deepest);
+    looks += some.looks;
+  }
 };
 
 // Positions and forces of all particles that contacts may need, by slots.

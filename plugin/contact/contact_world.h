@@ -120,8 +120,14 @@ class ContactWorld {
     int a, b;
     ContactField *field;
     PlaneField *plane;
-    const Zone *of_host;    // for lists
-    bool has_something;     // to add in this step
+    const Zone *of_host;       // for lists
+    bool has_something;        // to add in this step,
+    ContactAccount of_step;    // and what that did
+  };
+  // A field that is to add something in this step, and how many do so before it on each of its objects.
+  struct Turn {
+    Active *field;
+    int on_a, on_b;
   };
   double range(int a, int b) const;
   void find_sights();
@@ -134,7 +140,9 @@ class ContactWorld {
   void find_points();
   void look(Active &one, double dt);
   void look_and_work_ahead(double dt);
-  void add_forces(const Active &one, double dt);
+  void add_forces(Active &one, double dt);
+  void list_turns();
+  void add_forces_side_by_side(double dt);
   void clear_forces(ContactObject &one);
 
   std::vector<ContactObject> all;
@@ -148,6 +156,8 @@ class ContactWorld {
   std::map<std::pair<int, int>, PlaneField> plane_fields;    // by id and plane
   std::vector<Active> active;                                // what steps go through, in the order of sums,
   std::vector<long> costs = {0};                             // and what all before each of them costs; at the end, what all cost
+  std::vector<Turn> turns;                                   // in an order in which none waits for a later one
+  std::vector<std::vector<Turn>> turns_after;                // those that wait for chains of so many others
   Threads threads;
   ContactArrays arrays;
 };

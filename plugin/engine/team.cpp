@@ -3,9 +3,9 @@
 
 #include "engine/team.h"
 
-#include <chrono>
+#include "engine/waiting.h"
+
 #include <pthread.h>
-#include <sched.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -15,20 +15,7 @@
 
 namespace mdanim {
 
-// A thread waits so long for work before it sleeps, and for others before it offers them its processor. Longer waits bring
-// nothing, and take the processor from others where there are more threads than processors.
-static constexpr std::chrono::microseconds PATIENCE{50};
-
 namespace {
-
-void pause()
-{
-#if defined(__SSE__)
-  _mm_pause();
-#elif defined(__aarch64__)
-  asm volatile("yield");
-#endif
-}
 
 // Flush to zero and its like: with another mode a helper would compute other bits than the caller.
 unsigned floating_point_mode()
@@ -53,19 +40,6 @@ void set_floating_point_mode(unsigned mode)
 #else
   (void) mode;
 #endif
-}
-
-// Whether something happens before patience ends.
-template <class Happens> bool wait_for(const Happens &happens)
-{
-  const auto end = std::chrono::steady_clock::now() + PATIENCE;
-  do {
-    for (int n = 0; n < 64; ++n) {
-      if (happens()) return true;
-      pause();
-    }
-  } while (std::chrono::steady_clock::now() < end);
-  return false;
 }
 
 std::uint32_t call_of(std::uint64_t state) { return static_cast<std::uint32_t>(state >> 32); }
@@ -138,8 +112,7 @@ void Team::share_out(int tasks, Task what, void *of_whom)
     alone.store(0.0, std::memory_order_relaxed);
   }
   work(call, 0);
-  const auto all_done = [&] { return done.load(std::memory_order_acquire) == tasks; };
-  while (!wait_for(all_done)) sched_yield();
+  wait_until([&] { return done.load(std::memory_order_acquire) == tasks; });
   called.clear(std::memory_order_release);
 }
 

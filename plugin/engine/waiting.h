@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Waiting for another thread.
+
+#ifndef MDANIM_WAITING_H
+#define MDANIM_WAITING_H
+
+#include <chrono>
+#include <sched.h>
+
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+namespace mdanim {
+
+// A thread waits so long for work before it sleeps, and for others before it offers them its processor. Longer waits bring
+// nothing, and take the processor from others where there are more threads than processors.
+constexpr std::chrono::microseconds PATIENCE{50};
+
+inline void pause_processor()
+{
+#if defined(__SSE__)
+  _mm_pause();
+#elif defined(__aarch64__)
+  asm volatile("yield");
+#endif
+}
+
+// Whether something happens before patience ends.
+template <class Happens> bool wait_for(const Happens &happens)
+{
+  const auto end = std::chrono::steady_clock::now() + PATIENCE;
+  do {
+    for (int n = 0; n < 64; ++n) {
+      if (happens()) return true;
+      pause_processor();
+    }
+  } while (std::chrono::steady_clock::now() < end);
+  return false;
+}
+
+// Returns when it has happened: another thread is about to do it.
+template <class Happens> void wait_until(const Happens &happens)
+{
+  if (happens()) return;
+  while (!wait_for(happens)) sched_yield();
+}
+
+}    // namespace mdanim
+
+#endif
