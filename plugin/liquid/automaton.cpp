@@ -118,65 +118,115 @@ void Automaton::look(int z)
 }
 
 // A layer of one number throughout is the same after any permutation.
-bool Automaton::mixes(int z) const { return layers[z].holds & MORE || layers[z].holds == (ZERO | ONE); }
+bool Automaton::mixes(const Layer &layer) { return layer.holds & MORE || layer.holds == (ZERO | ONE); }
 
 // Whether a unit may pass between this layer and the next, by eq. (4.16).
-bool Automaton::exchanges(int z) const
-{
-  const int lower = layers[z].holds, upper = layers[z + 1].holds;
-  return lower & MORE || (lower & ZERO && upper & (ONE | MORE));
-}
+bool Automaton::exchanges(const Layer &lower, const Layer &upper)
+{ return lower.holds & MORE || (lower.holds & ZERO && upper.holds & (ONE | MORE)); }
 
 // ---- a sweep ----
 
 std::uint32_t Automaton::Blocks::word(int block, int z) const
 { return static_cast<std::uint32_t>(z / LAYERS_PER_WORD) * nx * ny + block; }
 
-void Automaton::horizontal(Blocks &blocks, int z)
+void Automaton::horizontal(Strip &strip, int z)
 {
-  if (z >= cells.nz || !mixes(z)) return;
-  const int in_layer = blocks.nx * blocks.ny;
-  if (blocks.group != z / LAYERS_PER_WORD) {
-    blocks.group = z / LAYERS_PER_WORD;
-    kernels->draw_words(blocks.key, blocks.word(0, z), in_layer, blocks.draws.data(), blocks.draws.data() + in_layer);
+  if (z >= cells.nz || !mixes(strip.layers[z])) return;
+  Blocks &blocks = strip.blocks;
+  const int in_layer = blocks.nx * blocks.ny, own = strip.first * blocks.nx, end = strip.last * blocks.nx;
+  std::uint16_t *const low = blocks.draws.data(), *const high = low + in_layer;
+  if (strip.group != z / LAYERS_PER_WORD) {
+    strip.group = z / LAYERS_PER_WORD;
+    kernels->draw_words(blocks.key, blocks.word(own, z), end - own, low + own, high + own);
   }
   const int bits = 2 * (z % LAYERS_PER_WORD), shift = bits % 16;
-  const std::uint16_t *draws = blocks.draws.data() + (bits < 16 ? 0 : in_layer);
-  const std::size_t first = cells.at(blocks.first, blocks.first, z);
-  kernels->permute(&cells.content[first], &cells.open[first], cells.row, blocks.nx, blocks.ny, draws, shift);
+  const std::uint16_t *const draws = bits < 16 ? low : high;
+  const std::size_t first = cells.at(blocks.first, blocks.first + 2 * strip.first, z);
+  kernels->permute(&cells.content[first], &cells.open[first], cells.row, blocks.nx, strip.last - strip.first, draws + own, shift);
   std::uint8_t *layer = &cells.content[z * cells.layer];
-  for (const Broken &b : blocks.broken[z])
-    permute_block(layer + b.place, cells.row, SOURCES[b.open][draws[b.block] >> shift & 3]);
+  for (const Broken &b : blocks.broken[z]) {
+    const int block = static_cast<int>(b.block);
+    if (block >= own && block < end) permute_block(layer + b.place, cells.row, SOURCES[b.open][draws[block] >> shift & 3]);
+  }
 }
 
-void Automaton::vertical_pair(int z)
+void Automaton::vertical_pair(Strip &strip, int z)
 {
-  if (z < 0 || z + 1 >= cells.nz || !exchanges(z)) return;
-  const std::size_t lower = (z + 1) * cells.layer, upper = lower + cells.layer;
-  if (kernels->exchange(&cells.content[lower], &cells.content[upper], &cells.open[lower], &cells.open[upper], cells.layer,
-                        vertical))
-    layers[z] = layers[z + 1] = {ANYTHING, false, true};
+  if (z < 0 || z + 1 >= cells.nz || !exchanges(strip.layers[z], strip.layers[z + 1])) return;
+  const auto row_of = [&](int block) { return std::clamp(strip.blocks.first + 2 * block, 0, cells.ny); };
+  const int low = row_of(strip.first), rows = row_of(strip.last) - low;
+  const std::size_t lower = cells.at(-1, low, z), upper = lower + cells.layer;
+  if (kernels->exchange(&cells.content[lower], &cells.content[upper], &cells.open[lower], &cells.open[upper],
+                        static_cast<std::size_t>(rows) * cells.row, vertical))
+    strip.layers[z] = strip.layers[z + 1] = {ANYTHING, false, true};
+}
+
+// What one thread takes for it, about [ns].
+double Automaton::cost_of_sweep() const
+{
+  constexpr double CELL = 0.25;
+  int changing = 0;
+  for (const Layer &layer : layers) changing += mixes(layer) || layer.moved;
+  return CELL * changing * static_cast<double>(cells.layer);
 }
 
 void Automaton::sweep(std::uint64_t when)
 {
+  constexpr double LOOK = 0.05;    // at a cell [ns], about
   // What keeps changing is not worth a look.
-  for (int z = 0; z < cells.nz; ++z) {
-    if (!layers[z].known && !layers[z].moved) look(z);
-    layers[z].moved = false;
-  }
+  threads.parts(cells.nz, LOOK * static_cast<double>(cells.layer), [this](long from, long to) {
+    for (int z = static_cast<int>(from); z < to; ++z) {
+      if (!layers[z].known && !layers[z].moved) look(z);
+      layers[z].moved = false;
+    }
+  });
   even.key = draw_key(seed, when, Phase::EVEN_BLOCKS);
   odd.key = draw_key(seed, when, Phase::ODD_BLOCKS);
-  even.group = odd.group = -1;
+  if (threads.pays(cost_of_sweep())) return sweep_in_strips();
   // All four steps in one pass, so that a layer is still in the cache: each needs only what is done by then.
+  Strip evens{even, 0, even.ny, layers.data()}, odds{odd, 0, odd.ny, layers.data()};
   for (int z = 0; z <= cells.nz; z += 2) {
-    horizontal(even, z);
-    horizontal(even, z + 1);
-    vertical_pair(z);
-    horizontal(odd, z);
-    horizontal(odd, z + 1);
-    vertical_pair(z - 1);
+    horizontal(evens, z);
+    horizontal(evens, z + 1);
+    vertical_pair(evens, z);
+    horizontal(odds, z);
+    horizontal(odds, z + 1);
+    vertical_pair(odds, z - 1);
   }
+}
+
+// Blocks of a horizontal step lie in one strip each, and so do the cells one above the other that come after it. A strip of the
+// odd blocks lies half in one and half in another strip of the even ones, so these are all swept before.
+void Automaton::sweep_in_strips()
+{
+  each_strip(even, [this](Strip &strip) {
+    for (int z = 0; z < cells.nz; z += 2) {
+      horizontal(strip, z);
+      horizontal(strip, z + 1);
+      vertical_pair(strip, z);
+    }
+  });
+  each_strip(odd, [this](Strip &strip) {
+    for (int z = 0; z <= cells.nz; z += 2) {
+      horizontal(strip, z);
+      horizontal(strip, z + 1);
+      vertical_pair(strip, z - 1);
+    }
+  });
+}
+
+template <class Sweep> void Automaton::each_strip(Blocks &blocks, const Sweep &sweep)
+{
+  constexpr int OF_THREAD = 2;
+  const int strips = std::min({OF_THREAD * threads.many(), Team::MOST_TASKS, blocks.ny});
+  std::vector<std::vector<Layer>> known(strips, layers);
+  threads.each(strips, cost_of_sweep(), [&](int n) {
+    Strip strip{blocks, blocks.ny * n / strips, blocks.ny * (n + 1) / strips, known[n].data()};
+    sweep(strip);
+  });
+  for (const std::vector<Layer> &of_strip : known)
+    for (int z = 0; z < cells.nz; ++z)
+      if (of_strip[z].moved) layers[z] = of_strip[z];
 }
 
 // ---- displacement and filling ----
@@ -230,24 +280,37 @@ bool Automaton::expel(const Spill &spill, std::uint64_t key, std::vector<Spill> 
 
 long Automaton::displace(const std::uint8_t *solid, std::uint64_t when)
 {
+  constexpr double CELL = 0.2;    // that is not different [ns], about
+  struct Changes {
+    std::vector<Spill> turned;
+    std::vector<std::size_t> stilled;
+  };
+  std::vector<Changes> of_layer(cells.nz);
+  threads.parts(cells.nz, CELL * static_cast<double>(cells.layer), [&](long from, long to) {
+    for (int z = static_cast<int>(from); z < to; ++z)
+      for (int y = 0; y < cells.ny; ++y) {
+        const std::size_t first = cells.at(0, y, z);
+        const std::uint8_t *const now = solid + cells.number(0, y, z);
+        if (!kernels->differ(now, &cells.open[first], &cells.still[first], cells.nx)) continue;
+        for (int x = 0; x < cells.nx; ++x) {
+          const std::size_t place = first + x;
+          if ((now[x] == 2) != (cells.still[place] != 0)) {
+            cells.still[place] ^= 1;
+            of_layer[z].stilled.push_back(place);
+          }
+          if ((now[x] == 0) == (cells.open[place] != 0)) continue;
+          of_layer[z].turned.push_back({x, y, z, cells.content[place]});
+          cells.open[place] ^= Cells::OPEN;
+          cells.content[place] = 0;
+        }
+      }
+  });
   std::vector<Spill> turned, arrived;
   std::vector<std::size_t> stilled;
-  for (int z = 0; z < cells.nz; ++z)
-    for (int y = 0; y < cells.ny; ++y, solid += cells.nx) {
-      const std::size_t first = cells.at(0, y, z);
-      if (!kernels->differ(solid, &cells.open[first], &cells.still[first], cells.nx)) continue;
-      for (int x = 0; x < cells.nx; ++x) {
-        const std::size_t place = first + x;
-        if ((solid[x] == 2) != (cells.still[place] != 0)) {
-          cells.still[place] ^= 1;
-          stilled.push_back(place);
-        }
-        if ((solid[x] == 0) == (cells.open[place] != 0)) continue;
-        turned.push_back({x, y, z, cells.content[place]});
-        cells.open[place] ^= Cells::OPEN;
-        cells.content[place] = 0;
-      }
-    }
+  for (const Changes &changes : of_layer) {
+    turned.insert(turned.end(), changes.turned.begin(), changes.turned.end());
+    stilled.insert(stilled.end(), changes.stilled.begin(), changes.stilled.end());
+  }
 
   const std::uint64_t key = draw_key(seed, when, Phase::DISPLACEMENT);
   for (const Spill &spill : turned) {

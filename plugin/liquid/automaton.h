@@ -6,6 +6,7 @@
 #ifndef MDANIM_AUTOMATON_H
 #define MDANIM_AUTOMATON_H
 
+#include "engine/team.h"
 #include "liquid/cells.h"
 
 #include <cstdint>
@@ -48,6 +49,8 @@ class Automaton {
   void poured();
   void touched();
 
+  void use(const Threads &now) { threads = now; }    // the cells are the same for any number of them
+
   // Kernels for instruction set 0, 1, … (default: the best of this processor), all with the same results.
   // Returns their name, or nullptr and changes nothing where this processor lacks them.
   const char *use_instruction_set(int number);
@@ -73,20 +76,30 @@ class Automaton {
     std::vector<std::vector<Broken>> broken;    // of each layer, in any order
     std::vector<int> slot;                      // of each block in that list, or -1
     std::uint64_t key = 0;
-    int group = -1;                      // whose draws are at hand
-    std::vector<std::uint16_t> draws;    // 8 layers of the group, then the other 8
+    std::vector<std::uint16_t> draws;    // of the group of layers at hand: 8 layers, then the other 8
 
     int block(int bx, int by) const { return by * nx + bx; }
     std::uint32_t word(int block, int z) const;
   };
 
+  // Rows of blocks, the same ones of every layer: what a thread sweeps, and what it knows of layers.
+  struct Strip {
+    Blocks &blocks;
+    int first, last;    // [first, last)
+    Layer *layers;
+    int group = -1;    // of layers whose draws are at hand
+  };
+
   Blocks make_blocks(int first) const;
   void sort_block(Blocks &blocks, int bx, int by, int z);
   void look(int z);
-  bool mixes(int z) const;
-  bool exchanges(int z) const;
-  void horizontal(Blocks &blocks, int z);
-  void vertical_pair(int z);
+  static bool mixes(const Layer &layer);
+  static bool exchanges(const Layer &lower, const Layer &upper);
+  double cost_of_sweep() const;
+  void horizontal(Strip &strip, int z);
+  void vertical_pair(Strip &strip, int z);
+  void sweep_in_strips();
+  template <class Sweep> void each_strip(Blocks &blocks, const Sweep &sweep);
 
   struct Spill;
   bool expel(const Spill &spill, std::uint64_t key, std::vector<Spill> &arrived);
@@ -96,6 +109,7 @@ class Automaton {
   const AutomatonKernels *kernels;
   Blocks even, odd;
   std::vector<Layer> layers;
+  Threads threads;
 };
 
 }    // namespace mdanim

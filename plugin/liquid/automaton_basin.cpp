@@ -47,13 +47,13 @@ AutomatonBasin::AutomatonBasin(const Shape &shape, double g, std::uint64_t seed,
 long AutomatonBasin::mark_still(const AddBodies &bodies)
 {
   const Lap lap(occupancy_seconds);
-  return solid.mark_still([&](Occupancy &into) { bodies(into, ANYWHERE); }, ranks);
+  return solid.mark_still([&](Occupancy &into) { bodies(into, ANYWHERE); }, ranks, threads);
 }
 
 void AutomatonBasin::mark_moving(const AddBodies &bodies)
 {
   const Lap lap(occupancy_seconds);
-  solid.mark_moving([&](Occupancy &into) { bodies(into, poured ? top_layer + SAMPLED : ANYWHERE); }, ranks);
+  solid.mark_moving([&](Occupancy &into) { bodies(into, poured ? top_layer + SAMPLED : ANYWHERE); }, ranks, threads);
 }
 
 // Liquid leaves the cells that have become solid; returns how many have changed.

@@ -69,6 +69,11 @@ class AutomatonBasin : public Basin {
   Ledger set_state(const std::uint8_t *bytes, std::size_t size) override;
 
   const Cells &cells() const { return automaton.cells; }
+  void use(const Threads &now) override
+  {
+    threads = now;
+    automaton.use(threads);
+  }
 
  private:
   std::int64_t units_up_to(double height, const std::vector<std::uint8_t> &within) const;
@@ -91,6 +96,7 @@ class AutomatonBasin : public Basin {
 
   const Model model;
   const RankSums &ranks;
+  Threads threads;
   const std::uint64_t seed;
   Automaton automaton;
   Leveller leveller;

@@ -34,16 +34,16 @@ std::size_t CellBox::size() const
 
 Occupancy::Occupancy(int nx, int ny, int nz) : nx(nx), ny(ny), nz(nz), count(static_cast<std::size_t>(nx) * ny * nz, 0) {}
 
-void Occupancy::add(const Vec3 &place, int weight)
+void Occupancy::add(const Vec3 &place, int weight, CellBox &reached)
 {
   // Written so that a place that is NaN is outside.
   if (!(place.x >= 0.0 && place.x < nx && place.y >= 0.0 && place.y < ny && place.z >= 0.0 && place.z < nz)) return;
   const int x = static_cast<int>(place.x), y = static_cast<int>(place.y), z = static_cast<int>(place.z);
   count[number(x, y, z)] += weight;
-  touched.take_in(x, y, z);
+  reached.take_in(x, y, z);
 }
 
-void Occupancy::add_particle(const Vec3 &place) { add(place, FULL); }
+void Occupancy::add_particle(const Vec3 &place) { add(place, FULL, touched); }
 
 namespace {
 
@@ -88,15 +88,28 @@ struct Occupancy::Samples {
   }
 };
 
-void Occupancy::add_cell(const Vec3 corner[8])
+bool Occupancy::add(const Vec3 corner[8], bool spread, int layers, const RowSlabs::Rows &rows, CellBox &reached)
+{
+  constexpr double BESIDE = 1.5;    // rows beyond the corners
+  const auto [low, high] =
+      std::minmax({corner[0].y, corner[1].y, corner[2].y, corner[3].y, corner[4].y, corner[5].y, corner[6].y, corner[7].y});
+  if (!(rows.low == 0 || low - BESIDE >= rows.low) || !(rows.high == ny || high + BESIDE < rows.high)) return false;
+  if (!spread)
+    add_points(corner, reached);
+  else if (layers < 0 || !fill_inside(corner, layers, reached))
+    add_spread(corner, reached);
+  return true;
+}
+
+void Occupancy::add_points(const Vec3 corner[8], CellBox &reached)
 {
   const int weight = MeanEdges(corner).weight(FULL / 27.0);
   if (weight == 0) return;
   const Samples samples(corner);
-  for (int n = 0; n < Samples::COUNT; ++n) add({samples.at[0][n], samples.at[1][n], samples.at[2][n]}, weight);
+  for (int n = 0; n < Samples::COUNT; ++n) add({samples.at[0][n], samples.at[1][n], samples.at[2][n]}, weight, reached);
 }
 
-void Occupancy::spread_cell(const Vec3 corner[8])
+void Occupancy::add_spread(const Vec3 corner[8], CellBox &reached)
 {
   const MeanEdges edges(corner);
   const int weight = edges.weight(FULL_SPREAD / 27.0);
@@ -127,20 +140,20 @@ void Occupancy::spread_cell(const Vec3 corner[8])
     inside = inside && low[d] >= 0.0 && high[d] + 1.0 < cells[d];
   }
   for (int d = 0; d < 3; ++d) {
-    touched.low[d] = std::min(touched.low[d], static_cast<int>(std::max(0.0, low[d])));
-    touched.high[d] = std::max(touched.high[d], static_cast<int>(std::min(cells[d] - 1.0, high[d] + 1.0)) + 1);
+    reached.low[d] = std::min(reached.low[d], static_cast<int>(std::max(0.0, low[d])));
+    reached.high[d] = std::max(reached.high[d], static_cast<int>(std::min(cells[d] - 1.0, high[d] + 1.0)) + 1);
   }
   const Samples samples(corner);
   if (inside)
-    add<true>(samples, spread);
+    spread_samples<true>(samples, spread);
   else
-    add<false>(samples, spread);
+    spread_samples<false>(samples, spread);
 }
 
 // The eight cells that are nearest to the middle are within 1.5 of it along each axis. Their corner may be 2.6 away, but of a
 // cell with its corner so far less than 1 % is further than 2.4. Together they leave no gap where corners of lattice cells are
 // within 1 of a middle. The outermost lattice cells that do so spread their samples as well, for those reach beyond the eight.
-bool Occupancy::fill_inside(const Vec3 corner[8], int layers)
+bool Occupancy::fill_inside(const Vec3 corner[8], int layers, CellBox &reached)
 {
   constexpr double FURTHEST = 2.4, LONGEST = 1.15;
   const Vec3 edges[] = {corner[1] - corner[0], corner[3] - corner[0], corner[4] - corner[0]};
@@ -162,8 +175,8 @@ bool Occupancy::fill_inside(const Vec3 corner[8], int layers)
     low[d] = std::max(0, nearest - 1);
     high[d] = std::min(cells[d], nearest + 1);
     if (low[d] >= high[d]) return true;
-    touched.low[d] = std::min(touched.low[d], low[d]);
-    touched.high[d] = std::max(touched.high[d], high[d]);
+    reached.low[d] = std::min(reached.low[d], low[d]);
+    reached.high[d] = std::max(reached.high[d], high[d]);
   }
   for (int z = low[2]; z < high[2]; ++z)
     for (int y = low[1]; y < high[1]; ++y)
@@ -172,7 +185,7 @@ bool Occupancy::fill_inside(const Vec3 corner[8], int layers)
 }
 
 // Along each axis the upper of two cells gets its share, in 1/SHARES, and the lower one all the rest, so that nothing is lost.
-template <bool INSIDE> void Occupancy::add(const Samples &samples, const Spread &spread)
+template <bool INSIDE> void Occupancy::spread_samples(const Samples &samples, const Spread &spread)
 {
   int lower[3][Samples::COUNT], upper_share[3][Samples::COUNT];
   for (int d = 0; d < 3; ++d)
@@ -209,10 +222,11 @@ template <bool INSIDE> void Occupancy::add(const Samples &samples, const Spread 
   }
 }
 
+void Occupancy::begin_mass() { sums.resize(static_cast<std::size_t>(3) * nx * ny, 0); }
+
 void Occupancy::add_mass(const Vec3 &place, double mass, double softness, double rising)
 {
   if (!(place.x >= 0.0 && place.x <= nx && place.y >= 0.0 && place.y <= ny)) return;
-  if (sums.empty()) sums.assign(static_cast<std::size_t>(3) * nx * ny, 0);
   const double x = std::clamp(place.x - 0.5, 0.0, nx - 1.0), y = std::clamp(place.y - 0.5, 0.0, ny - 1.0);
   const int x0 = static_cast<int>(x), y0 = static_cast<int>(y), x1 = std::min(x0 + 1, nx - 1), y1 = std::min(y0 + 1, ny - 1);
   const double u = x - x0, v = y - y0;
@@ -228,24 +242,25 @@ void Occupancy::add_mass(const Vec3 &place, double mass, double softness, double
   give(x1, y1, u * v);
 }
 
-void Occupancy::clear()
+void Occupancy::clear(const Threads &threads)
 {
+  constexpr double CELL = 0.2;    // [ns], about
   std::fill(sums.begin(), sums.end(), 0);
-  for (int z = touched.low[2]; z < touched.high[2]; ++z)
-    for (int y = touched.low[1]; y < touched.high[1]; ++y) {
-      const auto first = count.begin() + static_cast<std::ptrdiff_t>(number(0, y, z));
-      std::fill(first + touched.low[0], first + touched.high[0], 0);
-    }
+  touched.each_row(threads, CELL, [this](int y, int z) {
+    const auto first = count.begin() + static_cast<std::ptrdiff_t>(number(0, y, z));
+    std::fill(first + touched.low[0], first + touched.high[0], 0);
+  });
   touched = CellBox();
 }
 
 // Only the box that any rank has touched goes from rank to rank.
-void Occupancy::sum_over(const RankSums &ranks)
+void Occupancy::sum_over(const RankSums &ranks, const Threads &threads)
 {
+  constexpr double CELL = 0.3;    // [ns], about
   if (!ranks.alone()) add_all(ranks);
-  touched.each([&](int x, int y, int z) {
-    int &own = count[number(x, y, z)];
-    own = std::min(own, FILLED);
+  touched.each_row(threads, CELL, [this](int y, int z) {
+    for (std::size_t c = number(touched.low[0], y, z), end = number(touched.high[0], y, z); c < end; ++c)
+      count[c] = std::min(count[c], FILLED);
   });
 }
 

@@ -7,6 +7,7 @@
 
 #include "laws/vec3.h"
 #include "liquid/rank_sums.h"
+#include "liquid/row_slabs.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -22,6 +23,15 @@ struct CellBox {
   void take_in(int x, int y, int z);
   void take_in(const CellBox &other);
   std::size_t size() const;
+  // Calls f(y, z) for rows of its cells, which threads share; a cell takes about so many ns.
+  template <class F> void each_row(const Threads &threads, double ns, const F &f) const
+  {
+    if (empty()) return;
+    const long deep = high[1] - low[1], many = deep * (high[2] - low[2]);
+    threads.parts(many, ns * (high[0] - low[0]), [&](long from, long to) {
+      for (long n = from; n < to; ++n) f(low[1] + static_cast<int>(n % deep), low[2] + static_cast<int>(n / deep));
+    });
+  }
   // Calls f(x, y, z) for all its cells, x fastest.
   template <class F> void each(F &&f) const
   {
@@ -39,38 +49,42 @@ class Occupancy {
 
   Occupancy(int nx, int ny, int nz);
 
-  // Corner points of a lattice cell in VTK order, in units of the automaton's cells from the corner of its
-  // grid. The lattice cell's present volume is shared out over 3x3x3 points.
-  void add_cell(const Vec3 corner[8]);
-  // The same, but each sample is spread over all cells that the box around its part of the lattice cell overlaps, in proportion:
-  // counts change smoothly as a body moves. Cells inside a body of any attitude get 0.98 of FULL_SPREAD and more.
-  void spread_cell(const Vec3 corner[8]);
-  // For a lattice cell with so many layers of others around it: fills the cells near its middle, which are inside the body. False
-  // where its samples are to be spread nevertheless.
-  bool fill_inside(const Vec3 corner[8], int layers);
+  // A lattice cell by its corner points in VTK order, in units of the automaton's cells from the corner of its grid. Its present
+  // volume is shared out over 3x3x3 points. `spread`: each of them is spread over all cells that the box around its part of the
+  // lattice cell overlaps, in proportion, so that counts change smoothly as a body moves; cells inside a body of any attitude get
+  // 0.98 of FULL_SPREAD and more. With so many `layers` of others around it, unless negative, a lattice cell deep inside only
+  // fills the cells near its middle. Writes into these rows alone; returns false, and does nothing, where others are needed.
+  // `reached` grows by the cells that are written to: touched.take_in(reached) is to follow.
+  bool add(const Vec3 corner[8], bool spread, int layers, const RowSlabs::Rows &rows, CellBox &reached);
+  // Before the first mass after clear().
+  void begin_mass();
   // Mass at a place, in cells of liquid, by how much it is compressed by a cell of liquid that stands on the column, in cells,
-  // and its upward velocity, of at most some 1000: shared among the four columns around, in whole numbers.
+  // and its upward velocity, of at most some 1000: shared among the four columns around, in whole numbers. In its row and the one
+  // before or after.
   void add_mass(const Vec3 &place, double mass, double softness, double rising);
   // The paper's literal rule: the cell that holds a particle is full.
   void add_particle(const Vec3 &place);
 
   // Forget all counts.
-  void clear();
+  void clear(const Threads &threads);
   // The counts of all ranks together, on each of them. The same on any number of them.
-  void sum_over(const RankSums &ranks);
+  void sum_over(const RankSums &ranks, const Threads &threads);
 
   std::size_t number(int x, int y, int z) const { return (static_cast<std::size_t>(z) * ny + y) * nx + x; }
 
   int nx, ny, nz;
   std::vector<int> count;    // x fastest
   CellBox touched;           // all counts outside are 0
-  double mass_of(int column) const { return sum_of(column, 0); }
-  double softness_of(int column) const { return sum_of(column, 1); }
-  double momentum_of(int column) const { return sum_of(column, 2); }    // upward
+  double mass_of(long column) const { return sum_of(column, 0); }
+  double softness_of(long column) const { return sum_of(column, 1); }
+  double momentum_of(long column) const { return sum_of(column, 2); }    // upward
 
  private:
   void add_all(const RankSums &ranks);
-  void add(const Vec3 &place, int weight);
+  void add(const Vec3 &place, int weight, CellBox &reached);
+  void add_points(const Vec3 corner[8], CellBox &reached);
+  void add_spread(const Vec3 corner[8], CellBox &reached);
+  bool fill_inside(const Vec3 corner[8], int layers, CellBox &reached);
   // A box that a weight is spread over; half edges of at most half a cell.
   struct Spread {
     static constexpr std::uint32_t SHARES = 1024;
@@ -80,11 +94,12 @@ class Occupancy {
                         SHARES / std::max(2.0 * reach[2], 1e-9)};
   };
   struct Samples;
-  template <bool INSIDE> void add(const Samples &samples, const Spread &spread);    // whether all of them lie within the grid
+  template <bool INSIDE>
+  void spread_samples(const Samples &samples, const Spread &spread);    // whether all of them lie within the grid
 
   static constexpr int FILLED = 1 << 24;    // a bit of a count, far above FULL_SPREAD; a sum of 100 ranks fits
   static constexpr double SUM_UNIT = 1.0 / (1 << 24);
-  double sum_of(int column, int which) const
+  double sum_of(long column, int which) const
   { return sums.empty() ? 0.0 : static_cast<double>(sums[3 * column + which]) * SUM_UNIT; }
   std::vector<std::int64_t> sums;    // mass, softness and momentum of each column, in units; empty before any is added
 };

@@ -3,18 +3,19 @@
 
 #include "liquid/solid_cells.h"
 
+#include <atomic>
 #include <cstddef>
 
 namespace mdanim {
 
 SolidCells::SolidCells(int nx, int ny, int nz) : still(nx, ny, nz), mobile(nx, ny, nz), code(still.count.size(), OPEN) {}
 
-long SolidCells::mark_still(const Add &add, const RankSums &ranks)
+long SolidCells::mark_still(const Add &add, const RankSums &ranks, const Threads &threads)
 {
   CellBox box = still.touched;
-  still.clear();
+  still.clear(threads);
   add(still);
-  still.sum_over(ranks);
+  still.sum_over(ranks, threads);
   box.take_in(still.touched);
   long changed = 0;
   box.each([&](int x, int y, int z) {
@@ -27,26 +28,31 @@ long SolidCells::mark_still(const Add &add, const RankSums &ranks)
   return changed;
 }
 
-void SolidCells::mark_moving(const Add &add, const RankSums &ranks)
+void SolidCells::mark_moving(const Add &add, const RankSums &ranks, const Threads &threads)
 {
   CellBox box = mobile.touched;
-  mobile.clear();
+  mobile.clear(threads);
   add(mobile);
-  mobile.sum_over(ranks);
+  mobile.sum_over(ranks, threads);
   box.take_in(mobile.touched);
-  moving_cells = 0;
-  box.each([&](int x, int y, int z) {
-    const std::size_t c = mobile.number(x, y, z);
-    if (code[c] == STILL) return;
-    code[c] = 2 * (still.count[c] + mobile.count[c]) >= Occupancy::FULL ? MOVING : OPEN;
-    moving_cells += code[c];
+  constexpr double CELL = 1.0;    // [ns], about
+  std::atomic<long> moving{0};
+  box.each_row(threads, CELL, [&](int y, int z) {
+    long of_row = 0;
+    for (std::size_t c = mobile.number(box.low[0], y, z), end = mobile.number(box.high[0], y, z); c < end; ++c) {
+      if (code[c] == STILL) continue;
+      code[c] = 2 * (still.count[c] + mobile.count[c]) >= Occupancy::FULL ? MOVING : OPEN;
+      of_row += code[c];
+    }
+    moving += of_row;
   });
+  moving_cells = moving;
 }
 
 void SolidCells::assign(const std::vector<std::uint8_t> &codes)
 {
   code = codes;
-  mobile.clear();
+  mobile.clear(Threads());
   moving_cells = 0;
   for (int z = 0; z < mobile.nz; ++z)
     for (int y = 0; y < mobile.ny; ++y)

@@ -23,9 +23,9 @@ class SolidCells {
   SolidCells(int nx, int ny, int nz);
 
   // Marks what never moves; returns how many cells that changes.
-  long mark_still(const Add &add, const RankSums &ranks);
+  long mark_still(const Add &add, const RankSums &ranks, const Threads &threads);
   // Marks all else.
-  void mark_moving(const Add &add, const RankSums &ranks);
+  void mark_moving(const Add &add, const RankSums &ranks, const Threads &threads);
   // Takes up codes of all cells, x fastest; what was counted is forgotten.
   void assign(const std::vector<std::uint8_t> &codes);
 

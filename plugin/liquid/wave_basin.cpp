@@ -5,6 +5,7 @@
 
 #include "engine/stopwatch.h"
 
+#include <atomic>
 #include <climits>
 #include <cmath>
 #include <cstdio>
@@ -94,9 +95,9 @@ long WaveBasin::mark_still(const AddBodies &bodies)
 {
   const Lap lap(occupancy_seconds);
   marked.take_in(still.touched);
-  still.clear();
+  still.clear(threads);
   bodies(still, ANYWHERE);
-  still.sum_over(ranks);
+  still.sum_over(ranks, threads);
   std::uint64_t sum = 1469598103934665603ULL;
   still.touched.each([&](int x, int y, int z) {
     const std::size_t cell = still.number(x, y, z);
@@ -111,9 +112,9 @@ void WaveBasin::mark_moving(const AddBodies &bodies)
 {
   const Lap lap(occupancy_seconds);
   marked.take_in(mobile.touched);
-  mobile.clear();
+  mobile.clear(threads);
   bodies(mobile, poured ? top_layer + SAMPLED : shape.nz);    // what is above the basin has no place in the liquid
-  mobile.sum_over(ranks);
+  mobile.sum_over(ranks, threads);
   count_parts();
 }
 
@@ -122,23 +123,30 @@ void WaveBasin::count_parts()
 {
   marked.take_in(still.touched);
   marked.take_in(mobile.touched);
-  marked.each([&](int x, int y, int z) {
-    const std::size_t cell = cell_number(x, y, z);
-    const std::int64_t count = static_cast<std::int64_t>(still.count[cell]) + mobile.count[cell];
-    part[cell] = static_cast<std::uint16_t>(std::min<std::int64_t>(
-        SolidParts::FULL, (count * SolidParts::FULL + Occupancy::FULL_SPREAD / 2) / Occupancy::FULL_SPREAD));
+  constexpr double CELL = 1.5, COLUMN = 5.0;    // [ns], about
+  std::atomic<long> with_something{0};
+  marked.each_row(threads, CELL, [&](int y, int z) {
+    long of_row = 0;
+    for (std::size_t cell = cell_number(marked.low[0], y, z), end = cell_number(marked.high[0], y, z); cell < end; ++cell) {
+      const std::int64_t count = static_cast<std::int64_t>(still.count[cell]) + mobile.count[cell];
+      part[cell] = static_cast<std::uint16_t>(std::min<std::int64_t>(
+          SolidParts::FULL, (count * SolidParts::FULL + Occupancy::FULL_SPREAD / 2) / Occupancy::FULL_SPREAD));
+      of_row += mobile.count[cell] > 0;
+    }
+    with_something += of_row;
   });
+  moving = with_something;
   marked = CellBox();
   marked.take_in(still.touched);
   marked.take_in(mobile.touched);
-  moving = 0;
-  mobile.touched.each([&](int x, int y, int z) { moving += mobile.count[cell_number(x, y, z)] > 0; });
-  for (int c = 0; c < columns(); ++c) {
-    // What is elastic yields more than its mass says.
-    const double own = mobile.mass_of(c), soft = SOFT * mobile.softness_of(c) / (pace.period * pace.period);
-    mass[c] = own > 0.0 ? std::max(MASS_STEP, std::floor(own / (YIELDING + own * soft) / MASS_STEP + 0.5) * MASS_STEP) : 0.0;
-    afloat[c] = own > 0.0 ? AddedMass::Solids{own, mobile.momentum_of(c) / own} : AddedMass::Solids{};
-  }
+  threads.parts(columns(), COLUMN, [&](long first, long end) {
+    for (long c = first; c < end; ++c) {
+      // What is elastic yields more than its mass says.
+      const double own = mobile.mass_of(c), soft = SOFT * mobile.softness_of(c) / (pace.period * pace.period);
+      mass[c] = own > 0.0 ? std::max(MASS_STEP, std::floor(own / (YIELDING + own * soft) / MASS_STEP + 0.5) * MASS_STEP) : 0.0;
+      afloat[c] = own > 0.0 ? AddedMass::Solids{own, mobile.momentum_of(c) / own} : AddedMass::Solids{};
+    }
+  });
 }
 
 // --- the start ---

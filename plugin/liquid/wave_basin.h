@@ -40,7 +40,11 @@ class WaveBasin : public Basin {
   void settle(std::uint64_t) override { stale = true; }
   bool is_due(double fastest, double dt) override;
   void update(const AddBodies &bodies, std::uint64_t when, double dt) override;
-  void use(const Threads &threads) override { waves.use(threads); }
+  void use(const Threads &now) override
+  {
+    threads = now;
+    waves.use(threads);
+  }
 
   bool acts_on_cells() const override { return true; }
   OnParts on_parts(const Vec3 &middle) const override;
@@ -80,6 +84,7 @@ class WaveBasin : public Basin {
   void look_at_column(int column);
 
   const RankSums &ranks;
+  Threads threads;
   const double unit_of_time;
   Waves waves;
   WavePush push;

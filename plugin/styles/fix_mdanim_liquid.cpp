@@ -352,7 +352,7 @@ double FixMdanimLiquid::top_of_near() const { return top_height(basin->top() + B
 void FixMdanimLiquid::update_liquid()
 {
   buoyancy->give_impulses(*basin, near);
-  in_basin([&] { basin->update(bodies(false), static_cast<std::uint64_t>(update->ntimestep), update->dt); });
+  in_basin([&] { basin->update(bodies_near(), static_cast<std::uint64_t>(update->ntimestep), update->dt); });
   if (top_height(basin->top()) > listed_top) {
     find_near(neighbor->skin);    // a particle that went one way since lists were made may go as far the other way
     lowest = -ANYWHERE;           // then, that is not known
@@ -392,7 +392,7 @@ void FixMdanimLiquid::find_near(double margin)
   const double below = lists_are_prompt ? listed_top + Basin::NEAR * basin->shape.cell.z + margin : ANYWHERE;
   // The box holds all particles as they stood at the last rebuild: where none was near, and all of it is above, none has come.
   lowest = domain->boxlo[2];
-  if (none_near && lists_are_prompt && lowest > below + 0.5 * neighbor->skin) return;
+  if (none_near && lists_are_prompt && lowest > below + 0.5 * neighbor->skin) return buoyancy->forget_cells();
   lowest = ANYWHERE;
   buoyancy->clear_friction(groupbit);
   for (int i = 0; i < atom->nlocal; ++i) {
@@ -403,7 +403,7 @@ void FixMdanimLiquid::find_near(double margin)
     near_marks[i] = 1;
   }
   if (buoyancy->pressed()) buoyancy->find_faces(near, name());
-  if (basin->acts_on_cells()) buoyancy->find_cells(near, lattice_cells, name());
+  if (by_cells()) buoyancy->find_cells(near, lattice_cells, name());
   int here = !near.empty(), any = here;
   if (comm->nprocs > 1) MPI_Allreduce(&here, &any, 1, MPI_INT, MPI_MAX, world);
   none_near = !any;

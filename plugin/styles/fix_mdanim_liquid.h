@@ -8,6 +8,7 @@
 #include "fix.h"
 #include "liquid/basin.h"
 #include "liquid/rank_sums.h"
+#include "liquid/row_slabs.h"
 #include "styles/buoyancy.h"
 #include "styles/particle_value.h"
 #include "styles/stateful.h"
@@ -70,8 +71,9 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   const mdanim::Basin &liquid() const { return *basin; }
 
  private:
-  void use(const mdanim::Threads &threads)
+  void use(const mdanim::Threads &now)
   {
+    threads = now;
     basin->use(threads);
     buoyancy->use(threads);
   }
@@ -94,9 +96,14 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   void add_maker(mdanim::WaveBasin &waves, int iarg, char **arg, double depth);
   void keyword(int iarg, char **arg, mdanim::Basin::Pace &pace);
   int group_bit(int iarg, const char *word);
-  mdanim::Basin::AddBodies bodies(bool still) const;
-  void add_particles(mdanim::Occupancy &into, bool still, double below) const;
-  void add_lattice_cells(mdanim::Occupancy &into, bool still, double below) const;
+  mdanim::Basin::AddBodies bodies(bool still);
+  mdanim::Basin::AddBodies bodies_near();
+  std::vector<int> particles_of(bool still) const;
+  void add_particles(mdanim::Occupancy &into, const std::vector<int> &these, double below) const;
+  void add_bodies(mdanim::Occupancy &into, const std::vector<int> &these, const mdanim::NearCells &cells, bool still,
+                  double below);
+  void add_mass(mdanim::Occupancy &into, const std::vector<int> &these, double below);
+  bool by_cells() const { return lattice_cells.given() && model != Model::PAPER; }
   void pour();
   bool due();
   double fastest_near();
@@ -120,6 +127,8 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   mdanim::ParticleColumn softness;    // volume over Young's modulus
 
   WorldSums sums;
+  mdanim::Threads threads;
+  mdanim::RowSlabs slabs;
   std::unique_ptr<mdanim::Basin> basin;
   std::unique_ptr<mdanim::Buoyancy> buoyancy;
 

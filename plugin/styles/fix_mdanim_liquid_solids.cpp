@@ -6,76 +6,101 @@
 #include "laws/vec3.h"
 
 #include "atom.h"
-#include "error.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 using namespace LAMMPS_NS;
 using namespace mdanim;
 
 // Bodies that never move (or all others), as far as they reach below a height.
-Basin::AddBodies FixMdanimLiquid::bodies(bool still) const
+Basin::AddBodies FixMdanimLiquid::bodies(bool still)
 {
-  const bool by_cells = lattice_cells.given() && model != Model::PAPER;
   return [=](Occupancy &into, double below) {
-    if (by_cells)
-      add_lattice_cells(into, still, below);
-    else
-      add_particles(into, still, below);
+    const std::vector<int> these = particles_of(still);
+    if (!by_cells()) return add_particles(into, these, below);
+    NearCells cells(lmp);
+    cells.find(these, lattice_cells, name());
+    add_bodies(into, these, cells, still, below);
   };
 }
 
-void FixMdanimLiquid::add_particles(Occupancy &into, bool still, double below) const
+// Those that may move, of which all parts that reach below such a height have been listed.
+Basin::AddBodies FixMdanimLiquid::bodies_near()
 {
-  for (int i = 0; i < atom->nlocal; ++i) {
-    const int mask = atom->mask[i];
-    if (!(mask & groupbit) || static_cast<bool>(mask & still_bit) != still) continue;
+  return [=](Occupancy &into, double below) {
+    if (by_cells())
+      add_bodies(into, near, buoyancy->lattice_cells(), false, below);
+    else
+      add_particles(into, near, below);
+  };
+}
+
+std::vector<int> FixMdanimLiquid::particles_of(bool still) const
+{
+  std::vector<int> found;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (atom->mask[i] & groupbit && static_cast<bool>(atom->mask[i] & still_bit) == still) found.push_back(i);
+  return found;
+}
+
+void FixMdanimLiquid::add_particles(Occupancy &into, const std::vector<int> &these, double below) const
+{
+  for (const int i : these) {
     const Vec3 place = basin->in_cells(atom->x[i]);
     if (place.z <= below) into.add_particle(place);
   }
 }
 
-void FixMdanimLiquid::add_lattice_cells(Occupancy &into, bool still, double below) const
+// By their lattice cells, of which this rank has the first corner. Those of which all corners are still never move.
+void FixMdanimLiquid::add_bodies(Occupancy &into, const std::vector<int> &these, const NearCells &cells, bool still, double below)
 {
-  const int *mask = atom->mask;
-  int *const *corners = lattice_cells.rows(lmp);
-  const bool knows_layers = lattice_cells.width(lmp) == 8;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (!(mask[i] & groupbit) || corners[i][0] == 0) continue;
-    int at[8] = {i};
-    int all = mask[i];
-    for (int k = 0; k < 7; ++k) {
-      at[k + 1] = atom->map(corners[i][k]);
-      if (at[k + 1] < 0)
-        error->one(FLERR,
-                   "{}: particle {}, a corner of the lattice cell of particle {}, is out of reach; raise comm_modify cutoff",
-                   name(), corners[i][k], atom->tag[i]);
-      all &= mask[at[k + 1]];
-    }
-    if (static_cast<bool>(all & still_bit) != still) continue;
-    Vec3 corner[8];
+  constexpr double CELL = 150.0;    // [ns], about
+  const double *const *x = atom->x;
+  const bool smooth = basin->is_smooth();
+  const auto is_still = [this](int i) { return (atom->mask[i] & still_bit) != 0; };
+  const auto row_of = [&](long n) {
+    const int *const corner = cells.cells[n].corner;
+    const double middle = 0.5 * (x[corner[0]][1] + x[corner[6]][1]);
+    return static_cast<int>(std::clamp((middle - basin->shape.low.y) / basin->shape.cell.y, -1.0, basin->shape.ny + 1.0));
+  };
+  std::vector<CellBox> reached(RowSlabs::slabs_of(basin->shape.ny));
+  const auto add = [&](long n, const RowSlabs::Rows &rows, int slab) {
+    const NearCells::Cell &cell = cells.cells[n];
+    if (cell.corner[0] >= atom->nlocal) return true;
+    if (std::all_of(cell.corner, cell.corner + 8, is_still) != still) return true;
+    std::array<Vec3, 8> corner;
     double bottom = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 8; ++k) {
-      corner[k] = basin->in_cells(atom->x[at[k]]);
+      corner[k] = basin->in_cells(x[cell.corner[k]]);
       bottom = std::min(bottom, corner[k].z);
     }
-    if (bottom > below) continue;
-    if (!basin->is_smooth())
-      into.add_cell(corner);
-    else if (!knows_layers || !into.fill_inside(corner, corners[i][7]))
-      into.spread_cell(corner);
-  }
-  if (!basin->is_smooth() || still) return;
+    return bottom > below || into.add(corner.data(), smooth, cell.layers, rows, reached[slab]);
+  };
+  slabs.each(threads, basin->shape.ny, static_cast<long>(cells.cells.size()), CELL, row_of, add);
+  for (const CellBox &of_slab : reached) into.touched.take_in(of_slab);
+  if (smooth && !still) add_mass(into, these, below);
+}
+
+void FixMdanimLiquid::add_mass(Occupancy &into, const std::vector<int> &these, double below)
+{
+  constexpr double PARTICLE = 20.0;    // [ns], about
   const double *const soft = softness.given() ? softness.values(lmp) : nullptr;
   const double pressure = buoyancy->density() * basin->g * basin->shape.cell.z;    // of a cell of liquid
   const double base = basin->shape.cell.x * basin->shape.cell.y * basin->shape.cell.z;
   const double liquid = buoyancy->density() * basin->cell_volume();
-  for (int i = 0; i < atom->nlocal; ++i)
-    if (mask[i] & groupbit && !(mask[i] & still_bit)) {
-      const Vec3 place = basin->in_cells(atom->x[i]);
-      if (place.z <= below)
-        into.add_mass(place, mass_of(atom->rmass, atom->mass, atom->type, i) / liquid, soft ? soft[i] * pressure / base : 0.0,
-                      atom->v[i][2] / basin->speed_of_waves());
-    }
+  const auto row_of = [&](long n) {
+    return static_cast<int>(std::clamp(basin->in_cells(atom->x[these[n]]).y, -1.0, basin->shape.ny + 1.0));
+  };
+  if (!these.empty()) into.begin_mass();
+  slabs.each(threads, basin->shape.ny, static_cast<long>(these.size()), PARTICLE, row_of,
+             [&](long n, const RowSlabs::Rows &, int) {
+               const int i = these[n];
+               const Vec3 place = basin->in_cells(atom->x[i]);
+               if (place.z <= below)
+                 into.add_mass(place, mass_of(atom->rmass, atom->mass, atom->type, i) / liquid,
+                               soft ? soft[i] * pressure / base : 0.0, atom->v[i][2] / basin->speed_of_waves());
+               return true;
+             });
 }

@@ -15,9 +15,10 @@ void NearCells::find(const std::vector<int> &near, const ParticleTable &table, c
   number.assign(atom->nlocal, -1);
   for (std::size_t n = 0; n < near.size(); ++n) number[near[n]] = static_cast<int>(n);
   int *const *corners = table.rows(lmp);
+  const bool knows_layers = table.width(lmp) == 8;
   for (int i = 0; i < atom->nlocal + atom->nghost; ++i) {
     if (corners[i][0] == 0) continue;
-    Cell cell{{atom->map(atom->tag[i])}};
+    Cell cell{{atom->map(atom->tag[i])}, knows_layers ? corners[i][7] : -1};
     bool any = false;
     int lost = -1;
     for (int k = 0; k < 8; ++k) {

@@ -24,8 +24,10 @@ class NearCells : protected LAMMPS_NS::Pointers {
 
   struct Cell {
     int corner[8];    // particles, in VTK order
+    int layers;       // of cells around it, where the table tells, else -1
   };
   std::vector<Cell> cells;
+  void clear() { cells.clear(), of_particle.clear(); }
   // Calls f(cell) for the cells of the n-th particle near the liquid.
   template <class F> void each_of(std::size_t n, F &&f) const
   {

@@ -18,6 +18,7 @@ FUNCTIONS = {
     "new": (HANDLE, [INT, INT, INT, SEED, INT, TEXT, INT]),
     "free": (None, [HANDLE]),
     "use": (TEXT, [HANDLE, INT]),
+    "threads": (None, [HANDLE, INT]),
     "sweep": (None, [HANDLE, SEED, INT]),
     "plain_sweep": (None, [HANDLE, SEED]),
     "at_rest": (INT, [HANDLE]),
@@ -58,6 +59,10 @@ class Automaton:
         """Choose kernels by number; their name, or None where this processor lacks them."""
         name = function("use")(self.handle, instruction_set)
         return name and name.decode()
+
+    def share(self, threads: int):
+        """Let so many threads share whatever they can."""
+        function("threads")(self.handle, threads)
 
     def sweep(self, count=1, plain=False):
         """Sweep; the clock that keys the draws goes on by one each."""

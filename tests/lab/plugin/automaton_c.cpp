@@ -25,7 +25,7 @@ struct AutomatonProbe {
   {
     for (int z = 0; z < a.cells.nz; ++z) {
       if (!a.layers[z].known) a.look(z);
-      if (a.mixes(z) || (z > 0 && a.exchanges(z - 1))) return false;
+      if (a.mixes(a.layers[z]) || (z > 0 && a.exchanges(a.layers[z - 1], a.layers[z]))) return false;
     }
     return true;
   }
@@ -95,6 +95,9 @@ MDANIM_EXPORT void mdanim_automaton_free(void *a) { delete &automaton(a); }
 // Name of the instruction set, or a null pointer where this processor lacks it.
 MDANIM_EXPORT const char *mdanim_automaton_use(void *a, int instruction_set)
 { return automaton(a).use_instruction_set(instruction_set); }
+
+// That share whatever they can.
+MDANIM_EXPORT void mdanim_automaton_threads(void *a, int threads) { automaton(a).use(mdanim::Threads(threads)); }
 
 MDANIM_EXPORT void mdanim_automaton_sweep(void *a, std::uint64_t when, int count)
 {

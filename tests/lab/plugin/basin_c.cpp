@@ -48,7 +48,7 @@ Basin::AddBodies bodies(const double *solids, int count)
       const double half = 0.5 * std::cbrt(s[3]);
       for (int k = 0; k < 8; ++k)    // VTK order
         corner[k] = {s[0] + ((k + 1) / 2 % 2 ? half : -half), s[1] + (k / 2 % 2 ? half : -half), s[2] + (k / 4 ? half : -half)};
-      if (corner[0].z <= below) into.add_cell(corner);
+      if (corner[0].z <= below) into.add(corner, false, -1, {0, into.ny}, into.touched);
     }
   };
 }

@@ -18,8 +18,7 @@ MDANIM_EXPORT void mdanim_occupancy_of_cells(int nx, int ny, int nz, int n, cons
   for (int cell = 0; cell < n; ++cell) {
     Vec3 corner[8];
     for (int k = 0; k < 8; ++k) corner[k] = mdanim::vec3(corners + 24 * cell + 3 * k);
-    if (layers && occupancy.fill_inside(corner, layers[cell])) continue;
-    spread ? occupancy.spread_cell(corner) : occupancy.add_cell(corner);
+    occupancy.add(corner, spread != 0, layers ? layers[cell] : -1, {0, ny}, occupancy.touched);
   }
   std::copy(occupancy.count.begin(), occupancy.count.end(), count);
 }

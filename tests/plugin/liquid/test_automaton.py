@@ -31,18 +31,20 @@ def grid(solid, content, **options):
 @pytest.mark.parametrize("vertical", ["lower", "any"])
 @pytest.mark.parametrize("shape", SIZES, ids=str)
 def test_sweeps_equal_the_plain_form_and_the_naive_twin(shape, vertical):
-    """Give the same cells after each sweep by every instruction set's kernels, plain loops and the twin."""
+    """Give the same cells after each sweep by every instruction set's kernels, three threads, plain loops and the twin."""
     for n, (share, most) in enumerate([(0.0, 1), (0.1, 1), (0.3, 4), (0.6, 250)]):
         solid, q = random_grid(shape, share, most, n)
         fast = [grid(solid, q, seed=n, vertical=vertical) for _ in range(INSTRUCTION_SETS)]
         names = [a.use(number) for number, a in enumerate(fast)]
         assert names[0] == "common"
+        fast.append(grid(solid, q, seed=n, vertical=vertical))
+        fast[-1].share(3)
         plain = grid(solid, q, seed=n, vertical=vertical)
         for when in range(4):
             plain.sweep(plain=True)
             twin.sweep(q, solid, n, when, vertical)
             assert (plain.content == q).all()
-            for a, name in zip(fast, names):
+            for a, name in zip(fast, [*names, "threads"]):
                 a.sweep()
                 assert (a.content == q).all(), (name, when)
 
@@ -211,6 +213,7 @@ def test_moving_solids_lose_no_liquid(trial):
         assert (a.solid == new).all() and a.count_solid == (new != 0).sum()
         fresh = grid(new, a.content, seed=trial)
         fresh.now = a.now
+        fresh.share(3)
         for b in (a, fresh):
             b.sweep(2)
         # Solids that came and went leave the same as solids that were there from the start.
