@@ -3,6 +3,7 @@
 #include "liquid/span.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace mdanim {
 
@@ -10,8 +11,10 @@ namespace {
 
 double share(int part) { return part / static_cast<double>(SolidParts::FULL); }
 
-// Whether a span that ends below a shut cell has what is open of it. Of one between two spans the upper one has it.
-bool has_shut_roof(const SolidParts &solid, int column, int high) { return high < solid.nz && solid.shut(column, high + 1); }
+// Whether a span has what is open of the cell below it, or above it. Of one shut cell between two spans the upper one has it.
+bool has_below(const SolidParts &solid, int column, int low) { return low > 0 && solid.shut(column, low - 1); }
+bool has_above(const SolidParts &solid, int column, int high)
+{ return high < solid.nz && solid.shut(column, high) && solid.shut(column, high + 1); }
 
 // The open part of a cell of a span, and between which heights the cell takes liquid in.
 struct Slice {
@@ -23,11 +26,11 @@ Slice slice(const SolidParts &solid, const Span &span, int z)
   Slice s{static_cast<double>(z), z + 1.0, share(SolidParts::FULL - solid.at(span.column, z))};
   if (z == span.low) {
     s.low = span.floor;
-    if (z > 0) s.open += share(SolidParts::FULL - solid.at(span.column, z - 1));
+    if (has_below(solid, span.column, z)) s.open += share(SolidParts::FULL - solid.at(span.column, z - 1));
   }
   if (z == span.high - 1) {
     s.high = span.roof;
-    if (has_shut_roof(solid, span.column, span.high)) s.open += share(SolidParts::FULL - solid.at(span.column, span.high));
+    if (has_above(solid, span.column, span.high)) s.open += share(SolidParts::FULL - solid.at(span.column, span.high));
   }
   return s;
 }
@@ -43,17 +46,74 @@ Span cut(const SolidParts &solid, int column, int low, int high)
   // The solid part of an end cell lies at that end.
   span.floor += share(part(low));
   if (high - 1 > low) span.roof -= share(part(high - 1));
-  if (low > 0) {
+  if (has_below(solid, column, low)) {
     const int open = SolidParts::FULL - part(low - 1);
     span.capacity += open * SolidParts::UNITS;
     span.floor -= share(open);
   }
-  if (has_shut_roof(solid, column, high)) {
+  if (has_above(solid, column, high)) {
     const int open = SolidParts::FULL - part(high);
     span.capacity += open * SolidParts::UNITS;
     span.roof += share(open);
   }
   return span;
+}
+
+// Whether the flank of a body passes through cells [low, high) of a column: it is shut on one side and open on the other. Cells
+// of a plate that is tilted by much are shut below on one side, above on the other.
+bool is_flank(const SolidParts &solid, int column, int low, int high)
+{
+  const int x = column % solid.nx, y = column / solid.nx, enough = high - low > 2 ? 2 : 1;
+  const auto is_between = [&](int before, int after) {
+    int balance = 0;
+    for (int z = low; z < high; ++z) {
+      const int a = solid.at(before, z), b = solid.at(after, z);
+      if (std::max(a, b) >= SolidParts::SHUT && std::min(a, b) < SolidParts::SLIVER) balance += a > b ? 1 : -1;
+    }
+    return std::abs(balance) >= enough;
+  };
+  return (x > 0 && x + 1 < solid.nx && is_between(column - 1, column + 1)) ||
+         (y > 0 && y + 1 < solid.ny && is_between(column - solid.nx, column + solid.nx));
+}
+
+// Whether partly solid cells [low, high) between open ones, with slivers in these, are a plate that lies across the column: of
+// one lattice cell, which may be a tenth smaller than a cell.
+bool is_plate(const SolidParts &solid, int column, int low, int high)
+{
+  constexpr int MOST = 5;    // cells through which one passes that is tilted by 45 degrees
+  constexpr int THINNEST = 7 * SolidParts::FULL / 8;
+  if (high - low > MOST) return false;
+  int sum = 0;
+  for (int z = low - 1; z <= high; ++z) sum += solid.at(column, z);
+  return sum >= THINNEST && !is_flank(solid, column, low, high);
+}
+
+// The face in such a plate below which there is nearest to half of it.
+int middle_of(const SolidParts &solid, int column, int low, int high)
+{
+  int all = 0, below = 0, face = low + 1;
+  for (int z = low; z < high; ++z) all += solid.at(column, z);
+  for (int z = low, best = all; z + 1 < high; ++z) {
+    below += solid.at(column, z);
+    if (const int off = std::abs(all - 2 * below); off < best) best = off, face = z + 1;
+  }
+  return face;
+}
+
+void cut_at_plates(const SolidParts &solid, int column, int low, int high, std::vector<Span> &spans)
+{
+  const auto part = [&](int z) { return solid.at(column, z); };
+  int from = low;
+  for (int z = low, end = low; z < high; z = end) {
+    end = z + 1;
+    if (part(z) < SolidParts::SLIVER) continue;
+    while (end < high && part(end) >= SolidParts::SLIVER) ++end;
+    if (z == low || end == high || !is_plate(solid, column, z, end)) continue;
+    const int face = middle_of(solid, column, z, end);
+    spans.push_back(cut(solid, column, from, face));
+    from = face;
+  }
+  spans.push_back(cut(solid, column, from, high));
 }
 
 }    // namespace
@@ -64,7 +124,7 @@ void cut_column(const SolidParts &solid, int column, std::vector<Span> &spans)
     const int low = z;
     while (!solid.shut(column, z)) ++z;
     if (z > low)
-      spans.push_back(cut(solid, column, low, z));
+      cut_at_plates(solid, column, low, z, spans);
     else
       ++z;
   }
@@ -94,6 +154,18 @@ double volume_below(const SolidParts &solid, const Span &span, double height)
     volume += s.open * std::clamp((height - s.low) / (s.high - s.low), 0.0, 1.0);
   }
   return volume;
+}
+
+// Where they are at the same height it leaves less than half open. Spread samples of a tilted plate leave more than nothing.
+bool are_parted(const SolidParts &solid, const Span &a, const Span &b)
+{
+  const auto is_below = [&](const Span &lower, const Span &upper) {
+    if (lower.high == solid.nz || upper.low == 0) return false;
+    for (int z = upper.low; z < lower.high; ++z)
+      if (solid.at(lower.column, z) + solid.at(upper.column, z) < SolidParts::FULL / 2) return false;
+    return true;
+  };
+  return is_below(a, b) || is_below(b, a);
 }
 
 double open_below(const SolidParts &solid, const Span &a, const Span &b, double height)

@@ -23,21 +23,22 @@ struct SolidParts {
 
   int columns() const { return nx * ny; }
   int at(int column, int z) const { return part[static_cast<std::size_t>(z) * columns() + column]; }
+  static constexpr int SLIVER = FULL - SHUT;    // less of a cell counts as nothing
   bool shut(int column, int z) const { return z < 0 || z >= nz || at(column, z) >= SHUT; }
-  // Of the face between two neighbouring columns: a sliver of a cell leaks nothing, so a wall of one cell is tight wherever it
-  // stands.
+  // Of the face between two neighbouring columns: a sliver of a cell leaks nothing, so an upright wall of one cell is tight
+  // wherever it stands.
   int open_between(int a, int b, int z) const
   {
     const int open = FULL - at(a, z) - at(b, z);
-    return open >= FULL - SHUT ? open : 0;
+    return open >= SLIVER ? open : 0;
   }
 
   int nx, ny, nz;
   std::vector<std::uint16_t> part;
 };
 
-// Cells [low, high) of a column between shut ones. What is open of the shut cells at its ends belongs to it, so its capacity
-// changes smoothly as a body moves.
+// Cells [low, high) of a column between shut ones, or up to where a plate lies across it. What is open of the shut cells at its
+// ends belongs to it, so its capacity changes smoothly as a body moves.
 struct Span {
   int column, low, high;
   bool plain;    // solid at its ends alone, so that its content stands as high as it is
@@ -47,7 +48,7 @@ struct Span {
   bool overlaps(const Span &other) const { return low < other.high && other.low < high; }
 };
 
-// Appends the spans of a column, from the lowest up.
+// Appends the spans of a column, from the lowest up. They depend on the columns beside it as well.
 void cut_column(const SolidParts &solid, int column, std::vector<Span> &spans);
 
 struct Head {
@@ -56,6 +57,10 @@ struct Head {
 Head head_of(const SolidParts &solid, const Span &span, Units content);
 // In cells. The content of a span that is level at a height is its whole units.
 double volume_below(const SolidParts &solid, const Span &span, double height);
+
+// Whether what is below one of two spans of neighbouring columns goes on as what is above the other one: as a plate that passes
+// between them, however it is tilted.
+bool are_parted(const SolidParts &solid, const Span &a, const Span &b);
 
 // How much of the faces between two spans of neighbouring columns is open below a height, layer by layer. Below the floor of one
 // of them nothing is.

@@ -2,6 +2,7 @@
 
 #include "liquid/wave_makers.h"
 
+#include "laws/portable.h"
 #include "liquid/waves.h"
 
 #include <algorithm>
@@ -20,9 +21,9 @@ constexpr double TWO_PI = 6.283185307179586;
 // k of w^2 = k tanh(k depth).
 double wave_number(double w, double depth)
 {
-  double k = w * w / std::sqrt(std::tanh(w * w * depth));
+  double k = w * w / std::sqrt(tangent_hyperbolic(w * w * depth));
   for (int n = 0; n < 30; ++n) {
-    const double t = std::tanh(k * depth), f = k * t - w * w;
+    const double t = tangent_hyperbolic(k * depth), f = k * t - w * w;
     k -= f / (t + k * depth * (1.0 - t * t));
   }
   return k;
@@ -63,7 +64,7 @@ void WaveMakers::add_paddle(Side side, double amplitude, double period, double d
 {
   // What comes in at a wall runs away with the velocity of a group.
   const double w = TWO_PI / period, k = wave_number(w, depth), twice = 2.0 * k * depth;
-  const double flux = amplitude * w / k * 0.5 * (1.0 + twice / std::sinh(std::min(twice, 700.0)));
+  const double flux = amplitude * w / k * 0.5 * (1.0 + over_sine_hyperbolic(twice));
   const Mouth mouth = along(side);
   makers.push_back({PADDLE, mouth, {}, flux * columns_of(mouth), period, {0.0, 0.0}});
   due.push_back(0.0);
@@ -88,8 +89,10 @@ void WaveMakers::apply(Waves &waves, double dt)
     if (m.kind == DRAIN) volume = -volume;
     if (m.kind == PADDLE) {
       // In front of a paddle that starts in its first period.
-      const double w = TWO_PI / m.period;
-      const auto pushed = [&](double time) { return m.rate / w * std::min(1.0, time / m.period) * std::sin(w * time); };
+      const auto pushed = [&](double time) {
+        const double periods = time / m.period;
+        return m.rate * m.period / TWO_PI * std::min(1.0, periods) * sine_of_turns(periods);
+      };
       volume = pushed(account.time) - pushed(start);
     }
     if (m.kind == CURRENT) {

@@ -20,7 +20,7 @@ struct Gap {
 Gap gap_between(const SolidParts &solid, const Span &a, const Span &b)
 {
   Gap gap{false, !a.plain || !b.plain, std::max(a.floor, b.floor), std::min(a.roof, b.roof)};
-  if (!a.overlaps(b)) return gap;
+  if (!a.overlaps(b) || are_parted(solid, a, b)) return gap;
   if (!gap.layered) {
     gap.open = gap.top - gap.edge >= LEAST_OPENING;
     return gap;

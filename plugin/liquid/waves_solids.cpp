@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // New solids: spans of columns that have changed are cut anew, and liquid goes over to them.
 
+#include "liquid/columns.h"
 #include "liquid/waves.h"
 
 #include <algorithm>
@@ -57,9 +58,15 @@ std::vector<int> Waves::differing(const std::uint16_t *part) const
     if (std::memcmp(own, other, nx * ny * sizeof *own) == 0) continue;
     for (int column = 0; column < nx * ny; ++column) differs[column] |= own[column] != other[column];
   }
+  std::vector<std::uint8_t> near(differs);    // spans depend on the columns beside them
+  for (int column = 0; column < nx * ny; ++column) {
+    if (!differs[column]) continue;
+    for (int side = 0; side < 4; ++side)
+      if (const int other = neighbour(column, side, nx, ny); other >= 0) near[other] = 1;
+  }
   std::vector<int> changed;
   for (int column = 0; column < nx * ny; ++column)
-    if (differs[column]) changed.push_back(column);
+    if (near[column]) changed.push_back(column);
   return changed;
 }
 

@@ -33,7 +33,7 @@ FUNCTIONS = {
     "threads": (None, [HANDLE, INT]),
     "use_general_form": (None, [HANDLE]),
     "solids": (INT, [HANDLE, array(np.uint16), HANDLE, TEXT, INT]),
-    "pour": (None, [HANDLE, DOUBLES]),
+    "pour": (None, [HANDLE, DOUBLES, HANDLE]),
     "set_velocities": (None, [HANDLE, DOUBLES]),
     "update": (DOUBLE, [HANDLE, DOUBLE, INT]),
     "at_rest": (INT, [HANDLE]),
@@ -137,9 +137,12 @@ class Waves:
         if function("solids")(self.handle, part, None if mass is None else mass.ctypes.data, error, len(error)):
             raise RuntimeError(error.value.decode())
 
-    def pour(self, height):
-        """Fill all spans of each column up to a height."""
-        function("pour")(self.handle, np.ascontiguousarray(np.broadcast_to(height, self.shape[1:]), np.float64))
+    def pour(self, height, above=None):
+        """Fill all spans of each column up to a height, where it is above another one."""
+        height, above = (
+            None if h is None else np.ascontiguousarray(np.broadcast_to(h, self.shape[1:]), np.float64) for h in (height, above)
+        )
+        function("pour")(self.handle, height, None if above is None else above.ctypes.data)
 
     def update(self, count=1, dt=0.1) -> float:
         """Update; the processor's time in seconds."""

@@ -73,7 +73,8 @@ MDANIM_EXPORT int mdanim_waves_solids(void *w, const std::uint16_t *part, const 
   return failed;
 }
 
-MDANIM_EXPORT void mdanim_waves_pour(void *w, const double *height) { waves(w).pour(height); }
+// `from` null: from the floor.
+MDANIM_EXPORT void mdanim_waves_pour(void *w, const double *height, const double *from) { waves(w).pour(height, from); }
 
 MDANIM_EXPORT void mdanim_waves_set_velocities(void *w, const double *u) { waves(w).set_velocities(u); }
 

@@ -5,6 +5,7 @@ Spans and links are objects, each step is a loop over them, the linear system is
 (nz, ny, nx), in 1/4096.
 """
 
+import re
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -75,27 +76,55 @@ class Link:
         return sum(open * min(1.0, max(0.0, (level - low) / (high - low))) for low, high, open in self.layers)
 
 
+def is_plate(part, x, y, low, high):
+    """Whether partly solid cells between open ones are a plate across the column: no flank of a body, and a cell thick."""
+    nz, ny, nx = part.shape
+    for a, b in (((x - 1, y), (x + 1, y)), ((x, y - 1), (x, y + 1))):
+        if all(0 <= i < nx and 0 <= j < ny for i, j in (a, b)):
+            before, after = (part[low:high, j, i].astype(int) for i, j in (a, b))
+            parted = (np.maximum(before, after) >= SHUT) & (np.minimum(before, after) < WHOLE - SHUT)
+            if abs(np.sign(before - after)[parted].sum()) >= (2 if high - low > 2 else 1):
+                return False
+    return high - low <= 5 and 8 * part[low - 1 : high + 1, y, x].sum() >= 7 * WHOLE
+
+
+def stretches(part, x, y):
+    """Cells between shut ones, cut at plates."""
+    column, nz = part[:, y, x], part.shape[0]
+    low = None
+    for z in range(nz + 1):
+        if z < nz and column[z] < SHUT:
+            low = z if low is None else low
+            continue
+        if low is None:
+            continue
+        runs = "".join("#" if p >= WHOLE - SHUT else "." for p in column[low:z])
+        for run in re.finditer(r"(?<=\.)#+(?=\.)", runs):
+            first, end = low + run.start(), low + run.end()
+            if is_plate(part, x, y, first, end):
+                whole = int(column[first:end].sum())
+                face = min(range(first + 1, max(first + 2, end)), key=lambda f: abs(whole - 2 * int(column[first:f].sum())))
+                yield low, face
+                low = face
+        yield low, z
+        low = None
+
+
 def cut(part, x, y):
     """The open spans of a column, from below."""
     column = [int(p) for p in part[:, y, x]]
     nz = len(column)
-    spans, z = [], 0
-    while z < nz:
-        low = z
-        while z < nz and column[z] < SHUT:
-            z += 1
-        if z == low:
-            z += 1
-            continue
+    spans = []
+    for low, z in stretches(part, x, y):
         slices = [[float(k), k + 1.0, (WHOLE - column[k]) / WHOLE] for k in range(low, z)]
         slices[0][0] += column[low] / WHOLE
         if z - 1 > low:
             slices[-1][1] -= column[z - 1] / WHOLE
-        if low > 0:  # what is open of the shut cells at its ends belongs to it
+        if low > 0 and column[low - 1] >= SHUT:  # what is open of the shut cells at its ends belongs to it
             rest = (WHOLE - column[low - 1]) / WHOLE
             slices[0][0] -= rest
             slices[0][2] += rest
-        if z < nz and (z + 1 == nz or column[z + 1] >= SHUT):
+        if z < nz and column[z] >= SHUT and (z + 1 == nz or column[z + 1] >= SHUT):
             rest = (WHOLE - column[z]) / WHOLE
             slices[-1][1] += rest
             slices[-1][2] += rest
@@ -103,10 +132,17 @@ def cut(part, x, y):
     return spans
 
 
+def parts(part, lower, upper):
+    """Whether what is above one span goes on as what is below another one, of a neighbouring column."""
+    both = slice(upper.low, lower.high)
+    solid = part[both, lower.y, lower.x].astype(int) + part[both, upper.y, upper.x]
+    return lower.high < part.shape[0] and upper.low > 0 and (2 * solid >= WHOLE).all()
+
+
 def join(part, a, b):
     """The link between two spans of neighbouring columns, or None."""
     layers = range(max(a.low, b.low), min(a.high, b.high))
-    if not layers:
+    if not layers or parts(part, a, b) or parts(part, b, a):
         return None
     top = min(a.roof, b.roof)
     if a.at_ends_only and b.at_ends_only:

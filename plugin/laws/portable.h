@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Functions of sums, products and quotients alone: their bits are those of IEEE 754 on every processor. A C library has other
+// forms for processors with fused multiply-add, whose last bits differ.
+
+#ifndef MDANIM_PORTABLE_H
+#define MDANIM_PORTABLE_H
+
+#include <cmath>
+
+namespace mdanim {
+
+// sin(2 pi turns), to 4e-16.
+inline double sine_of_turns(double turns)
+{
+  constexpr double TWO_PI = 6.283185307179586;
+  double r = turns - std::floor(turns + 0.5);    // within 1/2
+  if (r > 0.25) r = 0.5 - r;
+  if (r < -0.25) r = -0.5 - r;
+  const double x = TWO_PI * r, square = x * x;
+  double sum = 1.0;
+  for (int n = 22; n >= 2; n -= 2) sum = 1.0 - square / (n * (n + 1)) * sum;
+  return x * sum;
+}
+
+// exp(-x) of x >= 0, to 1e-12 of its value: by halves, whose exponential is squared as often.
+inline double decay(double x)
+{
+  constexpr double NOTHING = 740.0, SMALL = 0.25;
+  if (!(x < NOTHING)) return 0.0;
+  int halvings = 0;
+  for (; x > SMALL; x *= 0.5) ++halvings;
+  double value = 1.0;
+  for (int n = 14; n >= 1; --n) value = 1.0 - x / n * value;
+  while (halvings-- > 0) value *= value;
+  return value;
+}
+
+inline double tangent_hyperbolic(double x)
+{
+  const double e = decay(2.0 * std::fabs(x)), value = (1.0 - e) / (1.0 + e);
+  return x < 0.0 ? -value : value;
+}
+
+// x/sinh(x) of x >= 0.
+inline double over_sine_hyperbolic(double x)
+{
+  constexpr double SMALL = 1e-4;
+  if (x < SMALL) return 1.0 - x * x / 6.0;
+  const double e = decay(x);
+  return 2.0 * x * e / (1.0 - e * e);
+}
+
+}    // namespace mdanim
+
+#endif
