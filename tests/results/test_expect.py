@@ -83,7 +83,13 @@ def test_level_and_volume():
 
 @pytest.mark.parametrize(
     ("cells", "time", "residual"),
-    [((10, 10, 10), None, 0), ((10, 8, 10), None, 2), ((10, 11, 13), None, 3), ((10, 11, 13), 1.0, 1)],
+    [
+        ((10, 10, 10), None, 0),
+        ((10, 8, 10), None, 2),
+        ((10, 11, 13), None, 3),
+        ((10, 11, 13), 1.0, 1),
+        ((2**30, 2**30 - 2**-20, 2**30), None, 2**-20),
+    ],
 )
 def test_residual_is_the_worst_so_far(cells, time, residual):
     """Cells gained or lost count even if they come back later; up to a time only what was before."""

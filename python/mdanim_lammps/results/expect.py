@@ -57,7 +57,7 @@ class Measured:
     recorded: Mapping[tuple[str, str], np.ndarray] = field(default_factory=dict)
     """What `recorded` names, at each frame, each of shape (F,)."""
     cells: np.ndarray | None = None
-    """Whole cells of liquid at each frame, shape (F,); None without liquid."""
+    """Cells of liquid at each frame, to the unit, shape (F,); None without liquid."""
     due: np.ndarray | None = None
     """Those at the start, and what has come since; None where none does."""
     cell_volume: float = 0.0

@@ -418,7 +418,7 @@ QUANTITIES = {
     ("NAME", "immersed"): ("1", "share of an object's volume below the surface; needs a liquid"),
     ("NAME", "strain.max"): ("1", "largest relative change of length of a spring"),
     ("liquid", "volume"): ("m^3", "volume of the liquid"),
-    ("liquid", "residual"): ("1", "whole cells gained or lost"),
+    ("liquid", "residual"): ("1", "cells gained or lost, to the unit"),
     ("liquid", "level"): ("m", "mean height of the surface"),
     ("energy", "residual"): ("1", "relative error of the energy ledger"),
     ("penetration", "max"): ("m", "deepest overlap of two objects"),
