@@ -81,6 +81,12 @@ def test_level_and_volume():
     assert found("liquid", "volume", 1.0, cells=np.array([10.0, 10, 12]), cell_volume=0.25) == pytest.approx(2.5)
 
 
+def test_crest_is_the_highest_so_far():
+    """The highest at any frame up to a time, not the farthest from 0: basins may be below it."""
+    crest = np.array([-3.0, -1.0, -2.0])
+    assert [found("liquid", "crest", time, crest=crest) for time in (0.0, 1.0, 2.0, None)] == [-3.0, -1.0, -1.0, -1.0]
+
+
 @pytest.mark.parametrize(
     ("cells", "time", "residual"),
     [

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from mdanim_lammps import Scene
+from mdanim_lammps import Scene, Trajectory
 from mdanim_lammps.engine.state import StateRecords
 from mdanim_lammps.errors import DivergedError
 from mdanim_lammps.results.checkpoint import Checkpoint
@@ -36,6 +36,8 @@ object raft {
 }
 control { time 0.4 s  frames 50 fps  resolution 2.5 cm }
 expect liquid.residual = 0
+expect liquid.crest at 0 s = 20 cm +- 1 mm
+expect liquid.crest = 30 cm +- 3 cm
 """
 IN_THE_SPLASH = 8
 """A frame: drops fly."""
@@ -69,7 +71,16 @@ def test_units_are_told_exactly(whole):
     cells, due = ledger.array("liquid_cells"), ledger.array("liquid_due")
     assert np.array_equal(cells, due) and (np.diff(due) > 0.0).all()
     assert np.array_equal(cells / UNIT, np.rint(cells / UNIT)) and (cells % 1.0 > 0.0).sum() > 10
-    assert [o.found for o in whole.outcomes] == [0.0]
+    assert whole.outcomes[0].found == 0.0
+
+
+def test_crest_is_what_the_splash_throws_up(whole):
+    """Level before the raft lands, then higher; the ledger has it at each frame, and the trajectory no higher liquid."""
+    crest = Ledger.read(whole.folder / "ledger.csv").array("liquid_crest")
+    with Trajectory(whole.folder) as t:
+        seen = np.array([np.nanmax(t.liquid_raw(n)) for n in range(len(t))])
+    np.testing.assert_allclose(crest, seen, atol=1e-6)
+    assert not whole.missed and whole.outcomes[2].found == crest.max() > 0.27
 
 
 @pytest.mark.parametrize("units", [-1, 1])

@@ -21,6 +21,8 @@ DUE = "liquid_due"
 """Extra of a liquid that comes and goes: cells at the start, and what has come since less what has gone."""
 LIQUID_MOMENTUM = ("liquid_momentum.x", "liquid_momentum.y")
 """Extras of a liquid with momentum [N s]: solids lose what it gains, but for what walls of the basin take."""
+CREST = "liquid_crest"
+"""Extra where an ``expect`` asks for it: height of the highest liquid [m]."""
 CELLS = ("liquid_cells", DUE)
 """Extras that count cells of liquid, to the unit; whole numbers are written as such."""
 
