@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 from mdanim_lammps import Scene, Trajectory
 from mdanim_lammps.engine.state import StateRecords
 from mdanim_lammps.errors import DivergedError
+from mdanim_lammps.parallel.runtime.launch import simulate_on
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.ledger import Ledger
@@ -83,8 +86,8 @@ def test_crest_is_what_the_splash_throws_up(whole):
     assert not whole.missed and whole.outcomes[2].found == crest.max() > 0.27
 
 
-@pytest.mark.parametrize("units", [-1, 1])
-def test_one_unit_stops_a_run(tmp_path, units):
+@pytest.mark.parametrize(("units", "executors"), [(-1, 1), (1, 1), pytest.param(-1, 2, id="executors", marks=pytest.mark.mpi)])
+def test_one_unit_stops_a_run(tmp_path, units, executors):
     """A checkpoint whose liquid has one unit of 2^-20 cell more or less than it began with: the next frame is refused."""
     scene, folder, checkpoint = stopped(tmp_path, IN_THE_SPLASH)
     records = checkpoint.records["liquid"]
@@ -92,8 +95,9 @@ def test_one_unit_stops_a_run(tmp_path, units):
     start = data[AT : AT + 8].view(np.int64)
     start -= units
     checkpoint.records["liquid"] = StateRecords(records.keys, records.first, data)
+    run = partial(simulate_on, executors, "central") if executors > 1 else simulate
     with pytest.raises(DivergedError, match=r"cells of liquid, .* at the start and come since: this must never be") as error:
-        simulate(scene.prepared, folder, resume=checkpoint)
+        run(scene.prepared, folder, resume=checkpoint)
     words = str(error.value).split("s: ")[1].split(" ")
     assert float(words[0]) - float(words[4]) == units * UNIT
 
