@@ -19,7 +19,7 @@ from .results.trajectory_metadata import most_drops
 from .run.loop import Progress
 from .run.prepare import Prepared
 from .run.result import Result
-from .scene.formatting import number, say, whole
+from .scene.formatting import exact, number, say, whole
 from .scene.scene import Accuracy, SceneRecord
 
 
@@ -123,7 +123,7 @@ def progress_line(p: Progress) -> str:
         return f"t={p.time:.2f} s  paused; goes on when {p.paused} is deleted"
     each = p.seconds / max(1, p.step - p.first_step)
     left = each * (p.steps - p.step)
-    liquid = "" if p.gained is None else f"liquid residual {p.gained}  "
+    liquid = "" if p.gained is None else f"liquid residual {exact(p.gained)}  "
     return (
         f"t={p.time:.2f} s  step {p.step}/{p.steps}  energy residual {number(p.residual, 2)}  {liquid}"
         f"{1e3 * each:.2f} ms/step  {left:.0f} s left"

@@ -15,7 +15,7 @@ from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.results.expect import immersed_share
 from mdanim_lammps.results.ledger import LIQUID_MOMENTUM
 from mdanim_lammps.run.prepare import prepare
-from mdanim_lammps.scene.parse import load_scene
+from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.scene.scene import LiquidModel
 from paths import SCENES
 from twin import in_waves
@@ -224,3 +224,55 @@ def test_a_flow_carries_what_floats_along():
         aside = ready.system.center_of_mass(instance.array("x"))[0, 1] + 0.2
     assert max(way) > 3.0
     assert abs(aside) < 1.0
+
+
+def behind(wall: str, fill: str, side) -> float:
+    """Cells of liquid [-] on one side of a wall that is held, after a second; ``side`` takes middles of cells [cells]."""
+    ready = prepare(
+        parse_scene(
+            f"gravity (0, 0, -9.81)\n"
+            f"liquid water {{ basin from (0, 0, 0) cm to (50, 40, 60) cm density 1000 {fill} }}\n"
+            f"object wall {{ {wall} density 2000 elasticity 10 MPa hold all }}\n"
+            "control { time 2 s resolution 2.5 cm }\n"
+        )
+    )
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(int(1.0 / ready.certificate.timestep))
+        wet = instance.liquid_cells() == 1
+    z, y, x = np.indices(wet.shape) + 0.5
+    assert wet.sum() > 500
+    return np.count_nonzero(wet & side(x, y, z))
+
+
+@pytest.mark.parametrize("x", [25.0, 25.6, 26.25, 26.9])
+@pytest.mark.parametrize("turn", [0.0, 30.0])
+def test_upright_walls_of_one_cell_hold(x, turn):
+    """On the grid and off it, turned about the vertical or not: nothing gets to the other side."""
+    c, s = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+    wall = f"shape box (2.5, 120, 130) cm position ({x}, 20, 30) cm orientation euler (0, 0, {turn}) deg"
+    fill = f"level 30 cm fill from (0, 0, 0) cm to ({x - 1.3 / c - 20 * s / c}, 40, 60) cm"
+    assert behind(wall, fill, lambda i, j, k: (2.5 * i - x) * c + (2.5 * j - 20.0) * s > 4.0) == 0
+
+
+SHELF = "shape box (90, 90, {t}) cm position (25, 20, {z}) cm orientation euler ({tilt}, 0, 0) deg"
+
+
+def below_shelf(t: float, z: float, tilt: float) -> float:
+    """Cells of liquid below a shelf of thickness t [cm] at height z [cm]."""
+    top = z + t / 2 + 7.5 * (tilt > 0.0)
+    fill = f"level {top + 10.0} cm fill from (0, 0, {top + 0.1}) cm to (50, 40, 60) cm"
+    return behind(SHELF.format(t=t, z=z, tilt=tilt), fill, lambda i, j, k: 2.5 * k < z - 10.0)
+
+
+@pytest.mark.parametrize("z", [20.0, 20.6, 21.25, 21.9])
+@pytest.mark.parametrize("tilt", [0.0, 5.0, 20.0])
+def test_shelves_of_two_cells_hold(z, tilt):
+    """Flat and tilted, at any height: nothing drips through."""
+    assert below_shelf(5.0, z, tilt) == 0
+
+
+@pytest.mark.parametrize(("t", "z", "tilt"), [(2.5, 20.0, 0.0), (2.5, 21.25, 5.0), (3.75, 20.0, 0.0)])
+def test_shelves_of_less_leak(t, z, tilt):
+    """What `check` warns of: hundreds of cells that stood on them are below them."""
+    assert below_shelf(t, z, tilt) > 500

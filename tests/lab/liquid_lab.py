@@ -13,7 +13,8 @@ from mdanim_lammps.engine.plugin import folder
 
 POOL = "fix water all mdanim/liquid basin 1.0 grid 20 20 16 level 10 gravity 0.01"
 FALL = "fix gravity all gravity 0.01 vector 0 0 -1"
-VECTOR = dict(units=0, start=1, level=2, solid=3, sweeps=4, awake=5, lost=6)
+VECTOR = {"units": 0, "start": 1, "level": 2, "solid": 3, "sweeps": 4, "awake": 5, "lost": 6}
+VECTOR |= {"crest": 12, "momentum.x": 13, "momentum.y": 14}
 BASIN = ["region basin block -10 10 -10 10 0 16"]
 
 

@@ -12,6 +12,7 @@ from mdanim_lammps.errors import SceneError, Span
 from mdanim_lammps.model import basin, build_models, check_basin, shapes
 from mdanim_lammps.model.system import assemble
 from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.rotation import rotation_euler
 from mdanim_lammps.scene.scene import Box, HoldAll, HoldFaces, Liquid, LiquidModel, Mesh, Side, Switch
 from model_samples import MESHES, SHAPES, scene, shape_id, solid
 from paths import REPOSITORY
@@ -250,6 +251,47 @@ def test_an_open_hull_is_told():
     assert "leave model surface out" in warning.hint
     assert not told(BOAT) and not told(BOAT, model=LiquidModel.PRESSURE)
     assert not told(Mesh(BOAT.path.with_name("duck.ply"), 0.03), model=LiquidModel.SURFACE)
+
+
+@pytest.mark.parametrize(
+    ("size", "more", "told"),
+    [
+        pytest.param((0.8, 0.8, 0.1), {"hold": (HoldAll(),)}, "1 cells", id="a shelf"),
+        pytest.param((0.8, 0.8, 0.19), {"hold": (HoldAll(),)}, "1.9 cells", id="a shelf of nearly two cells"),
+        pytest.param((0.8, 0.8, 0.2), {"hold": (HoldAll(),)}, "", id="a shelf of two cells"),
+        pytest.param((0.1, 0.8, 0.8), {"hold": (HoldAll(),)}, "", id="an upright wall"),
+        pytest.param((0.1, 0.8, 0.8), {"hold": (HoldAll(),), "rotation": rotation_euler((0.0, 0.0, 0.5))}, "", id="turned"),
+        pytest.param((0.1, 0.8, 0.8), {"hold": (HoldAll(),), "rotation": rotation_euler((0.0, 0.1, 0.0))}, "1 cells", id="leans"),
+        pytest.param((0.8, 0.8, 0.1), {"hold": (HoldAll(),), "position": (0.5, 0.5, 1.2)}, "", id="a shelf above the basin"),
+        pytest.param((0.1, 0.8, 0.8), {}, "1 cells", id="a wall that may fall over"),
+        pytest.param((0.8, 0.8, 0.14), {}, "1.4 cells", id="a plank afloat"),
+        pytest.param((0.8, 0.8, 0.15), {}, "", id="a plank of one and a half cells"),
+        pytest.param((0.8, 0.1, 0.1), {}, "", id="a rod"),
+    ],
+)
+def test_what_leaks_is_told(size, more, told):
+    """Warn of what is too thin to hold a liquid with momentum, by its name and thickness, with a resolution that will do."""
+
+    def warnings(h, **liquid):
+        made = scene(
+            block(Box(size), "plank", **{"position": (0.5, 0.5, 0.5), **more}), resolution=h, liquid=replace(WATER, **liquid)
+        )
+        return basin.leaky_walls(made, build_models(made))
+
+    found = warnings(0.1)
+    assert [w.severity for w in found] == ["warning"] * bool(told)
+    assert not warnings(0.1, model=LiquidModel.SURFACE)
+    if told:
+        assert found[0].message.startswith(f"plank: {shapes.thickness(Box(size)) * 100:g} cm thick, {told} of water")
+        amount, unit = found[0].hint.split("resolution ")[1].split(" in control")[0].split()
+        assert not warnings(float(amount) * {"cm": 0.01, "mm": 0.001}[unit])
+
+
+def test_hulls_that_leak_are_told():
+    """Its planks are 7 cm thick: the boat is told where cells are larger than two thirds of that."""
+    for h, told in ((0.05, 1), (0.04, 0)):
+        made = scene(block(BOAT, "boat"), resolution=h, liquid=replace(WATER, high=(2.0, 2.0, 2.0)))
+        assert len(basin.leaky_walls(made, build_models(made))) == told
 
 
 def test_what_a_hull_encloses():

@@ -81,9 +81,21 @@ def test_level_and_volume():
     assert found("liquid", "volume", 1.0, cells=np.array([10.0, 10, 12]), cell_volume=0.25) == pytest.approx(2.5)
 
 
+def test_crest_is_the_highest_so_far():
+    """The highest at any frame up to a time, not the farthest from 0: basins may be below it."""
+    crest = np.array([-3.0, -1.0, -2.0])
+    assert [found("liquid", "crest", time, crest=crest) for time in (0.0, 1.0, 2.0, None)] == [-3.0, -1.0, -1.0, -1.0]
+
+
 @pytest.mark.parametrize(
     ("cells", "time", "residual"),
-    [((10, 10, 10), None, 0), ((10, 8, 10), None, 2), ((10, 11, 13), None, 3), ((10, 11, 13), 1.0, 1)],
+    [
+        ((10, 10, 10), None, 0),
+        ((10, 8, 10), None, 2),
+        ((10, 11, 13), None, 3),
+        ((10, 11, 13), 1.0, 1),
+        ((2**30, 2**30 - 2**-20, 2**30), None, 2**-20),
+    ],
 )
 def test_residual_is_the_worst_so_far(cells, time, residual):
     """Cells gained or lost count even if they come back later; up to a time only what was before."""

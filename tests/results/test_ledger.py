@@ -37,13 +37,18 @@ def test_a_floating_body_has_what_it_trades_in_play():
     assert found[-1] == pytest.approx(0.004 / 2.004)
 
 
-def test_whole_cells_are_written_as_whole_numbers(tmp_path):
-    """Cells of a liquid stand in the file as integers; every float comes back to the bit."""
+def test_cells_are_written_to_the_unit(tmp_path):
+    """Whole cells of a liquid stand in the file as integers, others to 2^-20 of one; every float comes back to the bit."""
     ledger = Ledger(("kinetic",), ("liquid_cells", "draft.box"))
     ledger.add(0.1, {"kinetic": 1 / 3, "liquid_cells": 2_000_001.0, "draft.box": 0.1})
+    ledger.add(0.2, {"kinetic": 1 / 3, "liquid_cells": 2.0**32 - 2.0**-20, "draft.box": 0.1})
     ledger.write(tmp_path / "ledger.csv")
     text = (tmp_path / "ledger.csv").read_text().splitlines()
-    assert text == ["time,kinetic,residual,liquid_cells,draft.box", "0.1,0.3333333333333333,0.0,2000001,0.1"]
+    assert text == [
+        "time,kinetic,residual,liquid_cells,draft.box",
+        "0.1,0.3333333333333333,0.0,2000001,0.1",
+        "0.2,0.3333333333333333,0.0,4294967295.999999,0.1",
+    ]
     back = Ledger.read(tmp_path / "ledger.csv")
     assert back.rows == ledger.rows and back.extras == ledger.extras
 

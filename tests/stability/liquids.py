@@ -7,11 +7,13 @@ Solids of elasticity 1000 Pa and density 1000 have the wave speed C; g = 0.01 is
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from case import CONTROL, C, Case, block, refused, velocity
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.scene.scene import LiquidModel
 from trial import START, UNITS, Trial
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "lab"))
@@ -36,13 +38,18 @@ def pool(density, z=16.0, level=12.0, top=20.0, speed=0.0, young=1000.0, g=0.01,
     )
 
 
+CALMING = 3.0
+"""Waves die to 1/e in 50 sqrt(depth/g): 1700 s in the pool. The automaton has none."""
+
+
 def come_to_rest(time: float):
-    """A player: whatever happens on the way, Archimedes at the end."""
+    """A player: whatever happens on the way, Archimedes at the end. A liquid with momentum has CALMING times as long."""
 
     def play(text, long):
         with Trial(text) as t:
-            t.run_for(10 * time if long else time, 50)
             solid, liquid = t.ready.scene.solids[0], t.ready.scene.liquid
+            calming = CALMING if liquid.model is LiquidModel.WAVES else 1.0
+            t.run_for(calming * (10 * time if long else time), 50)
             return {
                 "immersed share": abs(t.immersed("cube") - min(1.0, solid.density / liquid.density)),
                 "cells of liquid": t.lost_cells,
@@ -190,4 +197,20 @@ MASKS = Case(
     "20 runs of 100 random masks with up to half of all cells solid: units are whole numbers, none may get lost",
 )
 
-CASES = [*FLOATS, *FULL, *REFUSED, MASKS]
+# --- with momentum ------------------------------------------------------------------------------------------------
+
+RESTLESS = ("density 0.01 of the liquid", "density 0.01, released from the bottom")
+"""What does not come to rest in waves: a body of up to 0.1 of the liquid's density shakes on, at one to four sqrt(g cell)."""
+
+
+def in_waves(case: Case) -> Case:
+    """The same case with `model waves`."""
+    scene = case.scene.replace(" model surface ", " model waves ")
+    assert scene != case.scene, f"{case.name} tells no model"
+    return replace(case, name=f"{case.name}, waves", scene=scene)
+
+
+WAVES = [in_waves(case) for case in (*FLOATS, *FULL, *REFUSED) if case.name not in RESTLESS]
+RESTLESS_IN_WAVES = [in_waves(case) for case in FLOATS if case.name in RESTLESS]
+
+CASES = [*FLOATS, *FULL, *REFUSED, MASKS, *WAVES]

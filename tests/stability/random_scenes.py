@@ -115,7 +115,7 @@ class Tally:
 
     drift: list[float] = field(default_factory=list)
     """Largest energy residual of each, at the certified step."""
-    lost: list[int] = field(default_factory=list)
+    lost: list[float] = field(default_factory=list)
     """Cells of liquid lost, at the certified step, of each with a liquid."""
     met: int = 0
     """How many had a contact, or touched ground, walls or basin."""
@@ -138,7 +138,7 @@ class Tally:
             f"{len(self.drift)} random scenes, up to {self.particles} particles, {STEPS} steps; {self.met} touch something: "
             + ", ".join(f"{n} {place}" for place, n in sorted(self.kinds.items()))
             + f". At the certified step none breaks down, energy residual at most {max(self.drift):.1e}, half of them below "
-            f"{np.median(self.drift):.1e}, {max(self.lost, default=0)} cells of liquid lost. At {TIMES:g} times that step "
+            f"{np.median(self.drift):.1e}, {max(self.lost, default=0):g} cells of liquid lost. At {TIMES:g} times that step "
             f"{self.share():.0%} break down: {self.share(False):.0%} of the {without} without contact, "
             f"{self.share(True):.0%} of the {len(self.contact) - without} with it"
         )

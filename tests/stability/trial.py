@@ -30,7 +30,7 @@ class Trial:
         self.system, self.timestep = self.ready.system, self.ready.certificate.timestep
         self.instance = Instance(self.ready.plan)
         self.ledger = Ledger(ledger_terms(self.ready.plan), floor=rounding_energy(self.system))
-        self.lost_cells = 0
+        self.lost_cells = 0.0
         try:
             self.instance.setup()
         except BaseException:
@@ -80,7 +80,7 @@ class Trial:
         self.ledger.add(self.instance.step * self.timestep, energies)
         if self.ready.plan.grid:
             gained = self.instance.fix_value("liquid", UNITS) - self.instance.fix_value("liquid", START)
-            self.lost_cells = max(self.lost_cells, abs(int(gained)))
+            self.lost_cells = max(self.lost_cells, abs(gained))
 
     # --- looking ----------------------------------------------------------------------------------------------------
 

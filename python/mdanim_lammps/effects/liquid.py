@@ -28,8 +28,8 @@ PERIOD = 0.06
 NEAR = 8.0
 """Cells above the liquid up to which the motion of solids counts for it; as in the fix."""
 CELLS, CELLS_AT_START, FLOW, OCCUPANCY, COUPLING, WAVES, CREST, MOMENTUM = 0, 1, 7, 8, 9, 11, 12, (13, 14)
-"""In the fix's vector: whole cells of liquid now and before step 0, three clocks [s], the energy of a liquid with momentum since
-then [J], its highest point [m], its momentum along x and y [N s]."""
+"""In the fix's vector: cells of liquid now and before step 0, to the unit, three clocks [s], the energy of a liquid with momentum
+since then [J], its highest point [m], its momentum along x and y [N s]."""
 WAVE_PERIOD, WAVE_STRIDE = 0.1, 0.5
 """As PERIOD and STRIDE, of waves. With a stride of 0.25 a dive is as deep to 2 % of the body's size, for twice the updates."""
 CALM = 50.0

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import Problem
-from ..scene.formatting import estimate, number, say
-from ..scene.scene import Liquid, LiquidModel, Mesh, SceneRecord, Solid, Switch, Vector
+from ..scene.formatting import at_least, estimate, number, say
+from ..scene.scene import Liquid, LiquidModel, Mesh, SceneRecord, Solid, Switch, Torus, Vector
 from . import shapes
 from .model import Model
 from .spacing import available_memory, choose_spacing
@@ -260,6 +260,56 @@ def open_hulls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
         for solid, model in zip(scene.solids, models)
         if isinstance(solid.shape, Mesh) and not model.held.all() and enclosed(solid, model) > HOLLOW
     ]
+
+
+TIGHT, TIGHT_MOVING = 2.0, 1.5
+"""Thickness in cells from which a wall of any attitude holds a liquid with momentum, as some cell of each of its columns is shut,
+and from which one that moves does: it does not stay where it leaks."""
+ESTIMATE = 0.99
+"""Part of these that will do: the thickness of a mesh is an estimate."""
+UPRIGHT = 1e-3
+"""Cosine of the angle between the thin direction of a wall and the vertical, up to which the wall counts as upright."""
+
+
+def leaky_walls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
+    """Warn of walls, shelves, planks and hulls that are too thin for a liquid with momentum to stay on one side of them.
+
+    Upright walls that are held hold it at any thickness. What is thin in two directions has no sides.
+    """
+    liquid, grid = scene.liquid, scene_grid(scene)
+    if liquid is None or liquid.model is not LiquidModel.WAVES:
+        return []
+    cell = max(grid.cell)
+    thin: dict[tuple, list[str]] = {}  # objects of a repeat are one problem
+    for solid, model in zip(scene.solids, models):
+        t, still = shapes.thickness(solid.shape), bool(model.held.all())
+        enough = (TIGHT if still else TIGHT_MOVING) * cell
+        if t < ESTIMATE * enough and _parts(solid, enough, still) and not (still and _misses(model, grid)):
+            thin.setdefault((solid.spans.get("shape") or solid.spans.get("object"), t, enough), []).append(solid.name)
+    return [
+        Problem(
+            span,
+            f"{names[0]}{f' and {len(names) - 1} more' if names[1:] else ''}: {say(t, 'm')} thick, {number(t / cell)} cells of "
+            f"{liquid.name}, which leaks through what is thinner than {number(enough / cell)} cells and is not held upright",
+            f"write resolution {say(0.9 * t * cell / enough, 'm')} in control, or make it {say(at_least(enough), 'm')} thick",
+            severity="warning",
+        )
+        for (span, t, enough), names in thin.items()
+    ]
+
+
+def _parts(solid: Solid, wide: float, still: bool) -> bool:
+    """Whether a thin solid is a wall, so wide [m] in two directions, that lies, leans or may come to. A mesh may be a hull."""
+    if isinstance(solid.shape, Mesh | Torus):
+        return isinstance(solid.shape, Mesh)
+    low, high = shapes.extent(solid.shape)
+    upward = solid.rotation[2][int(np.argmin(high - low))]
+    return bool(np.sort(high - low)[1] >= wide) and not (still and abs(upward) <= UPRIGHT)
+
+
+def _misses(model: Model, grid: Grid) -> bool:
+    """Whether a solid is outside of the basin."""
+    return bool(((model.position.max(axis=0) <= grid.low) | (model.position.min(axis=0) >= grid.high)).any())
 
 
 def enclosed(solid: Solid, model: Model) -> float:

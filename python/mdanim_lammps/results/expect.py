@@ -57,13 +57,15 @@ class Measured:
     recorded: Mapping[tuple[str, str], np.ndarray] = field(default_factory=dict)
     """What `recorded` names, at each frame, each of shape (F,)."""
     cells: np.ndarray | None = None
-    """Whole cells of liquid at each frame, shape (F,); None without liquid."""
+    """Cells of liquid at each frame, to the unit, shape (F,); None without liquid."""
     due: np.ndarray | None = None
     """Those at the start, and what has come since; None where none does."""
     cell_volume: float = 0.0
     """[m^3]"""
     level: np.ndarray | None = None
     """Mean height of the liquid over the basin at each frame [m], shape (F,); None without liquid."""
+    crest: np.ndarray | None = None
+    """Height of the highest liquid at each frame [m], shape (F,); None where no line asks for it."""
 
 
 def evaluate(expects: tuple[Expect, ...], measured: Measured) -> list[Outcome]:
@@ -73,6 +75,11 @@ def evaluate(expects: tuple[Expect, ...], measured: Measured) -> list[Outcome]:
 
 RECORDED = {"strain.max": "strain", "draft": "draft", "immersed": "immersed"}
 """Quantities of a solid that need all its particles at every frame, and what their ledger columns are called."""
+
+
+def asks_for_crest(expects: tuple[Expect, ...]) -> bool:
+    """Whether the height of the highest liquid has to be recorded during the run."""
+    return any((e.subject, e.quantity) == ("liquid", "crest") for e in expects)
 
 
 def recorded(expects: tuple[Expect, ...]) -> dict[tuple[str, str], str]:
@@ -168,6 +175,8 @@ def _measure(expect: Expect, m: Measured) -> float:
             return _at(m, m.cells, expect.time) * m.cell_volume
         case "liquid", "level":
             return _at(m, m.level, expect.time)
+        case "liquid", "crest":
+            return float(_until(m, m.crest, expect.time).max())
         case name, "strain.max":
             return _largest(m, m.recorded[name, "strain.max"], expect.time)
         case name, ("draft" | "immersed") as quantity:
@@ -180,8 +189,12 @@ def _measure(expect: Expect, m: Measured) -> float:
 
 def _largest(m: Measured, values: np.ndarray, time: float | None) -> float:
     """Largest magnitude up to a time, or in the whole run."""
-    upto = values if time is None else values[m.times <= time * (1 + 1e-9)]
-    return float(np.abs(upto).max())
+    return float(np.abs(_until(m, values, time)).max())
+
+
+def _until(m: Measured, values: np.ndarray, time: float | None) -> np.ndarray:
+    """Those of frames up to a time, or of the whole run."""
+    return values if time is None else values[m.times <= time * (1 + 1e-9)]
 
 
 def _at(m: Measured, values: np.ndarray, time: float | None) -> float:

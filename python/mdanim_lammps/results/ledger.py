@@ -12,16 +12,19 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import OutputError
+from ..scene.formatting import exact
 from ..scene.keywords import did_you_mean
 
 POTENTIALS = ("gravity", "buoyancy", "waves")
 """Energies whose zero is arbitrary: only how far they have changed says how much is in play."""
 DUE = "liquid_due"
-"""Extra of a liquid that comes and goes: whole cells at the start, and what has come since less what has gone."""
+"""Extra of a liquid that comes and goes: cells at the start, and what has come since less what has gone."""
 LIQUID_MOMENTUM = ("liquid_momentum.x", "liquid_momentum.y")
 """Extras of a liquid with momentum [N s]: solids lose what it gains, but for what walls of the basin take."""
-WHOLE = ("liquid_cells", DUE)
-"""Extras that are whole numbers, and written as such."""
+CREST = "liquid_crest"
+"""Extra where an ``expect`` asks for it: height of the highest liquid [m]."""
+CELLS = ("liquid_cells", DUE)
+"""Extras that count cells of liquid, to the unit; whole numbers are written as such."""
 
 
 @dataclass
@@ -91,7 +94,7 @@ class Ledger:
         with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(self.columns)
-            writer.writerows([f"{r[c]:.0f}" if c in WHOLE else repr(r[c]) for c in self.columns] for r in self.rows)
+            writer.writerows([exact(r[c]) if c in CELLS else repr(r[c]) for c in self.columns] for r in self.rows)
 
     @classmethod
     def read(cls, path: Path) -> Ledger:

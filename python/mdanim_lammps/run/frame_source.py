@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from ..effects.air_drag import LEAPFROG
-from ..effects.liquid import CELLS, CELLS_AT_START, MOMENTUM, LiquidAutomaton, is_wavy
+from ..effects.liquid import CELLS, CELLS_AT_START, CREST, MOMENTUM, LiquidAutomaton, is_wavy
 from ..engine.instance import Instance
 from ..engine.plan import Plan
 from ..engine.state import State
@@ -36,10 +36,12 @@ class LiquidFrame:
     """As `Instance.liquid_heights`."""
     drops: np.ndarray | None
     """As `Instance.liquid_drops`; None where the liquid sheds none."""
-    cells: int
-    """Whole cells of liquid now."""
-    start: int
+    cells: float
+    """Cells of liquid now, to the unit: whole ones of an automaton, whole 2^-20 of one of waves."""
+    start: float
     """The same before step 0, and what has come since less what has gone."""
+    crest: float
+    """Height of the highest liquid, without drops [m]; of an automaton the top of its highest layer."""
     momentum: tuple[float, float] | None
     """Along x and y [N s]; None where the liquid has none."""
 
@@ -221,10 +223,10 @@ def liquid_frame(instance: Instance) -> LiquidFrame | None:
     """The liquid now."""
     if instance.plan.grid is None:
         return None
-    cells, start = (int(instance.fix_value(LiquidAutomaton.fix, n)) for n in (CELLS, CELLS_AT_START))
+    cells, start = (instance.fix_value(LiquidAutomaton.fix, n) for n in (CELLS, CELLS_AT_START))
     drops = instance.liquid_drops() if instance.plan.scene.liquid.drops else None
     momentum = tuple(instance.fix_value(LiquidAutomaton.fix, n) for n in MOMENTUM) if is_wavy(instance.plan.scene) else None
-    return LiquidFrame(instance.liquid_heights(), drops, cells, start, momentum)
+    return LiquidFrame(instance.liquid_heights(), drops, cells, start, instance.fix_value(LiquidAutomaton.fix, CREST), momentum)
 
 
 def add_clocks(account: Account, instance: Instance) -> None:

@@ -22,13 +22,13 @@ from ..engine.data_file import write_bodies, write_data
 from ..errors import DivergedError, ExitCode, MdanimError, OutputError
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
-from ..results.expect import Measured, Outcome, evaluate, recorded
+from ..results.expect import Measured, Outcome, asks_for_crest, evaluate, recorded
 from ..results.files import CHECKPOINT, PAUSE, STOP, disk_errors, write_json, write_whole
-from ..results.ledger import DUE, LIQUID_MOMENTUM, Ledger
+from ..results.ledger import CREST, DUE, LIQUID_MOMENTUM, Ledger
 from ..results.progress import ProgressLog
 from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
-from ..scene.formatting import number
+from ..scene.formatting import exact, number
 from ..scene.meshes import mesh_files
 from .energy import ledger_terms, loss_terms, rounding_energy
 from .frame_source import COST_SECONDS, Account, Frame, FrameSource, LammpsFailure, Sequential, clock
@@ -57,8 +57,8 @@ class Progress:
     """Wall time of the simulation so far."""
     first_step: int = 0
     """Step from which these seconds count: not 0 after a resume."""
-    gained: int | None = None
-    """Whole cells of liquid more than at the start; None without a liquid."""
+    gained: float | None = None
+    """Cells of liquid more than at the start; None without a liquid."""
     paused: str = ""
     """The file that holds a paused run: it goes on when this is deleted. Empty while the run goes on."""
 
@@ -184,6 +184,7 @@ class _Run:
             raise OutputError(f"{folder / CHECKPOINT} is damaged; run the scene again with --force")
         self.recorded = recorded(ready.scene.expects)
         self.grid = ready.plan.grid
+        self.crest = asks_for_crest(ready.scene.expects)
         self.fed = ready.scene.liquid is not None and ready.scene.liquid.fed
         self.ledger = Ledger(
             ledger_terms(ready.plan),
@@ -191,6 +192,7 @@ class _Run:
                 *self.recorded.values(),
                 *(("liquid_cells",) if self.grid else ()),
                 *((DUE,) if self.fed else ()),
+                *((CREST,) if self.crest else ()),
                 *(LIQUID_MOMENTUM if is_wavy(ready.scene) else ()),
             ),
             rounding_energy(ready.system),
@@ -309,6 +311,7 @@ class _Run:
                     "due": self.ledger.array(DUE) if self.fed else None,
                     "cell_volume": self.grid.cell_volume,
                     "level": trajectory.liquid_levels,
+                    "crest": self.ledger.array(CREST) if self.crest else None,
                 }
             )
             outcomes = evaluate(
@@ -347,11 +350,7 @@ class _Run:
             "penetration": self.penetration,
             "inverted_cells": self.guard.most_inverted,
             "dents": {self.ready.system.names[m]: cells for m, cells in self.guard.dents.items()},
-            **(
-                {"liquid_cells": int(self.ledger.rows[-1]["liquid_cells"]), "liquid_residual": self._gained()}
-                if self.grid
-                else {}
-            ),
+            **({"liquid_cells": self.ledger.rows[-1]["liquid_cells"], "liquid_residual": self._gained()} if self.grid else {}),
             "seconds": sum(self.seconds.values()),
             "expect": [
                 {
@@ -382,12 +381,14 @@ class _Run:
             extras["liquid_cells"] = liquid.cells
             if self.fed:
                 extras[DUE] = liquid.start
+            if self.crest:
+                extras[CREST] = liquid.crest
             if liquid.momentum:
                 extras |= dict(zip(LIQUID_MOMENTUM, liquid.momentum))
             if liquid.cells != liquid.start:
                 raise DivergedError(
-                    f"step {now.step}, t = {number(when, 4)} s: {liquid.cells} cells of liquid, "
-                    f"{liquid.start} at the start{' and come since' if self.fed else ''}: this must "
+                    f"step {now.step}, t = {number(when, 4)} s: {exact(liquid.cells)} cells of liquid, "
+                    f"{exact(liquid.start)} at the start{' and come since' if self.fed else ''}: this must "
                     f"never be, please report it. The last good frame is kept in {self.folder}"
                 )
         # Losses before a resume are carried over.
@@ -398,10 +399,10 @@ class _Run:
         _add(out, now, when)
         log.frame(frame, row, self.seconds["simulation"], self.source.new_owners())
 
-    def _gained(self) -> int | None:
-        """Whole cells of liquid more than at the start and come since: 0, or something is wrong; None without a liquid."""
+    def _gained(self) -> float | None:
+        """Cells of liquid more than at the start and come since: 0, or something is wrong; None without a liquid."""
         rows = self.ledger.rows
-        return int(rows[-1]["liquid_cells"] - rows[-1].get(DUE, rows[0]["liquid_cells"])) if self.grid else None
+        return rows[-1]["liquid_cells"] - rows[-1].get(DUE, rows[0]["liquid_cells"]) if self.grid else None
 
     def _save(self, out: TrajectoryWriter, frame: int, now: Frame) -> None:
         """Make everything up to this frame safe; the checkpoint last, so that it never is ahead of the trajectory."""

@@ -14,7 +14,7 @@ from ..effects import Verdict, resolve
 from ..effects.effect import Resolved
 from ..engine.plan import Plan, make_plan
 from ..errors import Problem, SceneError
-from ..model.basin import check_basin, check_basin_memory, open_hulls
+from ..model.basin import check_basin, check_basin_memory, leaky_walls, open_hulls
 from ..model.build import build_models
 from ..model.model import Model
 from ..model.overlap import check_geometry
@@ -80,7 +80,9 @@ def prepare(scene: SceneRecord, *, allow_unstable: bool = False, progress: Calla
     certificate = certify(resolved, system, allow_unstable=allow_unstable)
     plan = make_plan(resolved, system, certificate)
     warnings += [w for e in plan.effects for w in e.warnings(scene, system)]
-    warnings += margin_warnings(certificate) + (open_hulls(scene, models) if verdicts["liquid"].on else [])
+    warnings += margin_warnings(certificate)
+    if verdicts["liquid"].on:
+        warnings += open_hulls(scene, models) + leaky_walls(scene, models)
     return Prepared(scene, models, system, resolved, (*scene.warnings, *warnings), certificate, plan, allow_unstable)
 
 

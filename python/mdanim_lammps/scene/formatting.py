@@ -42,6 +42,11 @@ def number(value: float, digits: int = 3) -> str:
     return f"{float(mantissa):g}e{int(power)}"
 
 
+def exact(value: float) -> str:
+    """A number with as many digits as tell it from all others; no point where it is whole."""
+    return repr(value).removesuffix(".0")
+
+
 def vector(v: tuple[float, ...]) -> str:
     """``(0, 0, 1)``"""
     return f"({', '.join(number(x, 6) for x in v)})"

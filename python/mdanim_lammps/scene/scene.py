@@ -418,8 +418,9 @@ QUANTITIES = {
     ("NAME", "immersed"): ("1", "share of an object's volume below the surface; needs a liquid"),
     ("NAME", "strain.max"): ("1", "largest relative change of length of a spring"),
     ("liquid", "volume"): ("m^3", "volume of the liquid"),
-    ("liquid", "residual"): ("1", "whole cells gained or lost"),
+    ("liquid", "residual"): ("1", "cells gained or lost, to the unit"),
     ("liquid", "level"): ("m", "mean height of the surface"),
+    ("liquid", "crest"): ("m", "highest point of the liquid at any frame, without drops"),
     ("energy", "residual"): ("1", "relative error of the energy ledger"),
     ("penetration", "max"): ("m", "deepest overlap of two objects"),
 }
@@ -427,7 +428,6 @@ QUANTITIES = {
 
 IMMERSION = ("draft", "immersed")
 """Quantities of an object that need a liquid."""
-
 GLOBALS = ("liquid", "energy", "penetration")
 """Subjects of ``expect`` that are no objects."""
 
@@ -445,7 +445,7 @@ class Expect:
     tolerance: float = 0.0
     """SI, >= 0."""
     time: float | None = None
-    """[s]; None is the end of the run (``strain.max``, ``penetration.max``, residuals: the whole run)."""
+    """[s]; None is the end of the run (``strain.max``, ``penetration.max``, ``crest``, residuals: the whole run)."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property

