@@ -2,6 +2,8 @@
 
 #include "liquid/span.h"
 
+#include "liquid/columns.h"
+
 #include <algorithm>
 #include <cstdlib>
 
@@ -59,33 +61,24 @@ Span cut(const SolidParts &solid, int column, int low, int high)
   return span;
 }
 
-// Whether the flank of a body passes through cells [low, high) of a column: it is shut on one side and open on the other. Cells
-// of a plate that is tilted by much are shut below on one side, above on the other.
-bool is_flank(const SolidParts &solid, int column, int low, int high)
-{
-  const int x = column % solid.nx, y = column / solid.nx, enough = high - low > 2 ? 2 : 1;
-  const auto is_between = [&](int before, int after) {
-    int balance = 0;
-    for (int z = low; z < high; ++z) {
-      const int a = solid.at(before, z), b = solid.at(after, z);
-      if (std::max(a, b) >= SolidParts::SHUT && std::min(a, b) < SolidParts::SLIVER) balance += a > b ? 1 : -1;
-    }
-    return std::abs(balance) >= enough;
-  };
-  return (x > 0 && x + 1 < solid.nx && is_between(column - 1, column + 1)) ||
-         (y > 0 && y + 1 < solid.ny && is_between(column - solid.nx, column + solid.nx));
-}
-
 // Whether partly solid cells [low, high) between open ones, with slivers in these, are a plate that lies across the column: of
-// one lattice cell, which may be a tenth smaller than a cell.
+// one lattice cell, which may be a tenth smaller than a cell, and with as much in all columns beside it, perhaps a cell higher or
+// lower. At the rim of a body there is less on one side.
 bool is_plate(const SolidParts &solid, int column, int low, int high)
 {
   constexpr int MOST = 5;    // cells through which one passes that is tilted by 45 degrees
   constexpr int THINNEST = 7 * SolidParts::FULL / 8;
   if (high - low > MOST) return false;
-  int sum = 0;
-  for (int z = low - 1; z <= high; ++z) sum += solid.at(column, z);
-  return sum >= THINNEST && !is_flank(solid, column, low, high);
+  const auto holds = [&](int one, int from, int to) {
+    int sum = 0;
+    for (int z = std::max(0, from); z < std::min(solid.nz, to); ++z) sum += solid.at(one, z);
+    return sum >= THINNEST;
+  };
+  if (!holds(column, low - 1, high + 1)) return false;
+  for (int side = 0; side < 4; ++side)
+    if (const int other = neighbour(column, side, solid.nx, solid.ny); other >= 0 && !holds(other, low - 2, high + 2))
+      return false;
+  return true;
 }
 
 // The face in such a plate below which there is nearest to half of it.

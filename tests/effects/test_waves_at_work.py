@@ -265,14 +265,18 @@ def below_shelf(t: float, z: float, tilt: float) -> float:
     return behind(SHELF.format(t=t, z=z, tilt=tilt), fill, lambda i, j, k: 2.5 * k < z - 10.0)
 
 
+@pytest.mark.parametrize("t", [2.5, 5.0])
 @pytest.mark.parametrize("z", [20.0, 20.6, 21.25, 21.9])
 @pytest.mark.parametrize("tilt", [0.0, 5.0, 20.0])
-def test_shelves_of_two_cells_hold(z, tilt):
-    """Flat and tilted, at any height: nothing drips through."""
-    assert below_shelf(5.0, z, tilt) == 0
+def test_shelves_hold(t, z, tilt):
+    """Of one or two cells, flat and tilted, at any height: nothing drips through."""
+    assert below_shelf(t, z, tilt) == 0
 
 
-@pytest.mark.parametrize(("t", "z", "tilt"), [(2.5, 20.0, 0.0), (2.5, 21.25, 5.0), (3.75, 20.0, 0.0)])
-def test_shelves_of_less_leak(t, z, tilt):
-    """What `check` warns of: hundreds of cells that stood on them are below them."""
-    assert below_shelf(t, z, tilt) > 500
+def test_a_thin_wall_that_leans_leaks():
+    """What `check` warns of: hundreds of cells get through a wall of one cell that leans by 20 degrees."""
+    wall = "shape box (2.5, 120, 130) cm position (25, 20, 30) cm orientation euler (0, 20, 0) deg"
+    x_of_wall = lambda k: 25.0 + (2.5 * k - 30.0) * np.tan(np.radians(20.0))
+    assert (
+        behind(wall, "level 30 cm fill from (0, 0, 0) cm to (12, 40, 60) cm", lambda i, j, k: 2.5 * i > x_of_wall(k) + 5.0) > 300
+    )

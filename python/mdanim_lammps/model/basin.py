@@ -263,18 +263,20 @@ def open_hulls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
 
 
 TIGHT, TIGHT_MOVING = 2.0, 1.5
-"""Thickness in cells from which a wall of any attitude holds a liquid with momentum, as some cell of each of its columns is shut,
-and from which one that moves does: it does not stay where it leaks."""
+"""Thickness in cells from which a held wall of any attitude holds a liquid with momentum, as some cell of each of its columns is
+shut, and from which a hull that moves does: it does not stay where it leaks."""
 ESTIMATE = 0.99
 """Part of these that will do: the thickness of a mesh is an estimate."""
 UPRIGHT = 1e-3
 """Cosine of the angle between the thin direction of a wall and the vertical, up to which the wall counts as upright."""
+LYING = 0.76
+"""The same from which it counts as lying: columns are cut where it passes."""
 
 
 def leaky_walls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
-    """Warn of walls, shelves, planks and hulls that are too thin for a liquid with momentum to stay on one side of them.
+    """Warn of walls that lean, and of hulls, that are too thin for a liquid with momentum to stay on one side of them.
 
-    Upright walls that are held hold it at any thickness. What is thin in two directions has no sides.
+    Held walls that stand or lie hold it at any thickness. What is thin in two directions has no sides.
     """
     liquid, grid = scene.liquid, scene_grid(scene)
     if liquid is None or liquid.model is not LiquidModel.WAVES:
@@ -290,7 +292,7 @@ def leaky_walls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
         Problem(
             span,
             f"{names[0]}{f' and {len(names) - 1} more' if names[1:] else ''}: {say(t, 'm')} thick, {number(t / cell)} cells of "
-            f"{liquid.name}, which leaks through what is thinner than {number(enough / cell)} cells and is not held upright",
+            f"{liquid.name}, which leaks through what leans and is thinner than {number(enough / cell)} cells",
             f"write resolution {say(0.9 * t * cell / enough, 'm')} in control, or make it {say(at_least(enough), 'm')} thick",
             severity="warning",
         )
@@ -299,12 +301,12 @@ def leaky_walls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
 
 
 def _parts(solid: Solid, wide: float, still: bool) -> bool:
-    """Whether a thin solid is a wall, so wide [m] in two directions, that lies, leans or may come to. A mesh may be a hull."""
+    """Whether a thin solid is a held wall, so wide [m] in two directions, that leans. A mesh may be a hull."""
     if isinstance(solid.shape, Mesh | Torus):
         return isinstance(solid.shape, Mesh)
     low, high = shapes.extent(solid.shape)
-    upward = solid.rotation[2][int(np.argmin(high - low))]
-    return bool(np.sort(high - low)[1] >= wide) and not (still and abs(upward) <= UPRIGHT)
+    upward = abs(solid.rotation[2][int(np.argmin(high - low))])
+    return still and bool(np.sort(high - low)[1] >= wide) and UPRIGHT < upward < LYING
 
 
 def _misses(model: Model, grid: Grid) -> bool:
