@@ -268,7 +268,8 @@ FRAGMENT_DROP = """//VTK::Light::Impl
 }
 """
 
-# Foam lies in specks, which are the fewer the less of it there is: where it fades, holes grow in it.
+# Foam lies in specks, which are the fewer the less of it there is: where it fades, holes grow in it. The liquid is seen
+# between them also where there is most of it. On a steep face they are drawn out downward, as on a fall.
 FOAM = """
 float chance(ivec2 at)
 {
@@ -284,17 +285,25 @@ float uneven(vec2 p)
   return mix(mix(chance(at), chance(at + ivec2(1, 0)), t.x), mix(chance(at + ivec2(0, 1)), chance(at + ivec2(1, 1)), t.x), t.y);
 }
 
-// How much of the skin is white. Seen through a wall it reaches a cell below the surface.
-float foam(vec3 where, float top, vec3 normal)
+float specks(vec2 p)
 {
+  return 0.55 * uneven(p) + 0.3 * uneven(2.3 * p + 17.0) + 0.15 * uneven(5.1 * p + 5.0);
+}
+
+// How much of the skin is white, and how bright the white is, 0 to 1. Seen through a wall it reaches a cell below the surface.
+float foam(vec3 where, float top, vec3 normal, out float bright)
+{
+  bright = 1.0;
   if (foamMost <= 0.0) return 0.0;
   float there = texture(liquidFoam, (where.xy - basinLow.xy) / (basinHigh.xy - basinLow.xy)).r;
   bool wall = abs(normal.z) < 1e-3;
   if (wall) there *= 1.0 - smoothstep(0.0, 1.5 * cell.z, top - where.z);
   if (there <= 0.0) return 0.0;
-  vec2 p = wall ? vec2(dot(where.xy, vec2(1.0, 1.0)), where.z) / (0.7 * cell.z) : where.xy / (0.7 * cell.xy);
-  float specks = 0.55 * uneven(p) + 0.3 * uneven(2.3 * p + 17.0) + 0.15 * uneven(5.1 * p + 5.0);
-  return smoothstep(0.85, 1.1, specks + there) * smoothstep(0.0, 0.15, there);
+  vec2 upright = vec2(dot(where.xy, vec2(1.0, 1.0)), wall ? where.z : 0.25 * where.z) / (0.7 * cell.z);
+  float some = specks(upright);
+  if (!wall) some = mix(some, specks(where.xy / (0.7 * cell.xy)), smoothstep(0.35, 0.75, normal.z));
+  bright = smoothstep(0.2, 0.7, some);
+  return smoothstep(0.85, 1.22, some + 0.8 * there) * smoothstep(0.0, 0.15, there);
 }
 """
 
@@ -401,8 +410,10 @@ FRAGMENT_LIQUID = """//VTK::Light::Impl
   color = mix(color, vec3(0.96, 0.99, 1.0), min(1.0, 0.75 * low + 0.4 * graze));
   float glint = lit * pow(max(dot(normalize(toLamp + toEye), n), 0.0), 120.0);
   float cover = mix(skinCover, 0.80, max(graze, 0.6 * low));
-  float white = inner ? 0.0 : foam(worldPosition, inside, n);
-  color = mix(color, vec3(0.86, 0.88, 0.90) + vec3(0.14, 0.12, 0.10) * max(dot(n, toLamp), 0.0) * lit, white);
+  float bright;
+  float white = inner ? 0.0 : foam(worldPosition, inside, n, bright);
+  vec3 flake = mix(vec3(0.80, 0.84, 0.87), vec3(0.90, 0.92, 0.93), bright);
+  color = mix(color, flake + vec3(0.12, 0.10, 0.08) * max(dot(n, toLamp), 0.0) * lit, white);
   cover = mix(cover, 0.95, white);
   glint *= 1.0 - white;
   if (inner) {
