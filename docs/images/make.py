@@ -27,7 +27,7 @@ PICTURES = {
     "densities": 4.0,
     "vessels": 0.3,
     "splash": 0.45,
-    "cork": 0.35,
+    "cork": 0.45,
     "boat": 0.6,
     "dominoes": 1.1,
     "race": 1.4,
@@ -39,12 +39,12 @@ PICTURES = {
     "cradle": 0.8,
     "pile": 1.2,
     "dam": 1.0,
-    "ripples": 0.5,
+    "ripples": 0.67,
     "slosh": 0.5,
     "swell": 3.0,
     "utube": 0.6,
     "wake": 0.8,
-    "bottle": 0.95,
+    "bottle": 0.1,
     "weir": 4.6,
 }
 """Scene and the moment to show [s]."""

@@ -28,9 +28,9 @@ def picture(path, models, slope, render=ABOVE):
         return painter.frame(0).astype(float) / 255, painter.view(0.0)
 
 
-def plate():
-    """A thin plate on the right half of the floor; its left edge is at x = 0."""
-    return [box("plate", (0.8, 1.0, 0.02), (8, 10, 1), (0.4, 0.0, 0.011))]
+def plate(height=0.011):
+    """A thin plate on the right half of the floor, or above it; its left edge is at x = 0."""
+    return [box("plate", (0.8, 1.0, 0.02), (8, 10, 1), (0.4, 0.0, height))]
 
 
 def edge_of(image):
@@ -44,18 +44,28 @@ def edge_of(image):
     return k - 1 + (0.5 - before) / (after - before)
 
 
-@pytest.mark.parametrize("slope", [0.3, -0.3, 0.15])
-def test_a_slope_shifts_what_is_below_by_snells_law(tmp_path, slope):
+@pytest.mark.parametrize(("slope", "height"), [(0.3, 0.011), (-0.3, 0.011), (0.15, 0.011), (0.3, 0.3), (-0.3, 0.3)])
+def test_a_slope_shifts_what_is_below_by_snells_law(tmp_path, slope, height):
     """Straight from above a ray turns by a - asin(sin a / n) on a slope of tangent a; at the depth of the plate it is aside by
-    depth times the tangent of that."""
-    shifted, view = picture(tmp_path / "s.h5", plate(), slope)
-    straight, _ = picture(tmp_path / "l.h5", plate(), 0.0)
-    a = np.arctan(slope)
-    aside = (LEVEL - 0.02) * np.tan(a - np.arcsin(np.sin(a) / 1.33))
-    (x0, x1), _ = project(view, np.array([[0.0, 0.0, 0.02], [aside, 0.0, 0.02]]), SIZE[0] / SIZE[1])
+    depth times the tangent of that, whatever lies deeper beside it."""
+    shifted, view = picture(tmp_path / "s.h5", plate(height), slope)
+    straight, _ = picture(tmp_path / "l.h5", plate(height), 0.0)
+    a, top = np.arctan(slope), height + 0.01
+    aside = (LEVEL - top) * np.tan(a - np.arcsin(np.sin(a) / 1.33))
+    (x0, x1), _ = project(view, np.array([[0.0, 0.0, top], [aside, 0.0, top]]), SIZE[0] / SIZE[1])
     pixels = (x1[0] - x0[0]) / 2 * SIZE[0]
-    assert abs(pixels) > 2
+    assert abs(pixels) > 1
     assert edge_of(shifted) - edge_of(straight) == pytest.approx(-pixels, abs=0.12 * abs(pixels) + 0.2)
+
+
+def test_an_outline_leaves_no_trace_beside_it(tmp_path):
+    """Rays that pass below a block to where it hides them from the eye show what is beside it, without a share of its colour."""
+    block = [box("block", (0.4, 1.0, 0.2), (4, 10, 2), (0.2, 0.0, 0.3))]
+    bent, level = (picture(tmp_path / f"{slope}.h5", block, slope)[0] for slope in (0.3, 0.0))
+    row = [image[SIZE[1] // 2 - 20 : SIZE[1] // 2 + 20] for image in (bent, level)]
+    orange = [(image[:, :, 0] - image[:, :, 2]).mean(axis=0) for image in row]
+    left = SIZE[0] // 2 - 20, SIZE[0] // 2 - 3
+    assert np.abs(orange[0] - orange[1])[left[0] : left[1]].max() < 0.03
 
 
 def test_a_level_surface_and_the_glass_shift_nothing(tmp_path, monkeypatch):

@@ -12,7 +12,7 @@ from picture_samples import ball, box, slab_scene, solid
 
 
 def prepared(*models, pixel=None):
-    """Mesh and positions of models at rest; a pixel may cover ``pixel`` [m] of each."""
+    """Mesh and positions of models at rest; a pixel may cover ``pixel`` [m] of each, or of one after the other."""
     scene = records.SceneRecord("s", records.Control(1.0), solids=tuple(solid(m, (0, 0, 0)) for m in models))
     position = np.concatenate([m.position for m in models])
     return shaded_mesh(metadata_of(scene, models), position, pixel and np.full(len(models), pixel)), position
@@ -66,6 +66,14 @@ def test_what_shows_is_kept(pixel):
     fine, _ = prepared(*parts)
     mesh, _ = prepared(*parts, pixel=pixel)
     assert len(mesh.coarse) == 0 and np.array_equal(mesh.triangle, fine.triangle)
+
+
+@pytest.mark.filterwarnings("error")
+def test_one_of_two_balls_is_coarse():
+    """Beside a distant ball one of which a pixel covers nothing, as of what is painted, keeps all vertices; no warning."""
+    mesh, _ = prepared(ball("far", 0.5, 0.1, (0, 0, 0)), ball("painted", 0.5, 0.1, (2, 0, 0)), pixel=[0.04, 0.0])
+    fine, _ = prepared(ball("painted", 0.5, 0.1, (2, 0, 0)))
+    assert 0 < len(mesh.coarse) < len(mesh.carry) == len(mesh.coarse) + len(fine.carry)
 
 
 def test_creases_do_not_depend_on_the_frame():

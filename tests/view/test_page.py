@@ -238,7 +238,9 @@ def test_the_camera_line_is_of_the_language(browser, beam, tmp_path):
 
 def test_liquid_is_seen_through(browser, scenes, tmp_path):
     """What lies behind it turns blue; without the liquid it does not."""
-    (tmp_path / "float.txt").write_text((scenes / "float.txt").read_text().replace("time 6 s", "time 0.2 s"))
+    (tmp_path / "float.txt").write_text(
+        (scenes / "float.txt").read_text().replace("time 6 s", "time 0.2 s").replace(" at 6 s", "")
+    )
     folder = Scene.load(tmp_path / "float.txt").run().folder
     with served(folder) as view:
         open_page(browser, view.address)

@@ -18,7 +18,7 @@ BREAKING = (0.6, 1.2)
 """By how much the slope of the surface grows within a column where foam begins, and where all is white: at the foot of a bore, of
 a fall, of a cavity. A smooth slope has none however steep, nor has a crest. A sine as steep as the highest wave there is, of
 a k = 0.44, stays below the first number while four columns or more make a wave."""
-MOST = 5.0
+MOST = 3.0
 """Foam that a column has at most, where 1 is white: the higher a fall, the longer and farther its foam is seen."""
 FADE = 0.4
 """Seconds within which foam falls to 1/e; it is looked for in frames of four times that."""

@@ -66,6 +66,8 @@ class Sheet:
 
 PUDDLE = 16
 """Columns of liquid that lies on a body, at most."""
+DRIP = 2
+"""The same in the midst of a body, where a hull may hold more."""
 PARTS = np.array([0.50, 0.22, 0.13, 0.08, 0.05, 0.02])
 """Of a drop, in the droplets that are drawn of it: single balls of its size look like glass."""
 SCATTERED = 0.4
@@ -185,15 +187,16 @@ def kept_dry(raw: np.ndarray) -> np.ndarray:
 
 
 def without_puddles(grid: Grid, smooth: np.ndarray, raw: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Heights in which liquid that lies on a body, with a fall all around, is hidden: the sheet would stand there as a spike.
+    """Heights in which liquid that lies on a body is hidden: the sheet would stand there as a spike.
 
-    Such are at most `PUDDLE` columns that hang together and border on hidden ones, with other neighbours two cells lower.
+    Such are columns that hang together, border on hidden ones and are two cells higher than some beside them: at most `PUDDLE`
+    that have a fall all around, or at most `DRIP` with hidden columns alone around.
 
     Args:
         grid: the columns.
         smooth, raw: heights z [m], shape (ny, nx).
     """
-    from scipy.ndimage import distance_transform_edt
+    from scipy.ndimage import binary_dilation, distance_transform_edt
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
@@ -202,20 +205,27 @@ def without_puddles(grid: Grid, smooth: np.ndarray, raw: np.ndarray) -> tuple[np
     one = np.concatenate([index[:-1].ravel(), index[:, :-1].ravel()])
     other = np.concatenate([index[1:].ravel(), index[:, 1:].ravel()])
     apart = np.abs(height[one] - height[other]) >= fall
-    if not (apart & open_[one] & open_[other]).any():
+    if not (apart & (open_[one] | open_[other])).any():
         return smooth, raw
     link = open_[one] & open_[other] & ~apart
     groups, label = connected_components(coo_matrix((link[link], (one[link], other[link])), (count, count)), directed=False)
     one, other = np.concatenate([one, other]), np.concatenate([other, one])
     both, at_body = open_[one] & open_[other], open_[one] & ~open_[other]
     has = lambda pairs: np.bincount(label[one[pairs]], minlength=groups) > 0
-    falls, rises = has(both & (height[one] - height[other] >= fall)), has(both & (height[other] - height[one] >= fall))
-    alone = falls & ~rises & has(at_body) & (np.bincount(label, minlength=groups) <= PUDDLE)
+    down = height[one] - height[other] >= fall
+    falls, rises = has(both & down), has(both & (height[other] - height[one] >= fall))
+    size = np.bincount(label, minlength=groups)
+    beside = has(both & (label[one] != label[other]))
+    alone = (falls & ~rises & has(at_body) & (size <= PUDDLE)) | (~beside & has(at_body & down) & (size <= DRIP))
     puddle = (alone[label] & open_).reshape(smooth.shape)
     if not puddle.any():
         return smooth, raw
-    j, i = distance_transform_edt(puddle, return_distances=False, return_indices=True)
-    return smooth[j, i], np.where(puddle, np.nan, raw)
+    # Heights of hidden columns around, which lie between those of open ones, have a part of it.
+    open_ = open_.reshape(smooth.shape)
+    part = puddle | (binary_dilation(puddle, np.ones((3, 3)), iterations=2) & ~open_)
+    j, i = distance_transform_edt(part, return_distances=False, return_indices=True)
+    lower = np.minimum(smooth, smooth[j, i])
+    return np.where(puddle, smooth[j, i], np.where(part, lower, smooth)), np.where(puddle, np.nan, raw)
 
 
 def undersides(grid: Grid, position: np.ndarray) -> np.ndarray:

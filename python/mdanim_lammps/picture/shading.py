@@ -268,7 +268,8 @@ FRAGMENT_DROP = """//VTK::Light::Impl
 }
 """
 
-# Foam lies in specks, which are the fewer the less of it there is: where it fades, holes grow in it.
+# Foam lies in specks, which are the fewer the less of it there is: where it fades, holes grow in it. The liquid is seen
+# between them also where there is most of it. On a steep face they are drawn out downward, as on a fall.
 FOAM = """
 float chance(ivec2 at)
 {
@@ -284,17 +285,25 @@ float uneven(vec2 p)
   return mix(mix(chance(at), chance(at + ivec2(1, 0)), t.x), mix(chance(at + ivec2(0, 1)), chance(at + ivec2(1, 1)), t.x), t.y);
 }
 
-// How much of the skin is white. Seen through a wall it reaches a cell below the surface.
-float foam(vec3 where, float top, vec3 normal)
+float specks(vec2 p)
 {
+  return 0.55 * uneven(p) + 0.3 * uneven(2.3 * p + 17.0) + 0.15 * uneven(5.1 * p + 5.0);
+}
+
+// How much of the skin is white, and how bright the white is, 0 to 1. Seen through a wall it reaches a cell below the surface.
+float foam(vec3 where, float top, vec3 normal, out float bright)
+{
+  bright = 1.0;
   if (foamMost <= 0.0) return 0.0;
   float there = texture(liquidFoam, (where.xy - basinLow.xy) / (basinHigh.xy - basinLow.xy)).r;
   bool wall = abs(normal.z) < 1e-3;
   if (wall) there *= 1.0 - smoothstep(0.0, 1.5 * cell.z, top - where.z);
   if (there <= 0.0) return 0.0;
-  vec2 p = wall ? vec2(dot(where.xy, vec2(1.0, 1.0)), where.z) / (0.7 * cell.z) : where.xy / (0.7 * cell.xy);
-  float specks = 0.55 * uneven(p) + 0.3 * uneven(2.3 * p + 17.0) + 0.15 * uneven(5.1 * p + 5.0);
-  return smoothstep(0.85, 1.1, specks + there) * smoothstep(0.0, 0.15, there);
+  vec2 upright = vec2(dot(where.xy, vec2(1.0, 1.0)), wall ? where.z : 0.25 * where.z) / (0.7 * cell.z);
+  float some = specks(upright);
+  if (!wall) some = mix(some, specks(where.xy / (0.7 * cell.xy)), smoothstep(0.35, 0.75, normal.z));
+  bright = smoothstep(0.2, 0.7, some);
+  return smoothstep(0.85, 1.22, some + 0.8 * there) * smoothstep(0.0, 0.15, there);
 }
 """
 
@@ -302,8 +311,9 @@ NOT_BENT = """
 bool bentAside(vec3 where, vec3 normal, vec3 toEye, out vec3 found) { return false; }
 """
 
-# What is behind the surface is seen aside where the surface slopes: by as much as a ray is bent more, or less, than by a level
-# surface, so that through a level one all is seen where it is drawn. What is drawn before the surface is looked up there.
+# What is behind the surface is seen aside where the surface slopes: a ray is bent by as much as a level surface does not bend it,
+# so that through a level one all is seen where it is drawn. The bent ray is followed, piece by piece, to where it meets what was
+# drawn before the surface. An object that only hides it from the eye does not end it: outlines are never drawn out.
 BENT = """
 vec3 drawnAt(vec2 pixel)
 {
@@ -311,30 +321,60 @@ vec3 drawnAt(vec2 pixel)
   return p.xyz / p.w;
 }
 
+// Pixel where a place of the picture lies, and how far it is behind what is drawn there.
+vec3 against(vec4 p)
+{
+  vec3 at = 0.5 + 0.5 * p.xyz / p.w;
+  vec2 pixel = clamp(at.xy * pictureSize, vec2(0.5), pictureSize - 0.5);
+  return vec3(pixel, at.z - numberAt(behindDepth, ivec2(pixel)));
+}
+
 bool bentAside(vec3 where, vec3 normal, vec3 toEye, out vec3 found)
 {
   if (abs(normal.z) < 1e-3) return false;
-  // The way to what is behind, or to where the ray leaves the basin.
-  vec3 ray = drawnAt(gl_FragCoord.xy) - where + vec3(1e-9);
-  vec3 out_ = (mix(basinLow, basinHigh, step(0.0, ray)) - where) / ray;
-  ray *= clamp(min(out_.x, min(out_.y, out_.z)), 0.0, 1.0);
-  if (ray.z >= 0.0) return false;
   vec3 bent = refract(-toEye, normal, 1.0 / REFRACTIVE_INDEX);
   vec3 level = refract(-toEye, vec3(0.0, 0.0, 1.0), 1.0 / REFRACTIVE_INDEX);
-  vec2 aside = -ray.z * (bent.xy / max(-bent.z, 0.3) - level.xy / max(-level.z, 0.3));
-  // Where an object before or above the surface is in the way half as far aside is tried, then nothing is moved.
-  for (float part = 1.0; part > 0.4; part *= 0.5) {
-    vec4 p = pictureMatrix * vec4(where + ray + vec3(part * aside, 0.0), 1.0);
-    vec2 pixel = clamp((0.5 + 0.5 * p.xy / p.w) * pictureSize, vec2(0.5), pictureSize - 0.5);
-    if (distance(pixel, gl_FragCoord.xy) < 0.25) return false;
-    vec3 there = drawnAt(pixel);
-    bool outside = any(lessThan(there.xy, basinLow.xy)) || any(greaterThan(there.xy, basinHigh.xy));
-    if (dot(there - where, toEye) < 0.0 && (outside || there.z < liquidHeight(there.xy))) {
-      found = texture(behindColor, pixel / pictureSize).rgb;
-      return true;
+  vec3 way = vec3(bent.xy / max(-bent.z, 0.3) - level.xy / max(-level.z, 0.3) - toEye.xy / max(toEye.z, 0.05), -1.0);
+  // To where it leaves the basin: the glass moves nothing.
+  vec3 out_ = (mix(basinLow, basinHigh, step(0.0, way)) - where) / (way + vec3(1e-9));
+  way *= max(0.0, min(out_.x, min(out_.y, out_.z)));
+  vec4 first = pictureMatrix * vec4(where, 1.0), last = pictureMatrix * vec4(where + way, 1.0);
+  float aside = distance(against(last).xy, gl_FragCoord.xy);
+  if (aside < 0.25) return false;
+  int pieces = int(clamp(aside, 6.0, 48.0));
+  float before = 0.0;
+  bool ahead = true, met = false;
+  vec2 pixel = gl_FragCoord.xy;
+  for (int k = 1; k <= pieces && !met; k++) {
+    float part = float(k) / float(pieces);
+    vec3 at = against(mix(first, last, part));
+    if (at.z > 0.0 && ahead) {
+      float low = before, high = part;
+      vec2 hit = at.xy;
+      for (int n = 0; n < 6; n++) {
+        float middle = 0.5 * (low + high);
+        vec3 there = against(mix(first, last, middle));
+        if (there.z > 0.0) {
+          high = middle;
+          hit = there.xy;
+        } else {
+          low = middle;
+          pixel = there.xy;
+        }
+      }
+      met = distance(drawnAt(hit), where + high * way) < 0.2 * cell.z;
+      if (met) pixel = hit;
     }
+    ahead = at.z <= 0.0;
+    if (ahead) pixel = at.xy;
+    before = part;
   }
-  return false;
+  // The ray may end beside the outline of what is nearer, which has a share in the colours of the pixels around it.
+  vec2 back = gl_FragCoord.xy - pixel;
+  back *= min(1.0, 3.0 / max(length(back), 1e-3));
+  if (distance(drawnAt(pixel), eye) - distance(drawnAt(pixel - back), eye) > cell.z) pixel += back;
+  found = texture(behindColor, pixel / pictureSize).rgb;
+  return true;
 }
 """
 
@@ -370,8 +410,10 @@ FRAGMENT_LIQUID = """//VTK::Light::Impl
   color = mix(color, vec3(0.96, 0.99, 1.0), min(1.0, 0.75 * low + 0.4 * graze));
   float glint = lit * pow(max(dot(normalize(toLamp + toEye), n), 0.0), 120.0);
   float cover = mix(skinCover, 0.80, max(graze, 0.6 * low));
-  float white = inner ? 0.0 : foam(worldPosition, inside, n);
-  color = mix(color, vec3(0.86, 0.88, 0.90) + vec3(0.14, 0.12, 0.10) * max(dot(n, toLamp), 0.0) * lit, white);
+  float bright;
+  float white = inner ? 0.0 : foam(worldPosition, inside, n, bright);
+  vec3 flake = mix(vec3(0.80, 0.84, 0.87), vec3(0.90, 0.92, 0.93), bright);
+  color = mix(color, flake + vec3(0.12, 0.10, 0.08) * max(dot(n, toLamp), 0.0) * lit, white);
   cover = mix(cover, 0.95, white);
   glint *= 1.0 - white;
   if (inner) {

@@ -149,7 +149,8 @@ def _fewer(vertices: np.ndarray, triangle: np.ndarray, corner: np.ndarray, of: n
         return triangle, corner, np.flatnonzero(coarse)
 
     # One vertex for each cube of space that holds any: the one nearest to their mean.
-    cell = np.floor((vertices - low[of]) / wanted[of, None]).astype(np.int64)
+    edge = np.where(coarse, wanted, 1.0)
+    cell = np.floor((vertices - low[of]) / edge[of, None]).astype(np.int64)
     alone = np.flatnonzero(~coarse[of])
     cell[alone] = np.stack([alone, alone, alone], axis=1)
     _, place = np.unique(np.column_stack([of, cell]), axis=0, return_inverse=True)

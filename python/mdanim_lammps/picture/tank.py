@@ -80,6 +80,8 @@ class Tank:
             self._rim = MovingLine(len(self._form.rim), (1.0, 1.0, 1.0), 2.0)
             self.actors.append(self._rim.actor)
         self._fine = sky
+        # A line is two pixels wide, and each of them as far away as its middle: it would lie half before a solid at the glass.
+        self._rim_inside = 2.0 * HAIR * float(np.linalg.norm(self._high - self._low))
         self._spray = None
         if pool.most_drops:
             self._spray = MovingMesh(1, np.zeros((0, 3)))
@@ -124,7 +126,9 @@ class Tank:
             self._spray.reshape(len(round_[0]), balls.triangle)
             self._spray.move(*round_)
         if self._look == "smooth":
-            self._rim.move(points[self._form.rim], self._rim_opacity(smooth, raw))
+            rim = points[self._form.rim]
+            rim[:, :2] += np.sign((self._low + self._high)[:2] / 2 - rim[:, :2]) * self._rim_inside
+            self._rim.move(rim, self._rim_opacity(smooth, raw))
         # What is seen through a column that tells nothing is seen through liquid all the same.
         top = smooth if self._look == "smooth" else np.where(np.isfinite(raw), raw, smooth)
         dry = kept_dry(raw)

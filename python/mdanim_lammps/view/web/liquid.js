@@ -18,7 +18,7 @@ const SEEN = `
   gl_FragColor.rgb = gl_FragColor.rgb * exp(-way * (1.25 - liquidColor)) + liquidColor * (1.0 - exp(-0.8 * way));
   #include <colorspace_fragment>`;
 
-// Foam lies in specks, which are the fewer the less of it there is.
+// Foam lies in specks, which are the fewer the less of it there is; on a steep face they are drawn out downward.
 const SPECKS = `
   float chance(ivec2 at) {
     uint h = uint(at.x) * 73856093u ^ uint(at.y) * 19349663u;
@@ -30,11 +30,14 @@ const SPECKS = `
     vec2 t = smoothstep(0.0, 1.0, fract(p));
     return mix(mix(chance(at), chance(at + ivec2(1, 0)), t.x), mix(chance(at + ivec2(0, 1)), chance(at + ivec2(1, 1)), t.x), t.y);
   }
-  float foam() {
+  float specks(vec2 p) { return 0.55 * uneven(p) + 0.3 * uneven(2.3 * p + 17.0) + 0.15 * uneven(5.1 * p + 5.0); }
+  float foam(out float bright) {
+    bright = 1.0;
     if (whitened <= 0.0) return 0.0;
-    vec2 p = plan / speck;
-    float specks = 0.55 * uneven(p) + 0.3 * uneven(2.3 * p + 17.0) + 0.15 * uneven(5.1 * p + 5.0);
-    return smoothstep(0.85, 1.1, specks + whitened) * smoothstep(0.0, 0.15, whitened);
+    float upright = specks(vec2(plan.x + plan.y, 0.25 * plan.z) / speck.x), flat_ = specks(plan.xy / speck);
+    float some = mix(upright, flat_, smoothstep(0.35, 0.75, level));
+    bright = smoothstep(0.2, 0.7, some);
+    return smoothstep(0.85, 1.22, some + 0.8 * whitened) * smoothstep(0.0, 0.15, whitened);
   }
 `;
 
@@ -141,10 +144,10 @@ export class Liquid {
 function holesAndFoam(material, { low, high, shape: [nx, ny] }) {
   material.onBeforeCompile = (shader) => {
     shader.uniforms.speck = { value: new Vector2((0.7 * (high[0] - low[0])) / nx, (0.7 * (high[1] - low[1])) / ny) };
-    shader.vertexShader = "attribute float cover, white; varying float covered, whitened; varying vec2 plan;\n" +
-      shader.vertexShader.replace("#include <begin_vertex>", "#include <begin_vertex>\ncovered = cover; whitened = white; plan = position.xy;");
-    shader.fragmentShader = "varying float covered, whitened; varying vec2 plan; uniform vec2 speck;\n" + SPECKS + shader.fragmentShader
+    shader.vertexShader = "attribute float cover, white; varying float covered, whitened, level; varying vec3 plan;\n" +
+      shader.vertexShader.replace("#include <begin_vertex>", "#include <begin_vertex>\ncovered = cover; whitened = white; plan = position; level = normalize(normal).z;");
+    shader.fragmentShader = "varying float covered, whitened, level; varying vec3 plan; uniform vec2 speck;\n" + SPECKS + shader.fragmentShader
       .replace("#include <clipping_planes_fragment>", "#include <clipping_planes_fragment>\nif (covered < 0.5) discard;")
-      .replace("#include <opaque_fragment>", "#include <opaque_fragment>\ngl_FragColor = mix(gl_FragColor, vec4(vec3(0.9), 0.95), foam());");
+      .replace("#include <opaque_fragment>", "#include <opaque_fragment>\nfloat bright, white = foam(bright);\ngl_FragColor = mix(gl_FragColor, vec4(mix(vec3(0.62, 0.7, 0.76), vec3(0.9), bright), 0.95), white);");
   };
 }
