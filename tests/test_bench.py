@@ -22,7 +22,11 @@ def test_the_start_of_a_run_can_be_measured():
 
 
 @pytest.mark.parametrize(
-    ("parts", "page"), [pytest.param("import liquid_tables; print(*liquid_tables.PARTS)", "physics-liquid.md", id="liquid")]
+    ("parts", "page"),
+    [
+        pytest.param("import liquid_tables; print(*liquid_tables.PARTS)", "physics-liquid.md", id="liquid"),
+        pytest.param("print('threads')", "decisions/threads.md", id="threads"),
+    ],
 )
 def test_tables_have_their_place(parts, page):
     """A page has the two markers of each table that a command writes into it, and what is between them is not empty."""
@@ -39,3 +43,13 @@ def test_the_share_of_the_liquid_can_be_measured():
     assert plunging > 0.0
     assert afloat > 0.0
     assert rest == above == 0.0
+
+
+def test_threads_can_be_measured():
+    """By bench/threads.py: from a state that one process finds for all, and a scene by its name and size."""
+    done = subprocess.run(
+        [sys.executable, "threads.py", "1", "2", "float 400", "hail 4"], cwd=BENCH, check=True, capture_output=True, text=True
+    )
+    rows = [line.split(" | ") for line in done.stdout.splitlines()[4:]]
+    assert [row[0] for row in rows] == ["| float 400", "| hail 4"]
+    assert all(float(cell) > 0.0 for row in rows for cell in row[1:10])
