@@ -8,15 +8,13 @@ runs in a process of its own, its contenders take turns in every round; a part t
 
 import argparse
 import json
-import os
-import platform
 import subprocess
 import sys
 import time
 from importlib import import_module
 from pathlib import Path
 
-from timing import Sample, markdown, replace_between
+from timing import Sample, machine, markdown, replace_between
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "performance.md"
 FIGURES, PLOT = PAGE.with_suffix(".json"), PAGE.parent / "images" / "performance.png"
@@ -111,18 +109,6 @@ def told(name: str, found: dict) -> str:
     """A part as it stands on the page."""
     body = f"**Not measured:** {found['failed']}" if "failed" in found else part(name).table(found["rows"])
     return f"### {PARTS[name][0]}\n\n{body}\n"
-
-
-def machine() -> str:
-    """Processor and load, in a line."""
-    cpu = next(
-        (line.split(":")[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")),
-        platform.processor(),
-    )
-    busy = os.getloadavg()[0] / os.cpu_count()
-    return f"{cpu}, {os.cpu_count()} cores; load at the start {busy:.1f} per core" + (
-        ": **a busy machine, so read ratios and minima**" if busy > 0.3 else ""
-    )
 
 
 def draw(found: dict) -> bool:

@@ -16,6 +16,7 @@ of about 1.
 """
 
 import sys
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,14 +25,15 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "lab"))
 import heave
 import waves_forms
+from timing import markdown
 
 CUBE = Path(__file__).parent.parent / "scenes" / "lab" / "cube.txt"
 DENSITIES = (300, 500, 700, 900)
 WAYS = {
     "dropped upright": dict(),
     "dropped tilted": dict(roll=20, pitch=35, yaw=10),
-    "dropped at 0.8 c": dict(fast=0.8, level=20, top=34, z=26),
-    "from the bottom": dict(z=3.2),
+    "dropped at 0.8 of the wave speed": dict(fast=0.8, level=20, top=34, z=26),
+    "released at the bottom": dict(z=3.2),
     "20 times softer": dict(young=50, g=0.002),
 }
 SWEEPS = 4  # entry of the fix's vector
@@ -85,19 +87,30 @@ class Pool:
         return float(np.degrees(np.arccos(min(1.0, upright.max()))))
 
 
-def settled(g=0.01, **what) -> str:
+def found(g=0.01, **what) -> tuple[float, float]:
     """Share and lean after 160 sqrt(L/g), when drag has damped everything."""
     with Pool(g=g, **what) as pool:
         pool.run(160 * (what.get("side", 6) / g) ** 0.5)
-        return f"{pool.share():.4f} {pool.lean():5.1f}"
+        return pool.share(), pool.lean()
+
+
+def settled(**what) -> str:
+    """Both as words."""
+    share, lean = found(**what)
+    return f"{share:.4f} {lean:5.1f}"
+
+
+def in_waves(density: int, **way) -> dict:
+    """What to do with a cube that is dropped, in a liquid with momentum."""
+    return dict(density=density, model="waves", calm=10 * (6 / way.get("g", 0.01)) ** 0.5, **way)
 
 
 def drafts() -> None:
     """Print the table of drafts."""
     print("immersed share, and lean in degrees, of cubes of 6^3 cells of density")
-    print(f"{'':20}" + "".join(f"{d / 1000:<15}" for d in DENSITIES))
+    print(f"{'':34}" + "".join(f"{d / 1000:<15}" for d in DENSITIES))
     for name, way in WAYS.items():
-        print(f"{name:20}" + "   ".join(settled(density=d, **way) for d in DENSITIES), flush=True)
+        print(f"{name:34}" + "   ".join(settled(density=d, **way) for d in DENSITIES), flush=True)
 
 
 def cells() -> None:
@@ -120,16 +133,18 @@ def waves() -> None:
     """Print the table of drafts in a liquid with momentum."""
     print("the first table for model waves")
     for name, way in WAYS.items():
-        calm = 10 * (6 / way.get("g", 0.01)) ** 0.5
-        cells = (settled(density=d, model="waves", calm=calm, **way) for d in DENSITIES)
-        print(f"{name:20}" + "   ".join(cells), flush=True)
+        print(f"{name:34}" + "   ".join(settled(**in_waves(d, **way)) for d in DENSITIES), flush=True)
 
 
-def bobbing() -> None:
-    """Print how cubes bob in a liquid with momentum."""
+def drafts_in_waves() -> str:
+    """The same as docs/physics-liquid.md has it, without what cubes lean."""
+    rows = [(name, *(f"{found(**in_waves(d, **way))[0]:.3f}" for d in DENSITIES)) for name, way in WAYS.items()]
+    return markdown(["way there", *(f"{d / 1000}" for d in DENSITIES)], rows)
+
+
+def bobbing_rows() -> Iterator[tuple[str, ...]]:
+    """Draft and basin, fall and period, both in potential flow, one over the other."""
     side, above = 6, 0.9
-    print("| draft; depth and width of the basin | fall; period | in potential flow | over it |")
-    print("|---|---|---|---|")
     for draft, depth, width in ((2, 10, 24), (3, 10, 24), (5, 10, 24), (3, 24, 48)):
         rest = depth + side / 2 - draft
         size = dict(side=side, half=width / 2, level=depth, top=depth + side)
@@ -140,11 +155,21 @@ def bobbing() -> None:
                 pool.run(step)
                 path.append((pool.mean("x")[2] - rest) / above)
             whole = int(step / pool.ready.certificate.timestep) * pool.ready.certificate.timestep * 0.01**0.5
-        found = waves_forms.swings(np.array(path), draft, whole)
+        own = waves_forms.swings(np.array(path), draft, whole)
         exact = waves_forms.swings(heave.bobbing(side, draft, width, depth, fine=2 if depth < 20 else 1, time=40), draft)
-        told = (f"{one.fall:.2f}; {one.period:.2f}" for one in (found, exact))
-        ratio = f"{found.fall / exact.fall:.2f}; {found.period / exact.period:.2f}"
-        print(f"| {draft} of {side}; {depth}, {width} |", " | ".join(told), "|", ratio, "|", flush=True)
+        told = (f"{one.fall:.2f}; {one.period:.2f}" for one in (own, exact))
+        ratio = f"{own.fall / exact.fall:.2f}; {own.period / exact.period:.2f}"
+        yield f"{draft} of {side}; {depth}, {width}", *told, ratio
+
+
+def bobbing() -> None:
+    """Print how cubes bob in a liquid with momentum."""
+    print(bobbing_table(), flush=True)
+
+
+def bobbing_table() -> str:
+    """The same as a table."""
+    return markdown(["draft; depth and width of the basin", "fall; period", "in potential flow", "over it"], bobbing_rows())
 
 
 def speed() -> None:

@@ -1,69 +1,114 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What the liquid costs in a run: ``python bench/liquid.py [cells across the body] [cells across the basin] [steps] [model]``.
 
-A cube in a basin half full: while it plunges in, while it bobs, at rest, and while it is still far above (the liquid sleeps).
-Printed are microseconds per step and the liquid's share of the step, in all and by part.
+A cube in a basin half full: while it plunges in, while it rolls afloat and waves go on, afloat at rest (no update comes), and
+while it is still far above (the liquid sleeps). Printed are microseconds per step and the liquid's share of the step, in all and
+by part. The table of docs/physics-liquid.md, by bench/liquid_tables.py, has besides a shallow basin of 10^5 columns.
 """
 
+import statistics
 import sys
 import time
 
 import one_thread  # noqa: F401
+from scene_texts import in_basin, plunging
+from timing import markdown
 
-SCENE = """
-gravity (0, 0, -9.81)
-liquid water {{
-  basin from ({a}, {a}, 0) to ({b}, {b}, {n})
-  density 1000
-  level {half}
-  model {model}
-}}
-object cube {{
-  shape box ({m}, {m}, {m})
-  position (0, 0, {z})
-  orientation axis (1, 2, 3) angle 20 deg
-  density 500
-  elasticity {young} Pa
-  velocity (0, 0, {v})
-}}
-control {{
-  time 100 s
-  resolution 1
-}}
-"""
 PARTS = {"flow": 7, "occupancy": 8, "coupling": 9, "liquid": 10}
+UPDATES = 4
+PLUNGING, AFLOAT, REST, ABOVE = "plunging in", "afloat, waves go on", "afloat, at rest", "nothing near"
+CASES = (PLUNGING, AFLOAT, REST, ABOVE)
+DENSITY = 900
+"""Of the cube at rest: it lies upright."""
+CALM, QUIET, LONGEST = 0.5, 0.5, 40.0
+"""Of the cube that comes to rest: calm time, time without an update that is rest, and time in which it must have come [s]."""
 
 
-def measure(what: str, warm: int, steps: int, **scene) -> None:
-    """Run one case and print it."""
+def text(what: str, edge: int, basin: int, top: float, level: float, model: str, settling: bool = False) -> str:
+    """The scene of a case. One that is settling has drag and damping, which take no part in what is measured."""
+    if what == PLUNGING:
+        return plunging(edge, basin, top, level, model)
+    if what == AFLOAT:
+        return in_basin(edge, basin, top, level, level, model)
+    if what == ABOVE:
+        return in_basin(edge, basin, top, level, 3 * top, model)
+    more = "drag 2" + (f"\n  calm {CALM} s" if model == "waves" else "")
+    upright = dict(angle=0, density=DENSITY, **(dict(more=more, damping="damping 0.1") if settling else {}))
+    return in_basin(edge, basin, top, level, level + edge * (0.5 - DENSITY / 1000), model, **upright)
+
+
+def settled(ready):
+    """Step and state of a scene where no update of the liquid has come for a while, found by all cores. Raises RuntimeError."""
+    from mdanim_lammps.engine.instance import Instance
+    from mdanim_lammps.engine.threads import with_threads
+    from mdanim_lammps.processes import cores
+
+    dt = ready.certificate.timestep
+    with with_threads(cores()), Instance(ready.plan) as instance:
+        instance.setup()
+        while instance.step * dt < LONGEST:
+            before = instance.fix_value("liquid", UPDATES)
+            instance.run(round(QUIET / dt))
+            # At the start the liquid is at rest, too, until the body has moved.
+            if instance.step * dt > 2 * QUIET and instance.fix_value("liquid", UPDATES) == before:
+                return instance.step, instance.state()
+    raise RuntimeError(f"the body has not come to rest within {LONGEST} s")
+
+
+def measure(what: str, steps: int, rounds: int = 1, **scene) -> dict:
+    """Microseconds of a step, the shares of the liquid and its parts, and updates per step: medians over rounds."""
     from mdanim_lammps.engine.instance import Instance
     from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import parse_scene
 
-    ready = prepare(parse_scene(SCENE.format(**scene)))
+    start = settled(prepare(parse_scene(text(what, **scene, settling=True)))) if what == REST else None
+    ready = prepare(parse_scene(text(what, **scene)))
+    seen: list[dict] = []
     with Instance(ready.plan) as instance:
         instance.setup()
-        instance.run(warm)
-        before = {name: instance.fix_value("liquid", k) for name, k in PARTS.items()}
-        swept = instance.fix_value("liquid", 4)
-        start = time.perf_counter()
-        instance.run(steps)
-        wall = time.perf_counter() - start
-        own = {name: instance.fix_value("liquid", k) - before[name] for name, k in PARTS.items()}
-        swept = instance.fix_value("liquid", 4) - swept
-    shares = "  ".join(f"{name} {100 * s / wall:5.2f} %" for name, s in own.items())
-    print(f"{what:22s} {1e6 * wall / steps:9.1f} us/step   {shares}   {swept / steps:.2f} sweeps/step", flush=True)
+        if not start:
+            instance.run(400 if what == AFLOAT else 20)
+            start = instance.step, instance.state()
+        for _ in range(rounds):
+            instance.put(*start)
+            instance.run(20)  # the first update after a start is none of the state
+            before = {name: instance.fix_value("liquid", k) for name, k in PARTS.items()}
+            updates = instance.fix_value("liquid", UPDATES)
+            begin = time.perf_counter()
+            instance.run(steps)
+            wall = time.perf_counter() - begin
+            seen.append({name: (instance.fix_value("liquid", k) - before[name]) / wall for name, k in PARTS.items()})
+            seen[-1] |= {"us": 1e6 * wall / steps, "updates": (instance.fix_value("liquid", UPDATES) - updates) / steps}
+    return {name: statistics.median(s[name] for s in seen) for name in seen[0]} | {"particles": ready.system.particles}
+
+
+DEEP = dict(edge=46, basin=128, top=128, level=64)
+SHALLOW = dict(edge=46, basin=317, top=96, level=48)
+"""10^5 columns."""
+BASINS = ((DEEP, "waves"), (SHALLOW, "waves"), (DEEP, "surface"))
+
+
+def table(rounds: int, steps: int = 200) -> str:
+    """What stands on the page."""
+    rows = []
+    for scene, model in BASINS:
+        for what in CASES:
+            found = measure(what, steps, rounds, model=model, **scene)
+            where = f"`{model}`, {scene['basin']}² columns, {scene['level']} deep"
+            shares = [f"{100 * found[name]:.2g} %" for name in ("liquid", "flow", "occupancy", "coupling")]
+            rows.append((where, what, found["us"], *shares, f"{found['updates']:.2g}"))
+            print(rows[-1], file=sys.stderr, flush=True)
+    head = ["liquid", "cube of 47³ particles", "µs a step", "liquid's share", "waves or automaton", "solid parts"]
+    return markdown([*head, "lift, push, drag", "updates or sweeps a step"], rows)
 
 
 def main(body: int = 46, basin: int = 128, steps: int = 200, model: str = "waves") -> None:
     """Measure and print."""
-    # A stiff body, so that the time step is small against what the liquid has to follow: the usual case.
-    common = dict(a=-basin / 2, b=basin / 2, n=basin, half=basin / 2, m=body, model=model, young=1000.0 * 9.81 * body * 50)
-    print(f"{(body + 1) ** 3:,} particles, {basin**3:,} cells; liquid = automaton or waves, occupancy and coupling")
-    fast = -((2 * 9.81 * body) ** 0.5)
-    measure("plunging in", 20, steps, z=basin / 2 + 0.3 * body, v=fast, **common)
-    measure("half in, at rest", 400, steps, z=basin / 2, v=0.0, **common)
-    measure("far above: asleep", 20, steps, z=3 * basin, v=0.0, **common)
+    print(f"{(body + 1) ** 3:,} particles, {basin**3:,} cells; flow = automaton or waves, occupancy = solid parts, and coupling")
+    for what in CASES:
+        found = measure(what, steps, edge=body, basin=basin, top=basin, level=basin / 2, model=model)
+        shares = "  ".join(f"{name} {100 * found[name]:5.2f} %" for name in PARTS)
+        print(f"{what:22s} {found['us']:9.1f} us/step   {shares}   {found['updates']:.2f} updates/step", flush=True)
 
 
 if __name__ == "__main__":

@@ -1,119 +1,155 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What threads bring: ``python bench/threads.py [rounds [threads [scene ...]]]``.
+"""What threads bring: ``python bench/threads.py [rounds [threads [scene ...]]] [--write]``.
 
-A scene is ``cube N``, of N particles along an edge, ``pool N``, the same cube as it falls into waves of 7 N columns along a side,
-or the name of a file in scenes/. Told is the wall time of a step by one thread and by several, in turns, beside the machine's own
-ceiling in the same rounds: what as many independent processes with one thread each do at once, over one alone. Where others use
-the processors, none of this says much; then the processor time of the thread that calls does, which falls by what others do for
-it. Figures are medians over rounds. A scene is run from its own beginning on, without frames.
+A scene is a name of bench/scene_texts.py, such as ``cube 30``, ``heap 208``, ``pool 46``, ``automaton 46``, ``float 1e5``,
+``hail 64``, or the name of a file in scenes/. Told is the wall time of a step by one thread and by several, in turns, beside the
+machine's own ceiling in the same rounds: what as many independent processes with one thread each do at once, over one alone.
+Where others use the processors, none of this says much; then the processor time of the thread that calls does, which falls by
+what others do for it. Figures are medians over rounds. All see the same steps of a scene in a round, without frames.
+``--write`` puts the table into docs/decisions/threads.md.
 """
 
 from __future__ import annotations
 
+import argparse
 import os
 import statistics
-import sys
 import time
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-SCENES = Path(__file__).resolve().parents[1] / "scenes"
-CUBE = """gravity (0, 0, -9.81)
-object a {{ shape box ({0}, {0}, {0}) cm position (0, 0, 0) density 1000 elasticity 1 MPa drag 1e-3 }}
-control {{ time 1 s  resolution 1 cm }}
-"""
-POOL = """gravity (0, 0, -9.81)
-object a {{ shape box ({0}, {0}, {0}) cm position (0, 0, {0}) cm density 500 elasticity 1 MPa velocity (0, 0, -1) }}
-liquid w {{ basin from (-{1}, -{1}, 0) cm to ({1}, {1}, {2}) cm density 1000 level {3} cm model waves }}
-control {{ time 1 s  resolution 1 cm }}
-"""
+from scene_texts import scene_of, warm
+from timing import machine, markdown, replace_between
+
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "decisions" / "threads.md"
 ALONE, SHARED, AT_ONCE = "alone", "shared", "at once"
-ROUNDS, PARTICLE_STEPS, NAMES = 9, 8_000_000, ("cube 30", "cube 60", "beam", "crowd", "pile")
+ROUNDS = 9
+NAMES = ("cube 30", "cube 60", "beam", "crowd", "heap 208", "pool 46", "automaton 46", "float 1e5")
+FIRST_STEPS, PARTICLE_STEPS, SECONDS = 20, 8_000_000, 2.0
+"""Steps that are not measured; the most that are measured at once, times particles, and how long they may take about."""
 
 
 def serve(pipe: Connection, name: str, threads: dict[str, int]) -> None:
-    """Run the next steps of an instance with so many threads when asked for it by its name.
+    """Run steps of an instance with so many threads when asked for it by its name: (name, steps).
 
-    Tell the seconds that passed, and those that this thread had a processor.
+    Tell the seconds that passed, and those that this thread had a processor. Before that comes the state from which the scene is
+    measured, sent by who has it already, else None; told are particles, seconds of a step, and that state.
     """
     from mdanim_lammps.engine.instance import Instance
     from mdanim_lammps.engine.threads import with_threads
     from mdanim_lammps.run.prepare import prepare
-    from mdanim_lammps.scene.parse import load_scene, parse_scene
 
-    kind, _, edge = name.partition(" ")
-    if kind == "cube":
-        scene = parse_scene(CUBE.format(int(edge) - 1))
-    elif kind == "pool":
-        scene = parse_scene(POOL.format(n := int(edge) - 1, 7 * n // 2, 2 * n, n // 2))
-    else:
-        scene = load_scene(SCENES / f"{name}.txt")
-    ready = prepare(scene)
-    instances = {}
+    ready = prepare(scene_of(name))
+    state = pipe.recv() or warm(name, ready)
+    instances, first = {}, []
     for who, number in threads.items():
         with with_threads(number):
             instances[who] = Instance(ready.plan)
         instances[who].setup()
-    steps = max(20, PARTICLE_STEPS // ready.system.particles)
-    pipe.send((ready.system.particles, steps))
-    while (who := pipe.recv()) is not None:
+        if state:
+            instances[who].put(*state)
+        start = time.perf_counter()
+        instances[who].run(FIRST_STEPS)
+        first.append((time.perf_counter() - start) / FIRST_STEPS)
+    pipe.send((ready.system.particles, first[0], state))
+    while (asked := pipe.recv()) is not None:
+        who, steps = asked
         start, start_here = time.perf_counter(), time.thread_time()
         instances[who].run(steps)
         pipe.send((time.perf_counter() - start, time.thread_time() - start_here))
 
 
-def measure(name: str, threads: int, rounds: int) -> None:
-    """Print one row."""
-    context = get_context("spawn")
-    pipes, processes = [], []
-    for n in range(threads):
-        own, other = context.Pipe()
-        # An instance for each question: all see the same part of the scene in a round.
-        asked = {AT_ONCE: 1} if n else {ALONE: 1, SHARED: threads, AT_ONCE: 1}
-        processes.append(context.Process(target=serve, args=(other, name, asked), daemon=True))
-        processes[-1].start()
-        pipes.append(own)
-    ready = [pipe.recv() for pipe in pipes]
-    particles, steps = ready[0]
+class Servers:
+    """Processes that run steps of a scene; a context manager. The first one answers all of ``first``, the others ``others``."""
 
-    def seconds(asked: list[Connection], who: str) -> tuple[float, float]:
-        for pipe in asked:
-            pipe.send(who)
-        return max(pipe.recv() for pipe in asked)
+    def __init__(self, name: str, first: dict[str, int], others: dict[str, int] | None = None, number: int = 1):
+        context = get_context("spawn")
+        self.pipes: list[Connection] = []
+        self._processes = []
+        state = None
+        for n in range(number):
+            own, other = context.Pipe()
+            asked = others if n else first
+            self._processes.append(context.Process(target=serve, args=(other, name, asked), daemon=True))
+            self._processes[-1].start()
+            other.close()
+            own.send(state)
+            self.pipes.append(own)
+            particles, seconds, state = own.recv()
+            if n == 0:
+                self.particles = particles
+                self.steps = max(FIRST_STEPS, min(PARTICLE_STEPS // particles, round(SECONDS / seconds)))
 
-    alone, shared, at_once = [], [], []
-    for _ in range(rounds):
-        alone.append(seconds(pipes[:1], ALONE))
-        shared.append(seconds(pipes[:1], SHARED))
-        at_once.append(seconds(pipes, AT_ONCE))
-    for pipe, process in zip(pipes, processes):
-        pipe.send(None)
-        process.join()
+    def __enter__(self) -> Servers:
+        return self
 
-    def median(told: list[tuple[float, float]], n: int) -> float:
-        return 1e6 * statistics.median(t[n] for t in told) / steps
+    def __exit__(self, *_) -> None:
+        for pipe, process in zip(self.pipes, self._processes):
+            if process.is_alive():
+                pipe.send(None)
+            process.join()
 
-    one, many, both = (median(told, 0) for told in (alone, shared, at_once))
-    one_here, many_here = median(alone, 1), median(shared, 1)
+    def seconds(self, who: str, number: int = 1) -> tuple[float, float]:
+        """Of a step, on so many processes at once: those that passed, and those of the thread that calls."""
+        for pipe in self.pipes[:number]:
+            pipe.send((who, self.steps))
+        wall, here = max(pipe.recv() for pipe in self.pipes[:number])
+        return wall / self.steps, here / self.steps
+
+
+HEAD = (
+    *("scene", "particles", "µs a step, 1 thread", "{} threads", "times as fast", "ceiling", "over the ceiling"),
+    *("µs of the calling thread, 1 thread", "{} threads", "ratio", "load"),
+)
+
+
+def measure(name: str, threads: int, rounds: int) -> tuple[str, ...]:
+    """One row."""
+    # An instance for each question: all see the same part of the scene in a round.
+    with Servers(name, {ALONE: 1, SHARED: threads, AT_ONCE: 1}, {AT_ONCE: 1}, threads) as servers:
+        turns = [
+            [servers.seconds(who, number) for who, number in ((ALONE, 1), (SHARED, 1), (AT_ONCE, threads))] for _ in range(rounds)
+        ]
+
+    def median(who: int, clock: int) -> float:
+        return 1e6 * statistics.median(turn[who][clock] for turn in turns)
+
+    one, many, both, one_here, many_here = median(0, 0), median(1, 0), median(2, 0), median(0, 1), median(1, 1)
     ceiling, faster = threads * one / both, one / many
-    print(
-        f"| {name} | {particles} | {one:.0f} | {many:.0f} | {faster:.2f} | {ceiling:.2f} | {faster / ceiling:.2f} "
-        f"| {one_here:.0f} | {many_here:.0f} | {one_here / many_here:.2f} | {os.getloadavg()[0]:.1f} |",
-        flush=True,
+    return (
+        *(
+            name,
+            f"{servers.particles}",
+            f"{one:.0f}",
+            f"{many:.0f}",
+            f"{faster:.2f}",
+            f"{ceiling:.2f}",
+            f"{faster / ceiling:.2f}",
+        ),
+        *(f"{one_here:.0f}", f"{many_here:.0f}", f"{one_here / many_here:.2f}", f"{os.getloadavg()[0]:.1f}"),
     )
 
 
-def main(rounds: int = ROUNDS, threads: int = 2, names: tuple[str, ...] = NAMES) -> None:
+def main() -> None:
     """Measure scenes and print a table in Markdown."""
-    print(
-        f"| scene | particles | us a step, 1 thread | {threads} threads | times as fast | ceiling | over the ceiling "
-        f"| us of the calling thread, 1 thread | {threads} threads | ratio | load |"
-    )
-    print("|---|---|---|---|---|---|---|---|---|---|---|")
-    for name in names:
-        measure(name, threads, rounds)
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("rounds", nargs="?", type=int, default=ROUNDS)
+    parser.add_argument("threads", nargs="?", type=int, default=2)
+    parser.add_argument("scenes", nargs="*", metavar="scene", help=f"by default: {', '.join(NAMES)}")
+    parser.add_argument("--write", action="store_true")
+    options = parser.parse_intermixed_args()
+    head = [word.format(options.threads) for word in HEAD]
+    names = "".join(f' "{name}"' for name in options.scenes)
+    note = f"`python bench/threads.py {options.rounds} {options.threads}{names}`. {machine()}."
+    print(f"{note}\n\n{markdown(head, [])}", flush=True)
+    rows = []
+    for name in options.scenes or NAMES:
+        rows.append(measure(name, options.threads, options.rounds))
+        print("| " + " | ".join(rows[-1]) + " |", flush=True)
+    if options.write:
+        replace_between(PAGE, "threads", f"{note}\n\n{markdown(head, rows)}")
 
 
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:3]), *([tuple(sys.argv[3:])] if sys.argv[3:] else []))
+    main()

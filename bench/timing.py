@@ -5,6 +5,8 @@ A bench that ``bench/all.py`` prints is a module with ``measure(rounds, quick) -
 dicts of numbers and words that JSON holds.
 """
 
+import os
+import platform
 import statistics
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -59,6 +61,18 @@ def markdown(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
     lines = [head, ["---"] * len(head), *([cell(v) for v in row] for row in rows)]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def machine() -> str:
+    """Processor and load, in a line."""
+    cpu = next(
+        (line.split(":")[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")),
+        platform.processor(),
+    )
+    busy = os.getloadavg()[0] / os.cpu_count()
+    return f"{cpu}, {os.cpu_count()} cores; load at the start {busy:.1f} per core" + (
+        ": **a busy machine, so read ratios and minima**" if busy > 0.3 else ""
+    )
 
 
 def replace_between(page: Path, name: str, text: str) -> None:

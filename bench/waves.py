@@ -153,16 +153,24 @@ def cost(rounds: int = 5) -> list[tuple]:
     return rows
 
 
+TABLES = {
+    "forms": (["what", "found", "closed form"], closed_forms),
+    "bodies": (["what", "found", "expected"], bodies),
+    "coupling": (["1/M", "a", "growth for ωΔt = 0, 0.1, 0.5, 1, 2, 3, 5, 10"], coupling),
+    "cost": (["columns", "ms an update", "goal", "ns a column", "iterations"], cost),
+}
+
+
+def table(which: str, *arguments) -> str:
+    """One of them, measured now."""
+    head, rows = TABLES[which]
+    return markdown(head, rows(*arguments))
+
+
 def main(which: str = "") -> None:
     """Measure and print."""
-    if which in ("", "forms"):
-        print(markdown(["what", "found", "closed form"], closed_forms()), end="\n\n")
-    if which in ("", "bodies"):
-        print(markdown(["what", "found", "expected"], bodies()), end="\n\n")
-    if which in ("", "coupling"):
-        print(markdown(["1/M", "a", "growth for ωΔt = 0, 0.1, 0.5, 1, 2, 3, 5, 10"], coupling()), end="\n\n")
-    if which in ("", "cost"):
-        print(markdown(["columns", "ms an update", "goal", "ns a column", "iterations"], cost()))
+    for name in [which] if which else TABLES:
+        print(table(name), end="\n\n", flush=True)
 
 
 if __name__ == "__main__":

@@ -57,7 +57,7 @@ def check_gallery(site: Path, place: Path) -> None:
 
 def words_of(page: Path) -> set[str]:
     """Words of a page as they are read, without code, formulas, addresses and names of files."""
-    text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.S | re.M)
+    text = re.sub(r"^```.*?^```|<!--.*?-->", "", page.read_text(encoding="utf-8"), flags=re.S | re.M)
     text = re.sub(r"``.*?``|`[^`]*`|\$[^$]*\$|\]\([^)]*\)|<[^>]+>|https?://\S+", " ", text)
     words = re.findall(r"(?<![\w./\\-])[A-Za-z][a-z]+(?:['’][a-z]+)?(?![\w/\\])", text)
     return {word.lower().replace("’", "'").removesuffix("'s") for word in words}
