@@ -152,7 +152,7 @@ def executors_line(executors: int, control: str | None) -> str:
 
 
 def speedup_lines(p: SpeedupForecast) -> list[str]:
-    """Below `executors_line`: the most that executors can bring at first, and why it is not more."""
+    """Below `executors_line`: the most that executors can bring at first, why it is not more, and what brings more."""
     when = "in the first second" if p.seconds == 1.0 else f"in the first {number(p.seconds, 2)} s"
     faster = "no faster than one" if p.faster < 1.05 else f"at most {number(p.faster, 2)} times as fast as one"
     if p.faster > 0.9 * p.executors:
@@ -164,7 +164,8 @@ def speedup_lines(p: SpeedupForecast) -> list[str]:
         else (f"{p.largest} of {p.objects} objects, {work} of the work, are near each other and run together")
     )
     team = f", on {number(p.team, 2)} executors at once" if p.team > 1.0 else ""
-    return [f"{MARGIN}{when} of the film {faster}:", f"{MARGIN}{what}{team}"]
+    way_out = "on one host leave out -n: threads share such work on all cores"
+    return [f"{MARGIN}{when} of the film {faster}:", f"{MARGIN}{what}{team}", f"{MARGIN}{way_out}"]
 
 
 def spread_line(timeline: Timeline, folder: Path) -> str:

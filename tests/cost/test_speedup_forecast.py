@@ -88,6 +88,7 @@ def test_what_is_heavy_runs_on_a_team(prepared):
             [
                 "in the first second of the film at most 1.4 times as fast as one:",
                 "36 of 64 objects, 56 % of the work, are near each other and run together",
+                "on one host leave out -n: threads share such work on all cores",
             ],
             id="some near",
         ),
@@ -96,6 +97,7 @@ def test_what_is_heavy_runs_on_a_team(prepared):
             [
                 "in the first 0.5 s of the film no faster than one:",
                 "3 of 3 objects, all of the work, are near each other and run together",
+                "on one host leave out -n: threads share such work on all cores",
             ],
             id="one island",
         ),
@@ -104,13 +106,14 @@ def test_what_is_heavy_runs_on_a_team(prepared):
             [
                 "in the first second of the film at most 1.6 times as fast as one:",
                 "one object is 93 % of the work, on 2 executors at once",
+                "on one host leave out -n: threads share such work on all cores",
             ],
             id="a team",
         ),
     ],
 )
 def test_lines_say_what_to_expect(found, lines):
-    """Say how much faster at most, and why not more."""
+    """Say how much faster at most, why not more, and that threads bring more."""
     assert [line.strip() for line in speedup_lines(found)] == lines
 
 
