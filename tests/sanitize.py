@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The plugin under the address and the undefined-behaviour sanitizer: its tests, and scenes on one and two ranks. What threads
-share of passes, contact and waves, under the thread sanitizer, without LAMMPS and Python, which do not run under it.
+share of passes, contact, cells and waves, under the thread sanitizer, without LAMMPS and Python, which do not run under it.
 
 ``make sanitize`` runs it. Exit code 0 means that both sanitizers report a planted error, that all tests and scenes pass, and that
 no process has reported anything else. Reports lie in build/sanitize/reports.
@@ -76,6 +76,7 @@ END = "control {{ time 0.2 s frames 50 fps resolution 1 cm  {} }}\n"
 THREADS = {
     "threads_of_passes": ("engine/*.cpp",),
     "threads_of_contact": ("contact/*.cpp", "engine/team.cpp", "engine/contact_search.cpp", "engine/positions.cpp"),
+    "threads_of_cells": ("liquid/automaton.cpp", "liquid/occupancy.cpp", "engine/team.cpp"),
     "threads_of_waves": ("liquid/waves*.cpp", "liquid/span.cpp", "engine/team.cpp"),
 }
 """Programs of tests/lab, and what of plugin/ they need."""
