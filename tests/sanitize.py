@@ -80,6 +80,8 @@ THREADS = {
     "threads_of_waves": ("liquid/waves*.cpp", "liquid/span.cpp", "engine/team.cpp"),
 }
 """Programs of tests/lab, and what of plugin/ they need."""
+SET = ("-DMDANIM_SET=common", "-DMDANIM_LANES=4")
+"""The instructions that they are compiled for."""
 LEFT_OUT = ("kernels.cpp", "contact_kernel.cpp", "bodies_file.cpp")
 """Files that choose among sets of instructions, where there is one, or read files."""
 WORDS = {"friction": "friction 0.4", "surface": "contact-model surface"}
@@ -178,7 +180,7 @@ def run_threads(name: str) -> bool:
     program = WORK / name
     parts = sorted(path for pattern in THREADS[name] for path in (ROOT / "plugin").glob(pattern) if path.name not in LEFT_OUT)
     options = ["-std=c++17", "-g", "-O1", "-fsanitize=thread", "-ffp-contract=off", "-Wno-psabi"]
-    options += ["-DMDANIM_SET=common", "-DMDANIM_LANES=4", f"-I{ROOT / 'plugin'}", "-pthread"]
+    options += [*SET, f"-I{ROOT / 'plugin'}", "-pthread"]
     source = ROOT / "tests" / "lab" / f"{name}.cpp"
     subprocess.run([compiler(), *options, source, *parts, "-o", program], check=True)
     print("+", program, flush=True)
