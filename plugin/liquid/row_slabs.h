@@ -22,8 +22,8 @@ class RowSlabs {
 
   // Calls work(n, rows, slab) for n from 0 to size - 1, each of which takes one thread about so many ns. It may write into these
   // rows; where that is not enough it returns false, writes nothing, and is called again with all rows of the grid, by one
-  // thread. `row_of(n)` is the row of its middle, which may lie outside. The order of calls is any, but no two calls at a time
-  // are of the same slab, a number from 0 to slabs_of(rows) - 1.
+  // thread. `row_of(n)` is the row of its middle, or any one where that lies outside. The order of calls is any, but no two calls
+  // at a time are of the same slab, a number from 0 to slabs_of(rows) - 1.
   template <class RowOf, class Work>
   void each(const Threads &threads, int rows, long size, double ns, const RowOf &row_of, const Work &work)
   {

@@ -484,4 +484,4 @@ double FixMdanimLiquid::compute_array(int row, int column)
 }
 
 double FixMdanimLiquid::memory_usage()
-{ return basin->bytes() + static_cast<double>(near.capacity() * sizeof(int)) + buoyancy->bytes(); }
+{ return basin->bytes() + static_cast<double>(near.capacity() * sizeof(int) + slabs.bytes()) + buoyancy->bytes(); }

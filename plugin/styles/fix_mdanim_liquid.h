@@ -99,6 +99,7 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   mdanim::Basin::AddBodies bodies(bool still);
   mdanim::Basin::AddBodies bodies_near();
   std::vector<int> particles_of(bool still) const;
+  int row_at(double y) const;
   void add_particles(mdanim::Occupancy &into, const std::vector<int> &these, double below) const;
   void add_bodies(mdanim::Occupancy &into, const std::vector<int> &these, const mdanim::NearCells &cells, bool still,
                   double below);

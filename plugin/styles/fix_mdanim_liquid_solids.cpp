@@ -45,6 +45,13 @@ std::vector<int> FixMdanimLiquid::particles_of(bool still) const
   return found;
 }
 
+// Row of cells at a place along y [distance]; any one where that is outside or no number.
+int FixMdanimLiquid::row_at(double y) const
+{
+  const double row = (y - basin->shape.low.y) / basin->shape.cell.y;
+  return row > 0.0 && row < basin->shape.ny ? static_cast<int>(row) : 0;
+}
+
 void FixMdanimLiquid::add_particles(Occupancy &into, const std::vector<int> &these, double below) const
 {
   for (const int i : these) {
@@ -62,10 +69,12 @@ void FixMdanimLiquid::add_bodies(Occupancy &into, const std::vector<int> &these,
   const auto is_still = [this](int i) { return (atom->mask[i] & still_bit) != 0; };
   const auto row_of = [&](long n) {
     const int *const corner = cells.cells[n].corner;
-    const double middle = 0.5 * (x[corner[0]][1] + x[corner[6]][1]);
-    return static_cast<int>(std::clamp((middle - basin->shape.low.y) / basin->shape.cell.y, -1.0, basin->shape.ny + 1.0));
+    return row_at(0.5 * (x[corner[0]][1] + x[corner[6]][1]));
   };
-  std::vector<CellBox> reached(RowSlabs::slabs_of(basin->shape.ny));
+  struct alignas(64) Reached {    // so that threads do not write into one line of the cache
+    CellBox box;
+  };
+  std::vector<Reached> reached(RowSlabs::slabs_of(basin->shape.ny));
   const auto add = [&](long n, const RowSlabs::Rows &rows, int slab) {
     const NearCells::Cell &cell = cells.cells[n];
     if (cell.corner[0] >= atom->nlocal) return true;
@@ -76,10 +85,10 @@ void FixMdanimLiquid::add_bodies(Occupancy &into, const std::vector<int> &these,
       corner[k] = basin->in_cells(x[cell.corner[k]]);
       bottom = std::min(bottom, corner[k].z);
     }
-    return bottom > below || into.add(corner.data(), smooth, cell.layers, rows, reached[slab]);
+    return bottom > below || into.add(corner.data(), smooth, cell.layers, rows, reached[slab].box);
   };
   slabs.each(threads, basin->shape.ny, static_cast<long>(cells.cells.size()), CELL, row_of, add);
-  for (const CellBox &of_slab : reached) into.touched.take_in(of_slab);
+  for (const Reached &of_slab : reached) into.touched.take_in(of_slab.box);
   if (smooth && !still) add_mass(into, these, below);
 }
 
@@ -90,9 +99,7 @@ void FixMdanimLiquid::add_mass(Occupancy &into, const std::vector<int> &these, d
   const double pressure = buoyancy->density() * basin->g * basin->shape.cell.z;    // of a cell of liquid
   const double base = basin->shape.cell.x * basin->shape.cell.y * basin->shape.cell.z;
   const double liquid = buoyancy->density() * basin->cell_volume();
-  const auto row_of = [&](long n) {
-    return static_cast<int>(std::clamp(basin->in_cells(atom->x[these[n]]).y, -1.0, basin->shape.ny + 1.0));
-  };
+  const auto row_of = [&](long n) { return row_at(atom->x[these[n]][1]); };
   if (!these.empty()) into.begin_mass();
   slabs.each(threads, basin->shape.ny, static_cast<long>(these.size()), PARTICLE, row_of,
              [&](long n, const RowSlabs::Rows &, int) {
