@@ -33,8 +33,10 @@ double scatter(std::uint64_t key, std::uint64_t number) { return static_cast<dou
 void Drops::update(Waves &waves, double dt, std::uint64_t when)
 {
   if (share <= 0.0 && drops.empty()) return;
-  fly(dt);
-  land(waves);
+  std::vector<double> from;    // heights
+  for (const Drop &drop : drops) from.push_back(drop.x.z);
+  fly(waves.solids(), dt);
+  land(waves, from);
   if (share > 0.0 && !waves.at_rest()) leave(waves, dt, when);
   while (drops.size() > most) merge();
 }
@@ -97,33 +99,55 @@ void Drops::leave(Waves &waves, double dt, std::uint64_t when)
     }
 }
 
-// Walls stop drops, which fall along them.
-void Drops::fly(double dt)
+// Walls and solids stop drops, which fall along them. On what is below them they land.
+void Drops::fly(const SolidParts &solid, double dt)
 {
+  const auto is_solid = [&](const Vec3 &at) {
+    if (!(at.z >= 0.0 && at.z < solid.nz)) return false;
+    return 2 * solid.at(static_cast<int>(at.y) * nx + static_cast<int>(at.x), static_cast<int>(at.z)) >= SolidParts::FULL;
+  };
+
   const auto stop = [](double &x, double &v, int cells) {
     if (x >= 0.0 && x < cells) return;
     x = x < 0.0 ? 0.0 : std::nextafter(static_cast<double>(cells), 0.0);
     v = 0.0;
   };
+  // Along one axis after the other, each from where there is nothing solid.
+  const auto go = [&](Drop &drop, double &x, double &v, double to) {
+    const bool was_solid = is_solid(drop.x);
+    const double from = x;
+    x = to;
+    if (was_solid || !is_solid(drop.x)) return;
+    x = from;
+    v = 0.0;
+  };
   for (Drop &drop : drops) {
-    drop.x.x += dt * drop.v.x;
-    drop.x.y += dt * drop.v.y;
-    drop.x.z += dt * (drop.v.z - 0.5 * dt);
+    const auto aside = [&](double &x, double &v, int cells) {
+      double to = x + dt * v;
+      stop(to, v, cells);
+      go(drop, x, v, to);
+    };
+    aside(drop.x.x, drop.v.x, nx);
+    aside(drop.x.y, drop.v.y, ny);
+    const double to = drop.x.z + dt * (drop.v.z - 0.5 * dt);
     drop.v.z -= dt;
-    stop(drop.x.x, drop.v.x, nx);
-    stop(drop.x.y, drop.v.y, ny);
+    if (to > drop.x.z)
+      go(drop, drop.x.z, drop.v.z, to);
+    else
+      drop.x.z = to;
   }
 }
 
-// Into the topmost span of the column; what finds no room there waits above it.
-void Drops::land(Waves &waves)
+// Into the span that is below where the drop was; what finds no room there waits above it.
+void Drops::land(Waves &waves, const std::vector<double> &from)
 {
   std::size_t left = 0;
-  for (Drop &drop : drops) {
+  for (std::size_t n = 0; n < drops.size(); ++n) {
+    Drop &drop = drops[n];
     const int column = static_cast<int>(drop.x.y) * nx + static_cast<int>(drop.x.x);
-    const double head = waves.top_of(column).head;
+    const double height = std::max(drop.x.z, from[n]), head = waves.head_below(column, height);
     if (drop.x.z <= head) {
-      drop.units -= waves.give(column, head, drop.units, drop.v.x, drop.v.y);
+      drop.units -= waves.give(column, height, drop.units, drop.v.x, drop.v.y);
       drop.x.z = head;
       drop.v.z = 0.0;
     }
@@ -161,7 +185,8 @@ void Drops::set_state(const std::uint8_t *bytes, std::size_t size)
   std::vector<Drop> taken(size / sizeof(Drop));
   if (size) std::memcpy(taken.data(), bytes, size);
   for (const Drop &drop : taken)
-    if (drop.units <= 0 || !(drop.x.x >= 0.0 && drop.x.x < nx && drop.x.y >= 0.0 && drop.x.y < ny && std::isfinite(drop.x.z)))
+    if (drop.units <= 0 || !(drop.x.x >= 0.0 && drop.x.x < nx && drop.x.y >= 0.0 && drop.x.y < ny &&
+                             std::isfinite(drop.x.z + drop.v.x + drop.v.y + drop.v.z)))
       throw std::runtime_error(whose + "is damaged: a drop of " + std::to_string(drop.units) + " units is at (" +
                                std::to_string(drop.x.x) + ", " + std::to_string(drop.x.y) + ", " + std::to_string(drop.x.z) +
                                ")");

@@ -41,8 +41,8 @@ class Drops {
 
  private:
   void leave(Waves &waves, double dt, std::uint64_t when);
-  void fly(double dt);
-  void land(Waves &waves);
+  void fly(const SolidParts &solid, double dt);
+  void land(Waves &waves, const std::vector<double> &from);
   void merge();
 
   int nx, ny;

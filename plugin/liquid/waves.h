@@ -74,6 +74,7 @@ class Waves {
   // Takes units out of such a span; a film stays. Returns how many.
   Units take(int column, double height, Units most);
   double held_below(int column, double height) const;    // of such a span
+  double head_below(int column, double height) const;    // its surface
   // The topmost span of a column: its floor, surface and volume, the speed at which the surface has just risen, the mean
   // velocity of the liquid, and how fast the liquid around could shoot up there (Bernoulli).
   struct Top {

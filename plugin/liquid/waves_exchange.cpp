@@ -64,6 +64,12 @@ double Waves::held_below(int column, double height) const
   return n < 0 ? 0.0 : static_cast<double>(content[place(column, n)]) / UNITS_PER_CELL;
 }
 
+double Waves::head_below(int column, double height) const
+{
+  const int n = span_below(column, height);
+  return n < 0 ? 0.0 : head_of(solid, span[place(column, n)], content[place(column, n)]).height;
+}
+
 Waves::Top Waves::top_of(int column) const
 {
   if (spans_in[column] == 0) return {};

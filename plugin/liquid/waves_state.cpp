@@ -4,6 +4,7 @@
 #include "liquid/waves.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -12,7 +13,7 @@ namespace mdanim {
 
 namespace {
 
-constexpr std::int64_t WAVES_VERSION = 1;
+constexpr std::int64_t WAVES_VERSION = 2;
 
 struct WavesStateHead {
   std::int64_t version, nx, ny, nz, spans, links, units, resting;
@@ -86,11 +87,16 @@ void Waves::set_state(const std::uint8_t *bytes, std::size_t size)
   std::memcpy(spans.data(), bytes + sizeof head + parts, of_spans);
   std::memcpy(links.data(), bytes + sizeof head + parts + of_spans, of_links);
   Units held = 0;
+  bool damaged = false;
   for (const SpanRecord &record : spans) {
     if (record.content < 0)
       throw std::runtime_error(whose + "is damaged: a span holds " + std::to_string(record.content) + " units");
     held += record.content;
+    damaged =
+        damaged || !std::isfinite(record.full + record.rest + record.phi + record.delta + record.last_delta + record.yields);
   }
+  for (const LinkRecord &record : links) damaged = damaged || !std::isfinite(record.u + record.q);
+  if (damaged) throw std::runtime_error(whose + "is damaged: it holds what is no number");
   if (held != head.units)
     throw std::runtime_error(whose + "is damaged: it holds " + std::to_string(held) + " units of liquid, not " +
                              std::to_string(head.units));

@@ -73,6 +73,24 @@ def test_a_drop_lands_on_what_is_topmost():
     assert spans.content[spans.column == 10].tolist() == [2000]
 
 
+def test_solids_stop_drops():
+    """What flies at a block falls along it, what flies up below a roof comes down again, each into the liquid below."""
+    part = np.zeros((16, 3, 12), int)
+    part[:9, :, 6:8] = 4096  # a block
+    part[9, :, :6] = 4096  # a roof
+    w = lab.Waves(part.shape)
+    w.solids(part)
+    w.pour(2.0, above=np.zeros((3, 12)))
+    before = w.volume
+    drops = Drops(w, share=0.0)
+    put(drops, ((1.5, 1.5, 5), (3, 0, 0), UNIT // 4), ((0.5, 1.5, 7), (0, 0, 6), UNIT // 8))
+    while len(drops.all):
+        for drop in drops.all:
+            assert drop["x"][0] < 6 and drop["x"][2] < 9
+        drops.update(0.1)
+    assert (w.volume - before)[1, [5, 0]].tolist() == [1 / 4, 1 / 8] and (w.volume - before).sum() == 3 / 8
+
+
 def test_drops_bring_their_momentum():
     """Rain that falls aslant sets a channel in motion, by its mass times its velocity."""
     w = lab.Waves((20, 1, 60))
@@ -208,6 +226,7 @@ def test_drops_go_on_from_a_state_to_the_last_bit():
         (lambda d: np.array([((9.0, 1, 1), (0, 0, 0), 5)], DROP), r"a drop of 5 units is at \(9"),
         (lambda d: np.array([((1, 1, 1), (0, 0, 0), -5)], DROP), "a drop of -5 units"),
         (lambda d: np.array([((1, np.nan, 1), (0, 0, 0), 5)], DROP), "is damaged"),
+        (lambda d: np.array([((1, 1, 1), (0, np.nan, 0), 5)], DROP), "is damaged"),
     ],
 )
 def test_a_damaged_state_of_drops_is_refused(damage, message):

@@ -457,10 +457,11 @@ def test_rest_is_part_of_the_state():
         (lambda state: np.concatenate([state[:8], [7], state[9:]]), "a grid of 7 x 20 x 24 cells, this one has 20 x 20 x 24"),
         (lambda state: np.concatenate([state[:48], [state[48] ^ 1], state[49:]]), "units of liquid, not"),
         (lambda state: np.concatenate([state[:64], np.full(24 * 800, 16), state[64 + 24 * 800 :]]), "spans and"),
+        (lambda state: np.concatenate([state[:-8], np.array([np.nan]).view(np.uint8)]), "no number"),
     ],
 )
 def test_a_damaged_state_is_refused_and_changes_nothing(damage, message):
-    """Too short, of another version or grid, with other solids or another sum."""
+    """Too short, of another version or grid, with other solids or another sum, or with what is no number."""
     w, _ = splash(12)
     before = w.state
     with pytest.raises(RuntimeError, match=message):
