@@ -129,20 +129,20 @@ bool Automaton::exchanges(const Layer &lower, const Layer &upper)
 std::uint32_t Automaton::Blocks::word(int block, int z) const
 { return static_cast<std::uint32_t>(z / LAYERS_PER_WORD) * nx * ny + block; }
 
-void Automaton::horizontal(Strip &strip, int z)
+void Automaton::horizontal(Band &band, int z)
 {
-  if (z >= cells.nz || !mixes(strip.layers[z])) return;
-  Blocks &blocks = strip.blocks;
-  const int in_layer = blocks.nx * blocks.ny, own = strip.first * blocks.nx, end = strip.last * blocks.nx;
+  if (z >= cells.nz || !mixes(band.layers[z])) return;
+  Blocks &blocks = band.blocks;
+  const int in_layer = blocks.nx * blocks.ny, own = band.first * blocks.nx, end = band.last * blocks.nx;
   std::uint16_t *const low = blocks.draws.data(), *const high = low + in_layer;
-  if (strip.group != z / LAYERS_PER_WORD) {
-    strip.group = z / LAYERS_PER_WORD;
+  if (band.group != z / LAYERS_PER_WORD) {
+    band.group = z / LAYERS_PER_WORD;
     kernels->draw_words(blocks.key, blocks.word(own, z), end - own, low + own, high + own);
   }
   const int bits = 2 * (z % LAYERS_PER_WORD), shift = bits % 16;
   const std::uint16_t *const draws = bits < 16 ? low : high;
-  const std::size_t first = cells.at(blocks.first, blocks.first + 2 * strip.first, z);
-  kernels->permute(&cells.content[first], &cells.open[first], cells.row, blocks.nx, strip.last - strip.first, draws + own, shift);
+  const std::size_t first = cells.at(blocks.first, blocks.first + 2 * band.first, z);
+  kernels->permute(&cells.content[first], &cells.open[first], cells.row, blocks.nx, band.last - band.first, draws + own, shift);
   std::uint8_t *layer = &cells.content[z * cells.layer];
   for (const Broken &b : blocks.broken[z]) {
     const int block = static_cast<int>(b.block);
@@ -150,15 +150,15 @@ void Automaton::horizontal(Strip &strip, int z)
   }
 }
 
-void Automaton::vertical_pair(Strip &strip, int z)
+void Automaton::vertical_pair(Band &band, int z)
 {
-  if (z < 0 || z + 1 >= cells.nz || !exchanges(strip.layers[z], strip.layers[z + 1])) return;
-  const auto row_of = [&](int block) { return std::clamp(strip.blocks.first + 2 * block, 0, cells.ny); };
-  const int low = row_of(strip.first), rows = row_of(strip.last) - low;
+  if (z < 0 || z + 1 >= cells.nz || !exchanges(band.layers[z], band.layers[z + 1])) return;
+  const auto row_of = [&](int block) { return std::clamp(band.blocks.first + 2 * block, 0, cells.ny); };
+  const int low = row_of(band.first), rows = row_of(band.last) - low;
   const std::size_t lower = cells.at(-1, low, z), upper = lower + cells.layer;
   if (kernels->exchange(&cells.content[lower], &cells.content[upper], &cells.open[lower], &cells.open[upper],
                         static_cast<std::size_t>(rows) * cells.row, vertical))
-    strip.layers[z] = strip.layers[z + 1] = {ANYTHING, false, true};
+    band.layers[z] = band.layers[z + 1] = {ANYTHING, false, true};
 }
 
 // What one thread takes for it, about [ns].
@@ -182,9 +182,9 @@ void Automaton::sweep(std::uint64_t when)
   });
   even.key = draw_key(seed, when, Phase::EVEN_BLOCKS);
   odd.key = draw_key(seed, when, Phase::ODD_BLOCKS);
-  if (threads.pays(cost_of_sweep())) return sweep_in_strips();
+  if (threads.pays(cost_of_sweep())) return sweep_in_bands();
   // All four steps in one pass, so that a layer is still in the cache: each needs only what is done by then.
-  Strip evens{even, 0, even.ny, layers.data()}, odds{odd, 0, odd.ny, layers.data()};
+  Band evens{even, 0, even.ny, layers.data()}, odds{odd, 0, odd.ny, layers.data()};
   for (int z = 0; z <= cells.nz; z += 2) {
     horizontal(evens, z);
     horizontal(evens, z + 1);
@@ -195,38 +195,38 @@ void Automaton::sweep(std::uint64_t when)
   }
 }
 
-// Blocks of a horizontal step lie in one strip each, and so do the cells one above the other that come after it. A strip of the
-// odd blocks lies half in one and half in another strip of the even ones, so these are all swept before.
-void Automaton::sweep_in_strips()
+// Blocks of a horizontal step lie in one band each, and so do the cells one above the other that come after it. A band of the
+// odd blocks lies half in one and half in another band of the even ones, so these are all swept before.
+void Automaton::sweep_in_bands()
 {
-  each_strip(even, [this](Strip &strip) {
+  each_band(even, [this](Band &band) {
     for (int z = 0; z < cells.nz; z += 2) {
-      horizontal(strip, z);
-      horizontal(strip, z + 1);
-      vertical_pair(strip, z);
+      horizontal(band, z);
+      horizontal(band, z + 1);
+      vertical_pair(band, z);
     }
   });
-  each_strip(odd, [this](Strip &strip) {
+  each_band(odd, [this](Band &band) {
     for (int z = 0; z <= cells.nz; z += 2) {
-      horizontal(strip, z);
-      horizontal(strip, z + 1);
-      vertical_pair(strip, z - 1);
+      horizontal(band, z);
+      horizontal(band, z + 1);
+      vertical_pair(band, z - 1);
     }
   });
 }
 
-template <class Sweep> void Automaton::each_strip(Blocks &blocks, const Sweep &sweep)
+template <class Sweep> void Automaton::each_band(Blocks &blocks, const Sweep &sweep)
 {
   constexpr int OF_THREAD = 2;
-  const int strips = std::min({OF_THREAD * threads.many(), Team::MOST_TASKS, blocks.ny});
-  std::vector<std::vector<Layer>> known(strips, layers);
-  threads.each(strips, cost_of_sweep(), [&](int n) {
-    Strip strip{blocks, blocks.ny * n / strips, blocks.ny * (n + 1) / strips, known[n].data()};
-    sweep(strip);
+  const int bands = std::min({OF_THREAD * threads.many(), Team::MOST_TASKS, blocks.ny});
+  std::vector<std::vector<Layer>> known(bands, layers);
+  threads.each(bands, cost_of_sweep(), [&](int n) {
+    Band band{blocks, blocks.ny * n / bands, blocks.ny * (n + 1) / bands, known[n].data()};
+    sweep(band);
   });
-  for (const std::vector<Layer> &of_strip : known)
+  for (const std::vector<Layer> &of_band : known)
     for (int z = 0; z < cells.nz; ++z)
-      if (of_strip[z].moved) layers[z] = of_strip[z];
+      if (of_band[z].moved) layers[z] = of_band[z];
 }
 
 // ---- displacement and filling ----

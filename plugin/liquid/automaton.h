@@ -83,7 +83,7 @@ class Automaton {
   };
 
   // Rows of blocks, the same ones of every layer: what a thread sweeps, and what it knows of layers.
-  struct Strip {
+  struct Band {
     Blocks &blocks;
     int first, last;    // [first, last)
     Layer *layers;
@@ -96,10 +96,10 @@ class Automaton {
   static bool mixes(const Layer &layer);
   static bool exchanges(const Layer &lower, const Layer &upper);
   double cost_of_sweep() const;
-  void horizontal(Strip &strip, int z);
-  void vertical_pair(Strip &strip, int z);
-  void sweep_in_strips();
-  template <class Sweep> void each_strip(Blocks &blocks, const Sweep &sweep);
+  void horizontal(Band &band, int z);
+  void vertical_pair(Band &band, int z);
+  void sweep_in_bands();
+  template <class Sweep> void each_band(Blocks &blocks, const Sweep &sweep);
 
   struct Spill;
   bool expel(const Spill &spill, std::uint64_t key, std::vector<Spill> &arrived);
