@@ -6,6 +6,7 @@ while it is still far above (the liquid sleeps). Printed are microseconds per st
 by part. The table of docs/physics-liquid.md, by bench/liquid_tables.py, has besides a shallow basin of 10^5 columns.
 """
 
+import math
 import statistics
 import sys
 import time
@@ -20,8 +21,10 @@ PLUNGING, AFLOAT, REST, ABOVE = "plunging in", "afloat, waves go on", "afloat, a
 CASES = (PLUNGING, AFLOAT, REST, ABOVE)
 DENSITY = 900
 """Of the cube at rest: it lies upright."""
-CALM, QUIET, LONGEST = 0.5, 0.5, 40.0
-"""Of the cube that comes to rest: calm time, time without an update that is rest, and time in which it must have come [s]."""
+HIGHER = 0.0004
+"""So much higher, over its edge, lies its middle at rest than if it were rigid."""
+QUIET, LONGEST = 0.5, 60.0
+"""Time without an update that is rest, and time in which it must have come [s]."""
 
 
 def text(what: str, edge: int, basin: int, top: float, level: float, model: str, settling: bool = False) -> str:
@@ -32,9 +35,12 @@ def text(what: str, edge: int, basin: int, top: float, level: float, model: str,
         return in_basin(edge, basin, top, level, level, model)
     if what == ABOVE:
         return in_basin(edge, basin, top, level, 3 * top, model)
-    more = "drag 2" + (f"\n  calm {CALM} s" if model == "waves" else "")
-    upright = dict(angle=0, density=DENSITY, **(dict(more=more, damping="damping 0.1") if settling else {}))
-    return in_basin(edge, basin, top, level, level + edge * (0.5 - DENSITY / 1000), model, **upright)
+    # About critical for a body that moves a third of its mass in the liquid up and down with it; with more it creeps.
+    drag = 2 * (9.81 / (1.3 * edge * DENSITY / 1000)) ** 0.5
+    # The same for the longest wave of the basin.
+    calm = f"\n  calm {basin / (math.pi * (9.81 * level) ** 0.5)} s" if model == "waves" else ""
+    upright = dict(angle=0, density=DENSITY, **(dict(more=f"drag {drag}{calm}", damping="damping 0.1") if settling else {}))
+    return in_basin(edge, basin, top, level, level + edge * (0.5 - DENSITY / 1000 + HIGHER), model, **upright)
 
 
 def settled(ready):

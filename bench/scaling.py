@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Speed over executors, the paper's fig. 18: ``python bench/scaling.py [run|plot|goals|supervisor|model] [options]``.
+"""Speed over executors and threads, the paper's fig. 18: ``python bench/scaling.py [PART] [options]``.
 
-run: scenes/crowd.txt and a hail of 64 blocks by 1000 particles, in one process and on executors under both controls, in
-interleaved rounds; prints a table of medians, writes scaling.json and docs/images/scaling.png (plot draws it again). goals: 64
-blocks that meet nothing, and one object of 64 000 particles that two executors run as a team. supervisor: what a frame takes of
-the supervisor, for few and many particles and objects; into scaling.json too. model: what scaling.json says about more ranks than
-are here.
+run         scenes/crowd.txt and a hail of 64 blocks by 1000 particles, in one process and on executors under both controls, in
+            interleaved rounds, and then what threads has; writes scaling.json and docs/images/scaling.png
+executors   the first half of run
+threads     the second half: crowd, heap, hail, one object and a float by one thread and by several, and Amdahl's law beyond
+plot        draws the picture again
+goals       64 blocks that meet nothing, and one object of 64 000 particles that two executors run as a team
+supervisor  what a frame takes of the supervisor, for few and many particles and objects
+model       what scaling.json says about more ranks than are here
+tables      the tables of scaling.json, nothing is measured
+all         run, goals, supervisor and model
 
-Options: ``--executors 1,2,4``, ``--rounds 3``, ``--frames 14`` (of the hail; four times as many of the crowd), ``--json FILE``,
-``--plot FILE``.
+``--write`` puts tables into docs/beyond-one-host.md, and the picture into docs/; all but model and plot put what they measure
+into scaling.json. Options: ``--executors 1,2,4``, ``--rounds 3``, ``--frames 14`` (of the hail; four times as many of the
+crowd), ``--json FILE``, ``--plot FILE``.
 
-Speed is told in two ways: frames per second of wall time, from the end of frame 1 to the last, with all that is written; and
-frames per second of processor time of the executor that takes most, which other programs on the machine change less.
+Speed on executors is told in two ways: frames per second of wall time, from the end of frame 1 to the last, with all that is
+written; and frames per second of processor time of the executor that takes most, which other programs on the machine change less.
 """
 
 import argparse
@@ -19,7 +25,6 @@ import json
 import math
 import multiprocessing
 import os
-import pickle
 import statistics
 import subprocess
 import sys
@@ -35,44 +40,26 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # b
     os.environ[name] = "1"
 
 import numpy as np  # noqa: E402
+import scaling_model  # noqa: E402
+import scaling_threads  # noqa: E402
+from mdanim_lammps.processes import cores  # noqa: E402
+from scene_texts import BLOCK, END, GRAVITY, hail, rows  # noqa: E402
+from timing import machine, replace_between  # noqa: E402
 
 HERE = Path(__file__).parent
-GRAVITY = "gravity (0, 0, -9.81) m/s^2\n"
-BLOCK = """
-  object block[{n}] {{
-    shape      box ({edge}, {edge}, {edge}) cm
-    position   {place} m
-    density    900
-    elasticity 300 kPa
-    {more}
-  }}
-"""
-END = """
-control {
-  time       4 s
-  frames     50 fps
-  resolution 1 cm
-}
-"""
-ROWS = "repeat i in 0 .. 7 {{ repeat j in 0 .. 7 {{" + BLOCK + "}} }}"
+PAGE = HERE.parent / "docs" / "beyond-one-host.md"
 SCENES = {
     "crowd": (HERE.parent / "scenes" / "crowd.txt").read_text().replace('include "rubber.txt"', "let rubber = 150 kPa"),
-    "hail": GRAVITY
-    + "ground z 0 m\n"
-    + ROWS.format(
-        n="i*8 + j",
-        place="(i*0.3, j*0.3, 0.3 + 0.1*((i + 2*j) mod 5))",
-        edge=9,
-        more="velocity (rand(-1.5, 1.5), rand(-1.5, 1.5), 0) m/s",
-    )
-    + END,
-    "blocks": GRAVITY + ROWS.format(n="i*8 + j", place="(i, j, 0)", edge=9, more="") + END,
+    "hail": hail(8),
+    "blocks": GRAVITY + rows(8, "(i, j, 0)", 9) + END,
     "one": GRAVITY + BLOCK.format(n=0, place="(0, 0, 0)", edge=39, more="") + END,
 }
 GOALS = {"blocks": 1.8, "one": 1.4}
 """Speed of two executors over that of one process, by processor time of the rank that takes most."""
 LONGER = {"crowd": 4}
 """So many times as many frames: balls have met only after the first ones."""
+LONGER_GOALS = 7
+"""So many times as many for the goals."""
 COLORS = {"central": "#0072b2", "peers": "#d55e00"}
 
 
@@ -200,14 +187,15 @@ def table(runs: dict, known: dict, cases) -> str:
     return "\n".join(lines)
 
 
-def draw(runs: dict, path: Path, note: str) -> None:
-    """Times as fast over the number of executors, a panel for each scene."""
+def draw(runs: dict, path: Path, note: str, threads: dict | None) -> None:
+    """Times as fast over the number of executors, a panel for each scene, and over the number of threads."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(4.4 * len(runs), 3.9), layout="constrained")
+    figure = Figure(figsize=(4.4 * len(runs), 9.0 if threads else 3.9), layout="constrained")
     FigureCanvasAgg(figure)
-    for axes, (name, of) in zip(figure.subplots(1, len(runs), squeeze=False)[0], runs.items()):
+    upper, *lower = figure.subfigures(2 if threads else 1, 1, squeeze=False)[:, 0]
+    for axes, (name, of) in zip(upper.subplots(1, len(runs), squeeze=False)[0], runs.items()):
         base = of[(0, "")]
         most = max(k for k, _ in of)
         axes.plot([1, most], [1, most], color="#b0b7bd", linewidth=1.0, label="as many times as executors")
@@ -224,55 +212,110 @@ def draw(runs: dict, path: Path, note: str) -> None:
         axes.xaxis.get_major_locator().set_params(integer=True)
         axes.grid(alpha=0.25)
         axes.legend(fontsize=7)
-    figure.supxlabel(note, fontsize=6, x=0.995, ha="right", color="#707880")
+    small = dict(fontsize=6, x=0.995, ha="right", color="#707880")
+    upper.supxlabel(note.replace("*", ""), **small)
+    for part in lower:
+        scaling_threads.draw(part.subplots(), threads)
+        part.supxlabel(threads["note"].replace("*", ""), **small)
     figure.savefig(path, dpi=130, metadata={"Software": None})
 
 
-def run(options) -> None:
-    """Measure, print, write."""
+def run(options) -> dict[str, str]:
+    """Measure speed over executors and over threads."""
+    return executors(options) | threads(options)
+
+
+def executors(options) -> dict[str, str]:
+    """Measure speed over executors."""
     cases = [(0, ""), *((k, control) for k in options.executors for control in COLORS)]
-    load_before = os.getloadavg()[0]
+    note = f"{options.rounds} rounds. {machine()}"
     runs, known = rounds_of(["crowd", "hail"], cases, options.rounds, options.frames)
-    note = (
-        f"{os.cpu_count()} cores, {options.rounds} rounds, load of the machine {load_before:.1f} before "
-        f"and {os.getloadavg()[0]:.1f} after"
-    )
-    print(table(runs, known, cases))
-    print(note)
-    data = stored(options) | {
-        "note": note,
-        "known": known,
-        "runs": {name: {f"{k} {c}".strip(): r for (k, c), r in of.items()} for name, of in runs.items()},
-    }
-    options.json.write_text(json.dumps(data, indent=1) + "\n")
-    plot(options)
+    note += f"; load after {os.getloadavg()[0] / (os.cpu_count() or 1):.1f} per core"
+    store(options, {"note": note, "known": known, "runs": named(runs)})
+    return told_of(options, "executors")
+
+
+def threads(options) -> dict[str, str]:
+    """Measure speed over threads."""
+    counts = scaling_threads.counts_of(cores())
+    store(options, {"threads": scaling_threads.measure(list(scaling_threads.SCENES), counts, options.rounds)})
+    return told_of(options, "threads")
+
+
+def named(runs: dict) -> dict:
+    """Cases as words, as JSON has them."""
+    return {name: {f"{k} {c}".strip(): r for (k, c), r in of.items()} for name, of in runs.items()}
+
+
+def cases_of(runs: dict) -> dict:
+    """The same back."""
+    return {name: {(int(case.split()[0]), case.partition(" ")[2]): r for case, r in of.items()} for name, of in runs.items()}
 
 
 def stored(options) -> dict:
-    """What other parts have written."""
+    """What parts have written."""
     return json.loads(options.json.read_text()) if options.json.exists() else {}
 
 
-def plot(options) -> None:
+def store(options, found: dict) -> None:
+    """Put it there."""
+    options.json.write_text(json.dumps(stored(options) | found, indent=1) + "\n")
+
+
+def told_of(options, *parts: str) -> dict[str, str]:
+    """What scaling.json says of a part, as the page has it; nothing where it says nothing."""
+    data, told = stored(options), {}
+    for part in parts:
+        text = f"`python bench/scaling.py {part}`"
+        if part == "executors" and "runs" in data:
+            runs = cases_of(data["runs"])
+            told[part] = f"{text}: {data['note']}.\n\n{table(runs, data['known'], list(next(iter(runs.values()))))}"
+        elif part == "threads" and "threads" in data:
+            told[part] = f"{text}: {data['threads']['note']}.\n\n{scaling_threads.table(data['threads'])}"
+        elif part == "goals" and "goals" in data:
+            told[part] = f"{text}: {data['goals']['note']}.\n\n{goals_table(data['goals'])}"
+        elif part == "supervisor" and "supervisor" in data:
+            told[part] = f"{text}: {data['supervisor_note']}.\n\n{shares(data['supervisor'])}"
+    return told
+
+
+def tables(options) -> dict[str, str]:
+    """All of them."""
+    return told_of(options, "executors", "threads", "goals", "supervisor")
+
+
+def everything(options) -> dict[str, str]:
+    """Measure all, in turns."""
+    return run(options) | goals(options) | supervisor(options) | model(options)
+
+
+def plot(options) -> dict[str, str]:
     """The picture of scaling.json."""
-    data = json.loads(options.json.read_text())
-    runs = {
-        name: {(int(case.split()[0]), case.partition(" ")[2]): r for case, r in of.items()} for name, of in data["runs"].items()
-    }
-    draw(runs, options.plot, data["note"])
-    print(f"{options.json}   {options.plot}")
+    data = stored(options)
+    draw(cases_of(data["runs"]), options.plot, data["note"], data.get("threads"))
+    print(f"{options.json}   {options.plot}", file=sys.stderr)
+    return {}
 
 
-def goals(options) -> None:
+def goals(options) -> dict[str, str]:
     """Two executors against one process, and what is asked of them."""
     cases = [(0, ""), (2, "central"), (2, "peers")]
-    runs, known = rounds_of(list(GOALS), cases, options.rounds, options.frames)
-    print(table(runs, known, cases))
-    for name, goal in GOALS.items():
-        for case in cases[1:]:
-            found = ratio(runs[name][case], runs[name][cases[0]], "by_cpu")
-            verdict = "met" if found >= goal else "missed"
-            print(f"{name}, {label(case)}: {found:.2f} times as fast by processor time, goal {goal}: {verdict}")
+    note = f"{options.rounds} rounds, {LONGER_GOALS * options.frames} frames. {machine()}"
+    runs, known = rounds_of(list(GOALS), cases, options.rounds, LONGER_GOALS * options.frames)
+    store(options, {"goals": {"note": note, "known": known, "runs": named(runs)}})
+    return told_of(options, "goals")
+
+
+def goals_table(data: dict) -> str:
+    """Markdown, with what is asked."""
+    runs = cases_of(data["runs"])
+    lines = [table(runs, data["known"], list(next(iter(runs.values()))))]
+    for name, of in runs.items():
+        for case in list(of)[1:]:
+            found = ratio(of[case], of[0, ""], "by_cpu")
+            verdict = "met" if found >= GOALS[name] else "missed"
+            lines.append(f"{name}, {label(case)}: {found:.2f} times as fast by processor time, goal {GOALS[name]}: {verdict}.  ")
+    return "\n".join(lines)
 
 
 # --- supervisor -------------------------------------------------------------------------------------------------------
@@ -281,27 +324,34 @@ SHARES = {"few": (8, 4), "large": (8, 16), "many": (32, 2)}
 """Blocks along a side of a field of blocks that meet nothing, and edge of each [cm]."""
 
 
-def supervisor(options) -> None:
+def supervisor(options) -> dict[str, str]:
     """Processor time that a frame takes of the supervisor of two executors, besides looks for messages while there is none."""
+    note = f"{options.rounds} rounds. {machine()}"
     runs: dict[str, list[dict]] = {name: [] for name in SHARES}
     for _ in range(options.rounds):
         for name in SHARES:
             runs[name].append(_share(*SHARES[name], options.frames))
-    print("| objects | particles | steps | supervisor, median of a frame [ms] | least |\n|---|---|---|---|---|")
+    store(options, {"supervisor": runs, "supervisor_note": note})
+    return told_of(options, "supervisor")
+
+
+def shares(runs: dict[str, list[dict]]) -> str:
+    """Markdown."""
+    lines = ["| objects | particles | steps | supervisor, median of a frame [ms] | least |", "|---|---|---|---|---|"]
     for found in runs.values():
         seconds = [s for r in found for s in r["seconds"]]
-        print(
+        lines.append(
             f"| {found[0]['objects']} | {found[0]['particles']} | {found[0]['steps']} | {1e3 * statistics.median(seconds):.2f} "
             f"| {1e3 * min(seconds):.2f} |"
         )
-    options.json.write_text(json.dumps(stored(options) | {"supervisor": runs}, indent=1) + "\n")
+    return "\n".join(lines)
 
 
 def _share(side: int, edge: int, frames: int) -> dict:
     """A run of two executors: seconds of each frame but the first ones and the last, which is kept."""
-    rows = ROWS.replace("0 .. 7", f"0 .. {side - 1}").format(n=f"i*{side} + j", place="(i, j, 0)", edge=edge, more="")
+    blocks = rows(side, "(i, j, 0)", edge)
     with tempfile.TemporaryDirectory() as where:
-        (Path(where) / "blocks.txt").write_text(GRAVITY + rows + END.replace("4 s", f"{frames / 50} s"))
+        (Path(where) / "blocks.txt").write_text(GRAVITY + blocks + END.replace("4 s", f"{frames / 50} s"))
         command = [Path(sys.executable).parent / "mpiexec", "-n", "3", sys.executable, "-m", "mpi4py", __file__, "--rank", where]
         subprocess.run(list(map(str, command)), check=True)
         return json.loads((Path(where) / "seconds.json").read_text())
@@ -328,142 +378,43 @@ def rank(folder: Path) -> None:
     (folder / "seconds.json").write_text(json.dumps(known | {"seconds": np.diff(ends)[2:-1].tolist()}))
 
 
-# --- model ------------------------------------------------------------------------------------------------------------
+def model(options) -> dict[str, str]:
+    """More ranks than are here."""
+    return {"model": f"`python bench/scaling.py model`:\n\n{scaling_model.table(stored(options), load('crowd', 4))}"}
 
 
-def model(options) -> None:
-    """t_frame = max(work/K imbalance + plan + exchange + moves, supervisor): terms measured, then carried on to 10^3 ranks.
-
-    A frame is one window. Supervisor and executors work at the same time, so the slower of them sets the pace. Plans are made
-    here, for a crowd of as many objects and executors: their time and the imbalance that they leave are those of the program.
-    """
-    data = json.loads(options.json.read_text())
-    cost = fit(data)
-    print("\n".join(f"{name:<12} {value:.3g} {unit}" for name, (value, unit) in cost.items()))
-    print(
-        "\n| particles | executors | work/K, balanced | imbalance | plan, exchange | moves | supervisor | frame [s] | "
-        "times as fast | bound by | were it not for the supervisor |\n|---|---|---|---|---|---|---|---|---|---|---|"
-    )
-    for objects, size in ((1_000, 1_000), (10_000, 1_000), (100_000, 1_000)):
-        for executors in (1, 16, 128, 1_024):
-            if objects < 4 * executors:
-                continue
-            print(row(objects, size, executors, {name: value for name, (value, _) in cost.items()}))
-
-
-def fit(data: dict) -> dict:
-    """Costs per unit, out of the runs where they show, else measured now."""
-    from mdanim_lammps.parallel.plan.orders import Order
-    from scipy.optimize import nnls
-
-    hail, crowd = (data["runs"][name] for name in ("hail", "crowd"))
-    known = data["known"]
-    work = statistics.median(r["cpu"] / r["frames"] / known["hail"]["particles"] for r in hail["0"])
-    distributed = {
-        name: [(int(case.split()[0]), r) for case, runs in of.items() if case != "0" for r in runs]
-        for name, of in (("hail", hail), ("crowd", crowd))
-    }
-    # Of the supervisor: so much for a frame, for an object in it, and for a particle.
-    seen = np.array([(1, r[0]["objects"], r[0]["particles"]) for r in data["supervisor"].values()])
-    medians = np.array([statistics.median(s for r in runs for s in r["seconds"]) for runs in data["supervisor"].values()])
-    per_frame, per_object, per_particle = nnls(seen / medians[:, None], np.ones(len(medians)))[0].tolist()
-    moving = statistics.median(r["spent"][1] * k / r["moves"] for k, r in distributed["crowd"] if r["moves"])
-    scene, order = load("crowd", 4), _plan(10_000, 8)[0]
-    message = Order(order, np.zeros((10_000, 3)), np.zeros((10_000, 3)), 100, True)
-    seconds = least(lambda: pickle.loads(pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL)))
-    return {
-        "work": (work, "s of processor time per particle and frame (hail)"),
-        "per_particle": (per_particle, "s of the supervisor per particle and frame"),
-        "per_object": (per_object, "s of the supervisor per object and frame"),
-        "per_frame": (per_frame, "s of the supervisor per frame, besides"),
-        "moved": (moving, "s of executors for an object that moves, with instances built anew (crowd, wall time)"),
-        "order": (seconds / 10_000, "s to pack and unpack an order, per object (central: once for each executor)"),
-        "memory": (
-            len(pickle.dumps(scene.plan)) / scene.system.particles + 72,
-            "bytes of every executor per particle of the scene",
-        ),
-        "latency": (LATENCY, "s for a message between hosts (assumed)"),
-        "wire": (1.0 / BANDWIDTH, "s per byte between hosts (assumed)"),
-    }
-
-
-LATENCY, BANDWIDTH = 2e-4, 1e9
-"""Of a message [s]: mostly the nap of the process that waits for it (messages.NAP); of a network of ten gigabit [bytes/s]."""
-SHARE = 120
-"""Bytes of an executor's share of a frame for each of its objects."""
-MOVES = 0.004
-"""Part of the objects that move in a frame: crowds of a thousand, `python bench/planning.py crowd`."""
-
-
-def _plan(objects: int, executors: int):
-    """The second plan of a crowd, one object in a volume of 30 of them, after all have gone on a little; and its seconds."""
-    from mdanim_lammps.parallel.plan import frame_plan as planning
-
-    rng = np.random.default_rng(objects)
-    low = rng.uniform(0.0, (30.0 * objects) ** (1.0 / 3.0), (objects, 3))
-    edge, d = rng.uniform(0.5, 1.0, (objects, 3)), np.full(objects, 0.05)
-    cost = (1e4 * rng.uniform(0.9, 1.1, objects)).astype(np.int64)
-    known = dict(particles=np.full(objects, 1000), still=np.zeros(objects, bool), gap=0.1)
-    first = planning.plan(low, low + edge, d, cost, np.full(objects, -1), executors, **known)
-    low += rng.normal(0.0, 0.1, low.shape)
-    begin = time.process_time()
-    second = planning.plan(low, low + edge, d, cost, first.owner, executors, previous=first, **known)
-    return second, time.process_time() - begin
-
-
-def least(work, turns: int = 5) -> float:
-    """Seconds of a call, the least of some."""
-    spent = []
-    for _ in range(turns):
-        start = time.process_time()
-        work()
-        spent.append(time.process_time() - start)
-    return min(spent)
-
-
-def row(objects: int, size: int, executors: int, cost: dict) -> str:
-    """A line of the table, under the control that is faster there."""
-    particles = objects * size
-    plan, planning = _plan(objects, executors)
-    imbalance = float(plan.load.max() / plan.load.mean())
-    work = cost["work"] * particles / executors
-    report, order = 64.0 * objects, 100.0 * objects  # bytes
-    steps = np.ceil(np.log2(max(2, executors)))
-    exchange = {
-        "central": planning + executors * (cost["order"] * objects + order * cost["wire"]) + 2 * cost["latency"],
-        "peers": planning + report * cost["wire"] + steps * cost["latency"] + cost["order"] * objects,
-    }
-    if executors == 1:
-        exchange = {"central": 0.0}
-    control = min(exchange, key=exchange.get)
-    moves = MOVES * objects / executors * cost["moved"] * (executors > 1)
-    told = (cost["per_object"] + SHARE * cost["wire"]) * objects
-    supervisor = cost["per_frame"] + told + cost["per_particle"] * particles
-    mine = work * imbalance + exchange[control] + moves
-    frame = max(mine, supervisor)
-    terms = {"work": work * imbalance, f"exchange ({control})": exchange[control], "moves": moves}
-    bound = "supervisor" if supervisor > mine else max(terms, key=terms.get)
-    return (
-        f"| {particles:,} | {executors:,} | ".replace(",", " ")
-        + f"{work:.3g} | {imbalance:.2f} | {exchange[control]:.2g} | {moves:.2g} | {supervisor:.2g} "
-        + f"| {frame:.3g} | {cost['work'] * particles / frame:.3g} | {bound} | "
-        f"{cost['work'] * particles / mine:.3g} |"
-    )
+PARTS = {
+    "run": run,
+    "executors": executors,
+    "threads": threads,
+    "plot": plot,
+    "goals": goals,
+    "supervisor": supervisor,
+    "model": model,
+    "tables": tables,
+    "all": everything,
+}
 
 
 def main() -> None:
-    """Read the command line."""
+    """Read the command line, do a part, print and write what it tells."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("part", nargs="?", choices=("run", "plot", "goals", "supervisor", "model"), default="run")
-    cores = os.cpu_count() or 1
-    default = sorted({k for k in (1, 2, 4, 8, 12, 15) if k <= max(2, cores - 1)})
+    parser.add_argument("part", nargs="?", choices=PARTS, default="run")
+    default = sorted({k for k in (1, 2, 4, 8, 12, 15) if k <= max(2, (os.cpu_count() or 1) - 1)})
     parser.add_argument("--executors", type=lambda text: [int(k) for k in text.split(",")], default=default)
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--frames", type=int, default=14)
     parser.add_argument("--json", type=Path, default=HERE / "scaling.json")
     parser.add_argument("--plot", type=Path, default=HERE.parent / "docs" / "images" / "scaling.png")
+    parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
-    {"run": run, "plot": plot, "goals": goals, "supervisor": supervisor, "model": model}[options.part](options)
+    told = PARTS[options.part](options)
+    print("\n\n".join(text.rstrip() for text in told.values()))
+    if options.part in ("run", "executors", "threads", "all") or (options.part == "tables" and options.write):
+        plot(options)
+    if options.write:
+        for part, text in told.items():
+            replace_between(PAGE, part, text)
 
 
 if __name__ == "__main__":

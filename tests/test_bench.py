@@ -26,6 +26,7 @@ def test_the_start_of_a_run_can_be_measured():
     [
         pytest.param("import liquid_tables; print(*liquid_tables.PARTS)", "physics-liquid.md", id="liquid"),
         pytest.param("print('threads')", "decisions/threads.md", id="threads"),
+        pytest.param("print('executors threads goals supervisor model')", "beyond-one-host.md", id="scaling"),
     ],
 )
 def test_tables_have_their_place(parts, page):
@@ -53,3 +54,17 @@ def test_threads_can_be_measured():
     rows = [line.split(" | ") for line in done.stdout.splitlines()[4:]]
     assert [row[0] for row in rows] == ["| float 400", "| hail 4"]
     assert all(float(cell) > 0.0 for row in rows for cell in row[1:10])
+
+
+def test_the_model_of_threads_has_what_was_measured():
+    """Amdahl's law with the two parts that one and two threads show gives back the two; no part is below 0."""
+    code = (
+        "import scaling_threads as s\n"
+        "for two in (0.625, 0.4, 1.2):\n"
+        "    split = s.parts({'1': [1.0] * 3, '2': [two] * 3})\n"
+        "    print(*split, s.model(split, 1), s.model(split, 2), s.model(split, 1e9))"
+    )
+    measured, better, worse = ([float(n) for n in line.split()] for line in said(code).splitlines())
+    assert measured == pytest.approx([0.25, 0.75, 1.0, 1.6, 4.0], rel=1e-6)
+    assert better == pytest.approx([0.0, 1.0, 1.0, 2.0, 1e9], rel=1e-6)
+    assert worse == pytest.approx([1.0, 0.0, 1.0, 1.0, 1.0], rel=1e-6)
