@@ -306,11 +306,24 @@ Vec3 Buoyancy::pressure_on(const Face &face, const Basin &basin) const
 // Power of the lift, and what drag takes, at the velocities of now.
 Basin::Energies Buoyancy::power() const
 {
+  constexpr std::size_t CHUNK = 1024;    // of particles, with sums of its own
+  constexpr double NS_OF_CHUNK = 4e3;
+  std::vector<Basin::Energies> of_chunk((wet.size() + CHUNK - 1) / CHUNK);
+  threads.parts(static_cast<long>(of_chunk.size()), NS_OF_CHUNK, [&](long from, long to) {
+    for (long k = from; k < to; ++k) {
+      Basin::Energies sum;
+      for (std::size_t n = k * CHUNK; n < std::min(wet.size(), (k + 1) * CHUNK); ++n) {
+        const Vec3 v = vec3(atom->v[wet[n].i]);
+        sum.work += dot(wet[n].push, v);
+        sum.lost += wet[n].lambda * dot(v, v);
+      }
+      of_chunk[k] = sum;
+    }
+  });
   Basin::Energies now = in_passes;
-  for (const Wet &w : wet) {
-    const Vec3 v = vec3(atom->v[w.i]);
-    now.work += dot(w.push, v);
-    now.lost += w.lambda * dot(v, v);
+  for (const Basin::Energies &sum : of_chunk) {
+    now.work += sum.work;
+    now.lost += sum.lost;
   }
   return now;
 }

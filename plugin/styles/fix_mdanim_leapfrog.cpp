@@ -109,23 +109,19 @@ double FixMdanimLeapfrog::largest_phi_here() const
 // thread.
 template <class Visit> FixMdanimLeapfrog::Sums FixMdanimLeapfrog::each(Visit visit) const
 {
-  const int *mask = atom->mask, nlocal = atom->nlocal;
-  Sums all;
-  if (only) {
-    for (const int i : *only)
-      if (mask[i] & groupbit) visit(i, all);
-    return all;
-  }
-  std::vector<Sums> of_chunk((nlocal + CHUNK - 1) / CHUNK);
+  const int *const mask = atom->mask, *const listed = only ? only->data() : nullptr;
+  const int moving = only ? static_cast<int>(only->size()) : atom->nlocal;
+  std::vector<Sums> of_chunk((moving + CHUNK - 1) / CHUNK);
   threads.parts(static_cast<long>(of_chunk.size()), NS_OF_CHUNK, [&](long begin, long end) {
     for (long k = begin; k < end; ++k) {
       const int first = static_cast<int>(k) * CHUNK;
       Sums sums;
-      for (int i = first; i < std::min(first + CHUNK, nlocal); ++i)
-        if (mask[i] & groupbit) visit(i, sums);
+      for (int n = first; n < std::min(first + CHUNK, moving); ++n)
+        if (const int i = listed ? listed[n] : n; mask[i] & groupbit) visit(i, sums);
       of_chunk[k] = sums;
     }
   });
+  Sums all;
   for (const Sums &sums : of_chunk) all.add(sums);
   return all;
 }
