@@ -153,7 +153,8 @@ double volume_below(const SolidParts &solid, const Span &span, double height)
 bool are_parted(const SolidParts &solid, const Span &a, const Span &b)
 {
   const auto is_below = [&](const Span &lower, const Span &upper) {
-    if (lower.high == solid.nz || upper.low == 0) return false;
+    const bool is_cut = !solid.shut(lower.column, lower.high) || !solid.shut(upper.column, upper.low - 1);
+    if (!is_cut || lower.high == solid.nz || upper.low == 0) return false;
     for (int z = upper.low; z < lower.high; ++z)
       if (solid.at(lower.column, z) + solid.at(upper.column, z) < SolidParts::FULL / 2) return false;
     return true;

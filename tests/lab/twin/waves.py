@@ -129,10 +129,13 @@ def cut(part, x, y):
 
 
 def parts(part, lower, upper):
-    """Whether what is above one span goes on as what is below another one, of a neighbouring column."""
+    """Whether what is above one span goes on as what is below another one, of a neighbouring column, at one of them as a plate."""
+    if lower.high == part.shape[0] or upper.low == 0:
+        return False
+    ends = part[lower.high, lower.y, lower.x], part[upper.low - 1, upper.y, upper.x]
     both = slice(upper.low, lower.high)
     solid = part[both, lower.y, lower.x].astype(int) + part[both, upper.y, upper.x]
-    return lower.high < part.shape[0] and upper.low > 0 and (2 * solid >= WHOLE).all()
+    return min(ends) < SHUT and (2 * solid >= WHOLE).all()
 
 
 def join(part, a, b):
