@@ -58,8 +58,8 @@ Head head_of(const SolidParts &solid, const Span &span, Units content);
 // In cells. The content of a span that is level at a height is its whole units.
 double volume_below(const SolidParts &solid, const Span &span, double height);
 
-// Whether the plate below one of two spans of neighbouring columns goes on as what is above the other one, or the other way round:
-// it passes between them, however it is tilted.
+// Whether the plate below one of two spans of neighbouring columns goes on as what is above the other one, or the other way
+// round: it passes between them, however it is tilted.
 bool are_parted(const SolidParts &solid, const Span &a, const Span &b);
 
 // How much of the faces between two spans of neighbouring columns is open below a height, layer by layer. Below the floor of one

@@ -129,7 +129,7 @@ def cut(part, x, y):
 
 
 def parts(part, lower, upper):
-    """Whether what is above one span goes on as what is below another one, of a neighbouring column, at one of them as a plate."""
+    """Whether a plate above one span goes on as what is below another one, of a neighbouring column, or the other way round."""
     if lower.high == part.shape[0] or upper.low == 0:
         return False
     ends = part[lower.high, lower.y, lower.x], part[upper.low - 1, upper.y, upper.x]
