@@ -69,7 +69,11 @@ class Basin {
   static constexpr int MOST_SWEEPS = 4096;    // per update; also parts the keys of their random numbers
   static constexpr double NEAR = 8.0;         // cells above the liquid up to which the motion of solids counts
 
-  Basin(const Shape &shape, double g) : shape(shape), g(g), shortest(std::min({shape.cell.x, shape.cell.y, shape.cell.z})) {}
+  Basin(const Shape &shape, double g)
+      : shape(shape), g(g), shortest(std::min({shape.cell.x, shape.cell.y, shape.cell.z})),
+        per_cell{1.0 / shape.cell.x, 1.0 / shape.cell.y, 1.0 / shape.cell.z}
+  {
+  }
   virtual ~Basin() = default;
 
   // --- solids and time ---
@@ -110,7 +114,7 @@ class Basin {
   virtual void take_impulse(const Vec3 & /*place*/, const Vec3 & /*impulse*/) {}
 
   Vec3 in_cells(const double *x) const
-  { return {(x[0] - shape.low.x) / shape.cell.x, (x[1] - shape.low.y) / shape.cell.y, (x[2] - shape.low.z) / shape.cell.z}; }
+  { return {(x[0] - shape.low.x) * per_cell.x, (x[1] - shape.low.y) * per_cell.y, (x[2] - shape.low.z) * per_cell.z}; }
   // Whether x [distance] is over the basin's floor.
   bool over_floor(const double *x) const
   {
@@ -157,6 +161,7 @@ class Basin {
   const Shape shape;
   const double g;
   const double shortest;    // of a cell's edges
+  const Vec3 per_cell;      // cells per distance
   Pace pace;
   double liquid_seconds = 0.0, occupancy_seconds = 0.0;
 };

@@ -9,29 +9,6 @@
 
 namespace mdanim {
 
-void CellBox::take_in(int x, int y, int z)
-{
-  const int at[3] = {x, y, z};
-  for (int d = 0; d < 3; ++d) {
-    low[d] = std::min(low[d], at[d]);
-    high[d] = std::max(high[d], at[d] + 1);
-  }
-}
-
-void CellBox::take_in(const CellBox &other)
-{
-  for (int d = 0; d < 3; ++d) {
-    low[d] = std::min(low[d], other.low[d]);
-    high[d] = std::max(high[d], other.high[d]);
-  }
-}
-
-std::size_t CellBox::size() const
-{
-  if (empty()) return 0;
-  return static_cast<std::size_t>(high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]);
-}
-
 Occupancy::Occupancy(int nx, int ny, int nz) : nx(nx), ny(ny), nz(nz), count(static_cast<std::size_t>(nx) * ny * nz, 0) {}
 
 void Occupancy::add(const Vec3 &place, int weight, CellBox &reached)

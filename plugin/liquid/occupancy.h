@@ -6,6 +6,7 @@
 #define MDANIM_OCCUPANCY_H
 
 #include "laws/vec3.h"
+#include "liquid/cell_box.h"
 #include "liquid/rank_sums.h"
 #include "liquid/row_slabs.h"
 
@@ -15,31 +16,6 @@
 #include <vector>
 
 namespace mdanim {
-
-// A box of cells, [low, high) along each axis; empty until something is put in.
-struct CellBox {
-  int low[3] = {1 << 30, 1 << 30, 1 << 30}, high[3] = {0, 0, 0};
-  bool empty() const { return low[0] >= high[0]; }
-  void take_in(int x, int y, int z);
-  void take_in(const CellBox &other);
-  std::size_t size() const;
-  // Calls f(y, z) for rows of its cells, which threads share; a cell takes about so many ns.
-  template <class F> void each_row(const Threads &threads, double ns, const F &f) const
-  {
-    if (empty()) return;
-    const long deep = high[1] - low[1], many = deep * (high[2] - low[2]);
-    threads.parts(many, ns * (high[0] - low[0]), [&](long from, long to) {
-      for (long n = from; n < to; ++n) f(low[1] + static_cast<int>(n % deep), low[2] + static_cast<int>(n / deep));
-    });
-  }
-  // Calls f(x, y, z) for all its cells, x fastest.
-  template <class F> void each(F &&f) const
-  {
-    for (int z = low[2]; z < high[2]; ++z)
-      for (int y = low[1]; y < high[1]; ++y)
-        for (int x = low[0]; x < high[0]; ++x) f(x, y, z);
-  }
-};
 
 // Counts of samples of lattice cells, for each cell of the automaton; a cell with half of FULL is solid.
 class Occupancy {

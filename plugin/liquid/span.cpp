@@ -39,12 +39,11 @@ Slice slice(const SolidParts &solid, const Span &span, int z)
 
 Span cut(const SolidParts &solid, int column, int low, int high)
 {
-  Span span{column, low, high, true, static_cast<double>(low), static_cast<double>(high), 0};
+  Span span{column, low, high, low + 1, true, static_cast<double>(low), static_cast<double>(high), 0};
   const auto part = [&](int z) { return solid.at(column, z); };
-  for (int z = low; z < high; ++z) {
-    span.capacity += (SolidParts::FULL - part(z)) * SolidParts::UNITS;
-    if (z > low && z < high - 1 && part(z)) span.plain = false;
-  }
+  for (int z = low; z < high; ++z) span.capacity += (SolidParts::FULL - part(z)) * SolidParts::UNITS;
+  while (span.clear < high - 1 && !part(span.clear)) ++span.clear;
+  span.plain = span.clear >= high - 1;
   // The solid part of an end cell lies at that end.
   span.floor += share(part(low));
   if (high - 1 > low) span.roof -= share(part(high - 1));
@@ -164,12 +163,21 @@ bool are_parted(const SolidParts &solid, const Span &a, const Span &b)
 
 double open_below(const SolidParts &solid, const Span &a, const Span &b, double height)
 {
+  const double below_top = std::min({height, static_cast<double>(a.high), static_cast<double>(b.high)});
+  int z = std::max(a.low, b.low);
   double open = 0.0;
-  const int top = std::min(a.high, b.high);
-  for (int z = std::max(a.low, b.low); z < top && z < height; ++z) {
+  const auto add = [&] {
     const double low = std::max({static_cast<double>(z), a.floor, b.floor});
     open += share(solid.open_between(a.column, b.column, z)) * std::clamp((height - low) / (z + 1.0 - low), 0.0, 1.0);
+    ++z;
+  };
+  if (z < below_top) add();
+  const int clear = std::min({a.clear, b.clear, static_cast<int>(below_top)});
+  if (clear > z) {
+    open += clear - z;
+    z = clear;
   }
+  while (z < below_top) add();
   return open;
 }
 

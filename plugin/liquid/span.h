@@ -13,7 +13,7 @@ namespace mdanim {
 using Units = std::int64_t;    // of liquid
 constexpr Units UNITS_PER_CELL = 1 << 20;
 
-// Which part of each cell is solid. Columns and cells are numbered x fastest, then y, then z.
+// Which part of each cell is solid. Columns are numbered x fastest; the cells of a column lie side by side, from the lowest up.
 struct SolidParts {
   static constexpr int FULL = 4096;                // a solid cell
   static constexpr int SHUT = FULL - FULL / 32;    // from here on a cell parts what is above it from what is below
@@ -22,7 +22,7 @@ struct SolidParts {
   SolidParts(int nx, int ny, int nz) : nx(nx), ny(ny), nz(nz), part(static_cast<std::size_t>(nx) * ny * nz, 0) {}
 
   int columns() const { return nx * ny; }
-  int at(int column, int z) const { return part[static_cast<std::size_t>(z) * columns() + column]; }
+  int at(int column, int z) const { return part[static_cast<std::size_t>(column) * nz + z]; }
   static constexpr int SLIVER = FULL - SHUT;    // less of a cell counts as nothing
   bool shut(int column, int z) const { return z < 0 || z >= nz || at(column, z) >= SHUT; }
   // Of the face between two neighbouring columns: a sliver of a cell leaks nothing, so an upright wall of one cell is tight
@@ -41,7 +41,8 @@ struct SolidParts {
 // ends belongs to it, so its capacity changes smoothly as a body moves.
 struct Span {
   int column, low, high;
-  bool plain;    // solid at its ends alone, so that its content stands as high as it is
+  int clear;     // cells from the second one up to this one are open
+  bool plain;    // all but those at its ends are, so that its content stands as high as it is
   double floor, roof;
   Units capacity;
 

@@ -118,21 +118,27 @@ void WaveBasin::mark_moving(const AddBodies &bodies)
   count_parts();
 }
 
-// Parts of cells from counts, where there is something or was.
+// Parts of cells from counts, where there is something or was. Counts lie along x and parts along z: in blocks of columns both
+// stay in the cache.
 void WaveBasin::count_parts()
 {
   marked.take_in(still.touched);
   marked.take_in(mobile.touched);
+  changed.take_in(marked);
   constexpr double CELL = 1.5, COLUMN = 5.0;    // [ns], about
+  constexpr int BLOCK = 64;                     // columns
   std::atomic<long> with_something{0};
-  marked.each_row(threads, CELL, [&](int y, int z) {
+  marked.each_y(threads, CELL, [&](int y) {
     long of_row = 0;
-    for (std::size_t cell = cell_number(marked.low[0], y, z), end = cell_number(marked.high[0], y, z); cell < end; ++cell) {
-      const std::int64_t count = static_cast<std::int64_t>(still.count[cell]) + mobile.count[cell];
-      part[cell] = static_cast<std::uint16_t>(std::min<std::int64_t>(
-          SolidParts::FULL, (count * SolidParts::FULL + Occupancy::FULL_SPREAD / 2) / Occupancy::FULL_SPREAD));
-      of_row += mobile.count[cell] > 0;
-    }
+    for (int first = marked.low[0]; first < marked.high[0]; first += BLOCK)
+      for (int z = marked.low[2]; z < marked.high[2]; ++z)
+        for (int x = first; x < std::min(first + BLOCK, marked.high[0]); ++x) {
+          const std::size_t cell = still.number(x, y, z);
+          const std::int64_t count = static_cast<std::int64_t>(still.count[cell]) + mobile.count[cell];
+          part[part_number(y * shape.nx + x, z)] = static_cast<std::uint16_t>(std::min<std::int64_t>(
+              SolidParts::FULL, (count * SolidParts::FULL + Occupancy::FULL_SPREAD / 2) / Occupancy::FULL_SPREAD));
+          of_row += mobile.count[cell] > 0;
+        }
     with_something += of_row;
   });
   moving = with_something;
@@ -154,6 +160,7 @@ void WaveBasin::count_parts()
 Basin::Filled WaveBasin::fill(const Amount &amount, const std::vector<std::uint8_t> &within, std::uint64_t)
 {
   waves.set_solids(part.data(), mass.data());
+  changed = CellBox();
   std::vector<double> low(columns(), 0.0), high(columns(), 0.0), height(columns(), 0.0);
   for (int c = 0; c < columns(); ++c) {
     int z = 0;
@@ -215,7 +222,8 @@ void WaveBasin::update(const AddBodies &bodies, std::uint64_t, double dt)
   mark_moving(bodies);
   const Lap lap(liquid_seconds);
   const double since = static_cast<double>(waited) * dt / unit_of_time, time = std::min(LONGEST, since);
-  waves.set_solids(part.data(), mass.data(), since > 0.0 ? time / since : 0.0);
+  waves.set_solids(part.data(), mass.data(), since > 0.0 ? time / since : 0.0, &changed);
+  changed = CellBox();
   std::vector<std::int64_t> all = impulses;
   ranks.add_wide(all.data(), static_cast<int>(all.size()));
   std::vector<double> given(all.size());

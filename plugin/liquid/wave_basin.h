@@ -78,6 +78,7 @@ class WaveBasin : public Basin {
  private:
   double energy_now() const;
   void count_parts();
+  std::size_t part_number(int column, int z) const { return static_cast<std::size_t>(column) * shape.nz + z; }
   void take_solids();
   void look();
   void find_push(double part, double since);
@@ -91,7 +92,7 @@ class WaveBasin : public Basin {
   WaveMakers makers;
   Drops drops;
   Occupancy still, mobile;
-  CellBox marked;                     // cells outside are open
+  CellBox marked, changed;            // cells outside are open; as the waves know them
   std::vector<std::uint16_t> part;    // solid, of each cell, see SolidParts
   std::vector<double> mass;           // of what floats in each column, in cells of liquid, as the liquid is told
   std::vector<AddedMass::Solids> afloat;

@@ -123,8 +123,9 @@ std::vector<Basin::Droplet> WaveBasin::droplets() const
 
 void WaveBasin::contents(std::uint8_t *out) const
 {
-  for (std::size_t cell = 0; cell < part.size(); ++cell) out[cell] = 2 * part[cell] >= SolidParts::FULL ? SOLID_CODE : 0;
-  for (int c = 0; c < columns(); ++c)
+  for (int c = 0; c < columns(); ++c) {
+    for (int z = 0; z < shape.nz; ++z)
+      out[static_cast<std::size_t>(z) * columns() + c] = 2 * part[part_number(c, z)] >= SolidParts::FULL ? SOLID_CODE : 0;
     for (int n = 0; n < waves.spans_of(c); ++n) {
       const Waves::SpanView span = waves.span_view(c, n);
       if (!span.wet) continue;
@@ -133,6 +134,7 @@ void WaveBasin::contents(std::uint8_t *out) const
         if (cell != SOLID_CODE) cell = 1;
       }
     }
+  }
 }
 
 // --- state ---
@@ -207,11 +209,11 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
   moving = static_cast<long>(head.moving);
   still_known = head.still_known;
   part = waves.solids().part;
-  marked = CellBox();
-  for (int z = 0; z < shape.nz; ++z)
-    for (int y = 0; y < shape.ny; ++y)
-      for (int x = 0; x < shape.nx; ++x)
-        if (part[cell_number(x, y, z)]) marked.take_in(x, y, z);
+  marked = changed = CellBox();
+  for (int y = 0; y < shape.ny; ++y)
+    for (int x = 0; x < shape.nx; ++x)
+      for (int z = 0; z < shape.nz; ++z)
+        if (part[part_number(y * shape.nx + x, z)]) marked.take_in(x, y, z);
   look();
   return head.ledger;
 }

@@ -227,8 +227,8 @@ void WavePush::put(const SolidParts &solid, int column, int z, OnCell on)
   };
   on.along_x = rise(0) - rise(1);
   on.along_y = rise(2) - rise(3);
-  known[cell] = static_cast<int>(found.size());
-  found.push_back(on);
+  if (found.empty() || !(found.back() == on)) found.push_back(on);
+  known[cell] = static_cast<int>(found.size()) - 1;
   cells.push_back(cell);
 }
 
@@ -295,10 +295,10 @@ bool WavePush::is_among(std::size_t own, int x, int y, int z) const
 void WavePush::spread(const SolidParts &solid)
 {
   next_to.clear();
-  const std::size_t own = found.size();
-  for (std::size_t n = 0; n < own; ++n) {
-    const int column = static_cast<int>(cells[n] % (static_cast<std::size_t>(nx) * ny));
-    const int z = static_cast<int>(cells[n] / (static_cast<std::size_t>(nx) * ny)), x = column % nx, y = column / nx;
+  const std::size_t own = found.size(), layer = static_cast<std::size_t>(nx) * ny, many = cells.size();
+  for (std::size_t n = 0; n < many; ++n) {
+    const int column = static_cast<int>(cells[n] % layer);
+    const int z = static_cast<int>(cells[n] / layer), x = column % nx, y = column / nx;
     if (is_among(own, x, y, z)) continue;
     for (int dz = -1; dz <= 1; ++dz)
       for (int dy = -1; dy <= 1; ++dy)
@@ -312,7 +312,7 @@ void WavePush::spread(const SolidParts &solid)
             next_to.push_back({{}, 0.0, 0.0, cell});
           }
           NextTo &sum = next_to[number - own];
-          const OnCell &from = found[n];
+          const OnCell &from = found[known[cells[n]]];
           const double weight = solid.at(column, z) * (dx ? 0.5 : 1.0) * (dy ? 0.5 : 1.0) * (dz ? 0.5 : 1.0);
           sum.weight += weight;
           sum.on.share += weight * from.share;

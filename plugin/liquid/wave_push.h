@@ -26,6 +26,13 @@ class WavePush {
     double along_x = 0.0, along_y = 0.0;    // push sideways, times s + beside where that is positive
     double on_top = 0.0;                    // of the liquid that stands on the body, by the body's thickness
     double flow_x = 0.0, flow_y = 0.0;      // velocity of the liquid
+
+    bool operator==(const OnCell &other) const
+    {
+      return head == other.head && share == other.share && over == other.over && beside == other.beside &&
+             along_x == other.along_x && along_y == other.along_y && on_top == other.on_top && flow_x == other.flow_x &&
+             flow_y == other.flow_y;
+    }
   };
 
   WavePush(int nx, int ny, int nz)
@@ -85,9 +92,9 @@ class WavePush {
   bool is_among(std::size_t own, int x, int y, int z) const;
 
   const int nx, ny, nz;
-  std::vector<int> known;    // of each cell, its number in `found`, or -1
-  std::vector<OnCell> found;
-  std::vector<std::size_t> cells;    // of each in `found`
+  std::vector<int> known;            // of each cell, its number in `found`, or -1
+  std::vector<OnCell> found;         // of many cells one above the other it is the same
+  std::vector<std::size_t> cells;    // those that are known
   std::vector<NextTo> next_to;       // a buffer of spread()
   std::vector<SolidRun> runs;
   std::vector<int> first_run, columns;    // of each column, or -1; those with mass

@@ -47,7 +47,7 @@ void Waves::lay_out(long rows, std::size_t most_further_links)
   further_rows = rows;
   const std::size_t n = (2 + ny + rows) * stride, old = content.size();
   if (n > old) {
-    span.resize(n, Span{-1, 0, 0, true, 0.0, 0.0, 0});
+    span.resize(n, Span{-1, 0, 0, 0, true, 0.0, 0.0, 0});
     content.resize(n, 0);
     chain.resize(n, -1);
     for (std::size_t k = 0; k < std::size(OF_SPANS); ++k) {

@@ -7,6 +7,7 @@
 
 #include "engine/team.h"
 #include "laws/vec3.h"
+#include "liquid/cell_box.h"
 #include "liquid/span.h"
 #include "liquid/waves_kernels.h"
 
@@ -27,10 +28,11 @@ class Waves {
   // Throws std::bad_alloc.
   Waves(int nx, int ny, int nz);
 
-  // Solid parts of all cells, in 1/4096, and for each column the mass of what floats in it, in cells of liquid, 0 where it is
-  // held (null: everywhere). Liquid makes way. Throws std::runtime_error when there is no room for it; nothing can be done with
-  // the waves any more after that. `again`: the part of what has changed that will change once more in the next update.
-  void set_solids(const std::uint16_t *part, const double *mass, double again = 1.0);
+  // Solid parts of all cells, as SolidParts has them, and for each column the mass of what floats in it, in cells of liquid, 0
+  // where it is held (null: everywhere). Liquid makes way. Throws std::runtime_error when there is no room for it; nothing can be
+  // done with the waves any more after that. `again`: the part of what has changed that will change once more in the next
+  // update. Outside of a box `where` (null: nowhere) nothing has changed.
+  void set_solids(const std::uint16_t *part, const double *mass, double again = 1.0, const CellBox *where = nullptr);
   // Fills all spans of each column up to a height; those that are full get the pressure of that height. `from`: what would be
   // below this height is left out.
   void pour(const double *height, const double *from = nullptr);
@@ -149,7 +151,7 @@ class Waves {
     double level;    // of its surface
     double full, rest, phi, delta, last_delta, coming;
   };
-  static constexpr SpanState NO_SPAN{{-1, 0, 0, true, 0.0, 0.0, 0}, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  static constexpr SpanState NO_SPAN{{-1, 0, 0, 0, true, 0.0, 0.0, 0}, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   struct LinkState {
     int column;    // of the first span
     long a, b;
@@ -227,7 +229,7 @@ class Waves {
   int span_below(int column, double height) const;
 
   // --- waves_solids.cpp, waves_links.cpp ---
-  std::vector<int> differing(const std::uint16_t *part) const;
+  std::vector<int> differing(const std::uint16_t *part, const CellBox &where) const;
   std::vector<Homeless> carry_over(const std::vector<int> &columns, const std::vector<int> &changed,
                                    const std::vector<SpanState> &was);
   std::vector<SpanState> share_out(const std::vector<SpanState> &was, const std::vector<Span> &cut,

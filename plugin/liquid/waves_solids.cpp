@@ -19,9 +19,9 @@ constexpr Units MOST_OVERFULL = 2 * UNITS_PER_CELL;
 
 }    // namespace
 
-void Waves::set_solids(const std::uint16_t *part, const double *mass, double again)
+void Waves::set_solids(const std::uint16_t *part, const double *mass, double again, const CellBox *where)
 {
-  const std::vector<int> changed = differing(part);
+  const std::vector<int> changed = differing(part, where ? *where : CellBox{{0, 0, 0}, {nx, ny, nz}});
   if (!changed.empty()) {
     resting = false;
     std::vector<int> columns = changed;
@@ -33,8 +33,10 @@ void Waves::set_solids(const std::uint16_t *part, const double *mass, double aga
     for (const int column : columns)
       for (int n = 0; n < spans_in[column]; ++n) was.push_back(state_at(place(column, n)));
     save_further_links();
-    for (const int column : changed)
-      for (std::size_t cell = column; cell < solid.part.size(); cell += nx * ny) solid.part[cell] = part[cell];
+    for (const int column : changed) {
+      const std::size_t lowest = static_cast<std::size_t>(column) * nz;
+      std::copy_n(part + lowest, nz, solid.part.begin() + static_cast<std::ptrdiff_t>(lowest));
+    }
     find_homes(carry_over(columns, changed, was));
     join(changed);
     if (again != 1.0)
@@ -49,21 +51,18 @@ void Waves::set_solids(const std::uint16_t *part, const double *mass, double aga
     }
 }
 
-std::vector<int> Waves::differing(const std::uint16_t *part) const
+std::vector<int> Waves::differing(const std::uint16_t *part, const CellBox &where) const
 {
-  std::vector<std::uint8_t> differs(nx * ny, 0);
-  for (int z = 0; z < nz; ++z) {
-    const std::uint16_t *own = &solid.part[static_cast<std::size_t>(z) * nx * ny];
-    const std::uint16_t *other = part + static_cast<std::size_t>(z) * nx * ny;
-    if (std::memcmp(own, other, nx * ny * sizeof *own) == 0) continue;
-    for (int column = 0; column < nx * ny; ++column) differs[column] |= own[column] != other[column];
-  }
-  std::vector<std::uint8_t> near(differs);    // spans depend on the columns beside them
-  for (int column = 0; column < nx * ny; ++column) {
-    if (!differs[column]) continue;
-    for (int side = 0; side < 4; ++side)
-      if (const int other = neighbour(column, side, nx, ny); other >= 0) near[other] = 1;
-  }
+  std::vector<std::uint8_t> near(nx * ny, 0);    // spans depend on the columns beside them
+  for (int y = where.low[1]; y < where.high[1]; ++y)
+    for (int x = where.low[0]; x < where.high[0]; ++x) {
+      const int column = y * nx + x;
+      const std::size_t lowest = static_cast<std::size_t>(column) * nz + where.low[2];
+      if (std::memcmp(&solid.part[lowest], part + lowest, (where.high[2] - where.low[2]) * sizeof *part) == 0) continue;
+      near[column] = 1;
+      for (int side = 0; side < 4; ++side)
+        if (const int other = neighbour(column, side, nx, ny); other >= 0) near[other] = 1;
+    }
   std::vector<int> changed;
   for (int column = 0; column < nx * ny; ++column)
     if (near[column]) changed.push_back(column);

@@ -13,7 +13,7 @@ namespace mdanim {
 
 namespace {
 
-constexpr std::int64_t WAVES_VERSION = 2;
+constexpr std::int64_t WAVES_VERSION = 3;
 
 struct WavesStateHead {
   std::int64_t version, nx, ny, nz, spans, links, units, resting;

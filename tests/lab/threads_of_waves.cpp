@@ -19,7 +19,7 @@ std::vector<std::uint8_t> splash(int threads)
   waves.use(Threads(threads));
   std::vector<std::uint16_t> part(NX * NY * NZ);
   std::vector<double> mass(NX * NY), height(NX * NY);
-  const auto at = [](int x, int y, int z) { return (z * NY + y) * NX + x; };
+  const auto at = [](int x, int y, int z) { return (y * NX + x) * NZ + z; };
   for (int z = 6; z < 8; ++z)
     for (int y = 2; y < 9; ++y)
       for (int x = 0; x < 14; ++x) part[at(x, y, z)] = SolidParts::FULL;

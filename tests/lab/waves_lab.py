@@ -132,7 +132,7 @@ class Waves:
     def solids(self, part, mass=None):
         """Solid parts of all cells in 1/4096, and of each column the mass of what floats; RuntimeError without room."""
         error = ctypes.create_string_buffer(500)
-        part = np.ascontiguousarray(part, np.uint16).reshape(self.shape)
+        part = np.ascontiguousarray(np.moveaxis(np.reshape(part, self.shape), 0, -1), np.uint16)
         mass = None if mass is None else np.ascontiguousarray(mass, np.float64).reshape(self.shape[1:])
         if function("solids")(self.handle, part, None if mass is None else mass.ctypes.data, error, len(error)):
             raise RuntimeError(error.value.decode())

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Plain C functions over waves, for tests and benchmarks. Cells are (nz, ny, nx), columns (ny, nx).
+// Plain C functions over waves, for tests and benchmarks. Solid parts of cells are (ny, nx, nz), owners of cells (nz, ny, nx),
+// columns (ny, nx).
 
 #include "c_api/abi.h"
 #include "c_api/guarded.h"
