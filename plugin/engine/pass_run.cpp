@@ -58,7 +58,7 @@ void PassRun::hold_back()
   for (const PassParticipant *p : crew.late) p->append_required_atoms(wanted);
   blocks.hold_back(wanted, false);
   if (crew.liquid) {
-    blocks.immerse(*crew.liquid, pass);
+    blocks.immerse(threads, *crew.liquid, pass);
     crew.liquid->split(&blocks.held_back());
   }
   pass.friction =
@@ -174,7 +174,7 @@ bool PassRun::in_range(const AtomArrays &atoms, int particles)
 void PassRun::give_back_to_liquid()
 {
   if (!crew.liquid) return;
-  blocks.give_out_impulses(*crew.liquid);
+  blocks.give_out_impulses(threads, *crew.liquid);
   crew.liquid->split(nullptr);
 }
 

@@ -50,8 +50,8 @@ class SimdBlocks {
 
   // Which blocks a liquid acts on, and how; those that are held back as well are left out. The impulses on the liquid are the
   // liquid's again after the second.
-  void immerse(PassLiquid &liquid, Pass &pass);
-  void give_out_impulses(PassLiquid &liquid) const;
+  void immerse(const Threads &threads, PassLiquid &liquid, Pass &pass);
+  void give_out_impulses(const Threads &threads, PassLiquid &liquid) const;
   // Of the time of a pass, where a particle in the liquid takes `more` than another, over that.
   double share_of_liquid(double more) const { return more * immersed_particles / (particles + more * immersed_particles); }
 
@@ -99,7 +99,7 @@ class SimdBlocks {
   void set_row(const Mover &mover, Friction friction, int lane, double *row) const;
   void fill_ranges(Pass &pass);
   void list_immersed(const PassLiquid &liquid);
-  template <class Work> void each_immersed(PassLiquid &liquid, const Work &work) const;
+  template <class Work> long each_immersed(const Threads &threads, PassLiquid &liquid, const Work &work) const;
   void set_apart(const std::vector<bool> &moves);    // by the first particle of a block: whether any of it moves
 
   const Cutter &cutter;

@@ -4,6 +4,8 @@
 #include "engine/pass_liquid.h"
 #include "engine/simd_blocks.h"
 
+#include <atomic>
+
 namespace mdanim {
 
 void SimdBlocks::list_immersed(const PassLiquid &liquid)
@@ -38,25 +40,35 @@ void SimdBlocks::list_immersed(const PassLiquid &liquid)
   listed = liquid.listed();
 }
 
-// work(numbers of a particle, its place in a row of `kept`) for all own particles that the liquid acts on in passes.
-template <class Work> void SimdBlocks::each_immersed(PassLiquid &liquid, const Work &work) const
+// work(numbers of a particle, its place in a row of `kept`) for all own particles that the liquid acts on in passes, which
+// threads share. Returns how many they are.
+template <class Work> long SimdBlocks::each_immersed(const Threads &threads, PassLiquid &liquid, const Work &work) const
 {
-  for (std::size_t n = 0; n < immersed.size(); ++n) {
-    const Block &block = all[immersed[n]];
-    if (block.held_back) continue;
-    for (int lane = 0; lane < block.lanes; ++lane)
-      if (const int i = at(block.start + lane); !is_ghost(i)) work(liquid.kept(i), n * KEPT * lanes + lane);
-  }
+  constexpr double PARTICLE = 10.0;    // [ns], about
+  std::atomic<long> particles{0};
+  threads.parts(static_cast<long>(immersed.size()), PARTICLE * lanes, [&](long from, long to) {
+    long of_part = 0;
+    for (long n = from; n < to; ++n) {
+      const Block &block = all[immersed[n]];
+      if (block.held_back) continue;
+      for (int lane = 0; lane < block.lanes; ++lane) {
+        const int i = at(block.start + lane);
+        if (is_ghost(i)) continue;
+        work(liquid.kept(i), static_cast<std::size_t>(n) * KEPT * lanes + lane);
+        ++of_part;
+      }
+    }
+    particles += of_part;
+  });
+  return particles;
 }
 
-void SimdBlocks::immerse(PassLiquid &liquid, Pass &pass)
+void SimdBlocks::immerse(const Threads &threads, PassLiquid &liquid, Pass &pass)
 {
   if (listed != liquid.listed()) list_immersed(liquid);
-  immersed_particles = 0.0;
-  each_immersed(liquid, [this](const double *of, std::size_t to) {
+  immersed_particles = static_cast<double>(each_immersed(threads, liquid, [this](const double *of, std::size_t to) {
     for (int k = 0; k < KEPT; ++k) kept.data()[to + static_cast<std::size_t>(k) * lanes] = of[k];
-    ++immersed_particles;
-  });
+  }));
   pass.kept = kept.data();
   pass.immersed = immersed_motions.data();
   pass.immersed_of = immersed_of.data();
@@ -64,9 +76,9 @@ void SimdBlocks::immerse(PassLiquid &liquid, Pass &pass)
   pass.top_of_near = liquid.top_of_near();
 }
 
-void SimdBlocks::give_out_impulses(PassLiquid &liquid) const
+void SimdBlocks::give_out_impulses(const Threads &threads, PassLiquid &liquid) const
 {
-  each_immersed(liquid, [this](double *of, std::size_t from) {
+  each_immersed(threads, liquid, [this](double *of, std::size_t from) {
     for (const int k : {IMPULSE_X, IMPULSE_Y}) of[k] = kept.data()[from + static_cast<std::size_t>(k) * lanes];
   });
 }

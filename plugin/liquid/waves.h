@@ -190,6 +190,14 @@ class Waves {
     });
     return any;
   }
+  // The same for all spans and links that are listed; f(one) writes into nothing but its own.
+  template <class All, class F> void each_listed(const All &all, const F &f) const
+  {
+    constexpr double ONE = 50.0;    // [ns], about
+    threads.parts(static_cast<long>(all.size()), ONE, [&](long from, long to) {
+      for (long n = from; n < to; ++n) f(all[n]);
+    });
+  }
   bool is_link(const LinkPlace &link) const { return arrays.links[link.d].edge[link.at] < WaveArrays::NOWHERE; }
   bool is_layered(const LinkPlace &link) const
   { return link.at < links_start ? layered[link.d][link.at] != 0 : further_links[link.d][link.at - links_start].layered; }
@@ -213,6 +221,26 @@ class Waves {
     for (int d = 0; d < 2; ++d) {
       for (long i = stride; i < further_start; ++i)
         if (is_link({d, i})) f(LinkPlace{d, i});
+      for (std::size_t n = 0; n < further_links[d].size(); ++n) f(LinkPlace{d, links_start + static_cast<long>(n)});
+    }
+  }
+  // The same in any order, which threads share; f writes into nothing but the span's or the link's own.
+  template <class F> void each_span_shared(const F &f) const
+  {
+    constexpr double SPAN = 15.0;    // [ns], about
+    threads.parts(nx * ny, SPAN, [&](long from, long to) {
+      for (long column = from; column < to; ++column)
+        for (int n = 0; n < spans_in[column]; ++n) f(place(static_cast<int>(column), n));
+    });
+  }
+  template <class F> void each_link_shared(const F &f) const
+  {
+    constexpr double LINK = 5.0;    // [ns], about
+    for (int d = 0; d < 2; ++d) {
+      threads.parts(further_start - stride, LINK, [&](long from, long to) {
+        for (long i = stride + from; i < stride + to; ++i)
+          if (is_link({d, i})) f(LinkPlace{d, i});
+      });
       for (std::size_t n = 0; n < further_links[d].size(); ++n) f(LinkPlace{d, links_start + static_cast<long>(n)});
     }
   }

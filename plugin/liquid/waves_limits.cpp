@@ -11,7 +11,7 @@ void Waves::limit()
   double *share = arrays.net;    // of a span, of what leaves it or of what enters it
   const auto most = [&](long i) { return (arrays.capacity[i] + 0.25) * law.units_per_cell; };
   const auto scale = [&](bool by_giver) {
-    each_link([&](const LinkPlace &link) {
+    each_link_shared([&](const LinkPlace &link) {
       const WaveLinks &l = arrays_of(link);
       const Ends e = ends(link);
       double &units = l.units[link.at];
@@ -21,13 +21,13 @@ void Waves::limit()
       if (!by_giver) l.u[link.at] *= part;
     });
   };
-  each_span([&](long i) { share[i] = fluxes_of(i).out_share(static_cast<double>(content[i])); });
+  each_span_shared([&](long i) { share[i] = fluxes_of(i).out_share(static_cast<double>(content[i])); });
   scale(true);
   for (int pass = 0; pass < 2; ++pass) {    // what a span gives less in the first one is missing as room in the second
-    bool fits = true;
-    each_span([&](long i) {
+    std::atomic<bool> fits{true};
+    each_span_shared([&](long i) {
       share[i] = fluxes_of(i).in_share(static_cast<double>(content[i]), most(i));
-      fits = fits && share[i] == 1.0;
+      if (share[i] != 1.0) fits.store(false, std::memory_order_relaxed);
     });
     if (fits) return;
     scale(false);

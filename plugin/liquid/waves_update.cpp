@@ -54,25 +54,23 @@ void Waves::sub_update(double dt, double share)
 
   const bool were_full = some_full;
   some_full = any_row([&](long first, long end) { return kernels->surfaces(arrays, law, first, end); });
-  for (const long i : listed_spans) {
-    general_surface(i);
-    some_full = some_full || arrays.full[i] > 0.0;
-  }
+  each_listed(listed_spans, [&](long i) { general_surface(i); });
+  for (const long i : listed_spans) some_full = some_full || arrays.full[i] > 0.0;
   rows([&](long first, long end) {
     for (int d = 0; d < 2; ++d) kernels->open_links(arrays, law, d, first, end);
   });
-  for (const LinkPlace &link : listed_links) general_opening(link);
+  each_listed(listed_links, [&](const LinkPlace &link) { general_opening(link); });
   rows([&](long first, long end) {
     for (int d = 0; d < 2; ++d) kernels->advect(arrays, law, d, first, end);
   });
-  for (const LinkPlace &link : listed_links) general_advection(link);
+  each_listed(listed_links, [&](const LinkPlace &link) { general_advection(link); });
 
   constexpr int MOST_PASSES = 4;
   for (int pass = 0; pass < MOST_PASSES; ++pass) {
     rows([&](long first, long end) { kernels->assemble(arrays, law, some_full || were_full, first, end); });
-    for (const long i : listed_spans) general_assembly(i);
+    each_listed(listed_spans, [&](long i) { general_assembly(i); });
     rows([&](long first, long end) { kernels->couple(arrays, first, end); });
-    for (const LinkPlace &link : listed_links) general_coupling(link);
+    each_listed(listed_links, [&](const LinkPlace &link) { general_coupling(link); });
     solve(pass > 0);
     if (!some_full || !let_go()) break;
     if (pass == MOST_PASSES - 1) rows([&](long first, long end) { kernels->guess(arrays, true, first, end); });
@@ -82,22 +80,22 @@ void Waves::sub_update(double dt, double share)
   rows([&](long first, long end) {
     for (int d = 0; d < 2; ++d) kernels->push(arrays, law, d, first, end);
   });
-  for (const LinkPlace &link : listed_links) general_push(link);
+  each_listed(listed_links, [&](const LinkPlace &link) { general_push(link); });
   const auto balance_rows = [&] {
     return !any_row([&](long first, long end) { return !kernels->balance(arrays, law, first, end); });
   };
-  bool fits = balance_rows();
+  std::atomic<bool> fits{balance_rows()};
   const auto balance = [&](long i) {
     const SpanFluxes<double> fluxes = fluxes_of(i);
     const double units = static_cast<double>(content[i]), most = (arrays.capacity[i] + 0.25) * law.units_per_cell;
     arrays.net[i] = fluxes.in - fluxes.out;
-    fits = fits && fluxes.out_share(units) == 1.0 && fluxes.in_share(units, most) == 1.0;
+    if (fluxes.out_share(units) != 1.0 || fluxes.in_share(units, most) != 1.0) fits.store(false, std::memory_order_relaxed);
   };
-  for (const long i : listed_spans) balance(i);
+  each_listed(listed_spans, balance);
   if (!fits) {
     limit();
     balance_rows();
-    for (const long i : listed_spans) balance(i);
+    each_listed(listed_spans, balance);
   }
   rows([&](long first, long end) { kernels->settle(arrays, law, first, end); });
   for (int d = 0; d < 2; ++d)

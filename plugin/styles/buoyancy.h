@@ -37,7 +37,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   void clear_friction(int groupbit) const;
   void find_faces(const std::vector<int> &near, const std::string &fix);
   void find_cells(const std::vector<int> &near, const ParticleTable &table, const std::string &fix)
-  { cells.find(near, table, fix); }
+  { cells.find(threads, near, table, fix); }
   void forget_cells() { cells.clear(); }
   const NearCells &lattice_cells() const { return cells; }
   // What the liquid has felt of solids since this was called last.

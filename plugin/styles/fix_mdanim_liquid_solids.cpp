@@ -21,7 +21,7 @@ Basin::AddBodies FixMdanimLiquid::bodies(bool still)
     const std::vector<int> these = particles_of(still);
     if (!by_cells()) return add_particles(into, these, below);
     NearCells cells(lmp);
-    cells.find(these, lattice_cells, name());
+    cells.find(threads, these, lattice_cells, name());
     add_bodies(into, these, cells, still, below);
   };
 }

@@ -4,6 +4,7 @@
 #ifndef MDANIM_NEAR_CELLS_H
 #define MDANIM_NEAR_CELLS_H
 
+#include "engine/team.h"
 #include "pointers.h"
 #include "styles/particle_value.h"
 
@@ -20,7 +21,7 @@ class NearCells : protected LAMMPS_NS::Pointers {
 
   // Cells with a corner among `near`, local particles. `table`: corners 1 to 7 of the cell whose corner 0 a particle is, ghosts
   // as well. `fix` begins messages. Raises a LAMMPS error where a corner is out of reach.
-  void find(const std::vector<int> &near, const ParticleTable &table, const std::string &fix);
+  void find(const Threads &threads, const std::vector<int> &near, const ParticleTable &table, const std::string &fix);
 
   struct Cell {
     int corner[8];    // particles, in VTK order
