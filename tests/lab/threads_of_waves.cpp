@@ -32,13 +32,14 @@ std::vector<std::uint8_t> splash(int threads)
     for (int z = 0; z < NZ; ++z)
       for (int y = 12; y < 18; ++y)
         for (int x = 9; x < 16; ++x) {
-          part[at(x, y, z)] = z >= bottom && z < bottom + 5 ? SolidParts::FULL : 0;
+          const int there = x == 9 || x == 15 ? SolidParts::FULL / 2 : SolidParts::FULL;    // with porous columns at its sides
+          part[at(x, y, z)] = z >= bottom && z < bottom + 5 ? there : 0;
           mass[y * NX + x] = 3.0;
         }
     waves.set_solids(part.data(), mass.data());
     waves.update(0.15);
   }
-  std::printf("%d threads, %ld iterations\n", threads, waves.counts.iterations);
+  std::printf("%d threads, %ld iterations, %ld times limited\n", threads, waves.counts.iterations, waves.counts.limited);
   return waves.state();
 }
 
