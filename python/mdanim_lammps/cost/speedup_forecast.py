@@ -47,8 +47,8 @@ class SpeedupForecast:
 
 def forecast_speedup(ready: Prepared, executors: int, settings: PlannerOptions | None = None) -> SpeedupForecast:
     """Look ahead with that many executors. Nothing is measured: a particle is as dear as any other,
-    a liquid costs nothing beside them."""
-    moments = _Moments(ready, executors, settings or PlannerOptions())
+    a liquid costs nothing beside them, and all executors are on one host."""
+    moments = _Moments(ready, executors, settings or PlannerOptions(by_threads=True))
     seconds = min(AHEAD, ready.scene.control.time)
     times = np.arange(MOMENTS) * seconds / MOMENTS
     flight = Flight(ready)

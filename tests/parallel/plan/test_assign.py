@@ -177,6 +177,7 @@ def heavy(cost, owner, executors, teams=(), particles=None, **more):
     """Assign islands of one object each, 10 particles for every µs."""
     cost = np.array(cost)
     particles = 10 * cost if particles is None else np.array(particles)
+    more = {"least": 4000} | more
     return assign(np.arange(len(cost)), cost, np.array(owner), executors, particles=particles, teams=teams, **more)
 
 

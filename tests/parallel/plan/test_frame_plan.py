@@ -94,7 +94,7 @@ def test_all_processes_plan_the_same():
 @pytest.mark.parametrize("field", [f.name for f in fields(FrameAssignment)])
 def test_the_fingerprint_sees_everything(field):
     """Change with every field of a plan, and with nothing but those."""
-    made = plan(**scene(30, 3, heavy=0.1), executors=4)
+    made = plan(**scene(30, 3, heavy=0.1), executors=4, least=4000)
     assert made.teams and len(made.guests)
     assert replace(made, owner=made.owner.astype(np.int32)).fingerprint() == made.fingerprint()
     value = getattr(made, field)

@@ -14,6 +14,8 @@ from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.timeline import KINDS, Timeline
 from mpi import scenes as films
 
+BY_RANKS_AND_BY_THREADS = pytest.mark.parametrize("by_threads", [False, True], ids=["by ranks", "by threads"])
+
 pytestmark = pytest.mark.mpi
 
 
@@ -147,10 +149,12 @@ def test_only_what_meets_others_begins_again(scene):
         pytest.param(films.FLYING, "central", 3, id="islands"),
     ],
 )
-def test_a_team_runs_what_is_too_heavy_for_one(scene, text, control, more):
-    """Several executors run one island together, also where its box is too small at first."""
-    cases = matrix((2,), [control], settings={"least": 50}) | matrix(
-        (more,), [control], "windows ", settings=WINDOWS | {"least": 50, "safety": 0.5}
+@BY_RANKS_AND_BY_THREADS
+def test_a_team_runs_what_is_too_heavy_for_one(scene, text, control, more, by_threads):
+    """Several executors run one island together, or one of them with threads for all, also where its box is too small at first."""
+    team = {"least": 50, "by_threads": by_threads}
+    cases = matrix((2,), [control], settings=team) | matrix(
+        (more,), [control], "windows ", settings=WINDOWS | team | {"safety": 0.5}
     )
     timelines = all_the_same(ways(scene(text), cases), cases)
     assert {members for _, members in timelines[f"{control}2"].teams} <= {(0, 1), (1, 0)} and timelines[f"{control}2"].teams
@@ -158,10 +162,11 @@ def test_a_team_runs_what_is_too_heavy_for_one(scene, text, control, more):
     assert sum(timelines[f"windows {control}{more}"].retries) > 0
 
 
-def test_a_team_ends_when_it_has_no_more_to_do(scene):
+@BY_RANKS_AND_BY_THREADS
+def test_a_team_ends_when_it_has_no_more_to_do(scene, by_threads):
     """Two objects meet and part: what each member of the team has of them goes to the one that runs them next, also when a window
     begins again."""
-    team = {"least": 50}
+    team = {"least": 50, "by_threads": by_threads}
     cases = matrix((2,), settings=team) | matrix((2,), ["central"], "windows ", settings=WINDOWS | team | {"safety": 0.3})
     timelines = all_the_same(ways(scene(films.BOUNCE), cases), cases)
     for timeline in timelines.values():

@@ -14,7 +14,7 @@ import numpy as np
 from ...engine.sub_plan import SubPlans
 from . import islands
 from .assign import assign, firsts, total
-from .teams import GAIN, LEAST, Team
+from .teams import GAIN, GAIN_BY_THREADS, LEAST, LEAST_BY_THREADS, Team
 
 MARGIN = 0.05
 """Of a spacing, on top of the reach of every object."""
@@ -45,9 +45,10 @@ class PlannerOptions:
     worth: int = 10_000
     """Microseconds of work that each executor must have in a window: below,
     the exchange between windows costs more than it brings."""
-    least: int = 8_000
-    """Particles for each member of a team: where processors are shared with other work,
-    teams of less are slower than one executor."""
+    least: int | None = None
+    """Particles for each member of a team; None for what is known to pay, see `teams`."""
+    by_threads: bool | None = None
+    """Whether a team is its leader with threads for all. None: where all executors are on one host."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,6 +158,8 @@ class PlanContext:
         self.still = np.append(system.still, np.zeros(self.count - self.objects, bool))
         self.gap = float(parts.reach.max(initial=0.0))
         self.feels = None if self.gap else np.arange(self.count) == self.objects
+        least, self.gain = (LEAST_BY_THREADS, GAIN_BY_THREADS) if settings.by_threads else (LEAST, GAIN)
+        self.least = least if settings.least is None else settings.least
 
     def guess(self, step: float) -> np.ndarray:
         """Costs before anything is measured [µs], int64, shape (M,), where a particle-step takes ``step`` [µs]."""
@@ -194,7 +197,8 @@ class PlanContext:
             gap=self.gap,
             feels=self.feels,
             previous=previous,
-            least=self.settings.least,
+            gain=self.gain,
+            least=self.least,
         )
 
     def longest_window(

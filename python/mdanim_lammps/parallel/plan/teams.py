@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Teams of executors for islands that are too heavy for one."""
+"""Teams of executors for islands that are too heavy for one.
+
+A team on one host is its leader with threads for the processors of all. On several hosts it is an instance of LAMMPS on the ranks
+of all.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +13,15 @@ import numpy as np
 
 TENTH = (11, 10)
 """Loads within this ratio of the mean, or of the largest island, are in balance."""
-LEAST = 4000
-"""Particles for each member of a team: below, talking at every step costs more than it spares."""
+LEAST = 8000
+"""Particles for each member of a team: below, talking at every step costs more than it spares. Where processors are shared with
+other work, teams of less are slower than one executor."""
 GAIN = 60
 """What every further member adds to the speed of a team, in percent of one executor; two have been measured at 140 to 180."""
+
+
+LEAST_BY_THREADS, GAIN_BY_THREADS = 1000, 80
+"""The same where the leader has threads for all: two have been measured at 160 to 190."""
 
 
 @dataclass(frozen=True, slots=True)

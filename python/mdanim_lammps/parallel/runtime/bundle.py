@@ -10,9 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
+from ...engine.instance import Instance
 from ...engine.instance_cache import InstanceCache
+from ...engine.plan import Plan
 from ...engine.state import Records, State, StateRecords
 from ...engine.sub_plan import SubPlans
+from ...engine.threads import MOST_THREADS, asked_threads, with_threads
 from ...model.system import side_by_side
 from ...run.energy import losses
 from ...run.frame_source import run_window
@@ -38,6 +41,13 @@ class Key:
     liquid: bool
     team: tuple[int, ...]
     """Executors that run it, its leader first."""
+    by_threads: bool = False
+    """Whether its leader runs it alone, with threads for all of them."""
+
+    @property
+    def ranks(self) -> tuple[int, ...]:
+        """Executors that have its instance."""
+        return self.team[:1] if self.by_threads else self.team
 
 
 @dataclass(frozen=True)
@@ -51,12 +61,15 @@ class Wanted:
     """Objects that it moves, int64, shape (m,); the rest of the key's are guests."""
 
 
-def wanted_bundles(plan: FrameAssignment, objects: int, executor: int) -> list[Wanted]:
-    """What an executor has to run, those of teams first; ``objects`` is the number of them, the pool not counted."""
+def wanted_bundles(plan: FrameAssignment, objects: int, executor: int, by_threads: bool = False) -> list[Wanted]:
+    """What an executor has to run, those of teams first; ``objects`` is the number of them, the pool not counted.
+
+    ``by_threads``: leaders of teams run what is theirs alone.
+    """
     team_of = {int(plan.bundle[np.flatnonzero(plan.label == t.island)[0]]): t.members for t in plan.teams}
     mine = (plan.owner == executor) & (plan.bundle >= 0)
     for number, members in team_of.items():
-        mine[plan.bundle == number] = executor in members
+        mine[plan.bundle == number] = executor in (members[:1] if by_threads else members)
     ordered = np.flatnonzero(mine)
     ordered = ordered[np.argsort(plan.bundle[ordered], kind="stable")]
     found = []
@@ -65,9 +78,18 @@ def wanted_bundles(plan: FrameAssignment, objects: int, executor: int) -> list[W
         group = ordered[a:b]
         guests = plan.guests[np.isin(plan.guests[:, 0], plan.label[group]), 1].tolist() if len(plan.guests) else ()
         members = group[group < objects]
-        key = Key(tuple(sorted({*members.tolist(), *guests})), bool(group[-1] == objects), team_of.get(number, (executor,)))
+        team = team_of.get(number, (executor,))
+        key = Key(tuple(sorted({*members.tolist(), *guests})), bool(group[-1] == objects), team, by_threads and len(team) > 1)
         found.append((number not in team_of, number, Wanted(number, key, members)))
     return [w for *_, w in sorted(found, key=lambda f: f[:2])]
+
+
+def _instance(plan: Plan, comm: MPI.Comm | None, cache: InstanceCache, threads_for: int) -> Instance:
+    """An instance with the threads of so many executors."""
+    if threads_for == 1:
+        return cache.instance(plan, comm)
+    with with_threads(min(MOST_THREADS, threads_for * (asked_threads() or 1))):
+        return Instance(plan, comm)
 
 
 class Bundle:
@@ -78,7 +100,7 @@ class Bundle:
         """All in its instance, also those that it has laid aside."""
         self.plan = parts.part(wanted.key.objects, wanted.key.liquid)
         self.comm = comm
-        self.instance = cache.instance(self.plan, comm)
+        self.instance = _instance(self.plan, comm, cache, threads_for=len(wanted.key.team) if wanted.key.by_threads else 1)
         self.places = parts.whole.system.stretches(self.objects)
         """Its particles among all."""
         self.first, self.still = parts.whole.system.first, parts.whole.system.still
@@ -224,8 +246,10 @@ class Bundle:
         self.run_seconds, self.liquid_seconds = time.process_time() - begin, self._soaked() - soaked
 
     def _soaked(self) -> float:
-        """Seconds of the liquid so far."""
-        return self.instance.fix_seconds("liquid") if self.key.liquid else 0.0
+        """Seconds of the liquid so far, of all threads for a team."""
+        if not self.key.liquid:
+            return 0.0
+        return self.instance.fix_seconds("liquid") * len(self.key.team) / len(self.key.ranks)
 
     def escaped(self, low: np.ndarray, high: np.ndarray) -> list[int]:
         """Objects that have been outside of their reserved boxes, those of all objects [m], shape (M, 3), at any step
@@ -247,7 +271,7 @@ class Bundle:
         It is told for one executor alone, so that a team counts as what it does.
         """
         particles = self.particles[self.moves]
-        total = scale * len(self.key.team) * max(0.0, self.run_seconds - self.liquid_seconds)
+        total = scale * len(self.key.ranks) * max(0.0, self.run_seconds - self.liquid_seconds)
         return (total * particles / max(1, particles.sum())).astype(np.int64)
 
     def newly_lost(self) -> dict[str, float]:

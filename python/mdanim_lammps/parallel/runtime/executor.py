@@ -170,7 +170,7 @@ class Executor:
         at its end if they are to be what they were, for again they would do the same."""
         before, self.order = self.order, order
         with self._span("moving"):
-            wanted = wanted_bundles(order.plan, self.objects, self.me)
+            wanted = wanted_bundles(order.plan, self.objects, self.me, bool(self.job.settings.by_threads))
             live = self._staying(wanted)
             for bundle in self.bundles:
                 if bundle not in live.values():
@@ -233,16 +233,16 @@ class Executor:
     def _begin(self, wanted: Wanted) -> Bundle:
         """A bundle with the state of the last frame; on a team, that of its leader."""
         key, records = wanted.key, self.records
-        if len(key.team) > 1 and self.started:
+        if len(key.ranks) > 1 and self.started:
             everything = np.array([*key.objects, *([self.objects] if key.liquid else [])])
-            if self.me == key.team[0]:
-                for member in key.team[1:]:
+            if self.me == key.ranks[0]:
+                for member in key.ranks[1:]:
                     self.mail.send(member, Tag.TEAM, self._pack(everything), self.comm)
             else:  # the leader's objects stay the leader's, and their records with them
-                moved = self.mail.take(Tag.TEAM, key.team[0], self.comm)
+                moved = self.mail.take(Tag.TEAM, key.ranks[0], self.comm)
                 scatter(self._places(everything), (self.x, moved.x), (self.v, moved.v), (self.f, moved.f))
                 records = moved.records
-        bundle = Bundle(self.parts, wanted, self._team(key.team), self.cache)
+        bundle = Bundle(self.parts, wanted, self._team(key.ranks), self.cache)
         self._start(bundle, records)
         return bundle
 
@@ -261,7 +261,10 @@ class Executor:
 
     def _close(self, bundle: Bundle) -> None:
         add_clocks(self.account, bundle.instance)
-        self.cache.keep(bundle.instance)
+        if bundle.key.by_threads:  # what comes next has fewer threads
+            bundle.instance.close()
+        else:
+            self.cache.keep(bundle.instance)
 
     def _leads(self, bundle: Bundle) -> bool:
         return bundle.key.team[0] == self.me
@@ -291,7 +294,7 @@ class Executor:
             escaped += bundle.escaped(self.order.low, self.order.high)
             found.append((bundle.members, *extent, bundle.costs(scale)))
             if bundle.key.liquid:
-                pool_cost = int(scale * len(bundle.key.team) * bundle.liquid_seconds)
+                pool_cost = int(scale * len(bundle.key.ranks) * bundle.liquid_seconds)
         empty = (np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, np.int64))
         return Report(
             *(np.concatenate(arrays) for arrays in zip(empty, *found)), pool_cost, tuple(escaped), self.order.plan.fingerprint()

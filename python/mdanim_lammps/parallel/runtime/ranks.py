@@ -14,7 +14,7 @@ import pickle
 import sys
 import time
 import traceback
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from ...engine.threads import THREADS, share_of_cores
@@ -34,8 +34,9 @@ def main() -> None:
     world, done = MPI.COMM_WORLD, False
     try:
         share_out_cores(world)
+        one_host = are_on_one_host(world)
         if world.rank == SUPERVISOR:
-            _supervise(world, Path(sys.argv[1]))
+            _supervise(world, Path(sys.argv[1]), one_host)
             done = True
         else:
             from .executor import serve
@@ -62,7 +63,18 @@ def share_out_cores(world) -> None:
         os.environ.setdefault(THREADS, str(share_of_cores(executors)))
 
 
-def _supervise(world, job: Path) -> None:
+def are_on_one_host(world) -> bool:
+    """Whether all executors share memory; all ranks call this together."""
+    from mpi4py import MPI
+
+    from .messages import SUPERVISOR
+
+    executors = world.Split(world.rank == SUPERVISOR)
+    alone = executors.Split_type(MPI.COMM_TYPE_SHARED).size == executors.size
+    return bool(world.allreduce(alone, MPI.LAND))
+
+
+def _supervise(world, job: Path, one_host: bool) -> None:
     from mpi4py import MPI
 
     from ...results.timeline import Timeline
@@ -73,7 +85,8 @@ def _supervise(world, job: Path) -> None:
 
     task: Task = pickle.loads(job.read_bytes())
     os.truncate(job, 0)
-    source = Distributed(task.ready, world, task.control, task.settings)
+    settings = task.settings if task.settings.by_threads is not None else replace(task.settings, by_threads=one_host)
+    source = Distributed(task.ready, world, task.control, settings)
     try:
         source.before = Timeline.left_in(task.folder) if task.resume else None
         result = simulate(
