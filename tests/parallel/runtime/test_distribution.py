@@ -151,7 +151,7 @@ def test_only_what_meets_others_begins_again(scene):
 )
 @BY_RANKS_AND_BY_THREADS
 def test_a_team_runs_what_is_too_heavy_for_one(scene, text, control, more, by_threads):
-    """Several executors run one island together, or one of them with threads for all, also where its box is too small at first."""
+    """Several executors run one island together, or one has threads for all of them, also where its box is too small at first."""
     team = {"least": 50, "by_threads": by_threads}
     cases = matrix((2,), [control], settings=team) | matrix(
         (more,), [control], "windows ", settings=WINDOWS | team | {"safety": 0.5}
