@@ -31,8 +31,8 @@ CELLS, CELLS_AT_START, FLOW, OCCUPANCY, COUPLING, WAVES, CREST, MOMENTUM = 0, 1,
 """In the fix's vector: cells of liquid now and before step 0, to the unit, three clocks [s], the energy of a liquid with momentum
 since then [J], its highest point [m], its momentum along x and y [N s]."""
 WAVE_PERIOD, WAVE_STRIDE = 0.1, 1.0
-"""As PERIOD and STRIDE, of waves. With a stride of 0.25 a dive is as deep to 2 % of the body's size (sides of 6 to 24 cells, thrown
-as fast as if fallen from their own height), with 0.5 to 1 %, for up to three times and twice the updates."""
+"""As PERIOD and STRIDE, of waves. With a stride of 0.25 a dive is as deep to 2 % of the body's size, with 0.5 to 1 %, for up to
+three times and twice the updates: bodies with sides of 6 to 24 cells, as fast as if fallen from their own height."""
 CALM = 50.0
 """Time in which waves die, over sqrt(depth/g)."""
 WAVE_DRAG = 0.15
