@@ -23,7 +23,7 @@ DENSITY = 900
 """Of the cube at rest: it lies upright."""
 HIGHER = 0.0004
 """So much higher, over its edge, lies its middle at rest than if it were rigid."""
-QUIET, LONGEST = 0.5, 60.0
+QUIET, LONGEST = 0.5, 120.0
 """Time without an update that is rest, and time in which it must have come [s]."""
 
 
