@@ -58,6 +58,18 @@ class Sheet:
         by = by.reshape(-1, 2)
         points[:, :2] += np.concatenate([by, *(np.concatenate([by[side], by[side]]) for side in self._sides)])
 
+    def pond(self, height: np.ndarray, quads: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Vertices and normals as of `mesh`, and triangles of a sheet over some of the quads between columns' middles.
+
+        Args:
+            height: z [m], shape (ny, nx).
+            quads: which are drawn, bool, shape (ny - 1, nx - 1).
+        """
+        points, normals = self.mesh(height)
+        nx = len(self._x)
+        first = (np.arange(1, quads.shape[0] + 1)[:, None] * nx + np.arange(1, quads.shape[1] + 1))[quads]
+        return points, normals, _halves(np.stack([first, first + 1, first + nx + 1, first + nx], axis=-1))
+
     @property
     def rim(self) -> np.ndarray:
         """Vertices along which the surface meets the walls, a closed line, int64, shape (R,)."""

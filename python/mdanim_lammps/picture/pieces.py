@@ -103,10 +103,11 @@ def texture(texels, width: int, height: int, smooth: bool):
 
 
 class Field:
-    """Single numbers on a grid for a shader to look up, overwritten for every frame.
+    """Numbers on a grid for a shader to look up, overwritten for every frame: one for each place, or three.
 
-    VTK makes bytes of the numbers of a texture unless each texel has three or four. So three hold one number; or, where
-    ``packed``, four that lie side by side: a shader fetches x and y as ``texelFetch(name, ivec2(x / 4, y), 0)[x % 4]``.
+    VTK makes bytes of the numbers of a texture unless each texel has three or four. So three hold one number, if no more are
+    given; or, where ``packed``, four that lie side by side: a shader fetches x and y as
+    ``texelFetch(name, ivec2(x / 4, y), 0)[x % 4]``.
 
     Args:
         width, height: of the grid; the width of a packed one is a multiple of four.
@@ -119,12 +120,13 @@ class Field:
 
         held = np.zeros((height, width // 4, 4) if packed else (height, width, 3), dtype=np.float32)
         self.numbers = held.reshape(height, width) if packed else held[:, :, 0]
+        self._held = held
         self._texels = numpy_to_vtk(held.reshape(-1, held.shape[2]))  # the same memory
         self._image, self.texture = texture(self._texels, held.shape[1], height, smooth)
 
     def fill(self, numbers: np.ndarray) -> None:
-        """Overwrite all, shape (height, width)."""
-        self.numbers[:] = numbers
+        """Overwrite all, shape (height, width), or, with three numbers each, (height, width, 3)."""
+        (self.numbers if numbers.ndim == 2 else self._held)[:] = numbers
         self.changed()
 
     def changed(self) -> None:

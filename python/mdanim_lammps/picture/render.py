@@ -92,7 +92,7 @@ class Painter:
         time = float(self.trajectory.times[index])
         self._surface.move(vertices, self._mesh.normals(vertices, position))
         if self._tank:
-            self._tank.show(index, position)
+            self._tank.show(index, position, vertices, self._mesh.triangle)
         self._marks.show(position)
         self._stamp.SetInput(f"t = {time:.2f} s")
         self._aim(self.view(time))
@@ -102,7 +102,7 @@ class Painter:
             self._renderer.DrawOn()
             self._front.DrawOff()
             self._window.Render()
-            self._behind.take(self._window, self._renderer.GetActiveCamera(), [self._tank.outer])
+            self._behind.take(self._window, self._renderer.GetActiveCamera(), self._tank.outer)
             self._renderer.DrawOff()
             self._front.DrawOn()
         self._window.Render()
@@ -161,7 +161,8 @@ class Painter:
         if metadata.walls is not None:
             self._renderer.AddActor(box_edges(*metadata.walls, 0.8 if dark else 0.35))
         if self._tank:
-            self._renderer.AddActor(self._tank.inner)
+            for actor in self._tank.inner:
+                self._renderer.AddActor(actor)
             for actor in self._tank.actors:
                 self._front.AddActor(actor)
             self._actors += self._tank.skin

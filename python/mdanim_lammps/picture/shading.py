@@ -150,9 +150,17 @@ vec3 seen(vec3 color, vec3 where) { return color; }
 
 # What is seen through liquid takes its colour with the way that the light has gone in it (Beer and Lambert).
 THROUGH_LIQUID = """
-float liquidHeight(vec2 where)
+// Of the surface, of a pond that stands on a body above it, and of the body's face below the pond.
+vec3 liquidHeight(vec2 where)
 {
-  return texture(liquidHeights, (where - basinLow.xy) / (basinHigh.xy - basinLow.xy)).r;
+  return texture(liquidHeights, (where - basinLow.xy) / (basinHigh.xy - basinLow.xy)).rgb;
+}
+
+// How deep a point is in the liquid; below zero outside.
+float liquidCover(vec3 p)
+{
+  vec3 height = liquidHeight(p.xy);
+  return max(height.r - p.z, min(height.g - p.z, p.z - height.b));
 }
 
 // Metres of liquid between a point and the eye, along the ray's part in the basin. Below the lowest height
@@ -174,7 +182,7 @@ float liquidPath(vec3 where)
   float wet = 0.0, before = 0.0;
   for (int k = 0; k <= pieces; k++) {
     vec3 p = where + ray * mix(wavy.x, wavy.y, float(k) / float(max(pieces, 1)));
-    float cover = liquidHeight(p.xy) - p.z;
+    float cover = liquidCover(p);
     float high = max(before, cover), low = min(before, cover);
     if (k > 0) wet += clamp(high / max(high - low, 1e-9), 0.0, 1.0);
     before = cover;
@@ -392,11 +400,11 @@ FRAGMENT_LIQUID = """//VTK::Light::Impl
   vec3 toEye = normalize(eye - worldPosition);
   vec3 toLamp = normalize(lamp);
   // Beside a wall the depth is that of the column behind it.
-  float inside = liquidHeight(worldPosition.xy - 0.25 * cell.xy * n.xy);
-  float top = n.z > 0.5 ? worldPosition.z : inside;
-  // The sheet runs on through a hull that is dry inside, where the liquid ends far below it.
+  float inside = liquidHeight(worldPosition.xy - 0.25 * cell.xy * n.xy).r;
+  float top = n.z > 0.5 ? worldPosition.z : abs(n.z) > 1e-3 ? max(worldPosition.z, inside) : inside;
+  // The sheet runs on through a hull that is dry inside; at the glass the liquid below the hull is seen.
   float dry = texture(liquidDry, (worldPosition.xy - basinLow.xy) / (basinHigh.xy - basinLow.xy)).r;
-  if (dry > 0.5 && worldPosition.z > inside + 0.5 * cell.z) discard;
+  if (dry > 0.5 && (abs(n.z) > 1e-3 || worldPosition.z > inside + 0.5 * cell.z)) discard;
   float film = smoothstep(0.1, 0.5, (top - basinLow.z) / cell.z);
   if (film <= 0.0) discard;
   bool inner = dot(n, toEye) < 0.0;

@@ -11,9 +11,11 @@ from ..results.trajectory import Trajectory
 from . import shading
 from .behind import Behind
 from .foam import Foam
+from .hulls import FINER, dry_spots
 from .liquid import Blocks, Drops, Sheet, droplets, kept_dry, overhang, undersides, without_puddles
 from .palette import LIQUID, rgb
 from .pieces import Field, MovingLine, MovingMesh, box_edges, lit_actor, plane
+from .ponds import Ponds, parted
 
 CLEAR = 1.0
 """How far one sees in the liquid, in half diagonals of the basin: by then 1/e is left of what lies behind."""
@@ -50,31 +52,18 @@ class Tank:
         self.plate = lit_actor(plane(self._low, self._high, pool.low[2]), shading.FRAGMENT_SOLID, liquid=True, sky=sky)
         """The tank's floor, opaque."""
         self.plate.GetProperty().SetColor((0.28, 0.33, 0.37) if dark else (0.74, 0.78, 0.81))
-        # Behind, then in front: a ray meets the inner faces before the outer ones.
-        inner, outer = (
-            lit_actor(self._mesh.data, shading.FRAGMENT_LIQUID, liquid=True, sky=False, functions=shading.FOAM + bent)
-            for bent in (shading.NOT_BENT, shading.bent() if behind else shading.NOT_BENT)
-        )
-        inner.GetProperty().FrontfaceCullingOn()
-        outer.GetProperty().BackfaceCullingOn()
         self._foam = Foam(pool.grid, trajectory.dt * trajectory.steps_per_frame, self._liquid) if look == "smooth" else None
-        self._white, self._dry = (Field(*pool.shape[:2], smooth=True) for _ in range(2))
-        if behind:
-            behind.look_up([outer])
-        for actor in (inner, outer):
-            actor.ForceTranslucentOn()
-            actor.GetProperty().SetTexture("liquidFoam", self._white.texture)
-            actor.GetProperty().SetTexture("liquidDry", self._dry.texture)
-            uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
-            uniforms.SetUniform3f("cell", list(pool.grid.cell))
-            uniforms.SetUniformf("skinCover", COVER[look])
-        self.inner, self.outer = inner, outer
+        self._white = Field(*pool.shape[:2], smooth=True)
+        self._dry, self._beside_ponds = (Field(FINER * pool.shape[0], FINER * pool.shape[1], smooth=True) for _ in range(2))
+        self._pond = MovingMesh(1, np.zeros((0, 3)))
+        sheets = [(self._mesh, self._dry), (self._pond, self._beside_ponds)][: 2 if look == "smooth" else 1]
+        self.inner, self.outer = zip(*(self._faces(mesh.data, cut, behind) for mesh, cut in sheets))
         """The liquid's own faces, seen from inside and from outside; translucent, the inner ones are drawn first."""
-        self.skin = [inner, outer]
+        self.skin = [*self.inner, *self.outer]
         """The liquid's own faces, and its drops."""
         glass = HAIR * np.linalg.norm(self._high - self._low) * np.array([1.0, 1.0, 0.0])
         edges = box_edges(self._low - glass, self._high + glass, 0.85 if dark else 0.25, 0.55, 2.0)
-        self.actors = [outer, edges]
+        self.actors = [*self.outer, edges]
         """What is translucent, in the order in which it is drawn, but for the inner faces."""
         if look == "smooth":
             self._rim = MovingLine(len(self._form.rim), (1.0, 1.0, 1.0), 2.0)
@@ -91,6 +80,27 @@ class Tank:
             self.skin.append(drops)
             self.actors.append(drops)
         self._through: Sequence = ()
+
+    def _faces(self, data, cut: Field, behind: Behind | None) -> tuple:
+        """Actors of inner and outer faces of a sheet, which is not drawn where it is ``cut``."""
+        pool = self._trajectory.liquid
+        # Behind, then in front: a ray meets the inner faces before the outer ones.
+        inner, outer = (
+            lit_actor(data, shading.FRAGMENT_LIQUID, liquid=True, sky=False, functions=shading.FOAM + bent)
+            for bent in (shading.NOT_BENT, shading.bent() if behind else shading.NOT_BENT)
+        )
+        inner.GetProperty().FrontfaceCullingOn()
+        outer.GetProperty().BackfaceCullingOn()
+        if behind:
+            behind.look_up([outer])
+        for actor in (inner, outer):
+            actor.ForceTranslucentOn()
+            actor.GetProperty().SetTexture("liquidFoam", self._white.texture)
+            actor.GetProperty().SetTexture("liquidDry", cut.texture)
+            uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
+            uniforms.SetUniform3f("cell", list(pool.grid.cell))
+            uniforms.SetUniformf("skinCover", COVER[self._look])
+        return inner, outer
 
     def colour_through(self, actors: Sequence) -> None:
         """Let everything that is lit take the liquid's colour where it is seen through liquid."""
@@ -111,16 +121,26 @@ class Tank:
             uniforms.SetUniformf("floorHeight", height)
             uniforms.SetUniform3f("floorCentre", list(map(float, floor)))
 
-    def show(self, frame: int, position: np.ndarray) -> None:
-        """Move the liquid to a frame, in which particles are there [m], shape (N, 3)."""
+    def show(self, frame: int, position: np.ndarray, vertices: np.ndarray, triangle: np.ndarray) -> None:
+        """Move the liquid to a frame.
+
+        Args:
+            frame: its number.
+            position: of particles [m], shape (N, 3).
+            vertices: of the surfaces of all bodies [m], shape (V, 3).
+            triangle: their corners, counter-clockwise seen from outside, shape (T, 3).
+        """
         smooth, raw, drops = self._liquid(frame)
+        grid, ponds = self._trajectory.liquid.grid, None
+        if self._look == "smooth":
+            smooth, raw, ponds = parted(grid, smooth, raw, vertices, triangle)
         points, normals = self._form.mesh(smooth if self._look == "smooth" else raw)
         if self._look == "smooth":
-            self._form.move_aside(points, overhang(self._trajectory.liquid.grid, smooth, position))
+            self._form.move_aside(points, overhang(grid, smooth, position))
         points[:, :2] += HAIR * ((self._low + self._high)[:2] / 2 - points[:, :2])
         self._mesh.move(points, normals)
         if self._spray:
-            rows = droplets(drops, max(self._trajectory.liquid.grid.cell))
+            rows = droplets(drops, max(grid.cell))
             balls = Drops(max(1, len(rows)), self._fine)
             round_ = balls.mesh(rows)
             self._spray.reshape(len(round_[0]), balls.triangle)
@@ -129,25 +149,36 @@ class Tank:
             rim = points[self._form.rim]
             rim[:, :2] += np.sign((self._low + self._high)[:2] / 2 - rim[:, :2]) * self._rim_inside
             self._rim.move(rim, self._rim_opacity(smooth, raw))
+            # There are no blocks where it is dry.
+            self._dry.fill(dry_spots(grid, smooth, raw, vertices, triangle))
         # What is seen through a column that tells nothing is seen through liquid all the same.
         top = smooth if self._look == "smooth" else np.where(np.isfinite(raw), raw, smooth)
         dry = kept_dry(raw)
         if dry.any():
             # Under a hull there is liquid.
-            top = np.where(dry, undersides(self._trajectory.liquid.grid, position), top)
-        self._heights.fill(top)
+            top = np.where(dry, undersides(grid, position), top)
+        self._show_ponds(ponds)
+        level, bottom = (ponds.level, ponds.bottom) if ponds else (top, np.full(top.shape, np.inf))
+        self._heights.fill(np.stack([top, level, np.minimum(bottom, self._high[2])], axis=-1))
         if self._foam:
             self._white.fill(self._foam.at(frame))
-        # There are no blocks where it is dry.
-        if self._look == "smooth":
-            self._dry.fill(dry.astype(np.float32))
-        for actor in (self.inner, self.outer):
+        for actor in (*self.inner, *self.outer):
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
             uniforms.SetUniformf("foamMost", float(self._white.numbers.max()))
         for actor in self._through:
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
-            uniforms.SetUniformf("liquidTop", float(top.max()))
+            uniforms.SetUniformf("liquidTop", float(max(top.max(), level[bottom < level].max(initial=-np.inf))))
             uniforms.SetUniformf("liquidLow", float(top.min()))
+
+    def _show_ponds(self, ponds: Ponds | None) -> None:
+        """Have a sheet for ponds, one without triangles if there are none."""
+        if ponds:
+            points, normals, triangle = self._form.pond(ponds.level, ponds.quads)
+            self._pond.reshape(len(points), triangle)
+            self._pond.move(points, normals)
+            self._beside_ponds.fill(ponds.hidden)
+        elif self._pond.data.GetNumberOfPolys():
+            self._pond.reshape(1, np.zeros((0, 3)))
 
     def _liquid(self, frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Smooth and raw heights, and drops, of a frame."""
