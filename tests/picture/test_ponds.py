@@ -8,7 +8,7 @@ import pytest
 from mdanim_lammps.model.basin import Grid
 from mdanim_lammps.picture.hulls import FINER, against_bodies, dry_spots
 from mdanim_lammps.picture.liquid import PUDDLE, kept_dry
-from mdanim_lammps.picture.ponds import parted
+from mdanim_lammps.picture.ponds import one_sheet, parted
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera, Render
@@ -175,6 +175,18 @@ def test_a_pond_on_a_table_ends_on_it():
     np.testing.assert_allclose(below, 0.2)
     assert (ponds.level[turned(x, y, 0.5, 0.4) & ~turned(x, y, 0.4, 0.4)] < 0.5).all()
     assert (ponds.level[raw == 0.55] > 0.5).all()
+
+
+def test_one_sheet_hangs_down_within_the_planks_only():
+    """With one height for each column the pond and what is around it have theirs, and nothing is drawn between the two."""
+    raw = told(0.6, level=0.1)
+    smooth = np.where(np.isnan(raw), 0.1, raw)
+    height, cut = one_sheet(GRID, smooth, raw, *hull(floor=0.4, bottom=0.3))
+    np.testing.assert_allclose(height[np.isfinite(raw)], raw[np.isfinite(raw)])
+    assert not cut[np.isfinite(raw)].any()
+    for a, b in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
+        steep = np.abs(height[a] - height[b]) > 0.2
+        assert steep.any() and (cut[a] | cut[b])[steep].all()
 
 
 @pytest.mark.parametrize(("rim", "drawn"), [(0.8, True), (0.45, False)])

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model.basin import Grid
-from .hulls import AROUND, ASIDE, SHORE, Spots, against_bodies, beside
+from .hulls import AROUND, ASIDE, FINER, SHORE, Spots, against_bodies, beside, dry_spots
 from .liquid import DRIP, PUDDLE
 
 ON_BODY = 0.9
@@ -29,6 +29,8 @@ SQUARE = np.ones((3, 3), bool)
 class Ponds:
     """All ponds of a frame; heights are z [m], shape (ny, nx)."""
 
+    columns: np.ndarray
+    """Those that they stand on, bool, shape (ny, nx)."""
     level: np.ndarray
     """Of their sheet over their columns and those around."""
     bottom: np.ndarray
@@ -72,6 +74,26 @@ def parted(
     return below, told, _sheet(grid, raw, group * pond, vertices, triangle)
 
 
+def one_sheet(
+    grid: Grid, smooth: np.ndarray, raw: np.ndarray, vertices: np.ndarray, triangle: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Heights of a sheet with one for each column, z [m], and where it is not drawn, bool, both of shape (ny, nx).
+
+    Between a pond and what is around it hangs a part that is not drawn, within the body. What is below a pond is not there.
+    """
+    from scipy.ndimage import binary_dilation
+
+    below, told, ponds = parted(grid, smooth, raw, vertices, triangle)
+    dry = dry_spots(grid, below, told, vertices, triangle)
+    cut = dry.reshape(raw.shape[0], FINER, raw.shape[1], FINER).mean(axis=(1, 3)) > 0.5
+    if ponds is None:
+        return below, cut
+    beside, near, far = (binary_dilation(ponds.columns, SQUARE, iterations=n) & ~np.isfinite(told) for n in (1, 2, 3))
+    at_rest = binary_dilation(np.isfinite(told), SQUARE)
+    cut = (cut & ~far) | (far & ~beside) | (beside & at_rest)
+    return np.where(near, ponds.level, below), cut & ~ponds.columns
+
+
 def _sheet(grid: Grid, raw: np.ndarray, group: np.ndarray, vertices: np.ndarray, triangle: np.ndarray) -> Ponds | None:
     """The sheet of ponds, as for `parted`; ``group`` is the number of the pond of each column, 0 of none, shape (ny, nx)."""
     from scipy.ndimage import binary_dilation, label, maximum_filter, uniform_filter
@@ -97,7 +119,7 @@ def _sheet(grid: Grid, raw: np.ndarray, group: np.ndarray, vertices: np.ndarray,
     region, count = label(~solid)
     has = np.bincount(region[spots.of(pond)], minlength=count + 1) > 0
     shown = spots.all(beside(solid, has[region] & (face > -np.inf)))
-    return Ponds(level, np.where(around & (bottom > -np.inf), bottom, np.inf), quads, ~shown)
+    return Ponds(pond, level, np.where(around & (bottom > -np.inf), bottom, np.inf), quads, ~shown)
 
 
 def _middles(grid: Grid) -> tuple[np.ndarray, np.ndarray]:

@@ -26,8 +26,9 @@ import numpy as np
 from ..errors import OutputError
 from ..picture.camera import FIELD_OF_VIEW, Action, CameraPath, action_of, automatic_view
 from ..picture.foam import Foam
-from ..picture.liquid import Sheet, kept_dry, without_puddles
+from ..picture.liquid import Sheet, without_puddles
 from ..picture.palette import LIQUID, background_colors, is_dark, object_colors, rgb, vertex_colors
+from ..picture.ponds import one_sheet
 from ..picture.rays import direction
 from ..picture.render import grid_spacing
 from ..picture.surfaces import shaded_mesh
@@ -221,10 +222,12 @@ class Feed:
         """Heights, u16, and states with foam, u8, of the columns of a frame, each of shape (C,); None without a liquid."""
         if self._foam is None:
             return None
-        smooth, raw, _ = self._liquid(n)
+        grid, (smooth, raw, _) = self.metadata.liquid.grid, self._liquid(n)
+        vertices = self.vertices(self.frames.value("position", n))
+        smooth, cut = one_sheet(grid, *without_puddles(grid, smooth, raw), vertices, self.triangle)
         low, high = self.metadata.liquid.low[2], self.metadata.liquid.high[2]
         height = np.rint(np.clip((smooth - low) / (high - low), 0.0, 1.0) * STEPS).astype("<u2")
-        state = np.where(kept_dry(raw), DRY, np.where(np.isfinite(raw), OPEN, HIDDEN)).astype("u1")
+        state = np.where(cut, DRY, np.where(np.isfinite(raw), OPEN, HIDDEN)).astype("u1")
         foam = np.rint(MOST_FOAM * self._foam.at(n)).astype("u1")
         return height.ravel(), (state + 4 * foam).ravel()
 
