@@ -14,7 +14,7 @@ namespace {
 
 constexpr int LEAST_PART = SolidParts::FULL / 8;    // a cell that is less solid feels what its neighbours feel
 constexpr double NARROW = 1.0;                      // gaps below bodies that cells do not resolve: liquid seeps in
-constexpr double HIGHEST = 8.0;                     // cells of liquid that press on a body beyond what it displaces
+constexpr double HIGHEST = 8.0;                     // cells of liquid that press on a body beyond what stands around it
 constexpr int SMOOTHINGS = 4;
 constexpr double HIDDEN = std::numeric_limits<double>::quiet_NaN();
 
@@ -206,11 +206,12 @@ void WavePush::press(const Waves &waves, SolidRun &run)
   else if (run.above >= 0)
     std::copy_n(waves.around(run.column, run.above).u, 4, run.u);
   if (run.above < 0) return;
-  const double around = ambient[run.column];
-  if (run.wet && around > run.top) run.beside = std::min(around - run.top, HIGHEST) / thickness;
-  if (run.wet) run.over = std::clamp(run.phi - run.top, 0.0, HIGHEST) / thickness;
+  const double around = std::max(0.0, ambient[run.column] - run.top);    // 0 where that is not known
+  const auto pressing = [&](double head) { return std::clamp(head - run.top, 0.0, around + HIGHEST) / thickness; };
+  if (run.wet) run.beside = around / thickness;
+  if (run.wet) run.over = pressing(run.phi);
   const Waves::SpanView above = waves.span_view(run.column, run.above);
-  if (above.wet) run.on_top = std::clamp(above.phi - run.top, 0.0, HIGHEST) / thickness;
+  if (above.wet) run.on_top = pressing(above.phi);
   run.beside -= run.on_top;
   if (run.moves) run.over += added.force_on(run.column) / thickness;
 }
