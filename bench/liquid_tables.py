@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """All measured tables of the liquid with waves in docs/physics-liquid.md: ``python bench/liquid_tables.py [PART ...]``.
 
-Parts: forms, bodies, cost (bench/waves.py), drafts, bobbing (bench/drafts.py), share (bench/liquid.py). ``--write`` puts the
+Parts: forms, bodies, cost (bench/waves.py), drafts, bobbing (bench/drafts.py), momentum (bench/momentum.py), share
+(bench/liquid.py). ``--write`` puts the
 tables into the page in place of those that stand there; without it they are printed only. ``--rounds N`` is for the parts that
 measure time, cost and share. Every part runs in a process of its own; a part that fails is told as such, what stands on the page
 for it is left, and the exit code is 1.
@@ -16,7 +17,7 @@ from timing import machine, replace_between
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "physics-liquid.md"
 TIMED = ("cost", "share")
-PARTS = ("forms", "bodies", "cost", "drafts", "bobbing", "share")
+PARTS = ("forms", "bodies", "cost", "drafts", "bobbing", "momentum", "share")
 LIMIT = 3600
 """Seconds that a part may take."""
 
@@ -31,6 +32,10 @@ def table(part: str, rounds: int) -> str:
         import drafts
 
         return drafts.drafts_in_waves() if part == "drafts" else drafts.bobbing_table()
+    if part == "momentum":
+        import momentum
+
+        return momentum.table()
     import waves
 
     return waves.table(part, *([rounds] if part == "cost" else []))

@@ -48,6 +48,11 @@ class Basin {
     std::int64_t wanted;
     long left;
   };
+  // Impulses until now, sideways, over density [volume * velocity]: on the basin and on what is held in it, friction of the
+  // liquid among them; on solids that move; and the momentum that came with liquid, less what went with it.
+  struct Impulses {
+    Vec3 basin, solids, came;
+  };
   // Liquid that flies.
   struct Droplet {
     Vec3 place;    // [distance], as the radius
@@ -112,6 +117,8 @@ class Basin {
   virtual double calms_solids() const { return 0.0; }
   // On the liquid since the last update, from a solid of this rank.
   virtual void take_impulse(const Vec3 & /*place*/, const Vec3 & /*impulse*/) {}
+  // By which it has pushed such a solid sideways in each step since then, over the weight of liquid of volume 1.
+  virtual void take_push(const Vec3 & /*volume_along*/) {}
 
   Vec3 in_cells(const double *x) const
   { return {(x[0] - shape.low.x) * per_cell.x, (x[1] - shape.low.y) * per_cell.y, (x[2] - shape.low.z) * per_cell.z}; }
@@ -140,6 +147,7 @@ class Basin {
   virtual std::int64_t updates_so_far() const = 0;    // sweeps of the automaton
   virtual double energy() const { return 0.0; }       // of the liquid since the start, over density g cell^4; 0 without momentum
   virtual Vec3 momentum() const { return {}; }        // of the liquid, over density [volume * velocity]; sideways
+  virtual Impulses impulses() const { return {}; }
   virtual double highest() const { return top(); }    // liquid
   virtual double bytes() const = 0;
   virtual double mean_level() const = 0;    // [distance]

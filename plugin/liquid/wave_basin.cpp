@@ -9,6 +9,7 @@
 #include <climits>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 namespace mdanim {
 
@@ -24,6 +25,7 @@ constexpr double SOFT = 0.5;                // part of its compression by which 
 constexpr double MASS_STEP = 1.0 / 64.0;    // so that what shakes a little does not wake the liquid
 constexpr double FLATTEST = 1.25;           // longest edge of a cell over the shortest
 constexpr double IMPULSE_UNIT = 1.0 / (1LL << 40);
+constexpr double PUSH_UNIT = 1.0 / (1LL << 32);    // cells of liquid
 constexpr double ANYWHERE = std::numeric_limits<double>::infinity();
 
 }    // namespace
@@ -55,7 +57,7 @@ WaveBasin::WaveBasin(const Shape &shape, double g, double calm, double spray, st
     : Basin(shape, g), ranks(ranks), unit_of_time(std::sqrt(shape.cell.x * shape.cell.y / (g * shape.cell.z))),
       waves(shape.nx, shape.ny, shape.nz), push(shape.nx, shape.ny, shape.nz), makers(shape.nx, shape.ny),
       drops(shape.nx, shape.ny, seed), still(shape.nx, shape.ny, shape.nz), mobile(shape.nx, shape.ny, shape.nz),
-      part(still.count.size(), 0), mass(columns(), 0.0), afloat(columns()), rising(columns()), impulses(2 * columns(), 0),
+      part(still.count.size(), 0), mass(columns(), 0.0), afloat(columns()), rising(columns()), from_solids(2 * columns() + 2, 0),
       heads(columns(), 0.0), tops(columns(), 0.0), hollow(columns(), 0)
 {
   waves.law.calm = calm * unit_of_time;
@@ -91,6 +93,13 @@ void WaveBasin::add_flow(const Vec3 &low, const Vec3 &high, double rate, double 
 
 // --- solids ---
 
+// See SolidParts.
+static std::uint16_t in_parts(std::int64_t count)
+{
+  constexpr std::int64_t FULL = SolidParts::FULL, COUNT = Occupancy::FULL_SPREAD;
+  return static_cast<std::uint16_t>(std::min(FULL, (count * FULL + COUNT / 2) / COUNT));
+}
+
 long WaveBasin::mark_still(const AddBodies &bodies)
 {
   const Lap lap(occupancy_seconds);
@@ -103,6 +112,11 @@ long WaveBasin::mark_still(const AddBodies &bodies)
     const std::size_t cell = still.number(x, y, z);
     if (still.count[cell]) sum = (sum ^ (static_cast<std::uint64_t>(cell) << 20 ^ still.count[cell])) * 1099511628211ULL;
   });
+  std::vector<std::uint16_t> held(part.size(), 0);
+  still.touched.each([&](int x, int y, int z) {
+    held[part_number(y * shape.nx + x, z)] = in_parts(still.count[still.number(x, y, z)]);
+  });
+  waves.set_walls(held.data());
   const bool changed = sum != still_known;
   still_known = sum;
   return changed;
@@ -135,8 +149,7 @@ void WaveBasin::count_parts()
         for (int x = first; x < std::min(first + BLOCK, marked.high[0]); ++x) {
           const std::size_t cell = still.number(x, y, z);
           const std::int64_t count = static_cast<std::int64_t>(still.count[cell]) + mobile.count[cell];
-          part[part_number(y * shape.nx + x, z)] = static_cast<std::uint16_t>(std::min<std::int64_t>(
-              SolidParts::FULL, (count * SolidParts::FULL + Occupancy::FULL_SPREAD / 2) / Occupancy::FULL_SPREAD));
+          part[part_number(y * shape.nx + x, z)] = in_parts(count);
           of_row += mobile.count[cell] > 0;
         }
     with_something += of_row;
@@ -224,15 +237,10 @@ void WaveBasin::update(const AddBodies &bodies, std::uint64_t, double dt)
   const double since = static_cast<double>(waited) * dt / unit_of_time, time = std::min(LONGEST, since);
   waves.set_solids(part.data(), mass.data(), since > 0.0 ? time / since : 0.0, &changed);
   changed = CellBox();
-  std::vector<std::int64_t> all = impulses;
-  ranks.add_wide(all.data(), static_cast<int>(all.size()));
-  std::vector<double> given(all.size());
-  for (std::size_t n = 0; n < all.size(); ++n) given[n] = static_cast<double>(all[n]) * IMPULSE_UNIT;
-  waves.add_impulse(given.data(), given.data() + columns());
-  std::fill(impulses.begin(), impulses.end(), 0);
+  give_impulses(since);
   makers.apply(waves, time);
-  waves.update(time);
-  drops.update(waves, time, static_cast<std::uint64_t>(updates));
+  account.came += waves.take_came();
+  go_on(time);
   ++updates;
   look();
   if (waves.at_rest())
@@ -242,6 +250,34 @@ void WaveBasin::update(const AddBodies &bodies, std::uint64_t, double dt)
   travel = 0.0;
   waited = 0;
   stale = false;
+}
+
+// What solids have done to the liquid, and it to them, since the last update.
+void WaveBasin::give_impulses(double since)
+{
+  std::vector<std::int64_t> all = from_solids;
+  ranks.add_wide(all.data(), static_cast<int>(all.size()));
+  const auto middle = all.begin() + columns(), end = middle + columns();
+  const auto sum = [](auto from, auto to) {
+    return static_cast<double>(std::accumulate(from, to, std::int64_t{0})) * IMPULSE_UNIT;
+  };
+  // Force in units of the waves: density, g and cell are 1 there, and time is that of a square cell.
+  const Vec3 push{static_cast<double>(end[0]) * PUSH_UNIT * shape.cell.y / shape.cell.z,
+                  static_cast<double>(end[1]) * PUSH_UNIT * shape.cell.x / shape.cell.z, 0.0};
+  account.solids += since * push - Vec3{sum(all.begin(), middle), sum(middle, end), 0.0};
+  std::vector<double> given(2 * columns());
+  for (std::size_t n = 0; n < given.size(); ++n) given[n] = static_cast<double>(all[n]) * IMPULSE_UNIT;
+  waves.add_impulse(given.data(), given.data() + columns());
+  std::fill(from_solids.begin(), from_solids.end(), 0);
+}
+
+// Waves and drops. Drops lose momentum to walls too, and get some by their scatter.
+void WaveBasin::go_on(double time)
+{
+  waves.update(time);
+  const Vec3 lost = waves.take_lost(), flying = drops.momentum();
+  drops.update(waves, time, static_cast<std::uint64_t>(updates));
+  account.basin += lost - (drops.momentum() - flying) - waves.take_came();
 }
 
 // --- what a particle finds ---
@@ -309,8 +345,15 @@ void WaveBasin::take_impulse(const Vec3 &place, const Vec3 &impulse)
   const int x = std::min(static_cast<int>(place.x), shape.nx - 1), y = std::min(static_cast<int>(place.y), shape.ny - 1);
   const double unit = cell_volume() / unit_of_time * IMPULSE_UNIT;
   const int column = y * shape.nx + x;
-  impulses[column] += whole(impulse.x / (unit * shape.cell.x));
-  impulses[columns() + column] += whole(impulse.y / (unit * shape.cell.y));
+  from_solids[column] += whole(impulse.x / (unit * shape.cell.x));
+  from_solids[columns() + column] += whole(impulse.y / (unit * shape.cell.y));
+}
+
+void WaveBasin::take_push(const Vec3 &volume_along)
+{
+  const double unit = cell_volume() * PUSH_UNIT;
+  from_solids[2 * columns()] += whole(volume_along.x / unit);
+  from_solids[2 * columns() + 1] += whole(volume_along.y / unit);
 }
 
 }    // namespace mdanim

@@ -52,6 +52,7 @@ class WaveBasin : public Basin {
   double all_below() const override { return -std::numeric_limits<double>::infinity(); }
   double calms_solids() const override;
   void take_impulse(const Vec3 &place, const Vec3 &impulse) override;
+  void take_push(const Vec3 &volume_along) override;
 
   bool is_smooth() const override { return true; }
   int top() const override { return top_layer; }
@@ -63,7 +64,8 @@ class WaveBasin : public Basin {
   double cells_at_start() const override { return static_cast<double>(units + makers.in() - makers.out()) / UNITS_PER_CELL; }
   std::int64_t updates_so_far() const override { return updates; }
   double energy() const override { return energy_now() - energy_at_start; }
-  Vec3 momentum() const override;
+  Vec3 momentum() const override { return in_world(waves.momentum() + drops.momentum()); }
+  Impulses impulses() const override { return {in_world(account.basin), in_world(account.solids), in_world(account.came)}; }
   double highest() const override { return crest; }
   double bytes() const override;
   double mean_level() const override;
@@ -77,6 +79,9 @@ class WaveBasin : public Basin {
 
  private:
   double energy_now() const;
+  Vec3 in_world(const Vec3 &momentum) const;
+  void give_impulses(double since);
+  void go_on(double time);
   void count_parts();
   std::size_t part_number(int column, int z) const { return static_cast<std::size_t>(column) * shape.nz + z; }
   void take_solids();
@@ -108,13 +113,15 @@ class WaveBasin : public Basin {
   std::int64_t updates = 0;
   Units units = 0;    // of liquid at the start
   double energy_at_start = 0.0;
+  Impulses account;                 // in units of the waves
   long moving = 0;                  // cells with something in them that moves
   std::uint64_t still_known = 0;    // a checksum of what never moves
 
   // what follows from it
-  std::vector<std::int64_t> impulses;    // along x, then along y, of each column, from solids; none between updates
-  std::vector<double> heads, tops;       // of columns: the surface that solids feel, and the topmost liquid, see surface()
-  std::vector<std::uint8_t> hollow;      // columns that a hull keeps dry below the surface
+  // From solids, none between updates: of each column along x, then along y; then what pushes solids along x and y.
+  std::vector<std::int64_t> from_solids;
+  std::vector<double> heads, tops;     // of columns: the surface that solids feel, and the topmost liquid, see surface()
+  std::vector<std::uint8_t> hollow;    // columns that a hull keeps dry below the surface
   int top_layer = 0;
   double crest = 0.0;    // the highest head under open sky
 };

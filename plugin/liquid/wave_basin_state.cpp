@@ -14,7 +14,7 @@ namespace mdanim {
 
 namespace {
 
-constexpr double STATE_VERSION = 8.0;    // the automaton's is 3
+constexpr double STATE_VERSION = 9.0;    // the automaton's is 3
 constexpr std::uint8_t SOLID_CODE = 255;
 constexpr double PUDDLE = 1.0 / 64.0;    // cells that are part of the floor
 constexpr double PI = 3.14159265358979323846;
@@ -25,6 +25,7 @@ struct WaveBasinHead {
   std::uint64_t still_known;
   Basin::Ledger ledger;
   double travel, energy_at_start;
+  Basin::Impulses account;
   std::uint64_t of_drops;    // bytes
 };
 
@@ -44,11 +45,10 @@ double WaveBasin::energy_now() const
   return now.height + now.motion + drops.energy() + push.energy();
 }
 
-Vec3 WaveBasin::momentum() const
+Vec3 WaveBasin::in_world(const Vec3 &momentum) const
 {
-  const Vec3 sum = waves.momentum() + drops.momentum();
   const double unit = cell_volume() / unit_of_time;
-  return {sum.x * unit * shape.cell.x, sum.y * unit * shape.cell.y, 0.0};
+  return {momentum.x * unit * shape.cell.x, momentum.y * unit * shape.cell.y, 0.0};
 }
 
 double WaveBasin::mean_level() const
@@ -143,8 +143,8 @@ void WaveBasin::contents(std::uint8_t *out) const
 std::vector<std::uint8_t> WaveBasin::state(const Ledger &ledger) const
 {
   const std::vector<std::uint8_t> of_makers = makers.state(), of_drops = drops.state(), of_waves = waves.state();
-  const WaveBasinHead head{STATE_VERSION, shape.nx, shape.ny,    shape.nz, units,  updates,         waited,
-                           stale,         moving,   still_known, ledger,   travel, energy_at_start, of_drops.size()};
+  const WaveBasinHead head{STATE_VERSION, shape.nx,    shape.ny, shape.nz, units,           updates, waited,         stale,
+                           moving,        still_known, ledger,   travel,   energy_at_start, account, of_drops.size()};
   std::vector<std::uint8_t> bytes;
   const auto add = [&](const void *from, std::size_t size) {
     const auto *first = static_cast<const std::uint8_t *>(from);
@@ -198,7 +198,7 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
   put(afloat, floating);
   put(push.state(), ambient);
   put(push.added_state(), added);
-  std::fill(impulses.begin(), impulses.end(), 0);
+  std::fill(from_solids.begin(), from_solids.end(), 0);
   poured = true;
   stale = head.stale != 0;
   travel = head.travel;
@@ -206,6 +206,7 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
   updates = head.updates;
   units = head.units;
   energy_at_start = head.energy_at_start;
+  account = head.account;
   moving = static_cast<long>(head.moving);
   still_known = head.still_known;
   part = waves.solids().part;

@@ -21,7 +21,7 @@ double *WaveArrays::*const OF_SPANS[] = {
 
 double *WaveLinks::*const OF_LINKS[] = {
     &WaveLinks::edge,   &WaveLinks::top,    &WaveLinks::u,     &WaveLinks::q,      &WaveLinks::wet,
-    &WaveLinks::height, &WaveLinks::faster, &WaveLinks::units, &WaveLinks::couple,
+    &WaveLinks::height, &WaveLinks::faster, &WaveLinks::units, &WaveLinks::couple, &WaveLinks::moving,
 };
 
 }    // namespace
@@ -39,6 +39,7 @@ Waves::Waves(int nx, int ny, int nz)
   for (int column = 0; column < nx * ny; ++column) all[column] = column;
   carry_over(all, all, {});
   join(all);
+  set_walls(solid.part.data());
 }
 
 // Makes room for so many rows of further spans and so many further links of each direction. What is in the grid stays.

@@ -13,6 +13,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace mdanim {
@@ -33,6 +34,8 @@ class Waves {
   // done with the waves any more after that. `again`: the part of what has changed that will change once more in the next
   // update. Outside of a box `where` (null: nowhere) nothing has changed.
   void set_solids(const std::uint16_t *part, const double *mass, double again = 1.0, const CellBox *where = nullptr);
+  // Tells which part of each cell is held, as SolidParts has them: a wall, as the sides of the basin are.
+  void set_walls(const std::uint16_t *held);
   // Fills all spans of each column up to a height; those that are full get the pressure of that height. `from`: what would be
   // below this height is left out.
   void pour(const double *height, const double *from = nullptr);
@@ -67,6 +70,10 @@ class Waves {
   };
   Energy energy() const;
   Vec3 momentum() const;    // along the links
+  // Momentum that the liquid has lost to walls and to friction since this was asked last; and what has come and gone with give()
+  // and take().
+  Vec3 take_lost() { return std::exchange(lost, Vec3{}); }
+  Vec3 take_came() { return std::exchange(came, Vec3{}); }
 
   // --- liquid that comes and goes between updates (waves_exchange.cpp) ---
 
@@ -163,6 +170,11 @@ class Waves {
     int column, z;
     Units units;
   };
+  // What is solid of the face between two columns, or of the basin's side where `other` is -1, from one layer to another.
+  struct WallFace {
+    int column, other, low, high;
+    double x, y;    // its direction from the column, times the part that is solid
+  };
   // The links on one side of a span, as one.
   struct SideLinks {
     double q, u, height;
@@ -255,6 +267,11 @@ class Waves {
   }
 
   int span_below(int column, double height) const;
+  Vec3 velocity_of(long i) const;
+
+  // --- waves_walls.cpp ---
+  double pressure_on(int column, int low, int high) const;
+  Vec3 force_on_walls() const;
 
   // --- waves_solids.cpp, waves_links.cpp ---
   std::vector<int> differing(const std::uint16_t *part, const CellBox &where) const;
@@ -276,6 +293,7 @@ class Waves {
   bool hardly_flows() const;
   double fastest() const;
   void sub_update(double dt, double share);
+  Vec3 moving() const;
   bool let_go();
   bool let_go(long first, long end);
   void solve(bool again);
@@ -303,6 +321,8 @@ class Waves {
   const WaveKernels *kernels;
   Threads threads;
   bool all_general = false, resting = false, some_full = false;
+  Vec3 lost, came;    // see take_lost()
+  std::vector<WallFace> wall_faces;
 
   std::vector<int> spans_in, further;    // of each column: how many spans, and the number of its first further one
   std::vector<Span> span;                // of each place; column -1 where there is none

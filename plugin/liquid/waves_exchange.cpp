@@ -26,6 +26,7 @@ Units Waves::give(int column, double height, Units units, double ux, double uy)
   if (taken == 0) return 0;
   resting = false;
   content[i] += taken;
+  came += static_cast<double>(taken) / UNITS_PER_CELL * Vec3{ux, uy, 0.0};
   const auto head_now = [&](long at) { return head_of(solid, span[at], content[at]).height; };
   const double head = head_now(i);
   for (int d = 0; d < 2; ++d) {
@@ -53,9 +54,23 @@ Units Waves::take(int column, double height, Units most)
   const long i = place(column, n);
   const Units film = static_cast<Units>(law.film * law.units_per_cell);
   const Units taken = std::clamp<Units>(content[i] - film, 0, most);
-  if (taken > 0) resting = false;
+  if (taken == 0) return 0;
+  resting = false;
   content[i] -= taken;
+  came -= static_cast<double>(taken) / UNITS_PER_CELL * velocity_of(i);
   return taken;
+}
+
+// Mean of the wet links of a span along each direction.
+Vec3 Waves::velocity_of(long i) const
+{
+  double sum[2] = {0.0, 0.0}, count[2] = {0.0, 0.0};
+  each_link_of(i, [&](const LinkPlace &link, long, bool) {
+    if (!is_link(link) || arrays_of(link).height[link.at] == 0.0) return;
+    sum[link.d] += arrays_of(link).u[link.at];
+    count[link.d] += 1.0;
+  });
+  return {sum[0] / std::max(1.0, count[0]), sum[1] / std::max(1.0, count[1]), 0.0};
 }
 
 double Waves::held_below(int column, double height) const

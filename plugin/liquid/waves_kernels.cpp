@@ -55,7 +55,8 @@ template <class Vector, class F> MDANIM_ALWAYS_INLINE void each(const WaveArrays
 }
 
 // Sums f(place) over each row: eight parts, added in pairs.
-template <class Vector, class F> MDANIM_ALWAYS_INLINE void sum_rows(const WaveArrays &a, long first, long end, const F &f)
+template <class Vector, class F>
+MDANIM_ALWAYS_INLINE void sum_rows_to(double *sums, const WaveArrays &a, long first, long end, const F &f)
 {
   constexpr int VECTORS = WaveKernels::SUMMED / LANES<Vector>;
   for (long row = first; row < end; ++row) {
@@ -65,9 +66,12 @@ template <class Vector, class F> MDANIM_ALWAYS_INLINE void sum_rows(const WaveAr
       for (int n = 0; n < VECTORS; ++n) sum[n] += f(i + n * LANES<Vector>);
     double part[WaveKernels::SUMMED];
     for (int n = 0; n < VECTORS; ++n) store(part + n * LANES<Vector>, sum[n]);
-    a.sums[row] = ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
+    sums[row] = ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
   }
 }
+
+template <class Vector, class F> MDANIM_ALWAYS_INLINE void sum_rows(const WaveArrays &a, long first, long end, const F &f)
+{ sum_rows_to<Vector>(a.sums, a, first, end, f); }
 
 namespace kernel {
 
@@ -267,10 +271,12 @@ template <class Vector> MDANIM_ALWAYS_INLINE void heads(const WaveArrays &a, con
 
 template <class Vector> MDANIM_ALWAYS_INLINE void push(const WaveArrays &a, const WaveLaw &law, int d, long first, long end)
 {
+  const WaveLinks &links = a.links[d];
   const long along = d == 0 ? 1 : a.stride;
-  each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
-    const LinkAt at{a.links[d], i, i, i + along};
+  sum_rows_to<Vector>(links.moving, a, first, end, [&](long i) MDANIM_INLINED {
+    const LinkAt at{links, i, i, i + along};
     push_at<Vector>(a, law, at, opening<Vector>(at));
+    return load<Vector>(links.height + i) * load<Vector>(links.faster + i);
   });
 }
 

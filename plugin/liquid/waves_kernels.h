@@ -17,6 +17,7 @@ struct WaveLinks {
   double *edge, *top, *u, *q;               // between which heights; velocity, and the flux that made the present contents
   double *wet, *height, *faster, *units;    // see Opened; u after advection; what passes
   double *couple;
+  double *moving;    // momentum before pressure, of rows
 };
 
 // Arrays of spans and links, row after row. A row is `stride` long, a multiple of 8 that leaves one place at least behind the
@@ -56,7 +57,7 @@ struct WaveKernels {
   void (*advance)(const WaveArrays &, double alpha, long first, long end);    // x += alpha next_p, r -= alpha ap
   void (*sum)(const WaveArrays &, const double *a, const double *b, long first, long end);    // of a b, to `sums`
   void (*heads)(const WaveArrays &, const WaveLaw &, long first, long end);          // (W7), and delta becomes the last one
-  void (*push)(const WaveArrays &, const WaveLaw &, int d, long first, long end);    // (W8)
+  void (*push)(const WaveArrays &, const WaveLaw &, int d, long first, long end);    // (W8), and `moving`
   double (*fastest)(const WaveArrays &, long first, long end);                       // the largest |u|
   bool (*balance)(const WaveArrays &, const WaveLaw &, long first, long end);        // to `net`; whether (W9) holds
   void (*settle)(const WaveArrays &, const WaveLaw &, long first, long end);         // contents and q

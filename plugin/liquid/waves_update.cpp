@@ -81,6 +81,7 @@ void Waves::sub_update(double dt, double share)
     for (int d = 0; d < 2; ++d) kernels->push(arrays, law, d, first, end);
   });
   each_listed(listed_links, [&](const LinkPlace &link) { general_push(link); });
+  lost += law.dt * (force_on_walls() + law.calm * moving());
   const auto balance_rows = [&] {
     return !any_row([&](long first, long end) { return !kernels->balance(arrays, law, first, end); });
   };
@@ -101,6 +102,18 @@ void Waves::sub_update(double dt, double share)
   for (int d = 0; d < 2; ++d)
     for (std::size_t n = 0; n < further_links[d].size(); ++n)
       arrays.links[d].q[links_start + n] = arrays.links[d].units[links_start + n] * (1.0 / (law.units_per_cell * law.dt));
+}
+
+// Momentum along x and y before pressure, which friction has just taken a part of.
+Vec3 Waves::moving() const
+{
+  double sum[2] = {0.0, 0.0};
+  for (int d = 0; d < 2; ++d) {
+    const WaveLinks &l = arrays.links[d];
+    for (long row = 1; row < end_row(); ++row) sum[d] += l.moving[row];
+    for (std::size_t n = 0; n < further_links[d].size(); ++n) sum[d] += l.height[links_start + n] * l.faster[links_start + n];
+  }
+  return {sum[0], sum[1], 0.0};
 }
 
 // Nothing pulls at a roof: full spans whose head comes out below it are free. Returns whether there are any; then what was found

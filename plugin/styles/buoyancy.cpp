@@ -134,9 +134,12 @@ bool Buoyancy::Kept::acts() const
 
 void Buoyancy::give_impulses(Basin &basin, const std::vector<int> &near)
 {
-  if (!basin.acts_on_cells()) return;
+  if (!basin.acts_on_cells() || !lifts) return;
+  const double *const volumes = volume.values(lmp);
   for (const int i : near) {
     Kept &of = kept[i];
+    if (of.waves.along_x != 0.0 || of.waves.along_y != 0.0)
+      basin.take_push((volumes ? volumes[i] : volume.number) * Vec3{of.waves.along_x, of.waves.along_y, 0.0});
     if (of.impulse_x == 0.0 && of.impulse_y == 0.0) continue;
     basin.take_impulse(basin.in_cells(atom->x[i]), {of.impulse_x, of.impulse_y, 0.0});
     of.impulse_x = of.impulse_y = 0.0;

@@ -40,7 +40,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   { cells.find(threads, near, table, fix); }
   void forget_cells() { cells.clear(); }
   const NearCells &lattice_cells() const { return cells; }
-  // What the liquid has felt of solids since this was called last.
+  // What the liquid has felt of solids since this was called last, and how it pushes them.
   void give_impulses(Basin &basin, const std::vector<int> &near);
   // What acts on particles until this is called again.
   void look(const Basin &basin, const std::vector<int> &near);

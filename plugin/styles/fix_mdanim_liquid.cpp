@@ -79,7 +79,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   extscalar = 1;
   energy_global_flag = 1;
   vector_flag = 1;
-  size_vector = 15;
+  size_vector = 21;
   extvector = 0;
   array_flag = 1;
   size_array_cols = 4;
@@ -431,7 +431,7 @@ double FixMdanimLiquid::compute_scalar() { return -buoyancy->ledger().sum.work; 
 
 // 1 cells of liquid; 2 at the start; 3 mean level; 4 solid cells; 5 sweeps, of waves updates; 6 awake; 7 energy lost to drag;
 // wall seconds of the slowest rank for 8 liquid, 9 occupancy, 10 coupling, 11 all; 12 energy of waves; 13 highest liquid;
-// 14, 15 momentum of waves along x and y
+// 14, 15 momentum of waves along x and y; impulses along x and y on 16, 17 the basin, 18, 19 solids; 20, 21 what came
 double FixMdanimLiquid::compute_vector(int n)
 {
   switch (n) {
@@ -457,6 +457,18 @@ double FixMdanimLiquid::compute_vector(int n)
       return buoyancy->density() * basin->momentum().x;
     case 14:
       return buoyancy->density() * basin->momentum().y;
+    case 15:
+      return buoyancy->density() * basin->impulses().basin.x;
+    case 16:
+      return buoyancy->density() * basin->impulses().basin.y;
+    case 17:
+      return buoyancy->density() * basin->impulses().solids.x;
+    case 18:
+      return buoyancy->density() * basin->impulses().solids.y;
+    case 19:
+      return buoyancy->density() * basin->impulses().came.x;
+    case 20:
+      return buoyancy->density() * basin->impulses().came.y;
     default:
       break;
   }

@@ -47,6 +47,8 @@ FUNCTIONS = {
     "set_state": (INT, [HANDLE, array(np.uint8), LONG, TEXT, INT]),
     "surface": (None, [HANDLE, DOUBLES, DOUBLES]),
     "add_forces": (None, [HANDLE, INTS, DOUBLES]),
+    "walls": (None, [HANDLE, array(np.uint16)]),
+    "momenta": (None, [HANDLE, DOUBLES]),
     "energy": (None, [HANDLE, DOUBLES]),
     "counts": (None, [HANDLE, LONGS]),
 }
@@ -203,6 +205,16 @@ class Waves:
         force = np.zeros((bodies, 3))
         function("add_forces")(self.handle, np.ascontiguousarray(owner, np.int32).reshape(self.shape), force)
         return force
+
+    def walls(self, held):
+        """Tell the held part of all cells, in 1/4096."""
+        function("walls")(self.handle, np.ascontiguousarray(np.moveaxis(np.reshape(held, self.shape), 0, -1), np.uint16))
+
+    def take_momenta(self) -> np.ndarray:
+        """Momentum now; what was lost, and what came, since this was asked last; each along x and y, shape (3, 2)."""
+        found = np.empty((3, 2))
+        function("momenta")(self.handle, found)
+        return found
 
     @property
     def energy(self) -> np.ndarray:

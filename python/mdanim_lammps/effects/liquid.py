@@ -27,9 +27,12 @@ PERIOD = 0.06
 """Time between updates of a liquid that is not level, over sqrt(cell/g)."""
 NEAR = 8.0
 """Cells above the liquid up to which the motion of solids counts for it; as in the fix."""
-CELLS, CELLS_AT_START, FLOW, OCCUPANCY, COUPLING, WAVES, CREST, MOMENTUM = 0, 1, 7, 8, 9, 11, 12, (13, 14)
+CELLS, CELLS_AT_START, FLOW, OCCUPANCY, COUPLING, WAVES, CREST = 0, 1, 7, 8, 9, 11, 12
 """In the fix's vector: cells of liquid now and before step 0, to the unit, three clocks [s], the energy of a liquid with momentum
-since then [J], its highest point [m], its momentum along x and y [N s]."""
+since then [J], its highest point [m]."""
+MOMENTUM, BASIN_IMPULSE, SOLID_IMPULSE, CAME = (13, 14), (15, 16), (17, 18), (19, 20)
+"""In the fix's vector, along x and y [N s]: the liquid's momentum; the impulses that it has given to its basin with all that is
+held, and to what moves; the momentum that came with liquid, less what went with it."""
 WAVE_PERIOD, WAVE_STRIDE = 0.1, 1.0
 """As PERIOD and STRIDE, of waves. With a stride of 0.25 a dive is as deep to 2 % of the body's size, with 0.5 to 1 %, for up to
 three times and twice the updates: bodies with sides of 6 to 24 cells, as fast as if fallen from their own height."""

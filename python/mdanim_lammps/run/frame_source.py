@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from ..effects.air_drag import LEAPFROG
-from ..effects.liquid import CELLS, CELLS_AT_START, CREST, MOMENTUM, LiquidAutomaton, is_wavy
+from ..effects.liquid import BASIN_IMPULSE, CAME, CELLS, CELLS_AT_START, CREST, MOMENTUM, SOLID_IMPULSE, LiquidAutomaton, is_wavy
 from ..engine.instance import Instance
 from ..engine.plan import Plan
 from ..engine.state import State
@@ -42,8 +42,8 @@ class LiquidFrame:
     """The same before step 0, and what has come since less what has gone."""
     crest: float
     """Height of the highest liquid, without drops [m]; of an automaton the top of its highest layer."""
-    momentum: tuple[float, float] | None
-    """Along x and y [N s]; None where the liquid has none."""
+    momenta: tuple[float, ...] | None
+    """Extras MOMENTA of the ledger [N s]; None of a liquid without momentum."""
 
 
 @dataclass(frozen=True)
@@ -225,8 +225,17 @@ def liquid_frame(instance: Instance) -> LiquidFrame | None:
         return None
     cells, start = (instance.fix_value(LiquidAutomaton.fix, n) for n in (CELLS, CELLS_AT_START))
     drops = instance.liquid_drops() if instance.plan.scene.liquid.drops else None
-    momentum = tuple(instance.fix_value(LiquidAutomaton.fix, n) for n in MOMENTUM) if is_wavy(instance.plan.scene) else None
-    return LiquidFrame(instance.liquid_heights(), drops, cells, start, instance.fix_value(LiquidAutomaton.fix, CREST), momentum)
+    momenta = liquid_momenta(instance) if is_wavy(instance.plan.scene) else None
+    return LiquidFrame(instance.liquid_heights(), drops, cells, start, instance.fix_value(LiquidAutomaton.fix, CREST), momenta)
+
+
+def liquid_momenta(instance: Instance) -> tuple[float, ...]:
+    """MOMENTA of the ledger now [N s], each along x and y."""
+    liquid, basin, solids, came = (
+        np.array([instance.fix_value(LiquidAutomaton.fix, n) for n in entries])
+        for entries in (MOMENTUM, BASIN_IMPULSE, SOLID_IMPULSE, CAME)
+    )
+    return tuple(np.concatenate([liquid, basin, solids, liquid + basin + solids - came]).tolist())
 
 
 def add_clocks(account: Account, instance: Instance) -> None:

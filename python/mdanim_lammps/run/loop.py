@@ -24,7 +24,7 @@ from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
 from ..results.expect import Measured, Outcome, asks_for_crest, evaluate, recorded
 from ..results.files import CHECKPOINT, PAUSE, STOP, disk_errors, write_json, write_whole
-from ..results.ledger import CREST, DUE, LIQUID_MOMENTUM, Ledger
+from ..results.ledger import CREST, DUE, MOMENTA, Ledger
 from ..results.progress import ProgressLog
 from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
@@ -193,7 +193,7 @@ class _Run:
                 *(("liquid_cells",) if self.grid else ()),
                 *((DUE,) if self.fed else ()),
                 *((CREST,) if self.crest else ()),
-                *(LIQUID_MOMENTUM if is_wavy(ready.scene) else ()),
+                *(MOMENTA if is_wavy(ready.scene) else ()),
             ),
             rounding_energy(ready.system),
         )
@@ -383,8 +383,8 @@ class _Run:
                 extras[DUE] = liquid.start
             if self.crest:
                 extras[CREST] = liquid.crest
-            if liquid.momentum:
-                extras |= dict(zip(LIQUID_MOMENTUM, liquid.momentum))
+            if liquid.momenta:
+                extras |= dict(zip(MOMENTA, liquid.momenta))
             if liquid.cells != liquid.start:
                 raise DivergedError(
                     f"step {now.step}, t = {number(when, 4)} s: {exact(liquid.cells)} cells of liquid, "

@@ -139,6 +139,17 @@ MDANIM_EXPORT void mdanim_waves_surface(void *w, double *head, double *volume) {
 MDANIM_EXPORT void mdanim_waves_add_forces(void *w, const std::int32_t *owner, double *force)
 { waves(w).add_forces(owner, force); }
 
+MDANIM_EXPORT void mdanim_waves_walls(void *w, const std::uint16_t *held) { waves(w).set_walls(held); }
+
+// Momentum now; what was lost, and what came, since this was asked last; each along x and y.
+MDANIM_EXPORT void mdanim_waves_momenta(void *w, double *momenta)
+{
+  for (const mdanim::Vec3 &of : {waves(w).momentum(), waves(w).take_lost(), waves(w).take_came()}) {
+    *momenta++ = of.x;
+    *momenta++ = of.y;
+  }
+}
+
 MDANIM_EXPORT void mdanim_waves_energy(void *w, double *height_and_motion)
 {
   const Waves::Energy energy = waves(w).energy();
