@@ -84,7 +84,18 @@ def test_level_and_volume():
 def test_crest_is_the_highest_so_far():
     """The highest at any frame up to a time, not the farthest from 0: basins may be below it."""
     crest = np.array([-3.0, -1.0, -2.0])
-    assert [found("liquid", "crest", time, crest=crest) for time in (0.0, 1.0, 2.0, None)] == [-3.0, -1.0, -1.0, -1.0]
+    assert [found("liquid", "crest", time, of_liquid={"crest": crest}) for time in (0.0, 1.0, 2.0, None)] == [
+        -3.0,
+        -1.0,
+        -1.0,
+        -1.0,
+    ]
+
+
+def test_energy_of_waves_is_that_of_its_time():
+    """Between frames on a straight line, at the end without a time."""
+    waves = {"waves": np.array([0.0, 4.0, 1.0])}
+    assert [found("liquid", "waves", time, of_liquid=waves) for time in (0.5, 1.0, None)] == [2.0, 4.0, 1.0]
 
 
 @pytest.mark.parametrize(

@@ -41,6 +41,7 @@ control { time 0.4 s  frames 50 fps  resolution 2.5 cm }
 expect liquid.residual = 0
 expect liquid.crest at 0 s = 20 cm +- 1 mm
 expect liquid.crest = 30 cm +- 3 cm
+expect liquid.waves at 0.2 s = 2.5 J +- 0.3 J
 """
 IN_THE_SPLASH = 8
 """A frame: drops fly."""
@@ -84,6 +85,36 @@ def test_crest_is_what_the_splash_throws_up(whole):
         seen = np.array([np.nanmax(t.liquid_raw(n)) for n in range(len(t))])
     np.testing.assert_allclose(crest, seen, atol=1e-6)
     assert not whole.missed and whole.outcomes[2].found == crest.max() > 0.27
+
+
+def test_energy_of_waves_is_that_of_the_ledger(whole):
+    """A term of it where something moves, in no other column."""
+    ledger = Ledger.read(whole.folder / "ledger.csv")
+    at = np.searchsorted(ledger.array("time"), 0.2 - 1e-9)
+    assert ledger.terms.count("waves") == 1 and "waves" not in ledger.extras
+    assert whole.outcomes[3].found == pytest.approx(ledger.array("waves")[at])
+
+
+def test_energy_of_waves_of_a_dam_that_has_broken(tmp_path):
+    """Half a basin, 20 cm deep, is level after some sways: it has lost half of rho g V h/2, to 1 %. Nothing moves in it, so the
+    ledger has a column for what the line asks."""
+    text = """
+gravity (0, 0, -9.81)
+liquid water {
+  basin from (0, 0, 0) cm to (80, 20, 40) cm
+  density 1000
+  level 20 cm
+  fill from (0, 0, 0) cm to (40, 20, 40) cm
+  calm 0.3 s
+}
+object stone { shape box (5, 5, 5) cm  position (40, 10, 60) cm  density 2000  elasticity 1 MPa  hold all }
+control { time 4 s  frames 5 fps  resolution 2.5 cm }
+expect liquid.waves at 0 s = 0 J
+expect liquid.waves = -7.848 J +- 0.08 J
+"""
+    (tmp_path / "dam.txt").write_text(text)
+    result = Scene.load(tmp_path / "dam.txt").run(tmp_path / "out", movie=False)
+    assert not result.missed and "waves" in result.ledger.extras
 
 
 @pytest.mark.parametrize(("units", "executors"), [(-1, 1), (1, 1), pytest.param(-1, 2, id="executors", marks=pytest.mark.mpi)])

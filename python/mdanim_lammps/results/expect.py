@@ -13,6 +13,7 @@ from ..model.model import Model
 from ..model.system import System
 from ..scene.formatting import number
 from ..scene.scene import Expect
+from .ledger import CREST, WAVES
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,8 +65,8 @@ class Measured:
     """[m^3]"""
     level: np.ndarray | None = None
     """Mean height of the liquid over the basin at each frame [m], shape (F,); None without liquid."""
-    crest: np.ndarray | None = None
-    """Height of the highest liquid at each frame [m], shape (F,); None where no line asks for it."""
+    of_liquid: Mapping[str, np.ndarray] = field(default_factory=dict)
+    """What `recorded_of_liquid` names, at each frame, each of shape (F,)."""
 
 
 def evaluate(expects: tuple[Expect, ...], measured: Measured) -> list[Outcome]:
@@ -77,9 +78,14 @@ RECORDED = {"strain.max": "strain", "draft": "draft", "immersed": "immersed"}
 """Quantities of a solid that need all its particles at every frame, and what their ledger columns are called."""
 
 
-def asks_for_crest(expects: tuple[Expect, ...]) -> bool:
-    """Whether the height of the highest liquid has to be recorded during the run."""
-    return any((e.subject, e.quantity) == ("liquid", "crest") for e in expects)
+OF_LIQUID = {"crest": CREST, "waves": WAVES}
+"""Quantities of the liquid that frames do not hold, and their columns of the ledger."""
+
+
+def recorded_of_liquid(expects: tuple[Expect, ...]) -> dict[str, str]:
+    """Those that lines ask for, and their columns of the ledger, in the order of OF_LIQUID."""
+    asked = {e.quantity for e in expects if e.subject == "liquid"}
+    return {quantity: column for quantity, column in OF_LIQUID.items() if quantity in asked}
 
 
 def recorded(expects: tuple[Expect, ...]) -> dict[tuple[str, str], str]:
@@ -176,7 +182,9 @@ def _measure(expect: Expect, m: Measured) -> float:
         case "liquid", "level":
             return _at(m, m.level, expect.time)
         case "liquid", "crest":
-            return float(_until(m, m.crest, expect.time).max())
+            return float(_until(m, m.of_liquid["crest"], expect.time).max())
+        case "liquid", quantity:
+            return _at(m, m.of_liquid[quantity], expect.time)
         case name, "strain.max":
             return _largest(m, m.recorded[name, "strain.max"], expect.time)
         case name, ("draft" | "immersed") as quantity:

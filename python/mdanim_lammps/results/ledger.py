@@ -15,7 +15,9 @@ from ..errors import OutputError
 from ..scene.formatting import exact
 from ..scene.keywords import did_you_mean
 
-POTENTIALS = ("gravity", "buoyancy", "waves")
+WAVES = "waves"
+"""Energy of a liquid with momentum [J]: a term where something moves in it, else an extra where an ``expect`` asks for it."""
+POTENTIALS = ("gravity", "buoyancy", WAVES)
 """Energies whose zero is arbitrary: only how far they have changed says how much is in play."""
 DUE = "liquid_due"
 """Extra of a liquid that comes and goes: cells at the start, and what has come since less what has gone."""

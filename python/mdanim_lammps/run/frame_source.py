@@ -12,7 +12,18 @@ from typing import Protocol
 import numpy as np
 
 from ..effects.air_drag import LEAPFROG
-from ..effects.liquid import BASIN_IMPULSE, CAME, CELLS, CELLS_AT_START, CREST, MOMENTUM, SOLID_IMPULSE, LiquidAutomaton, is_wavy
+from ..effects.liquid import (
+    BASIN_IMPULSE,
+    CAME,
+    CELLS,
+    CELLS_AT_START,
+    CREST,
+    MOMENTUM,
+    SOLID_IMPULSE,
+    WAVES,
+    LiquidAutomaton,
+    is_wavy,
+)
 from ..engine.instance import Instance
 from ..engine.plan import Plan
 from ..engine.state import State
@@ -42,6 +53,8 @@ class LiquidFrame:
     """The same before step 0, and what has come since less what has gone."""
     crest: float
     """Height of the highest liquid, without drops [m]; of an automaton the top of its highest layer."""
+    waves: float
+    """Energy of the waves since the start [J]; 0 of an automaton."""
     momenta: tuple[float, ...] | None
     """Extras MOMENTA of the ledger [N s]; None of a liquid without momentum."""
 
@@ -226,7 +239,8 @@ def liquid_frame(instance: Instance) -> LiquidFrame | None:
     cells, start = (instance.fix_value(LiquidAutomaton.fix, n) for n in (CELLS, CELLS_AT_START))
     drops = instance.liquid_drops() if instance.plan.scene.liquid.drops else None
     momenta = liquid_momenta(instance) if is_wavy(instance.plan.scene) else None
-    return LiquidFrame(instance.liquid_heights(), drops, cells, start, instance.fix_value(LiquidAutomaton.fix, CREST), momenta)
+    crest, waves = (instance.fix_value(LiquidAutomaton.fix, n) for n in (CREST, WAVES))
+    return LiquidFrame(instance.liquid_heights(), drops, cells, start, crest, waves, momenta)
 
 
 def liquid_momenta(instance: Instance) -> tuple[float, ...]:

@@ -22,9 +22,9 @@ from ..engine.data_file import write_bodies, write_data
 from ..errors import DivergedError, ExitCode, MdanimError, OutputError
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
-from ..results.expect import Measured, Outcome, asks_for_crest, evaluate, recorded
+from ..results.expect import Measured, Outcome, evaluate, recorded, recorded_of_liquid
 from ..results.files import CHECKPOINT, PAUSE, STOP, disk_errors, write_json, write_whole
-from ..results.ledger import CREST, DUE, MOMENTA, Ledger
+from ..results.ledger import DUE, MOMENTA, Ledger
 from ..results.progress import ProgressLog
 from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
@@ -184,15 +184,16 @@ class _Run:
             raise OutputError(f"{folder / CHECKPOINT} is damaged; run the scene again with --force")
         self.recorded = recorded(ready.scene.expects)
         self.grid = ready.plan.grid
-        self.crest = asks_for_crest(ready.scene.expects)
+        self.of_liquid = recorded_of_liquid(ready.scene.expects)
         self.fed = ready.scene.liquid is not None and ready.scene.liquid.fed
+        terms = ledger_terms(ready.plan)
         self.ledger = Ledger(
-            ledger_terms(ready.plan),
+            terms,
             (
                 *self.recorded.values(),
                 *(("liquid_cells",) if self.grid else ()),
                 *((DUE,) if self.fed else ()),
-                *((CREST,) if self.crest else ()),
+                *(column for column in self.of_liquid.values() if column not in terms),
                 *(MOMENTA if is_wavy(ready.scene) else ()),
             ),
             rounding_energy(ready.system),
@@ -311,7 +312,7 @@ class _Run:
                     "due": self.ledger.array(DUE) if self.fed else None,
                     "cell_volume": self.grid.cell_volume,
                     "level": trajectory.liquid_levels,
-                    "crest": self.ledger.array(CREST) if self.crest else None,
+                    "of_liquid": {quantity: self.ledger.array(column) for quantity, column in self.of_liquid.items()},
                 }
             )
             outcomes = evaluate(
@@ -381,8 +382,7 @@ class _Run:
             extras["liquid_cells"] = liquid.cells
             if self.fed:
                 extras[DUE] = liquid.start
-            if self.crest:
-                extras[CREST] = liquid.crest
+            extras |= {column: getattr(liquid, quantity) for quantity, column in self.of_liquid.items()}
             if liquid.momenta:
                 extras |= dict(zip(MOMENTA, liquid.momenta))
             if liquid.cells != liquid.start:

@@ -421,15 +421,14 @@ QUANTITIES = {
     ("liquid", "residual"): ("1", "cells gained or lost, to the unit"),
     ("liquid", "level"): ("m", "mean height of the surface"),
     ("liquid", "crest"): ("m", "highest point of the liquid at any frame, without drops"),
+    ("liquid", "waves"): ("J", "energy of waves, of height and motion, since the start; 0 without `model waves`"),
     ("energy", "residual"): ("1", "relative error of the energy ledger"),
     ("penetration", "max"): ("m", "deepest overlap of two objects"),
 }
 """What ``expect`` can check: (subject, quantity) to (unit, meaning); NAME stands for any object."""
 
-IMMERSION = ("draft", "immersed")
-"""Quantities of an object that need a liquid."""
-GLOBALS = ("liquid", "energy", "penetration")
-"""Subjects of ``expect`` that are no objects."""
+IMMERSION, GLOBALS = ("draft", "immersed"), ("liquid", "energy", "penetration")
+"""Quantities of an object that need a liquid; subjects of ``expect`` that are no objects."""
 
 
 @dataclass(frozen=True, slots=True)
