@@ -71,13 +71,15 @@ void WavePush::cut(const Waves &waves, int column)
   }
 }
 
-// Head of the liquid beside a run, in another column.
+// Head of the liquid beside a run, in another column. What does not reach down to the gap below the run counts where it stands
+// over the run: what a wall holds in a hull takes nothing off the pressure below it.
 bool WavePush::beside(const Waves &waves, int column, double bottom, double top, double &phi) const
 {
   bool any = false;
   for (int n = 0; n < waves.spans_of(column); ++n) {
     const Waves::SpanView span = waves.span_view(column, n);
     if (span.floor >= top || span.roof <= bottom) continue;
+    if (span.floor >= bottom + NARROW && (span.volume < ON_BODY || span.phi < top)) continue;
     if (!any || span.wet) phi = span.wet ? span.phi : span.floor;
     any = true;
     if (span.wet) return true;

@@ -73,6 +73,20 @@ def test_at_rest_it_is_archimedes(body):
     assert np.abs(push(w, part)[:2]).max() < 1e-5
 
 
+@pytest.mark.parametrize("gap", [0.0, 0.02])
+def test_a_dry_hull_on_the_floor_is_pushed_as_one_that_floats(gap):
+    """Liquid seeps below it from outside alone: the push is what an air-filled hull displaces, to the part of the gap."""
+    part = np.zeros(SHAPE, int)
+    part[:9] = hull()[4:13]
+    part[0] = part[0] * (1.0 - gap)
+    w = lab.Waves(SHAPE)
+    w.solids(part)
+    inside = np.zeros(SHAPE[1:], bool)
+    inside[6:14, 6:18] = True
+    w.pour(np.where(inside, 0.0, 8.0))
+    assert push(w, part)[2] == pytest.approx(8.0 * 12 * 16, rel=1e-6 + gap)
+
+
 @pytest.mark.parametrize("body", ["afloat", "under water", "hull"])
 def test_in_a_swell_it_is_the_pressure_on_the_faces(body):
     """A slope runs at the body: upward to 2 % of the weight that it displaces, sideways to a quarter of the largest push."""
