@@ -113,9 +113,8 @@ long WaveBasin::mark_still(const AddBodies &bodies)
     if (still.count[cell]) sum = (sum ^ (static_cast<std::uint64_t>(cell) << 20 ^ still.count[cell])) * 1099511628211ULL;
   });
   std::vector<std::uint16_t> held(part.size(), 0);
-  still.touched.each([&](int x, int y, int z) {
-    held[part_number(y * shape.nx + x, z)] = in_parts(still.count[still.number(x, y, z)]);
-  });
+  still.touched.each(
+      [&](int x, int y, int z) { held[part_number(y * shape.nx + x, z)] = in_parts(still.count[still.number(x, y, z)]); });
   waves.set_walls(held.data());
   const bool changed = sum != still_known;
   still_known = sum;
