@@ -44,7 +44,7 @@ PICTURES = {
     "swell": 3.0,
     "utube": 0.6,
     "wake": 0.8,
-    "bottle": 0.2,
+    "bottle": 0.9,
     "weir": 4.6,
 }
 """Scene and the moment to show [s]."""

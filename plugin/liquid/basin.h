@@ -41,7 +41,8 @@ class Basin {
   };
   struct Amount {
     bool by_level;
-    double value;    // height [distance] or volume [distance^3]
+    double value;         // height [distance] or volume [distance^3]
+    bool into_hollows;    // also into what encloses air at the start (Waves::hollows)
   };
   // Whole cells of liquid that were wanted, and those that find no room.
   struct Filled {

@@ -182,18 +182,27 @@ Basin::Filled WaveBasin::fill(const Amount &amount, const std::vector<std::uint8
     while (z < shape.nz && wanted(z)) ++z;
     high[c] = z;
   }
+  std::vector<std::uint8_t> hollow;
+  const auto leave_hollows_dry = [&](std::int64_t level) {
+    if (amount.into_hollows) return;
+    hollow = waves.hollows(static_cast<double>(level) / UNITS_PER_CELL, [this](int column, int z) {
+      const std::size_t cell = static_cast<std::size_t>(z) * columns() + column;
+      return mobile.count[cell] > still.count[cell];
+    });
+  };
   // Up to a level, in units, and by one unit more in the first columns.
   const auto pour = [&](std::int64_t level, int first) {
     for (int c = 0; c < columns(); ++c)
       height[c] = std::clamp(static_cast<double>(level + (c < first)) / UNITS_PER_CELL, low[c], high[c]);
-    waves.pour(height.data(), low.data());
+    waves.pour(height.data(), low.data(), hollow);
     return waves.total();
   };
   const std::int64_t most = static_cast<std::int64_t>(shape.nz) * UNITS_PER_CELL;
   std::int64_t wanted = 0;    // whole cells
   if (amount.by_level) {
-    const double level = (amount.value - shape.low.z) / shape.cell.z * UNITS_PER_CELL;
-    wanted = (pour(static_cast<std::int64_t>(level + 0.5), 0) + UNITS_PER_CELL / 2) / UNITS_PER_CELL;
+    const auto level = static_cast<std::int64_t>((amount.value - shape.low.z) / shape.cell.z * UNITS_PER_CELL + 0.5);
+    leave_hollows_dry(level);
+    wanted = (pour(level, 0) + UNITS_PER_CELL / 2) / UNITS_PER_CELL;
   } else
     wanted = static_cast<std::int64_t>(amount.value / cell_volume() + 0.5);
   if (wanted < 1) return {wanted, 0};
@@ -205,7 +214,9 @@ Basin::Filled WaveBasin::fill(const Amount &amount, const std::vector<std::uint8
     }
     return low_end;
   };
-  const std::int64_t level = highest(0, most + 1, [&](std::int64_t l) { return pour(l, 0); });
+  const auto level_of_all = [&] { return highest(0, most + 1, [&](std::int64_t l) { return pour(l, 0); }); };
+  if (!amount.by_level) leave_hollows_dry(level_of_all());
+  const std::int64_t level = level_of_all();
   pour(level, static_cast<int>(highest(0, columns() + 1, [&](std::int64_t n) { return pour(level, static_cast<int>(n)); })));
   units = waves.total();
   energy_at_start = energy_now();

@@ -83,11 +83,11 @@ void Waves::use_general_form()
   list_irregular();
 }
 
-void Waves::pour(const double *height, const double *from)
+void Waves::pour(const double *height, const double *from, const std::vector<std::uint8_t> &hollow)
 {
   resting = false;
   each_span([&](long i) {
-    const double level = height[span[i].column];
+    const double level = !hollow.empty() && hollow[i] ? 0.0 : height[span[i].column];
     const auto up_to = [&](double z) {    // not a unit less than it can hold
       return z >= span[i].roof ? span[i].capacity : static_cast<Units>(volume_below(solid, span[i], z) * UNITS_PER_CELL);
     };

@@ -13,6 +13,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -37,8 +38,11 @@ class Waves {
   // Tells which part of each cell is held, as SolidParts has them: a wall, as the sides of the basin are.
   void set_walls(const std::uint16_t *held);
   // Fills all spans of each column up to a height; those that are full get the pressure of that height. `from`: what would be
-  // below this height is left out.
-  void pour(const double *height, const double *from = nullptr);
+  // below this height is left out. `hollow`: so are these spans.
+  void pour(const double *height, const double *from = nullptr, const std::vector<std::uint8_t> &hollow = {});
+  // Spans, by their places, that are dry at the start though they begin below a level: what floats encloses them, alone or with
+  // others that they are open to below that level. `floats` is of cells that are not open.
+  std::vector<std::uint8_t> hollows(double level, const std::function<bool(int column, int z)> &floats) const;
   // Velocities of links, in the order of links().
   void set_velocities(const double *u);
   void update(double dt);

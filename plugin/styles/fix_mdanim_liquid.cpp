@@ -307,7 +307,7 @@ void FixMdanimLiquid::pour()
           fill->match(low.x + (x + 0.5) * cell.x, low.y + (y + 0.5) * cell.y, low.z + (z + 0.5) * cell.z);
     });
   }
-  const Basin::Amount amount{has_level, has_level ? level_asked : volume_asked};
+  const Basin::Amount amount{has_level, has_level ? level_asked : volume_asked, !fill_id.empty()};
   const Basin::Filled filled = basin->fill(amount, within, static_cast<std::uint64_t>(update->ntimestep));
   if (filled.wanted < 1)
     error->all(FLERR, "{}: {} is less than half a cell of liquid; use more liquid or smaller cells", name(),

@@ -93,6 +93,7 @@ class Afloat:
 SOFT = "elasticity 100 kPa  damping 0.1"
 HULL = f'object hull {{{{ shape mesh "hull.obj" scale 0.01  position (0, 0, {{z}}) cm  density {{density}}  {SOFT} }}}}\n'
 LOAD = f"object load {{{{ shape box (10, 10, 10) cm  position (0, 0, 36.5) cm  density {{density}}  {SOFT} }}}}\n"
+FILL = "fill from (-40, -25, 0) cm to (40, 25, 50) cm"
 SETTLE = "calm 0.5 s  drag 10 1/s"
 
 
@@ -104,6 +105,31 @@ def test_a_hull_with_a_light_load_floats_dry(tmp_path):
         assert scene.held_inside("hull") == 0.0
         assert scene.draft("hull") == pytest.approx(0.10, abs=0.008)
         assert scene.fastest() < 0.05
+
+
+@pytest.mark.parametrize(
+    ("z", "more", "full"),
+    [
+        pytest.param(30.0, "", False, id="rim above the level"),
+        pytest.param(18.0, "", True, id="rim below it"),
+        pytest.param(30.0, "hold all", True, id="held"),
+        pytest.param(30.0, "fill", True, id="asked for"),
+    ],
+)
+def test_a_hull_is_dry_at_the_start_where_its_rim_is_above_the_level(tmp_path, z, more, full):
+    """What is held is a part of the basin, and full up to the level, as are what liquid could run into and what `fill` tells."""
+    fill, more = (FILL, "") if more == "fill" else ("", more)
+    with Afloat(tmp_path, HULL.replace("elasticity", more + " elasticity").format(z=z, density=700), more=fill) as scene:
+        assert (scene.held_inside("hull") > 0.001) == full
+
+
+def test_a_hull_that_begins_afloat_floats_on(tmp_path):
+    """Dry, and as deep as in the test above; a hull of full height would have sunk."""
+    objects = HULL.format(z=30.0, density=700) + LOAD.format(density=1500).replace("36.5", "31.3")
+    with Afloat(tmp_path, objects, more=SETTLE) as scene:
+        scene.until(2.0)
+        assert scene.held_inside("hull") == 0.0
+        assert scene.draft("hull") == pytest.approx(0.10, abs=0.008)
 
 
 def test_a_hull_with_a_heavy_load_sinks_and_stays_on_the_floor(tmp_path):
@@ -133,7 +159,7 @@ def test_waves_over_the_rim_sink_a_laden_hull(tmp_path, swell):
 def test_a_hull_that_stands_full_on_the_floor_stays(tmp_path):
     """It is taller than the lake is deep; empty it would float on 15 cm."""
     objects = HULL.format(z=12.55, density=1100).replace("100 kPa", "400 kPa")
-    with Afloat(tmp_path, objects, hull=(40, 40, 25), level=20, top=35, half=40, more=SETTLE) as scene:
+    with Afloat(tmp_path, objects, hull=(40, 40, 25), level=20, top=50, half=25, more=f"{SETTLE} {FILL}") as scene:
         for time in (2.0, 2.5, 3.0):
             scene.until(time)
             assert scene.held_inside("hull", (30, 30)) > 0.008 and scene.lowest("hull") < 0.4 * CELL

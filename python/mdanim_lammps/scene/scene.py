@@ -222,7 +222,8 @@ class Liquid:
         "2 m^3", Rule.POSITIVE, default=None, one_of=("volume", "level"))  # fmt: skip
     """[m^3]; exactly one of volume and level is given."""
     level: float | None = setting(
-        "<z:m>", "Height of the surface at the start, hulls too.", "0.5 m", default=None, one_of=("volume", "level"))  # fmt: skip
+        "<z:m>", "Height of the surface at the start; hulls that reach above it are dry.", "0.5 m", default=None,
+        one_of=("volume", "level"))  # fmt: skip
     """Initial height of the surface [m]."""
     fill: tuple[Vector, Vector] | None = setting(
         BOX, "Part of the basin that the liquid starts in, behind a dam that is gone at once. Absent: all of it.",

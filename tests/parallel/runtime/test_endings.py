@@ -202,7 +202,8 @@ def test_a_full_disk_ends_all_ranks(place, monkeypatch, control):
 
 
 @pytest.mark.parametrize(
-    ("settings", "text"), [pytest.param({}, LONG, id="alone"), pytest.param({"least": 50}, films.HEAVY, id="in a team")]
+    ("settings", "text"),
+    [pytest.param({}, LONG, id="alone"), pytest.param({"least": 50, "by_threads": False}, films.HEAVY, id="in a team")],
 )
 def test_an_executor_that_raises_is_told(place, monkeypatch, capfd, settings, text):
     """Whatever it is, it comes up here, and others that wait for it in LAMMPS are ended."""

@@ -41,6 +41,7 @@ def stored(text: str, how: str) -> str:
 FLYING = films.FLYING.split("expect")[0].replace("time 0.2 s", "time 0.1 s")
 MEASURED = "".join(f"expect {what} = 0 +- 10\n" for what in ("raft.draft", "above.draft", "stone.immersed", "buoy.strain.max"))
 TEAM = {"least": 50}
+RANKS = TEAM | {"by_threads": False}
 FORMS = {
     "flying": (FLYING, matrix((2,), ["central"]) | matrix((3,), ["peers"], "all move ", rotate=True)),
     "still ones, boundary": (stored(films.MIXED, "boundary"), matrix((1, 4), ["central"])),
@@ -118,7 +119,7 @@ KILLED = AT_FRAME_8.format(what="pwrite(file, data[: len(data) // 2], offset); o
 SHORT = films.FLYING.split("expect")[0].replace("time 0.2 s", "time 0.16 s")
 
 
-@pytest.mark.parametrize("settings", [{}, {"least": 50}], ids=["alone", "in a team"])
+@pytest.mark.parametrize("settings", [{}, RANKS, {"least": 50}], ids=["alone", "in a team by ranks", "in a team"])
 def test_a_disk_that_is_full_for_an_executor(tmp_path, monkeypatch, settings):
     """The frame that it cannot write does not count, those before it do; the run ends with its message, and can go on."""
     ready, folder = readied(tmp_path, SHORT)
@@ -241,7 +242,7 @@ STOPS = {
 }
 
 
-@pytest.mark.parametrize("settings", [{}, {"least": 50}], ids=["alone", "in a team"])
+@pytest.mark.parametrize("settings", [{}, RANKS, {"least": 50}], ids=["alone", "in a team by ranks", "in a team"])
 @pytest.mark.parametrize("name", STOPS)
 def test_the_guard_stops_what_it_stops_in_one_process(tmp_path, name, settings):
     """At the same step, with the same words, also where what it looks at is on several executors."""
