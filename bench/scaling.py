@@ -18,6 +18,7 @@ crowd), ``--json FILE``, ``--plot FILE``.
 
 Speed on executors is told in two ways: frames per second of wall time, from the end of frame 1 to the last, with all that is
 written; and frames per second of processor time of the executor that takes most, which other programs on the machine change less.
+Processor time is that of all threads, so it does not show what a team on one host brings.
 """
 
 import argparse
@@ -54,8 +55,9 @@ SCENES = {
     "blocks": GRAVITY + rows(8, "(i, j, 0)", 9) + END,
     "one": GRAVITY + BLOCK.format(n=0, place="(0, 0, 0)", edge=39, more="") + END,
 }
-GOALS = {"blocks": 1.8, "one": 1.4}
-"""Speed of two executors over that of one process, by processor time of the rank that takes most."""
+GOALS = {"blocks": ("by_cpu", 1.8), "one": ("by_wall", 1.4)}
+"""Speed of two executors over that of one process: by processor time of the rank that takes most, or, where one has threads for
+both, by wall time."""
 LONGER = {"crowd": 4}
 """So many times as many frames: balls have met only after the first ones."""
 LONGER_GOALS = 7
@@ -312,9 +314,10 @@ def goals_table(data: dict) -> str:
     lines = [table(runs, data["known"], list(next(iter(runs.values()))))]
     for name, of in runs.items():
         for case in list(of)[1:]:
-            found = ratio(of[case], of[0, ""], "by_cpu")
-            verdict = "met" if found >= GOALS[name] else "missed"
-            lines.append(f"{name}, {label(case)}: {found:.2f} times as fast by processor time, goal {GOALS[name]}: {verdict}.  ")
+            what, goal = GOALS[name]
+            found, time = ratio(of[case], of[0, ""], what), {"by_cpu": "processor time", "by_wall": "wall time"}[what]
+            verdict = "met" if found >= goal else "missed"
+            lines.append(f"{name}, {label(case)}: {found:.2f} times as fast by {time}, goal {goal}: {verdict}.  ")
     return "\n".join(lines)
 
 

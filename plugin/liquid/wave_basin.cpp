@@ -112,13 +112,19 @@ long WaveBasin::mark_still(const AddBodies &bodies)
     const std::size_t cell = still.number(x, y, z);
     if (still.count[cell]) sum = (sum ^ (static_cast<std::uint64_t>(cell) << 20 ^ still.count[cell])) * 1099511628211ULL;
   });
+  if (walled_for != sum) set_walls();
+  walled_for = sum;
+  const bool changed = sum != still_known;
+  still_known = sum;
+  return changed;
+}
+
+void WaveBasin::set_walls()
+{
   std::vector<std::uint16_t> held(part.size(), 0);
   still.touched.each(
       [&](int x, int y, int z) { held[part_number(y * shape.nx + x, z)] = in_parts(still.count[still.number(x, y, z)]); });
   waves.set_walls(held.data());
-  const bool changed = sum != still_known;
-  still_known = sum;
-  return changed;
 }
 
 void WaveBasin::mark_moving(const AddBodies &bodies)

@@ -82,6 +82,7 @@ class WaveBasin : public Basin {
   Vec3 in_world(const Vec3 &momentum) const;
   void give_impulses(double since);
   void go_on(double time);
+  void set_walls();
   void count_parts();
   std::size_t part_number(int column, int z) const { return static_cast<std::size_t>(column) * shape.nz + z; }
   void take_solids();
@@ -118,6 +119,7 @@ class WaveBasin : public Basin {
   std::uint64_t still_known = 0;    // a checksum of what never moves
 
   // what follows from it
+  std::uint64_t walled_for = 0;    // the checksum of what never moves for which the waves know their walls
   // From solids, none between updates: of each column along x, then along y; then what pushes solids along x and y.
   std::vector<std::int64_t> from_solids;
   std::vector<double> heads, tops;     // of columns: the surface that solids feel, and the topmost liquid, see surface()
