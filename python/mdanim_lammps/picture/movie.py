@@ -8,7 +8,7 @@ import sys
 import tempfile
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, closing, contextmanager
 from fractions import Fraction
@@ -40,6 +40,8 @@ FASTEST = 60.0
 """Pictures per second of a time lapse; a movie at the speed of the simulated time has all of its frames."""
 FRAMES_PER_PROCESS = 40
 """A process takes about two seconds to start; with fewer frames than this it does not pay."""
+LOOK_SECONDS = 1.0
+"""How often processes that draw are looked after while a picture is waited for."""
 
 
 def render_still(
@@ -182,9 +184,9 @@ def _draw_apart(trajectory, render, size, shown: Sequence[int], processes: int) 
                 with without_main():
                     ahead.append(pool.submit(_draw_in_worker, int(index)))
                 if len(ahead) > 2 * processes:
-                    yield ahead.popleft().result()
+                    yield _result_of(ahead.popleft(), pool)
             while ahead:
-                yield ahead.popleft().result()
+                yield _result_of(ahead.popleft(), pool)
         except BrokenProcessPool:
             raise SetupError(
                 "a process that draws pictures was killed, perhaps because memory ran out; what it printed stands above. "
@@ -192,6 +194,19 @@ def _draw_apart(trajectory, render, size, shown: Sequence[int], processes: int) 
             ) from None
         finally:
             pool.shutdown(cancel_futures=True)
+
+
+def _result_of(drawn: Future, pool: ProcessPoolExecutor) -> np.ndarray:
+    """A picture, once it is there. Raises BrokenProcessPool, also where a process was killed while it sent one: of that the pool
+    waits for the rest, as this process could send it as well."""
+    while not wait([drawn], LOOK_SECONDS).done:
+        processes = list((pool._processes or {}).values())
+        if any(process.exitcode is not None for process in processes):
+            for process in processes:
+                process.kill()
+            pool._result_queue._writer.close()
+            raise BrokenProcessPool
+    return drawn.result()
 
 
 _worker: dict = {}
