@@ -170,6 +170,38 @@ def test_killed_process_is_named(short, tmp_path):
     assert sorted(os.listdir(tmp_path)) == ["run"]
 
 
+HALF_A_PICTURE = """
+import gc, os, struct, time
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from mdanim_lammps.picture.movie import _result_of
+
+def die(_):
+    for pipe in gc.get_objects():
+        if isinstance(pipe, Connection) and pipe.writable:
+            os.write(pipe.fileno(), struct.pack("!i", 100000) + b"the beginning")
+    os._exit(9)
+
+if __name__ == "__main__":
+    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
+        drawn, other = pool.submit(die, 0), pool.submit(time.sleep, 1)
+        try:
+            _result_of(drawn, pool)
+        except BrokenProcessPool:
+            print("told")
+"""
+
+
+def test_a_process_killed_while_it_sends_is_noticed(tmp_path):
+    """A pool alone would wait for the rest of its message, which this process could send as well."""
+    script = tmp_path / "half.py"
+    script.write_text(HALF_A_PICTURE)
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60)
+    assert done.stdout.split() == ["told"], done.stderr
+
+
 def test_a_failing_painter_is_named(short, tmp_path, monkeypatch):
     """What a process that draws fails of is told as one process tells it."""
     with pytest.raises(UsageError, match="looks at 'nobody'"):
