@@ -107,7 +107,7 @@ long WaveBasin::mark_still(const AddBodies &bodies)
   still.clear(threads);
   bodies(still, ANYWHERE);
   still.sum_over(ranks, threads);
-  std::uint64_t sum = 1469598103934665603ULL;
+  std::uint64_t sum = NOTHING_STILL;
   still.touched.each([&](int x, int y, int z) {
     const std::size_t cell = still.number(x, y, z);
     if (still.count[cell]) sum = (sum ^ (static_cast<std::uint64_t>(cell) << 20 ^ still.count[cell])) * 1099511628211ULL;

@@ -119,7 +119,8 @@ class WaveBasin : public Basin {
   std::uint64_t still_known = 0;    // a checksum of what never moves
 
   // what follows from it
-  std::uint64_t walled_for = 0;    // the checksum of what never moves for which the waves know their walls
+  static constexpr std::uint64_t NOTHING_STILL = 1469598103934665603ULL;    // the checksum where there is none
+  std::uint64_t walled_for = NOTHING_STILL;    // that of what never moves for which the waves know their walls
   // From solids, none between updates: of each column along x, then along y; then what pushes solids along x and y.
   std::vector<std::int64_t> from_solids;
   std::vector<double> heads, tops;     // of columns: the surface that solids feel, and the topmost liquid, see surface()

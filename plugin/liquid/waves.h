@@ -227,38 +227,41 @@ class Waves {
   void lay_out(long rows, std::size_t most_further_links);
   // f(place) for all spans, f(link) for all links, in the order in which they are told; and f(link, other span, inward) for those
   // of a span, in the order in which they are summed.
-  template <class F> void each_span(const F &f) const
-  {
-    for (int column = 0; column < nx * ny; ++column)
-      for (int n = 0; n < spans_in[column]; ++n) f(place(column, n));
-  }
+  template <class F> void each_span(const F &f) const { spans_of_columns(0, nx * ny, f); }
   template <class F> void each_link(const F &f) const
   {
     for (int d = 0; d < 2; ++d) {
-      for (long i = stride; i < further_start; ++i)
-        if (is_link({d, i})) f(LinkPlace{d, i});
-      for (std::size_t n = 0; n < further_links[d].size(); ++n) f(LinkPlace{d, links_start + static_cast<long>(n)});
+      links_of_grid(d, stride, further_start, f);
+      further_links_of(d, f);
     }
   }
   // The same in any order, which threads share; f writes into nothing but the span's or the link's own.
   template <class F> void each_span_shared(const F &f) const
   {
     constexpr double SPAN = 15.0;    // [ns], about
-    threads.parts(nx * ny, SPAN, [&](long from, long to) {
-      for (long column = from; column < to; ++column)
-        for (int n = 0; n < spans_in[column]; ++n) f(place(static_cast<int>(column), n));
-    });
+    threads.parts(nx * ny, SPAN, [&](long from, long to) { spans_of_columns(from, to, f); });
   }
   template <class F> void each_link_shared(const F &f) const
   {
     constexpr double LINK = 5.0;    // [ns], about
     for (int d = 0; d < 2; ++d) {
-      threads.parts(further_start - stride, LINK, [&](long from, long to) {
-        for (long i = stride + from; i < stride + to; ++i)
-          if (is_link({d, i})) f(LinkPlace{d, i});
-      });
-      for (std::size_t n = 0; n < further_links[d].size(); ++n) f(LinkPlace{d, links_start + static_cast<long>(n)});
+      threads.parts(further_start - stride, LINK, [&](long from, long to) { links_of_grid(d, stride + from, stride + to, f); });
+      further_links_of(d, f);
     }
+  }
+  template <class F> void spans_of_columns(long from, long to, const F &f) const
+  {
+    for (int column = static_cast<int>(from); column < to; ++column)
+      for (int n = 0; n < spans_in[column]; ++n) f(place(column, n));
+  }
+  template <class F> void links_of_grid(int d, long from, long to, const F &f) const
+  {
+    for (long i = from; i < to; ++i)
+      if (is_link({d, i})) f(LinkPlace{d, i});
+  }
+  template <class F> void further_links_of(int d, const F &f) const
+  {
+    for (std::size_t n = 0; n < further_links[d].size(); ++n) f(LinkPlace{d, links_start + static_cast<long>(n)});
   }
   template <class F> void each_link_of(long i, const F &f) const
   {

@@ -453,24 +453,14 @@ double FixMdanimLiquid::compute_vector(int n)
       return basin->energy() * buoyancy->density() * basin->g * basin->cell_volume() * basin->shape.cell.z;
     case 12:
       return top_height(basin->highest());
-    case 13:
-      return buoyancy->density() * basin->momentum().x;
-    case 14:
-      return buoyancy->density() * basin->momentum().y;
-    case 15:
-      return buoyancy->density() * basin->impulses().basin.x;
-    case 16:
-      return buoyancy->density() * basin->impulses().basin.y;
-    case 17:
-      return buoyancy->density() * basin->impulses().solids.x;
-    case 18:
-      return buoyancy->density() * basin->impulses().solids.y;
-    case 19:
-      return buoyancy->density() * basin->impulses().came.x;
-    case 20:
-      return buoyancy->density() * basin->impulses().came.y;
     default:
       break;
+  }
+  if (n > 12) {
+    const Basin::Impulses impulses = basin->impulses();
+    const Vec3 told[] = {basin->momentum(), impulses.basin, impulses.solids, impulses.came};
+    const Vec3 &one = told[(n - 13) / 2];
+    return buoyancy->density() * ((n - 13) % 2 ? one.y : one.x);
   }
   const double liquid = basin->liquid_seconds, occupancy = basin->occupancy_seconds, coupling = look_seconds + buoyancy->seconds;
   const double here[] = {liquid, occupancy, coupling, liquid + occupancy + coupling};
