@@ -58,7 +58,7 @@ def share_out_cores(world) -> None:
     supervisor mostly waits."""
     from .messages import SUPERVISOR
 
-    executors = world.Split(world.rank == SUPERVISOR)
+    executors = _executors_among(world)
     if world.rank != SUPERVISOR:
         os.environ.setdefault(THREADS, str(share_of_cores(executors)))
 
@@ -67,11 +67,16 @@ def are_on_one_host(world) -> bool:
     """Whether all executors share memory; all ranks call this together."""
     from mpi4py import MPI
 
-    from .messages import SUPERVISOR
-
-    executors = world.Split(world.rank == SUPERVISOR)
+    executors = _executors_among(world)
     alone = executors.Split_type(MPI.COMM_TYPE_SHARED).size == executors.size
     return bool(world.allreduce(alone, MPI.LAND))
+
+
+def _executors_among(world):
+    """Their communicator; for the supervisor one of its own."""
+    from .messages import SUPERVISOR
+
+    return world.Split(world.rank == SUPERVISOR)
 
 
 def _supervise(world, job: Path, one_host: bool) -> None:
