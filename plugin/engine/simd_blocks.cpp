@@ -11,34 +11,38 @@
 
 namespace mdanim {
 
-// Arrays that start at the same place of a page get in each other's way in the caches; they start so many doubles apart.
-static constexpr int STAGGER = 72;
-
 // --- layout ---
 
-static constexpr int PAGE = 512;    // doubles
+static constexpr int PAGE = 512, LINE = 8;    // doubles
 
 SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges)
     : cutter(of), lanes(of.lanes()), particles(cut.particles), many_chunks(cut.chunks), has_damped(of.damped()),
       all(std::move(cut.block)), entries(std::move(cut.entry)), cuts(std::move(ranges)), range(cuts.ranges()),
       border(cuts.ranges() - 1)
 {
-  const auto room = [](int length) { return length / PAGE * PAGE + PAGE + STAGGER; };    // whole pages and a bit
-  const int whole = room(particles + cut.farthest + 2 * lanes), kinds = damped() ? 5 : 2, kinds_of_range = damped() ? 2 : 1;
-  const auto end = [&](int n) { return n + 1 < cuts.ranges() ? cuts.first[n + 1] : particles + cut.farthest; };
-  const auto room_of = [&](int n) { return room(end(n) - cuts.first[n] + 2 * lanes); };
-  std::size_t size = 3 * kinds * static_cast<std::size_t>(whole);
-  for (int n = 0; n < cuts.ranges(); ++n) size += 3 * kinds_of_range * static_cast<std::size_t>(room_of(n));
-  memory.assign(size);
-  double *place = memory.data();
-  double **const arrays[] = {x, v, last, seen, held_part};
-  for (int kind = 0; kind < kinds; ++kind)
-    for (int d = 0; d < 3; ++d, place += whole) arrays[kind][d] = place;
+  // A processor compares loads with stores on their way by the place in a page alone. So the places of a particle in all arrays
+  // that a thread works on are spread evenly over a page.
+  const int kinds = damped() ? 5 : 2, kinds_of_range = damped() ? 2 : 1;
+  const int apart = PAGE / (3 * (kinds + kinds_of_range)) / LINE * LINE;
+  std::vector<std::pair<double **, long>> arrays;
+  long size = 0;
+  const auto add = [&](double *(&of)[3], int kind, int first, int end) {    // with places for particles from `first` to `end`
+    for (int d = 0; d < 3; ++d) {
+      const long place = (3 * kind + d) * apart + first;
+      size += ((place - size) % PAGE + PAGE) % PAGE;
+      arrays.emplace_back(&of[d], size - first);
+      size += end - first;
+    }
+  };
+  double *(*const of_all[])[3] = {&x, &v, &last, &seen, &held_part};
+  for (int kind = 0; kind < kinds; ++kind) add(*of_all[kind], kind, 0, particles + cut.farthest + 2 * lanes);
   for (int n = 0; n < cuts.ranges(); ++n) {
-    double **const of_range[] = {range[n].f, range[n].part};
-    for (int kind = 0; kind < kinds_of_range; ++kind)
-      for (int d = 0; d < 3; ++d, place += room_of(n)) of_range[kind][d] = place + lanes - cuts.first[n];
+    const int end = n + 1 < cuts.ranges() ? cuts.first[n + 1] : particles + cut.farthest;
+    double *(*const of_range[])[3] = {&range[n].f, &range[n].part};
+    for (int kind = 0; kind < kinds_of_range; ++kind) add(*of_range[kind], kinds + kind, cuts.first[n] - lanes, end + lanes);
   }
+  memory.assign(size);
+  for (const auto &[array, place] : arrays) *array = memory.data() + place;
   crossed.assign((damped() ? 6 : 3) * lanes * cuts.crossing.size());
   shared_trace.assign(2 * TRACE * range.size());
 }
