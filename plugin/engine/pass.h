@@ -30,7 +30,7 @@ struct Block {
   int object;            // molecule - 1
   int chunk;             // row of Pass::sums
   int immersed;          // row of Pass::kept and of Pass::immersed_of; negative where no particle is near a liquid
-  bool at_border;        // of a range of blocks: some of what is loaded with its lanes belongs to another range
+  bool at_border;        // of a range of blocks: some of what is loaded for it belongs to another range
   int crossing;          // its row of Pass::crossed; negative where none of its springs cross the border above it
 };
 
@@ -120,8 +120,8 @@ struct Pass {
   double *crossed;      // what crossing springs do to their lower particles: rows of (3, lanes), (6, lanes) with dashpots
   unsigned turn;        // number of the pass
   double gravity[3];    // [velocity/time]
-  const double *external_force;    // rows of forces from elsewhere, (3, lanes) each, to be added after gravity:
-  int force_providers;             // so many in a row for a block that has any
+  double *external_force;    // rows of forces from elsewhere, (3, lanes) each, to be added after gravity; zero after a pass:
+  int force_providers;       // so many in a row for a block that has any
   Friction friction;
   double *kept;                   // rows of KEPT
   const double *immersed;         // rows of IMMERSED_MOTIONS,

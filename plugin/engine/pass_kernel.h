@@ -169,12 +169,16 @@ template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel(const Pass &pass, const Bl
   add_up<DAMPED>(pass, block, felt, total);
 }
 
-// Forces of participants. Not inlined: most blocks have none, and the springs need all registers.
-__attribute__((noinline)) void add_external_force(const Pass &pass, const Block &block, double *total)
+// Forces of participants, whose rows are cleared for the next pass while they are in the cache. Not inlined: most blocks have
+// none, and the springs need all registers.
+__attribute__((noinline)) void take_external_force(const Pass &pass, const Block &block, double *total)
 {
-  const double *row = pass.external_force + static_cast<long>(block.external_force) * (3 * LANES);
+  double *row = pass.external_force + static_cast<long>(block.external_force) * (3 * LANES);
   for (int n = 0; n < pass.force_providers; ++n, row += 3 * LANES)
-    for (int d = 0; d < 3 * LANES; d += LANES) store(total + d, load(total + d) + load(row + d));
+    for (int d = 0; d < 3 * LANES; d += LANES) {
+      store(total + d, load(total + d) + load(row + d));
+      store(row + d, Vector{});
+    }
 }
 
 // What dashpots do to the account of a block that has gone from `first` to `last`.
@@ -311,6 +315,7 @@ MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const doubl
 // Lanes of particles from i on, but for those of another range, which another thread may be moving: these are where the first is.
 MDANIM_ALWAYS_INLINE Vector3 load_before(int end, double *const *from, int i)
 {
+  if (__builtin_expect(i + LANES <= end, 1)) return load(from, i);
   double lanes[3 * LANES];
   for (int d = 0; d < 3; ++d)
     for (int lane = 0; lane < LANES; ++lane) lanes[d * LANES + lane] = from[d][i + lane < end ? i + lane : i];
@@ -394,13 +399,13 @@ template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel_anywhere(const Pass &pass,
     feel<true>(pass, block, e, total);
   else
     feel<false>(pass, block, e, total);
-  if (__builtin_expect(block.external_force >= 0, 0)) add_external_force(pass, block, total);
+  if (__builtin_expect(block.external_force >= 0, 0)) take_external_force(pass, block, total);
 }
 
 template <Friction FRICTION, bool TRACED, bool DAMPED>
 MDANIM_ALWAYS_INLINE void move_anywhere(const Pass &pass, const Block &block, const double *total, Tally &tally)
 {
-  if (__builtin_expect(block.at_border, 0))
+  if (__builtin_expect(block.at_border && block.start + LANES > pass.range->end, 0))
     move_at_border<FRICTION, TRACED, DAMPED>(pass, block, total, tally);
   else
     move<FRICTION, TRACED, DAMPED>(pass, block, total, tally);

@@ -128,7 +128,6 @@ void PassRun::take_pass()
 // Forces that the pass is to add.
 void PassRun::early_participants_turn()
 {
-  blocks.clear_external_force();
   for (std::size_t n = 0; n < crew.early.size(); ++n) {
     blocks.tell_places(n, atoms.x, place);
     crew.early[n]->add_forces(place, blocks.external_force_of(n));

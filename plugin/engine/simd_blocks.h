@@ -37,10 +37,9 @@ class SimdBlocks {
   // Which participants give forces before every pass, in the order in which they are added: the particles of each, ghosts perhaps
   // among them.
   void expect(const std::vector<std::vector<int>> &particles);
-  // Of those of number n, in the same order: positions, those of ghosts from x; and where forces on them are added up, all of
-  // which is to be cleared before every pass.
+  // Of those of number n, in the same order: positions, those of ghosts from x; and where forces on them are added up, which is
+  // zero after every pass.
   void tell_places(std::size_t n, const double *const *x, Positions &place) const;
-  void clear_external_force();
   ForceSums external_force_of(std::size_t n) { return {external_force.data(), force_providers[n].slot.data(), lanes}; }
 
   // Every block with one of these particles is held back, no other; ghosts among them are left out.
@@ -122,6 +121,7 @@ class SimdBlocks {
   };
   std::vector<ForceProvider> force_providers;
   Doubles external_force;              // see Pass
+  std::vector<long> not_taken;         // places of its rows that no pass comes to
   std::vector<int> index, place;       // of a particle in LAMMPS's arrays, and back
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
   std::vector<double> total;           // see Pass, in our order
