@@ -161,41 +161,48 @@ bool Occupancy::fill_inside(const Vec3 corner[8], int layers, CellBox &reached)
   return beyond >= 1.0;
 }
 
+static bool within(int n, int many) { return n >= 0 && n < many; }
+
 // Along each axis the upper of two cells gets its share, in 1/SHARES, and the lower one all the rest, so that nothing is lost.
 template <bool INSIDE> void Occupancy::spread_samples(const Samples &samples, const Spread &spread)
 {
-  int lower[3][Samples::COUNT], upper_share[3][Samples::COUNT];
+  constexpr int COUNT = Samples::COUNT;
+  int lower[3][COUNT];
+  std::uint32_t upper_share[3][COUNT];
   for (int d = 0; d < 3; ++d)
-    for (int n = 0; n < Samples::COUNT; ++n) {
+    for (int n = 0; n < COUNT; ++n) {
       const double low = samples.at[d][n] - spread.reach[d], high = samples.at[d][n] + spread.reach[d];
       lower[d][n] = static_cast<int>(low + 1.0) - 1;    // low is -1 at least where any of it is inside
-      upper_share[d][n] = static_cast<int>((high - (lower[d][n] + 1)) * spread.shares[d] + 0.5);
+      const int share = static_cast<int>((high - (lower[d][n] + 1)) * spread.shares[d] + 0.5);
+      upper_share[d][n] = static_cast<std::uint32_t>(std::max(0, share));
     }
+  std::uint32_t part[8][COUNT];    // bits of the first number: upper along x, y, z
+  for (int n = 0; n < COUNT; ++n) part[0][n] = spread.weight;
+  for (int d = 2; d >= 0; --d)
+    for (int k = 0; k < 8; k += 2 << d)
+      for (int n = 0; n < COUNT; ++n) {
+        const std::uint32_t upper = part[k][n] * upper_share[d][n] / Spread::SHARES;
+        part[k + (1 << d)][n] = upper;
+        part[k][n] -= upper;
+      }
   const int cells[3] = {nx, ny, nz};
-  const auto upper_part = [](std::uint32_t whole, int share) {
-    return whole * static_cast<std::uint32_t>(std::max(0, share)) / Spread::SHARES;
-  };
-  for (int n = 0; n < Samples::COUNT; ++n) {
-    bool outside = false;
-    for (int d = 0; d < 3 && !INSIDE; ++d)
-      outside = outside || samples.at[d][n] + spread.reach[d] < 0.0 || samples.at[d][n] - spread.reach[d] >= cells[d];
-    if (outside) continue;
+  const std::ptrdiff_t row = nx, layer = row * ny;
+  int *const counts = count.data();
+  for (int n = 0; n < COUNT; ++n) {
     const int x = lower[0][n], y = lower[1][n], z = lower[2][n];
-    const auto give_row = [&](int row, int layer, std::uint32_t part) {
-      const std::uint32_t right = upper_part(part, upper_share[0][n]);
-      if (!INSIDE && (row < 0 || row >= ny || layer < 0 || layer >= nz)) return;
-      const std::size_t at = number(x, row, layer);    // one before the row where x is -1
-      if (INSIDE || x >= 0) count[at] += static_cast<int>(part - right);
-      if (INSIDE || x + 1 < nx) count[at + 1] += static_cast<int>(right);
-    };
-    const auto give_layer = [&](int layer, std::uint32_t part) {
-      const std::uint32_t back = upper_part(part, upper_share[1][n]);
-      give_row(y, layer, part - back);
-      give_row(y + 1, layer, back);
-    };
-    const std::uint32_t top = upper_part(spread.weight, upper_share[2][n]);
-    give_layer(z, spread.weight - top);
-    give_layer(z + 1, top);
+    int *const at = counts + (z * layer + y * row + x);    // one before the row where x is -1
+    if (INSIDE) {
+      for (int k = 0; k < 8; ++k) at[(k & 1) + (k >> 1 & 1) * row + (k >> 2) * layer] += static_cast<int>(part[k][n]);
+      continue;
+    }
+    bool outside = false;
+    for (int d = 0; d < 3; ++d)
+      outside = outside || samples.at[d][n] + spread.reach[d] < 0.0 || samples.at[d][n] - spread.reach[d] >= cells[d];
+    for (int k = 0; k < 8 && !outside; ++k) {
+      const bool is_there[3] = {within(x + (k & 1), nx), within(y + (k >> 1 & 1), ny), within(z + (k >> 2), nz)};
+      if (is_there[0] && is_there[1] && is_there[2])
+        at[(k & 1) + (k >> 1 & 1) * row + (k >> 2) * layer] += static_cast<int>(part[k][n]);
+    }
   }
 }
 
