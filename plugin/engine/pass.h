@@ -29,7 +29,7 @@ struct Block {
   unsigned motion;       // row of Pass::motion
   int object;            // molecule - 1
   int chunk;             // row of Pass::sums
-  int immersed;          // row of Pass::kept and of Pass::immersed_of; negative where no particle is near a liquid
+  int immersed;          // row of what is kept and of Pass::immersed_of; negative where no particle is near a liquid
   bool at_border;        // of a range of blocks: some of what is loaded for it belongs to another range
   int crossing;          // its row of Pass::crossed; negative where none of its springs cross the border above it
 };
@@ -70,8 +70,9 @@ enum Motion { MASS, KICK, DT, FOREIGN_LANE, OWNED_LANE, STAY, SHARE, PUSH, BRAKE
 // block's own; OWNED_LANE 1 for a particle of this rank. With friction also, see leapfrog.h: STAY 1 - phi or e; SHARE 1 / (1 +
 // phi); PUSH g dt/2m; BRAKED_MASS m, 0 where there is none; PHI.
 
-// A row of Pass::kept, one number for each lane: what waves do to a particle (InWaves), and the impulse on the liquid.
-enum Kept { IN_WAVES = 8, IMPULSE_X = IN_WAVES, IMPULSE_Y, KEPT };
+// What is kept for a particle (InLiquid), one number for each lane: a row of Pass::kept, and one of Pass::kept_small.
+enum Kept { BASE, SLOPE, IMPULSE_X, IMPULSE_Y, KEPT };
+enum KeptSmall { MORE, ALONG_X, ALONG_Y, FLOW_X, FLOW_Y, RISING, KEPT_SMALL };
 
 // A row of Pass::immersed, one number for each lane; see Immersed. LAMBDA is friction that a particle has anyway; LISTED is 1 for
 // what is near the liquid.
@@ -117,13 +118,14 @@ struct Pass {
   const Range *range;
   const Crossing *crossing;
   const Entry *crossing_entry;
-  double *crossed;      // what crossing springs do to their lower particles: rows of (3, lanes), (6, lanes) with dashpots
-  unsigned turn;        // number of the pass
-  double gravity[3];    // [velocity/time]
+  double *crossed;           // what crossing springs do to their lower particles: rows of (3, lanes), (6, lanes) with dashpots
+  unsigned turn;             // number of the pass
+  double gravity[3];         // [velocity/time]
   double *external_force;    // rows of forces from elsewhere, (3, lanes) each, to be added after gravity; zero after a pass:
   int force_providers;       // so many in a row for a block that has any
   Friction friction;
   double *kept;                   // rows of KEPT
+  const float *kept_small;        // rows of KEPT_SMALL
   const double *immersed;         // rows of IMMERSED_MOTIONS,
   const unsigned *immersed_of;    // and which of them goes with a row of `kept`
   LiquidScales liquid;

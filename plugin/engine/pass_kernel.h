@@ -23,9 +23,13 @@ namespace {
 
 constexpr int LANES = MDANIM_LANES;
 typedef double Vector __attribute__((vector_size(8 * LANES)));
+typedef float Floats __attribute__((vector_size(4 * LANES)));
 using Vector3 = Vec<Vector>;
 
 MDANIM_ALWAYS_INLINE Vector load(const double *from) { return load<Vector>(from); }
+
+MDANIM_ALWAYS_INLINE Vector load_floats(const float *from)
+{ return __builtin_convertvector(reinterpret_cast<const Unaligned<Floats> *>(from)->value, Vector); }
 
 MDANIM_ALWAYS_INLINE Vector3 load(const double *const *from, long i) { return load<Vector>(from, i); }
 
@@ -264,9 +268,12 @@ __attribute__((noinline)) void move_immersed(const Pass &pass, const Block &bloc
   const double *const own =
       pass.immersed + static_cast<unsigned long>(pass.immersed_of[block.immersed]) * (IMMERSED_MOTIONS * LANES);
   double *const kept = pass.kept + static_cast<long>(block.immersed) * (KEPT * LANES);
+  const float *const kept_small = pass.kept_small + static_cast<long>(block.immersed) * (KEPT_SMALL * LANES);
   const auto of = [own](ImmersedMotion what) { return load(own + what * LANES); };
-  const auto waves = [kept](int n) { return load(kept + n * LANES); };
-  const InWaves<Vector> in_waves{waves(0), waves(1), waves(2), waves(3), waves(4), waves(5), waves(6), waves(7)};
+  const auto waves = [kept](Kept what) { return load(kept + what * LANES); };
+  const auto small = [kept_small](KeptSmall what) { return load_floats(kept_small + what * LANES); };
+  const InWaves<Vector> in_waves{waves(BASE),    waves(SLOPE),  small(MORE),   small(ALONG_X),
+                                 small(ALONG_Y), small(FLOW_X), small(FLOW_Y), small(RISING)};
   const Immersed<Vector> particle{of(VOLUME), of(OWN_MASS), of(GAMMA), of(PER_LENGTH)};
   const AtPlace<Vector> at = in_waves.at(load(pass.x[2] + block.start));
   const Vector3 lift = lift_along(pass.liquid, particle.volume, at.push);

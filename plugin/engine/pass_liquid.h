@@ -5,6 +5,7 @@
 #define MDANIM_PASS_LIQUID_H
 
 #include "engine/pass.h"
+#include "laws/immersed.h"
 
 #include <functional>
 #include <vector>
@@ -28,8 +29,8 @@ class PassLiquid {
   virtual bool is_near(int i) const = 0;
   // What passes are told of a particle, until particles move to other places of the arrays.
   virtual std::function<ImmersedMover(int i)> immersed() const = 0;
-  // KEPT numbers of a particle.
-  virtual double *kept(int i) = 0;
+  // Of all particles in LAMMPS's arrays.
+  virtual InLiquid *kept() = 0;
   // The arrays hold these particles alone from now on, until this is called again; null for all particles.
   virtual void split(const std::vector<int> *in_arrays) = 0;
   // By a pass in its name: power of its forces without friction's, and what friction takes; square of the largest speed of what

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Room for doubles.
+// Room for numbers.
 
 #include "engine/positions.h"
 
@@ -8,19 +8,19 @@
 
 namespace mdanim {
 
-void Doubles::assign(std::size_t n)
+template <class Number> void LinedUp<Number>::assign(std::size_t n)
 {
-  constexpr std::size_t LINE = 8;
-  room.assign(n + 2 * LINE, 0.0);
-  const auto address = reinterpret_cast<std::uintptr_t>(room.data()) / sizeof(double);
+  constexpr std::size_t LINE = 64 / sizeof(Number);
+  room.assign(n + 2 * LINE, 0);
+  const auto address = reinterpret_cast<std::uintptr_t>(room.data()) / sizeof(Number);
   begin = room.data() + (LINE - address % LINE) % LINE;
   used = n;
 }
 
-void Doubles::push(const double *row, std::size_t n)
+template <class Number> void LinedUp<Number>::push(const Number *row, std::size_t n)
 {
-  if (!begin || used + n + 16 > room.size()) {
-    std::vector<double> old(begin, begin + used);
+  if (!begin || used + n + 128 / sizeof(Number) > room.size()) {
+    std::vector<Number> old(begin, begin + used);
     const std::size_t before = used;
     assign(2 * (used + n));
     std::copy(old.begin(), old.end(), begin);
@@ -29,5 +29,8 @@ void Doubles::push(const double *row, std::size_t n)
   std::copy(row, row + n, begin + used);
   used += n;
 }
+
+template class LinedUp<double>;
+template class LinedUp<float>;
 
 }    // namespace mdanim

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Doubles for the vector units, and places of particles made of them.
+// Numbers for the vector units, and places of particles made of them.
 
 #ifndef MDANIM_POSITIONS_H
 #define MDANIM_POSITIONS_H
@@ -12,25 +12,28 @@
 
 namespace mdanim {
 
-// Doubles that start on a cache line and may be read and written a vector beyond their end.
-class Doubles {
+// Numbers that start on a cache line and may be read and written a vector beyond their end.
+template <class Number> class LinedUp {
  public:
-  Doubles() = default;
-  Doubles(Doubles &&) = default;    // a copy would point into the other's memory
-  Doubles &operator=(Doubles &&) = default;
+  LinedUp() = default;
+  LinedUp(LinedUp &&) = default;    // a copy would point into the other's memory
+  LinedUp &operator=(LinedUp &&) = default;
   void assign(std::size_t n);    // zeros
-  void push(const double *row, std::size_t n);
+  void push(const Number *row, std::size_t n);
   void clear() { used = 0; }
   std::size_t size() const { return used; }
-  double *data() { return begin; }
-  const double *data() const { return begin; }
-  std::size_t bytes() const { return room.capacity() * sizeof(double); }
+  Number *data() { return begin; }
+  const Number *data() const { return begin; }
+  std::size_t bytes() const { return room.capacity() * sizeof(Number); }
 
  private:
-  std::vector<double> room;
-  double *begin = nullptr;
+  std::vector<Number> room;
+  Number *begin = nullptr;
   std::size_t used = 0;
 };
+
+using Doubles = LinedUp<double>;
+using Floats = LinedUp<float>;
 
 // Positions of particles, all x, all y, all z.
 struct Positions {

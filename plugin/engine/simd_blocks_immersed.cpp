@@ -37,14 +37,16 @@ void SimdBlocks::list_immersed(const PassLiquid &liquid)
     immersed_of.push_back(immersed_motions.find_or_add(row.data(), row.size()));
   }
   kept.assign(immersed.size() * KEPT * lanes);
+  kept_small.assign(immersed.size() * KEPT_SMALL * lanes);
   listed = liquid.listed();
 }
 
-// work(numbers of a particle, its place in a row of `kept`) for all own particles that the liquid acts on in passes, which
+// work(what is kept for a particle, its row, its lane) for all own particles that the liquid acts on in passes, which
 // threads share. Returns how many they are.
 template <class Work> long SimdBlocks::each_immersed(const Threads &threads, PassLiquid &liquid, const Work &work) const
 {
   constexpr double PARTICLE = 10.0;    // [ns], about
+  InLiquid *const of = liquid.kept();
   std::atomic<long> particles{0};
   threads.parts(static_cast<long>(immersed.size()), PARTICLE * lanes, [&](long from, long to) {
     long of_part = 0;
@@ -54,7 +56,7 @@ template <class Work> long SimdBlocks::each_immersed(const Threads &threads, Pas
       for (int lane = 0; lane < block.lanes; ++lane) {
         const int i = at(block.start + lane);
         if (is_ghost(i)) continue;
-        work(liquid.kept(i), static_cast<std::size_t>(n) * KEPT * lanes + lane);
+        work(of[i], n, lane);
         ++of_part;
       }
     }
@@ -66,10 +68,15 @@ template <class Work> long SimdBlocks::each_immersed(const Threads &threads, Pas
 void SimdBlocks::immerse(const Threads &threads, PassLiquid &liquid, Pass &pass)
 {
   if (listed != liquid.listed()) list_immersed(liquid);
-  immersed_particles = static_cast<double>(each_immersed(threads, liquid, [this](const double *of, std::size_t to) {
-    for (int k = 0; k < KEPT; ++k) kept.data()[to + static_cast<std::size_t>(k) * lanes] = of[k];
+  immersed_particles = static_cast<double>(each_immersed(threads, liquid, [this](const InLiquid &of, std::size_t row, int lane) {
+    const auto &[base, slope, more, along_x, along_y, flow_x, flow_y, rising] = of.waves;
+    const double doubles[KEPT] = {base, slope, of.impulse_x, of.impulse_y};
+    const float floats[KEPT_SMALL] = {more, along_x, along_y, flow_x, flow_y, rising};
+    for (int k = 0; k < KEPT; ++k) kept.data()[(row * KEPT + k) * lanes + lane] = doubles[k];
+    for (int k = 0; k < KEPT_SMALL; ++k) kept_small.data()[(row * KEPT_SMALL + k) * lanes + lane] = floats[k];
   }));
   pass.kept = kept.data();
+  pass.kept_small = kept_small.data();
   pass.immersed = immersed_motions.data();
   pass.immersed_of = immersed_of.data();
   pass.liquid = liquid.scales();
@@ -78,8 +85,9 @@ void SimdBlocks::immerse(const Threads &threads, PassLiquid &liquid, Pass &pass)
 
 void SimdBlocks::give_out_impulses(const Threads &threads, PassLiquid &liquid) const
 {
-  each_immersed(threads, liquid, [this](double *of, std::size_t from) {
-    for (const int k : {IMPULSE_X, IMPULSE_Y}) of[k] = kept.data()[from + static_cast<std::size_t>(k) * lanes];
+  each_immersed(threads, liquid, [this](InLiquid &of, std::size_t row, int lane) {
+    of.impulse_x = kept.data()[(row * KEPT + IMPULSE_X) * lanes + lane];
+    of.impulse_y = kept.data()[(row * KEPT + IMPULSE_Y) * lanes + lane];
   });
 }
 

@@ -9,6 +9,8 @@
 #include "laws/liquid_scales.h"
 #include "laws/vec3.h"
 
+#include <cmath>
+
 namespace mdanim {
 
 // The liquid where a particle is.
@@ -19,19 +21,33 @@ template <class Real> struct AtPlace {
   Real rising{};      // upward velocity of the solid around [distance/time]
 };
 
-// Waves at a particle, from one update of the liquid to the next.
-template <class Real> struct InWaves {
-  Real base{}, slope{};         // the part of its volume below the surface is base - slope z, within 0 and 1
-  Real more{};                  // the push upwards is that part and this
-  Real along_x{}, along_y{};    // push sideways
-  Real flow_x{}, flow_y{};      // velocity of the liquid
-  Real rising{};                // see AtPlace
+// Waves at a particle, from one update of the liquid to the next. In memory what does not depend on where the basin stands has
+// half the digits.
+template <class Real, class Small = Real> struct InWaves {
+  Real base{}, slope{};          // the part of its volume below the surface is base - slope z, within 0 and 1
+  Small more{};                  // the push upwards is that part and this
+  Small along_x{}, along_y{};    // push sideways
+  Small flow_x{}, flow_y{};      // velocity of the liquid
+  Small rising{};                // see AtPlace
 
   MDANIM_ALWAYS_INLINE AtPlace<Real> at(const Real &z) const
   {
     const Real part = smaller(larger(base - slope * z, constant<Real>(0.0)), constant<Real>(1.0));
     return {part, {along_x, along_y, part + more}, {flow_x, flow_y, Real{}}, rising};
   }
+  bool acts() const { return base != 0 || slope != 0 || more != 0 || along_x != 0 || along_y != 0; }
+  bool is_finite() const { return std::isfinite(base + slope + more + along_x + along_y + flow_x + flow_y + rising); }
+  InWaves<Real, float> rounded() const
+  {
+    const auto round = [](Real of) { return static_cast<float>(of); };
+    return {base, slope, round(more), round(along_x), round(along_y), round(flow_x), round(flow_y), round(rising)};
+  }
+};
+
+// What is kept for a particle.
+struct InLiquid {
+  InWaves<double, float> waves;
+  double impulse_x = 0.0, impulse_y = 0.0;    // on the liquid, over its density, since the last update
 };
 
 // A particle.

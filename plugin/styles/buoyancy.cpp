@@ -119,25 +119,12 @@ void Buoyancy::append_required_atoms(std::vector<int> &particles) const
 
 // --- an update of the liquid ---
 
-bool Buoyancy::Kept::are_numbers() const
-{
-  const InWaves<double> &w = waves;
-  return std::isfinite(w.base + w.slope + w.more + w.along_x + w.along_y + w.flow_x + w.flow_y + w.rising + impulse_x +
-                       impulse_y);
-}
-
-bool Buoyancy::Kept::acts() const
-{
-  const InWaves<double> &w = waves;
-  return w.base != 0.0 || w.slope != 0.0 || w.more != 0.0 || w.along_x != 0.0 || w.along_y != 0.0;
-}
-
 void Buoyancy::give_impulses(Basin &basin, const std::vector<int> &near)
 {
   if (!basin.acts_on_cells() || !lifts) return;
   const double *const volumes = volume.values(lmp);
   for (const int i : near) {
-    Kept &of = kept[i];
+    InLiquid &of = kept[i];
     if (of.waves.along_x != 0.0 || of.waves.along_y != 0.0)
       basin.take_push((volumes ? volumes[i] : volume.number) * Vec3{of.waves.along_x, of.waves.along_y, 0.0});
     if (of.impulse_x == 0.0 && of.impulse_y == 0.0) continue;
@@ -167,11 +154,10 @@ void Buoyancy::look(const Basin &basin, const std::vector<int> &near)
 
 // The mean of what acts on its parts of lattice cells. Until the next update s is a straight line between its values where the
 // particle and all around it have gone up or down as far as an update lets them.
-Buoyancy::Kept Buoyancy::look_at_particle(const Basin &basin, std::size_t n, const double *x) const
+InLiquid Buoyancy::look_at_particle(const Basin &basin, std::size_t n, const double *x) const
 {
   const double per_height = 1.0 / basin.shape.cell.z, z = (x[2] - basin.shape.low.z) * per_height, far = basin.pace.stride;
-  Kept found;
-  InWaves<double> &mean = found.waves;
+  InWaves<double> mean;
   double s = 0.0, lower = 0.0, higher = 0.0;
   int parts = 0;
   cells.each_of(n, [&](int cell) {
@@ -187,13 +173,13 @@ Buoyancy::Kept Buoyancy::look_at_particle(const Basin &basin, std::size_t n, con
     mean.flow_x += on.flow_x;
     mean.flow_y += on.flow_y;
   });
-  if (parts == 0) return found;
+  if (parts == 0) return {};
   const double part = 1.0 / parts;
   for (double *value : {&mean.more, &mean.along_x, &mean.along_y, &mean.flow_x, &mean.flow_y}) *value *= part;
   mean.slope = part * (lower - higher) / (2.0 * far) * per_height;
   mean.base = part * s + mean.slope * x[2];
-  if (found.acts()) mean.rising = basin.rising_at(basin.in_cells(x));
-  return found;
+  if (mean.acts()) mean.rising = basin.rising_at(basin.in_cells(x));
+  return {mean.rounded()};
 }
 
 // --- a step ---
@@ -231,7 +217,7 @@ struct Buoyancy::Acting {
   double *const *f;
   const double *volume, *gamma, *per_length, *base;
   double *lambda;
-  Kept *kept;             // nullptr where the surface is asked in each step
+  InLiquid *kept;         // nullptr where the surface is asked in each step
   double above, below;    // nothing is immersed from `above` up; most particles of a large body need not look up the surface
 };
 

@@ -73,13 +73,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   double seconds = 0.0;
 
   // Of a particle, from look() to look(); it goes where the particle goes.
-  struct Kept {
-    InWaves<double> waves;
-    double impulse_x = 0.0, impulse_y = 0.0;    // on the liquid, over its density, not yet given
-    bool are_numbers() const;
-    bool acts() const;
-  };
-  std::vector<Kept> kept;    // of all local particles, where the liquid acts on lattice cells
+  std::vector<InLiquid> kept;    // of all local particles, where the liquid acts on lattice cells
 
  private:
   struct Wet {    // a particle near the liquid, in this step
@@ -95,7 +89,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   struct Acting;
   Wet act_on(const Acting &now, const Basin &basin, std::size_t n, int i);
   Vec3 pressure_on(const Face &face, const Basin &basin) const;
-  Kept look_at_particle(const Basin &basin, std::size_t n, const double *x) const;
+  InLiquid look_at_particle(const Basin &basin, std::size_t n, const double *x) const;
   Basin::Energies power() const;
 
   double rho;

@@ -199,7 +199,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   basin->pace = pace;
   size_array_rows = basin->columns();
   if (!basin->acts_on_cells()) return;
-  maxexchange = sizeof(Buoyancy::Kept) / sizeof(double);
+  maxexchange = sizeof(InLiquid) / sizeof(double);
   grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);
 }
@@ -372,6 +372,7 @@ void FixMdanimLiquid::setup_post_neighbor()
   else if (changed)    // what never moves has been moved between two runs
     in_basin([&] { basin->settle(static_cast<std::uint64_t>(update->ntimestep)); });
   none_near = false;    // between two runs anything may have been set
+  buoyancy->forget_cells();
   asked = -1;
   post_neighbor();
 }

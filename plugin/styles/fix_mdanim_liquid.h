@@ -57,7 +57,7 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   long long listed() const override { return lists; }
   bool is_near(int i) const override { return near_marks[i]; }
   std::function<mdanim::ImmersedMover(int)> immersed() const override { return buoyancy->immersed(near_marks); }
-  double *kept(int i) override;
+  mdanim::InLiquid *kept() override;
   void split(const std::vector<int> *in_arrays) override;
   void acted(double work, double lost, double fastest, double seconds) override;
   double safe_displacement() const override;

@@ -24,11 +24,7 @@ bool FixMdanimLiquid::join(PassCrew &crew)
 
 bool FixMdanimLiquid::joins(const double *lambda) { return in_passes = buoyancy->acts_in_passes(*basin, lambda); }
 
-double *FixMdanimLiquid::kept(int i)
-{
-  static_assert(sizeof(Buoyancy::Kept) == KEPT * sizeof(double), "a row of Pass::kept");
-  return &buoyancy->kept[i].waves.base;
-}
+InLiquid *FixMdanimLiquid::kept() { return buoyancy->kept.data(); }
 
 // In the arrays all are as they were moved last, when this is called.
 void FixMdanimLiquid::split(const std::vector<int> *in_arrays)

@@ -8,6 +8,7 @@
 #include "lammps.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -15,7 +16,7 @@
 using namespace LAMMPS_NS;
 using namespace mdanim;
 
-static constexpr std::int64_t STATE_VERSION = 1;    // of rows of particles
+static constexpr std::int64_t STATE_VERSION = 2;    // of rows of particles
 
 // --- what acts on particles in waves goes with them ---
 
@@ -27,13 +28,13 @@ void FixMdanimLiquid::set_arrays(int i) { buoyancy->kept[i] = {}; }
 
 int FixMdanimLiquid::pack_exchange(int i, double *into)
 {
-  std::memcpy(into, &buoyancy->kept[i], sizeof(Buoyancy::Kept));
+  std::memcpy(into, &buoyancy->kept[i], sizeof(InLiquid));
   return maxexchange;
 }
 
 int FixMdanimLiquid::unpack_exchange(int i, double *from)
 {
-  std::memcpy(static_cast<void *>(&buoyancy->kept[i]), from, sizeof(Buoyancy::Kept));
+  std::memcpy(static_cast<void *>(&buoyancy->kept[i]), from, sizeof(InLiquid));
   return maxexchange;
 }
 
@@ -43,9 +44,9 @@ StateRecords FixMdanimLiquid::pack() const
 {
   StateRecords records{{StateKey{}, basin->state(buoyancy->ledger())}};
   if (!basin->acts_on_cells()) return records;
-  ParticleRows rows(lmp, STATE_VERSION, sizeof(Buoyancy::Kept));
+  ParticleRows rows(lmp, STATE_VERSION, sizeof(InLiquid));
   for (int i = 0; i < atom->nlocal; ++i)
-    if (buoyancy->kept[i].acts()) rows.add(i, &buoyancy->kept[i]);
+    if (buoyancy->kept[i].waves.acts()) rows.add(i, &buoyancy->kept[i]);
   rows.pack(records);
   return records;
 }
@@ -56,12 +57,12 @@ void FixMdanimLiquid::unpack(const StateRecords &records)
   if (whole == records.end() || (!basin->acts_on_cells() && records.size() != 1))
     throw std::runtime_error(fmt::format("the liquid's state is one record (0, 0){}, there are {} records",
                                          basin->acts_on_cells() ? " and those of objects" : "", records.size()));
-  std::vector<Buoyancy::Kept> kept(buoyancy->kept.size());
+  std::vector<InLiquid> kept(buoyancy->kept.size());
   if (basin->acts_on_cells()) {
     int bad = 0;
-    ParticleRows(lmp, STATE_VERSION, sizeof(Buoyancy::Kept)).unpack(records, [&](int i, const std::uint8_t *from) {
+    ParticleRows(lmp, STATE_VERSION, sizeof(InLiquid)).unpack(records, [&](int i, const std::uint8_t *from) {
       std::memcpy(static_cast<void *>(&kept[i]), from, sizeof kept[i]);
-      bad |= !kept[i].are_numbers();
+      bad |= !(kept[i].waves.is_finite() && std::isfinite(kept[i].impulse_x + kept[i].impulse_y));
     });
     MPI_Allreduce(MPI_IN_PLACE, &bad, 1, MPI_INT, MPI_MAX, world);
     if (bad) throw std::runtime_error("the liquid's state of particles has what is no number");

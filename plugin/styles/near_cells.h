@@ -28,7 +28,7 @@ class NearCells : protected LAMMPS_NS::Pointers {
     int layers;       // of cells around it, where the table tells, else -1
   };
   std::vector<Cell> cells;
-  void clear() { cells.clear(), of_particle.clear(); }
+  void clear();    // so that the table is read anew
   // Calls f(cell) for the cells of the n-th particle near the liquid.
   template <class F> void each_of(std::size_t n, F &&f) const
   {
@@ -36,11 +36,20 @@ class NearCells : protected LAMMPS_NS::Pointers {
       if (const int cell = of_particle[8 * n + k]; cell >= 0) f(cell);
   }
   double bytes() const
-  { return static_cast<double>(cells.capacity() * sizeof(Cell) + (of_particle.capacity() + number.capacity()) * sizeof(int)); }
+  {
+    return static_cast<double>((cells.capacity() + all.capacity()) * sizeof(Cell) +
+                               (of_particle.capacity() + number.capacity() + particles.capacity()) * sizeof(int) +
+                               tags.capacity() * sizeof(LAMMPS_NS::tagint));
+  }
 
  private:
-  std::vector<int> of_particle;    // the cell that has it at corner k, or -1
-  std::vector<int> number;         // of a local particle in `near`, or -1
+  bool find_all(const Threads &threads, const ParticleTable &table);    // whether anything may have changed
+
+  std::vector<Cell> all;                  // a corner out of reach is -1
+  std::vector<LAMMPS_NS::tagint> tags;    // of the particles when they were found, with ghosts
+  std::vector<int> particles;             // near the liquid
+  std::vector<int> of_particle;           // the cell that has it at corner k, or -1
+  std::vector<int> number;                // of a local particle in `near`, or -1
 };
 
 }    // namespace mdanim
