@@ -150,8 +150,8 @@ def bobbing_rows() -> Iterator[tuple[str, ...]]:
         size = dict(side=side, half=width / 2, level=depth, top=depth + side)
         path = []
         with Pool(model="waves", calm=1e6, drag=1e-9, density=1000 * draft / side, z=rest + above, **size) as pool:
-            step = 0.025 / 0.01**0.5
-            for _ in range(1200):
+            step = 0.05 / 0.01**0.5
+            for _ in range(600):
                 pool.run(step)
                 path.append((pool.mean("x")[2] - rest) / above)
             whole = int(step / pool.ready.certificate.timestep) * pool.ready.certificate.timestep * 0.01**0.5

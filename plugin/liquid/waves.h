@@ -135,7 +135,7 @@ class Waves {
   } counts;
 
   WaveLaw law;
-  double tolerance = 1e-3;    // of the solver
+  double tolerance = 2e-3;    // of the solver
   int most_iterations = 200;
   double rest = 1.0 / 1024.0;    // differences of heads, and velocities, that are none: those of a film
 
