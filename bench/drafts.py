@@ -150,12 +150,12 @@ def bobbing_rows() -> Iterator[tuple[str, ...]]:
         size = dict(side=side, half=width / 2, level=depth, top=depth + side)
         path = []
         with Pool(model="waves", calm=1e6, drag=1e-9, density=1000 * draft / side, z=rest + above, **size) as pool:
-            step = 0.05 / 0.01**0.5
-            for _ in range(600):
-                pool.run(step)
+            dt = pool.ready.certificate.timestep
+            step = dt * max(1, int(0.25 / dt))
+            for _ in range(int(300.0 / step)):
+                pool.run(1.001 * step)
                 path.append((pool.mean("x")[2] - rest) / above)
-            whole = int(step / pool.ready.certificate.timestep) * pool.ready.certificate.timestep * 0.01**0.5
-        own = waves_forms.swings(np.array(path), draft, whole)
+        own = waves_forms.swings(np.array(path), draft, step * 0.01**0.5)
         exact = waves_forms.swings(heave.bobbing(side, draft, width, depth, fine=2 if depth < 20 else 1, time=40), draft)
         told = (f"{one.fall:.2f}; {one.period:.2f}" for one in (own, exact))
         ratio = f"{own.fall / exact.fall:.2f}; {own.period / exact.period:.2f}"
