@@ -10,7 +10,7 @@ from mdanim_lammps.engine.state import State
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 
-FIRST, THEN = 15, 20
+FIRST, THEN = 15, 30
 """Steps before the state that is put again, and after it."""
 LOOK_STEPS = 3
 """Steps from one look of the trace to the next, when steps are gone again."""
