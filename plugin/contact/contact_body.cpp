@@ -91,6 +91,8 @@ void ContactBody::sort_points()
       least = std::min(least, at), most = std::max(most, at);
       stands_out = std::max({stands_out, -least * edge, (most - 1.0) * edge});
     };
+    const auto weights = [](double at) { return std::fabs(at) + std::fabs(1.0 - at); };
+    lever = std::max(lever, weights(from_corner.x) * weights(from_corner.y) * weights(from_corner.z));
     unite(from_corner.x, cell.low.x, cell.high.x, edges[0]);
     unite(from_corner.y, cell.low.y, cell.high.y, edges[1]);
     unite(from_corner.z, cell.low.z, cell.high.z, edges[2]);

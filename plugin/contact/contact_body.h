@@ -71,6 +71,8 @@ class ContactBody {
   bool carries(int node) const { return is_carrier[node]; }    // points, or centres of their areas
   // How far the drawn surface stands out of the cells [m].
   double overhang() const { return stands_out; }
+  // How far a point may go where its particles go no farther than 1: their weights without signs, 1 within cells.
+  double leverage() const { return lever; }
 
   // Places of the grid, x fastest, and the number of the particle there, -1 for none.
   int row() const { return cells[0] + 1; }
@@ -99,7 +101,7 @@ class ContactBody {
   std::vector<PointCell> carriers;
   std::vector<int> by_cell;    // numbers of points, cell by cell, ascending in each
   std::vector<char> is_carrier;
-  double stands_out = 0.0;
+  double stands_out = 0.0, lever = 1.0;
   std::vector<double> depth_grid;    // coefficients of quadratic B-splines on nodes -2 to n + 2
 };
 

@@ -34,7 +34,7 @@ struct ContactObject {
   int first_slot = 0, last_slot = 0;
   std::shared_ptr<LateOuterCells> outer;    // none of them after lists were made
   Vec3 way;                                 // of its first particle in this step
-  double stir = 0.0;                        // the most that another has gone otherwise in this step
+  double stir = 0.0;                        // the most that a point has gone otherwise in this step
   bool is_pushed = false;                   // in the last step, by contacts
 };
 

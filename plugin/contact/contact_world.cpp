@@ -223,7 +223,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
     one.last_slot = static_cast<int>(from);
     Motion motion{changes.empty() ? Vec3{} : changes.front()};
     for (const Vec3 &change : changes) motion.include(change);
-    one.way = motion.way, one.stir = std::sqrt(motion.square);
+    one.way = motion.way, one.stir = one.body->leverage() * std::sqrt(motion.square);
   }
 
   active.clear();
@@ -290,7 +290,7 @@ void ContactWorld::move_to(const Coordinates &places)
         motion.include(x - arrays.place()[s].value);
         arrays.place()[s].value = x;
       }
-      one.way = motion.way, one.stir = std::sqrt(motion.square);
+      one.way = motion.way, one.stir = one.body->leverage() * std::sqrt(motion.square);
       clear_forces(one);
     }
   });

@@ -1,8 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """How often fix mdanim/contact looks points up that touch nothing: what was seen of a point holds when lists are made again."""
 
+from dataclasses import replace
+
 import pytest
+from mdanim_lammps.engine.commands import SKIN
 from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.parse import load_scene
+from paths import SCENES
 
 LOOKS = 14
 """Entry of the fix's vector."""
@@ -38,3 +44,21 @@ def test_new_lists_alone_ask_for_no_look(prepared, name):
     still = looks(prepared, name, 0.0)
     assert still > 10.0
     assert looks(prepared, name, 2.0) < 1.5 * still
+
+
+def film_of_crowd(skins: float, frames: int) -> list[bytes]:
+    """Frames of the crowd, with so many times the usual skin."""
+    ready = prepare(replace(load_scene(SCENES / "crowd.txt"), expects=()))
+    steps, film = round(0.04 / ready.certificate.timestep), []
+    with Instance(ready.plan) as instance:
+        instance._lmp.command(f"neighbor {skins * SKIN * ready.plan.spacing!r} bin")
+        instance.setup()
+        for _ in range(frames):
+            instance.run(steps)
+            film.append(instance.array("x").tobytes() + instance.array("v").tobytes())
+    return film
+
+
+def test_contacts_begin_in_the_same_steps_however_often_lists_are_made():
+    """Points of a ball lie outside of its cells: they go farther than its particles, which is counted until one is looked at."""
+    assert film_of_crowd(1.0, 28) == film_of_crowd(0.7, 28)
