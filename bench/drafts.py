@@ -151,11 +151,11 @@ def bobbing_rows() -> Iterator[tuple[str, ...]]:
         path = []
         with Pool(model="waves", calm=1e6, drag=1e-9, density=1000 * draft / side, z=rest + above, **size) as pool:
             dt = pool.ready.certificate.timestep
-            step = dt * max(1, int(0.25 / dt))
-            for _ in range(int(300.0 / step)):
-                pool.run(1.001 * step)
+            steps = max(1, int(0.25 / dt))
+            for _ in range(int(300.0 / (steps * dt))):
+                pool.instance.run(steps)
                 path.append((pool.mean("x")[2] - rest) / above)
-        own = waves_forms.swings(np.array(path), draft, step * 0.01**0.5)
+        own = waves_forms.swings(np.array(path), draft, steps * dt * 0.01**0.5)
         exact = waves_forms.swings(heave.bobbing(side, draft, width, depth, fine=2 if depth < 20 else 1, time=40), draft)
         told = (f"{one.fall:.2f}; {one.period:.2f}" for one in (own, exact))
         ratio = f"{own.fall / exact.fall:.2f}; {own.period / exact.period:.2f}"

@@ -183,6 +183,7 @@ struct Motion {
     const Vec3 off = change - way;
     square = std::max(square, dot(off, off));
   }
+  void tell(ContactObject &one) const { one.way = way, one.stir = one.body->leverage() * std::sqrt(square); }
 };
 
 // How much two objects have come nearer at most.
@@ -223,7 +224,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
     one.last_slot = static_cast<int>(from);
     Motion motion{changes.empty() ? Vec3{} : changes.front()};
     for (const Vec3 &change : changes) motion.include(change);
-    one.way = motion.way, one.stir = one.body->leverage() * std::sqrt(motion.square);
+    motion.tell(one);
   }
 
   active.clear();
@@ -290,7 +291,7 @@ void ContactWorld::move_to(const Coordinates &places)
         motion.include(x - arrays.place()[s].value);
         arrays.place()[s].value = x;
       }
-      one.way = motion.way, one.stir = one.body->leverage() * std::sqrt(motion.square);
+      motion.tell(one);
       clear_forces(one);
     }
   });

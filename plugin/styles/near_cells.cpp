@@ -70,10 +70,11 @@ void NearCells::find(const Threads &threads, const std::vector<int> &near, const
       if (std::any_of(all[n].corner, all[n].corner + 8, [&](int at) { return number_at(at) >= 0; })) found.push_back(all[n]);
   });
   for (const Cell &cell : cells)
-    for (const int at : cell.corner)
-      if (at < 0)
-        error->one(FLERR, "{}: a corner of the lattice cell of particle {} is out of reach; raise comm_modify cutoff", fix,
-                   atom->tag[cell.corner[0]]);
+    for (int k = 1; k < 8; ++k)
+      if (cell.corner[k] < 0)
+        error->one(FLERR,
+                   "{}: particle {}, a corner of the lattice cell of particle {}, is out of reach; raise comm_modify cutoff", fix,
+                   table.rows(lmp)[cell.corner[0]][k - 1], atom->tag[cell.corner[0]]);
   threads.parts(static_cast<long>(cells.size()), PLACING, [&](long from, long to) {
     for (long n = from; n < to; ++n)
       for (int k = 0; k < 8; ++k)
