@@ -10,7 +10,6 @@ namespace mdanim {
 
 static constexpr double LEAST_COSINE = 0.45;    // between the outward normals of the point and of a side that faces it, negated
 static constexpr double DEEPEST_BIRTH = 0.5;    // cells
-static constexpr double LOST = 0.02;            // cells to go before a point that was not found is looked for again
 static constexpr double PRESSED = 0.5;          // cells are taken to be pressed to half at most: motion in space over that in X
 static constexpr double NEAREST = 2.2;          // cells from the middle of a cell on the surface beyond which there is no contact
 static constexpr double JUMP = 0.25;            // cells that X may jump between cells of a round host
@@ -222,11 +221,11 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
   const auto lost = [&] {
     known.cell = {-1, -1, -1};
     known.open = EVERY_SIDE;
-    wake[q] = budget + LOST * h;
+    wake[q] = budget;    // is looked for again in the next step
     return false;
   };
   if (known.cell[0] < 0) {
-    const std::array<int, 3> cell = host->outer->of(*host, arrays).nearest(x);
+    const std::array<int, 3> cell = host->outer->of(*host, arrays).nearest(x, arrays.place());
     Spot<double> there;
     const Vec3 middle = {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
     if (cell[0] >= 0 && !evaluate(at, trilinear(middle, cell, at.body), there)) return lost();

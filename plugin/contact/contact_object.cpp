@@ -109,22 +109,23 @@ OuterCells::OuterCells(const ContactObject &owner, const ContactArrays &arrays)
         if (!body.is_outer(i, j, k)) continue;
         const int low = owner.slot[body.place(i, j, k)], high = owner.slot[body.place(i + 1, j + 1, k + 1)];
         if (low < 0 || high < 0) continue;
-        cell.push_back({i, j, k});
+        cells.push_back({{i, j, k}, low, high});
         middle.push_back(0.5 * (arrays.place()[low].value + arrays.place()[high].value));
       }
   grid = Grid([this](int n) { return &middle[n].x; }, static_cast<int>(middle.size()), SEARCHED * body.spacing());
 }
 
-std::array<int, 3> OuterCells::nearest(const Vec3 &x) const
+// By where cells are now, so that the answer does not depend on when lists were made.
+std::array<int, 3> OuterCells::nearest(const Vec3 &x, const Row *place) const
 {
   int best = -1;
   double least = std::numeric_limits<double>::infinity();
   grid.around(&x.x, [&](int slot) {
     const int n = grid.order()[slot];
-    const Vec3 d = middle[n] - x;
+    const Vec3 d = 0.5 * (place[cells[n].low].value + place[cells[n].high].value) - x;
     if (dot(d, d) < least || (dot(d, d) == least && n < best)) least = dot(d, d), best = n;
   });
-  return best < 0 ? std::array<int, 3>{-1, -1, -1} : cell[best];
+  return best < 0 ? std::array<int, 3>{-1, -1, -1} : cells[best].at;
 }
 
 }    // namespace mdanim

@@ -184,17 +184,21 @@ class PointFinder {
   std::vector<std::pair<int, Box>> cells;    // those of the body that carry points, if all their particles are there
 };
 
-// Cells on an object's surface, to begin a search in.
+// Cells on an object's surface, to begin a search in. They are found by where they were when this was made.
 class OuterCells {
  public:
   OuterCells(const ContactObject &owner, const ContactArrays &arrays);
-  // The one whose middle was nearest when this was made; -1 for none within SEARCHED cells.
-  std::array<int, 3> nearest(const Vec3 &x) const;
-  std::size_t bytes() const { return cell.capacity() * (sizeof cell[0] + sizeof middle[0]); }
+  // The one whose middle is nearest, with particles at `place` now; -1 for none of those that were within SEARCHED cells.
+  std::array<int, 3> nearest(const Vec3 &x, const Row *place) const;
+  std::size_t bytes() const { return cells.capacity() * (sizeof cells[0] + sizeof middle[0]); }
   static constexpr double SEARCHED = 5.0;
 
  private:
-  std::vector<std::array<int, 3>> cell;
+  struct Cell {
+    std::array<int, 3> at;
+    int low, high;    // slots of two opposite corners
+  };
+  std::vector<Cell> cells;
   std::vector<Vec3> middle;
   Grid grid;
 };

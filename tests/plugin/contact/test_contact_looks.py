@@ -46,9 +46,10 @@ def test_new_lists_alone_ask_for_no_look(prepared, name):
     assert looks(prepared, name, 2.0) < 1.5 * still
 
 
-def film_of_crowd(skins: float, frames: int) -> list[bytes]:
-    """Frames of the crowd, with so many times the usual skin."""
-    ready = prepare(replace(load_scene(SCENES / "crowd.txt"), expects=()))
+def film_of_crowd(skins: float, resolution: float, frames: int) -> list[bytes]:
+    """Frames of the crowd in cells of so many metres, with so many times the usual skin."""
+    scene = load_scene(SCENES / "crowd.txt")
+    ready = prepare(replace(scene, expects=(), control=replace(scene.control, resolution=resolution)))
     steps, film = round(0.04 / ready.certificate.timestep), []
     with Instance(ready.plan) as instance:
         instance._lmp.command(f"neighbor {skins * SKIN * ready.plan.spacing!r} bin")
@@ -61,4 +62,9 @@ def film_of_crowd(skins: float, frames: int) -> list[bytes]:
 
 def test_contacts_begin_in_the_same_steps_however_often_lists_are_made():
     """Points of a ball lie outside of its cells: they go farther than its particles, which is counted until one is looked at."""
-    assert film_of_crowd(1.0, 28) == film_of_crowd(0.7, 28)
+    assert film_of_crowd(1.0, 0.04, 28) == film_of_crowd(0.7, 0.04, 28)
+
+
+def test_what_is_lost_is_found_where_cells_are_now():
+    """A blow turns coarse cells over, and points in contact with them are lost."""
+    assert film_of_crowd(1.0, 0.06, 45) == film_of_crowd(0.3, 0.06, 45)
