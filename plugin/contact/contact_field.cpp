@@ -221,13 +221,12 @@ void ContactField::end(const FieldContact &contact, std::size_t q, Fate fate, co
   if (fate == Fate::LOST) {
     // The last force still did work in half of the last step, as leap-frog counts it.
     account.let_go += contact.last.energy - 0.5 * dot(contact.last.force, contact.last.moved);
-    watch[q] = Watch{{-1, -1, -1}, {}, EVERY_SIDE};
-    wake[q] = AT_ONCE;
+    watch[q] = {};
   } else {
     watch[q].cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
     watch[q].X = contact.state.X;
-    look(q, arrays, false);
   }
+  look(q, arrays, false);
   next = std::min(next, wake[q]);
 }
 

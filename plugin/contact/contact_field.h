@@ -74,7 +74,7 @@ class ContactField {
   bool find(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X);
   void guess(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X, double &off);
   std::array<int, 3> cell_of(const Vec3 &X) const;
-  std::array<int, 3> cell_beyond(const Vec3 &x, const Vec3 &X, std::array<int, 3> cell, const Placed &at, double &room) const;
+  std::array<int, 3> cell_nearest(const Vec3 &x, std::array<int, 3> cell, const Placed &at, double &room) const;
   double slack_of_far(const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre, double off) const;
   Verdict judge(const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre, const Spot<double> &spot, const Vec3 &normal,
                 double off) const;

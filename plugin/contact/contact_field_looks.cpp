@@ -25,17 +25,11 @@ std::array<int, 3> ContactField::cell_of(const Vec3 &X) const
   return {along(X.x, 0), along(X.y, 1), along(X.z, 2)};
 }
 
-// Of another shape, for a point at x whose X was found from `cell`: where X is beyond all filled cells it depends on the cell, so
-// that is the one whose middle is nearest, wherever the search came from. `room`: a motion that cannot change the cell [m].
-std::array<int, 3> ContactField::cell_beyond(const Vec3 &x, const Vec3 &X, std::array<int, 3> cell, const Placed &at,
-                                             double &room) const
+// Of another shape, for a point at x, from a cell near by. X depends on the cell where it is beyond all filled cells, or where
+// cells are bent so much that it is in two of them. So the cell is the one whose middle is nearest, wherever the search came from.
+// `room`: a motion that cannot change the cell [m].
+std::array<int, 3> ContactField::cell_nearest(const Vec3 &x, std::array<int, 3> cell, const Placed &at, double &room) const
 {
-  const Vec3 off = X - Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
-  const double inside = 0.5 - std::max({std::fabs(off.x), std::fabs(off.y), std::fabs(off.z)});
-  if (inside >= -LEFT) {
-    room = PRESSED * std::max(inside, 0.0) * host->body->spacing();
-    return cell;
-  }
   const Lattice grid = at.body.lattice();
   const int across = 1 + grid.row + grid.layer;    // from a cell's low corner to its high one
   for (;;) {
@@ -84,7 +78,7 @@ void ContactField::guess(std::size_t q, const Vec3 &x, const Placed &at, Spot<do
   else
     is_there = !MaterialSearch(at).step_to_neighbour(cell, X, LEFT);
   double room = NEVER;
-  if (!at.body.is_cuboid() && cell_beyond(x, X, cell, at, room) != cell) return;
+  if (!at.body.is_cuboid() && cell_nearest(x, cell, at, room) != cell) return;
   const Vec3 away = X - Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
   if (dot(away, away) > NEARBY * NEARBY) return;
   known.cell = cell, known.X = X, known.room = room;
@@ -100,7 +94,7 @@ bool ContactField::find(std::size_t q, const Vec3 &x, const Placed &at, Spot<dou
   X = known.X;
   if (!search.solve(x, cell, X)) return false;
   known.room = NEVER;
-  cell = host->body->is_cuboid() ? cell_of(X) : cell_beyond(x, X, cell, at, known.room);
+  cell = host->body->is_cuboid() ? cell_of(X) : cell_nearest(x, cell, at, known.room);
   X = {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
   if (!search.solve(x, cell, X, false)) return false;
   known.cell = cell, known.X = X;
