@@ -14,8 +14,7 @@ namespace mdanim {
 
 // A liquid whose force on a particle depends on the particle's place and velocity and on a few numbers that are kept for it: a
 // pass computes it (laws/immersed.h) and moves the particle at once. Particles that are held back for other participants are
-// left to the fix, which is a late participant as well; so are all particles in a step that needs them all. Numbers of particles
-// are those of LAMMPS's arrays.
+// left to the fix, which is a late participant as well. Numbers of particles are those of LAMMPS's arrays.
 class PassLiquid {
  public:
   // Whether passes may do that in this whole run; `lambda` is where the integrator reads friction.
@@ -33,6 +32,9 @@ class PassLiquid {
   virtual InLiquid *kept() = 0;
   // The arrays hold these particles alone from now on, until this is called again; null for all particles.
   virtual void split(const std::vector<int> *in_arrays) = 0;
+  // Whether the liquid is to move in this step. If so it does before the pass, when the arrays hold all particles.
+  virtual bool is_due() = 0;
+  virtual void update_liquid() = 0;
   // By a pass in its name: power of its forces without friction's, and what friction takes; square of the largest speed of what
   // is near after it, negative for nothing.
   virtual void acted(double work, double lost, double fastest, double seconds) = 0;

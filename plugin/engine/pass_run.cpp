@@ -68,6 +68,7 @@ void PassRun::hold_back()
 
 void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
 {
+  if (crew.liquid && crew.liquid->is_due()) update_liquid();
   bool needs_all = false;
   for (PassParticipant *p : crew.late) needs_all = p->needs_all_atoms() || needs_all;
   if (needs_all) {
@@ -178,10 +179,19 @@ void PassRun::give_back_to_liquid()
   crew.liquid->split(nullptr);
 }
 
+// Particles stay in the blocks, and the pass moves them as ever.
+void PassRun::update_liquid()
+{
+  give_back_to_liquid();
+  blocks.give_out(threads, atoms.x, atoms.v);
+  crew.liquid->update_liquid();
+  hold_back();    // other particles may be near it now
+}
+
 void PassRun::leave()
 {
   give_back_to_liquid();
-  blocks.give_out(atoms.x, atoms.v);
+  blocks.give_out(threads, atoms.x, atoms.v);
   Loss *account = crew.springs->account();
   if (!account) return;
   if (blocks.damped()) blocks.give_out_dashpots(account->latest(), account->latest_seen());

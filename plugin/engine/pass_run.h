@@ -50,6 +50,7 @@ class PassRun {
 
   void hold_back();
   void give_back_to_liquid();
+  void update_liquid();
   void take_pass();
   void early_participants_turn();
   void late_participants_turn(const std::function<void(bool at_end)> &late);

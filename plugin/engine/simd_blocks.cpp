@@ -181,15 +181,17 @@ void SimdBlocks::take_in(const double *const *from_x, const double *const *from_
   }
 }
 
-void SimdBlocks::give_out(double *const *to_x, double *const *to_v) const
+void SimdBlocks::give_out(const Threads &threads, double *const *to_x, double *const *to_v) const
 {
-  const auto give = [this](const double *const *from, double *const *to) {
-    for (int i = 0; i < particles; ++i)
-      if (!is_ghost(at(i)))
-        for (int d = 0; d < 3; ++d) to[at(i)][d] = from[d][i];
-  };
-  if (to_x) give(x, to_x);
-  if (to_v) give(v, to_v);
+  threads.parts(particles, PARTICLE, [&](long from, long end) {
+    const auto give = [&](const double *const *of, double *const *to) {
+      for (int i = static_cast<int>(from); i < end; ++i)
+        if (!is_ghost(at(i)))
+          for (int d = 0; d < 3; ++d) to[at(i)][d] = of[d][i];
+    };
+    give(x, to_x);
+    give(v, to_v);
+  });
 }
 
 void SimdBlocks::take_in_held_back(const Threads &threads, const double *const *from_x, const double *const *from_v)

@@ -55,7 +55,7 @@ class SimdBlocks {
   double share_of_liquid(double more) const { return more * immersed_particles / (particles + more * immersed_particles); }
 
   void take_in(const double *const *x, const double *const *v);
-  void give_out(double *const *x, double *const *v) const;    // null for what is not wanted
+  void give_out(const Threads &threads, double *const *x, double *const *v) const;
   // The same for the particles that are held back.
   void take_in_held_back(const Threads &threads, const double *const *x, const double *const *v);
   void give_out_held_back(const Threads &threads, double *const *x, double *const *v) const;
@@ -84,10 +84,10 @@ class SimdBlocks {
   std::size_t bytes() const;
 
  private:
+  static constexpr double PARTICLE = 8.0;    // into the arrays of LAMMPS or out of them [ns], about
   // work(i) for all that are held back, which threads share.
   template <class Work> void each_outside(const Threads &threads, const Work &work) const
   {
-    constexpr double PARTICLE = 8.0;    // [ns], about
     threads.parts(static_cast<long>(outside.size()), PARTICLE, [&](long from, long to) {
       for (long n = from; n < to; ++n) work(outside[n]);
     });

@@ -317,13 +317,13 @@ void FixMdanimLiquid::pour()
                name(), filled.left, filled.wanted, fill_id.empty() ? "the basin" : "the region to fill");
 }
 
-// Asks once for a step.
-bool FixMdanimLiquid::due()
+// Found out once for a step; not any more when the update has been.
+bool FixMdanimLiquid::is_due()
 {
   if (update->ntimestep % basin->pace.every != 0) return false;
-  if (asked != update->ntimestep) is_due = basin->is_due(fastest_near(), update->dt);
+  if (asked != update->ntimestep) due_then = basin->is_due(fastest_near(), update->dt);
   asked = update->ntimestep;
-  return is_due;
+  return due_then;
 }
 
 // Square of the speed of the fastest solid near the liquid; -1 when there is none.
@@ -358,6 +358,7 @@ void FixMdanimLiquid::update_liquid()
     lowest = -ANYWHERE;           // then, that is not known
   }
   buoyancy->look(*basin, near);
+  due_then = false;
 }
 
 double FixMdanimLiquid::top_height(double cells) const { return basin->shape.low.z + cells * basin->shape.cell.z; }
@@ -420,7 +421,7 @@ void FixMdanimLiquid::setup(int)
 
 void FixMdanimLiquid::post_force(int)
 {
-  if (due()) update_liquid();
+  if (is_due()) update_liquid();
   buoyancy->act(*basin, in_arrays(), true);
 }
 

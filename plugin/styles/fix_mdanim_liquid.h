@@ -59,6 +59,8 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   std::function<mdanim::ImmersedMover(int)> immersed() const override { return buoyancy->immersed(near_marks); }
   mdanim::InLiquid *kept() override;
   void split(const std::vector<int> *in_arrays) override;
+  bool is_due() override;
+  void update_liquid() override;
   void acted(double work, double lost, double fastest, double seconds) override;
   double safe_displacement() const override;
   void write_restart(FILE *) override;
@@ -106,11 +108,9 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   void add_mass(mdanim::Occupancy &into, const std::vector<int> &these, double below);
   bool by_cells() const { return lattice_cells.given() && model != Model::PAPER; }
   void pour();
-  bool due();
   double fastest_near();
   double fastest_in_arrays(const std::vector<int> &these) const;
   const std::vector<int> &in_arrays() const { return is_split ? near_in_arrays : near; }    // near the liquid
-  void update_liquid();
   template <class Work> void in_basin(Work &&work);
   void find_near(double margin);
   double top_height(double cells) const;    // [distance]
@@ -150,7 +150,7 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
 
   bool has_looked = false;    // so that it is known what acts on particles until the next update
   bigint asked = -1;          // step for which it is known whether an update is due
-  bool is_due = false;
+  bool due_then = false;
   double look_seconds = 0.0;
 };
 

@@ -43,8 +43,8 @@ void FixMdanimLiquid::acted(double work, double lost, double fastest, double sec
   fastest_in_passes = fastest;
 }
 
-// An update of the liquid looks for all bodies.
-bool FixMdanimLiquid::needs_all_atoms() { return due(); }
+// An update looks for all bodies. With passes that act in the liquid it comes before them.
+bool FixMdanimLiquid::needs_all_atoms() { return !in_passes && is_due(); }
 
 // While the liquid is level and no particle is near it, until one comes.
 double FixMdanimLiquid::safe_displacement() const
