@@ -16,6 +16,10 @@ constexpr int LEAST_PART = SolidParts::FULL / 8;    // a cell that is less solid
 constexpr double NARROW = 1.0;                      // gaps below bodies that cells do not resolve: liquid seeps in
 constexpr double HIGHEST = 8.0;                     // cells of liquid that press on a body beyond what stands around it
 constexpr int SMOOTHINGS = 4;
+bool is_narrow(const Waves::SpanView &span) { return span.capacity <= NARROW; }
+// Beside the face of a wall, where cells are nearly full: a part of the wall.
+bool is_crack(const Waves::SpanView &span) { return is_narrow(span) && span.roof - span.floor > NARROW; }
+
 constexpr double HIDDEN = std::numeric_limits<double>::quiet_NaN();
 
 }    // namespace
@@ -62,23 +66,32 @@ void WavePush::cut(const Waves &waves, int column)
     run.floor = run.bottom;
     if (run.below >= 0) {
       const Waves::SpanView below = waves.span_view(column, run.below);
-      run.told = below.roof - below.floor > NARROW;
+      run.told = !is_narrow(below);
       run.wet = run.told && below.wet;
       run.phi = below.phi;
       run.floor = below.floor;
     }
     runs.push_back(run);    // one above each span and one below the lowest, some of them empty
   }
+  // What a crack parts is one run.
+  for (int first = 0, last = 0; first <= spans; first = ++last) {
+    while (last < spans && is_crack(waves.span_view(column, last))) ++last;
+    SolidRun *const of_column = &runs[first_run[column]];
+    of_column[first].top = of_column[last].top;
+    of_column[first].above = of_column[last].above;
+    for (int n = first + 1; n <= last; ++n) of_column[n] = of_column[first];
+  }
 }
 
 // Head of the liquid beside a run, in another column. What does not reach down to the gap below the run counts where it stands
-// over the run: what a wall holds in a hull takes nothing off the pressure below it.
+// over the run: what a wall holds in a hull takes nothing off the pressure below it. Nor does another gap: liquid seeps into it,
+// too.
 bool WavePush::beside(const Waves &waves, int column, double bottom, double top, double &phi) const
 {
   bool any = false;
   for (int n = 0; n < waves.spans_of(column); ++n) {
     const Waves::SpanView span = waves.span_view(column, n);
-    if (span.floor >= top || span.roof <= bottom) continue;
+    if (span.floor >= top || span.roof <= bottom || is_narrow(span)) continue;
     if (span.floor >= bottom + NARROW && (span.volume < ON_BODY || span.phi < top)) continue;
     if (!any || span.wet) phi = span.wet ? span.phi : span.floor;
     any = true;
@@ -174,7 +187,7 @@ void WavePush::find_close(const Waves &waves)
       solid_runs += run.top > run.bottom;
       seeping += run.seeps;
     }
-    close[column] = solid_runs == 1 && seeping == 1;
+    close[column] = solid_runs > 0 && seeping == solid_runs;
   }
 }
 
@@ -213,7 +226,11 @@ void WavePush::press(const Waves &waves, SolidRun &run)
   if (run.wet) run.beside = around / thickness;
   if (run.wet) run.over = pressing(run.phi);
   const Waves::SpanView above = waves.span_view(run.column, run.above);
-  if (above.wet) run.on_top = pressing(above.phi);
+  const SolidRun &upper = runs[first_run[run.column] + run.above + 1];
+  if (upper.seeps)
+    run.on_top = pressing(upper.phi);
+  else if (above.wet)
+    run.on_top = pressing(above.phi);
   run.beside -= run.on_top;
   if (run.moves) run.over += added.force_on(run.column) / thickness;
 }
@@ -253,7 +270,7 @@ void WavePush::fill(const Waves &waves, int column)
   int z = 0;
   for (int n = 0; n < waves.spans_of(column); ++n, ++run) {
     const Waves::SpanView span = waves.span_view(column, n);
-    for (; z < span.low; ++z)
+    for (const int end = is_crack(span) ? span.high : span.low; z < end; ++z)
       if (solid.at(column, z) >= LEAST_PART) of_run(z, *run);
     bool looked = false;
     Waves::Sides sides{};

@@ -101,7 +101,7 @@ class Waves {
   struct SpanView {
     int low, high;
     double floor, roof, phi, surface;    // of heads the one that pushes, and the one that is seen
-    double volume;
+    double volume, capacity;
     bool wet, full;
   };
   int spans_of(int column) const { return spans_in[column]; }

@@ -15,7 +15,7 @@ Waves::SpanView Waves::span_view(int column, int n) const
   const bool full = arrays.full[i] > 0.0;
   const double seen = full ? arrays.phi[i] : head_of(solid, span[i], content[i]).height;
   const double volume = static_cast<double>(content[i]) / UNITS_PER_CELL;
-  return {span[i].low, span[i].high, span[i].floor, span[i].roof, arrays.phi[i], seen, volume, wet, full};
+  return {span[i].low, span[i].high, span[i].floor, span[i].roof, arrays.phi[i], seen, volume, arrays.capacity[i], wet, full};
 }
 
 Waves::Sides Waves::around(int column, int n) const
