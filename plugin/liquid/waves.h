@@ -235,18 +235,31 @@ class Waves {
       further_links_of(d, f);
     }
   }
-  // The same in any order, which threads share; f writes into nothing but the span's or the link's own.
-  template <class F> void each_span_shared(const F &f) const
+  // Rows of columns, from the first one to that before the last.
+  struct Rows {
+    int first, last;
+  };
+  int row_of(long i) const { return span[i].column / nx; }
+  // The same of spans in these rows and of links between two of them, in any order, which threads share; f writes into nothing
+  // but the span's or the link's own.
+  template <class F> void each_span_in(const Rows &rows, const F &f) const
   {
     constexpr double SPAN = 15.0;    // [ns], about
-    threads.parts(nx * ny, SPAN, [&](long from, long to) { spans_of_columns(from, to, f); });
+    const long before = static_cast<long>(rows.first) * nx;
+    threads.parts((rows.last - rows.first) * nx, SPAN,
+                  [&](long from, long to) { spans_of_columns(before + from, before + to, f); });
   }
-  template <class F> void each_link_shared(const F &f) const
+  template <class F> void each_link_in(const Rows &rows, const F &f) const
   {
     constexpr double LINK = 5.0;    // [ns], about
+    const auto within = [&](long i) { return row_of(i) >= rows.first && row_of(i) < rows.last; };
     for (int d = 0; d < 2; ++d) {
-      threads.parts(further_start - stride, LINK, [&](long from, long to) { links_of_grid(d, stride + from, stride + to, f); });
-      further_links_of(d, f);
+      const long before = (1 + rows.first) * stride;
+      threads.parts((rows.last - rows.first - d) * stride, LINK,
+                    [&](long from, long to) { links_of_grid(d, before + from, before + to, f); });
+      further_links_of(d, [&](const LinkPlace &link) {
+        if (within(ends(link).a) && within(ends(link).b)) f(link);
+      });
     }
   }
   template <class F> void spans_of_columns(long from, long to, const F &f) const
@@ -305,7 +318,8 @@ class Waves {
   bool let_go(long first, long end);
   void solve(bool again);
   double sum_of_rows() const;
-  void limit();
+  Rows balance();
+  void limit(const Rows &tight);
   void come_to_rest();
   void level_out(const std::vector<long> &body);
   void general_surface(long i);
@@ -316,6 +330,7 @@ class Waves {
   double general_product(long i, const double *x) const;
   void general_push(const LinkPlace &link);
   SpanFluxes<double> fluxes_of(long i) const;
+  double most_in(long i) const { return (arrays.capacity[i] + 0.25) * law.units_per_cell; }
   double opening(const LinkPlace &link, double level) const;
   SideLinks side_of(long i, SideOf side) const;
 

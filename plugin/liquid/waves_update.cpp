@@ -82,21 +82,9 @@ void Waves::sub_update(double dt, double share)
   });
   each_listed(listed_links, [&](const LinkPlace &link) { general_push(link); });
   lost += law.dt * (force_on_walls() + law.calm * moving());
-  const auto balance_rows = [&] {
-    return !any_row([&](long first, long end) { return !kernels->balance(arrays, law, first, end); });
-  };
-  std::atomic<bool> fits{balance_rows()};
-  const auto balance = [&](long i) {
-    const SpanFluxes<double> fluxes = fluxes_of(i);
-    const double units = static_cast<double>(content[i]), most = (arrays.capacity[i] + 0.25) * law.units_per_cell;
-    arrays.net[i] = fluxes.in - fluxes.out;
-    if (fluxes.out_share(units) != 1.0 || fluxes.in_share(units, most) != 1.0) fits.store(false, std::memory_order_relaxed);
-  };
-  each_listed(listed_spans, balance);
-  if (!fits) {
-    limit();
-    balance_rows();
-    each_listed(listed_spans, balance);
+  if (const Rows tight = balance(); tight.first < tight.last) {
+    limit(tight);
+    balance();
   }
   rows([&](long first, long end) { kernels->settle(arrays, law, first, end); });
   for (int d = 0; d < 2; ++d)
