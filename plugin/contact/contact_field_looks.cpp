@@ -26,8 +26,8 @@ std::array<int, 3> ContactField::cell_of(const Vec3 &X) const
 }
 
 // Of another shape, for a point at x, from a cell near by. X depends on the cell where it is beyond all filled cells, or where
-// cells are bent so much that it is in two of them. So the cell is the one whose middle is nearest, wherever the search came from.
-// `room`: a motion that cannot change the cell [m].
+// cells are bent so much that it is in two of them. So the cell is the one whose middle is nearest, wherever the search came
+// from. `room`: a motion that cannot change the cell [m].
 std::array<int, 3> ContactField::cell_nearest(const Vec3 &x, std::array<int, 3> cell, const Placed &at, double &room) const
 {
   const Lattice grid = at.body.lattice();

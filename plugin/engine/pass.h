@@ -70,9 +70,9 @@ enum Motion { MASS, KICK, DT, FOREIGN_LANE, OWNED_LANE, STAY, SHARE, PUSH, BRAKE
 // block's own; OWNED_LANE 1 for a particle of this rank. With friction also, see leapfrog.h: STAY 1 - phi or e; SHARE 1 / (1 +
 // phi); PUSH g dt/2m; BRAKED_MASS m, 0 where there is none; PHI.
 
-// What is kept for a particle (InLiquid), one number for each lane: a row of Pass::kept, and one of Pass::kept_small.
+// What is kept for a particle (InLiquid), one number for each lane: a row of Pass::kept, and one of Pass::kept_floats.
 enum Kept { BASE, SLOPE, IMPULSE_X, IMPULSE_Y, KEPT };
-enum KeptSmall { MORE, ALONG_X, ALONG_Y, FLOW_X, FLOW_Y, RISING, KEPT_SMALL };
+enum KeptFloat { MORE, ALONG_X, ALONG_Y, FLOW_X, FLOW_Y, RISING, KEPT_FLOATS };
 
 // A row of Pass::immersed, one number for each lane; see Immersed. LAMBDA is friction that a particle has anyway; LISTED is 1 for
 // what is near the liquid.
@@ -125,7 +125,7 @@ struct Pass {
   int force_providers;       // so many in a row for a block that has any
   Friction friction;
   double *kept;                   // rows of KEPT
-  const float *kept_small;        // rows of KEPT_SMALL
+  const float *kept_floats;       // rows of KEPT_FLOATS
   const double *immersed;         // rows of IMMERSED_MOTIONS,
   const unsigned *immersed_of;    // and which of them goes with a row of `kept`
   LiquidScales liquid;

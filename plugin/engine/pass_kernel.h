@@ -28,8 +28,7 @@ using Vector3 = Vec<Vector>;
 
 MDANIM_ALWAYS_INLINE Vector load(const double *from) { return load<Vector>(from); }
 
-MDANIM_ALWAYS_INLINE Vector load_floats(const float *from)
-{ return __builtin_convertvector(reinterpret_cast<const Unaligned<Floats> *>(from)->value, Vector); }
+MDANIM_ALWAYS_INLINE Vector load_floats(const float *from) { return __builtin_convertvector(load<Floats>(from), Vector); }
 
 MDANIM_ALWAYS_INLINE Vector3 load(const double *const *from, long i) { return load<Vector>(from, i); }
 
@@ -268,10 +267,10 @@ __attribute__((noinline)) void move_immersed(const Pass &pass, const Block &bloc
   const double *const own =
       pass.immersed + static_cast<unsigned long>(pass.immersed_of[block.immersed]) * (IMMERSED_MOTIONS * LANES);
   double *const kept = pass.kept + static_cast<long>(block.immersed) * (KEPT * LANES);
-  const float *const kept_small = pass.kept_small + static_cast<long>(block.immersed) * (KEPT_SMALL * LANES);
+  const float *const kept_floats = pass.kept_floats + static_cast<long>(block.immersed) * (KEPT_FLOATS * LANES);
   const auto of = [own](ImmersedMotion what) { return load(own + what * LANES); };
   const auto waves = [kept](Kept what) { return load(kept + what * LANES); };
-  const auto small = [kept_small](KeptSmall what) { return load_floats(kept_small + what * LANES); };
+  const auto small = [kept_floats](KeptFloat what) { return load_floats(kept_floats + what * LANES); };
   const InWaves<Vector> in_waves{waves(BASE),    waves(SLOPE),  small(MORE),   small(ALONG_X),
                                  small(ALONG_Y), small(FLOW_X), small(FLOW_Y), small(RISING)};
   const Immersed<Vector> particle{of(VOLUME), of(OWN_MASS), of(GAMMA), of(PER_LENGTH)};

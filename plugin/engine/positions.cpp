@@ -8,7 +8,7 @@
 
 namespace mdanim {
 
-template <class Number> void LinedUp<Number>::assign(std::size_t n)
+template <class Number> void Aligned<Number>::assign(std::size_t n)
 {
   constexpr std::size_t LINE = 64 / sizeof(Number);
   room.assign(n + 2 * LINE, 0);
@@ -17,7 +17,7 @@ template <class Number> void LinedUp<Number>::assign(std::size_t n)
   used = n;
 }
 
-template <class Number> void LinedUp<Number>::push(const Number *row, std::size_t n)
+template <class Number> void Aligned<Number>::push(const Number *row, std::size_t n)
 {
   if (!begin || used + n + 128 / sizeof(Number) > room.size()) {
     std::vector<Number> old(begin, begin + used);
@@ -30,7 +30,7 @@ template <class Number> void LinedUp<Number>::push(const Number *row, std::size_
   used += n;
 }
 
-template class LinedUp<double>;
-template class LinedUp<float>;
+template class Aligned<double>;
+template class Aligned<float>;
 
 }    // namespace mdanim

@@ -13,11 +13,11 @@
 namespace mdanim {
 
 // Numbers that start on a cache line and may be read and written a vector beyond their end.
-template <class Number> class LinedUp {
+template <class Number> class Aligned {
  public:
-  LinedUp() = default;
-  LinedUp(LinedUp &&) = default;    // a copy would point into the other's memory
-  LinedUp &operator=(LinedUp &&) = default;
+  Aligned() = default;
+  Aligned(Aligned &&) = default;    // a copy would point into the other's memory
+  Aligned &operator=(Aligned &&) = default;
   void assign(std::size_t n);    // zeros
   void push(const Number *row, std::size_t n);
   void clear() { used = 0; }
@@ -32,8 +32,8 @@ template <class Number> class LinedUp {
   std::size_t used = 0;
 };
 
-using Doubles = LinedUp<double>;
-using Floats = LinedUp<float>;
+using Doubles = Aligned<double>;
+using Floats = Aligned<float>;
 
 // Positions of particles, all x, all y, all z.
 struct Positions {

@@ -381,7 +381,7 @@ std::size_t SimdBlocks::bytes() const
   return of_providers + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + motions.bytes() + memory.bytes() +
          (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
              sizeof(int) +
-         total.capacity() * sizeof(double) + kept.bytes() + kept_small.bytes() + immersed_motions.bytes() +
+         total.capacity() * sizeof(double) + kept.bytes() + kept_floats.bytes() + immersed_motions.bytes() +
          immersed_of.capacity() * sizeof(unsigned) + immersed.capacity() * sizeof(int);
 }
 

@@ -128,7 +128,7 @@ class SimdBlocks {
   std::vector<int> immersed;           // blocks with particles near a liquid
   double immersed_particles = 0.0;     // of those that are not held back
   Doubles kept;                        // see Pass
-  Floats kept_small;
+  Floats kept_floats;
   DistinctRows<double> immersed_motions;
   std::vector<unsigned> immersed_of;    // see Pass
   long long listed = -1;                // by the liquid

@@ -37,7 +37,7 @@ void SimdBlocks::list_immersed(const PassLiquid &liquid)
     immersed_of.push_back(immersed_motions.find_or_add(row.data(), row.size()));
   }
   kept.assign(immersed.size() * KEPT * lanes);
-  kept_small.assign(immersed.size() * KEPT_SMALL * lanes);
+  kept_floats.assign(immersed.size() * KEPT_FLOATS * lanes);
   listed = liquid.listed();
 }
 
@@ -71,12 +71,12 @@ void SimdBlocks::immerse(const Threads &threads, PassLiquid &liquid, Pass &pass)
   immersed_particles = static_cast<double>(each_immersed(threads, liquid, [this](const InLiquid &of, std::size_t row, int lane) {
     const auto &[base, slope, more, along_x, along_y, flow_x, flow_y, rising] = of.waves;
     const double doubles[KEPT] = {base, slope, of.impulse_x, of.impulse_y};
-    const float floats[KEPT_SMALL] = {more, along_x, along_y, flow_x, flow_y, rising};
+    const float floats[KEPT_FLOATS] = {more, along_x, along_y, flow_x, flow_y, rising};
     for (int k = 0; k < KEPT; ++k) kept.data()[(row * KEPT + k) * lanes + lane] = doubles[k];
-    for (int k = 0; k < KEPT_SMALL; ++k) kept_small.data()[(row * KEPT_SMALL + k) * lanes + lane] = floats[k];
+    for (int k = 0; k < KEPT_FLOATS; ++k) kept_floats.data()[(row * KEPT_FLOATS + k) * lanes + lane] = floats[k];
   }));
   pass.kept = kept.data();
-  pass.kept_small = kept_small.data();
+  pass.kept_floats = kept_floats.data();
   pass.immersed = immersed_motions.data();
   pass.immersed_of = immersed_of.data();
   pass.liquid = liquid.scales();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Vectors of doubles in memory, for the kernels (kernels_of_set.cpp).
+// Vectors of numbers in memory, for the kernels (kernels_of_set.cpp).
 
 #ifndef MDANIM_VECTORS_H
 #define MDANIM_VECTORS_H
@@ -25,7 +25,7 @@ template <class Vector> struct __attribute__((packed, may_alias)) Unaligned {
   Vector value;
 };
 
-template <class Vector> MDANIM_ALWAYS_INLINE Vector load(const double *from)
+template <class Vector, class Number> MDANIM_ALWAYS_INLINE Vector load(const Number *from)
 { return reinterpret_cast<const Unaligned<Vector> *>(from)->value; }
 
 template <class Number, class Vector> MDANIM_ALWAYS_INLINE void store(Number *to, const Vector &value)

@@ -44,8 +44,8 @@ Span cut(const SolidParts &solid, int column, int low, int high)
   for (int z = low; z < high; ++z) span.capacity += (SolidParts::FULL - part(z)) * SolidParts::UNITS;
   while (span.clear < high - 1 && !part(span.clear)) ++span.clear;
   span.plain = span.clear >= high - 1;
-  // The solid part of an end cell lies at that end; that of a single cell at the lower one, but over the floor of the basin at the
-  // upper one: it is what comes down on the floor.
+  // The solid part of an end cell lies at that end; that of a single cell at the lower one, but over the floor of the basin at
+  // the upper one: it is what comes down on the floor.
   const bool is_gap = low == 0 && high == 1;
   if (!is_gap) span.floor += share(part(low));
   if (is_gap || high - 1 > low) span.roof -= share(part(high - 1));

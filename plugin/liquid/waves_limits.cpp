@@ -22,7 +22,8 @@ Waves::Rows Waves::balance()
   each_listed(listed_spans, [&](long i) {    // further spans, which lie in the rows after that, among them
     const SpanFluxes<double> fluxes = fluxes_of(i);
     arrays.net[i] = fluxes.in - fluxes.out;
-    if (fluxes.out_share(static_cast<double>(content[i])) != 1.0 || fluxes.in_share(static_cast<double>(content[i]), most_in(i)) != 1.0)
+    if (fluxes.out_share(static_cast<double>(content[i])) != 1.0 ||
+        fluxes.in_share(static_cast<double>(content[i]), most_in(i)) != 1.0)
       widen(row_of(i));
   });
   return {first, last};
