@@ -194,11 +194,11 @@ class OuterCells {
   static constexpr double SEARCHED = 5.0;
 
  private:
-  struct Cell {
+  struct OuterCell {
     std::array<int, 3> at;
     int low, high;    // slots of two opposite corners
   };
-  std::vector<Cell> cells;
+  std::vector<OuterCell> cells;
   std::vector<Vec3> middle;
   Grid grid;
 };

@@ -128,10 +128,6 @@ void SimdBlocks::expect(const std::vector<std::vector<int>> &particles_of)
       provider.slot.push_back(row * 3 * lanes + ours(i) - block.start);
     }
   external_force.assign(static_cast<std::size_t>(rows) * 3 * lanes);
-  not_taken.assign(1, 0);
-  for (std::size_t n = active; n < all.size(); ++n)
-    for (int row = 0; all[n].external_force >= 0 && row < many; ++row) not_taken.push_back(all[n].external_force + row);
-  for (long &row : not_taken) row *= 3 * lanes;
 }
 
 void SimdBlocks::tell_places(std::size_t n, const double *const *of_ghosts, Positions &to) const
@@ -363,7 +359,6 @@ void SimdBlocks::begin_pass(Pass &pass)
 
 void SimdBlocks::end_pass(const Pass &pass)
 {
-  for (const long row : not_taken) std::fill_n(external_force.data() + row, 3 * lanes, 0.0);
   if (!pass.trace) return;    // else of objects that several ranges have blocks of
   for (const Range &own : range)
     for (int side = 0; side < 2; ++side)

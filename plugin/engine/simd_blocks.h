@@ -38,7 +38,7 @@ class SimdBlocks {
   // among them.
   void expect(const std::vector<std::vector<int>> &particles);
   // Of those of number n, in the same order: positions, those of ghosts from x; and where forces on them are added up, which is
-  // zero after every pass.
+  // zero after every pass for all that it moves.
   void tell_places(std::size_t n, const double *const *x, Positions &place) const;
   ForceSums external_force_of(std::size_t n) { return {external_force.data(), force_providers[n].slot.data(), lanes}; }
 
@@ -121,7 +121,6 @@ class SimdBlocks {
   };
   std::vector<ForceProvider> force_providers;
   Doubles external_force;              // see Pass
-  std::vector<long> not_taken;         // places of its rows that no pass comes to
   std::vector<int> index, place;       // of a particle in LAMMPS's arrays, and back
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
   std::vector<double> total;           // see Pass, in our order

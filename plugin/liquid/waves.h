@@ -236,20 +236,20 @@ class Waves {
     }
   }
   // Rows of columns, from the first one to that before the last.
-  struct Rows {
+  struct RowRange {
     int first, last;
   };
   int row_of(long i) const { return span[i].column / nx; }
   // The same of spans in these rows and of links between two of them, in any order, which threads share; f writes into nothing
   // but the span's or the link's own.
-  template <class F> void each_span_in(const Rows &rows, const F &f) const
+  template <class F> void each_span_in(const RowRange &rows, const F &f) const
   {
     constexpr double SPAN = 15.0;    // [ns], about
     const long before = static_cast<long>(rows.first) * nx;
     threads.parts((rows.last - rows.first) * nx, SPAN,
                   [&](long from, long to) { spans_of_columns(before + from, before + to, f); });
   }
-  template <class F> void each_link_in(const Rows &rows, const F &f) const
+  template <class F> void each_link_in(const RowRange &rows, const F &f) const
   {
     constexpr double LINK = 5.0;    // [ns], about
     const auto within = [&](long i) { return row_of(i) >= rows.first && row_of(i) < rows.last; };
@@ -318,8 +318,8 @@ class Waves {
   bool let_go(long first, long end);
   void solve(bool again);
   double sum_of_rows() const;
-  Rows balance();
-  void limit(const Rows &tight);
+  RowRange balance();
+  void limit(const RowRange &tight);
   void come_to_rest();
   void level_out(const std::vector<long> &body);
   void general_surface(long i);

@@ -8,7 +8,7 @@
 namespace mdanim {
 
 // What goes into spans and out of them. Returns the rows from the first to the last in which some span must be limited.
-Waves::Rows Waves::balance()
+Waves::RowRange Waves::balance()
 {
   std::atomic<int> first{ny}, last{0};
   const auto widen = [&](int row) {
@@ -30,11 +30,11 @@ Waves::Rows Waves::balance()
 }
 
 // What is scaled down in one row matters in the rows beside it, thus each time in one row more.
-void Waves::limit(const Rows &tight)
+void Waves::limit(const RowRange &tight)
 {
   constexpr int SCALED = 3;    // times
   ++counts.limited;
-  const Rows near = {std::max(0, tight.first - SCALED), std::min(ny, tight.last + SCALED)};
+  const RowRange near = {std::max(0, tight.first - SCALED), std::min(ny, tight.last + SCALED)};
   double *share = arrays.net;    // of a span, of what leaves it or of what enters it
   const auto scale = [&](bool by_giver) {
     each_link_in(near, [&](const LinkPlace &link) {

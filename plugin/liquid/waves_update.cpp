@@ -82,7 +82,7 @@ void Waves::sub_update(double dt, double share)
   });
   each_listed(listed_links, [&](const LinkPlace &link) { general_push(link); });
   lost += law.dt * (force_on_walls() + law.calm * moving());
-  if (const Rows tight = balance(); tight.first < tight.last) {
+  if (const RowRange tight = balance(); tight.first < tight.last) {
     limit(tight);
     balance();
   }
