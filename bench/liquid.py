@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the liquid costs in a run: ``python bench/liquid.py [cells across the body] [cells across the basin] [steps] [model]``.
+"""What the liquid costs in a run: ``python bench/liquid.py [deep|shallow] [steps] [model]``.
 
-A cube in a basin half full: while it plunges in, while it rolls afloat and waves go on, afloat at rest (no update comes), and
-while it is still far above (the liquid sleeps). Printed are microseconds per step and the liquid's share of the step, in all and
-by part. The table of docs/physics-liquid.md, by bench/liquid_tables.py, has besides a shallow basin of 10^5 columns.
+A cube of 10⁵ particles in a basin half full, of 2·10⁶ cells (deep) or of 10⁵ columns (shallow): while it plunges in, while it
+rolls afloat and waves go on, afloat at rest (no update comes), and while it is still far above (the liquid sleeps). Printed are
+microseconds per step and the liquid's share of the step, in all and by part. bench/liquid_tables.py puts a table of all of them
+into docs/physics-liquid.md.
 """
 
 import math
@@ -88,16 +89,14 @@ def measure(what: str, steps: int, rounds: int = 1, **scene) -> dict:
     return {name: statistics.median(s[name] for s in seen) for name in seen[0]} | {"particles": ready.system.particles}
 
 
-DEEP = dict(edge=46, basin=128, top=128, level=64)
-SHALLOW = dict(edge=46, basin=317, top=96, level=48)
-"""10^5 columns."""
-BASINS = ((DEEP, "waves"), (SHALLOW, "waves"), (DEEP, "surface"))
+BASINS = {"deep": dict(edge=46, basin=128, top=128, level=64), "shallow": dict(edge=46, basin=317, top=96, level=48)}
 
 
 def table(rounds: int, steps: int = 200) -> str:
     """What stands on the page."""
     rows = []
-    for scene, model in BASINS:
+    for basin, model in (("deep", "waves"), ("shallow", "waves"), ("deep", "surface")):
+        scene = BASINS[basin]
         for what in CASES:
             found = measure(what, steps, rounds, model=model, **scene)
             where = f"`{model}`, {scene['basin']}² columns, {scene['level']} deep"
@@ -108,14 +107,13 @@ def table(rounds: int, steps: int = 200) -> str:
     return markdown([*head, "lift, push, drag", "updates or sweeps a step"], rows)
 
 
-def main(body: int = 46, basin: int = 128, steps: int = 200, model: str = "waves") -> None:
+def main(basin: str = "deep", steps: int = 200, model: str = "waves") -> None:
     """Measure and print."""
-    print(f"{(body + 1) ** 3:,} particles, {basin**3:,} cells; flow = automaton or waves, occupancy = solid parts, and coupling")
     for what in CASES:
-        found = measure(what, steps, edge=body, basin=basin, top=basin, level=basin / 2, model=model)
+        found = measure(what, steps, model=model, **BASINS[basin])
         shares = "  ".join(f"{name} {100 * found[name]:5.2f} %" for name in PARTS)
         print(f"{what:22s} {found['us']:9.1f} us/step   {shares}   {found['updates']:.2f} updates/step", flush=True)
 
 
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:4]), *sys.argv[4:])
+    main(*sys.argv[1:2], *map(int, sys.argv[2:3]), *sys.argv[3:])

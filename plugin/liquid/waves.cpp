@@ -12,11 +12,11 @@ namespace mdanim {
 namespace {
 
 double *WaveArrays::*const OF_SPANS[] = {
-    &WaveArrays::capacity,   &WaveArrays::floor,    &WaveArrays::roof, &WaveArrays::full,        &WaveArrays::rest,
-    &WaveArrays::phi,        &WaveArrays::volume,   &WaveArrays::head, &WaveArrays::slope,       &WaveArrays::yields,
-    &WaveArrays::coming,     &WaveArrays::diagonal, &WaveArrays::rhs,  &WaveArrays::beside_full, &WaveArrays::delta,
-    &WaveArrays::last_delta, &WaveArrays::scale,    &WaveArrays::x,    &WaveArrays::r,           &WaveArrays::p,
-    &WaveArrays::next_p,     &WaveArrays::ap,       &WaveArrays::net,  &WaveArrays::sums,
+    &WaveArrays::capacity, &WaveArrays::floor,  &WaveArrays::roof,        &WaveArrays::full,  &WaveArrays::rest,
+    &WaveArrays::phi,      &WaveArrays::volume, &WaveArrays::head,        &WaveArrays::slope, &WaveArrays::yields,
+    &WaveArrays::coming,   &WaveArrays::rhs,    &WaveArrays::beside_full, &WaveArrays::delta, &WaveArrays::last_delta,
+    &WaveArrays::scale,    &WaveArrays::x,      &WaveArrays::r,           &WaveArrays::p,     &WaveArrays::next_p,
+    &WaveArrays::ap,       &WaveArrays::net,    &WaveArrays::sums,
 };
 
 double *WaveLinks::*const OF_LINKS[] = {

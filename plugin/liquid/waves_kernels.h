@@ -32,7 +32,7 @@ struct WaveArrays {
   double *full, *rest, *phi;          // see Surface
   double *volume, *head, *slope;
   double *yields, *coming;    // 1/mass of what floats above, 0 where it is held; change of the capacity, see (W6)
-  double *diagonal, *rhs, *beside_full;
+  double *rhs, *beside_full;
   double *delta, *last_delta;                 // phi - head, of this update and the last one
   double *scale, *x, *r, *p, *next_p, *ap;    // of the solver
   double *net;                                // units that a span gains
