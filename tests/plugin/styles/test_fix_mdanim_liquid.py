@@ -191,6 +191,18 @@ def test_pressure_on_faces_lifts_a_block_like_archimedes(tmp_path):
     lmp.close()
 
 
+def test_a_table_set_anew_between_two_runs_is_looked_up_again(tmp_path):
+    """A corner whose only lattice cell is taken away is not lifted any more: what is left is its weight."""
+    lmp = block_in_pool(tmp_path, (2, 2, 2), (-1.0, -1.0, 4.0), ["bond_coeff * 0.0 1.0", "run 20"], pool=POOL + " model waves")
+    weight = -0.5 / 8 * 0.01
+    assert lab.by_tag(lmp, "f")[0, 2] > 0.5 * abs(weight)
+    lmp.command("set atom 1 i2_cell[1] 0")
+    lmp.command("run 20")
+    force = lab.by_tag(lmp, "f")[:, 2]
+    assert force[0] == pytest.approx(weight, rel=1e-12) and force[1] > 0.5 * abs(weight)
+    lmp.close()
+
+
 def test_the_paper_model_lifts_what_liquid_is_near(tmp_path):
     """model paper: liquid in any of the 26 cells around lifts the whole of a particle, or none."""
     columns = {"lambda": np.zeros(3)}
