@@ -38,6 +38,13 @@ def test_long_line_is_cut_around_the_caret():
     assert line[caret.index("^") : caret.index("^") + 3] == "BAD"
 
 
+def test_a_word_without_end_is_cut():
+    """A file of 1 MB without a space is not printed back."""
+    message = str(Problem(None, f"unknown word '{'x' * 10**6}'; a file of scenes begins with object", "the way out"))
+    assert message.startswith("error: unknown word 'xxx") and "xxx... (1000003 characters) a file" in message
+    assert len(message) < 200
+
+
 def test_control_signs_are_not_printed():
     """Keep escape sequences of a hostile file out of the terminal."""
     assert "\x1b" not in str(Problem(Span("s", 1, 1, 1, "\x1b[2Jmass"), "m"))

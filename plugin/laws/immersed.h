@@ -89,7 +89,8 @@ MDANIM_ALWAYS_INLINE LiquidForce<Real> liquid_force(const LiquidScales &liquid, 
     braking += more;
   }
   push += lambda * at.flow;
-  push.z -= (liquid.calming * at.immersed * particle.mass * liquid.per_force) * (v.z - at.rising);
+  const Real calmed = smaller(particle.mass, constant<Real>(liquid.rho) * particle.volume);
+  push.z -= (liquid.calming * at.immersed * calmed * liquid.per_force) * (v.z - at.rising);
   braking = liquid.impulse * braking;
   return {push, lambda, braking * relative.x, braking * relative.y};
 }

@@ -17,6 +17,14 @@ int Waves::span_below(int column, double height) const
   return n;
 }
 
+// How high a link is filled by what its spans hold now: wetted heights are those of the last update, and no part of the state.
+double Waves::filled(const LinkPlace &link, long i, long other) const
+{
+  if (!is_link(link)) return 0.0;
+  const auto head_now = [this](long at) { return head_of(solid, span[at], content[at]).height; };
+  return std::max(0.0, opening(link, std::max(head_now(i), head_now(other))));
+}
+
 Units Waves::give(int column, double height, Units units, double ux, double uy)
 {
   const int n = span_below(column, height);
@@ -27,17 +35,12 @@ Units Waves::give(int column, double height, Units units, double ux, double uy)
   resting = false;
   content[i] += taken;
   came += static_cast<double>(taken) / UNITS_PER_CELL * Vec3{ux, uy, 0.0};
-  const auto head_now = [&](long at) { return head_of(solid, span[at], content[at]).height; };
-  const double head = head_now(i);
   for (int d = 0; d < 2; ++d) {
     int links = 0;
-    const auto filled = [&](const LinkPlace &link, long other) {
-      if (link.d != d || !is_link(link)) return 0.0;
-      return std::max(0.0, opening(link, std::max(head, head_now(other))));
-    };
-    each_link_of(i, [&](const LinkPlace &link, long other, bool) { links += filled(link, other) > 0.0; });
+    const auto height_at = [&](const LinkPlace &link, long other) { return link.d == d ? filled(link, i, other) : 0.0; };
+    each_link_of(i, [&](const LinkPlace &link, long other, bool) { links += height_at(link, other) > 0.0; });
     each_link_of(i, [&](const LinkPlace &link, long other, bool) {
-      const double height_there = filled(link, other);
+      const double height_there = height_at(link, other);
       if (height_there == 0.0) return;
       const double part = static_cast<double>(taken) / UNITS_PER_CELL / links;
       double &u = arrays_of(link).u[link.at];
@@ -65,8 +68,8 @@ Units Waves::take(int column, double height, Units most)
 Vec3 Waves::velocity_of(long i) const
 {
   double sum[2] = {0.0, 0.0}, count[2] = {0.0, 0.0};
-  each_link_of(i, [&](const LinkPlace &link, long, bool) {
-    if (!is_link(link) || arrays_of(link).height[link.at] == 0.0) return;
+  each_link_of(i, [&](const LinkPlace &link, long other, bool) {
+    if (filled(link, i, other) == 0.0) return;
     sum[link.d] += arrays_of(link).u[link.at];
     count[link.d] += 1.0;
   });

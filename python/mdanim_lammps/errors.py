@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -39,6 +40,14 @@ class Span:
         return f"{self.file}:{self.line}:{self.column}"
 
 
+_ENDLESS = re.compile(r"\S{500,}")
+"""What is no word any more, as of a binary file."""
+
+
+def _cut(word: re.Match) -> str:
+    return f"{word[0][:40]}... ({len(word[0])} characters)"
+
+
 @dataclass(frozen=True, slots=True)
 class Problem:
     """An error or a doubt in a scene: its place, its cause, the value found, and a way out."""
@@ -50,6 +59,9 @@ class Problem:
     """The way out, e.g. ``did you mean 'kg'?``."""
     severity: str = "error"
     """``error``, ``warning`` or ``note``."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "message", _ENDLESS.sub(_cut, self.message))
 
     @property
     def file(self) -> str:

@@ -69,10 +69,11 @@ def test_lift_is_the_weight_of_what_is_below_the_surface(way, z):
     assert found == pytest.approx(below / 6**6, abs=0.003)
 
 
+@pytest.mark.parametrize("density", [500, 3000])
 @pytest.mark.parametrize("z", [15.5, 7.5])
-def test_forces_are_those_of_the_twin(z):
+def test_forces_are_those_of_the_twin(z, density):
     """Lift by parts of cells, quadratic drag and what calms solids, of a cube that moves and turns, partly or wholly in."""
-    ready = scene(drag=None, density=500, young=1e5, z=z, roll=20, pitch=35, yaw=10)
+    ready = scene(drag=None, density=density, young=1e5, z=z, roll=20, pitch=35, yaw=10)
     system, grid, g = ready.system, ready.plan.grid, -ready.scene.gravity[2]
     away = system.position - system.center_of_mass(system.position)[system.object]
     v = np.array([0.3, -0.2, -0.5]) + np.cross([0.04, 0.06, -0.1], away)
@@ -194,6 +195,14 @@ def test_a_shallow_liquid_is_told():
     told = [w for w in scene(level=3).warnings if "deep" in w.message]
     assert len(told) == 1 and "3 cells deep" in told[0].message and "resolution" in told[0].hint
     assert not [w for w in scene(level=5).warnings if "deep" in w.message]
+
+
+def test_what_is_too_light_for_waves_is_told():
+    """Below a tenth of the density of the liquid; not where another model lifts it."""
+    told = [w for w in scene(density=50).warnings if "as dense as" in w.message]
+    assert len(told) == 1 and told[0].message.startswith("cube: 0.05 times as dense as") and "100 kg/m^3" in told[0].hint
+    assert not [w for w in scene(density=100).warnings if "as dense as" in w.message]
+    assert not [w for w in scene(density=50, model=LiquidModel.SURFACE).warnings if "as dense as" in w.message]
 
 
 @pytest.mark.parametrize("density", [300, 500, 700, 900])

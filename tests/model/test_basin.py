@@ -13,7 +13,7 @@ from mdanim_lammps.model import basin, build_models, check_basin, shapes
 from mdanim_lammps.model.system import assemble
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.rotation import rotation_euler
-from mdanim_lammps.scene.scene import Box, HoldAll, HoldFaces, Liquid, LiquidModel, Mesh, Side, Switch
+from mdanim_lammps.scene.scene import Box, Current, HoldAll, HoldFaces, Inflow, Liquid, LiquidModel, Mesh, Side, Switch
 from model_samples import MESHES, SHAPES, scene, shape_id, solid
 from paths import REPOSITORY
 
@@ -293,9 +293,27 @@ def test_what_leaks_is_told(size, more, told):
         assert not warnings(float(amount) * {"cm": 0.01, "mm": 0.001}[unit])
 
 
+@pytest.mark.parametrize(
+    ("maker", "told"),
+    [
+        ({"current": (Current("-x", 12.0),)}, ""),
+        ({"current": (Current("-x", 13.0),)}, "the current comes at 13 m/s"),
+        ({"inflow": (Inflow((0.0, 0.0, 0.0), (0.5, 0.5, 0.5), 0.1, (0.0, -1e9, 0.0)),)}, "the inflow comes at 1e9 m/s"),
+    ],
+)
+def test_liquid_that_comes_too_fast_is_refused(maker, told):
+    """In a basin of 1 m liquid flows at 4 sqrt(9.81) = 12.5 m/s at most."""
+    made = replace(scene(resolution=0.1, liquid=replace(WATER, **maker)), gravity=(0.0, 0.0, -9.81))
+    found = basin.check_basin(made, ())
+    assert [p.severity for p in found] == ["error"] * bool(told)
+    if told:
+        assert found[0].message.startswith(told) and "at 12.5 m/s at most" in found[0].message
+        assert found[0].hint.startswith("write at most 12 m/s")
+
+
 def test_hulls_that_leak_are_told():
-    """Its planks are 7 cm thick: the boat is told where cells are larger than two thirds of that."""
-    for h, told in ((0.05, 1), (0.04, 0)):
+    """Its planks are 7 cm thick: the boat is told where cells are larger than half of that."""
+    for h, told in ((0.04, 1), (0.034, 0)):
         made = scene(block(BOAT, "boat"), resolution=h, liquid=replace(WATER, high=(2.0, 2.0, 2.0)))
         assert len(basin.leaky_walls(made, build_models(made))) == told
 

@@ -188,6 +188,23 @@ def test_a_body_at_rest_does_not_diverge(tmp_path, z):
     assert not result.warnings
 
 
+IN_BALANCE = """
+gravity (0, 0, -9.81) m/s^2
+liquid water {{ basin from (0, 0, 0) cm to (60, 60, 60) cm  density 1000 kg/m^3  level 40 cm  model {model} }}
+object a {{ shape box (16, 16, 16) cm  position (30, 30, 20) cm  density 1000 kg/m^3  elasticity 500 kPa }}
+control {{ time 1 s  resolution 4 cm }}
+"""
+
+
+@pytest.mark.parametrize("model", ["waves", "surface"])
+def test_a_body_in_balance_in_a_liquid_does_not_diverge(tmp_path, model):
+    """It moves no more than rounding moves it; the weights of it and of the liquid, 10 J and more, round to 1e-13 J."""
+    result, _ = run(IN_BALANCE.format(model=model), tmp_path)
+    assert max(abs(r["kinetic"] + r["elastic"]) for r in result.ledger.rows) < 1e-12
+    assert result.ledger.residual < 1e-3
+    assert not result.warnings
+
+
 def test_a_faint_vibration_has_an_account(tmp_path):
     """A spin of a micrometre a second holds more than the least energy, and its energies add up to that."""
     text = REST.format(z=1.0, time=3, control="").replace("elasticity", "spin (0, 0, 1e-5) rad/s elasticity")

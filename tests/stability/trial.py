@@ -29,7 +29,7 @@ class Trial:
         self.ready = prepare(parse_scene(text, folder=Path(__file__).parent), allow_unstable=unstable)
         self.system, self.timestep = self.ready.system, self.ready.certificate.timestep
         self.instance = Instance(self.ready.plan)
-        self.ledger = Ledger(ledger_terms(self.ready.plan), floor=rounding_energy(self.system))
+        self.ledger = Ledger(ledger_terms(self.ready.plan), floor=rounding_energy(self.ready.scene, self.system))
         self.lost_cells = 0.0
         try:
             self.instance.setup()

@@ -47,6 +47,8 @@ DRAGGING = 0.07
 """Part of the coupling's time that drag takes (bench/effects.py shares)."""
 SHALLOW = 4
 """Fewest cells of depth that show waves."""
+LIGHT = 0.1
+"""Density over that of the liquid below which a body shakes in waves and comes up late (docs/physics-liquid.md)."""
 SWEEPS = 4
 """Fewest sweeps of the automaton for each cell that the fastest solid travels; 8 are better (docs/physics-liquid.md)."""
 
@@ -189,20 +191,45 @@ class LiquidWaves(LiquidAutomaton):
         return [*regions, *super().commands(scene, system)]
 
     def warnings(self, scene, system):
-        liquid, cell = scene.liquid, system.grid.cell[2]
-        low, high = liquid.fill or (liquid.low, liquid.high)
-        area = (high[0] - low[0]) * (high[1] - low[1])
-        depth = (liquid.volume / area if liquid.level is None else liquid.level - low[2]) / cell
-        if depth >= SHALLOW:
-            return []
-        return [
-            Problem(
-                liquid.spans.get("level") or liquid.spans.get("volume"),
-                f"{liquid.name} is {number(depth, 2)} cells deep at the start; waves need {SHALLOW}",
-                f"more liquid, or resolution {say(depth * cell / SHALLOW, 'm')}",
-                severity="warning",
-            )
-        ]
+        return [*_shallow(scene, system), *_light(scene, system)]
+
+
+def _shallow(scene, system) -> list[Problem]:
+    liquid, cell = scene.liquid, system.grid.cell[2]
+    low, high = liquid.fill or (liquid.low, liquid.high)
+    area = (high[0] - low[0]) * (high[1] - low[1])
+    depth = (liquid.volume / area if liquid.level is None else liquid.level - low[2]) / cell
+    if depth >= SHALLOW:
+        return []
+    return [
+        Problem(
+            liquid.spans.get("level") or liquid.spans.get("volume"),
+            f"{liquid.name} is {number(depth, 2)} cells deep at the start; waves need {SHALLOW}",
+            f"more liquid, or resolution {say(depth * cell / SHALLOW, 'm')}",
+            severity="warning",
+        )
+    ]
+
+
+def _light(scene, system) -> list[Problem]:
+    """What waves push late: one problem for all of it."""
+    liquid, first = scene.liquid, system.first[:-1]
+    density = np.add.reduceat(system.mass, first) / np.add.reduceat(system.volume, first)
+    light = [m for m in np.flatnonzero(density < LIGHT * liquid.density).tolist() if not all_held(scene.solids[m])]
+    if not light:
+        return []
+    m = min(light, key=lambda m: density[m])
+    spans = scene.solids[m].spans
+    others = f" and {len(light) - 1} more" if light[1:] else ""
+    return [
+        Problem(
+            spans.get("density") or spans.get("mass") or spans.get("object"),
+            f"{system.names[m]}{others}: {number(density[m] / liquid.density, 2)} times as dense as {liquid.name}; what is "
+            f"lighter than {LIGHT} shakes in waves, and comes up late",
+            f"write a density of {number(LIGHT * liquid.density)} kg/m^3, or model surface in liquid {liquid.name}",
+            severity="warning",
+        )
+    ]
 
 
 class Buoyancy(Effect):

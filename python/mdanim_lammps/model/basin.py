@@ -111,7 +111,7 @@ def check_basin(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
     liquid, grid = scene.liquid, scene_grid(scene)
     if liquid is None or scene.effects.get("liquid") is Switch.OFF:
         return []
-    problems = _unusable(liquid, grid)
+    problems = [*_unusable(liquid, grid), *_too_fast(scene)]
     return problems or [*_too_full(scene, models, grid), *_too_snug(scene, models, grid)]
 
 
@@ -168,6 +168,23 @@ def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
             )
         ]
     return []
+
+
+def _too_fast(scene: SceneRecord) -> list[Problem]:
+    """Liquid that comes in faster than waves are let flow, WaveLaw::fastest in plugin/laws/waves.h."""
+    liquid = scene.liquid
+    most = 4.0 * math.sqrt(math.hypot(*scene.gravity) * (liquid.high[2] - liquid.low[2]))
+    speeds = [("current", c.speed) for c in liquid.current] + [("inflow", max(map(abs, f.velocity))) for f in liquid.inflow]
+    return [
+        Problem(
+            liquid.spans.get(word),
+            f"the {word} comes at {say(speed, 'm/s')}; in this basin liquid flows at {say(most, 'm/s')} at most, four "
+            "times as fast as the longest waves of a full one",
+            f"write at most {say(0.99 * most, 'm/s', 2)}, or make the basin higher",
+        )
+        for word, speed in speeds
+        if 0.0 < most < speed
+    ]
 
 
 def _too_snug(scene: SceneRecord, models: Sequence[Model], grid: Grid) -> list[Problem]:
@@ -262,11 +279,11 @@ def open_hulls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
     ]
 
 
-TIGHT, TIGHT_MOVING = 2.0, 1.5
-"""Thickness in cells from which a held wall of any attitude holds a liquid with momentum, as some cell of each of its columns is
-shut, and from which a hull that moves does: it does not stay where it leaks."""
+TIGHT = 2.0
+"""Thickness in cells from which a held wall of any attitude, and a hull, holds a liquid with momentum: some cell of each of its
+columns is shut. A thinner hull may have planks of one lattice cell."""
 ESTIMATE = 0.99
-"""Part of these that will do: the thickness of a mesh is an estimate."""
+"""Part of it that will do: the thickness of a mesh is an estimate."""
 UPRIGHT = 1e-3
 """Cosine of the angle between the thin direction of a wall and the vertical, up to which the wall counts as upright."""
 LYING = 0.76
@@ -282,12 +299,12 @@ def leaky_walls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
     if liquid is None or liquid.model is not LiquidModel.WAVES:
         return []
     cell = max(grid.cell)
+    enough = TIGHT * cell
     thin: dict[tuple, list[str]] = {}  # objects of a repeat are one problem
     for solid, model in zip(scene.solids, models):
         t, still = shapes.thickness(solid.shape), bool(model.held.all())
-        enough = (TIGHT if still else TIGHT_MOVING) * cell
         if t < ESTIMATE * enough and _parts(solid, enough, still) and not (still and _misses(model, grid)):
-            thin.setdefault((solid.spans.get("shape") or solid.spans.get("object"), t, enough), []).append(solid.name)
+            thin.setdefault((solid.spans.get("shape") or solid.spans.get("object"), t), []).append(solid.name)
     return [
         Problem(
             span,
@@ -296,7 +313,7 @@ def leaky_walls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
             f"write resolution {say(0.9 * t * cell / enough, 'm')} in control, or make it {say(at_least(enough), 'm')} thick",
             severity="warning",
         )
-        for (span, t, enough), names in thin.items()
+        for (span, t), names in thin.items()
     ]
 
 

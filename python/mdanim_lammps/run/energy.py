@@ -8,19 +8,27 @@ import numpy as np
 from ..engine.instance import Instance
 from ..engine.plan import Plan
 from ..model.system import System
+from ..scene.scene import SceneRecord
 
 LEAST_STRAIN = 1e-9
 """Strain that neither a picture nor a measurement of a run shows."""
 ROUNDED_STEPS = 1e8
-"""Steps whose rounding errors of positions, which add up like a random walk, are below the least energy."""
+"""Steps whose rounding errors, which add up like a random walk, are below the least energy."""
 
 
-def rounding_energy(system: System) -> float:
+def rounding_energy(scene: SceneRecord, system: System) -> float:
     """Energy below which no account is kept [J]: that of all solids at a strain of `LEAST_STRAIN`, or at the strain that the
-    rounding of positions, so far from the origin, makes in `ROUNDED_STEPS`."""
+    rounding of positions, so far from the origin, makes in `ROUNDED_STEPS`; and what rounding of the weights of all solids and
+    of a full basin, times their heights, makes in so many."""
     farthest = np.abs(system.position).max(initial=0.0)
     strain = max(LEAST_STRAIN, np.sqrt(ROUNDED_STEPS) * np.spacing(farthest) / system.spacing.min(initial=np.inf))
-    return strain**2 * float((system.young[system.object] * system.volume).sum())
+    potential = float((system.mass * np.abs(system.position @ np.array(scene.gravity))).sum())
+    if scene.liquid:
+        low, high = np.array(scene.liquid.low), np.array(scene.liquid.high)
+        heights = np.abs(scene.gravity) * np.maximum(np.abs(low), np.abs(high))
+        potential += scene.liquid.density * float(np.prod(high - low) * heights.sum())
+    elastic = strain**2 * float((system.young[system.object] * system.volume).sum())
+    return max(elastic, float(np.sqrt(ROUNDED_STEPS) * np.spacing(potential)))
 
 
 def ledger_terms(plan: Plan) -> tuple[str, ...]:

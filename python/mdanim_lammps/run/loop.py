@@ -196,7 +196,7 @@ class _Run:
                 *(column for column in self.of_liquid.values() if column not in terms),
                 *(MOMENTA if is_wavy(ready.scene) else ()),
             ),
-            rounding_energy(ready.system),
+            rounding_energy(ready.scene, ready.system),
         )
 
     # --- the order of things ----------------------------------------------------------------------------------------

@@ -29,7 +29,7 @@ def forces(x, v, cells, volume, mass, level, edge, g, rho, quadratic):
         s = np.mean(below)
         found[n, 2] += rho * volume[n] * s * g
         found[n] -= quadratic[n] * np.linalg.norm(v[n]) * rho * volume[n] * s * v[n]
-        found[n, 2] -= mass[n] * s * np.sqrt(g / edge) * (v[n, 2] - rising[n])
+        found[n, 2] -= min(mass[n], rho * volume[n]) * s * np.sqrt(g / edge) * (v[n, 2] - rising[n])
     return found
 
 

@@ -167,10 +167,12 @@ def test_makers_go_on_from_a_state_to_the_last_bit():
     makers.update(37)
     other, again = basin()
     other.state, again.state = w.state, makers.state
+    w.take_momenta()  # begins the account of what came
     for _ in range(30):
         makers.update()
         again.update()
         assert (other.state == w.state).all() and (again.state == makers.state).all()
+        assert (other.take_momenta()[2] == w.take_momenta()[2]).all()
     few = Makers(w)
     with pytest.raises(RuntimeError, match="has 56 bytes, these have 24"):
         few.state = makers.state
