@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from mdanim_lammps import Scene
 from mdanim_lammps.effects.liquid import CELLS, CELLS_AT_START, CREST
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
@@ -50,6 +51,18 @@ def test_an_inflow_and_a_drain_run_at_their_rates():
     )
     assert (found[:, 0] == found[:, 1]).all()
     assert found[-1, 0] - found[0, 0] == pytest.approx(1.5 * 1.8, rel=0.02)
+
+
+@pytest.mark.parametrize(("rate", "told"), [("2 l/s", False), ("4 m^3/s", True)])
+def test_an_inflow_without_room_is_told(tmp_path, rate, told):
+    """3.2 m^3 of room, less the cork: what found none is told at the end, with what came."""
+    text = TANK.replace("MODEL", "").replace("MAKERS", f"inflow from (3, 0.2, 1) m to (3.5, 0.8, 1) m  rate {rate}")
+    path = tmp_path / "tank.txt"
+    path.write_text(text.replace("time 10 s", "time 1 s"))
+    found = [w for w in Scene.load(path).run(tmp_path / "out", movie=False).warnings if "came in" in w.message]
+    assert len(found) == told
+    if told:
+        assert "of 4 m^3 came in" in found[0].message and "drain" in found[0].hint
 
 
 def test_a_wave_runs_through_the_tank():

@@ -49,6 +49,8 @@ SHALLOW = 4
 """Fewest cells of depth that show waves."""
 LIGHT = 0.1
 """Density over that of the liquid below which a body shakes in waves and comes up late (docs/physics-liquid.md)."""
+OVERFLOW = 0.05
+"""Part of what inflows bring that may be missing without a word: updates lag behind."""
 SWEEPS = 4
 """Fewest sweeps of the automaton for each cell that the fastest solid travels; 8 are better (docs/physics-liquid.md)."""
 
@@ -227,6 +229,24 @@ def _light(scene, system) -> list[Problem]:
             f"{system.names[m]}{others}: {number(density[m] / liquid.density, 2)} times as dense as {liquid.name}; what is "
             f"lighter than {LIGHT} shakes in waves, and comes up late",
             f"write a density of {number(LIGHT * liquid.density)} kg/m^3, or model surface in liquid {liquid.name}",
+            severity="warning",
+        )
+    ]
+
+
+def overflow(scene, cells: float, cell_volume: float, time: float) -> list[Problem]:
+    """Warn where inflows found no room: so many cells came in this time [s]; only where liquid comes and goes in no other way."""
+    liquid = scene.liquid
+    if not liquid.inflow or liquid.drain or liquid.wave or liquid.current:
+        return []
+    asked, came = sum(flow.rate for flow in liquid.inflow) * time, cells * cell_volume
+    if came > (1.0 - OVERFLOW) * asked:
+        return []
+    return [
+        Problem(
+            liquid.spans.get("inflow"),
+            f"{liquid.name}: {say(came, 'm^3')} of {say(asked, 'm^3')} came in; the basin was full, or the place of the inflow",
+            "write a higher basin, a drain at the height of the rim, or another place",
             severity="warning",
         )
     ]

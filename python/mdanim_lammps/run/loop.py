@@ -16,10 +16,10 @@ import numpy as np
 
 from .. import __version__
 from ..effects.air_drag import LEAPFROG
-from ..effects.liquid import is_wavy
+from ..effects.liquid import is_wavy, overflow
 from ..engine.commands import input_script
 from ..engine.data_file import write_bodies, write_data
-from ..errors import DivergedError, ExitCode, MdanimError, OutputError
+from ..errors import DivergedError, ExitCode, MdanimError, OutputError, Problem
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
 from ..results.expect import Measured, Outcome, evaluate, recorded, recorded_of_liquid
@@ -331,7 +331,14 @@ class _Run:
         cost = self._cost(account)
         write_json(self.folder / "cost.json", cost.to_json())
         write_json(self.folder / "summary.json", self._summary(outcomes))
-        return Result(self.folder, self.ledger, outcomes, cost, self.guard.warnings(self.ledger.residual))
+        return Result(self.folder, self.ledger, outcomes, cost, [*self.guard.warnings(self.ledger.residual), *self._overflow()])
+
+    def _overflow(self) -> list[Problem]:
+        """Of a liquid that comes in."""
+        if not self.fed:
+            return []
+        due, c = self.ledger.array(DUE), self.certificate
+        return overflow(self.ready.scene, due[-1] - due[0], float(np.prod(self.grid.cell)), c.steps * c.timestep)
 
     def _summary(self, outcomes: list[Outcome]) -> dict:
         scene, c = self.ready.scene, self.certificate
