@@ -49,7 +49,7 @@ def check(path, seed: int) -> None:
             # Energy of the start and of a fall from the rim, and what a splash throws up.
             speed = np.linalg.norm(system.center_of_mass(v), axis=1).max()
             assert speed < 8.0, f"{seed}: {speed} m/s"
-            # A corner of a heavy body that lands on the floor gets 13.8 m/s where it is dry (seed 1), 15.8 under liquid (seed 16).
+            # A corner of a heavy body that lands on the floor gets 13.8 m/s where that is dry (seed 1), 15.8 in liquid (seed 16).
             assert np.abs(v - system.center_of_mass(v)[system.object]).max() < 16.0
         assert geometry.inverted(x).sum() <= 0.05 * len(system.hexahedron)
         level = instance.liquid_heights()[0]
