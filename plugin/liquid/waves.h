@@ -288,7 +288,7 @@ class Waves {
 
   int span_below(int column, double height) const;
   Vec3 velocity_of(long i) const;
-  double filled(const LinkPlace &link, long i, long other) const;
+  double filled(const LinkPlace &link, double head, long other) const;
 
   // --- waves_walls.cpp ---
   double pressure_on(int column, int low, int high) const;

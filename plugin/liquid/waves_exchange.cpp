@@ -17,12 +17,12 @@ int Waves::span_below(int column, double height) const
   return n;
 }
 
-// How high a link is filled by what its spans hold now: wetted heights are those of the last update, and no part of the state.
-double Waves::filled(const LinkPlace &link, long i, long other) const
+// How high a link of a span with this head is filled by what the spans hold now: wetted heights are those of the last update, and
+// no part of the state.
+double Waves::filled(const LinkPlace &link, double head, long other) const
 {
   if (!is_link(link)) return 0.0;
-  const auto head_now = [this](long at) { return head_of(solid, span[at], content[at]).height; };
-  return std::max(0.0, opening(link, std::max(head_now(i), head_now(other))));
+  return std::max(0.0, opening(link, std::max(head, head_of(solid, span[other], content[other]).height)));
 }
 
 Units Waves::give(int column, double height, Units units, double ux, double uy)
@@ -35,9 +35,10 @@ Units Waves::give(int column, double height, Units units, double ux, double uy)
   resting = false;
   content[i] += taken;
   came += static_cast<double>(taken) / UNITS_PER_CELL * Vec3{ux, uy, 0.0};
+  const double head = head_of(solid, span[i], content[i]).height;
   for (int d = 0; d < 2; ++d) {
     int links = 0;
-    const auto height_at = [&](const LinkPlace &link, long other) { return link.d == d ? filled(link, i, other) : 0.0; };
+    const auto height_at = [&](const LinkPlace &link, long other) { return link.d == d ? filled(link, head, other) : 0.0; };
     each_link_of(i, [&](const LinkPlace &link, long other, bool) { links += height_at(link, other) > 0.0; });
     each_link_of(i, [&](const LinkPlace &link, long other, bool) {
       const double height_there = height_at(link, other);
@@ -67,9 +68,10 @@ Units Waves::take(int column, double height, Units most)
 // Mean of the wet links of a span along each direction.
 Vec3 Waves::velocity_of(long i) const
 {
+  const double head = head_of(solid, span[i], content[i]).height;
   double sum[2] = {0.0, 0.0}, count[2] = {0.0, 0.0};
   each_link_of(i, [&](const LinkPlace &link, long other, bool) {
-    if (filled(link, i, other) == 0.0) return;
+    if (filled(link, head, other) == 0.0) return;
     sum[link.d] += arrays_of(link).u[link.at];
     count[link.d] += 1.0;
   });

@@ -96,8 +96,7 @@ class OnSurfaces(Effect):
         if beta <= 0.0:
             return None
         h = np.cbrt(system.cell_volume)
-        density = system.mass_of / (np.add.reduceat(system.share, system.first[:-1]) * system.cell_volume)
-        eta = 2.0 * beta * np.sqrt(kappa * (density * h).max() / 2.0)
+        eta = 2.0 * beta * np.sqrt(kappa * (system.density * h).max() / 2.0)
         return eta[system.object] * borne_area(system) / system.mass
 
     def lost(self, readings):

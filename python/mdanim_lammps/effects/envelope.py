@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 
 def wave_speed(system: System) -> np.ndarray:
     """Speed of longitudinal waves in each solid, sqrt(1.2 E / rho) [m/s], shape (M,)."""
-    density = system.mass_of / (np.add.reduceat(system.share, system.first[:-1]) * system.cell_volume)
-    return np.sqrt(1.2 * system.young / density)
+    return np.sqrt(1.2 * system.young / system.density)
 
 
 def heights(system: System, planes: Iterable[Plane]) -> tuple[np.ndarray, float]:

@@ -215,12 +215,11 @@ def _shallow(scene, system) -> list[Problem]:
 
 def _light(scene, system) -> list[Problem]:
     """What waves push late: one problem for all of it."""
-    liquid, first = scene.liquid, system.first[:-1]
-    density = np.add.reduceat(system.mass, first) / np.add.reduceat(system.volume, first)
+    liquid, density = scene.liquid, system.density
     light = [m for m in np.flatnonzero(density < LIGHT * liquid.density).tolist() if not all_held(scene.solids[m])]
     if not light:
         return []
-    m = min(light, key=lambda m: density[m])
+    m = min(light, key=density.__getitem__)
     spans = scene.solids[m].spans
     others = f" and {len(light) - 1} more" if light[1:] else ""
     return [

@@ -104,6 +104,11 @@ class System(Particles):
         """Mass of each solid [kg], shape (M,)."""
         return np.add.reduceat(self.mass, self.first[:-1])
 
+    @cached_property
+    def density(self) -> np.ndarray:
+        """Density of each solid [kg/m^3], shape (M,)."""
+        return self.mass_of / (np.add.reduceat(self.share, self.first[:-1]) * self.cell_volume)
+
     def center_of_mass(self, position: np.ndarray) -> np.ndarray:
         """Mass-weighted mean of each solid for particle vectors of shape (N, 3); shape (M, 3), same unit."""
         return centers(self.mass, self.first[:-1], position)
