@@ -25,9 +25,9 @@ class LateOuterCells;
 struct ContactObject {
   int id;    // ascending in the order of the scene
   const ContactBody *body;
-  double young;       // [Pa]
+  double young;       // [force/distance^2]
   double friction;    // mu
-  double density;     // of the lattice [kg/m^3]
+  double density;     // of the lattice [force time^2/distance^4]: what makes a force of an acceleration, over the volume
 
   std::vector<int>
       slot;    // of its particles by their places in the grid, in the arrays of ContactWorld; -1 for what is not there

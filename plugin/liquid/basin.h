@@ -168,7 +168,7 @@ class Basin {
   virtual Ledger set_state(const std::uint8_t *bytes, std::size_t size) = 0;
 
   const Shape shape;
-  const double g;
+  const double g;           // [distance/time^2]
   const double shortest;    // of a cell's edges
   const Vec3 per_cell;      // cells per distance
   Pace pace;

@@ -200,10 +200,12 @@ std::function<ImmersedMover(int)> Buoyancy::immersed(const std::vector<char> &is
   };
 }
 
+double Buoyancy::weight(const Basin &basin) const { return basin.g / force->ftm2v; }
+
 LiquidScales Buoyancy::scales(const Basin &basin, bool in_step) const
 {
   return {rho,
-          basin.g,
+          weight(basin),
           basin.calms_solids(),
           1.0 / force->ftm2v,
           in_step && basin.acts_on_cells() ? update->dt * force->ftm2v / rho : 0.0,
@@ -287,7 +289,7 @@ Vec3 Buoyancy::pressure_on(const Face &face, const Basin &basin) const
   const Vec3 middle = 0.25 * ((a + c) + (b + d));
   const double depth = basin.pressing_depth(middle, cross(c - a, d - b));
   if (depth <= 0.0) return {};
-  return corner_push(rho * basin.g * depth * basin.shape.cell.z, a, b, c, d);
+  return corner_push(rho * weight(basin) * depth * basin.shape.cell.z, a, b, c, d);
 }
 
 // --- the ledger ---

@@ -64,6 +64,8 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   Basin::Ledger ledger() const;
   void set_ledger(const Basin::Ledger &ledger);
   double density() const { return rho; }
+  // Gravity as a force on a mass [force/mass]; that of the basin is an acceleration.
+  double weight(const Basin &basin) const;
   double bytes() const
   {
     return static_cast<double>(wet.capacity() * sizeof(Wet) + on_parts.capacity() * sizeof on_parts[0] +

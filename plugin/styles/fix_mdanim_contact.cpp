@@ -15,6 +15,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "force.h"
 #include "group.h"
 #include "neighbor.h"
 #include "update.h"
@@ -215,8 +216,9 @@ void FixMdanimContact::take_objects()
       error->all(FLERR, "fix {} mdanim/contact: object {} (molecule ID) needs YOUNG > 0 and FRICTION >= 0, got {} and {}", id,
                  one.id, one.young, one.friction);
     const double volume = body.edge(0) * body.edge(1) * body.edge(2);
+    const double inertia = one.mass / force->ftm2v;    // that makes a force of an acceleration
     objects.push_back(
-        {one.id, &body, one.young, one.friction, one.mass / (volume * body.cells_around(0) / 8.0), {}, 0, 0, {}, {}, 0.0, false});
+        {one.id, &body, one.young, one.friction, inertia / (volume * body.cells_around(0) / 8.0), {}, 0, 0, {}, {}, 0.0, false});
     moves.push_back(static_cast<char>(one.moves));
     ids.push_back(one.id);
     lowest.push_back(one.lowest);

@@ -13,6 +13,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "force.h"
 #include "group.h"
 #include "lammps.h"
 #include "neighbor.h"
@@ -181,6 +182,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
     error->all(FLERR, makers[0], "fix mdanim/liquid: {} is for model waves; leave it out, or write model waves", arg[makers[0]]);
   const std::string refused = model == Model::WAVES ? WaveBasin::unusable(shape) : AutomatonBasin::too_large(n[0], n[1], n[2]);
   if (!refused.empty()) error->all(FLERR, 6, "fix mdanim/liquid: {}", refused);
+  g *= force->ftm2v;    // from force/mass to an acceleration
   try {
     if (model == Model::WAVES) {
       auto waves = std::make_unique<WaveBasin>(shape, g, calm > 0.0 ? calm_rate(calm) : 0.0, spray,
@@ -452,7 +454,7 @@ double FixMdanimLiquid::compute_vector(int n)
     case 6:
       return buoyancy->ledger().sum.lost;
     case 11:
-      return basin->energy() * buoyancy->density() * basin->g * basin->cell_volume() * basin->shape.cell.z;
+      return basin->energy() * buoyancy->density() * buoyancy->weight(*basin) * basin->cell_volume() * basin->shape.cell.z;
     case 12:
       return top_height(basin->highest());
     default:

@@ -96,7 +96,7 @@ void FixMdanimLiquid::add_mass(Occupancy &into, const std::vector<int> &these, d
 {
   constexpr double PARTICLE = 20.0;    // [ns], about
   const double *const soft = softness.given() ? softness.values(lmp) : nullptr;
-  const double pressure = buoyancy->density() * basin->g * basin->shape.cell.z;    // of a cell of liquid
+  const double pressure = buoyancy->density() * buoyancy->weight(*basin) * basin->shape.cell.z;    // of a cell of liquid
   const double base = basin->shape.cell.x * basin->shape.cell.y * basin->shape.cell.z;
   const double liquid = buoyancy->density() * basin->cell_volume();
   const auto row_of = [&](long n) { return row_at(atom->x[these[n]][1]); };
