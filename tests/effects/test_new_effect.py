@@ -101,6 +101,10 @@ def test_a_run_keeps_its_account(windy, tmp_path):
     assert result.ledger.residual < 1e-3
     mass, way = ready.system.mass_of[0], 0.5 * Wind.strength * 0.2**2
     assert np.ptp(result.ledger.array("wind")) == pytest.approx(mass * Wind.strength * way, rel=1e-3)
+    # The zero of its potential is as arbitrary as that of gravity: a joule too much is held against the 5 J that move.
+    row = result.ledger.rows[0]
+    joule = result.ledger.weigh(0.2, row | {"kinetic": row["kinetic"] + 1.0})["residual"]
+    assert joule == pytest.approx(1.0 / (row["kinetic"] + 1.0 + np.ptp(result.ledger.array("wind"))), rel=0.2)
     assert "wind" in json.loads((folder / "summary.json").read_text())["effects"]
     assert "wind" in result.cost.effects
 

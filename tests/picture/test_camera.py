@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from mdanim_lammps.picture.camera import MARGIN, CameraPath, action_of, automatic_view, fit_view, hermite_weights
+from mdanim_lammps.export.usd import camera_matrix
+from mdanim_lammps.picture.camera import MARGIN, CameraPath, View, action_of, automatic_view, fit_view, hermite_weights
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera
 from mdanim_lammps.scene.scene import Control, SceneRecord
@@ -98,6 +99,27 @@ def test_path_passes_through_its_points():
     for t in np.linspace(-1, 5, 25):
         assert hermite_weights(times, t).sum() == pytest.approx(1.0)
     np.testing.assert_array_equal(hermite_weights(times, 9.0), [0, 0, 0, 1])
+
+
+@pytest.mark.parametrize(
+    ("eye", "up", "upright"),
+    [
+        pytest.param((0, 0, 5), (0, 0, 1), (0, 1, 0), id="from above"),
+        pytest.param((0, 0, -5), (0, 0, 1), (0, 1, 0), id="from below"),
+        pytest.param((1e-8, 0, 5), (0, 0, 1), (0, 1, 0), id="as good as from above"),
+        pytest.param((0, 0, 5), (1, 0, 0), (1, 0, 0), id="from above, x up"),
+        pytest.param((0, -0.01, 5), (0, 0, 1), (0, 0, 1), id="nearly from above"),
+        pytest.param((0, 5, 0), (0, -2, 0), (0, 0, 1), id="along y, y up"),
+        pytest.param((3, 3, 3), (1, 1, 1), (0, 0, 1), id="askew"),
+    ],
+)
+def test_something_is_up_in_every_picture(eye, up, upright):
+    """A view along its own up has the axes of a camera all the same: none of them is NaN, and they are at right angles."""
+    view = View(*(np.array(v, float) for v in (eye, (0, 0, 0), up)))
+    np.testing.assert_array_equal(view.upright, upright)
+    axes = camera_matrix(view)[:3, :3]
+    np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-9)
+    assert axes[1] @ np.array(upright, float) > 0.0
 
 
 def test_look_follows_an_object(tmp_path):

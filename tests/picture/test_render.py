@@ -12,7 +12,7 @@ from mdanim_lammps.picture.light import nearest_around
 from mdanim_lammps.picture.palette import LOW, OBJECTS, STILL, object_colors
 from mdanim_lammps.picture.render import Painter, grid_spacing
 from mdanim_lammps.results.trajectory import Trajectory
-from mdanim_lammps.scene.render import Camera, Render
+from mdanim_lammps.scene.render import Camera, Floor, Render
 from mdanim_lammps.scene.scene import Control, SceneRecord, Walls
 from picture_measures import hue_mask
 from picture_samples import ball, box, falling, slab_scene, solid, write
@@ -55,6 +55,20 @@ def test_objects_are_seen_where_they_are(tmp_path):
             assert columns.min() > corners[:, 0].min() - 1.5 and columns.max() < corners[:, 0].max() + 1.5
             assert rows.min() > corners[:, 1].min() - 1.5 and rows.max() < corners[:, 1].max() + 1.5
             assert len(rows) > 0.5 * np.ptp(corners[:, 0]) * np.ptp(corners[:, 1])
+
+
+@pytest.mark.parametrize(("height", "turned"), [(5.0, 1.0), (-5.0, -1.0)])
+def test_a_plan_is_seen_from_straight_above(tmp_path, height, turned):
+    """And from below, through no floor: y is up, as on a map, and x is to the right, from below to the left."""
+    models = [box("red", (0.3,) * 3, (2,) * 3, (-0.5, 0.4, 0.5)), box("green", (0.3,) * 3, (2,) * 3, (0.5, -0.3, 0.5))]
+    camera = Render(camera=(Camera((0, 0, height), (0, 0, 0)),), floor=Floor.NONE)
+    with trajectory(tmp_path, models, ground=None, colors=["#d02020", "#20a020"]) as t:
+        image = picture(t, camera)
+    for color, (x, y) in (("#d02020", (-0.5, 0.4)), ("#20a020", (0.5, -0.3))):
+        rows, columns = np.nonzero(hue_mask(image, color))
+        scale = SIZE[1] / 2 / np.tan(np.radians(15.0)) / (abs(height) - turned * 0.5)  # to the middle of each box
+        assert columns.mean() == pytest.approx(SIZE[0] / 2 + turned * scale * x, abs=4)
+        assert rows.mean() == pytest.approx(SIZE[1] / 2 - scale * y, abs=4)
 
 
 def test_a_mesh_file_has_its_colours(tmp_path):

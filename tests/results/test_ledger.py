@@ -10,7 +10,7 @@ from mdanim_lammps.results.ledger import Ledger
 
 def residuals(terms, rows):
     """Residuals of rows of energies."""
-    ledger = Ledger(terms)
+    ledger = Ledger(terms, potentials=tuple(term for term in ("gravity", "buoyancy") if term in terms))
     for i, row in enumerate(rows):
         ledger.add(float(i), dict(zip(terms, row)))
     return [row["residual"] for row in ledger.rows]
@@ -59,3 +59,14 @@ def test_rounding_is_no_energy():
     for kinetic in (1e-31, 5e-31, 1e-10):
         ledger.add(0.0, {"kinetic": kinetic, "elastic": 0.0})
     assert [row["residual"] for row in ledger.rows] == pytest.approx([0.0, 4e-11, 1.0])
+
+
+def test_a_ledger_is_read_as_it_was_written(tmp_path):
+    """Residuals too, although the file holds neither the floor nor the potentials that they were weighed by."""
+    ledger = Ledger(("kinetic", "gravity"), floor=1e-3, potentials=("gravity",))
+    for time, kinetic in enumerate((1e-31, 5e-31, 1e-10)):
+        ledger.add(float(time), {"kinetic": kinetic, "gravity": 1e6})
+    ledger.write(tmp_path / "ledger.csv")
+    back = Ledger.read(tmp_path / "ledger.csv")
+    assert back.rows == ledger.rows and back.residual == ledger.residual
+    assert back.checksum(3) == ledger.checksum(3)

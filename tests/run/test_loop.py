@@ -274,6 +274,31 @@ def test_interrupt_during_an_impact_resumes_bit_for_bit(tmp_path):
     np.testing.assert_allclose(resumed.ledger.array("damping_loss"), whole.ledger.array("damping_loss"), rtol=1e-3, atol=1e-9)
 
 
+AT_REST = """
+object a {{ shape {shape} position (0, 0, 1) m density 1000 kg/m^3 elasticity 1 MPa }}
+control {{ time 3 s  frames 2 fps  {control} }}
+"""
+
+
+@pytest.mark.parametrize(
+    ("shape", "control"),
+    [("sphere 10 cm", ""), ("box (10, 10, 10) cm", "accuracy preview"), ("torus 20 cm 5 cm", "save boundary")],
+)
+def test_a_scene_at_rest_is_resumed(tmp_path, shape, control):
+    """Where rounding alone moves something the ledger counts from its floor, which its file does not hold."""
+    (tmp_path / "rest.txt").write_text(AT_REST.format(shape=shape, control=control))
+    scene = Scene.load(tmp_path / "rest.txt")
+    whole = scene.run(tmp_path / "whole.out")
+    assert any(row["residual"] for row in whole.ledger.rows), "rounding is seen"
+    with pytest.raises(Interrupted, match="mdanim-lammps resume"):
+        scene.run(tmp_path / "cut.out", on_progress=stop_at(3))
+    resumed = simulate(scene.prepared, tmp_path / "cut.out", resume=Checkpoint.read(tmp_path / "cut.out" / "checkpoint"))
+    assert compare(whole.folder, tmp_path / "cut.out").equal
+    assert resumed.ledger.rows == whole.ledger.rows
+    stored = Ledger.read(tmp_path / "cut.out" / "ledger.csv")
+    assert stored.rows == whole.ledger.rows and stored.residual < 1e-3
+
+
 def test_a_checkpoint_of_another_run_is_refused(fall, tmp_path):
     """Refuse to go on with another time step: its steps would mean other times."""
     checkpoint = Checkpoint.read(fall.folder / "checkpoint")

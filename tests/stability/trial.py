@@ -12,7 +12,7 @@ from mdanim_lammps.engine.state import State
 from mdanim_lammps.errors import DivergedError
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.run.energy import energies as energies_of
-from mdanim_lammps.run.energy import ledger_terms, rounding_energy
+from mdanim_lammps.run.energy import ledger_terms, potential_terms, rounding_energy
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
@@ -29,7 +29,11 @@ class Trial:
         self.ready = prepare(parse_scene(text, folder=Path(__file__).parent), allow_unstable=unstable)
         self.system, self.timestep = self.ready.system, self.ready.certificate.timestep
         self.instance = Instance(self.ready.plan)
-        self.ledger = Ledger(ledger_terms(self.ready.plan), floor=rounding_energy(self.ready.scene, self.system))
+        self.ledger = Ledger(
+            ledger_terms(self.ready.plan),
+            floor=rounding_energy(self.ready.scene, self.system),
+            potentials=potential_terms(self.ready.plan),
+        )
         self.lost_cells = 0.0
         try:
             self.instance.setup()

@@ -61,6 +61,8 @@ class Effect:
     """Further columns of that kind, see `further_energies`."""
     has_potential = False
     """Whether its energy is a `potential`, that of a uniform field; no other effect has the same column then."""
+    has_arbitrary_zero = False
+    """Whether only changes of the energy in its column ``ledger`` mean something; that of a potential always is so."""
     uses_grid = False
     """Whether it lives in the cells of the basin."""
     keeps_apart = False

@@ -256,6 +256,7 @@ class Buoyancy(Effect):
 
     name = "buoyancy"
     ledger = "buoyancy"
+    has_arbitrary_zero = True
     needs = ("liquid",)
     if_off = "objects sink like stones"
 

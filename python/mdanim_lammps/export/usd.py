@@ -140,8 +140,7 @@ def _lights(stage, render: Render) -> None:
     lamp.CreateNormalizeAttr(True)  # else its brightness is that of a sun as small as its angle
     sky.CreateIntensityAttr(SKY)
     toward = np.array(render.light, float)  # a distant light shines along its -z
-    upright = (0.0, 1.0, 0.0) if np.hypot(*toward[:2]) < 1e-9 * toward[2] else (0.0, 0.0, 1.0)
-    view = View(toward, np.zeros(3), np.array(upright))
+    view = View(toward, np.zeros(3), np.array([0.0, 0.0, 1.0]))
     lamp.AddTransformOp().Set(Gf.Matrix4d(camera_matrix(view).tolist()))
 
 
@@ -176,7 +175,7 @@ def camera_matrix(view: View) -> np.ndarray:
     """From the camera, which looks along -z, to the scene; rows are its axes and its place, shape (4, 4)."""
     back = view.eye - view.look
     back = back / np.linalg.norm(back)
-    right = np.cross(view.up, back)
+    right = np.cross(view.upright, back)
     right /= np.linalg.norm(right)
     matrix = np.eye(4)
     matrix[:, :3] = right, np.cross(back, right), back, view.eye

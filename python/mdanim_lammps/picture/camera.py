@@ -28,6 +28,8 @@ NEXT_SHARES = (0.995, 0.98, 0.95, 0.9, 0.8)
 """Shares of what is seen that are tried as the next to be kept."""
 MOMENT = 0.03
 """Share of the run for which the picture follows what comes and goes beyond where it is worth it."""
+ALONG = 1e-6
+"""Sine of the angle between two directions that are one: rounding has a part in what is at right angles to both."""
 _BOXES = 50_000
 
 
@@ -40,7 +42,17 @@ class View:
     look: np.ndarray
     """[m], shape (3,)."""
     up: np.ndarray
-    """shape (3,)."""
+    """As the scene has it, shape (3,)."""
+
+    @property
+    def upright(self) -> np.ndarray:
+        """The direction that is up in the picture, shape (3,): ``up``, or, where that lies along the line of sight, z; looking
+        along z, it is y, as on a map."""
+        way = self.look - self.eye
+        for up in (self.up, np.array([0.0, 0.0, 1.0])):
+            if np.linalg.norm(np.cross(up, way)) > ALONG * np.linalg.norm(up) * np.linalg.norm(way):
+                return up
+        return np.array([0.0, 1.0, 0.0])
 
 
 @dataclass(frozen=True)

@@ -251,7 +251,7 @@ class Painter:
         camera = self._renderer.GetActiveCamera()
         camera.SetPosition(view.eye)
         camera.SetFocalPoint(view.look)
-        camera.SetViewUp(view.up)
+        camera.SetViewUp(view.upright)
         bounds = np.array([renderer.ComputeVisiblePropBounds() for renderer in self._renderers])
         self._renderer.ResetCameraClippingRange(np.where(np.arange(6) % 2, bounds.max(axis=0), bounds.min(axis=0)))
         for actor in self._actors:

@@ -17,8 +17,6 @@ from ..scene.keywords import did_you_mean
 
 WAVES = "waves"
 """Energy of a liquid with momentum [J]: a term where something moves in it, else an extra where an ``expect`` asks for it."""
-POTENTIALS = ("gravity", "buoyancy", WAVES)
-"""Energies whose zero is arbitrary: only how far they have changed says how much is in play."""
 DUE = "liquid_due"
 """Extra of a liquid that comes and goes: cells at the start, and what has come since less what has gone."""
 LIQUID_MOMENTUM = ("liquid_momentum.x", "liquid_momentum.y")
@@ -41,8 +39,8 @@ class Ledger:
     """One row per frame: time [s], one energy per effect that is on [J], and the residual.
 
     residual = (total now - total at the start) / (largest energy in play so far). The total is the sum of all columns,
-    losses included; the energy in play is the sum of the columns' absolute values, gravity, buoyancy and waves each counted
-    from its own lowest value so far: their zeros are arbitrary, and a floating body trades one for the other.
+    losses included; the energy in play is the sum of the columns' absolute values, each of ``potentials`` counted from its own
+    lowest value so far: their zeros are arbitrary, and a floating body trades one for the other.
     """
 
     terms: tuple[str, ...]
@@ -51,6 +49,8 @@ class Ledger:
     """Further columns that are no energies, such as ``strain.NAME`` where an ``expect`` asks for it."""
     floor: float = 0.0
     """Energy that is nothing but rounding [J]: less than this in play counts as this much."""
+    potentials: tuple[str, ...] = ()
+    """Terms whose zero is arbitrary: only how far they have changed says how much is in play."""
     rows: list[dict[str, float]] = field(default_factory=list)
     _peak: float = 0.0
     _lowest: dict[str, float] = field(default_factory=dict)
@@ -67,7 +67,7 @@ class Ledger:
         """The row that would come next, with these energies and extras and the residual that they make."""
         row = {"time": time, **{t: float(values[t]) for t in (*self.terms, *self.extras)}}
         first = self.rows[0] if self.rows else row
-        potentials = {t: row[t] for t in POTENTIALS if t in self.terms}
+        potentials = {t: row[t] for t in self.potentials}
         in_play = sum(abs(row[t]) for t in self.terms if t not in potentials) + sum(potentials.values())
         self._lowest = {t: min(self._lowest.get(t, e), e) for t, e in potentials.items()}
         self._peak = max(self._peak, in_play) if self.rows else in_play
@@ -107,7 +107,8 @@ class Ledger:
 
     @classmethod
     def read(cls, path: Path) -> Ledger:
-        """Read a ledger.csv back. Raises OutputError."""
+        """Read a ledger.csv back, with the residuals as they stand in it: the file does not say what they were weighed by.
+        Raises OutputError."""
         try:
             with open(path, newline="", encoding="utf-8") as file:
                 reader = csv.DictReader(file)
@@ -115,7 +116,7 @@ class Ledger:
                 middle = columns.index("residual")
                 ledger = cls(tuple(columns[1:middle]), tuple(columns[middle + 1 :]))
                 for row in reader:
-                    ledger.add(float(row["time"]), {c: float(row[c]) for c in columns})
+                    ledger.rows.append({c: float(row[c]) for c in columns})
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise OutputError(f"{path} cannot be read: {error}") from error
         return ledger

@@ -37,6 +37,11 @@ def ledger_terms(plan: Plan) -> tuple[str, ...]:
     return ("kinetic", *dict.fromkeys(of_effects))
 
 
+def potential_terms(plan: Plan) -> tuple[str, ...]:
+    """Those of them whose zero is arbitrary."""
+    return tuple(dict.fromkeys(e.ledger for e in plan.effects if e.has_potential or e.has_arbitrary_zero))
+
+
 def loss_terms(plan: Plan) -> tuple[str, ...]:
     """Those of them that only grow: what effects have taken so far."""
     return tuple(dict.fromkeys(term for e in plan.effects for term in e.losses(plan.scene)))
