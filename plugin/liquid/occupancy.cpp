@@ -152,6 +152,8 @@ bool Occupancy::fill_inside(const Vec3 corner[8], int layers, CellBox &reached)
     low[d] = std::max(0, nearest - 1);
     high[d] = std::min(cells[d], nearest + 1);
     if (low[d] >= high[d]) return true;
+  }
+  for (int d = 0; d < 3; ++d) {    // only now: a box that has grown along some axes alone is not a box
     reached.low[d] = std::min(reached.low[d], low[d]);
     reached.high[d] = std::max(reached.high[d], high[d]);
   }

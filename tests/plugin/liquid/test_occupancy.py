@@ -13,15 +13,23 @@ CORNERS = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0
 """Of a lattice cell, in VTK order."""
 
 
-def shares(cells, shape=(16, 16, 16), spread=True, layers=None):
-    """Share of each cell (nz, ny, nx) that lattice cells (n, 8, 3), in cells, fill; `layers` (n,) of others are around them."""
+def counted(cells, shape=(16, 16, 16), spread=True, layers=None):
+    """Share of each cell (nz, ny, nx) that lattice cells (n, 8, 3), in cells, fill; `layers` (n,) of others are around them.
+    And the box of cells that were touched, low and high along x, y, z."""
     cells = np.ascontiguousarray(cells, np.float64)
     count = np.empty(shape, np.int32)
     nz, ny, nx = shape
     layers = None if layers is None else np.ascontiguousarray(layers, np.int32)
+    box = np.empty((2, 3), np.int32)
     pointers = [ctypes.c_void_p(None if a is None else a.ctypes.data) for a in (cells, layers)]
-    library().mdanim_occupancy_of_cells(nx, ny, nz, len(cells), *pointers, int(spread), ctypes.c_void_p(count.ctypes.data))
-    return count / library().mdanim_occupancy_full(int(spread))
+    found = [ctypes.c_void_p(a.ctypes.data) for a in (count, box)]
+    library().mdanim_occupancy_of_cells(nx, ny, nz, len(cells), *pointers, int(spread), *found)
+    return count / library().mdanim_occupancy_full(int(spread)), box
+
+
+def shares(*arguments, **keywords):
+    """The first of what `counted` tells."""
+    return counted(*arguments, **keywords)[0]
 
 
 def block(side, at, turn=None, bend=0.0):
@@ -95,3 +103,15 @@ def test_what_is_outside_is_left_out():
     for layers in (None, np.full(8, 8)):
         assert shares(block(2, (np.nan, 8, 8)), layers=layers).sum() == 0.0
         assert shares(block(2, (1e9, 8, -1e300)), layers=layers).sum() == 0.0
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("at", [-8.0, 30.0])
+@pytest.mark.parametrize("layers", [None, 8])
+def test_a_body_beside_or_above_the_basin_touches_no_box(axis, at, layers):
+    """Neither by samples nor deep inside: a box that has grown along two axes alone would be read beyond all memory."""
+    place = np.full(3, 8.0)
+    place[axis] = at
+    found, (low, high) = counted(block(8, place), layers=None if layers is None else np.full(8**3, layers))
+    assert found.sum() == 0.0
+    assert (low >= high).all()

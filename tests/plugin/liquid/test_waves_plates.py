@@ -28,7 +28,7 @@ def plate(thickness, height, rotation, wide=44):
     corners, count = np.ascontiguousarray(corners), np.zeros(np.prod(SHAPE), np.int32)
     pointer = lambda a: a.ctypes.data_as(ctypes.c_void_p)
     nz, ny, nx = SHAPE
-    library().mdanim_occupancy_of_cells(nx, ny, nz, len(corners), pointer(corners), None, 1, pointer(count))
+    library().mdanim_occupancy_of_cells(nx, ny, nz, len(corners), pointer(corners), None, 1, pointer(count), None)
     full = library().mdanim_occupancy_full(1)
     return np.minimum(lab.SOLID, (count.astype(np.int64) * lab.SOLID + full // 2) // full).reshape(SHAPE)
 
