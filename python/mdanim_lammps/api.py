@@ -9,21 +9,20 @@ import re
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from functools import cached_property, partial
-from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from .certificate import Certificate
+from .children import Workers
 from .effects import Verdict
-from .engine.threads import asked_threads, with_threads
+from .engine.threads import THREADS, asked_threads, with_threads
 from .errors import MdanimError, OutputError, UsageError
 from .parallel.limits import check_executors
 from .picture.marks import Marks
-from .processes import begin_worker, cores, without_main
+from .processes import cores
 from .report import progress_line
 from .results.checkpoint import Checkpoint
 from .results.files import MARK, open_folder, read_json, write_json
@@ -195,20 +194,12 @@ class Scene:
     @staticmethod
     def _sweep(scenes, places, processes: int, force: bool, movie: bool, progress: bool | None) -> Iterator[Result]:
         quiet = not (in_notebook() if progress is None else progress)
-        # Spawned: a forked process cannot use the MPI of its parent.
-        with (
-            with_threads(asked_threads() or max(1, cores() // processes)),
-            ProcessPoolExecutor(processes, get_context("spawn"), begin_worker) as pool,
-            progress_bar("sweep", quiet=quiet) as bar,
-        ):
-            with without_main():
-                runs = [pool.submit(_run_point, *point, force, movie) for point in zip(scenes, places)]
-            try:
-                for done, run in enumerate(runs, 1):
-                    yield run.result()
-                    bar(done, len(runs), f"run {done} of {len(runs)}")
-            finally:
-                pool.shutdown(cancel_futures=True)
+        threads = {THREADS: str(asked_threads() or max(1, cores() // processes))}
+        with Workers(processes, more=threads) as workers, progress_bar("sweep", quiet=quiet) as bar:
+            runs = [workers.submit(_run_point, *point, force, movie) for point in zip(scenes, places)]
+            for done, run in enumerate(runs, 1):
+                yield run.result()
+                bar(done, len(runs), f"run {done} of {len(runs)}")
 
     def study(
         self,

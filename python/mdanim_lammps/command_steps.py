@@ -8,13 +8,13 @@ import os
 import re
 import shlex
 import shutil
-import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
 
+from .children import DEVNULL, PIPE, Child, command, start
 from .errors import DivergedError, ExitCode, MdanimError, OutputError, UsageError
 from .terminal import PROGRAM, error_line, progress_bar
 
@@ -213,19 +213,17 @@ class Viewer:
 
     def __init__(self, wanted: bool, edit: Path | None = None):
         self._wanted, self._edit = wanted or edit is not None, edit
-        self._process: subprocess.Popen | None = None
+        self._process: Child | None = None
 
     def start(self, folder: Path) -> None:
         """Serve the folder of a run that begins, if that is wanted; returns at once."""
         if not self._wanted:
             return
-        command = [sys.executable, "-m", "mdanim_lammps.view", str(folder), "--linger", f"{LINGER:g}"]
+        server = command("mdanim_lammps.view.__main__", folder, "--linger", f"{LINGER:g}")
         if self._edit:
-            command += ["--edit", "--scene", str(self._edit)]
+            server += ["--edit", "--scene", str(self._edit)]
         # In a session of its own: the Ctrl-C that stops the run is not for the view.
-        self._process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, start_new_session=True
-        )
+        self._process = start(server, stdin=DEVNULL, stdout=PIPE, start_new_session=True)
         threading.Thread(target=self._announce, args=(self._process,), daemon=True).start()
 
     def __enter__(self) -> Viewer:
@@ -250,7 +248,7 @@ class Viewer:
             raise SystemExit(error.exit_code) from error
 
     @staticmethod
-    def _announce(process: subprocess.Popen) -> None:
+    def _announce(process: Child) -> None:
         if line := process.stdout.readline():
             show_address(*line.split())
 

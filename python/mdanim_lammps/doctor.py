@@ -6,7 +6,6 @@ from __future__ import annotations
 import importlib.metadata as metadata
 import platform
 import shutil
-import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -14,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from . import __version__
+from .children import command, run
 from .engine import plugin
 from .model.spacing import available_memory
 from .processes import cores
@@ -97,27 +97,18 @@ def _mpi() -> tuple[int, str]:
 
     from .parallel.runtime.launch import launcher
 
-    command = launcher()
+    mpiexec = launcher()
     # What ends at once may be gone before mpiexec has spoken to it, and then mpiexec dies of SIGPIPE.
-    hello = [sys.executable, "-c", "pass"]
-    done = subprocess.run([*command, "-n", "1", *hello], capture_output=True, text=True, timeout=30, stdin=subprocess.DEVNULL)
+    done = run([*mpiexec, "-n", "1", sys.executable, "-I", "-c", "pass"], capture_output=True, timeout=30)
     library = MPI.Get_library_version().split("\n")[0].strip(" \0")
     if done.returncode:
-        return FAIL, f"{' '.join(command)} ends with {done.returncode}: {done.stderr.strip()}"
-    return OK, f"{library}  {' '.join(command)}"
+        return FAIL, f"{' '.join(mpiexec)} ends with {done.returncode}: {done.stderr.strip()}"
+    return OK, f"{library}  {' '.join(mpiexec)}"
 
 
 def _opengl() -> tuple[int, str]:
     # In a process of its own: a graphics driver may end it.
-    code = (
-        "from vtkmodules.vtkRenderingCore import vtkRenderer\nimport vtkmodules.vtkRenderingOpenGL2\n"
-        "from mdanim_lammps.picture.window import off_screen_window, silent\n"
-        "with silent():\n w = off_screen_window([vtkRenderer()], (8, 8), 0)\n w.Render()\n"
-        "said = w.ReportCapabilities().splitlines()\n"
-        "wanted = ('OpenGL version string', 'OpenGL renderer string')\n"
-        "print(*[line.split(':')[1].strip() for line in said if line.startswith(wanted)], sep=', ')"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    done = run(command("mdanim_lammps.picture.window"), capture_output=True, timeout=120)
     if done.returncode:
         return FAIL, (done.stderr.strip().splitlines() or ["ended without a word"])[-1]
     return OK, done.stdout.strip()

@@ -3,9 +3,7 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
-import signal
 import subprocess
 import sys
 from dataclasses import replace
@@ -13,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mdanim_lammps.children import Workers
 from mdanim_lammps.errors import OutputError, SetupError, UsageError
 from mdanim_lammps.picture import movie
 from mdanim_lammps.picture.movie import movie_frames, render_movie, render_still
@@ -158,48 +157,24 @@ def test_failing_encoder_is_named(short, tmp_path, monkeypatch):
         render_movie(short, SMALL, tmp_path / "movie.mp4")
 
 
-def test_killed_process_is_named(short, tmp_path):
+def test_killed_process_is_named(short, tmp_path, monkeypatch):
     """A process that draws and is killed ends the movie with an error, and nothing is left of it."""
+    drawing = []
+
+    class Watched(Workers):
+        def __init__(self, *args, **kwargs):
+            super().__init__(*args, **kwargs)
+            drawing.extend(self.children)
+
+    monkeypatch.setattr(movie, "Workers", Watched)
 
     def kill(done, total):
-        for child in multiprocessing.active_children():
-            os.kill(child.pid, signal.SIGKILL)
+        for child in drawing:
+            child.kill()
 
     with pytest.raises(SetupError, match=r"a process that draws pictures was killed.*render again"):
         render_movie(short, SMALL, tmp_path / "movie.mp4", processes=2, fps=1000.0, on_progress=kill)
     assert sorted(os.listdir(tmp_path)) == ["run"]
-
-
-HALF_A_PICTURE = """
-import gc, os, struct, time
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context
-from multiprocessing.connection import Connection
-from mdanim_lammps.picture.movie import _result_of
-
-def die(_):
-    for pipe in gc.get_objects():
-        if isinstance(pipe, Connection) and pipe.writable:
-            os.write(pipe.fileno(), struct.pack("!i", 100000) + b"the beginning")
-    os._exit(9)
-
-if __name__ == "__main__":
-    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
-        drawn, other = pool.submit(die, 0), pool.submit(time.sleep, 1)
-        try:
-            _result_of(drawn, pool)
-        except BrokenProcessPool:
-            print("told")
-"""
-
-
-def test_a_process_killed_while_it_sends_is_noticed(tmp_path):
-    """A pool alone would wait for the rest of its message, which this process could send as well."""
-    script = tmp_path / "half.py"
-    script.write_text(HALF_A_PICTURE)
-    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60)
-    assert done.stdout.split() == ["told"], done.stderr
 
 
 def test_a_failing_painter_is_named(short, tmp_path, monkeypatch):

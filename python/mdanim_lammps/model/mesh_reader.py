@@ -6,12 +6,12 @@ from __future__ import annotations
 import io
 import resource
 import stat
-import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 
+from ..children import TimeoutExpired, command, run
 from ..scene.limits import MOST_BYTES_OF_MESH
 
 MEMORY = 8 << 30
@@ -36,10 +36,8 @@ def read_polygons(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     if found.st_size > MOST_BYTES_OF_MESH:
         raise UnreadableMesh(f"has {found.st_size >> 20} MiB, {MOST_BYTES_OF_MESH >> 20} are the most")
     try:
-        done = subprocess.run(
-            [sys.executable, "-c", f"from {__name__} import main; main()", str(path)], capture_output=True, timeout=SECONDS
-        )
-    except subprocess.TimeoutExpired:
+        done = run(command(__name__, path), text=False, capture_output=True, timeout=SECONDS)
+    except TimeoutExpired:
         raise UnreadableMesh(f"could not be read in {SECONDS:g} s") from None
     if done.returncode:
         raise UnreadableMesh("is damaged, cut short, or no mesh at all")

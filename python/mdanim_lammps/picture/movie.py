@@ -8,17 +8,15 @@ import sys
 import tempfile
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, closing, contextmanager
 from fractions import Fraction
-from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
 
+from ..children import ChildLost, Workers
 from ..errors import OutputError, SetupError, UsageError
-from ..processes import begin_worker, cores, without_main
+from ..processes import cores
 from ..results.files import disk_errors, sync, write_whole
 from ..results.trajectory import Trajectory
 from ..scene.render import Render
@@ -40,8 +38,6 @@ FASTEST = 60.0
 """Pictures per second of a time lapse; a movie at the speed of the simulated time has all of its frames."""
 FRAMES_PER_PROCESS = 40
 """A process takes about two seconds to start; with fewer frames than this it does not pay."""
-LOOK_SECONDS = 1.0
-"""How often processes that draw are looked after while a picture is waited for."""
 
 
 def render_still(
@@ -175,54 +171,36 @@ def _draw_apart(trajectory, render, size, shown: Sequence[int], processes: int) 
     """Pictures in order, drawn by several processes that are a few pictures ahead."""
     from .camera import action_of
 
-    task = (trajectory.path.absolute(), render, size, action_of(trajectory), max(1, cores() // processes))
+    task = (trajectory.path.absolute(), render, size, action_of(trajectory))
+    # Software OpenGL starts as many threads per process as there are cores.
+    threads = {"LP_NUM_THREADS": str(max(1, cores() // processes))}
     ahead: deque = deque()
-    # Spawned: a forked process cannot use the OpenGL of its parent.
-    with ProcessPoolExecutor(processes, get_context("spawn"), _begin_worker, task) as pool:
+    with Workers(processes, begin=(_begin_worker, task), more=threads) as workers:
         try:
             for index in shown:
-                with without_main():
-                    ahead.append(pool.submit(_draw_in_worker, int(index)))
+                ahead.append(workers.submit(_draw_in_worker, int(index)))
                 if len(ahead) > 2 * processes:
-                    yield _result_of(ahead.popleft(), pool)
+                    yield ahead.popleft().result()
             while ahead:
-                yield _result_of(ahead.popleft(), pool)
-        except BrokenProcessPool:
+                yield ahead.popleft().result()
+        except ChildLost:
             raise SetupError(
                 "a process that draws pictures was killed, perhaps because memory ran out; what it printed stands above. "
                 "The frames are kept: render again, perhaps with a smaller --size"
             ) from None
-        finally:
-            pool.shutdown(cancel_futures=True)
-
-
-def _result_of(drawn: Future, pool: ProcessPoolExecutor) -> np.ndarray:
-    """A picture, once it is there. Raises BrokenProcessPool, also where a process was killed while it sent one: of that the pool
-    waits for the rest, as this process could send it as well."""
-    while not wait([drawn], LOOK_SECONDS).done:
-        processes = list((pool._processes or {}).values())
-        if any(process.exitcode is not None for process in processes):
-            for process in processes:
-                process.kill()
-            pool._result_queue._writer.close()
-            raise BrokenProcessPool
-    return drawn.result()
 
 
 _worker: dict = {}
 """Of a process that draws: its task, and the painter once there is one."""
 
 
-def _begin_worker(*task) -> None:
-    begin_worker()
+def _begin_worker(task: tuple) -> None:
     _worker["task"] = task
 
 
 def _draw_in_worker(frame: int) -> np.ndarray:
     if "painter" not in _worker:
-        path, render, size, action, threads = _worker["task"]
-        # Software OpenGL starts as many threads per process as there are cores.
-        os.environ["LP_NUM_THREADS"] = str(threads)
+        path, render, size, action = _worker["task"]
         from .render import Painter
 
         _worker["painter"] = Painter(Trajectory(path), render, size=size, action=action)

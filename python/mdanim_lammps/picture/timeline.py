@@ -11,6 +11,7 @@ from ..errors import OutputError
 from ..results.files import write_whole
 from ..results.timeline import KINDS, Timeline
 from .palette import rgb
+from .plot import own_style
 
 DOING = {"simulating": "#34495e", "moving": "#f28e2b", "waiting": "#d5dade", "frozen": "#8fd0f2", "held": "#c8a2c8"}
 """Colours of `KINDS`: simulating is dark, waiting is pale."""
@@ -93,6 +94,7 @@ def headline(timeline: Timeline, title: str = "") -> str:
     return f"{title or 'Run'} – {timeline.executors} executor{'s' * (timeline.executors > 1)}, owners decided by {control}"
 
 
+@own_style()
 def draw(timeline: Timeline, path: Path, title: str = "") -> None:
     """Write the picture as PNG. Raises OutputError when it cannot be written, or a run ended before it began."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -67,3 +67,16 @@ def silent() -> Iterator[None]:
         yield
     finally:
         vtkLogger.SetStderrVerbosity(before)
+
+
+def main() -> None:
+    """Draw something, and print by which OpenGL."""
+    import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 - what draws
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
+    with silent():
+        window = off_screen_window([vtkRenderer()], (8, 8), 0)
+        window.Render()
+    wanted = ("OpenGL version string", "OpenGL renderer string")
+    said = [line.split(":")[1].strip() for line in window.ReportCapabilities().splitlines() if line.startswith(wanted)]
+    print(", ".join(said))

@@ -8,6 +8,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..picture.plot import own_style
 from ..results.files import write_whole
 from ..scene.formatting import number, say
 from .analysis import Rated, lost
@@ -171,6 +172,7 @@ def order_lines(study: Study) -> list[str]:
     return lines + [f"{name}: left out, {why}" for name, why in study.left_out.items()]
 
 
+@own_style()
 def draw(study: Study, path: Path) -> None:
     """Error over seconds, both logarithmic, a line per ladder, the Pareto front marked."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Editing a scene in the page and running it again, with ``--edit`` only.
 
-The run is a process of its own, ``python -m mdanim_lammps.view.edit FOLDER NAME OUT`` with the text on its standard input. It
-writes into a folder beside the one that is viewed, which keeps its results.
+The run is a process of its own, `main` with the arguments FOLDER NAME OUT and the text on its standard input. It writes into a
+folder beside the one that is viewed, which keeps its results.
 """
 
 from __future__ import annotations
 
-import subprocess
 import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
 
+from ..children import DEVNULL, PIPE, Child, TimeoutExpired, command, start
 from ..errors import SceneError
 from ..scene.limits import MOST_BYTES_OF_LOCK
 from ..scene.parse import parse_scene
@@ -38,7 +38,7 @@ class Editor:
         self.text = read_text(source.absolute(), MOST_BYTES_OF_LOCK, str(source))
         self.name, self._home = (scene or folder).stem, source.absolute().parent
         self.out = folder.absolute().with_name(f"{folder.stem}.edited.out")
-        self._process: subprocess.Popen | None = None
+        self._process: Child | None = None
         self._turn = threading.Lock()
 
     def problems(self, text: str) -> list[dict]:
@@ -59,15 +59,8 @@ class Editor:
             self.end()
             tail.turn_to(self.out)  # between two runs: what lies there now is of the earlier one
             self.text = text
-            command = [sys.executable, "-m", "mdanim_lammps.view.edit", str(self._home), self.name, str(self.out)]
-            self._process = subprocess.Popen(
-                command,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.PIPE,
-                text=True,
-                start_new_session=True,
-            )
+            edited = command(__name__, self._home, self.name, self.out)
+            self._process = start(edited, stdin=PIPE, stdout=DEVNULL, stderr=PIPE, start_new_session=True)
             threading.Thread(target=self._wait, args=(self._process, text, tail.say), daemon=True).start()
 
     def end(self) -> None:
@@ -76,12 +69,12 @@ class Editor:
             self._process.terminate()
             try:
                 self._process.wait(ENDING)
-            except subprocess.TimeoutExpired:
+            except TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
 
     @staticmethod
-    def _wait(process: subprocess.Popen, text: str, told: Callable[[str], None]) -> None:
+    def _wait(process: Child, text: str, told: Callable[[str], None]) -> None:
         said = process.communicate(text)[1]
         if process.returncode not in (0, -15, 130):
             told(said.strip() or f"the run ended with code {process.returncode}")
@@ -103,7 +96,3 @@ def main() -> None:
         with open_run(ready, Path(out), force=True) as folder:
             write_whole(folder / "edited.txt", text)
             run_frames(ready, folder)
-
-
-if __name__ == "__main__":
-    main()

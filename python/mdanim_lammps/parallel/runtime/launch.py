@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import base64
-import importlib
 import json
 import os
 import pickle
@@ -12,7 +11,6 @@ import secrets
 import shlex
 import shutil
 import signal
-import subprocess
 import sys
 import threading
 import time
@@ -21,7 +19,9 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...errors import ExecutorLost, OutputError, SetupError
+from ...children import DEVNULL, PIPE, Child, start
+from ...children import command as child_command
+from ...errors import ExecutorLost, MdanimError, OutputError, SetupError
 from ...results.checkpoint import Checkpoint
 from ...results.files import CHECKPOINT, JOB, STOP, claims, disk_errors
 from ...run.loop import Progress
@@ -32,6 +32,8 @@ from ..plan.frame_plan import PlannerOptions
 
 RESULT_SIGN = "result:"
 """Start of the line on stdout in which the supervisor gives the result; mpiexec's own words begin with "=" or "YOUR"."""
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+"""Environment of ranks: one thread for each rank's linear algebra."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ def simulate_on(
     folder = folder.resolve()
     job = folder / f"{JOB}{secrets.token_hex(4)}"
     task = Task(ready, folder, control, resume, time.perf_counter() if started is None else started, settings or PlannerOptions())
-    command = [*launcher(), "-n", str(executors + 1), sys.executable, "-m", "mdanim_lammps.parallel.runtime.ranks", str(job)]
+    command = [*launcher(), "-n", str(executors + 1), *child_command("mdanim_lammps.parallel.runtime.ranks", job)]
     said: list[str] = []
     found = None
     try:
@@ -89,10 +91,9 @@ def simulate_on(
             raise lost(_cause(ranks.returncode, said), folder)
     finally:
         job.unlink(missing_ok=True)
-    if isinstance(found, Result):
-        return found
-    kind, module, text = found
-    raise getattr(importlib.import_module(module), kind)(text)
+    if isinstance(found, MdanimError):
+        raise found
+    return found
 
 
 def launcher() -> list[str]:
@@ -109,19 +110,10 @@ def launcher() -> list[str]:
     return [found]
 
 
-def _started(command: list[str]) -> subprocess.Popen:
+def _started(command: list[str]) -> Child:
     """The process that starts all ranks, in a session of its own: Ctrl-C is for this process. Raises SetupError."""
     try:
-        return subprocess.Popen(
-            command,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            env=_environment(),
-            start_new_session=True,
-            pass_fds=claims,
-        )
+        return start(command, more=ONE_THREAD, stdin=DEVNULL, stdout=PIPE, stderr=PIPE, start_new_session=True, pass_fds=claims)
     except OSError as error:
         named = f"{MPIEXEC}={os.environ[MPIEXEC]}" if os.environ.get(MPIEXEC) else command[0]
         raise SetupError(f"{named}: {command[0] or 'an empty command'} cannot be started: {error.strerror}") from error
@@ -135,11 +127,6 @@ def _hear(stream, said: list[str]) -> None:
         aborted = aborted or line.startswith(("=====", "Abort("))
         if not aborted:
             sys.stderr.write(line)
-
-
-def _environment() -> dict[str, str]:
-    """That of this process, but with one thread for each rank's linear algebra."""
-    return os.environ | dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 def _cause(code: int, said: list[str]) -> str:
@@ -162,7 +149,7 @@ class _Signals:
 
     def __init__(self, folder: Path):
         self.folder = folder
-        self.ranks: subprocess.Popen | None = None
+        self.ranks: Child | None = None
         """To be set once there are some."""
         self.old = {}
         self.asked = False

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What every MPI rank of a distributed run executes: ``mpiexec -n K+1 python -m mdanim_lammps.parallel.runtime.ranks JOB``.
+"""What every MPI rank of a distributed run executes: `main`, with the argument JOB.
 
 Rank 0 is the supervisor: it takes the job that launch.py has left in this file. Progress goes to its standard output, a line of
 JSON for every frame, and at the end the result. All others are executors.
@@ -103,17 +103,17 @@ def _supervise(world, job: Path, one_host: bool) -> None:
             on_progress=lambda p: print(json.dumps(asdict(p)), flush=True),
         )
     except MdanimError as error:
-        result = _told(error)
+        result = error
     except BaseException as error:
         if isinstance(error, MPI.Exception):  # where another rank has died, mpiexec ends this one now, and tells the better cause
             time.sleep(ABORT_SECONDS)
-        _hand_over(_told(lost(f"{type(error).__name__}: {error}", task.folder)), job)
+        _hand_over(lost(f"{type(error).__name__}: {error}", task.folder), job)
         raise
     try:
         if source.timeline.frames or not task.resume:  # else the log that is there stands
             source.timeline.write(task.folder)
     except OutputError as error:
-        result = _told(error) if isinstance(result, Result) else result
+        result = error if isinstance(result, Result) else result
     if source.clean:
         _hand_over(result)
     else:
@@ -123,7 +123,7 @@ def _supervise(world, job: Path, one_host: bool) -> None:
 
 
 def _hand_over(result, job: Path | None = None) -> None:
-    """Tell the process that has started all ranks the result.
+    """Tell the process that has started all ranks the result, or the error that it is to raise.
 
     With a job, before an abort of all ranks, wait until that process has deleted it, which it does when it has the result: an
     abort may end the processes that pass on what stands on stdout.
@@ -132,12 +132,3 @@ def _hand_over(result, job: Path | None = None) -> None:
     deadline = time.monotonic() + PATIENCE
     while job and job.exists() and time.monotonic() < deadline:
         time.sleep(0.02)
-
-
-def _told(error: MdanimError) -> tuple[str, str, str]:
-    """What `launch.simulate_on` raises again: kind, module, text."""
-    return type(error).__name__, type(error).__module__, str(error)
-
-
-if __name__ == "__main__":
-    main()

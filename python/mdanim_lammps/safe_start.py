@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The file with which every child process begins (children.py): ``python safe_start.py MODULE ARGUMENTS`` calls ``MODULE.main``.
+
+With ``-m`` or ``-c`` Python would take modules from the current folder, where a stranger's ``numpy.py`` may lie beside a scene.
+"""
+
+import sys
+
+
+def is_safe() -> bool:
+    """Whether Python was told to put no folder of a script first on the path (``-P``, ``-I``, PYTHONSAFEPATH)."""
+    return bool(sys.flags.isolated or getattr(sys.flags, "safe_path", False))
+
+
+if __name__ == "__main__":
+    if not is_safe():
+        del sys.path[0]  # the folder of this file, whose modules are no modules of Python
+    from importlib import import_module
+    from importlib.util import module_from_spec, spec_from_file_location
+
+    # The package of the parent, wherever the parent has it from.
+    spec = spec_from_file_location("mdanim_lammps", __file__.removesuffix("safe_start.py") + "__init__.py")
+    assert spec and spec.loader, "this file lies in the package"
+    sys.modules["mdanim_lammps"] = package = module_from_spec(spec)
+    spec.loader.exec_module(package)
+    sys.argv[:2] = sys.argv[1:2]
+    import_module(sys.argv[0]).main()
