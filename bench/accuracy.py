@@ -94,6 +94,7 @@ LADDER_OF = {"sweeps": "sweeps", "contact": "contact", "sunk in": "contact"}
 def study(name: str, budget: float, plots: Path | None) -> None:
     """Print the study of a scene."""
     from mdanim_lammps.scene.formatting import say
+    from mdanim_lammps.study.analysis import off
     from mdanim_lammps.study.error import ROUND_OFF
     from mdanim_lammps.study.report import order_lines
     from mdanim_lammps.study.study import run_study
@@ -120,7 +121,7 @@ def study(name: str, budget: float, plots: Path | None) -> None:
                 "contact": f"{s.contact:g}",
                 "particles": f"{p.particles}",
                 "seconds": f"{r.seconds.middle:.3g}" + (f" ± {r.seconds.spread / 2:.1g}" if len(p.seconds) > 1 else ""),
-                "error": f"{100 * r.error.middle:.2g} %",
+                "error": off(r.error.middle, a.doubt),
                 "off expect": closed,
                 "energy drift": f"{max(p.drift):.0e}",
                 "sunk in": say(max(p.penetration), "m"),

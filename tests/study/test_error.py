@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from mdanim_lammps.scene.parse import parse_scene
 from mdanim_lammps.study.analysis import Measurement, advice, analyse, pareto, sharp
-from mdanim_lammps.study.error import converge, distance, extent, growth, order_until
-from mdanim_lammps.study.setting import Ladder, Setting
+from mdanim_lammps.study.error import converge, difference, distance, extent, growth, order_until
+from mdanim_lammps.study.setting import Ladder, Setting, together
 from mdanim_lammps.study.store import Point
 from study_lab import BAR, TIMES, track
 
@@ -27,11 +27,12 @@ def test_distance_leaves_out_what_never_moves():
 def test_order_of_a_made_up_ladder(order):
     """Find the exponent that errors were made with, and the limit, from steps that are not evenly spaced."""
     steps = [0.2, 0.14, 0.1, 0.07, 0.05]
-    found = converge(steps, [track(1.0 + s**order, 0.3 * s**order) for s in steps], 2.0)
+    tracks = [track(1.0 + s**order, 0.3 * s**order) for s in steps]
+    found = converge(steps, tracks, 2.0)
     # Higher powers of the error, the phase's, leave 5 % in the exponent at the largest step.
     assert found.order == pytest.approx(order, abs=0.05 * order)
     assert distance(found.limit, track()) < 0.1 * distance(track(1.0 + steps[-1] ** order, 0.3 * steps[-1] ** order), track())
-    assert found.doubt == 0.0
+    assert found.doubt == pytest.approx(distance(tracks[-1], found.limit) / 2.0)
 
 
 def test_a_reference_does_not_flatter_its_neighbour():
@@ -53,7 +54,7 @@ def test_a_reference_does_not_flatter_its_neighbour():
     ],
 )
 def test_no_order_where_there_is_none(sizes, why):
-    """Say why instead of giving a number, and doubt the finest run by as much as it is from the one before it."""
+    """Say why instead of giving a number, and doubt the finest run by as much as it is from those half as fine."""
     steps = [0.2, 0.1, 0.05, 0.025][: len(sizes)]
     tracks = [track(1.0 + x) for x in sizes]
     found = converge(steps, tracks, 2.0)
@@ -77,7 +78,7 @@ def test_order_is_lost_at_a_blow():
     ladder = Ladder("resolution", tuple(replace(own, cells=round(1 / s)) for s in steps))
     points = {s.key: Point(s, 1e-3, 100, 10, [1.0], [1.0], [1e-5], [0.0], [()], [t]) for s, t in zip(ladder.settings, tracks)}
     said = "most of the error from the resolution, which has order 2 up to t = 0.4 s and none from then on"
-    for touching, why in ((True, ": which particles meet in a blow"), (False, ".")):
+    for touching, why in ((True, ": which particles meet in a blow"), (False, "; how far others are off")):
         assert said + why in advice(analyse(points, [ladder], own, TIMES, (), ["a", "b"], touching=touching))
 
 
@@ -97,10 +98,65 @@ def test_not_ranked_what_differs_less_than_the_spread():
     assert not a.below(b) and not b.below(a)
     assert a.below(c) and not c.below(a)
     same = Measurement(0.1, 0.0)
-    assert pareto({"a": (a, same), "b": (b, same), "c": (c, same)}) == {"a", "b"}
-    assert pareto(
+
+    def front(values):
+        return pareto(values, *(lambda x, y, i=i: values[x][i].below(values[y][i]) for i in (0, 1)))
+
+    assert front({"a": (a, same), "b": (b, same), "c": (c, same)}) == {"a", "b"}
+    assert front(
         {"cheap": (a, Measurement(0.2, 0.0)), "good": (c, Measurement(0.1, 0.0)), "bad": (c, Measurement(0.3, 0.0))}
     ) == {"cheap", "good"}
+
+
+def test_a_difference_of_errors_is_better_known_than_each():
+    """Two runs on a line with the truth at 3 ± 1: errors of 3 and 1 with a doubt of 1 each, and a difference of 2 whatever the
+    truth; across the line the difference varies, and is never more than the two are apart."""
+    still, way = np.zeros((4, 1, 3)), np.ones((4, 1, 3)) * (1.0, 0.0, 0.0)
+    way[0] = 0.0  # one object, at rest in the first frame
+    unit = distance(still, way)
+    a, b, limit = still, 2.0 * way, 3.0 * way
+    least, most = difference(a, b, limit, unit)
+    assert most == pytest.approx(2.0 * unit)
+    beside = [  # the truth anywhere on the circle around the limit
+        distance(a, limit + shift) - distance(b, limit + shift)
+        for angle in np.linspace(0.0, 2.0 * np.pi, 73)
+        for shift in [np.cos(angle) * way + np.sin(angle) * way[..., [1, 0, 2]]]
+    ]
+    assert least <= min(beside) + 1e-12 and least == pytest.approx(min(beside), abs=0.01 * unit)
+    assert difference(a, b, limit, math.inf) == (-2.0 * unit, 2.0 * unit)
+    assert difference(a, a, limit, unit) == (0.0, 0.0)
+
+
+def test_doubt_of_a_first_order_ladder_reaches_its_limit():
+    """A finest run that is its own limit is off by as much as from the run half as fine, not as from the one before it."""
+    steps = [1 / 4, 1 / 6, 1 / 8]
+    tracks = [track(1.0 + s) for s in steps]
+    tracks[0][:] = track(1.0 + 1 / 4 + 1e-3)
+    tracks[1][:, 0, 1] += 0.2 * TIMES  # no order
+    found = converge(steps, tracks, 2.0)
+    assert found.order is None
+    assert found.doubt >= distance(tracks[-1], track()) / 2.0 > distance(track(1.0 + steps[1]), tracks[-1]) / 2.0
+
+
+def test_errors_of_opposite_signs_are_not_added():
+    """Cells are 8 % short at the own setting and contact is 7.2 % far: it is 0.8 % off, and finer in one thing alone is worse."""
+    own = Setting(4.0, 0.5)
+    cells = Ladder("resolution", tuple(replace(own, cells=float(n)) for n in (2, 3, 4, 6, 8)))
+    contact = Ladder("contact", tuple(replace(own, contact=k) for k in (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)))
+    every = together(own, [cells, contact])
+    assert [(s.cells, s.contact) for s in every.settings] == [(2, 0.25), (3, 0.5625), (4, 1.0), (6, 2.25), (8, 4.0)]
+    points, swing = {}, distance(np.zeros_like(track()), track()) / extent(track())
+    for s in {*cells.settings, *contact.settings, *every.settings}:
+        seconds, run = s.cells**4 * s.contact**0.5, track(1.0 - 0.32 / s.cells + 0.072 * s.contact**-0.5)
+        points[s.key] = Point(s, 1e-3, 100, 10, [seconds], [seconds], [1e-5], [0.0], [()], [run])
+    found = analyse(points, [every, cells, contact], own, TIMES, (), ["a", "b"], touching=True)
+    for key, r in found.rated.items():
+        s = r.point.setting
+        truth = abs(-0.32 / s.cells + 0.072 * s.contact**-0.5) * swing
+        assert r.error.middle == pytest.approx(truth, abs=found.doubt), key
+    said = advice(found)
+    assert "stiffer contact alone (4 cells, 0.50 of the bound, contact-stiffness 8) makes it worse" in said
+    assert "8 cells, 0.50 of the bound, contact-stiffness 4 brings 0.2" in said and "is as good" not in said
 
 
 def test_closed_forms_are_sharp_expects():

@@ -4,21 +4,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..scene.formatting import number, say
 from ..scene.scene import Expect
-from .error import Convergence, Growth, converge, distance, extent, growth, order_until
-from .setting import Ladder, Setting
+from .error import Convergence, Growth, converge, difference, distance, extent, growth, order_until
+from .setting import ALL, Ladder, Setting
 from .store import Point
 
 SHARP = 0.1
 """An ``expect`` whose tolerance is a larger share of the motion than this is too inexact to measure errors by."""
 ALIKE = 0.05
 """Relative difference of errors below which they are not ranked, repeated or not: the limit itself is an estimate."""
+UNSURE = 0.5
+"""Share of doubt below which an error may as well be none, and of an error from which on its doubt is told."""
 UNREPEATED = 0.1
 """Relative spread of seconds that is taken for granted as long as no point was repeated."""
 
@@ -43,7 +45,7 @@ class Rated:
     seconds: Measurement
     """Wall time of simulation [s]."""
     error: Measurement
-    """Of the centres of mass, rms over frames and objects, relative to the extent of the motion [-]."""
+    """Of the centres of mass against the limit of all, rms over frames and objects, relative to the extent of the motion [-]."""
     closed: float | None
     """Largest error against the ``expect`` lines that state a truth, relative to the object's own motion; None without any."""
     front: bool = False
@@ -57,6 +59,12 @@ class Analysis:
     own: Setting
     scale: float
     """Extent of the motion [m]."""
+    limit: np.ndarray
+    """The best estimate of the motion [m], shape (F, M, 3): that to which runs finer in everything at once tend."""
+    doubt: float
+    """How far the limit may be off, relative to the extent; inf where only the own setting has been measured."""
+    finest: Setting
+    """Of the runs that the limit comes from."""
     rated: dict[str, Rated]
     """By key of the setting, cheapest first."""
     ladders: dict[str, Convergence]
@@ -75,6 +83,26 @@ class Analysis:
         found = self.ladders.get("time step")
         return bool(found and found.order is None and self.growth and self.growth.parted is not None)
 
+    def off(self, rated: Rated) -> float:
+        """Error of a point that is to be expected: its distance from the limit, and how far the limit may be off."""
+        return math.hypot(rated.error.middle, self.doubt)
+
+    def more(self, a: Rated, b: Rated) -> tuple[float, float]:
+        """Least and most by which the error of a point exceeds that of another, wherever within its doubt the truth is."""
+        if self.scale == 0.0:
+            return 0.0, 0.0
+        tracks = a.point.tracks[0], b.point.tracks[0]
+        least, most = difference(*tracks, self.limit, self.doubt * self.scale)
+        return least / self.scale, most / self.scale
+
+    def better(self, a: Rated, b: Rated) -> bool:
+        """Whether a point has the smaller error, wherever within its doubt the truth is, and by more than repeats differ."""
+        return a.error.below(b.error) and self.more(a, b)[1] < 0.0
+
+    def as_good(self, a: Rated, b: Rated) -> bool:
+        """Whether the error of a point is no larger, wherever within its doubt the truth is, but by what repeats differ."""
+        return self.more(a, b)[1] <= 0.5 * (a.error.spread + b.error.spread)
+
 
 def analyse(
     points: Mapping[str, Point],
@@ -89,13 +117,13 @@ def analyse(
 ) -> Analysis:
     """Rate every point that has run.
 
-    Each ladder has a limit of its own. The best estimate of the motion is the scene's own run with the corrections of all
-    ladders on top; errors are distances from that. A ladder without an order has its finest run for a limit, which is then
-    taken to be as far from the truth as from the run before it.
+    Errors are distances from the limit of the ladder whose settings are finer in everything (`setting.together`); where nothing
+    touches that is the ladder of cells. Limits of single ladders are not added: their errors may have opposite signs, and then a
+    setting that is finer in one thing alone is farther from the truth. What that ladder does not vary adds to its doubt.
     """
     run = {key: p for key, p in points.items() if p.tracks}
-    best = run[own.key].tracks[0]
-    scale = extent(best)
+    first = run[own.key].tracks[0]
+    scale = extent(first)
     found, measured, until = {}, {}, {}
     for ladder in ladders:
         settings = tuple(s for s in ladder.settings if s.key in run)
@@ -105,25 +133,38 @@ def analyse(
             found[ladder.name] = c = converge(sizes, tracks, scale)
             if c.order is None and (part := order_until(times, sizes, tracks, scale)):
                 until[ladder.name] = part
-    for limit in (c.limit for c in found.values()):
-        best = best + (limit - run[own.key].tracks[0])
+    limit, doubt, finest = _limit(found, measured, own, first, scale)
     steps = measured.get("time step", ())
     parting = growth(times, *(run[s.key].tracks[0] for s in steps[-2:]), scale) if len(steps) > 1 else None
     noise = _usual((p.seconds for p in run.values()), UNREPEATED)
-    truths = sharp(expects, names, run[own.key].tracks[0], times, sharpness)
-    doubt = math.sqrt(sum(c.doubt**2 for c in found.values()))
-    errors = {key: [math.hypot(distance(t, best) / scale, doubt) if scale else 0.0 for t in p.tracks] for key, p in run.items()}
+    truths = sharp(expects, names, first, times, sharpness)
+    errors = {key: [distance(t, limit) / scale if scale else 0.0 for t in p.tracks] for key, p in run.items()}
     wobble = max(ALIKE, _usual(errors.values(), 0.0))  # not 0 only where repeats have another seed, that is with a liquid
     rated = {
         key: Rated(p, _duration(p.seconds, noise), _value(errors[key], wobble), _closed(p, expects, truths))
-        for key, p in run.items()
+        for key, p in sorted(run.items(), key=lambda item: min(item[1].seconds))
     }
-    front = pareto({key: (r.seconds, r.error) for key, r in rated.items()})
-    rated = {
-        key: Rated(r.point, r.seconds, r.error, r.closed, key in front)
-        for key, r in sorted(rated.items(), key=lambda item: item[1].seconds.middle)
-    }
-    return Analysis(own, scale, rated, found, measured, until, touching, parting)
+    a = Analysis(own, scale, limit, doubt, finest, rated, found, measured, until, touching, parting)
+    front = pareto(rated, lambda x, y: rated[x].seconds.below(rated[y].seconds), lambda x, y: a.better(rated[x], rated[y]))
+    return replace(a, rated={key: replace(r, front=key in front) for key, r in rated.items()})
+
+
+COVERED = {ALL: ("resolution", "contact", "time step"), "resolution": ("time step",), "contact": ("time step",)}
+"""Ladders that vary what another one varies too: the time step falls with the spacing and with stiffer contact."""
+FIRST = (ALL, "resolution", "contact", "sweeps", "time step")
+"""Ladders by how much they vary."""
+
+
+def _limit(
+    found: Mapping[str, Convergence], measured: Mapping[str, Sequence[Setting]], own: Setting, track: np.ndarray, scale: float
+) -> tuple[np.ndarray, float, Setting]:
+    """The best estimate of the motion [m], how far it may be off relative to the extent, and the finest run that it is from."""
+    name = next((name for name in FIRST if name in found), None)
+    if name is None:
+        return track, math.inf, own
+    apart = [n for n in found if n != name and n not in COVERED.get(name, ())]
+    beside = [math.hypot(distance(track, found[n].limit) / scale, found[n].doubt) if scale else 0.0 for n in apart]
+    return found[name].limit, math.hypot(found[name].doubt, *beside), measured[name][-1]
 
 
 def _usual(seen: Iterable[Sequence[float]], otherwise: float) -> float:
@@ -178,13 +219,14 @@ def _closed(point: Point, expects: Sequence[Expect], truths: Mapping[int, float]
     return max((abs(point.found[0][k] - expects[k].value) / scale for k, scale in truths.items()), default=None)
 
 
-def pareto(values: Mapping[str, tuple[Measurement, Measurement]]) -> set[str]:
+def pareto(keys: Iterable[str], cheaper: Callable[[str, str], bool], better: Callable[[str, str], bool]) -> set[str]:
     """Keys that no other beats: one beats another by being clearly less in one thing and not clearly more in the other."""
+    keys = list(keys)
 
-    def beats(a: tuple[Measurement, Measurement], b: tuple[Measurement, Measurement]) -> bool:
-        return any(a[i].below(b[i]) and not b[1 - i].below(a[1 - i]) for i in (0, 1))
+    def beats(a: str, b: str) -> bool:
+        return (cheaper(a, b) and not better(b, a)) or (better(a, b) and not cheaper(b, a))
 
-    return {k for k, own in values.items() if not any(beats(other, own) for j, other in values.items() if j != k)}
+    return {own for own in keys if not any(beats(other, own) for other in keys if other != own)}
 
 
 # --- advice -----------------------------------------------------------------------------------------------------------
@@ -202,25 +244,60 @@ def advice(a: Analysis) -> str:
             f"t = {number(a.growth.parted)} s on whatever the setting, so no setting follows it to the end; choose by looks, "
             f"by the energy drift and by time."
         )
-    same = [r for r in a.rated.values() if not own.error.below(r.error)]  # no worse within the spreads
-    cheapest = min(same, key=lambda r: r.seconds.middle)
-    better = [r for r in a.rated.values() if r.error.below(own.error) and r.error.middle <= 0.6 * own.error.middle]
-    says = f"The scene's own setting ({a.own}) is {_percent(own.error.middle)} off and takes {_seconds(own.seconds.middle)}"
-    if own.error.middle < 1e-6:
+    if math.isinf(a.doubt):
+        return f"The error of the scene's own setting ({a.own}) is not known: no other setting fits the time given; use --budget."
+    says = f"The scene's own setting ({a.own}) is {_off(a, own)} off and takes {_seconds(own.seconds.middle)}"
+    if a.off(own) < 1e-6:
         says += ": no setting makes a difference that could be seen"
+    elif against := worse(a):
+        what = "more cells" if against.contact == a.own.contact else "stiffer contact"
+        says += f"; {what} alone ({against}) makes it worse, as errors of the cells and of the contact have opposite signs"
     elif cause := _cause(a):
         says += f", most of the error from the {cause}" + lost(a, cause, ", which has")
-    if cheapest.seconds.below(own.seconds):
-        says += (
-            f"; {cheapest.point.setting} is as good in {_percent(cheapest.seconds.middle / own.seconds.middle, 2)} of the time"
-        )
-    if better and own.error.middle >= 1e-6:
-        next_ = min(better, key=lambda r: r.seconds.middle)
-        says += (
-            f"; {next_.point.setting} brings {_percent(next_.error.middle)} for "
-            f"{number(next_.seconds.middle / own.seconds.middle, 2)} times the time"
-        )
+    if same := as_good(a):
+        says += f"; {same.point.setting} is as good in {_percent(same.seconds.middle / own.seconds.middle, 2)} of the time"
+    if (next_ := better(a)) and a.off(own) >= 1e-6:
+        times = number(next_.seconds.middle / own.seconds.middle, 2)
+        says += f"; {next_.point.setting} brings {_off(a, next_)} for {times} times the time"
+    elif a.doubt > UNSURE * own.error.middle and a.off(own) >= 1e-6:
+        says += f"; how far others are off is no better known than to {_percent(a.doubt)}, by which the finest runs differ"
     return says + "."
+
+
+def _off(a: Analysis, rated: Rated) -> str:
+    """``2.1 ± 0.3 %``: the error of a point, and how well it is known."""
+    return off(rated.error.middle, a.doubt)
+
+
+def off(error: float, doubt: float) -> str:
+    """An error and how well it is known; ``up to 3 %`` where it may as well be none."""
+    if error < UNSURE * doubt:
+        return f"up to {_percent(error + doubt)}"
+    return f"{number(100 * error, 2)} ± {_percent(doubt, 1)}" if doubt > 0.01 * error else _percent(error)
+
+
+def as_good(a: Analysis) -> Rated | None:
+    """The cheapest point that is clearly cheaper than the own one and no worse, wherever within its doubt the truth is."""
+    own = a.rated[a.own.key]
+    same = (r for r in a.rated.values() if r.seconds.below(own.seconds) and a.as_good(r, own))
+    return min(same, key=lambda r: r.seconds.middle, default=None)
+
+
+def better(a: Analysis) -> Rated | None:
+    """The cheapest point that is clearly better than the own one, wherever within its doubt the truth is."""
+    own = a.rated[a.own.key]
+    found = (r for r in a.rated.values() if a.better(r, own) and r.error.middle <= 0.6 * own.error.middle)
+    return min(found, key=lambda r: r.seconds.middle, default=None)
+
+
+def worse(a: Analysis) -> Setting | None:
+    """The finest setting of a single ladder that is farther from the truth than the own one, wherever that is: errors cancel."""
+    own = a.rated[a.own.key]
+    for name in ("contact", "resolution") if ALL in a.ladders else ():
+        finest = a.measured.get(name, (a.own,))[-1]
+        if finest != a.own and a.better(own, a.rated[finest.key]):
+            return finest
+    return None
 
 
 def lost(a: Analysis, name: str, begin: str) -> str:
@@ -235,7 +312,8 @@ def lost(a: Analysis, name: str, begin: str) -> str:
 def _cause(a: Analysis) -> str:
     """The ladder whose limit is farthest from the scene's own run, or may be, if it is more than half of all."""
     track = a.rated[a.own.key].point.tracks[0]
-    shares = {name: math.hypot(distance(track, c.limit) / a.scale, c.doubt) for name, c in a.ladders.items()}
+    single = {name: c for name, c in a.ladders.items() if name != ALL}
+    shares = {name: math.hypot(distance(track, c.limit) / a.scale, c.doubt) for name, c in single.items()}
     total = sum(shares.values())
     name = max(shares, key=shares.get, default="")
     return name if total and shares[name] > 0.5 * total else ""

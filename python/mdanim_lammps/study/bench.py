@@ -63,10 +63,13 @@ class Bench:
         steps *= math.sqrt((1.0 + PRESSED * setting.contact) / (1.0 + PRESSED * self.own.contact))
         return steps * (setting.cells / self.own.cells) ** 3
 
-    def measure_all(self, wanted: Sequence[Setting]) -> dict[Setting, str]:
-        """Measure what is not measured yet, then repeat; returns what was left out and why."""
+    def measure_all(self, wanted: Sequence[Setting], first: Sequence[Setting] = ()) -> dict[Setting, str]:
+        """Measure what is not measured yet, then repeat; returns what was left out and why.
+
+        ``first`` are settings of which the limit is made that all others are compared with: these are measured before others.
+        """
         left = {}
-        for setting in sorted(wanted, key=self._work):
+        for setting in sorted(wanted, key=lambda s: (s not in first, self._work(s))):
             if self._has(setting):
                 continue
             # All others are compared with the scene's own setting: time is reserved for that setting, and for repeats.

@@ -23,6 +23,8 @@ PARTS = 60
 """Ends of a run that are tried to find out up to when it has an order."""
 PART = 0.01
 """Two runs have diverged once they differ by this share of the extent."""
+HALF_AS_FINE = 2.0
+"""A finest run without a limit is doubted by its distance from the runs at least half as fine: at order 1 that is its error."""
 
 
 def extent(track: np.ndarray) -> float:
@@ -61,7 +63,8 @@ class Convergence:
     why: str = ""
     """Why there is no order."""
     doubt: float = 0.0
-    """How far the limit itself may be off: without an order, as far as the finest run is from the one before it."""
+    """How far the limit itself may be off, relative to the extent: as far as it is from the finest run; without an order, as
+    far as the finest run is from any run at least half as fine."""
 
 
 def converge(steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float) -> Convergence:
@@ -82,9 +85,10 @@ def converge(steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float)
     if scale == 0.0:
         return Convergence(tracks[-1], (0.0,) * len(tracks), None, why="nothing moves")
     plain = [distance(t, tracks[-1]) / scale for t in tracks[:-1]]
+    near = [off for off, step in zip(plain, steps) if step <= 1.001 * HALF_AS_FINE * steps[-1]] or plain[-1:]
 
     def no_order(why: str) -> Convergence:
-        return Convergence(tracks[-1], (*plain, math.nan), None, why=why, doubt=plain[-1])
+        return Convergence(tracks[-1], (*plain, math.nan), None, why=why, doubt=max(near))
 
     if max(plain) < ROUND_OFF:
         return Convergence(tracks[-1], (*plain, 0.0), None, why="all runs agree to round-off")
@@ -108,7 +112,7 @@ def converge(steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float)
         order = 0.5 * (order + found)
     else:
         return no_order("errors follow no power of the step")
-    return Convergence(limit, tuple(map(float, errors)), found, used=len(tracks) - 1 - first)
+    return Convergence(limit, tuple(map(float, errors)), found, used=len(tracks) - 1 - first, doubt=float(errors[-1]))
 
 
 def order_until(
@@ -166,3 +170,20 @@ def growth(times: np.ndarray, a: np.ndarray, b: np.ndarray, scale: float) -> Gro
         return Growth(math.inf, parted)
     slope = float(np.polyfit(times[known], np.log(apart[known]), 1)[0])
     return Growth(1.0 / slope if slope > 0.0 else math.inf, parted)
+
+
+def difference(a: np.ndarray, b: np.ndarray, limit: np.ndarray, doubt: float) -> tuple[float, float]:
+    """Least and most of the error of ``a`` less that of ``b`` [m], over all truths within ``doubt`` [m] of ``limit``.
+
+    Both errors are distances from the same truth, so their difference is far better known than each. It depends on where the
+    truth is along the line from a to b and how far from that line: a plane with a disk of truths.
+    """
+    apart, to_a, to_b = distance(a, b), distance(a, limit), distance(b, limit)
+    if not math.isfinite(doubt) or apart == 0.0:
+        return -apart, apart
+    along = (apart**2 + to_a**2 - to_b**2) / (2.0 * apart)
+    aside = math.sqrt(max(to_a**2 - along**2, 0.0))
+    radius, angle = np.meshgrid(np.linspace(0.0, doubt, 17), np.linspace(0.0, 2.0 * np.pi, 96))
+    x, y = along + radius * np.cos(angle), aside + radius * np.sin(angle)
+    found = np.hypot(x, y) - np.hypot(x - apart, y)
+    return float(found.min()), float(found.max())

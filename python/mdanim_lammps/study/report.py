@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 from ..picture.plot import own_style
 from ..results.files import write_whole
 from ..scene.formatting import number, say
-from .analysis import Rated, lost
+from .analysis import Rated, lost, off
 from .error import ROUND_OFF, distance
+from .setting import ALL
 from .store import Store
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
     from .study import Study
 
-COLORS = {"time step": "#1f77b4", "resolution": "#d62728", "sweeps": "#2ca02c", "contact": "#9467bd"}
+COLORS = {"time step": "#1f77b4", "resolution": "#d62728", "sweeps": "#2ca02c", "contact": "#9467bd", ALL: "#444444"}
 
 
 def write_report(study: Study, store: Store, budget: float) -> None:
@@ -32,6 +33,8 @@ def write_report(study: Study, store: Store, budget: float) -> None:
             "budget": budget,
             "own": a.own.key,
             "extent": a.scale,
+            "doubt": _finite(a.doubt),
+            "finest": a.finest.key,
             "chaotic": a.chaotic,
             "advice": study.advice,
             "left_out": study.left_out,
@@ -123,7 +126,7 @@ def table(study: Study) -> Table:
             "contact": f"{s.contact:g}" if touched else None,
             "particles": f"{r.point.particles}",
             "seconds": _spread(r.seconds.middle, r.seconds.spread, len(r.point.seconds)),
-            "error": f"{number(100 * r.error.middle)} %",
+            "error": off(r.error.middle, a.doubt),
             "off expect": _off(r.closed) if closed else None,
             "energy drift": number(max(r.point.drift), 2),
             "sunk in": say(max(r.point.penetration), "m") if touched else None,
@@ -149,20 +152,23 @@ def _spread(middle: float, spread: float, runs: int) -> str:
 def order_lines(study: Study) -> list[str]:
     """One line per ladder: its order, or why it has none, or why it was left out."""
     lines = []
-    for name, c in study.analysis.ladders.items():
+    a = study.analysis
+    if math.isfinite(a.doubt) and a.scale:
+        lines.append(f"errors are against the limit of runs up to {a.finest}, which is known to {number(100 * a.doubt, 2)} %")
+    for name, c in a.ladders.items():
         own = distance(study.analysis.rated[study.analysis.own.key].point.tracks[0], c.limit) / (study.analysis.scale or 1.0)
         what = (
             f"order {c.order:.2f} from {c.used} runs and their limit"
             if c.order is not None
             else f"no order: {c.why}{lost(study.analysis, name, '; it has')}"
         )
-        off = f"; the scene's own setting is {number(100 * own, 2)} % off its limit" if own else ""
-        if c.doubt:
-            off += (
-                "; the limit is the finest run, taken to be as far off as it is from the run before it, "
+        told = f"; the scene's own setting is {number(100 * own, 2)} % off its limit" if own else ""
+        if c.doubt and c.order is None:
+            told += (
+                "; the limit is the finest run, taken to be as far off as it is from the runs half as fine, "
                 f"{number(100 * c.doubt, 2)} %"
             )
-        lines.append(f"{name}: {what}{off}")
+        lines.append(f"{name}: {what}{told}")
     g = study.analysis.growth
     if study.analysis.chaotic and math.isfinite(g.folding):
         lines.append(
@@ -185,11 +191,12 @@ def draw(study: Study, path: Path) -> None:
         xscale="log",
         yscale="log",
         xlabel="wall time of simulation [s]",
-        ylabel="error relative to the motion [%]",
+        ylabel="error relative to the motion, with its doubt [%]",
         title=f"{study.scene.name}: what accuracy costs",
     )
-    least = 0.5 * min((r.error.middle for r in a.rated.values() if r.error.middle > 0.0), default=1e-12)
-    place = {key: (r.seconds.middle, 100 * max(r.error.middle, least)) for key, r in a.rated.items()}
+    errors = {key: a.off(r) if math.isfinite(a.doubt) else 0.0 for key, r in a.rated.items()}
+    least = 0.5 * min((error for error in errors.values() if error > 0.0), default=1e-12)
+    place = {key: (r.seconds.middle, 100 * max(errors[key], least)) for key, r in a.rated.items()}
     for name, settings in a.measured.items():
         order = a.ladders[name].order
         label = name + (f" (order {order:.1f})" if order is not None else "")
@@ -200,6 +207,7 @@ def draw(study: Study, path: Path) -> None:
                 "resolution": f"{s.cells:g}",
                 "sweeps": f"{s.sweeps}",
                 "contact": f"{s.contact:g}",
+                ALL: f"{s.cells:g}",
             }[name]
             axes.annotate(
                 text,

@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import hashlib
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from .. import __version__
 from ..certificate import fit_steps
 from ..model.spacing import choose_spacing
 from ..run.prepare import Prepared, prepare
+from ..scene.formatting import number
 from ..scene.limits import CONTACT_STIFFNESS
 from ..scene.lock import lock_text
 from ..scene.meshes import mesh_files
@@ -18,6 +20,10 @@ from ..scene.render import Render
 from ..scene.scene import Accuracy, LiquidModel, Save, SceneRecord
 
 LADDERS = ("time step", "resolution", "sweeps", "contact")
+ALL = "all"
+"""Ladder of settings that are finer in everything at once: errors of the cells and of the contact may have opposite signs."""
+FACTORS = (0.5, 0.75, 1.5, 2.0)
+"""Cells of the ladders over the scene's own."""
 LARGEST = 0.9
 """Largest time step of a ladder over the bound."""
 TOUCHING = ("contact", "ground", "walls")
@@ -62,7 +68,7 @@ class Ladder:
         match self.name:
             case "time step":
                 return setting.fraction
-            case "resolution":
+            case "resolution" | "all":
                 return 1.0 / setting.cells
             case "contact":
                 return setting.contact**-0.5  # a load goes with the square of the depth that it presses surfaces into each other
@@ -83,7 +89,7 @@ def own_setting(scene: SceneRecord, ready: Prepared) -> Setting:
     """The scene's own setting."""
     c = ready.certificate
     sweeps = scene.liquid.sweeps if scene.liquid else None
-    cells = round(thinnest(scene) / choose_spacing(scene)[0], 6)
+    cells = round(float(thinnest(scene) / choose_spacing(scene)[0]), 6)
     return Setting(cells, c.fraction if math.isfinite(c.bound) else 0.0, sweeps, scene.control.contact_stiffness)
 
 
@@ -127,7 +133,7 @@ def ladders(scene: SceneRecord, ready: Prepared, own: Setting) -> tuple[list[Lad
     else:
         left["time step"] = "nothing in the scene vibrates, every step is stable"
     n = own.cells
-    cells = sorted({n, *(max(1, round(n * x)) for x in (0.5, 0.75, 1.5, 2.0))})
+    cells = sorted({n, *(float(max(1, round(n * x))) for x in FACTORS)})
     cells = [c for c in cells if c == n or abs(c - n) >= 0.5]
     out.append(Ladder("resolution", tuple(replace(own, cells=c) for c in cells)))
     if ready.plan.grid is not None and scene.liquid.model is not LiquidModel.WAVES:
@@ -142,6 +148,24 @@ def ladders(scene: SceneRecord, ready: Prepared, own: Setting) -> tuple[list[Lad
     else:
         left["contact"] = f"nothing touches: {ready.verdicts['contact'].reason}, and there is neither ground nor walls"
     return out, left
+
+
+def finer(own: Setting, cells: float) -> Setting:
+    """A setting with other cells across, and contact that sinks in less by as much as the spacing is smaller.
+
+    The depth goes with 1/√stiffness. The time step stays the same share of its bound, which falls with both.
+    """
+    contact = own.contact * (cells / own.cells) ** 2
+    contact = min(max(contact, CONTACT_STIFFNESS.least), CONTACT_STIFFNESS.most)
+    return replace(own, cells=cells, contact=float(number(contact, 6)))
+
+
+def together(own: Setting, found: Sequence[Ladder]) -> Ladder | None:
+    """The ladder of settings that are finer in everything; None where one of the ladders that there are is that already."""
+    cells = next((ladder for ladder in found if ladder.name == "resolution"), None)
+    if cells is None or not any(ladder.name == "contact" for ladder in found):
+        return None
+    return Ladder(ALL, tuple(finer(own, s.cells) for s in cells.settings))
 
 
 def scene_hash(scene: SceneRecord) -> str:

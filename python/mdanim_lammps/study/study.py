@@ -14,7 +14,7 @@ from ..scene.scene import SceneRecord
 from .analysis import Analysis, advice, analyse
 from .bench import BUDGET, Bench
 from .report import write_report
-from .setting import LADDERS, TOUCHING, Ladder, ladders, own_setting, scene_hash
+from .setting import LADDERS, TOUCHING, Ladder, ladders, own_setting, scene_hash, together
 from .store import Point, Store
 from .target import find_choice, store_choice, stored_choice, wanted, with_choice
 
@@ -78,8 +78,10 @@ def run_study(
     found = [ladder for ladder in found if not only or ladder.name in only]
     left = {name: why for name, why in left.items() if not only or name in only}
     bench = Bench(scene, ready, own, store, budget - (time.perf_counter() - start), on_progress)
+    joint = together(own, found)
+    found = ([joint] if joint else []) + found
     settings = list(dict.fromkeys([own, *(s for ladder in found for s in ladder.settings)]))
-    left |= {str(s): why for s, why in bench.measure_all(settings).items()}
+    left |= {str(s): why for s, why in bench.measure_all(settings, first=joint.settings if joint else ()).items()}
     point = store.points.get(own.key)
     if point is None:
         raise RefusedError(f"the scene's own setting ({own}) {left[str(own)]}; give it more with --budget")

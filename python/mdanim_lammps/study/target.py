@@ -18,7 +18,7 @@ from .analysis import Analysis, analyse
 from .bench import BUDGET, Bench
 from .error import ROUND_OFF, distance, extent
 from .measure import TooLong
-from .setting import Ladder, Setting, own_setting, scene_hash, thinnest
+from .setting import TOUCHING, Ladder, Setting, finer, own_setting, scene_hash, thinnest
 from .store import FILE, Store
 
 START = (2, 3, 4)
@@ -43,12 +43,16 @@ class Choice:
     """The target, a fraction."""
     cells: float
     fraction: float
+    contact: float
+    """``contact-stiffness``."""
     resolution: float
     """[m]"""
     timestep: float | None
     """[s]; None where nothing vibrates."""
     reached: float
     """Estimated error of this setting, a fraction."""
+    doubt: float
+    """How far the limit that the estimate is relative to may be off, a fraction."""
     closed: float | None
     """Largest error against the closed forms of the scene, a fraction; None without any."""
     seconds: float
@@ -60,11 +64,13 @@ class Choice:
         return max(self.reached, self.closed or 0.0) <= self.error
 
     def __str__(self) -> str:
-        got = f"estimated {number(100 * self.reached, 2)} %" + (
+        doubt = f" ± {number(100 * self.doubt, 1)}" if self.doubt > 0.01 * self.reached else ""
+        got = f"estimated {number(100 * self.reached, 2)}{doubt} %" + (
             "" if (self.closed or 0.0) < ROUND_OFF else f", closed form {number(100 * self.closed, 2)} %"
         )
         step = f", time step {say(self.timestep, 's')}" if self.timestep else ""
-        return f"{self.cells:g} cells across{step} ({got})"
+        contact = f", contact-stiffness {number(self.contact)}" if self.contact != 1.0 else ""
+        return f"{self.cells:g} cells across{step}{contact} ({got})"
 
 
 def wanted(scene: SceneRecord) -> bool:
@@ -106,6 +112,7 @@ def with_choice(scene: SceneRecord, choice: Choice) -> SceneRecord:
             c,
             resolution=c.resolution if c.resolution is not None else choice.resolution,
             timestep=c.timestep if c.timestep is not None else choice.timestep,
+            contact_stiffness=choice.contact,
         ),
     )
 
@@ -125,7 +132,8 @@ def find_choice(
 ) -> Choice:
     """Measure until a setting meets the target of ``accuracy error p %``, or the budget is spent.
 
-    The resolution is refined from 2 cells on; each next number of cells follows from the order seen so far. The time step is
+    The resolution is refined from 2 cells on, and contact gets stiffer with it where objects touch and the scene does not say how
+    stiff it is (`setting.finer`); each next number of cells follows from the order seen so far. The time step is
     the largest one of the accuracy classes whose own error stays below a quarter of the target. The error is that of
     docs/accuracy.md, and where the scene states closed forms at least as sharp as the target, these must be met too.
 
@@ -213,6 +221,8 @@ class _Search:
         self.own = own_setting(scene, self.ready)
         self.bench = Bench(scene, self.ready, self.own, store, budget, on_progress)
         self.name = "resolution" if scene.control.resolution is None else "time step"
+        said = self.own.contact != 1.0 or "contact-stiffness" in scene.control.spans
+        self.stiffens = not said and any(self.ready.verdicts[name].on for name in TOUCHING)
         self.step_error = 0.0  # of the time step at START[0] cells, relative to the extent
 
     def go(self) -> Choice:
@@ -231,9 +241,11 @@ class _Search:
             self.target,
             best.cells,
             best.fraction,
+            best.contact,
             thinnest(self.scene) / best.cells,
             point.timestep if best.fraction else None,
-            a.rated[best.key].error.middle + self._from_step(best),
+            self._estimated(a, best),
+            a.doubt,
             a.rated[best.key].closed,
             a.rated[best.key].seconds.middle,
         )
@@ -241,11 +253,15 @@ class _Search:
     def _first(self) -> list[Setting]:
         """The settings that are measured in any case."""
         if not self.own.fraction:
-            return [replace(self.own, cells=n) for n in START]
+            return [self._with(self.own, n) for n in START]
         if self.name == "time step":
             return [replace(self.own, fraction=Accuracy.PREVIEW.fraction / x) for x in (1.0, 2.0**0.5, 2.0)]
         fraction = self._fraction() if self.scene.control.timestep is None else self.own.fraction
-        return [replace(self.own, cells=n, fraction=fraction) for n in START]
+        return [self._with(replace(self.own, fraction=fraction), n) for n in START]
+
+    def _with(self, setting: Setting, cells: float) -> Setting:
+        """A setting with other cells across, and contact as stiff as goes with them."""
+        return finer(setting, cells) if self.stiffens else replace(setting, cells=cells)
 
     def _fraction(self) -> float:
         """The largest time step of the accuracy classes whose error takes no more than its share of the target.
@@ -254,7 +270,7 @@ class _Search:
         difference. With more cells the step, and its error, are smaller.
         """
         longest = Accuracy.PREVIEW.fraction
-        long, short = (replace(self.own, cells=START[0], fraction=f) for f in (longest, longest / 2.0))
+        long, short = (replace(self._with(self.own, START[0]), fraction=f) for f in (longest, longest / 2.0))
         if not (self._run(long) and self._run(short)):
             return Accuracy.REFERENCE.fraction
         a, b = (self.store.points[s.key].tracks[0] for s in (long, short))
@@ -285,7 +301,7 @@ class _Search:
             value = self._between(a, coarser[-1], meeting)
             if value > LARGEST_NEXT * self._value(meeting):
                 return None
-        return replace(known[-1], cells=value) if self.name == "resolution" else replace(known[-1], fraction=1.0 / value)
+        return self._with(known[-1], value) if self.name == "resolution" else replace(known[-1], fraction=1.0 / value)
 
     def _between(self, a: Analysis, failing: Setting, meeting: Setting) -> float:
         """The coarsest value between two settings whose predicted error meets the target, by the power law through both."""
@@ -305,8 +321,13 @@ class _Search:
 
     def _error(self, a: Analysis, setting: Setting) -> float:
         """Error that counts against the target."""
+        return max(self._estimated(a, setting), a.rated[setting.key].closed or 0.0)
+
+    def _estimated(self, a: Analysis, setting: Setting) -> float:
+        """Distance from the limit; where runs have no order, with how far the limit may be off, so that finer ones are made."""
         rated = a.rated[setting.key]
-        return max(rated.error.middle + self._from_step(setting), rated.closed or 0.0)
+        error = rated.error.middle if a.ladders[self.name].order is not None else a.off(rated)
+        return error + self._from_step(setting)
 
     def _analyse(self, done: list[Setting]) -> Analysis:
         settings = tuple(sorted(done, key=self._value))

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Advice of studies and settings for a target, beside runs that are finer in everything."""
+
+import sys
+from dataclasses import replace
+
+import pytest
+from mdanim_lammps.scene.parse import parse_scene
+from mdanim_lammps.study import bench
+from mdanim_lammps.study.error import distance, extent
+from mdanim_lammps.study.measure import measure
+from mdanim_lammps.study.setting import Setting, finer
+from mdanim_lammps.study.target import find_choice
+from paths import REPOSITORY
+
+sys.path.append(str(REPOSITORY / "bench"))
+from advice import SCENES, check
+
+
+def test_advice_on_a_bounce_is_not_refuted(monkeypatch):
+    """Errors of cells and contact have opposite signs where a cube bounces: a study that adds the limits of its ladders says
+    that the own setting is half as far off as it is, and that stiffer contact helps."""
+    monkeypatch.setattr(bench, "REPEATS", 1)
+    found = check("a bounce", only=("resolution", "contact"))
+    assert found.refuted == []
+    assert found.doubt < 0.5 * next(told for setting, (told, _) in found.errors.items() if setting.startswith("4 cells, 0.50"))
+    assert "opposite signs" in found.advice
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("name", SCENES)
+def test_advice_is_not_refuted(name):
+    """Run ten scenes finer in everything than any run of their studies."""
+    assert check(name).refuted == []
+
+
+def test_a_target_counts_cells_and_contact(tmp_path):
+    """Find a setting for 10 % that is as far as told from a run with twice its cells; more cells alone are farther off."""
+    scene = parse_scene(SCENES["a bounce"].replace("frames 50 fps", 'frames 50 fps  accuracy "error 10 %"'))
+    choice = find_choice(scene, budget=60.0)
+    assert choice.met and choice.cells > 2
+    own = Setting(choice.cells, choice.fraction, None, choice.contact)
+    run, truth, alone = (
+        measure(scene, s, tmp_path).center for s in (own, finer(own, 2.0 * own.cells), replace(own, cells=8.0, contact=1.0))
+    )
+    off = distance(run, truth) / extent(truth)
+    assert abs(off - choice.reached) <= choice.doubt
+    assert off < 0.1 < distance(alone, truth) / extent(truth)
