@@ -69,6 +69,18 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
   sort_points();
 }
 
+bool ContactBody::operator==(const ContactBody &other) const
+{
+  const auto same = [](const Vec3 &a, const Vec3 &b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
+  const auto same_points = [&](const SurfacePoint &a, const SurfacePoint &b) {
+    return std::equal(a.cell, a.cell + 3, b.cell) && same(a.at, b.at) && same(a.centre, b.centre) && same(a.normal, b.normal) &&
+           a.area == b.area && a.kind == b.kind;
+  };
+  return std::equal(cells, cells + 3, other.cells) && std::equal(edges, edges + 3, other.edges) &&
+         place_of_node == other.place_of_node && filled == other.filled && depth_grid == other.depth_grid &&
+         std::equal(surface.begin(), surface.end(), other.surface.begin(), other.surface.end(), same_points);
+}
+
 void ContactBody::sort_points()
 {
   const auto low_corner = [this](int p) { return place(surface[p].cell[0], surface[p].cell[1], surface[p].cell[2]); };

@@ -53,6 +53,7 @@ class ContactBody {
   // Throws std::runtime_error when the arrays are not those of a body.
   explicit ContactBody(const ContactBodyArrays &arrays);
 
+  bool operator==(const ContactBody &other) const;    // the same arrays
   bool is_cuboid() const { return depth_grid.empty(); }
   int sides() const { return is_cuboid() ? 6 : 1; }
   int count(int axis) const { return cells[axis]; }

@@ -20,6 +20,8 @@ class ContactField {
  public:
   ContactField(ContactObject &owner, ContactObject &host, const ContactLaw &law) : owner(&owner), host(&host), law(law) {}
 
+  void use(const ContactLaw &now) { law = now; }
+
   static constexpr double STRETCHED = 2.0;    // the most that cells are taken to be, over their undeformed size
   // How far a point may be outside of its host's particles in contact.
   static double stands_out(const ContactBody &owner, const ContactBody &host);

@@ -24,10 +24,11 @@ class LateOuterCells;
 
 struct ContactObject {
   int id;    // ascending in the order of the scene
-  const ContactBody *body;
-  double young;       // [force/distance^2]
-  double friction;    // mu
-  double density;     // of the lattice [force time^2/distance^4]: what makes a force of an acceleration, over the volume
+  std::shared_ptr<const ContactBody> body;
+  double young;              // [force/distance^2]
+  double friction;           // mu
+  double density;            // of the lattice [force time^2/distance^4]: what makes a force of an acceleration, over the volume
+  std::int64_t first_tag;    // of its particles
 
   std::vector<int>
       slot;    // of its particles by their places in the grid, in the arrays of ContactWorld; -1 for what is not there
@@ -36,6 +37,10 @@ struct ContactObject {
   Vec3 way;                                 // of its first particle in this step
   double stir = 0.0;                        // the most that a point has gone otherwise in this step
   bool is_pushed = false;                   // in the last step, by contacts
+
+  // Whether contacts of the other one, of the same id, are of the same points.
+  bool has_points_of(const ContactObject &other) const
+  { return first_tag == other.first_tag && (body == other.body || *body == *other.body); }
 };
 
 // What contacts did in a step, and since the beginning.

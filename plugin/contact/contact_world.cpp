@@ -18,52 +18,9 @@ static constexpr double CARRIED = 2.25;          // spacings that a particle may
 static constexpr double AT_A_PLANE = 0.75;       // of the skin: half for particles, and for points outside of cells half of that
 static constexpr double BETWEEN_POINTS = 0.6;    // spacings by which a round surface may stand out of its points
 static constexpr double MOST_SKINS = 32.0;
-static constexpr double ONSET = 0.05;    // eps over the spacing
 // When lists are made, and of a particle when it moves; about.
 static constexpr double NS_OF_OBJECT = 5e3, NS_OF_FIELD = 5e3, NS_OF_PARTICLE = 8.0;
 static constexpr int FIELD_COST = 20;    // of one without points
-static constexpr double ALONE = 2.0;     // stiffness where only the dense points of one act, over that of points of both
-
-void ContactWorld::take(std::vector<ContactObject> now, std::vector<char> moves)
-{
-  for (ContactObject &one : all) clear_forces(one);    // the new ones know nothing of them
-  all = std::move(now);
-  movable = std::move(moves);
-  number_of.clear();
-  widest = 0.0;
-  for (std::size_t n = 0; n < all.size(); ++n) {
-    number_of[all[n].id] = static_cast<int>(n);
-    widest = std::max({widest, ContactField::stands_out(*all[n].body, *all[n].body), 1.2 * all[n].body->spacing()});
-  }
-}
-
-// --- laws ---
-
-ContactLaw ContactWorld::law(const ContactObject &owner, double kappa, double friction, double damping) const
-{
-  const double h = owner.body->spacing();
-  return {kappa, ONSET * h, friction, damping > 0.0 ? 2.0 * damping * std::sqrt(0.5 * kappa * owner.density * h) / kappa : 0.0};
-}
-
-ContactWorld::Both ContactWorld::new_pair(int a, int b)
-{
-  ContactObject &lower = all[a], &higher = all[b];
-  const double h = std::max(lower.body->spacing(), higher.body->spacing());
-  const bool both = lower.body->is_cuboid() == higher.body->is_cuboid();
-  const double kappa =
-      (both ? 1.0 : ALONE) * settings.stiffness * 2.0 * lower.young * higher.young / (lower.young + higher.young) / h;
-  double friction = std::sqrt(lower.friction * higher.friction), damping = friction > 0.0 ? settings.damping : 0.0;
-  if (const auto own = settings.pairs.find({lower.id, higher.id}); own != settings.pairs.end())
-    friction = own->second.friction, damping = own->second.damping;
-  return {{lower, higher, law(lower, kappa, friction, damping)}, {higher, lower, law(higher, kappa, friction, damping)}};
-}
-
-PlaneField ContactWorld::new_plane(int n, int plane)
-{
-  ContactObject &one = all[n];
-  const double kappa = (one.body->is_cuboid() ? 1.0 : ALONE) * settings.stiffness * one.young / one.body->spacing();
-  return {one, plane, settings.planes[plane], law(one, kappa, one.friction, one.friction > 0.0 ? settings.damping : 0.0)};
-}
 
 // --- lists ---
 
@@ -247,6 +204,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
   }
   plane_fields = std::move(kept_planes);
   find_points();
+  listed = true;
 }
 
 // Of all fields, those that may come in. Objects and fields do not depend on each other here.
@@ -426,6 +384,7 @@ ContactWorld::PlaneContacts ContactWorld::plane_contacts() const
 
 void ContactWorld::restore(const PairContacts &pairs, const PlaneContacts &planes)
 {
+  listed = false;
   active.clear(), costs.assign(1, 0);
   fields.clear();
   plane_fields.clear();

@@ -46,9 +46,15 @@ class ContactWorld {
  public:
   ContactSettings settings;
 
-  // Objects by ascending ids; `moves` tells those of which some particle can move. What is known of contacts stays with their
-  // ids.
+  // Objects by ascending ids; `moves` tells those of which some particle can move. Contacts stay with the ids of their objects
+  // and get the law of the materials of now; those of an object that has another body or other particles end. To be followed by
+  // list().
   void take(std::vector<ContactObject> now, std::vector<char> moves);
+  const ContactObject *with_id(int id) const;    // null for none
+  // The first of these objects that has contacts of another body or of other particles; null for none.
+  const ContactObject *misfit(const std::vector<ContactObject> &now) const;
+  // Whether lists are those of the objects that were taken.
+  bool is_listed() const { return listed; }
   int objects() const { return static_cast<int>(all.size()); }
   const ContactObject &object(int n) const { return all[n]; }
 
@@ -132,6 +138,12 @@ class ContactWorld {
   double range(int a, int b) const;
   void find_sights();
   ContactLaw law(const ContactObject &owner, double kappa, double friction, double damping) const;
+  struct LawsOfPair {
+    ContactLaw lower, higher;
+  };
+  LawsOfPair laws_of_pair(int a, int b) const;
+  ContactLaw law_at_plane(int n) const;
+  void renew_laws();
   Both new_pair(int a, int b);
   PlaneField new_plane(int n, int plane);
   bool can_touch(int a, int b) const { return movable[a] || movable[b]; }
@@ -149,6 +161,7 @@ class ContactWorld {
   std::vector<char> movable;
   std::map<int, int> number_of;    // of ids
   double skin = 0.0, widest = 0.0, apart = 0.0;
+  bool listed = false;
   std::vector<NearPair> near_pairs;
   std::vector<std::pair<int, int>> near_planes;              // object and plane
   std::vector<std::vector<Sight>> sights;                    // of each object

@@ -44,6 +44,7 @@ class PlaneField {
   }
 
   // As those of ContactField.
+  void use(const ContactLaw &now) { law = now; }
   void list(ContactObject &points_of, const PointFinder &finder, const ContactArrays &arrays, double reach);
   void forget();
   void settle(const ContactArrays &arrays);

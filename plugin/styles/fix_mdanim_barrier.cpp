@@ -17,7 +17,6 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
-#include "group.h"
 #include "neighbor.h"
 #include "update.h"
 #include "utils.h"
@@ -31,6 +30,7 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
+static const char *const STYLE = "fix mdanim/barrier";
 static constexpr double MOST_SKINS = 64.0;    // that are looked ahead where objects are apart
 
 // --- the command ---
@@ -51,8 +51,8 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
   filter = &widest_kernels().pair_filter;
 
   need_words(lmp, "fix mdanim/barrier", "fix ID group mdanim/barrier", "BOUNDARY BARRIER k rc", narg - 3);
-  boundary_bit = group_bit(3, arg[3]);
-  barrier_bit = group_bit(4, arg[4]);
+  boundary = NamedGroup(lmp, STYLE, 3, arg[3]);
+  barrier = NamedGroup(lmp, STYLE, 4, arg[4]);
   stiffness = ParticleValue(lmp, "fix mdanim/barrier: k", 5, arg[5]);
   reach = ParticleValue(lmp, "fix mdanim/barrier: rc", 6, arg[6]);
 
@@ -60,7 +60,7 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
     static const std::vector<Keyword> known = {{"thin", "GROUP ratio"}, {"damp", "gn"}, {"power", "2|3"}};
     const int words = words_of_keyword(lmp, "fix mdanim/barrier", known, iarg, narg, arg);
     if (strcmp(arg[iarg], "thin") == 0) {
-      thin_bit = group_bit(iarg + 1, arg[iarg + 1]);
+      thin = NamedGroup(lmp, STYLE, iarg + 1, arg[iarg + 1]);
       thin_ratio = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
       if (!(thin_ratio > 0.0)) error->all(FLERR, iarg + 2, "fix mdanim/barrier: thin ratio must be > 0, got {}", arg[iarg + 2]);
     } else if (strcmp(arg[iarg], "damp") == 0) {
@@ -75,13 +75,6 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
   }
 }
 
-int FixMdanimBarrier::group_bit(int iarg, const char *word)
-{
-  const int index = group->find(word);
-  if (index < 0) error->all(FLERR, iarg, "fix mdanim/barrier: there is no group {}; make it before this fix", word);
-  return group->bitmask[index];
-}
-
 int FixMdanimBarrier::setmask() { return POST_NEIGHBOR | POST_FORCE; }
 
 void FixMdanimBarrier::init()
@@ -93,13 +86,7 @@ void FixMdanimBarrier::init()
     refuse("damp needs the velocities of particles of other ranks; use 'comm_modify vel yes'");
   stiffness.init(lmp);
   reach.init(lmp);
-
-  for (int i = 0; i < atom->nlocal; ++i)
-    if (role(i) != NONE && atom->molecule[i] <= 0)
-      error->one(
-          FLERR,
-          "fix {} mdanim/barrier: particle {} belongs to no object, its molecule ID is {}; give it one > 0 ('set group … mol …')",
-          id, atom->tag[i], atom->molecule[i]);
+  for (NamedGroup *one : {&boundary, &barrier, &thin}) one->init(lmp);
 }
 
 // --- candidates, when LAMMPS rebuilds ---
@@ -107,8 +94,8 @@ void FixMdanimBarrier::init()
 int FixMdanimBarrier::role(int i) const
 {
   const int mask = atom->mask[i];
-  if (mask & boundary_bit) return mask & thin_bit ? BOUNDARY | THIN : BOUNDARY;
-  return mask & barrier_bit ? BARRIER : NONE;
+  if (mask & boundary.bit()) return mask & thin.bit() ? BOUNDARY | THIN : BOUNDARY;
+  return mask & barrier.bit() ? BARRIER : NONE;
 }
 
 void FixMdanimBarrier::setup_post_neighbor() { post_neighbor(); }
@@ -156,7 +143,10 @@ std::vector<tagint> FixMdanimBarrier::find_objects() const
   };
   std::vector<tagint> here;
   for (int i = 0; i < atom->nlocal; ++i)
-    if (role(i) != NONE && (here.empty() || here.back() != atom->molecule[i])) here.push_back(atom->molecule[i]);
+    if (role(i) != NONE && (here.empty() || here.back() != atom->molecule[i])) {
+      need_object(this, lmp, i);
+      here.push_back(atom->molecule[i]);
+    }
   make_unique(here);
   std::vector<tagint> all = gather(world, here);
   make_unique(all);
@@ -184,7 +174,7 @@ double FixMdanimBarrier::survey(std::vector<Box> &boxes)
   MPI_Allreduce(&reach_here, &longest, 1, MPI_DOUBLE, MPI_MAX, world);
   boxes.resize(here.size());
   MPI_Allreduce(here.data(), boxes.data(), 6 * static_cast<int>(here.size()), MPI_DOUBLE, MPI_MIN, world);
-  return thin_bit ? std::max(1.0, thin_ratio) * longest : longest;
+  return thin.given() ? std::max(1.0, thin_ratio) * longest : longest;
 }
 
 // Whether this rank adds forces to a particle.

@@ -10,6 +10,7 @@
 #include "engine/pass_participant.h"
 #include "fix.h"
 #include "laws/vec3.h"
+#include "styles/named_group.h"
 #include "styles/particle_value.h"
 
 #include <vector>
@@ -50,7 +51,6 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
     double share;    // of the pair that this rank counts: 1/2 for each end that it moves, 1 if the other end is never moved
   };
 
-  int group_bit(int iarg, const char *word);
   int role(int i) const;
   std::vector<tagint> find_objects() const;
   double survey(std::vector<mdanim::Box> &boxes);
@@ -63,7 +63,7 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
   bool moves(int i) const;
   double sum(double here);
 
-  int boundary_bit = 0, barrier_bit = 0, thin_bit = 0;
+  mdanim::NamedGroup boundary, barrier, thin;
   double thin_ratio = 0.0, damping = 0.0;
   int power = 3;
   mdanim::ParticleValue stiffness, reach;

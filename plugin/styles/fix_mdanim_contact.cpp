@@ -16,7 +16,6 @@
 #include "comm.h"
 #include "error.h"
 #include "force.h"
-#include "group.h"
 #include "neighbor.h"
 #include "update.h"
 #include "utils.h"
@@ -37,6 +36,7 @@ using namespace mdanim;
 static constexpr int LARGEST_FILE = 1 << 30;     // bytes
 static constexpr double NS_OF_PARTICLE = 4.0;    // about
 static constexpr double USUAL_DAMPING = 0.3;     // beta
+static const char *const LEFT_OUT = ", or leave it out by 'among GROUP'";
 
 // --- the command ---
 
@@ -113,10 +113,7 @@ int FixMdanimContact::read_word(int iarg, int narg, char **arg)
     return words;
   }
   if (is("among")) {
-    const int index = group->find(arg[iarg + 1]);
-    if (index < 0)
-      error->all(FLERR, iarg + 1, "fix mdanim/contact: there is no group {}; make it before this fix", arg[iarg + 1]);
-    among_bit = group->bitmask[index];
+    among = NamedGroup(lmp, "fix mdanim/contact", iarg + 1, arg[iarg + 1]);
     return words;
   }
   read_bodies_of(arg[iarg + 1]);
@@ -142,7 +139,7 @@ void FixMdanimContact::read_bodies_of(const char *file)
   text.resize(bytes);
   MPI_Bcast(text.data(), bytes, MPI_CHAR, 0, world);
   try {
-    bodies = read_bodies(file, text);
+    for (auto &[number, body] : read_bodies(file, text)) bodies[number] = std::make_shared<const ContactBody>(std::move(body));
   } catch (const std::exception &problem) {
     error->all(FLERR, "fix mdanim/contact: {}", problem.what());
   }
@@ -151,16 +148,19 @@ void FixMdanimContact::read_bodies_of(const char *file)
 int FixMdanimContact::setmask() { return POST_NEIGHBOR | POST_FORCE; }
 
 void FixMdanimContact::take_body(int number, const ContactBodyArrays &arrays)
-{ bodies.insert_or_assign(number, ContactBody(arrays)); }
+{ bodies[number] = std::make_shared<const ContactBody>(arrays); }
 
 void FixMdanimContact::init()
 {
   need_objects_in_open_box(this, lmp, "surfaces may meet");
+  among.init(lmp);
   threads_now = Threads();
   world_of_contact.use(nullptr, threads_now);    // until passes tell those of their instructions
 }
 
 // --- objects ---
+
+bool FixMdanimContact::is_among(int i) const { return !among.given() || atom->mask[i] & among.bit(); }
 
 // Of the objects that are here, by ascending IDs; the same on all ranks.
 std::vector<FixMdanimContact::SurveyedObject> FixMdanimContact::survey() const
@@ -168,7 +168,8 @@ std::vector<FixMdanimContact::SurveyedObject> FixMdanimContact::survey() const
   const double *kinds = kind.values(lmp), *youngs = young.values(lmp), *frictions = friction.values(lmp);
   std::map<int, SurveyedObject> here;
   for (int i = 0; i < atom->nlocal; ++i) {
-    if (!(atom->mask[i] & among_bit) || atom->molecule[i] <= 0) continue;
+    if (!is_among(i)) continue;
+    need_object(this, lmp, i, LEFT_OUT);
     const int object_id = static_cast<int>(atom->molecule[i]);
     SurveyedObject &one = here.emplace(object_id, SurveyedObject{object_id, 0, MAXTAGINT, 0, 0, 0, 0, 0}).first->second;
     ++one.particles;
@@ -195,7 +196,7 @@ std::vector<FixMdanimContact::SurveyedObject> FixMdanimContact::survey() const
   return all;
 }
 
-void FixMdanimContact::take_objects()
+void FixMdanimContact::take_objects(Contacts contacts)
 {
   kind.init(lmp);
   young.init(lmp);
@@ -208,7 +209,7 @@ void FixMdanimContact::take_objects()
     if (found == bodies.end())
       error->all(FLERR, "fix {} mdanim/contact: object {} (molecule ID) has body {}, and no such body was given", id, one.id,
                  one.kind);
-    const ContactBody &body = found->second;
+    const ContactBody &body = *found->second;
     if (one.particles != body.particles())
       error->all(FLERR, "fix {} mdanim/contact: object {} (molecule ID) has {} particles, its body {} has {}", id, one.id,
                  one.particles, one.kind, body.particles());
@@ -217,20 +218,43 @@ void FixMdanimContact::take_objects()
                  one.id, one.young, one.friction);
     const double volume = body.edge(0) * body.edge(1) * body.edge(2);
     const double inertia = one.mass / force->ftm2v;    // that makes a force of an acceleration
-    objects.push_back(
-        {one.id, &body, one.young, one.friction, inertia / (volume * body.cells_around(0) / 8.0), {}, 0, 0, {}, {}, 0.0, false});
+    const double density = inertia / (volume * body.cells_around(0) / 8.0);
+    objects.push_back({one.id, found->second, one.young, one.friction, density, one.lowest, {}, 0, 0, {}, {}, 0.0, false});
     moves.push_back(static_cast<char>(one.moves));
     ids.push_back(one.id);
     lowest.push_back(one.lowest);
   }
+  if (contacts == Contacts::STAY)
+    if (const ContactObject *one = world_of_contact.misfit(objects))
+      error->all(FLERR,
+                 "fix {} mdanim/contact: object {} (molecule ID) has {} than in the last run, and touches others: what contacts "
+                 "remember does not fit; 'unfix' the fix and define it anew",
+                 id, one->id,
+                 one->first_tag != world_of_contact.with_id(one->id)->first_tag ? "other particles" : "another body");
   world_of_contact.take(std::move(objects), std::move(moves));
+}
+
+// Of an object, by its molecule ID; -1 for one that was not there at the setup.
+int FixMdanimContact::number_of(tagint molecule) const
+{
+  const auto found = std::lower_bound(ids.begin(), ids.end(), molecule);
+  return found != ids.end() && *found == molecule ? static_cast<int>(found - ids.begin()) : -1;
+}
+
+void FixMdanimContact::refuse_new_object(int i) const
+{
+  need_object(this, lmp, i, LEFT_OUT);
+  error->one(FLERR,
+             "fix {} mdanim/contact: object {} (molecule ID) has come since the setup of this run, with particle {}; let it come "
+             "between two runs, the second without 'pre no'{}",
+             id, atom->molecule[i], atom->tag[i], LEFT_OUT);
 }
 
 // --- lists, when LAMMPS rebuilds its own ---
 
 void FixMdanimContact::setup_post_neighbor()
 {
-  take_objects();
+  take_objects(Contacts::STAY);
   if (restarted) {
     try {
       unpack(StateRecords(*restarted));
@@ -252,10 +276,11 @@ void FixMdanimContact::list()
   object.assign(nlocal, -1);
   for (int i = 0; i < nlocal;) {
     const tagint molecule = atom->molecule[i];
-    const int one = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), molecule) - ids.begin());
+    const int one = number_of(molecule);
     Box box;
     for (; i < nlocal && atom->molecule[i] == molecule; ++i) {
-      if (!(atom->mask[i] & among_bit) || molecule <= 0) continue;
+      if (!is_among(i)) continue;
+      if (one < 0) refuse_new_object(i);
       object[i] = one;
       box.include(atom->x[i]);
     }
@@ -310,6 +335,13 @@ void FixMdanimContact::list()
 
 // --- forces ---
 
+void FixMdanimContact::need_lists() const
+{
+  if (!world_of_contact.is_listed())
+    error->all(FLERR, "fix {} mdanim/contact: its objects were read anew and no setup came after; leave out 'pre no' of this run",
+               id);
+}
+
 // Of all ranks, as LAMMPS has them.
 Coordinates FixMdanimContact::places_now()
 {
@@ -350,6 +382,7 @@ template <class Add> void FixMdanimContact::give_forces(const Add &add) const
 void FixMdanimContact::push(double dt)
 {
   const Lap lap(seconds);
+  need_lists();
   world_of_contact.step(places_now(), dt);
   give_forces([this](std::size_t n, const Vec3 &force) { add_to(atom->f[mine[n]], force); });
 }
@@ -368,6 +401,7 @@ void FixMdanimContact::append_required_atoms(std::vector<int> &particles) const
 void FixMdanimContact::add_forces(const Positions &place, const ForceSums &force)
 {
   const Lap lap(seconds);
+  need_lists();
   world_of_contact.step(places_of_all(place.all()), update->dt);
   give_forces([&force](std::size_t n, const Vec3 &one) { force.add(n, one); });
 }
@@ -421,7 +455,7 @@ double FixMdanimContact::compute_vector(int n)
 std::size_t FixMdanimContact::bytes_of_bodies() const
 {
   std::size_t sum = 0;
-  for (const auto &[number, body] : bodies) sum += body.bytes();
+  for (const auto &[number, body] : bodies) sum += body->bytes();
   return sum;
 }
 

@@ -8,10 +8,12 @@
 #include "engine/kernels.h"
 #include "engine/pass_participant.h"
 #include "fix.h"
+#include "styles/named_group.h"
 #include "styles/particle_value.h"
 #include "styles/stateful.h"
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -58,10 +60,15 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
     long long particles;
     double kind, young, friction, mass;
   };
+  // Whether contacts may be of other bodies or particles than objects have now: they are then to be replaced.
+  enum class Contacts { STAY, ARE_REPLACED };
   int read_word(int iarg, int narg, char **arg);
   void read_bodies_of(const char *file);
   std::vector<SurveyedObject> survey() const;
-  void take_objects();
+  void take_objects(Contacts contacts);
+  int number_of(tagint molecule) const;
+  [[noreturn]] void refuse_new_object(int i) const;
+  void need_lists() const;
   void list();
   mdanim::Coordinates places_now();
   mdanim::Coordinates places_of_all(const mdanim::Coordinates &of_mine);
@@ -71,8 +78,9 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
   std::size_t bytes_of_particles() const;
 
   mdanim::ParticleValue kind, young, friction;
-  int among_bit = 1;
-  std::map<int, mdanim::ContactBody> bodies;
+  mdanim::NamedGroup among;    // none: all
+  bool is_among(int i) const;
+  std::map<int, std::shared_ptr<const mdanim::ContactBody>> bodies;
   std::optional<mdanim::StateRecords> restarted;    // of a restart file, until bodies are there
   mdanim::ContactWorld world_of_contact;
 

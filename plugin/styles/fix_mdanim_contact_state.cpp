@@ -76,9 +76,10 @@ StateRecords FixMdanimContact::pack() const
 
 void FixMdanimContact::unpack(const StateRecords &records)
 {
-  take_objects();
+  take_objects(Contacts::ARE_REPLACED);
   std::map<int, const ContactBody *> body_of;
-  for (int n = 0; n < world_of_contact.objects(); ++n) body_of[world_of_contact.object(n).id] = world_of_contact.object(n).body;
+  for (int n = 0; n < world_of_contact.objects(); ++n)
+    body_of[world_of_contact.object(n).id] = world_of_contact.object(n).body.get();
   const auto is_point = [&](int object_id, int point) {
     return point >= 0 && point < static_cast<int>(body_of.at(object_id)->points().size());
   };

@@ -2,6 +2,7 @@
 // The command, the particles near the liquid, and output.
 
 #include "styles/fix_mdanim_liquid.h"
+#include "styles/object_box.h"
 #include "styles/words.h"
 
 #include "engine/stopwatch.h"
@@ -14,7 +15,6 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
-#include "group.h"
 #include "lammps.h"
 #include "neighbor.h"
 #include "region.h"
@@ -33,6 +33,7 @@ using namespace FixConst;
 using namespace mdanim;
 
 static const char *const STYLE = "fix mdanim/liquid";
+static const char *const LEFT_OUT = ", or leave it out of the group of this fix";
 
 // Keywords of the command alone, and those that fix_modify takes as well.
 static const std::vector<Keyword> FIXED = {{"volume", "V"},
@@ -222,7 +223,7 @@ void FixMdanimLiquid::keyword(int iarg, char **arg, Basin::Pace &pace)
   } else if (strcmp(word, "softness") == 0) {
     softness = ParticleColumn(lmp, "fix mdanim/liquid", word, iarg + 1, value);
   } else if (strcmp(word, "still") == 0) {
-    still_bit = group_bit(iarg + 1, value);
+    still_group = NamedGroup(lmp, STYLE, iarg + 1, value);
   } else if (strcmp(word, "sweeps") == 0) {
     pace.sweeps = strcmp(value, "auto") == 0 ? 0 : utils::inumeric(FLERR, value, false, lmp);
     if (strcmp(value, "auto") != 0 && (pace.sweeps < 1 || pace.sweeps > Basin::MOST_SWEEPS))
@@ -244,13 +245,6 @@ int FixMdanimLiquid::modify_param(int narg, char **arg)
   return used;
 }
 
-int FixMdanimLiquid::group_bit(int iarg, const char *word)
-{
-  const int index = group->find(word);
-  if (index < 0) error->all(FLERR, iarg, "fix mdanim/liquid: there is no group {}; make it before this fix", word);
-  return group->bitmask[index];
-}
-
 int FixMdanimLiquid::setmask() { return POST_NEIGHBOR | POST_FORCE | END_OF_STEP; }
 
 std::string FixMdanimLiquid::name() const { return fmt::format("fix {} mdanim/liquid", id); }
@@ -263,11 +257,14 @@ void FixMdanimLiquid::init()
   if (domain->triclinic) error->all(FLERR, "{}: a triclinic box is not supported", name());
   if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
     error->all(FLERR, "{}: periodic boundaries are not supported; use boundary s, f or m", name());
+  still_group.init(lmp);
   buoyancy->init(name());
   if (buoyancy->pressed() && model == Model::PAPER)
     error->all(FLERR, "{}: model paper knows no pressure on faces; leave faces out", name());
   if (buoyancy->pressed() && model == Model::WAVES)
     error->all(FLERR, "{}: model waves presses on all solids without faces; leave faces out", name());
+  if (model == Model::WAVES && !atom->molecule_flag)
+    error->all(FLERR, "{}: model waves keeps records of objects, which molecule IDs tell apart; use 'atom_style bond'", name());
   if (model == Model::WAVES && !lattice_cells.given())
     error->all(FLERR, "{}: model waves needs the lattice cells of solids; add cells i2_NAME, or write model surface", name());
   const int width = lattice_cells.given() ? lattice_cells.width(lmp) : 7;
@@ -369,6 +366,8 @@ double FixMdanimLiquid::top_height(double cells) const { return basin->shape.low
 
 void FixMdanimLiquid::setup_post_neighbor()
 {
+  for (int i = 0; model == Model::WAVES && i < atom->nlocal; ++i)
+    if (atom->mask[i] & groupbit) need_object(this, lmp, i, LEFT_OUT);
   const long changed = basin->mark_still(bodies(true));
   if (!basin->is_poured())
     pour();
@@ -400,9 +399,10 @@ void FixMdanimLiquid::find_near(double margin)
   lowest = ANYWHERE;
   buoyancy->clear_friction(groupbit);
   for (int i = 0; i < atom->nlocal; ++i) {
-    if (!(atom->mask[i] & groupbit) || atom->mask[i] & still_bit) continue;
+    if (!(atom->mask[i] & groupbit) || atom->mask[i] & still_group.bit()) continue;
     lowest = std::min(lowest, atom->x[i][2]);
     if (atom->x[i][2] >= below) continue;
+    if (model == Model::WAVES) need_object(this, lmp, i, LEFT_OUT);
     near.push_back(i);
     near_marks[i] = 1;
   }

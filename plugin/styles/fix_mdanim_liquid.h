@@ -10,6 +10,7 @@
 #include "liquid/rank_sums.h"
 #include "liquid/row_slabs.h"
 #include "styles/buoyancy.h"
+#include "styles/named_group.h"
 #include "styles/particle_value.h"
 #include "styles/stateful.h"
 
@@ -97,7 +98,6 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   static bool is_maker(const char *word);
   void add_maker(mdanim::WaveBasin &waves, int iarg, char **arg, double depth);
   void keyword(int iarg, char **arg, mdanim::Basin::Pace &pace);
-  int group_bit(int iarg, const char *word);
   mdanim::Basin::AddBodies bodies(bool still);
   mdanim::Basin::AddBodies bodies_near();
   std::vector<int> particles_of(bool still) const;
@@ -123,7 +123,7 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   std::string region_id, fill_id;
   double volume_asked = -1.0, level_asked = 0.0;
   bool has_level = false;
-  int still_bit = 0;
+  mdanim::NamedGroup still_group;
   mdanim::ParticleTable lattice_cells;
   mdanim::ParticleColumn softness;    // volume over Young's modulus
 

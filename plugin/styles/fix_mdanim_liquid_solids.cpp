@@ -41,7 +41,7 @@ std::vector<int> FixMdanimLiquid::particles_of(bool still) const
 {
   std::vector<int> found;
   for (int i = 0; i < atom->nlocal; ++i)
-    if (atom->mask[i] & groupbit && static_cast<bool>(atom->mask[i] & still_bit) == still) found.push_back(i);
+    if (atom->mask[i] & groupbit && static_cast<bool>(atom->mask[i] & still_group.bit()) == still) found.push_back(i);
   return found;
 }
 
@@ -66,7 +66,7 @@ void FixMdanimLiquid::add_bodies(Occupancy &into, const std::vector<int> &these,
   constexpr double CELL = 150.0;    // [ns], about
   const double *const *x = atom->x;
   const bool smooth = basin->is_smooth();
-  const auto is_still = [this](int i) { return (atom->mask[i] & still_bit) != 0; };
+  const auto is_still = [this](int i) { return (atom->mask[i] & still_group.bit()) != 0; };
   const auto row_of = [&](long n) {
     const int *const corner = cells.cells[n].corner;
     return row_at(0.5 * (x[corner[0]][1] + x[corner[6]][1]));

@@ -34,4 +34,13 @@ void need_objects_in_open_box(const Fix *fix, LAMMPS *lmp, const char *missed)
     refuse(fmt::format("{} between two rebuilds; use 'neigh_modify every 1 delay 0 check yes once no'", missed));
 }
 
+void need_object(const Fix *fix, LAMMPS *lmp, int i, const char *or_else)
+{
+  const Atom &atom = *lmp->atom;
+  if (atom.molecule[i] > 0) return;
+  lmp->error->one(FLERR,
+                  "fix {} {}: particle {} belongs to no object, its molecule ID is {}; give it one > 0 ('set group … mol …'){}",
+                  fix->id, fix->style, atom.tag[i], atom.molecule[i], or_else);
+}
+
 }    // namespace mdanim

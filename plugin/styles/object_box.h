@@ -15,6 +15,10 @@ namespace mdanim {
 // rebuilt in time; `missed` tells what may happen between two rebuilds otherwise.
 void need_objects_in_open_box(const LAMMPS_NS::Fix *fix, LAMMPS_NS::LAMMPS *lmp, const char *missed);
 
+// Raises a LAMMPS error unless the local particle i, in which the fix has a part, belongs to an object. `or_else`: another way
+// out.
+void need_object(const LAMMPS_NS::Fix *fix, LAMMPS_NS::LAMMPS *lmp, int i, const char *or_else = "");
+
 }    // namespace mdanim
 
 #endif

@@ -123,3 +123,11 @@ def test_a_damaged_state_is_refused(tmp_path):
         take_up(lmp, burst)
     take_up(lmp, stored)
     lmp.close()
+
+
+def test_waves_refuse_particles_of_no_object(tmp_path):
+    """Records are of objects: a restart file of such a run could not be read."""
+    refused = "particle 1 belongs to no object, its molecule ID is 0; .*, or leave it out of the group of this fix"
+    with pytest.raises(Exception, match=refused):
+        block_in_pool(tmp_path, (3, 2, 2), (-1.5, -1.0, 9.0), ["set group all mol 0", "run 0"], pool=POOL + " model waves")
+    block_in_pool(tmp_path, (3, 2, 2), (-1.5, -1.0, 9.0), ["set group all mol 0", "run 0"]).close()
