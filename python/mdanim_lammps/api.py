@@ -25,8 +25,9 @@ from .picture.marks import Marks
 from .processes import cores
 from .report import progress_line
 from .results.checkpoint import Checkpoint
-from .results.files import MARK, open_folder, read_json, write_json
+from .results.files import MARK, open_folder, write_json
 from .results.html import THUMBNAIL, html_table
+from .results.stored import read_manifest
 from .results.untrusted import check_folder, check_plain
 from .run.loop import Progress, simulate, write_inputs, write_start
 from .run.manifest import manifest
@@ -346,7 +347,7 @@ def stored_scene(folder: Path) -> SceneRecord:
             else "does not exist"
         )
         raise OutputError(f"{folder} {what}; name the folder that a run has written, NAME.out beside NAME.txt or what -o said")
-    name = read_json(folder / MARK).get("scene")
+    name = read_manifest(folder).get("scene")
     scene = load_scene(folder / "scene.lock.txt")
     return replace(scene, name=Path(name).stem if isinstance(name, str) and name else folder.stem)
 

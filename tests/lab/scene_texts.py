@@ -120,3 +120,21 @@ expect energy.residual = 0 +- 1e-2
 expect penetration.max = 0 +- 5 cm
 """
 )
+
+POOL = """
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+liquid water {
+  basin from (-20, -20, 0) cm to (20, 20, 40) cm
+  density 1000 kg/m^3
+  level 10 cm
+}
+object cube {
+  shape box (10, 10, 10) cm
+  position (0, 0, 16) cm
+  density 500 kg/m^3
+  elasticity 100 kPa
+}
+control { time 0.4 s  resolution 5 cm  frames 20 fps }
+"""
+"""A cube above a small basin."""

@@ -11,11 +11,14 @@ import numpy as np
 
 from ..errors import MdanimError
 from ..model.build import build_models
+from ..model.spacing import plan_spacing
 from ..model.system import System, assemble
 from ..results.motion import MotionTable
 from ..results.trajectory import Trajectory
-from ..scene.parse import parse_scene
 from .cut import Cut
+
+MORE = 4
+"""How many times as many particles may be foreseen as there turn out to be."""
 
 
 def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) -> list[str]:
@@ -45,12 +48,16 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
 
 
 def system_of(trajectory: Trajectory) -> System | None:
-    """Springs and particles as the stored scene has them; None where it cannot be read, or is another one."""
-    m = trajectory.metadata
+    """Springs and particles as the stored scene has them; None where it cannot be read, or is another one.
+
+    A scene that would have far more particles than the run is not built.
+    """
+    m, scene = trajectory.metadata, trajectory.scene
     try:
-        scene = parse_scene(m.scene_text, folder=trajectory.path.parent)
+        if scene is None or plan_spacing(scene).total > MORE * m.total:
+            return None
         system = assemble(build_models(scene), scene)
-    except MdanimError:  # of an older language, or its meshes are elsewhere
+    except MdanimError:  # its meshes are elsewhere
         return None
     return system if tuple(system.names) == m.names and system.particles == m.total else None
 

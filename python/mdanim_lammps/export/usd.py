@@ -8,9 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import OutputError, SceneError
+from ..errors import OutputError
 from ..picture.camera import FIELD_OF_VIEW, CameraPath, View, action_of, automatic_view
-from ..scene.parse import parse_scene
 from ..scene.render import Render
 from .cut import Body, Cut
 
@@ -124,10 +123,8 @@ def _material(stage, path: str, body: Body, Sdf, UsdShade):
 
 def _render(cut: Cut) -> Render:
     """How the scene wants to be seen."""
-    try:
-        return parse_scene(cut.trajectory.metadata.scene_text, folder=cut.trajectory.path.parent).render
-    except SceneError:  # of an older language
-        return Render()
+    scene = cut.trajectory.scene
+    return Render() if scene is None else scene.render
 
 
 def _lights(stage, render: Render) -> None:

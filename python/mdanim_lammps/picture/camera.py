@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from ..errors import OutputError, UsageError
+from ..errors import UsageError
 from ..results.trajectory import Trajectory
+from ..results.untrusted import check_places
 from ..scene.keywords import did_you_mean
 from ..scene.render import Camera
 
@@ -98,8 +99,7 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
         vertices = metadata.skin.vertices(trajectory.position(frame))
         np.minimum(below, np.minimum.reduceat(vertices, first) - centers[frame], out=below)
         np.maximum(above, np.maximum.reduceat(vertices, first) - centers[frame], out=above)
-    if not (np.isfinite(centers).all() and np.isfinite(below).all() and np.isfinite(above).all()):
-        raise OutputError(f"{trajectory.path}: damaged: positions are NaN or infinite")
+    check_places(trajectory.path, centers, below, above)
     # A stretch is one frame, unless that makes more boxes than are worth looking at.
     stretches = np.array_split(np.arange(len(centers)), min(len(centers), max(1, _BOXES // len(metadata.names))))
     low = np.array([centers[s].min(axis=0) + below for s in stretches])

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from .files import read_json
+from .stored import COST
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +70,7 @@ class Cost:
     @classmethod
     def read(cls, path: Path) -> Cost:
         """Read cost.json. Raises OutputError when it is missing or broken."""
-        data = read_json(path)
+        data = read_json(path, COST)
         effects = {
             name: CostShare(part["seconds"], part["place"], part.get("clocks", {})) for name, part in data["effects"].items()
         }

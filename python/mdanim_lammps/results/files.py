@@ -16,6 +16,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..errors import OutputError
+from .forms import Form, strict_json, table
+from .untrusted import check_room
 
 MARK = "manifest.json"
 CHECKPOINT = "checkpoint"
@@ -36,6 +38,10 @@ PATIENCE = 2.0
 """Seconds for which a lock is waited for: processes of a run that was killed may take as long to end."""
 NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
 """What a file system answers that has no locks: there, two runs in one folder are not noticed."""
+MOST_BYTES_OF_JSON = 1 << 28
+"""Of a JSON file: a certificate has 250 bytes for each object."""
+MEMORY_OF_JSON = 30
+"""Bytes of memory that a byte of JSON can take, as in a list of empty tables."""
 claims: set[int] = set()
 """Descriptors of the locks of this process. The ranks of a run are given them, so that a lock lasts until all have ended."""
 
@@ -145,8 +151,8 @@ def _is_open_as(path: Path, descriptor: int) -> bool:
 
 def _ours(folder: Path) -> bool:
     try:
-        return json.loads((folder / MARK).read_text(encoding="utf-8")).get("program") == PROGRAM
-    except (OSError, ValueError, AttributeError):
+        return read_json(folder / MARK).get("program") == PROGRAM
+    except OutputError:
         return False
 
 
@@ -211,12 +217,27 @@ def write_json(path: Path, data: dict) -> None:
     write_whole(path, json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
 
 
-def read_json(path: Path) -> dict:
-    """Read a JSON file of an output folder. Raises OutputError when it is missing or broken."""
+ANY = table(lambda value: value)
+"""A table of whatever there is."""
+
+
+def read_json(path: Path, form: Form = ANY, most: int = MOST_BYTES_OF_JSON) -> dict:
+    """Read a JSON file of an output folder.
+
+    Args:
+        path: the file.
+        form: what it must hold; what it holds besides is left out.
+        most: bytes that it has at most; of less than that too it must fit in memory.
+
+    Raises:
+        OutputError: the file is missing, broken or too large, or holds something else.
+    """
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-        if not isinstance(data, dict):
-            raise ValueError("it holds no table of names and values")
-        return data
+        with open(path, "rb") as file:
+            size = os.fstat(file.fileno()).st_size
+            if size > most:
+                raise OutputError(f"{path} has {size} bytes, no run writes more than {most}: it is damaged")
+            check_room(MEMORY_OF_JSON * size, path)
+            return form(strict_json(file.read(size).decode("utf-8")))
     except (OSError, ValueError, RecursionError) as error:
         raise OutputError(f"{path} cannot be read ({error}); is this an output folder of mdanim-lammps?") from error

@@ -4,16 +4,20 @@
 from __future__ import annotations
 
 import csv
+import os
 import zlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 
 from ..errors import OutputError
 from ..scene.formatting import exact
 from ..scene.keywords import did_you_mean
+from .untrusted import check_room
 
 WAVES = "waves"
 """Energy of a liquid with momentum [J]: a term where something moves in it, else an extra where an ``expect`` asks for it."""
@@ -32,6 +36,11 @@ CREST = "liquid_crest"
 """Extra where an ``expect`` asks for it: height of the highest liquid [m]."""
 CELLS = ("liquid_cells", DUE)
 """Extras that count cells of liquid, to the unit; whole numbers are written as such."""
+
+LONGEST_LINE = 1 << 24
+"""Signs of a line: 25 for each column."""
+MEMORY = 10
+"""Bytes of memory that a byte of the file takes."""
 
 
 @dataclass
@@ -106,17 +115,37 @@ class Ledger:
             writer.writerows([exact(r[c]) if c in CELLS else repr(r[c]) for c in self.columns] for r in self.rows)
 
     @classmethod
-    def read(cls, path: Path) -> Ledger:
+    def read(cls, path: Path, most: int | None = None) -> Ledger:
         """Read a ledger.csv back, with the residuals as they stand in it: the file does not say what they were weighed by.
-        Raises OutputError."""
+
+        Args:
+            path: the file.
+            most: only so many of its first rows; None for all.
+
+        Raises OutputError, also where the rows would not fit in memory.
+        """
         try:
             with open(path, newline="", encoding="utf-8") as file:
-                reader = csv.DictReader(file)
-                columns = list(reader.fieldnames or ())
+                if most is None:
+                    check_room(MEMORY * os.fstat(file.fileno()).st_size, path)
+                reader = csv.reader(_lines(file))
+                columns = next(reader, [])
                 middle = columns.index("residual")
+                if columns[0] != "time" or len(set(columns)) < len(columns):
+                    raise ValueError("its columns are not those of a ledger")
                 ledger = cls(tuple(columns[1:middle]), tuple(columns[middle + 1 :]))
-                for row in reader:
-                    ledger.rows.append({c: float(row[c]) for c in columns})
-        except (OSError, ValueError, KeyError, TypeError) as error:
+                for row in islice(reader, most):
+                    if len(row) != len(columns):
+                        raise ValueError(f"row {len(ledger.rows) + 1} has {len(row)} values, not {len(columns)}")
+                    ledger.rows.append(dict(zip(columns, map(float, row))))
+        except (OSError, ValueError, csv.Error) as error:
             raise OutputError(f"{path} cannot be read: {error}") from error
         return ledger
+
+
+def _lines(file: TextIO) -> Iterator[str]:
+    """The lines of a file. Raises ValueError where one is longer than any of a ledger."""
+    while line := file.readline(LONGEST_LINE):
+        if len(line) == LONGEST_LINE:
+            raise ValueError(f"a line of it has more than {LONGEST_LINE} signs")
+        yield line

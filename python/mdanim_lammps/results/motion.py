@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import MdanimError
-from ..scene.parse import parse_scene
 from ..scene.scene import Save, Switch
 
 if TYPE_CHECKING:
@@ -56,9 +54,7 @@ class ContactForces:
     def __init__(self, trajectory: Trajectory):
         m, self._trajectory, self.why = trajectory.metadata, trajectory, ""
         self._told = np.zeros(len(m.names), bool)
-        try:
-            scene = parse_scene(m.scene_text, folder=trajectory.path.parent)
-        except MdanimError:  # of an older language, or its meshes are elsewhere
+        if (scene := trajectory.scene) is None:
             self.why = "the scene of this run, or one of its meshes, cannot be read here"
             return
         falls = scene.effects.get("gravity") is not Switch.OFF

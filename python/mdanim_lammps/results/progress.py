@@ -9,15 +9,20 @@ from array import array
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from ..errors import ExitCode
+from ..errors import ExitCode, OutputError
 from .files import disk_errors
+from .forms import many, number, strict_json, table, text, whole
 
 PROGRESS = "progress.jsonl"
 """Name of the file in the output folder."""
 ENDED = ("done", "stopped", "failed")
 """States after which a run writes no more."""
 _LOT = 1 << 20
-_LONGEST = 1 << 24
+LONGEST = 1 << 24
+"""Bytes of a line at most."""
+MOST_BYTES = 1 << 30
+"""Of the file: a frame takes some 300."""
+MOST_EXECUTORS = 1_000_000
 
 
 class ProgressLog:
@@ -123,17 +128,29 @@ class ProgressTail:
         """How often the run has begun or was resumed: a reader that knows frames of an earlier life forgets those after it."""
         self.keep = 0
         """Frames of earlier lives that still hold."""
-        self._rest = b""
+        self._rest: list[bytes] = []
+        """The begin of a line whose end has not come."""
 
     def read(self) -> bool:
-        """Take what has come; returns whether the file is another one than before, as of a run begun anew. Raises OSError."""
+        """Take what has come; returns whether the file is another one than before, as of a run begun anew.
+
+        Raises OSError, and OutputError for a file that is too large, or has a line that is too long, to be that of a run.
+        """
         anew = self._reopen()
+        if self._file is not None and os.fstat(self._file).st_size > MOST_BYTES:
+            raise OutputError(f"{self.path} has more than {MOST_BYTES} bytes: no run of this program writes that")
         while self._file is not None and (data := os.read(self._file, _LOT)):
-            *lines, self._rest = (self._rest + data).split(b"\n")
-            if len(self._rest) > _LONGEST:
-                self._rest = b""
-            for line in lines:
-                self._take(line)
+            first, *lines = data.split(b"\n")
+            self._rest.append(first)
+            if sum(map(len, self._rest)) > LONGEST:
+                self._rest = []
+                os.lseek(self._file, 0, os.SEEK_END)
+                raise OutputError(f"{self.path} is damaged: a line has more than {LONGEST} bytes")
+            if lines:
+                self._take(b"".join(self._rest))
+                self._rest = [lines.pop()]
+                for line in lines:
+                    self._take(line)
         return anew
 
     def is_at(self, descriptor: int) -> bool:
@@ -166,33 +183,36 @@ class ProgressTail:
 
     def _take(self, line: bytes) -> None:
         try:
-            said = json.loads(line, parse_constant=lambda name: None) if line else {}
+            said = strict_json(line) if line else {}
             if "columns" in said:
                 self._begin(said)
             if "frame" in said:
                 self._frame(said)
             if "cost" in said:
-                self.cost = {str(name): float(seconds) for name, seconds in said["cost"].items()}
+                self.cost = table(number)(said["cost"])
             if "state" in said:
-                self.state, self.message = str(said["state"]), str(said.get("message", ""))
+                self.state, self.message = text(said["state"]), text(said.get("message", ""))
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError, OverflowError):
             return
 
     def _begin(self, said: dict) -> None:
-        columns = [str(name) for name in said["columns"]]
-        resumed = int(said["resumed"]) + 1 if "resumed" in said else 0
+        columns = many(text)(said["columns"])
+        resumed = whole(said["resumed"]) + 1 if "resumed" in said else 0
         keep = min(self.count, resumed) if columns == self.columns else 0
-        self.columns, self.energies, self.total = columns, int(said["energies"]), int(said["frames"])
-        self.executors = int(said.get("executors", 1))
+        energies, total, executors = (whole(said.get(name, 1)) for name in ("energies", "frames", "executors"))
+        if not (len(columns) > energies and executors <= MOST_EXECUTORS):
+            raise ValueError("not those of a run")
+        self.columns, self.energies, self.total, self.executors = columns, energies, total, executors
         self.count, self.keep, self.lives = keep, keep, self.lives + 1
         del self.rows[keep * len(columns) :]
         self.owners = [change for change in self.owners if change[0] < keep]
 
     def _frame(self, said: dict) -> None:
-        row = [float(value) for value in said["row"]]
-        if said["frame"] != self.count or len(row) != len(self.columns):
+        row, seconds = [float(number(value)) for value in said["row"]], float(number(said["seconds"]))
+        owners = [(self.count, whole(m), whole(executor + 1) - 1) for m, executor in said.get("owners", ())]
+        if said["frame"] != self.count or len(row) != len(self.columns) or self.count == self.total:
             return
         self.rows.extend(row)
-        self.owners += [(self.count, int(m), int(executor)) for m, executor in said.get("owners", ())]
-        self.seconds = float(said["seconds"])
+        self.owners += owners
+        self.seconds = seconds
         self.count += 1

@@ -11,11 +11,14 @@ import numpy as np
 
 from ..errors import OutputError
 from .files import read_json, write_json
+from .forms import number, whole
 from .untrusted import check_room
 
 TIMELINE = "timeline.json"
 """Name of the file in the output folder."""
 MOST_EXECUTORS = 1_000_000
+MOST_BYTES = 1 << 32
+"""Of the file: 70 bytes for each span of each executor."""
 KINDS = ("simulating", "moving", "waiting", "frozen", "held")
 """What an executor can be at: running LAMMPS; handing objects on and building instances; waiting for the others at the frame;
 frozen at the end of a window that others do again; held by the supervisor, which has not yet taken the frames before."""
@@ -137,8 +140,10 @@ class Timeline:
     @classmethod
     def read(cls, folder: Path) -> Timeline:
         """Read timeline.json of an output folder. Raises OutputError."""
-        data = read_json(folder / TIMELINE)
+        data = read_json(folder / TIMELINE, most=MOST_BYTES)
         try:
+            if not 1 <= whole(data["executors"]) <= MOST_EXECUTORS:
+                raise ValueError("its executors are not those of a run")
             rows = {k: [tuple(row) for row in data[k]] for k in ("owners", "spans")}
             teams = [(frame, tuple(members)) for frame, members in data["teams"]]
             read = cls(**data | rows | {"names": tuple(data["names"]), "teams": teams})
@@ -153,7 +158,11 @@ class Timeline:
         frames, spans = np.array(self.frames, np.int64), np.array([s[3:] for s in self.spans], float).reshape(-1, 2)
         owners = np.array(self.owners, np.int64).reshape(-1, 3)
         for what, holds in (
-            ("executors", type(executors) is int and 1 <= executors <= MOST_EXECUTORS and len(self.cpu) == executors),
+            ("executors", len(self.cpu) == executors and isinstance(self.control, str)),
+            ("processor times", all(number(seconds) >= 0.0 for seconds in (*self.cpu, self.supervisor_cpu))),
+            ("moves", all(type(n) is int and n >= 0 for n in (*self.moves, *self.retries))),
+            ("teams", all(type(f) is int and all(type(e) is int and 0 <= e < executors for e in team) for f, team in self.teams)),
+            ("owners", all(len(row) == 3 and all(type(n) is int for n in row) for row in self.owners)),
             ("frames", (np.diff(frames) > 0).all() and len(frames) == len(self.moves) == len(self.retries)),
             (
                 "owners",

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import operator
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
@@ -12,9 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import OutputError, SetupError
+from ..errors import OutputError, SceneError, SetupError
 from ..scene.keywords import Named
-from ..scene.scene import Save
+from ..scene.scene import Save, SceneRecord
 from .html import html_table
 from .trajectory_file import (
     CHECKSUM,
@@ -32,12 +33,18 @@ from .trajectory_file import (
     row_checksum,
 )
 from .trajectory_metadata import LiquidMetadata
-from .untrusted import check_frames, check_hdf5, check_metadata
+from .untrusted import check_frames, check_hdf5, check_metadata, check_steps
 
 if TYPE_CHECKING:
     import MDAnalysis
     import pandas
     import pyvista
+
+MOST_TEXT, MOST_TEXT_OF_OBJECT = 1 << 18, 1 << 12
+"""Signs of a stored scene at most, and for each object; a lock has 340 of an object with all its settings."""
+_QUOTED = re.compile(r'"[^"\n]*"|#[^\n]*')
+_UNFOLDS = re.compile(r"\b(repeat|include)\b")
+"""Statements that a scene which is written out does not have."""
 
 
 class Trajectory:
@@ -64,6 +71,7 @@ class Trajectory:
                 parameters = self._file["parameters/mdanim"].attrs
                 self.format, self.dt = int(parameters["format"]), float(parameters["dt"])
                 self.steps_per_frame = int(parameters["steps_per_frame"])
+                check_steps(self.path, self.dt, self.steps_per_frame)
                 steps, times = tables.pop(STEP)[:], tables.pop(TIME)[:]
                 self._checksums = tables.pop(CHECKSUM)[:] if CHECKSUM in tables else None
                 self._values = tables
@@ -92,6 +100,24 @@ class Trajectory:
             if row_checksum(step, time) != sums[0]:
                 raise self._damaged(frame, "step or time")
         return count
+
+    @cached_property
+    def scene(self) -> SceneRecord | None:
+        """The scene of the run; None where its text cannot be read here.
+
+        It may be of an older language, its meshes may be elsewhere, or it is not written out in full, as every run stores it: so
+        reading it takes no longer than the objects of the run ask for.
+        """
+        from ..scene.parse import parse_scene
+
+        m = self.metadata
+        if len(m.scene_text) > MOST_TEXT + MOST_TEXT_OF_OBJECT * len(m.names) or _UNFOLDS.search(_QUOTED.sub(" ", m.scene_text)):
+            return None
+        try:
+            scene = parse_scene(m.scene_text, folder=self.path.parent)
+        except SceneError:
+            return None
+        return scene if tuple(solid.name for solid in scene.solids) == m.names else None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -278,7 +304,17 @@ class Trajectory:
         """Turn all that HDF5 says of a damaged file into OutputError."""
         try:
             yield
-        except (KeyError, OSError, RuntimeError, ValueError, TypeError, IndexError, AttributeError, MemoryError) as error:
+        except (
+            KeyError,
+            OSError,
+            RuntimeError,
+            ValueError,
+            TypeError,
+            IndexError,
+            AttributeError,
+            MemoryError,
+            ArithmeticError,
+        ) as error:
             raise OutputError(f"{self.path}: not a trajectory of mdanim-lammps, or damaged ({error})") from None
 
 

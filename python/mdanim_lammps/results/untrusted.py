@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
+import math
 import os
+import re
 import stat
 from collections.abc import Mapping
 from pathlib import Path
@@ -14,6 +16,9 @@ import numpy as np
 
 from ..errors import OutputError
 from ..model.spacing import available_memory
+
+FARTHEST = 1e30
+"""From the origin [m]: sums and single precision, in which pictures are drawn, hold what is nearer."""
 
 if TYPE_CHECKING:
     import h5py
@@ -85,6 +90,17 @@ def check_metadata(path: Path, m: TrajectoryMetadata) -> None:
             raise OutputError(f"{path}: damaged: {what}")
 
     must(count > 0, "it holds no object")
+    must(len(set(m.names)) == count, "two objects have one name")
+    must(all(name and name.isprintable() for name in m.names), "a name of an object cannot be printed")
+    colors = (*m.colors, *([m.liquid.color] if m.liquid else []))
+    must(all(re.fullmatch("(#[0-9a-fA-F]{6})?", color) for color in colors), "a colour is not written as #rrggbb")
+    for kinds, names in (("iu", ("first", "id", "layer", "bond", "surface_of")), ("f", ("mass", "object_mass"))):
+        for name in names:
+            must(getattr(m, name).dtype.kind in kinds, f"{name} holds {getattr(m, name).dtype}")
+    for surface in m.surfaces:
+        must(surface.index.ndim == 2 and surface.weight.shape == surface.index.shape, "a surface lacks weights")
+        for kinds, array in (("iu", surface.triangle), ("iu", surface.index), ("f", surface.weight)):
+            must(array.dtype.kind in kinds, f"a surface holds {array.dtype}")
     for name, shape in (
         ("colors", (count,)),
         ("still", (count,)),
@@ -114,14 +130,29 @@ def check_metadata(path: Path, m: TrajectoryMetadata) -> None:
         must(np.isfinite(surface.weight).all(), "a weight of a surface is NaN or infinite")
         color = surface.color
         must(color is None or (color.shape == (vertices, 3) and color.dtype == np.uint8), "a vertex has no colour")
-    must(np.isfinite(m.object_mass).all() and np.isfinite(m.mass).all(), "a mass is NaN or infinite")
+    for mass in (m.object_mass, m.mass):
+        must((np.isfinite(mass) & (mass > 0.0)).all(), "a mass is not above 0, NaN or infinite")
     must(m.ground is None or np.isfinite(m.ground), "the ground is NaN or infinite")
-    must(m.walls is None or np.isfinite(m.walls).all(), "the walls are NaN or infinite")
+    walls = np.zeros((2, 3)) if m.walls is None else np.array(m.walls)
+    must(walls.shape == (2, 3) and np.isfinite(walls).all(), "the walls are no box")
     if m.liquid is not None:
         low, high, shape = (np.array(getattr(m.liquid, name)) for name in ("low", "high", "shape"))
         must(low.shape == high.shape == shape.shape == (3,), "the basin is no box")
         must(np.isfinite([low, high]).all() and (low < high).all() and (shape > 0).all(), "the basin is no box")
     check_room(8.0 * m.total, path)
+
+
+def check_steps(path: Path, dt: float, steps_per_frame: int) -> None:
+    """Refuse a time step [s] and steps of a frame that are not those of a run. Raises OutputError."""
+    if not (0.0 < dt < math.inf and 1 <= steps_per_frame <= 2**53):
+        raise OutputError(f"{path}: damaged: it tells of {steps_per_frame} steps of {dt} s in a frame")
+
+
+def check_places(path: Path, *places: np.ndarray, frame: int | None = None) -> None:
+    """Refuse places [m] of a frame, or of all, that are nowhere. Raises OutputError."""
+    if not all((np.abs(some) < FARTHEST).all() for some in places):
+        which = "" if frame is None else f"frame {frame} is "
+        raise OutputError(f"{path}: {which}damaged: positions are NaN, infinite or beyond {FARTHEST:g} m")
 
 
 def check_frames(

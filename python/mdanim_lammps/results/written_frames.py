@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from pathlib import Path
 
@@ -36,6 +37,11 @@ class WrittenFrames:
             self.path, self.metadata, self.dt, self.steps_per_frame = whole.path, whole.metadata, whole.dt, whole.steps_per_frame
             with open_trajectory(whole.path) as file:
                 self._tables = frame_tables(file)
+            if any(table.offset == 0 and table.stride * table.frames for table in self._tables.values()):
+                raise OutputError(f"{whole.path}: damaged: a table of its frames does not lie in one piece")
+            for name, dtype in ((STEP, np.int64), (TIME, np.float64), (CHECKSUM, np.uint32)):
+                if self._tables[name].dtype != dtype:
+                    raise OutputError(f"{whole.path}: damaged: {name} of its frames holds {self._tables[name].dtype}")
         self._sums = self._tables.pop(CHECKSUM)
         self._row = {name: self._tables.pop(name) for name in (STEP, TIME)}
         try:
@@ -62,7 +68,10 @@ class WrittenFrames:
 
     def time(self, frame: int) -> float:
         """Simulated time of a frame [s]. Raises as `value`."""
-        return float(self._read(self._row[TIME], frame))
+        time = float(self._read(self._row[TIME], frame))
+        if not math.isfinite(time):
+            raise OutputError(f"{self.path}: frame {frame} is not there, or damaged: its time is {time}")
+        return time
 
     def value(self, name: str, frame: int) -> np.ndarray:
         """One quantity of a frame (`trajectory_file`), e.g. ``position`` [m], shape (N, 3).

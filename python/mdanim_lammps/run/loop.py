@@ -426,7 +426,7 @@ class _Run:
     def _reread_ledger(self, frame: int) -> None:
         """Take the rows up to the checkpoint's frame. Raises OutputError when they are not those that were there then."""
         path = self.folder / "ledger.csv"
-        stored = Ledger.read(path)
+        stored = Ledger.read(path, most=frame + 1)
         if stored.columns != self.ledger.columns or stored.checksum(frame + 1) != self.resume.ledger:
             raise OutputError(
                 f"{path} is damaged: its first {frame + 1} rows are not those of the checkpoint; run the scene again with --force"

@@ -18,7 +18,7 @@ from ..results.html import THUMBNAIL, html_table
 from ..results.ledger import Ledger
 from ..results.trajectory import Trajectory
 from ..scene.formatting import number
-from ..scene.parse import parse_scene
+from ..scene.render import Render
 
 
 @dataclass(repr=False)
@@ -66,6 +66,7 @@ class Result:
         ]
         picture = None
         with TemporaryDirectory(prefix="mdanim-picture-") as name, suppress(MdanimError):
-            render = parse_scene(self.trajectory.metadata.scene_text, folder=self.folder).render
+            scene = self.trajectory.scene
+            render = Render() if scene is None else scene.render
             picture = render_still(self.trajectory, -1, Path(name) / "end.png", render, size=THUMBNAIL).read_bytes()
         return html_table(repr(self)[1:-1], ("expected", "value", "found", ""), rows, picture)

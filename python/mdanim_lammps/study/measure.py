@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..results.files import read_json
+from ..results.stored import SUMMARY
 from ..results.trajectory import Trajectory
 from ..run.loop import Progress, simulate
 from ..run.prepare import prepare
@@ -78,7 +79,7 @@ def measure(scene: SceneRecord, setting: Setting, folder: Path, *, limit: float 
         result = simulate(ready, temporary, on_progress=look)
         with Trajectory(temporary) as t:
             times, center = (np.array(a[:], float) for a in (t.times, t.centers))
-        penetration = read_json(temporary / "summary.json")["penetration"]
+        penetration = read_json(temporary / "summary.json", SUMMARY)["penetration"]
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
     c = ready.certificate

@@ -7,12 +7,12 @@ import math
 import shutil
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from types import NoneType
 
 import numpy as np
 
 from ..errors import OutputError
 from ..results.files import disk_errors, read_json, write_json, write_whole
+from ..results.stored import STUDY
 from .measure import Sample
 from .setting import Setting
 
@@ -77,7 +77,7 @@ class Store:
             shutil.rmtree(folder)
         elif path.exists():
             try:
-                self._read(read_json(path))
+                self._read(read_json(path, STUDY))
             except (AttributeError, KeyError, TypeError, ValueError) as error:
                 raise OutputError(f"{path} is damaged ({error}); begin the study anew with --force") from error
         elif folder.is_dir() and any(folder.iterdir()):
@@ -94,8 +94,8 @@ class Store:
             )
         for entry in data["points"]:
             values = entry["runs"]
-            if any(not isinstance(value, (int, float, NoneType)) for value in entry["setting"].values()):
-                raise ValueError("a setting is no number")  # settings make names of files
+            if len({len(runs) for runs in values.values()}) > 1:
+                raise ValueError("a point has other numbers of one quantity than of another")
             point = Point(
                 Setting(**entry["setting"]),
                 entry["timestep"] or math.nan,

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from ..errors import DivergedError, OutputError, Problem
 from ..results.files import read_json, write_json
+from ..results.stored import CHOICE, STUDY
 from ..run.prepare import prepare
 from ..scene.formatting import number, say
 from ..scene.scene import Accuracy, SceneRecord
@@ -89,11 +90,11 @@ def stored_choice(scene: SceneRecord) -> Choice | None:
     path = choice_file(scene)
     if path is None or not path.exists():
         return None
-    data = read_json(path)
     try:
-        choice = Choice(**data["choice"])
-    except (KeyError, TypeError) as error:
-        raise OutputError(f"{path} is no stored accuracy ({error}); delete it, and the next run makes a new one") from error
+        data = read_json(path, CHOICE)
+    except OutputError as error:
+        raise OutputError(f"{path} is no stored accuracy: delete it, and the next run makes a new one\n  {error}") from error
+    choice = Choice(**data["choice"])
     return choice if data["scene"] == _digest(scene) and choice.error == scene.control.accuracy else None
 
 
@@ -193,7 +194,7 @@ def settle(
                     severity="warning",
                 ),
             )
-        known = study and (study / FILE).exists() and read_json(study / FILE).get("hash") == scene_hash(scene)
+        known = study and (study / FILE).exists() and read_json(study / FILE, STUDY).get("hash") == scene_hash(scene)
         choice = find_choice(
             scene, budget=budget, store=Store(study, scene_hash(scene)) if known else None, on_progress=on_progress
         )

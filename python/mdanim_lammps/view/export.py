@@ -23,8 +23,10 @@ from .. import effects
 from ..api import STUDY, stored_scene
 from ..effects import resolve
 from ..errors import MdanimError, OutputError, RefusedError
-from ..results.files import MARK, read_json, write_whole
-from ..results.untrusted import check_plain
+from ..results.files import read_json, write_whole
+from ..results.stored import STUDY as STUDY_FILE
+from ..results.stored import read_manifest
+from ..results.untrusted import check_places, check_plain
 from .feed import Feed, packed
 from .server import packaged_files
 from .tail import Known, Tail
@@ -103,8 +105,7 @@ class _Frames:
             low = np.minimum(low, np.minimum.reduceat(vertices, feed.first))
             high = np.maximum(high, np.maximum.reduceat(vertices, feed.first))
             on_progress(n + 1, 2 * count)
-        if not np.isfinite([low, high]).all():
-            raise OutputError(f"{feed.frames.path}: damaged: positions are NaN or infinite")
+        check_places(feed.frames.path, low, high, self.moving)
         self.boxes = np.hstack([low, high - low]).astype("<f4")
         low, size = self.boxes[own, :3], self.boxes[own, 3:]
         scale = np.divide(steps, size, out=np.zeros_like(size), where=size > 0.0)
@@ -244,10 +245,10 @@ def _sections(folder: Path, news: dict) -> Iterable[str]:
     lock = folder / "scene.lock.txt"
     if lock.is_file():
         yield _section("Scene", f"<pre>{html.escape(lock.read_text(encoding='utf-8', errors='replace'))}</pre>", closed=True)
-    made = read_json(folder / MARK)
+    made = read_manifest(folder)
     rows = [("program", made.get("program")), ("version", made.get("version")), ("Python", made.get("python"))]
-    rows += sorted(dict(made.get("packages") or {}).items())
-    rows += [(f"sha256 of {name}", value) for name, value in dict(made.get("sha256") or {}).items()]
+    rows += sorted((made.get("packages") or {}).items())
+    rows += [(f"sha256 of {name}", value) for name, value in (made.get("sha256") or {}).items()]
     yield _table("Made by", ["", ""], [row for row in rows if row[1]], closed=True)
 
 
@@ -262,8 +263,8 @@ def _study(folder: Path) -> Iterable[str]:
     picture = folder / "study.png"
     if not (folder / "study.json").is_file():
         return
-    advice = read_json(folder / "study.json").get("advice")
-    text = _paragraph(str(advice)) if advice else ""
+    advice = read_json(folder / "study.json", STUDY_FILE).get("advice")
+    text = _paragraph(advice) if advice else ""
     check_plain(picture)
     if picture.is_file() and picture.stat().st_size <= MOST_PICTURE:
         text += f'<img alt="error against time" src="data:image/png;base64,{_text(picture.read_bytes())}">'

@@ -23,7 +23,6 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import OutputError
 from ..picture.camera import FIELD_OF_VIEW, Action, CameraPath, action_of, automatic_view
 from ..picture.foam import Foam
 from ..picture.liquid import Sheet, without_puddles
@@ -35,6 +34,7 @@ from ..picture.surfaces import shaded_mesh
 from ..results.trajectory import Trajectory
 from ..results.trajectory_file import DROPS
 from ..results.trajectory_file import LIQUID as LIQUID_TABLES
+from ..results.untrusted import check_places
 from ..results.written_frames import WrittenFrames
 from ..scene.render import Floor, Render
 
@@ -175,7 +175,9 @@ class Feed:
         if self.finished:
             with Trajectory(self.folder) as trajectory:  # the file has another name than while the run went on
                 return action_of(trajectory)
-        return first_action(self.metadata, *self._boxes(self.vertices(self.frames.value("position", 0))))
+        vertices = self.vertices(self.frames.value("position", 0))
+        check_places(self.frames.path, vertices, frame=0)
+        return first_action(self.metadata, *self._boxes(vertices))
 
     def _view(self):
         m = self.metadata
@@ -197,8 +199,7 @@ class Feed:
         frames = self.frames
         x, center, speed = (frames.value(name, n) for name in ("position", "center_of_mass", "center_of_mass_velocity"))
         vertices = self.vertices(x)
-        if not np.isfinite(vertices).all():
-            raise OutputError(f"{frames.path}: frame {n} is damaged: positions are NaN or infinite")
+        check_places(frames.path, vertices, center, speed, frame=n)
         low, size = self._boxes(vertices)
         scale = np.divide(STEPS, size, out=np.zeros_like(size), where=size > 0.0)
         within = (vertices - np.repeat(low, self.count, axis=0)) * np.repeat(scale, self.count, axis=0)

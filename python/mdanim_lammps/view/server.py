@@ -170,7 +170,7 @@ class ViewServer:
                 seen = self.tail.changes
                 if news := self.tail.news(known):
                     news["edit"] = self.editor is not None
-                    page.send(json.dumps({"news": news}))
+                    page.send(json.dumps({"news": news}, allow_nan=False))
                     gone.wait(LOT)
                 with self.tail.changed:
                     self.tail.changed.wait_for(lambda seen=seen: self.tail.changes != seen, 1.0)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import fcntl
+import math
 import os
 import threading
 import time
@@ -13,9 +14,10 @@ from pathlib import Path
 
 from ..api import stored_scene
 from ..errors import MdanimError, OutputError, SceneError
-from ..results.files import IN_USE, NO_LOCKS, read_json
+from ..results.files import IN_USE, NO_LOCKS
 from ..results.ledger import Ledger
 from ..results.progress import ENDED, ProgressTail
+from ..results.stored import read_facts
 from ..results.timeline import Timeline
 from ..results.trajectory_file import find_trajectory
 from ..scene.render import Render
@@ -49,12 +51,13 @@ class Tail:
         folder: output folder, where a run is going on, has ended or is about to begin.
 
     Raises:
-        OutputError: there is no run.
+        OutputError: there is no run, or what it has left is damaged.
     """
 
     def __init__(self, folder: Path):
         self.folder = folder
         self._stored()
+        read_facts(folder)
         self.changed = threading.Condition()
         """Notified whenever there is something new."""
         self.changes = 0
@@ -131,8 +134,9 @@ class Tail:
 
     @property
     def count(self) -> int:
-        """Frames that can be asked for."""
-        return self._progress.count
+        """Frames that can be asked for: those that the run tells of and the trajectory has room for."""
+        with self.changed:
+            return min(self._progress.count, self._feed.frames.total) if self._feed else self._progress.count
 
     def news(self, known: Known) -> dict:
         """What a page does not know yet, which is then known; empty where there is nothing."""
@@ -145,7 +149,9 @@ class Tail:
             width, new = len(p.columns), p.count - known.rows
             if new:
                 step = -(-new // MOST_ROWS)
-                told["rows"] = [p.rows[r * width : (r + 1) * width].tolist() for r in range(known.rows, p.count, step)]
+                rows = (p.rows[r * width : (r + 1) * width] for r in range(known.rows, p.count, step))
+                # JSON has no NaN, which a ledger.csv may hold.
+                told["rows"] = [[value if math.isfinite(value) else None for value in row] for row in rows]
                 known.rows = p.count
             if len(p.owners) > known.owners:
                 told["owners"] = p.owners[known.owners :]
@@ -179,9 +185,12 @@ class Tail:
             before = (self._progress.count, self._progress.lives, self._state)
             if self._progress.read() or (self._feed and not self._is_there(self._feed)):
                 self._begin_anew()
+            if not self._progress.lives and time.monotonic() - self._looked > LOOK_FOR_LIFE:
+                self._looked = time.monotonic()
+                self._take_old()
             state = self._progress.state
             if not self._progress.lives:
-                self._take_old()
+                pass
             elif state in ENDED:
                 self._set(state, self._progress.message)
             elif time.monotonic() - self._looked > LOOK_FOR_LIFE or state != self._state:
@@ -209,7 +218,10 @@ class Tail:
 
     def _set(self, state: str, message: str) -> None:
         if state != self._state and state == "done":
-            self._facts = self._read_facts()
+            try:
+                self._facts = read_facts(self.folder)
+            except OutputError as error:
+                message = str(error)
         self._state, self._message = state, message
 
     def _take_old(self) -> None:
@@ -217,8 +229,9 @@ class Tail:
         if self._awaited or in_use(self.folder):
             return
         try:
-            frames, ledger = self.feed().frames.on_disk(), Ledger.read(self.folder / "ledger.csv")
-            p, rows = self._progress, ledger.rows[:frames]
+            frames = self.feed().frames.on_disk()
+            ledger = Ledger.read(self.folder / "ledger.csv", most=frames)
+            p, rows = self._progress, ledger.rows
             p.columns, p.energies, p.total = list(ledger.columns), len(ledger.terms), self.feed().frames.total
             p.rows.extend(row[column] for row in rows for column in ledger.columns)
             p.count, p.lives = len(rows), 1
@@ -227,13 +240,6 @@ class Tail:
             p.state = "done" if (self.folder / "summary.json").exists() else "stopped"
         except OutputError as error:
             self._set("failed", str(error))
-
-    def _read_facts(self) -> dict:
-        facts = {}
-        for name in ("cost", "summary", "certificate"):
-            with suppress(OutputError):
-                facts[name] = read_json(self.folder / f"{name}.json")
-        return facts
 
     def _stored(self) -> tuple[str, Render]:
         """Title, or name, and ``render`` block of the scene."""
