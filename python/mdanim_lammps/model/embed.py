@@ -11,6 +11,7 @@ from ..scene.scene import Box, Mesh, Shape
 from . import mesh, shapes
 from .lattice import CORNERS, Lattice
 from .model import Surface
+from .nearest import Nearest, blocks
 
 FACES = np.array([(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7)])
 """Corners of the faces -x, +x, -y, +y, -z, +z of a VTK hexahedron, counter-clockwise seen from outside."""
@@ -50,8 +51,10 @@ def _embedded(points: np.ndarray, triangles: np.ndarray, lattice: Lattice) -> Su
     """
     outer = np.flatnonzero((lattice.share[lattice.hexahedron] < 1).any(axis=1))
     near, t = nearest_cell(points, lattice.position[lattice.hexahedron[outer, 0]], lattice.cells.edge)
-    t = t[:, None, :]
-    weight = np.where(CORNERS == 1, t, 1 - t).prod(axis=2)
+    weight = np.empty((len(t), len(CORNERS)))
+    for rows in blocks(len(t)):
+        at = t[rows, None, :]
+        weight[rows] = np.where(CORNERS == 1, at, 1 - at).prod(axis=2)
     return Surface(np.asarray(triangles, np.int32), lattice.hexahedron[outer[near]], weight)
 
 
@@ -61,7 +64,5 @@ def nearest_cell(points: np.ndarray, low: np.ndarray, edge: np.ndarray) -> tuple
     ``low`` are the lower corners of the cells [m], shape (C, 3): those on the outside of the lattice do for points of the true
     surface.
     """
-    from scipy.spatial import cKDTree
-
-    _, near = cKDTree(low + edge / 2).query(points)
+    _, near = Nearest(low + edge / 2)(points)
     return near, (points - low[near]) / edge

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Closed triangle meshes from files: reading, checking, volume, inside or not, thickness.
+"""Closed triangle meshes from files: reading, checking, volume, inside or not.
 
 pyvista (VTK) is needed only here and only for scenes that name a mesh; it is imported inside the functions.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
@@ -16,6 +17,9 @@ import numpy as np
 from ..scene.formatting import say
 from ..scene.scene import Mesh
 from .mesh_reader import UnreadableMesh, read_polygons
+from .nearest import Nearest, blocks
+from .thickness import thickness
+from .triangles import areas, spots
 
 SUFFIXES = (".stl", ".obj", ".ply")
 SIZES = 1e-9, 1e9
@@ -48,7 +52,7 @@ class Triangles:
     @property
     def area(self) -> float:
         """[m^2]"""
-        return float(_areas(self.points, self.triangles).sum())
+        return float(areas(self.points, self.triangles).sum())
 
 
 def load(shape: Mesh) -> Triangles:
@@ -77,7 +81,7 @@ def _load(path: Path, scale: float, changed: int, size: int) -> Triangles:
             "'scale' is the length of a unit of the file; is an exponent wrong?",
         )
     points = (points - centre) * scale
-    return Triangles(points, triangles, volume * scale**3, _thickness(points, triangles, volume * scale**3), color)
+    return Triangles(points, triangles, volume * scale**3, thickness(points, triangles, volume * scale**3), color)
 
 
 def _read(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
@@ -147,17 +151,6 @@ def _reorient(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return np.asarray(surface.faces).reshape(-1, 4)[:, 1:].astype(np.int32)
 
 
-def _normals(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Outward normals of twice the triangles' areas, shape (T, 3)."""
-    corners = points[triangles]
-    return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-
-
-def _areas(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Area of each triangle, shape (T,)."""
-    return np.linalg.norm(_normals(points, triangles), axis=1) / 2
-
-
 def _volume_and_centre(points: np.ndarray, triangles: np.ndarray) -> tuple[float, np.ndarray]:
     """Signed volume and centre of mass, by summing the tetrahedra from one point to each triangle."""
     origin = points.mean(axis=0)
@@ -167,34 +160,6 @@ def _volume_and_centre(points: np.ndarray, triangles: np.ndarray) -> tuple[float
     if volume == 0:
         return 0.0, origin
     return float(volume), origin + (six[:, None] * (a + b + c)).sum(axis=0) / (24 * volume)
-
-
-def _thickness(points: np.ndarray, triangles: np.ndarray, volume: float) -> float:
-    """Estimate the thickness of the thinnest part [m].
-
-    From points spread evenly over the surface a ray goes straight inward; its length is the thickness there:
-    exact for balls, slabs, rods and rings. Next to a sharp edge rays are as short as one likes, so not the
-    shortest but the one that 10 % of the surface falls below is taken. No body is thicker than 6 V / A, which
-    a ball reaches.
-    """
-    import pyvista
-
-    normal = _normals(points, triangles)
-    area = np.linalg.norm(normal, axis=1) / 2
-    rays = 300
-    chosen = np.searchsorted(area.cumsum(), (np.arange(rays) + 0.5) / rays * area.sum())
-    chosen = chosen.clip(max=len(area) - 1)
-    start = _spots(points[triangles[chosen]])
-    inward = -normal[chosen] / np.linalg.norm(normal[chosen], axis=1)[:, None]
-    size = np.linalg.norm(np.ptp(points, axis=0))
-    surface = pyvista.PolyData.from_regular_faces(points, triangles)
-    lengths = []
-    for origin, direction in zip(start, inward):
-        hits, _ = surface.ray_trace(origin + 1e-6 * size * direction, origin + size * direction)
-        if len(hits):
-            lengths.append(np.linalg.norm(hits - origin, axis=1).min())
-    bound = 6 * volume / float(area.sum())
-    return min(float(np.percentile(lengths, 10)), bound) if lengths else bound
 
 
 # --- inside or not ------------------------------------------------------------------------------------------
@@ -290,39 +255,25 @@ def _hits(mesh: Triangles, lines: np.ndarray, line: np.ndarray, triangle: np.nda
 # --- surface ------------------------------------------------------------------------------------------------
 
 
-def unit_normals(mesh: Triangles) -> np.ndarray:
-    """Outward normals of the triangles, of length 1 (0 without area), shape (T, 3)."""
-    normal = _normals(mesh.points, mesh.triangles)
-    length = np.linalg.norm(normal, axis=1)[:, None]
-    return np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
-
-
 def scatter(mesh: Triangles, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Samples about ``spacing`` [m] apart: places [m] (K, 3), triangles (K,) and areas [m^2] (K,), which sum to that of the mesh.
 
     Every triangle has at least one.
     """
-    area = _areas(mesh.points, mesh.triangles)
+    area = areas(mesh.points, mesh.triangles)
     count = np.ceil(area / spacing**2).clip(min=1).astype(np.int64)
     triangle = np.repeat(np.arange(len(area)), count)
-    return _spots(mesh.points[mesh.triangles[triangle]]), triangle, (area / count)[triangle]
-
-
-def _spots(corners: np.ndarray) -> np.ndarray:
-    """An even place [m] in each triangle, corners (K, 3, 3): barycentric weights from two low-discrepancy sequences."""
-    u, v = (np.arange(len(corners))[:, None] * [0.7548776662466927, 0.5698402909980532] % 1).T
-    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
-    a, b, c = np.moveaxis(corners, 1, 0)
-    return a + u[:, None] * (b - a) + v[:, None] * (c - a)
+    place = np.empty((len(triangle), 3))
+    for rows in blocks(len(triangle)):
+        place[rows] = spots(mesh.points[mesh.triangles[triangle[rows]]], first=rows.start)
+    return place, triangle, (area / count)[triangle]
 
 
 def colors_at(mesh: Triangles, points: np.ndarray) -> np.ndarray | None:
     """Colours of the points of the file that are nearest to these [m], shape (N, 3): uint8, (N, 3); None where it has none."""
     if mesh.color is None:
         return None
-    from scipy.spatial import cKDTree
-
-    return mesh.color[cKDTree(mesh.points).query(points)[1]]
+    return mesh.color[Nearest(mesh.points)(points)[1]]
 
 
 def refined_surface(mesh: Triangles, size: float) -> tuple[np.ndarray, np.ndarray]:
@@ -332,6 +283,13 @@ def refined_surface(mesh: Triangles, size: float) -> tuple[np.ndarray, np.ndarra
     edge = mesh.points[_edges(mesh.triangles)]
     if np.linalg.norm(edge[:, 0] - edge[:, 1], axis=1).max() <= 2 * size:
         return mesh.points, mesh.triangles
-    surface = pyvista.PolyData.from_regular_faces(mesh.points, mesh.triangles)
-    fine = surface.subdivide_adaptive(max_edge_len=2 * size, max_n_passes=12).clean(tolerance=1e-9)
-    return np.asarray(fine.points, float), np.asarray(fine.faces).reshape(-1, 4)[:, 1:].astype(np.int32)
+    # The filters' limits of lengths and areas are numbers without a unit: here the size is near 1, and no bit is lost.
+    unit = 2.0 ** math.frexp(size)[1]
+    fine = pyvista.PolyData.from_regular_faces(mesh.points / unit, mesh.triangles)
+    for _ in range(12):  # a pass for each call: Ctrl-C is answered between them
+        before = fine.n_cells
+        fine = fine.subdivide_adaptive(max_edge_len=2 * size / unit, max_tri_area=1e30, max_n_passes=1)
+        if fine.n_cells == before:
+            break
+    fine = fine.clean(tolerance=1e-9)
+    return unit * np.asarray(fine.points, float), np.asarray(fine.faces).reshape(-1, 4)[:, 1:].astype(np.int32)

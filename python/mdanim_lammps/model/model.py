@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .nearest import blocks
+
 if TYPE_CHECKING:
     from .contact_body import BodyFrame
 
@@ -41,7 +43,10 @@ class Surface:
 
     def vertices(self, position: np.ndarray) -> np.ndarray:
         """Vertex positions [m], shape (V, 3), for particle positions [m], shape (N, 3)."""
-        return np.einsum("vk,vkd->vd", self.weight, position[self.index])
+        found = np.empty((len(self.index), 3))
+        for rows in blocks(len(self.index)):
+            found[rows] = np.einsum("vk,vkd->vd", self.weight[rows], position[self.index[rows]])
+        return found
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,8 @@ import numpy as np
 
 from ..scene.scene import Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere, Torus
 from . import mesh, shapes
+from .nearest import Nearest
+from .triangles import unit_normals
 
 GOLDEN = (sqrt(5) - 1) / 2
 TABLE = 256
@@ -156,20 +158,18 @@ def _up_to(part: np.ndarray) -> np.ndarray:
 @spread.register
 def _(shape: Mesh, spacing):
     """Each point is the sample nearest to the middle of those that are nearer to it than to others (Lloyd)."""
-    from scipy.spatial import cKDTree
-
     body = mesh.load(shape)
     found = mesh.scatter(body, spacing / sqrt(SAMPLES))
     has_area = found[2] > 0
     sample, triangle, area = (rows[has_area] for rows in found)
-    normal = mesh.unit_normals(body)[triangle]
+    normal = unit_normals(body.points, body.triangles)[triangle]
     # With the normals as three more coordinates the two sides of a sheet and of an edge stay apart.
     place = np.concatenate([sample, spacing * normal], axis=1)
     before = np.cumsum(area)
     n = _count(shape, spacing)
     point = place[np.unique(np.searchsorted(before, (np.arange(n) + 0.5) / n * before[-1]).clip(max=len(place) - 1))]
     for _ in range(ROUNDS):
-        _, owner = cKDTree(point).query(place)
+        _, owner = Nearest(point)(place)
         owner = np.unique(owner, return_inverse=True)[1]
         point, total = _means(place, area, owner)
     far = ((place - point[owner]) ** 2).sum(axis=1)

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Triangles as arrays: normals, areas, places on them. Points [m] have the shape (V, 3), triangles (T, 3)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def normals(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Outward normals of twice the triangles' areas [m^2], shape (T, 3)."""
+    corners = points[triangles]
+    return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+
+def unit_normals(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Outward normals of the triangles, of length 1 (0 without area), shape (T, 3)."""
+    normal = normals(points, triangles)
+    length = np.linalg.norm(normal, axis=1)[:, None]
+    return np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+
+
+def areas(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Area of each triangle [m^2], shape (T,)."""
+    return np.linalg.norm(normals(points, triangles), axis=1) / 2
+
+
+def spots(corners: np.ndarray, first: int = 0) -> np.ndarray:
+    """An even place [m] in each triangle, corners (K, 3, 3): barycentric weights from two low-discrepancy sequences, of which
+    the first one gets the ``first``."""
+    u, v = (np.arange(first, first + len(corners))[:, None] * [0.7548776662466927, 0.5698402909980532] % 1).T
+    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+    a, b, c = np.moveaxis(corners, 1, 0)
+    return a + u[:, None] * (b - a) + v[:, None] * (c - a)
