@@ -26,8 +26,9 @@ from .envelope import heights, wave_speed
 from .liquid import Basin
 
 SHORT, FULL = 0.8, 1.6
-"""Reach of the barrier behind the surface, over the spacing: it does not reach the surface and leaves friction alone; that of
-objects which meet others faster than SLOW."""
+"""Reach of the barrier behind the surface, over the shortest edge of its own cells: a particle inside is at least one edge below
+its surface, so the barrier does not reach what touches that surface and leaves friction alone, however coarse the other body
+is; that of objects which meet others faster than SLOW, over the spacing."""
 SPARE = 1.6
 """What a share of critical damping above USUAL_DAMPING counts in the bound: both sides of a body and the barrier never act along
 one direction at once, and what `rate` counts too much covers the usual damping."""
@@ -125,8 +126,7 @@ class SurfaceContact(OnSurfaces, Contact):
 
     def columns(self, scene, system):
         own = super().columns(scene, system)
-        reach = self.barrier_reach(scene, system)[system.object]
-        own |= {"stiffness": self.barrier_stiffness(scene, system), "reach": reach}
+        own |= {"stiffness": self.barrier_stiffness(scene, system), "reach": self.barrier_reach(scene, system)}
         thin = system.layer == Layer.THIN
         return {**own, "thin": (thin & self.guards(scene, system)[system.object]).astype(float)} if thin.any() else own
 
@@ -150,8 +150,18 @@ class SurfaceContact(OnSurfaces, Contact):
         return np.where((~are_dense(system) | fast(scene, system))[system.object], system.contact_stiffness, 0.0)
 
     def barrier_reach(self, scene: SceneRecord, system: System) -> np.ndarray:
-        """Reach of the barrier of each object [m], shape (M,)."""
-        return np.where(fast(scene, system), FULL, SHORT) * system.spacing
+        """Reach of the barrier of each particle [m], shape (N,); of a pair the larger one counts.
+
+        Particles on the surface of what is slow have none: how far the barrier of another body reaches out of its inside is
+        that body's own, as its layers are.
+        """
+        quick = fast(scene, system)[system.object]
+        behind = np.where(system.boundary, 0.0, SHORT * shortest_edge(system)[system.object])
+        return np.where(quick, FULL * system.spacing[system.object], behind)
+
+    def longest_reach(self, scene: SceneRecord, system: System) -> float:
+        """No barrier of the scene reaches farther [m]."""
+        return float((np.where(fast(scene, system), FULL, SHORT) * system.spacing).max())
 
     def commands(self, scene, system):
         rules = [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for i, j, mu, beta in pair_rules(scene, system.names)]
@@ -184,9 +194,7 @@ class SurfaceContact(OnSurfaces, Contact):
         if dense.any() and not dense.all():
             area = np.maximum(area, ALONE * np.where(dense[system.object], own, borne))
         surface = 2.0 * kappa * area / system.mass
-        return surface + barrier_rate(
-            system, self.barrier_stiffness(scene, system), float(self.barrier_reach(scene, system).max())
-        )
+        return surface + barrier_rate(system, self.barrier_stiffness(scene, system), self.longest_reach(scene, system))
 
     def own_rate(self, scene, system):
         kappa = self.stiffness(scene, system)[system.object]
@@ -290,6 +298,11 @@ def surface_stiffness(scene: SceneRecord, system: System, share: np.ndarray | fl
 def are_dense(system: System) -> np.ndarray:
     """Solids that are no cuboids, with dense points on their surfaces, bool, shape (M,)."""
     return np.array([not isinstance(frame.shape, Box) for frame in system.frames])[system.contact_kind]
+
+
+def shortest_edge(system: System) -> np.ndarray:
+    """Of the cells of each solid [m], shape (M,)."""
+    return np.array([frame.cells.edge.min() for frame in system.frames])[system.contact_kind]
 
 
 def own_area(system: System) -> np.ndarray:
