@@ -18,7 +18,7 @@ control {{ time 1 s  resolution {h} cm  friction {mu} }}
 
 
 def ramp(d, h, mu=0.2, slope=25.0, ramp="hold all", density=1000, more=""):
-    """A block on a slope of so many degrees, drawn level under tilted gravity; the ramp is d [cm] thick at a spacing of h [cm]."""
+    """A block on a slope [deg], drawn level under tilted gravity; the ramp is d [cm] thick at a spacing of h [cm]."""
     a = math.radians(slope)
     gx, gz = G * math.sin(a), -G * math.cos(a)
     return RAMP.format(gx=gx, gz=gz, d=d, middle=-d / 2, h=h, mu=mu, ramp=ramp, density=density, more=more)
