@@ -206,7 +206,7 @@ def shares(rounds: int) -> None:
 
 def forecasts(*names: str) -> None:
     """Expected and measured cost of all scenes, both in processor time, which others on the machine do not stretch."""
-    from mdanim_lammps.cost.forecast import extrapolate
+    from mdanim_lammps.cost.forecast import whole
     from mdanim_lammps.engine.plugin import open_lammps
     from mdanim_lammps.run.loop import simulate
     from mdanim_lammps.run.prepare import prepare
@@ -223,7 +223,7 @@ def forecasts(*names: str) -> None:
         ready = prepare(load_scene(path))
         setup = time.process_time() - start
         with tempfile.TemporaryDirectory() as first, tempfile.TemporaryDirectory() as folder:
-            told = extrapolate(ready, Path(first), setup=setup)
+            told = whole(ready, Path(first), setup=setup)
             began = time.perf_counter()
             cost = simulate(ready, Path(folder)).cost
             wall = time.perf_counter() - began

@@ -185,9 +185,15 @@ def forecast_line(cost: Cost | DivergedError | None) -> str:
         return "cost     not known: the first steps of the run take longer than half a minute"
     if isinstance(cost, DivergedError):
         return f"stops    {cost.why}"
-    parts = sorted(cost.parts.items(), key=lambda item: -item[1])
-    largest = ", ".join(f"{name} {_about(s)}" for name, s in parts if s >= 0.05 * cost.total)
-    return f"cost     about {_about(cost.total)} here: {largest}"
+    setup = cost.other.get("setup", 0.0)
+    parts = sorted(((name, s) for name, s in cost.parts.items() if name != "setup"), key=lambda item: -item[1])
+    largest = ", ".join(f"{name} {_about(s)}" for name, s in parts if s >= 0.05 * (cost.total - setup))
+    whole = [
+        f"modelling {_about(setup)}",
+        f"run {_about(cost.total - setup)}" + (f" ({largest})" if largest else ""),
+        "movie not known, as this host cannot draw" if cost.movie is None else f"movie {_about(cost.movie)}",
+    ]
+    return f"cost     about {_about(cost.total + (cost.movie or 0.0))} here: {', '.join(whole)}"
 
 
 def quicker_line(ready: Prepared, cost: Cost | DivergedError | None) -> str | None:

@@ -10,11 +10,14 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
+from mdanim_lammps.cost import later as later_steps
+from mdanim_lammps.cost import movie_forecast
 from mdanim_lammps.cost.forecast import extrapolate, forecast
 from mdanim_lammps.effects import EFFECTS
 from mdanim_lammps.errors import DivergedError, SetupError
 from mdanim_lammps.report import check_json, cost_line, forecast_line, quicker_line
 from mdanim_lammps.results.cost import Cost, CostShare
+from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.run.frame_source import Account, add_clocks
 from mdanim_lammps.run.loop import simulate
 from mdanim_lammps.run.prepare import prepare
@@ -134,6 +137,7 @@ def test_a_forecast_has_the_parts_of_a_cost(pond):
     """Name the same effects and lines as the run does, and work of the same names, with the same steps and particles."""
     ready, result = pond
     told = forecast(ready)
+    assert told.movie is None or told.movie > 0.0
     assert list(told.effects) == list(result.cost.effects)
     assert {"leap-frog", "rest of the step", "setup", "output"} == set(told.other) <= set(result.cost.other)
     assert [p.place for p in told.effects.values()] == [p.place for p in result.cost.effects.values()]
@@ -227,6 +231,67 @@ def test_a_forecast_runs_no_more_than_the_run(pond, clockwork, fresh):
         assert clockwork[-1][0] == run
 
 
+def test_a_forecast_counts_what_begins_later(pond, monkeypatch, fresh):
+    """Contact that costs nothing in the first steps and 2 s in a whole coarse run costs 2 s in the run, times its steps and its
+    particles at surfaces; what costs as much at first is not counted twice; half a coarse run tells the half."""
+    ready, _ = pond
+    now = [0.0]  # of two programs on one processor
+    clocks = SimpleNamespace(perf_counter=lambda: now[0], thread_time=lambda: 0.5 * now[0])
+    monkeypatch.setattr(later_steps, "time", clocks)
+    for done in (1.0, 0.5):
+
+        def simulate(coarse, folder, *, on_progress, done=done):
+            steps = coarse.certificate.steps
+            now[0] += 1.0
+            on_progress(SimpleNamespace(step=round(done * steps), steps=steps))
+            parts = {"springs": CostShare(3.0), "contact": CostShare(4.0 * done), "ground": CostShare(2.0 * done)}
+            return SimpleNamespace(cost=Cost(9.0, steps, 1, parts, {}))
+
+        monkeypatch.setattr("mdanim_lammps.run.loop.simulate", simulate)
+        coarse = later_steps._coarser(ready)
+        assert coarse.system.particles < ready.system.particles / 3
+        first = Cost(4.0, 1, 1, {"springs": CostShare(3.0), "contact": CostShare(0.0), "ground": CostShare(1.0)}, {})
+        more = later_steps.later(ready, fresh(), lambda coarse, folder: first)
+        surface = ready.system.boundary.sum() / coarse.system.boundary.sum()
+        steps = ready.certificate.steps / coarse.certificate.steps
+        assert more == {"contact": pytest.approx(2.0 * surface * steps, rel=0.01)}
+
+
+def test_a_movie_is_forecast_from_some_pictures(pond, monkeypatch):
+    """Take every picture for as long as those that were drawn, and what comes before the first one once."""
+    clock = SimpleNamespace(now=0.0)
+
+    class Painter:
+        def __init__(self, trajectory, render):
+            clock.now += 2.0
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *_):
+            return None
+
+        def frame(self, k):
+            clock.now += 0.3
+
+    ready, result = pond
+    monkeypatch.setattr("mdanim_lammps.picture.render.Painter", Painter)
+    rates = {"perf_counter": 1.0, "process_time": 1.6}
+    monkeypatch.setattr(movie_forecast, "time", SimpleNamespace(**{n: lambda r=r: r * clock.now for n, r in rates.items()}))
+    wanted = movie_forecast.pictures(ready)
+    assert wanted == len(Trajectory(result.folder))
+    monkeypatch.setattr(movie_forecast, "processes_for", lambda pictures: 1)
+    assert movie_forecast.movie_seconds(ready, result.folder) == pytest.approx(2.0 + 0.3 * wanted)
+    monkeypatch.setattr(movie_forecast, "processes_for", lambda pictures: 4)
+    assert movie_forecast.movie_seconds(ready, result.folder) == pytest.approx(2.0 + 1.6 * 0.3 / 4 * wanted)
+
+    def blind(*_):
+        raise SetupError("no OpenGL")
+
+    monkeypatch.setattr("mdanim_lammps.picture.render.Painter", blind)
+    assert movie_forecast.movie_seconds(ready, result.folder) is None
+
+
 def test_first_steps_that_end_badly(pond, monkeypatch, tmp_path):
     """Tell where and why they are stopped, nothing where they take too long, pass on that LAMMPS cannot be used, and outlive an
     end of the process. No file stays."""
@@ -235,7 +300,7 @@ def test_first_steps_that_end_badly(pond, monkeypatch, tmp_path):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
 
     def ends(what):
-        monkeypatch.setattr(forecasting, "extrapolate", what)
+        monkeypatch.setattr(forecasting, "whole", what)
         return forecast(pond[0])
 
     def fail(error):
@@ -276,9 +341,10 @@ def test_ctrl_c_ends_a_forecast(pond, monkeypatch, tmp_path):
         os.kill(os.getppid(), signal.SIGINT)
         time.sleep(60.0)
 
-    monkeypatch.setattr(forecasting, "extrapolate", signalled)
-    assert forecast(pond[0]) == cost
-    monkeypatch.setattr(forecasting, "extrapolate", endless)
+    monkeypatch.setattr(forecasting, "whole", signalled)
+    monkeypatch.setattr(forecasting, "movie_seconds", lambda ready, folder: 2.0)
+    assert forecast(pond[0]) == replace(cost, movie=2.0)
+    monkeypatch.setattr(forecasting, "whole", endless)
     start = time.perf_counter()
     with pytest.raises(KeyboardInterrupt):
         forecast(pond[0])
@@ -316,8 +382,10 @@ def test_a_long_run_is_told_how_it_gets_quicker(tmp_path):
 
 def test_forecast_is_printed(pond):
     """Say the time in few digits with its largest parts, and all of it in JSON."""
-    cost = Cost(12.4, 1, 1, {"springs": CostShare(5.2), "walls": CostShare(0.01)}, {"setup": 1.4, "output": 5.8})
-    assert forecast_line(cost) == "cost     about 12 s here: output 6 s, springs 5 s, setup 1.4 s"
-    assert forecast_line(replace(cost, wall=7300.0, effects={}, other={})) == "cost     about 2 h here: "
+    cost = Cost(12.4, 1, 1, {"springs": CostShare(5.2), "walls": CostShare(0.01)}, {"setup": 1.4, "output": 5.8}, movie=43.0)
+    assert forecast_line(cost) == "cost     about 60 s here: modelling 1.4 s, run 11 s (output 6 s, springs 5 s), movie 40 s"
+    blind = forecast_line(replace(cost, wall=7300.0, effects={}, other={}, movie=None))
+    assert blind == "cost     about 2 h here: modelling 0 ms, run 2 h, movie not known, as this host cannot draw"
+    assert check_json(pond[0], cost)["cost"]["movie"] == 43.0
     assert check_json(pond[0], cost)["cost"]["wall"] == 12.4
     assert check_json(pond[0])["cost"] is None

@@ -16,6 +16,8 @@ from ..errors import DivergedError, MdanimError, SetupError
 from ..results.cost import Cost
 from ..results.files import STOP
 from ..run.prepare import Prepared
+from .later import later
+from .movie_forecast import movie_seconds
 
 REST = "rest of the step"
 ENOUGH = 0.4
@@ -24,6 +26,8 @@ FRAMES = 3, 30
 """Fewest and most frames that are run."""
 PARTICLE_STEPS, STEPS = 500_000, 10
 """Most work of a frame, and its fewest steps: the energies of a frame take as long as one more."""
+WORTH = 0.3
+"""Seconds of a run from which on its later steps are looked at too."""
 PATIENCE = 30.0
 """Seconds after which a forecast is given up."""
 
@@ -57,10 +61,22 @@ def _tell(send: Connection, ready: Prepared, folder: Path, setup: float) -> None
     """Send the cost or the error through a pipe."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the caller's, which ends this process
     try:
-        found: Cost | MdanimError = extrapolate(ready, folder, setup=setup)
+        found: Cost | MdanimError = whole(ready, folder, setup=setup)
+        found = replace(found, movie=movie_seconds(ready, folder))
     except MdanimError as error:
         found = error
     send.send(found)
+
+
+def whole(ready: Prepared, folder: Path, *, setup: float = 0.0) -> Cost:
+    """The expected cost of a run, with what begins later than its first steps; arguments and errors as of `extrapolate`."""
+    cost = extrapolate(ready, folder, setup=setup)
+    if cost.total - cost.other["setup"] < WORTH:
+        return cost
+    (aside := folder / "coarse").mkdir()
+    more = later(ready, aside, extrapolate)
+    effects = {name: replace(part, seconds=part.seconds + more.get(name, 0.0)) for name, part in cost.effects.items()}
+    return replace(cost, wall=cost.wall + sum(more.values()), effects=effects)
 
 
 def extrapolate(ready: Prepared, folder: Path, *, setup: float = 0.0) -> Cost:

@@ -111,7 +111,7 @@ def render_movie(
     width, height = size or render.size
     size = (width + width % 2, height + height % 2)
     shown, rate = movie_frames(trajectory, fps, render.speed)
-    processes = processes or max(1, min(cores(), len(shown) // FRAMES_PER_PROCESS))
+    processes = processes or processes_for(len(shown))
     pictures = _draw_here if processes == 1 else _draw_apart
     with _encoder(Path(path), size, rate, len(shown)) as encode:
         for done, picture in enumerate(pictures(trajectory, render, size, shown, processes), start=1):
@@ -121,6 +121,11 @@ def render_movie(
             if on_progress is not None:
                 on_progress(done, len(shown))
     return Path(path)
+
+
+def processes_for(pictures: int) -> int:
+    """How many processes draw a movie of so many pictures on this host."""
+    return max(1, min(cores(), pictures // FRAMES_PER_PROCESS))
 
 
 def movie_frames(trajectory: Trajectory, fps: float | None = None, speed: float = 1.0) -> tuple[np.ndarray, Fraction]:

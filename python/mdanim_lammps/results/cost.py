@@ -33,6 +33,8 @@ class Cost:
     effects: Mapping[str, CostShare] = field(default_factory=dict)
     other: Mapping[str, float] = field(default_factory=dict)
     """Leap-frog, rest of the step, setup (loading and modelling), output, and what a resumed run had cost before [s]."""
+    movie: float | None = None
+    """Of a forecast: what the movie will take after the run [s]; None where that is not known."""
 
     @property
     def total(self) -> float:
@@ -65,6 +67,7 @@ class Cost:
                 for name, part in self.effects.items()
             },
             "other": dict(self.other),
+            **({} if self.movie is None else {"movie": self.movie}),
         }
 
     @classmethod
