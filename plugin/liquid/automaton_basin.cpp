@@ -15,6 +15,7 @@ namespace mdanim {
 
 static constexpr double SWEEPS_PER_CELL = 8.0;    // that the fastest solid travels
 static constexpr double LEVEL_RATE = 0.11;        // share of exposed cells moved while a shallow-water wave crosses one cell
+static constexpr double BETWEEN_MOVES = 0.5;      // cells that it crosses meanwhile
 static constexpr double SAMPLED = 4.0;            // cells above the liquid up to which solids are marked
 static constexpr double SPLASH = 1.5;             // cells below the surface within which an empty cell is taken for a ripple
 static constexpr double ANYWHERE = std::numeric_limits<double>::infinity();
@@ -100,6 +101,7 @@ long AutomatonBasin::pour(std::int64_t wanted, const std::vector<std::uint8_t> &
 {
   automaton.displace(solid.codes().data(), when);
   units = wanted;
+  wait.looked = static_cast<std::int64_t>(when);
   const long left = automaton.fill(units, within.data(), when);
   poured = true;
   raise_surface(false);
@@ -108,28 +110,29 @@ long AutomatonBasin::pour(std::int64_t wanted, const std::vector<std::uint8_t> &
 
 // --- time ---
 
-bool AutomatonBasin::is_due(double fastest, double dt)
+bool AutomatonBasin::is_due(double fastest, double dt, std::int64_t step)
 {
-  if (!calm) waited += pace.every;
+  const std::int64_t steps = wait.look(step, pace.every, dt);
+  if (calm) wait.end();
   if (fastest >= 0.0)
-    travel += std::sqrt(fastest) * pace.every * dt / shortest;
+    travel += std::sqrt(fastest) * static_cast<double>(steps) * dt / shortest;
   else if (solid.moving())
     return true;    // the last solid has just left
   if (travel >= pace.stride) return true;
-  return !calm && waited * dt >= pace.period * std::sqrt(shortest / g);
+  return !calm && wait.time() >= pace.period * std::sqrt(shortest / g);
 }
 
-void AutomatonBasin::update(const AddBodies &bodies, std::uint64_t when, double dt)
+void AutomatonBasin::update(const AddBodies &bodies, std::uint64_t when)
 {
   mark_moving(bodies);
   const long changed = make_room(when);
-  if (changed || !calm) flow(changed, when, dt);
+  if (changed || !calm) flow(changed, when);
   travel = 0.0;
-  waited = 0;
+  wait.end();
 }
 
 // Lets the liquid move: sweeps, and the level rule as often as a wave has gone half a cell or solids have changed cells.
-void AutomatonBasin::flow(long changed, std::uint64_t when, double dt)
+void AutomatonBasin::flow(long changed, std::uint64_t when)
 {
   bool levelled = false;
   int most = 0;
@@ -137,15 +140,18 @@ void AutomatonBasin::flow(long changed, std::uint64_t when, double dt)
     const Lap lap(liquid_seconds);
     // A front goes on by one cell in a move: half a cell of wave between moves makes its speed 2 sqrt(g depth), that of the front
     // of a broken dam.
-    crossed += std::sqrt(g * top_layer * shape.cell.z) * waited * dt / shortest;
-    const bool wave = crossed >= 0.5;
-    const int wanted = std::max(static_cast<int>(SWEEPS_PER_CELL * travel + 0.5), wave || changed ? 1 : 0);
+    crossed += std::sqrt(g * top_layer * shape.cell.z) * wait.time() / shortest;
+    const int waves = static_cast<int>(std::min<double>(MOST_SWEEPS, crossed / BETWEEN_MOVES));
+    crossed = std::min(BETWEEN_MOVES, crossed - waves * BETWEEN_MOVES);
+    const int moves = std::max(waves, changed ? 1 : 0);
+    const int wanted = std::max(static_cast<int>(SWEEPS_PER_CELL * travel + 0.5), moves);
     most = pace.sweeps ? pace.sweeps : std::min(wanted, MOST_SWEEPS);
     for (int k = 0; k < most; ++k) automaton.sweep(when * MOST_SWEEPS + k);
     swept += most;
-    levelled = model == Model::SURFACE && (wave || changed);
-    if (levelled && leveller.move(automaton.cells, seed, when, wave ? LEVEL_RATE * crossed : 0.0, changed)) automaton.poured();
-    if (wave) crossed = 0.0;
+    levelled = model == Model::SURFACE && moves > 0;
+    for (int k = 0; levelled && k < moves; ++k)
+      if (leveller.move(automaton.cells, seed, key_of(when, k), k < waves ? LEVEL_RATE * BETWEEN_MOVES : 0.0, k ? 0 : changed))
+        automaton.poured();
   }
   if (changed || most || levelled) raise_surface(levelled);
 }

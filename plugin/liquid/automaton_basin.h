@@ -34,8 +34,8 @@ class AutomatonBasin : public Basin {
   // Units, into open cells where `within` is not 0; returns how many find no room.
   long pour(std::int64_t units, const std::vector<std::uint8_t> &within, std::uint64_t when);
   void settle(std::uint64_t when) override;
-  bool is_due(double fastest, double dt) override;
-  void update(const AddBodies &bodies, std::uint64_t when, double dt) override;
+  bool is_due(double fastest, double dt, std::int64_t step) override;
+  void update(const AddBodies &bodies, std::uint64_t when) override;
 
   AtPlace at(const Vec3 &place) const override
   {
@@ -78,7 +78,7 @@ class AutomatonBasin : public Basin {
  private:
   std::int64_t units_up_to(double height, const std::vector<std::uint8_t> &within) const;
   long make_room(std::uint64_t when);
-  void flow(long changed, std::uint64_t when, double dt);
+  void flow(long changed, std::uint64_t when);
   void raise_surface(bool just_levelled);
   void smooth();
   bool is_parted(int x, int y) const;
@@ -105,9 +105,9 @@ class AutomatonBasin : public Basin {
   // state
   bool poured = false;
   bool calm = false;
-  double crossed = 0.0;               // by a shallow-water wave since liquid was last levelled
-  double travel = 0.0;                // of the fastest particle near the liquid since the last update
-  std::int64_t waited = 0;            // steps since the last update
+  double crossed = 0.0;    // by a shallow-water wave since liquid was last levelled
+  double travel = 0.0;     // of the fastest particle near the liquid since the last update
+  Wait wait;
   std::int64_t swept = 0;             // sweeps so far
   std::int64_t units = 0;             // of liquid at the start
   std::vector<double> height, eta;    // of the columns; see level.h, surface.h

@@ -2,7 +2,9 @@
 // Output of a basin, and its state as bytes.
 
 #include "liquid/automaton_basin.h"
+#include "liquid/state_kind.h"
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -10,7 +12,7 @@
 
 namespace mdanim {
 
-static constexpr double STATE_VERSION = 3.0;
+static constexpr StateKind KIND{"automat", 4.0};
 static constexpr std::uint8_t SOLID_CODE = 255, STILL_CODE = 254;
 
 double AutomatonBasin::bytes() const
@@ -72,9 +74,10 @@ void AutomatonBasin::contents(std::uint8_t *out) const
 namespace {
 
 struct StateHead {
-  double version;
+  StateKind kind;
   std::int64_t nx, ny, nz;
-  std::int64_t units, swept, waited, calm;
+  std::int64_t units, swept, calm;
+  Basin::Wait wait;
   double travel, crossed;
   Basin::Ledger ledger;
 };
@@ -89,7 +92,7 @@ std::string grid(std::int64_t nx, std::int64_t ny, std::int64_t nz)
 // The head, raw heights, and a byte for each cell: what it holds, or a code.
 std::vector<std::uint8_t> AutomatonBasin::state(const Ledger &ledger) const
 {
-  const StateHead head{STATE_VERSION, shape.nx, shape.ny, shape.nz, units, swept, waited, calm, travel, crossed, ledger};
+  const StateHead head{KIND, shape.nx, shape.ny, shape.nz, units, swept, calm, wait, travel, crossed, ledger};
   const std::size_t heights = height.size() * sizeof(double), count = solid.codes().size();
   std::vector<std::uint8_t> bytes(sizeof head + heights + count);
   std::memcpy(bytes.data(), &head, sizeof head);
@@ -108,9 +111,7 @@ Basin::Ledger AutomatonBasin::set_state(const std::uint8_t *bytes, std::size_t s
   const std::string whose = "the liquid's state ";
   if (size < sizeof head) throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few");
   std::memcpy(&head, bytes, sizeof head);
-  if (head.version != STATE_VERSION)
-    throw std::runtime_error(whose + "has another version than " + number(static_cast<std::int64_t>(STATE_VERSION)) +
-                             "; it was written by another version of the plugin");
+  KIND.expect(head.kind, whose);
   if (head.nx != shape.nx || head.ny != shape.ny || head.nz != shape.nz || size != sizeof head + heights + count)
     throw std::runtime_error(whose + "is of a grid of " + grid(head.nx, head.ny, head.nz) + " cells, this one has " +
                              grid(shape.nx, shape.ny, shape.nz));
@@ -123,13 +124,21 @@ Basin::Ledger AutomatonBasin::set_state(const std::uint8_t *bytes, std::size_t s
   }
   if (held != head.units)
     throw std::runtime_error(whose + "is damaged: it holds " + number(held) + " units of liquid, not " + number(head.units));
+  need_numbers(std::array{head.travel, head.crossed, head.wait.before, head.wait.dt}, whose, "a time or a way", 0.0);
+  need_numbers(std::array{head.swept, head.wait.steps, head.wait.looked}, whose, "a count", 0.0);
+  need_numbers(std::array{head.ledger.sum.work, head.ledger.sum.lost, head.ledger.power.work, head.ledger.power.lost}, whose,
+               "an energy");
+  std::vector<double> stored(height.size());
+  std::memcpy(stored.data(), bytes + sizeof head, heights);
+  for (const double h : stored)
+    if (!std::isnan(h)) need_numbers(std::array{h}, whose, "the height of a column", 0.0);
   units = head.units;
   swept = head.swept;
-  waited = head.waited;
+  wait = head.wait;
   calm = head.calm != 0;
   travel = head.travel;
   crossed = head.crossed;
-  std::memcpy(height.data(), bytes + sizeof head, heights);
+  height = stored;
 
   // Solids first: an empty grid loses nothing to them.
   Cells &into = automaton.cells;

@@ -32,6 +32,38 @@ class Basin {
     double stride = 0.25;    // that solids travel between updates, in cells
     double period = 0.06;    // between updates while the liquid is not level, in sqrt(cell/g)
   };
+  // Time since the last update, by the steps between looks.
+  struct Wait {
+    double before = 0.0;       // [time] in steps of another length
+    std::int64_t steps = 0;    // of dt, since then
+    double dt = 0.0;
+    std::int64_t looked = 0;    // step of the last look
+    // A look at a multiple of `every`, which may be another number than at the last look; steps may be numbered anew. Returns the
+    // steps since then.
+    std::int64_t look(std::int64_t step, int every, double now)
+    {
+      if (now != dt) {
+        before = time();
+        steps = 0;
+        dt = now;
+      }
+      const std::int64_t more = since_look(step, every);
+      steps += more;
+      looked = step;
+      return more;
+    }
+    std::int64_t since_look(std::int64_t step, int every) const
+    {
+      const std::int64_t gone = step - looked, in_turn = step % every;
+      return gone >= 0 && gone <= every ? gone : in_turn ? in_turn : every;
+    }
+    double time() const { return before + static_cast<double>(steps) * dt; }
+    void end()
+    {
+      before = 0.0;
+      steps = 0;
+    }
+  };
   struct Energies {
     double work = 0.0, lost = 0.0;    // of all that the liquid does to solids but drag; to drag
   };
@@ -73,7 +105,10 @@ class Basin {
   using AddBodies = std::function<void(Occupancy &, double below)>;
 
   static constexpr int MOST_SWEEPS = 4096;    // per update; also parts the keys of their random numbers
-  static constexpr double NEAR = 8.0;         // cells above the liquid up to which the motion of solids counts
+  // Of the random numbers of an update, where a part of it comes several times; the first has that of the step.
+  static constexpr std::uint64_t key_of(std::uint64_t step, int part) { return step + (static_cast<std::uint64_t>(part) << 40); }
+
+  static constexpr double NEAR = 8.0;    // cells above the liquid up to which the motion of solids counts
 
   Basin(const Shape &shape, double g)
       : shape(shape), g(g), shortest(std::min({shape.cell.x, shape.cell.y, shape.cell.z})),
@@ -92,11 +127,11 @@ class Basin {
   virtual Filled fill(const Amount &amount, const std::vector<std::uint8_t> &within, std::uint64_t when) = 0;
   // What never moves has been moved. Throws std::runtime_error when liquid has no room left, as update().
   virtual void settle(std::uint64_t when) = 0;
-  // Whether an update is due, `every` steps of dt after this was asked last. `fastest` is the square of the speed of the fastest
-  // solid near the liquid, or negative when there is none. Depends on the state alone, so that neither ranks nor pieces of a
-  // run change it.
-  virtual bool is_due(double fastest, double dt) = 0;
-  virtual void update(const AddBodies &bodies, std::uint64_t when, double dt) = 0;
+  // Whether an update is due at this step, which is asked every pace.every steps of dt. `fastest` is the square of the speed of
+  // the fastest solid near the liquid, or negative when there is none. Depends on the state alone, so that neither ranks nor
+  // pieces of a run change it.
+  virtual bool is_due(double fastest, double dt, std::int64_t step) = 0;
+  virtual void update(const AddBodies &bodies, std::uint64_t when) = 0;
   virtual void use(const Threads &) {}    // for updates
 
   // --- what acts on solids, and they on the liquid ---
@@ -146,8 +181,11 @@ class Basin {
   virtual double cells_now() const = 0;    // of liquid
   virtual double cells_at_start() const = 0;
   virtual std::int64_t updates_so_far() const = 0;    // sweeps of the automaton
-  virtual double energy() const { return 0.0; }       // of the liquid since the start, over density g cell^4; 0 without momentum
-  virtual Vec3 momentum() const { return {}; }        // of the liquid, over density [volume * velocity]; sideways
+  // Time [time] that a liquid with momentum has gone through by this step, and what it has slept at rest; that of solids, or
+  // something is wrong. 0 of others.
+  virtual double clock(std::int64_t /*step*/, double /*dt*/) const { return 0.0; }
+  virtual double energy() const { return 0.0; }    // of the liquid since the start, over density g cell^4; 0 without momentum
+  virtual Vec3 momentum() const { return {}; }     // of the liquid, over density [volume * velocity]; sideways
   virtual Impulses impulses() const { return {}; }
   virtual double highest() const { return top(); }    // liquid
   virtual double bytes() const = 0;

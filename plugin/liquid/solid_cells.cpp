@@ -57,7 +57,9 @@ void SolidCells::assign(const std::vector<std::uint8_t> &codes)
   for (int z = 0; z < mobile.nz; ++z)
     for (int y = 0; y < mobile.ny; ++y)
       for (int x = 0; x < mobile.nx; ++x) {
-        if (code[mobile.number(x, y, z)] != MOVING) continue;
+        const std::uint8_t now = code[mobile.number(x, y, z)];
+        if (now == STILL) still.touched.take_in(x, y, z);
+        if (now != MOVING) continue;
         mobile.touched.take_in(x, y, z);
         ++moving_cells;
       }

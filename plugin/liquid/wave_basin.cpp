@@ -15,8 +15,9 @@ namespace mdanim {
 
 namespace {
 
-constexpr double SAMPLED = 4.0;             // cells above the liquid up to which solids are marked
-constexpr double LONGEST = 0.2;             // update, in sqrt(cell/g)
+constexpr double SAMPLED = 4.0;    // cells above the liquid up to which solids are marked
+constexpr double LONGEST = 0.2;    // that the liquid goes on at once, in sqrt(cell/g)
+constexpr double ROUNDING = 1e-9;
 constexpr double ASLEEP = 1.0 / 64.0;       // cells that a solid may go before liquid at rest looks
 constexpr double SLOW = 1.0;                // time in which what pushes sideways follows, in sqrt(cell/g)
 constexpr double CALMING = 1.0;             // rate at which columns of solids lose their vibration, in sqrt(g/cell)
@@ -163,10 +164,11 @@ void WaveBasin::count_parts()
   marked = CellBox();
   marked.take_in(still.touched);
   marked.take_in(mobile.touched);
+  const double period = std::min(pace.period, LONGEST);
   threads.parts(columns(), COLUMN, [&](long first, long end) {
     for (long c = first; c < end; ++c) {
       // What is elastic yields more than its mass says.
-      const double own = mobile.mass_of(c), soft = SOFT * mobile.softness_of(c) / (pace.period * pace.period);
+      const double own = mobile.mass_of(c), soft = SOFT * mobile.softness_of(c) / (period * period);
       mass[c] = own > 0.0 ? std::max(MASS_STEP, std::floor(own / (YIELDING + own * soft) / MASS_STEP + 0.5) * MASS_STEP) : 0.0;
       afloat[c] = own > 0.0 ? AddedMass::Solids{own, mobile.momentum_of(c) / own} : AddedMass::Solids{};
     }
@@ -175,7 +177,7 @@ void WaveBasin::count_parts()
 
 // --- the start ---
 
-Basin::Filled WaveBasin::fill(const Amount &amount, const std::vector<std::uint8_t> &within, std::uint64_t)
+Basin::Filled WaveBasin::fill(const Amount &amount, const std::vector<std::uint8_t> &within, std::uint64_t when)
 {
   waves.set_solids(part.data(), mass.data());
   changed = CellBox();
@@ -228,6 +230,7 @@ Basin::Filled WaveBasin::fill(const Amount &amount, const std::vector<std::uint8
   energy_at_start = energy_now();
   poured = true;
   stale = true;    // so that the first look updates
+  wait.looked = static_cast<std::int64_t>(when);
   look();
   find_push(1.0, 0.0);
   return {wanted, room < want ? static_cast<long>((want - room + UNITS_PER_CELL - 1) / UNITS_PER_CELL) : 0};
@@ -235,28 +238,33 @@ Basin::Filled WaveBasin::fill(const Amount &amount, const std::vector<std::uint8
 
 // --- time ---
 
-bool WaveBasin::is_due(double fastest, double dt)
+// Awake, before the next look would come too late.
+bool WaveBasin::is_due(double fastest, double dt, std::int64_t step)
 {
-  waited += pace.every;
+  const std::int64_t steps = wait.look(step, pace.every, dt);
   if (fastest >= 0.0)
-    travel += std::sqrt(fastest) * pace.every * dt / shortest;
+    travel += std::sqrt(fastest) * static_cast<double>(steps) * dt / shortest;
   else if (moving)
     return true;    // the last solid has just left
   if (is_calm()) return travel >= ASLEEP;
-  return travel >= pace.stride || static_cast<double>(waited) * dt >= pace.period * unit_of_time;
+  const double since = wait.time();
+  return travel >= pace.stride || since >= pace.period * unit_of_time ||
+         since + pace.every * dt > (1.0 + ROUNDING) * LONGEST * unit_of_time;
 }
 
-void WaveBasin::update(const AddBodies &bodies, std::uint64_t, double dt)
+// All of the time since the last update, in parts. Only liquid that slept leaves out what it has slept.
+void WaveBasin::update(const AddBodies &bodies, std::uint64_t)
 {
+  const bool slept_until_now = sleeps();
   mark_moving(bodies);
   const Lap lap(liquid_seconds);
-  const double since = static_cast<double>(waited) * dt / unit_of_time, time = std::min(LONGEST, since);
+  const double since = wait.time() / unit_of_time, time = slept_until_now ? std::min(LONGEST, since) : since;
   waves.set_solids(part.data(), mass.data(), since > 0.0 ? time / since : 0.0, &changed);
   changed = CellBox();
-  give_impulses(since);
-  makers.apply(waves, time);
-  account.came += waves.take_came();
-  go_on(time);
+  give_impulses(since, since - time);
+  const int parts = std::max(1, static_cast<int>(std::ceil(time / LONGEST - ROUNDING)));
+  for (int n = 0; n < parts; ++n) go_on(time / parts, parts, n);
+  slept += (since - time) * unit_of_time;
   ++updates;
   look();
   if (waves.at_rest())
@@ -264,12 +272,13 @@ void WaveBasin::update(const AddBodies &bodies, std::uint64_t, double dt)
   else
     find_push(time / (time + SLOW), since);
   travel = 0.0;
-  waited = 0;
+  wait.end();
   stale = false;
 }
 
-// What solids have done to the liquid, and it to them, since the last update.
-void WaveBasin::give_impulses(double since)
+// What solids have done to the liquid, and it to them, since the last update. What liquid that was `asleep` gave to solids it got
+// from the basin.
+void WaveBasin::give_impulses(double since, double asleep)
 {
   std::vector<std::int64_t> all = from_solids;
   ranks.add_wide(all.data(), static_cast<int>(all.size()));
@@ -280,6 +289,7 @@ void WaveBasin::give_impulses(double since)
   // Force in units of the waves: density, g and cell are 1 there, and time is that of a square cell.
   const Vec3 push{static_cast<double>(end[0]) * PUSH_UNIT * shape.cell.y / shape.cell.z,
                   static_cast<double>(end[1]) * PUSH_UNIT * shape.cell.x / shape.cell.z, 0.0};
+  account.basin += -asleep * push;
   account.solids += since * push - Vec3{sum(all.begin(), middle), sum(middle, end), 0.0};
   std::vector<double> given(2 * columns());
   for (std::size_t n = 0; n < given.size(); ++n) given[n] = static_cast<double>(all[n]) * IMPULSE_UNIT;
@@ -287,12 +297,14 @@ void WaveBasin::give_impulses(double since)
   std::fill(from_solids.begin(), from_solids.end(), 0);
 }
 
-// Waves and drops. Drops lose momentum to walls too, and get some by their scatter.
-void WaveBasin::go_on(double time)
+// Part `n` of an update: makers, waves and drops. Drops lose momentum to walls too, and get some by their scatter.
+void WaveBasin::go_on(double time, int parts, int n)
 {
-  waves.update(time);
+  makers.apply(waves, time);
+  account.came += waves.take_came();
+  gone += waves.update(time, 1.0 / (parts - n)) * unit_of_time;
   const Vec3 lost = waves.take_lost(), flying = drops.momentum();
-  drops.update(waves, time, static_cast<std::uint64_t>(updates));
+  drops.update(waves, time, key_of(static_cast<std::uint64_t>(updates), n));
   account.basin += lost - (drops.momentum() - flying) - waves.take_came();
 }
 

@@ -32,14 +32,16 @@ class WaveBasin : public Basin {
   void add_current(int side, double speed);
   // In with a velocity, or out where `rate` [volume/time] is negative: columns whose middle lies between the corners, or one at
   // least, at the height of the middle.
+  // Velocities up to this one along x or y [distance/time].
+  double fastest(int axis) const { return waves.law.fastest * (axis == 0 ? shape.cell.x : shape.cell.y) / unit_of_time; }
   void add_flow(const Vec3 &low, const Vec3 &high, double rate, double ux, double uy);
 
   long mark_still(const AddBodies &bodies) override;
   void mark_moving(const AddBodies &bodies) override;
   Filled fill(const Amount &amount, const std::vector<std::uint8_t> &within, std::uint64_t when) override;
   void settle(std::uint64_t) override { stale = true; }
-  bool is_due(double fastest, double dt) override;
-  void update(const AddBodies &bodies, std::uint64_t when, double dt) override;
+  bool is_due(double fastest, double dt, std::int64_t step) override;
+  void update(const AddBodies &bodies, std::uint64_t when) override;
   void use(const Threads &now) override
   {
     threads = now;
@@ -57,12 +59,14 @@ class WaveBasin : public Basin {
   bool is_smooth() const override { return true; }
   int top() const override { return top_layer; }
   bool is_poured() const override { return poured; }
-  bool is_calm() const override { return waves.at_rest() && !stale && makers.none() && drops.all().empty(); }
+  bool is_calm() const override { return sleeps() && !stale; }
   long moving_solid() const override { return moving; }
   long solid_cells() const override;
   double cells_now() const override { return static_cast<double>(waves.total() + drops.total()) / UNITS_PER_CELL; }
   double cells_at_start() const override { return static_cast<double>(units + makers.in() - makers.out()) / UNITS_PER_CELL; }
   std::int64_t updates_so_far() const override { return updates; }
+  double clock(std::int64_t step, double dt) const override
+  { return gone + slept + wait.time() + static_cast<double>(wait.since_look(step, pace.every)) * dt; }
   double energy() const override { return energy_now() - energy_at_start; }
   Vec3 momentum() const override { return in_world(waves.momentum() + drops.momentum()); }
   Impulses impulses() const override { return {in_world(account.basin), in_world(account.solids), in_world(account.came)}; }
@@ -80,8 +84,9 @@ class WaveBasin : public Basin {
  private:
   double energy_now() const;
   Vec3 in_world(const Vec3 &momentum) const;
-  void give_impulses(double since);
-  void go_on(double time);
+  bool sleeps() const { return waves.at_rest() && makers.none() && drops.all().empty(); }
+  void give_impulses(double since, double asleep);
+  void go_on(double time, int parts, int n);
   void set_walls();
   void count_parts();
   std::size_t part_number(int column, int z) const { return static_cast<std::size_t>(column) * shape.nz + z; }
@@ -110,7 +115,8 @@ class WaveBasin : public Basin {
   // state
   bool poured = false, stale = false;    // stale: solids have changed that the liquid does not know of
   double travel = 0.0;                   // of the fastest particle near the liquid since the last update, in cells
-  std::int64_t waited = 0;               // steps since then
+  Wait wait;
+  double gone = 0.0, slept = 0.0;    // [time] that the liquid has gone through in updates, and what it has left out at rest
   std::int64_t updates = 0;
   Units units = 0;    // of liquid at the start
   double energy_at_start = 0.0;

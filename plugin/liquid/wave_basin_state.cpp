@@ -4,8 +4,10 @@
 #include "liquid/wave_basin.h"
 
 #include "liquid/columns.h"
+#include "liquid/state_kind.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -14,20 +16,41 @@ namespace mdanim {
 
 namespace {
 
-constexpr double STATE_VERSION = 9.0;    // the automaton's is 3
+constexpr StateKind KIND{"waves", 10.0};
 constexpr std::uint8_t SOLID_CODE = 255;
 constexpr double PUDDLE = 1.0 / 64.0;    // cells that are part of the floor
 constexpr double PI = 3.14159265358979323846;
 
 struct WaveBasinHead {
-  double version;
-  std::int64_t nx, ny, nz, units, updates, waited, stale, moving;
+  StateKind kind;
+  std::int64_t nx, ny, nz, units, updates, stale, moving;
   std::uint64_t still_known;
+  Basin::Wait wait;
+  double gone, slept;
   Basin::Ledger ledger;
   double travel, energy_at_start;
   Basin::Impulses account;
   std::uint64_t of_drops;    // bytes
+
+  // Throws std::runtime_error.
+  void check(const std::string &whose) const
+  {
+    need_numbers(std::array{wait.before, wait.dt, gone, slept, travel}, whose, "a time or a way", 0.0);
+    need_numbers(std::array{units, updates, moving, wait.steps, wait.looked}, whose, "a count", 0.0);
+    need_numbers(std::array{ledger.sum.work, ledger.sum.lost, ledger.power.work, ledger.power.lost, energy_at_start}, whose,
+                 "an energy");
+    for (const Vec3 &impulse : {account.basin, account.solids, account.came})
+      need_numbers(std::array{impulse.x, impulse.y, impulse.z}, whose, "an impulse");
+  }
 };
+
+// Copies of values that the bytes of a state hold, which may lie anywhere.
+template <class Value> std::vector<Value> copied(const std::uint8_t *from, std::size_t count)
+{
+  std::vector<Value> values(count);
+  if (count > 0) std::memcpy(static_cast<void *>(values.data()), from, count * sizeof values[0]);
+  return values;
+}
 
 }    // namespace
 
@@ -143,8 +166,8 @@ void WaveBasin::contents(std::uint8_t *out) const
 std::vector<std::uint8_t> WaveBasin::state(const Ledger &ledger) const
 {
   const std::vector<std::uint8_t> of_makers = makers.state(), of_drops = drops.state(), of_waves = waves.state();
-  const WaveBasinHead head{STATE_VERSION, shape.nx,    shape.ny, shape.nz, units,           updates, waited,         stale,
-                           moving,        still_known, ledger,   travel,   energy_at_start, account, of_drops.size()};
+  const WaveBasinHead head{KIND, shape.nx, shape.ny, shape.nz, units,  updates,         stale,   moving,         still_known,
+                           wait, gone,     slept,    ledger,   travel, energy_at_start, account, of_drops.size()};
   std::vector<std::uint8_t> bytes;
   const auto add = [&](const void *from, std::size_t size) {
     const auto *first = static_cast<const std::uint8_t *>(from);
@@ -168,9 +191,7 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
   WaveBasinHead head;
   if (size < sizeof head) too_few();
   std::memcpy(&head, bytes, sizeof head);
-  if (head.version != STATE_VERSION)
-    throw std::runtime_error(whose + "has another version than " + std::to_string(static_cast<int>(STATE_VERSION)) +
-                             ", that of waves; it was written by another version of the plugin or for another model");
+  KIND.expect(head.kind, whose);
   if (head.nx != shape.nx || head.ny != shape.ny || head.nz != shape.nz)
     throw std::runtime_error(whose + "is of a grid of " + std::to_string(head.nx) + " x " + std::to_string(head.ny) + " x " +
                              std::to_string(head.nz) + " cells, this one has " + std::to_string(shape.nx) + " x " +
@@ -182,27 +203,37 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
     place += part_size;
     return from;
   };
-  const auto next = [&](const auto &values) { return skip(values.size() * sizeof values[0]); };
+  const auto next = [&](auto value) { return copied<decltype(value)>(skip(columns() * sizeof value), columns()); };
   const std::size_t of_makers = makers.state().size();
-  const std::uint8_t *const masses = next(mass), *const floating = next(afloat), *const ambient = next(push.state());
-  const std::uint8_t *const added = next(push.added_state()), *const made = skip(of_makers), *const flying = skip(head.of_drops);
+  const std::vector<double> masses = next(0.0);
+  const auto floating = next(AddedMass::Solids{});
+  const std::vector<double> ambient = next(0.0);
+  const auto added = next(AddedMass::Column{});
+  const std::uint8_t *const made = skip(of_makers), *const flying = skip(head.of_drops);
+  head.check(whose);
+  need_numbers(masses, whose, "the mass of a column", 0.0);
+  for (int c = 0; c < columns(); ++c) {
+    need_numbers(std::array{floating[c].mass, added[c].mass}, whose, "the mass of a column", 0.0);
+    need_numbers(std::array{floating[c].velocity, added[c].force, added[c].velocity}, whose, "the motion of a column");
+    if (!std::isnan(ambient[c])) need_numbers(std::array{ambient[c]}, whose, "the head around a body");
+  }
   Drops taken(drops);
   taken.set_state(flying, head.of_drops);
+  WaveMakers(makers).set_state(made, of_makers);
   waves.set_state(bytes + place, size - place);    // which also tells other makers, by its size
   drops = taken;
   makers.set_state(made, of_makers);
-  const auto put = [](auto &values, const std::uint8_t *from) {
-    std::memcpy(values.data(), from, values.size() * sizeof values[0]);
-  };
-  put(mass, masses);
-  put(afloat, floating);
-  put(push.state(), ambient);
-  put(push.added_state(), added);
+  mass = masses;
+  afloat = floating;
+  push.state() = ambient;
+  push.added_state() = added;
   std::fill(from_solids.begin(), from_solids.end(), 0);
   poured = true;
   stale = head.stale != 0;
   travel = head.travel;
-  waited = head.waited;
+  wait = head.wait;
+  gone = head.gone;
+  slept = head.slept;
   updates = head.updates;
   units = head.units;
   energy_at_start = head.energy_at_start;

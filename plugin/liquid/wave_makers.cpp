@@ -3,9 +3,11 @@
 #include "liquid/wave_makers.h"
 
 #include "laws/portable.h"
+#include "liquid/state_kind.h"
 #include "liquid/waves.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -17,6 +19,7 @@ namespace {
 
 constexpr double ANY_HEIGHT = 1e9;
 constexpr double TWO_PI = 6.283185307179586;
+constexpr double MOST_DUE = 1e18;    // units: more than any basin holds, less than a whole number of 64 bits
 
 // k of w^2 = k tanh(k depth).
 double wave_number(double w, double depth)
@@ -99,7 +102,7 @@ void WaveMakers::apply(Waves &waves, double dt)
       volume = 0.0;
       each_column(m.drain, nx, [&](int column) { volume += m.rate * dt * waves.top_of(column).volume; });
     }
-    due[n] += volume * UNITS_PER_CELL;
+    due[n] = std::clamp(due[n] + volume * UNITS_PER_CELL, -MOST_DUE, MOST_DUE);
     const Units units = static_cast<Units>(due[n]);    // towards 0
     due[n] -= static_cast<double>(units);
     const double ux = m.kind == PADDLE ? 0.0 : m.u[0], uy = m.kind == PADDLE ? 0.0 : m.u[1];
@@ -159,8 +162,16 @@ void WaveMakers::set_state(const std::uint8_t *bytes, std::size_t size)
   if (size != own)
     throw std::runtime_error("the state of the makers of waves has " + std::to_string(size) + " bytes, these have " +
                              std::to_string(own));
-  std::memcpy(&account, bytes, sizeof account);
-  if (!due.empty()) std::memcpy(due.data(), bytes + sizeof account, due.size() * sizeof(double));
+  Account counted;
+  std::vector<double> owed(due.size());
+  std::memcpy(&counted, bytes, sizeof counted);
+  if (!due.empty()) std::memcpy(owed.data(), bytes + sizeof counted, due.size() * sizeof(double));
+  const std::string whose = "the state of the makers of waves ";
+  need_numbers(std::array{counted.time, static_cast<double>(counted.in), static_cast<double>(counted.out)}, whose,
+               "what came, or its time", 0.0);
+  need_numbers(owed, whose, "the part of a unit that is due", -1.0);
+  account = counted;
+  due = owed;
 }
 
 }    // namespace mdanim

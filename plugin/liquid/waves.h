@@ -29,6 +29,8 @@ class Waves {
  public:
   // Throws std::bad_alloc.
   Waves(int nx, int ny, int nz);
+  Waves(const Waves &) = delete;    // arrays point into vectors
+  Waves &operator=(const Waves &) = delete;
 
   // Solid parts of all cells, as SolidParts has them, and for each column the mass of what floats in it, in cells of liquid, 0
   // where it is held (null: everywhere). Liquid makes way. Throws std::runtime_error when there is no room for it; nothing can be
@@ -45,7 +47,8 @@ class Waves {
   std::vector<std::uint8_t> hollows(double level, const std::function<bool(int column, int z)> &floats) const;
   // Velocities of links, in the order of links().
   void set_velocities(const double *u);
-  void update(double dt);
+  // Returns the time by which the liquid has gone on. `share` is the part that comes now of how far solids are still to move.
+  double update(double dt, double share = 1.0);
 
   struct SpanNow {
     Span span;
@@ -81,8 +84,8 @@ class Waves {
 
   // --- liquid that comes and goes between updates (waves_exchange.cpp) ---
 
-  // Puts units, with a velocity, into the span of a column that holds a height, or else into the next one below. Returns how many
-  // found room.
+  // Puts units, with a velocity of as much as liquid may have, into the span of a column that holds a height, or else into the
+  // next one below. Returns how many found room.
   Units give(int column, double height, Units units, double ux, double uy);
   // Takes units out of such a span; a film stays. Returns how many.
   Units take(int column, double height, Units most);
@@ -113,7 +116,7 @@ class Waves {
   };
   Sides around(int column, int n) const;
   // Momentum along x and y for each column of its liquid, in cells of liquid. Liquid at rest stays so where that is next to
-  // nothing.
+  // nothing. What would make it faster than it may be is lost.
   void add_impulse(const double *x, const double *y);
   const SolidParts &solids() const { return solid; }
 
@@ -331,6 +334,7 @@ class Waves {
   double general_product(long i, const double *x) const;
   void general_push(const LinkPlace &link);
   SpanFluxes<double> fluxes_of(long i) const;
+  double limited(double u) const { return std::clamp(u, -law.fastest, law.fastest); }
   double most_in(long i) const { return (arrays.capacity[i] + 0.25) * law.units_per_cell; }
   double opening(const LinkPlace &link, double level) const;
   SideLinks side_of(long i, SideOf side) const;

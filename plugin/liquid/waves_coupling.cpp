@@ -58,7 +58,12 @@ void Waves::add_impulse(const double *x, const double *y)
       resting = false;
       for (int n = 0; n < spans_in[column]; ++n)
         each_link_of(place(column, n), [&](const LinkPlace &link, long, bool) {
-          if (link.d == d && wetted(link) > 0.0) arrays_of(link).u[link.at] += faster;
+          const double height = link.d == d ? wetted(link) : 0.0;
+          if (height == 0.0) return;
+          double &u = arrays_of(link).u[link.at];
+          const double wanted = u + faster;
+          u = limited(wanted);
+          if (u != wanted) (d == 0 ? lost.x : lost.y) += (wanted - u) * height;
         });
     }
 }

@@ -34,6 +34,8 @@ Units Waves::give(int column, double height, Units units, double ux, double uy)
   if (taken == 0) return 0;
   resting = false;
   content[i] += taken;
+  ux = limited(ux);
+  uy = limited(uy);
   came += static_cast<double>(taken) / UNITS_PER_CELL * Vec3{ux, uy, 0.0};
   const double head = head_of(solid, span[i], content[i]).height;
   for (int d = 0; d < 2; ++d) {

@@ -46,7 +46,7 @@ void Waves::come_to_rest()
     const WaveLinks &l = arrays_of(link);
     l.u[link.at] = l.q[link.at] = l.units[link.at] = 0.0;
   });
-  each_span([&](long i) { arrays.delta[i] = arrays.last_delta[i] = 0.0; });
+  each_span([&](long i) { arrays.delta[i] = arrays.last_delta[i] = arrays.coming[i] = 0.0; });
   resting = true;
 }
 

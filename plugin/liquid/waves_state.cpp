@@ -95,8 +95,10 @@ void Waves::set_state(const std::uint8_t *bytes, std::size_t size)
     damaged =
         damaged || !std::isfinite(record.full + record.rest + record.phi + record.delta + record.last_delta + record.yields);
   }
-  for (const LinkRecord &record : links) damaged = damaged || !std::isfinite(record.u + record.q);
-  if (damaged) throw std::runtime_error(whose + "is damaged: it holds what is no number");
+  for (const LinkRecord &record : links) damaged = damaged || limited(record.u) != record.u || !std::isfinite(record.q);
+  if (damaged)
+    throw std::runtime_error(whose + "is damaged: it holds what is no number, or liquid faster than " +
+                             std::to_string(law.fastest));
   if (held != head.units)
     throw std::runtime_error(whose + "is damaged: it holds " + std::to_string(held) + " units of liquid, not " +
                              std::to_string(head.units));

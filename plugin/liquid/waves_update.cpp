@@ -8,15 +8,20 @@
 
 namespace mdanim {
 
-void Waves::update(double dt)
+double Waves::update(double dt, double share)
 {
   constexpr double FARTHEST = 0.5;    // cells that liquid goes in a sub-update
-  if (resting) return;
+  if (resting) return dt;
   ++counts.updates;
   const int parts = std::max(1, static_cast<int>(std::ceil(fastest() * dt / FARTHEST)));
-  for (int n = 0; n < parts; ++n) sub_update(dt / parts, 1.0 / parts);
-  std::fill_n(arrays.coming, content.size(), 0.0);
+  double gone = 0.0;
+  for (int n = 0; n < parts; ++n) {
+    sub_update(dt / parts, share / parts);
+    gone += law.dt;
+  }
+  for (std::size_t i = 0; i < content.size(); ++i) arrays.coming[i] = share < 1.0 ? (1.0 - share) * arrays.coming[i] : 0.0;
   if (hardly_flows()) come_to_rest();
+  return gone;
 }
 
 // By velocities in open liquid, by fluxes in thin layers: a puddle that passes less than half a unit keeps its velocity for ever.

@@ -81,7 +81,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
   extscalar = 1;
   energy_global_flag = 1;
   vector_flag = 1;
-  size_vector = 21;
+  size_vector = 22;
   extvector = 0;
   array_flag = 1;
   size_array_cols = 4;
@@ -320,7 +320,7 @@ void FixMdanimLiquid::pour()
 bool FixMdanimLiquid::is_due()
 {
   if (update->ntimestep % basin->pace.every != 0) return false;
-  if (asked != update->ntimestep) due_then = basin->is_due(fastest_near(), update->dt);
+  if (asked != update->ntimestep) due_then = basin->is_due(fastest_near(), update->dt, update->ntimestep);
   asked = update->ntimestep;
   return due_then;
 }
@@ -351,7 +351,7 @@ double FixMdanimLiquid::top_of_near() const { return top_height(basin->top() + B
 void FixMdanimLiquid::update_liquid()
 {
   buoyancy->give_impulses(*basin, near);
-  in_basin([&] { basin->update(bodies_near(), static_cast<std::uint64_t>(update->ntimestep), update->dt); });
+  in_basin([&] { basin->update(bodies_near(), static_cast<std::uint64_t>(update->ntimestep)); });
   if (top_height(basin->top()) > listed_top) {
     find_near(neighbor->skin);    // a particle that went one way since lists were made may go as far the other way
     lowest = -ANYWHERE;           // then, that is not known
@@ -435,7 +435,8 @@ double FixMdanimLiquid::compute_scalar() { return -buoyancy->ledger().sum.work; 
 
 // 1 cells of liquid; 2 at the start; 3 mean level; 4 solid cells; 5 sweeps, of waves updates; 6 awake; 7 energy lost to drag;
 // wall seconds of the slowest rank for 8 liquid, 9 occupancy, 10 coupling, 11 all; 12 energy of waves; 13 highest liquid;
-// 14, 15 momentum of waves along x and y; impulses along x and y on 16, 17 the basin, 18, 19 solids; 20, 21 what came
+// 14, 15 momentum of waves along x and y; impulses along x and y on 16, 17 the basin, 18, 19 solids; 20, 21 what came;
+// 22 the clock of waves
 double FixMdanimLiquid::compute_vector(int n)
 {
   switch (n) {
@@ -457,6 +458,8 @@ double FixMdanimLiquid::compute_vector(int n)
       return basin->energy() * buoyancy->density() * buoyancy->weight(*basin) * basin->cell_volume() * basin->shape.cell.z;
     case 12:
       return top_height(basin->highest());
+    case 21:
+      return basin->clock(update->ntimestep, update->dt);
     default:
       break;
   }

@@ -10,6 +10,7 @@
 #include "utils.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <iterator>
 
@@ -27,6 +28,13 @@ void FixMdanimLiquid::add_maker(WaveBasin &waves, int iarg, char **arg, double d
     if (positive && !(value > 0.0)) error->all(FLERR, iarg + k, "fix mdanim/liquid: {} must be > 0, got {}", word, arg[iarg + k]);
     return value;
   };
+  const auto speed = [&](int k, int axis, bool positive) {
+    const double value = number(k, positive), most = waves.fastest(axis);
+    if (!(std::fabs(value) <= most))
+      error->all(FLERR, iarg + k, "fix mdanim/liquid: the {} comes at {}; in this basin liquid flows at {:.4g} at most", word,
+                 arg[iarg + k], most);
+    return value;
+  };
   if (strcmp(word, "wave") == 0 || strcmp(word, "current") == 0) {
     static const char *const sides[] = {"-x", "+x", "-y", "+y"};
     const auto *const side =
@@ -37,7 +45,7 @@ void FixMdanimLiquid::add_maker(WaveBasin &waves, int iarg, char **arg, double d
     if (strcmp(word, "wave") == 0)
       waves.add_wave(number_of_side, number(2, true), number(3, true), depth);
     else
-      waves.add_current(number_of_side, number(2, true));
+      waves.add_current(number_of_side, speed(2, number_of_side / 2, true));
     return;
   }
   const Region *region = domain->get_region_by_id(arg[iarg + 1]);
@@ -46,7 +54,7 @@ void FixMdanimLiquid::add_maker(WaveBasin &waves, int iarg, char **arg, double d
   const Vec3 low = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
   const Vec3 high = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
   if (strcmp(word, "inflow") == 0)
-    waves.add_flow(low, high, number(2, true), number(3, false), number(4, false));
+    waves.add_flow(low, high, number(2, true), speed(3, 0, false), speed(4, 1, false));
   else
     waves.add_flow(low, high, -number(2, true), 0.0, 0.0);
 }

@@ -45,11 +45,11 @@ std::vector<int> FixMdanimLiquid::particles_of(bool still) const
   return found;
 }
 
-// Row of cells at a place along y [distance]; any one where that is outside or no number.
+// Row of cells at a place along y [distance], the last one up to the far wall; any one where that is outside or no number.
 int FixMdanimLiquid::row_at(double y) const
 {
   const double row = (y - basin->shape.low.y) / basin->shape.cell.y;
-  return row > 0.0 && row < basin->shape.ny ? static_cast<int>(row) : 0;
+  return row > 0.0 ? static_cast<int>(std::min(row, basin->shape.ny - 1.0)) : 0;
 }
 
 void FixMdanimLiquid::add_particles(Occupancy &into, const std::vector<int> &these, double below) const

@@ -64,3 +64,23 @@ def test_what_comes_with_an_inflow_is_no_residual(tmp_path):
     brought = 1000 * 0.2 * 2 * 0.4
     assert (liquid + basin + solids)[-1, 0] == pytest.approx(brought, rel=0.1)
     assert np.abs(residual).max() < 0.1 * brought
+
+
+def test_what_a_liquid_at_rest_pushes_it_gets_from_its_basin(tmp_path):
+    """A gate with water on one side, which is at rest for most of half a second. The gate goes on being pushed, and the walls as
+    much the other way, also in the time that the liquid sleeps: the account is open by a tenth of it, else by nearly all."""
+    text = (
+        "gravity (0, 0, -9.81)\n"
+        "liquid water { basin from (0, 0, 0) m to (1, 0.3, 0.6) m  density 1000  fill from (0, 0, 0) m to (0.45, 0.3, 0.6) m  "
+        "level 0.3 m  calm 0.02 s }\n"
+        "object gate { shape box (0.1, 0.3, 0.6) m  position (0.5, 0.15, 0.3) m  density 2000  elasticity 30 MPa  damping 1  "
+        "hold face -z }\n"
+        "control { time 0.6 s  resolution 5 cm  frames 40 fps }\n"
+    )
+    path = tmp_path / "scene.txt"
+    path.write_text(text)
+    result = Scene.load(path).run(tmp_path / "out", movie=False)
+    basin, solids, residual = (np.array(result.ledger.array(n[0])) for n in (BASIN_IMPULSE, SOLID_IMPULSE, MOMENTUM_RESIDUAL))
+    assert np.count_nonzero(solids[1:] == solids[:-1]) > 8, "it was to sleep"
+    assert solids[-1] > 30.0 and basin[-1] == pytest.approx(-solids[-1], rel=0.15)
+    assert np.abs(residual).max() < 0.15 * solids[-1]

@@ -47,6 +47,7 @@ FUNCTIONS = {
     "set_state": (INT, [HANDLE, array(np.uint8), LONG, TEXT, INT]),
     "surface": (None, [HANDLE, DOUBLES, DOUBLES]),
     "add_forces": (None, [HANDLE, INTS, DOUBLES]),
+    "add_impulse": (None, [HANDLE, DOUBLES, DOUBLES]),
     "walls": (None, [HANDLE, array(np.uint16)]),
     "momenta": (None, [HANDLE, DOUBLES]),
     "energy": (None, [HANDLE, DOUBLES]),
@@ -209,6 +210,11 @@ class Waves:
     def walls(self, held):
         """Tell the held part of all cells, in 1/4096."""
         function("walls")(self.handle, np.ascontiguousarray(np.moveaxis(np.reshape(held, self.shape), 0, -1), np.uint16))
+
+    def add_impulse(self, x, y):
+        """Momentum along x and y for each column, in cells of liquid."""
+        columns = (np.ascontiguousarray(np.broadcast_to(a, self.shape[1:]), np.float64) for a in (x, y))
+        function("add_impulse")(self.handle, *columns)
 
     def take_momenta(self) -> np.ndarray:
         """Momentum now; what was lost, and what came, since this was asked last; each along x and y, shape (3, 2)."""

@@ -18,8 +18,8 @@ from mdanim_lammps.run.loop import Interrupted, simulate
 
 UNIT = 2.0**-20
 """The smallest part of a cell of liquid."""
-AT = 4 * 8
-"""Where the state of the liquid tells its units at the start: after its version and the cells along x, y, z."""
+AT = 5 * 8
+"""Where the state of the liquid tells its units at the start: after its kind and version and the cells along x, y, z."""
 SPLASH = """
 gravity (0, 0, -9.81)
 liquid water {
@@ -43,6 +43,8 @@ expect liquid.crest at 0 s = 20 cm +- 1 mm
 expect liquid.crest = 30 cm +- 3 cm
 expect liquid.waves at 0.2 s = 2.5 J +- 0.3 J
 """
+CLOCK_AT = 14 * 8
+"""Where it tells how long the liquid has gone on: after 14 words."""
 IN_THE_SPLASH = 8
 """A frame: drops fly."""
 
@@ -131,6 +133,21 @@ def test_one_unit_stops_a_run(tmp_path, units, executors):
         run(scene.prepared, folder, resume=checkpoint)
     words = str(error.value).split("s: ")[1].split(" ")
     assert float(words[0]) - float(words[4]) == units * UNIT
+
+
+@pytest.mark.parametrize("executors", [1, pytest.param(2, id="executors", marks=pytest.mark.mpi)])
+def test_a_liquid_in_slow_motion_stops_a_run(tmp_path, executors):
+    """A checkpoint whose liquid has gone through a microsecond less than solids have: the next frame is refused."""
+    scene, folder, checkpoint = stopped(tmp_path, IN_THE_SPLASH)
+    records = checkpoint.records["liquid"]
+    data = records.data.copy()
+    clock = data[CLOCK_AT : CLOCK_AT + 8].view(np.float64)
+    assert clock[0] == pytest.approx(IN_THE_SPLASH / 50, rel=0.1)
+    clock -= 1e-6
+    checkpoint.records["liquid"] = StateRecords(records.keys, records.first, data)
+    run = partial(simulate_on, executors, "central") if executors > 1 else simulate
+    with pytest.raises(DivergedError, match=r"t = 0.18 s: water has gone through 0.179999 s: this must never be"):
+        run(scene.prepared, folder, resume=checkpoint)
 
 
 def test_a_splash_resumes_bit_for_bit(whole, tmp_path):

@@ -33,6 +33,8 @@ since then [J], its highest point [m]."""
 MOMENTUM, BASIN_IMPULSE, SOLID_IMPULSE, CAME = (13, 14), (15, 16), (17, 18), (19, 20)
 """In the fix's vector, along x and y [N s]: the liquid's momentum; the impulses that it has given to its basin with all that is
 held, and to what moves; the momentum that came with liquid, less what went with it."""
+CLOCK = 21
+"""In the fix's vector: time that a liquid with momentum has gone through, or has slept at rest [s]."""
 WAVE_PERIOD, WAVE_STRIDE = 0.15, 1.5
 """As PERIOD and STRIDE, of waves. With 0.05 and 0.25, two to three times the updates, a dive is as deep to 1 % of the body's size
 and the body leaps as high to 2 %; with 0.2 and 2.0 these are 2 and 7 %: bodies with sides of 6 to 24 cells, as fast as if fallen

@@ -17,6 +17,7 @@ from ..effects.liquid import (
     CAME,
     CELLS,
     CELLS_AT_START,
+    CLOCK,
     CREST,
     MOMENTUM,
     SOLID_IMPULSE,
@@ -57,6 +58,8 @@ class LiquidFrame:
     """Energy of the waves since the start [J]; 0 of an automaton."""
     momenta: tuple[float, ...] | None
     """Extras MOMENTA of the ledger [N s]; None of a liquid without momentum."""
+    clock: float | None
+    """Time that the liquid has gone through, or has slept at rest [s]; None of a liquid without momentum."""
 
 
 @dataclass(frozen=True)
@@ -238,9 +241,11 @@ def liquid_frame(instance: Instance) -> LiquidFrame | None:
         return None
     cells, start = (instance.fix_value(LiquidAutomaton.fix, n) for n in (CELLS, CELLS_AT_START))
     drops = instance.liquid_drops() if instance.plan.scene.liquid.drops else None
-    momenta = liquid_momenta(instance) if is_wavy(instance.plan.scene) else None
+    wavy = is_wavy(instance.plan.scene)
+    momenta = liquid_momenta(instance) if wavy else None
+    clock = instance.fix_value(LiquidAutomaton.fix, CLOCK) if wavy else None
     crest, waves = (instance.fix_value(LiquidAutomaton.fix, n) for n in (CREST, WAVES))
-    return LiquidFrame(instance.liquid_heights(), drops, cells, start, crest, waves, momenta)
+    return LiquidFrame(instance.liquid_heights(), drops, cells, start, crest, waves, momenta, clock)
 
 
 def liquid_momenta(instance: Instance) -> tuple[float, ...]:

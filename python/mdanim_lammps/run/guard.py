@@ -42,6 +42,10 @@ FLOWN_APART = (
 """What LAMMPS says when particles are where they should not be."""
 
 
+CLOCK_ROUNDING = 1e-9
+"""Part by which two sums of a million times may differ [-]."""
+
+
 class Guard:
     """What it has seen of a run so far."""
 
@@ -147,6 +151,16 @@ class Guard:
                 "load",
                 "closing speed",
                 suspicion=SQUEEZED if self.crumpled else TOO_LONG,
+            )
+
+    def clock(self, step: int, seen: float | None) -> None:
+        """Raise DivergedError when a liquid with momentum has gone through another time than solids have [s]: it would run in
+        slow motion."""
+        time = step * self.ready.certificate.timestep
+        if seen is not None and not abs(seen - time) <= CLOCK_ROUNDING * time:
+            raise DivergedError(
+                f"{self._when(step)}: {self.ready.scene.liquid.name} has gone through {number(seen, 9)} s: this must never be, "
+                f"please report it. {self._kept()[0].upper()}{self._kept()[1:]}"
             )
 
     def explain_failure(self, step: int, error: DivergedError, solid: int | None) -> DivergedError:

@@ -399,6 +399,7 @@ class _Run:
                     f"{exact(liquid.start)} at the start{' and come since' if self.fed else ''}: this must "
                     f"never be, please report it. The last good frame is kept in {self.folder}"
                 )
+            self.guard.clock(now.step, liquid.clock)
         # Losses before a resume are carried over.
         row = self.ledger.weigh(when, {t: e + self.carried.get(t, 0.0) for t, e in now.energies.items()} | extras)
         self.guard.energy(now.step, row["residual"], now.seen.speed)

@@ -31,6 +31,7 @@ class EqualRanks : public mdanim::RankSums {
 struct TestBasin {
   EqualRanks ranks;
   AutomatonBasin basin;
+  std::int64_t step = 0;    // of the last look
 
   TestBasin(int nx, int ny, int nz, int ranks_count)
       : ranks(ranks_count),
@@ -69,13 +70,14 @@ MDANIM_EXPORT long mdanim_basin_pour(void *b, const double *solids, int count, l
   return basin.pour(units, std::vector<std::uint8_t>(basin.cells().nx * basin.cells().ny * basin.cells().nz, 1), 0);
 }
 
-MDANIM_EXPORT int mdanim_basin_is_due(void *b, double fastest, double dt) { return of(b).basin.is_due(fastest, dt); }
+// One look, which is that of the next steps.
+MDANIM_EXPORT int mdanim_basin_is_due(void *b, double fastest, double dt)
+{ return of(b).basin.is_due(fastest, dt, of(b).step += of(b).basin.pace.every); }
 
 // Returns 0, or 1 with a message.
-MDANIM_EXPORT int mdanim_basin_update(void *b, const double *solids, int count, std::uint64_t when, double dt, char *error,
-                                      int error_size)
+MDANIM_EXPORT int mdanim_basin_update(void *b, const double *solids, int count, std::uint64_t when, char *error, int error_size)
 {
-  return mdanim::guarded(error, error_size, [&] { of(b).basin.update(bodies(solids, count), when, dt); });
+  return mdanim::guarded(error, error_size, [&] { of(b).basin.update(bodies(solids, count), when); });
 }
 
 MDANIM_EXPORT void mdanim_basin_contents(void *b, std::uint8_t *out) { of(b).basin.contents(out); }

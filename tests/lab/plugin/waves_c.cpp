@@ -141,6 +141,8 @@ MDANIM_EXPORT void mdanim_waves_add_forces(void *w, const std::int32_t *owner, d
 
 MDANIM_EXPORT void mdanim_waves_walls(void *w, const std::uint16_t *held) { waves(w).set_walls(held); }
 
+MDANIM_EXPORT void mdanim_waves_add_impulse(void *w, const double *x, const double *y) { waves(w).add_impulse(x, y); }
+
 // Momentum now; what was lost, and what came, since this was asked last; each along x and y.
 MDANIM_EXPORT void mdanim_waves_momenta(void *w, double *momenta)
 {

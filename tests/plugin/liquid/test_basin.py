@@ -40,12 +40,12 @@ class Basin:
         """Number of the look at which an update is due."""
         return next(n for n in range(1, most) if self.is_due(fastest, dt))
 
-    def update(self, solids, dt: float) -> None:
+    def update(self, solids) -> None:
         """An update; RuntimeError with its message."""
         rows = np.ascontiguousarray(solids, float).reshape(-1, 4)
         error = ctypes.create_string_buffer(300)
         self.when += EVERY
-        arguments = (rows.ctypes.data_as(ctypes.c_void_p), len(rows), ctypes.c_uint64(self.when), ctypes.c_double(dt))
+        arguments = (rows.ctypes.data_as(ctypes.c_void_p), len(rows), ctypes.c_uint64(self.when))
         if self.library.mdanim_basin_update(self.handle, *arguments, error, 300):
             raise RuntimeError(error.value.decode())
 
@@ -86,11 +86,11 @@ def test_liquid_makes_room_and_is_kept():
     basin = Basin()
     basin.pour([], 24)
     assert basin.calm
-    basin.update([[*MIDDLE, 1.0]], 0.1)
+    basin.update([[*MIDDLE, 1.0]])
     assert basin.contents[0, 1, 1] == 255 and liquid(basin) == 24
     for _ in range(200):
         basin.is_due(-1.0, 0.1)
-        basin.update([], 0.1)
+        basin.update([])
     assert liquid(basin) == 24 and basin.calm
     assert np.array_equal(basin.contents[:2], np.ones((2, 4, 3)))
 
@@ -101,7 +101,7 @@ def test_without_room_an_update_is_refused():
     basin.pour([], 24)
     everywhere = np.argwhere(np.ones(CELLS))[:, ::-1] + 0.5
     with pytest.raises(RuntimeError, match=r"a solid fills cell \(\d, \d, \d\) of the basin and there is no room"):
-        basin.update(np.column_stack([everywhere, np.ones(len(everywhere))]), 0.1)
+        basin.update(np.column_stack([everywhere, np.ones(len(everywhere))]))
     assert liquid(basin) == 24
 
 
@@ -124,7 +124,7 @@ def test_liquid_that_is_not_level_is_due_after_a_period():
     """A part of a layer more than one deep, under a solid that is taken away."""
     basin, dt = Basin(), 0.004
     basin.pour([[x + 0.5, y + 0.5, z + 0.5, 1.0] for x in range(2) for y in range(4) for z in range(3)], 12)
-    basin.update([], dt)
+    basin.update([])
     assert not basin.calm
     assert basin.looks_until_due(-1.0, dt) == int(np.ceil(PERIOD / (EVERY * dt)))
 
@@ -147,4 +147,4 @@ def test_a_copied_state_goes_on_alike():
         assert np.array_equal(first.contents, second.contents)
         for basin in (first, second):
             basin.is_due(0.01, 0.1)
-            basin.update([[1.5, 2.5, 0.5, 1.0]], 0.1)
+            basin.update([[1.5, 2.5, 0.5, 1.0]])

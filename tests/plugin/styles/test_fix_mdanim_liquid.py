@@ -369,6 +369,13 @@ def test_a_lid_from_wall_to_wall_still_floats(tmp_path):
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 model waves calm 0", "calm must be > 0, got 0"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 drops 0.5", "drops is for model waves; leave it out"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 model waves drops 2", "a share from 0 to 1, got 2"),
+        *(
+            (
+                f"fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 model waves {maker}",
+                f"the {maker.split()[0]} comes at 1e9; in this basin liquid flows at .* at most",
+            )
+            for maker in ("current +y 1e9", "inflow basin 1 1e9 0", "inflow basin 1 0 1e9")
+        ),
         ("fix w all mdanim/liquid basin 1 grid 4 4 6 level 2 gravity 1 model waves", "too far from cubes.*another number"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 2 gravity 1 model waves\nrun 0", "add cells i2_NAME"),
         ("fix w all mdanim/liquid basin 1 grid 4 4 4 level 0.1 gravity 1\nrun 0", "level 0.1 is less than half a cell"),

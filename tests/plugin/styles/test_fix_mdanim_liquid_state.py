@@ -52,8 +52,13 @@ def test_a_state_is_taken_up_to_the_bit(tmp_path):
 
 HEAD = np.dtype(
     [
+        ("kind", "S8"),
         ("version", "f8"),
-        *((n, "i8") for n in ("nx", "ny", "nz", "units", "swept", "waited", "calm")),
+        *((n, "i8") for n in ("nx", "ny", "nz", "units", "swept", "calm")),
+        ("before", "f8"),
+        ("waited", "i8"),
+        ("dt", "f8"),
+        ("looked", "i8"),
         *((n, "f8") for n in ("travel", "crossed", "work", "lost")),
     ]
 )
@@ -131,3 +136,140 @@ def test_waves_refuse_particles_of_no_object(tmp_path):
     with pytest.raises(Exception, match=refused):
         block_in_pool(tmp_path, (3, 2, 2), (-1.5, -1.0, 9.0), ["set group all mol 0", "run 0"], pool=POOL + " model waves")
     block_in_pool(tmp_path, (3, 2, 2), (-1.5, -1.0, 9.0), ["set group all mol 0", "run 0"]).close()
+
+
+WAVES_HEAD = np.dtype(
+    [
+        ("kind", "S8"),
+        ("version", "f8"),
+        *((n, "i8") for n in ("nx", "ny", "nz", "units", "updates", "stale", "moving")),
+        ("still", "u8"),
+        *((n, t) for n, t in zip(("before", "steps", "dt", "looked"), ("f8", "i8", "f8", "i8"))),
+        *((n, "f8") for n in ("gone", "slept", "work", "lost", "work_power", "lost_power", "travel", "energy")),
+        ("impulses", "f8", 9),
+        ("drops", "u8"),
+    ]
+)
+COLUMNS = [("mass", "f8"), ("afloat", "f8", 2), ("ambient", "f8"), ("added", "f8", 3)]
+
+
+@pytest.fixture(scope="module")
+def splash(tmp_path_factory):
+    """A block that has just fallen into waves, with a paddle that owes a part of a unit; and the state of it all."""
+    lmp = block_in_pool(tmp_path_factory.mktemp("splash"), pool=f"{POOL} model waves drops 1 wave -x 0.3 50", **FAST)
+    lmp.command("run 60")
+    yield lmp, state(lmp)
+    lmp.close()
+
+
+def parts(stored):
+    """The head, and an array for each of COLUMNS, as views of the bytes of a state."""
+    views, at = {"head": stored[: WAVES_HEAD.itemsize].view(WAVES_HEAD)}, WAVES_HEAD.itemsize
+    for name, *kind in COLUMNS:
+        shape = (400, *kind[1:])
+        size = 8 * int(np.prod(shape))
+        views[name] = stored[at : at + size].view("f8").reshape(shape)
+        at += size
+    views["paddle"] = stored[at : at + 8].view("f8")
+    views["due"] = stored[at + 24 : at + 32].view("f8")
+    return views
+
+
+def test_the_state_of_waves_is_as_it_is_read_here(splash):
+    """Numbers that are known otherwise stand where the other tests damage them."""
+    lmp, stored = splash
+    found = parts(stored)
+    head = found["head"][0]
+    assert (head["kind"], head["nx"], head["nz"], head["looked"]) == (b"waves", 20, 16, 60)
+    assert head["gone"] + head["slept"] + head["steps"] * head["dt"] == pytest.approx(60 * 0.3)
+    assert found["afloat"][:, 0].sum() == pytest.approx(27 * 0.5, abs=0.2) and found["paddle"][0] == pytest.approx(
+        head["gone"] / 10
+    )
+    assert (found["mass"] > 0).any() and np.isnan(found["ambient"]).any() and np.isfinite(found["ambient"]).any()
+    take_up(lmp, stored)
+    assert np.array_equal(state(lmp), stored)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -1e300])
+@pytest.mark.parametrize(
+    ("part", "field"),
+    [
+        *(("head", name) for name in ("before", "dt", "gone", "slept", "travel", "work", "lost", "work_power", "lost_power")),
+        *(("head", name) for name in ("energy", "impulses")),
+        *((name, None) for name in ("mass", "afloat", "ambient", "added", "paddle", "due")),
+    ],
+)
+def test_no_number_of_a_state_is_taken_unlooked_at(splash, part, field, bad):
+    """One that is none, or negative where none can be, would be lift a step later; nothing changes. Heads around bodies may be
+    unknown, and energies and heads may be anything finite."""
+    lmp, stored = splash
+    damaged = stored.copy()
+    target = parts(damaged)[part]
+    if field == "impulses":
+        target[field][0, 3] = bad
+    elif field:
+        target[field] = bad
+    else:
+        target.reshape(-1)[{"afloat": 2, "added": 3}.get(part, 0)] = bad
+    anything = part == "ambient" or field in ("work", "lost", "work_power", "lost_power", "energy", "impulses")
+    if (np.isnan(bad) and part == "ambient") or (bad == -1e300 and anything):
+        return
+    with pytest.raises(RuntimeError, match="is damaged: "):
+        take_up(lmp, damaged)
+    assert np.array_equal(state(lmp), stored)
+
+
+@pytest.mark.parametrize("field", ["units", "updates", "moving", "steps", "looked"])
+def test_no_count_of_a_state_is_negative(splash, field):
+    """Such a state is refused."""
+    lmp, stored = splash
+    damaged = stored.copy()
+    parts(damaged)["head"][field] = -1
+    with pytest.raises(RuntimeError, match="is damaged: a count is -1"):
+        take_up(lmp, damaged)
+
+
+def test_liquid_faster_than_it_may_be_is_refused(splash):
+    """Its updates would have no end: 10^9 cells a time are as many sub-updates."""
+    lmp, stored = splash
+    damaged = stored.copy()
+    damaged[-16:-8].view("f8")[:] = 1e9
+    with pytest.raises(RuntimeError, match="faster than 16"):
+        take_up(lmp, damaged)
+
+
+def test_each_kind_of_liquid_refuses_the_state_of_the_other(tmp_path, splash):
+    """By a word, whatever their versions are."""
+    waves, of_waves = splash
+    surface = block_in_pool(tmp_path, **FAST)
+    surface.command("run 0")
+    of_surface = state(surface)
+    assert of_surface[:8].tobytes() != of_waves[:8].tobytes()
+    of_surface[8:16] = of_waves[8:16]
+    with pytest.raises(RuntimeError, match=r"kind waves, .*another model"):
+        take_up(waves, of_surface)
+    of_waves = of_waves.copy()
+    of_waves[8:16] = state(surface)[8:16]
+    with pytest.raises(RuntimeError, match=r"kind automat, .*another model"):
+        take_up(surface, of_waves)
+    surface.close()
+
+
+def test_held_cells_of_a_state_open_where_no_body_is_held(tmp_path):
+    """A state of a wall at one place is taken up where the wall stands at another: its old cells open at the next setup."""
+
+    def wall(x):
+        body = lab.block((2, 4, 14), (x, -2.0, 0.0))
+        return lab.load(
+            body, tmp_path,
+            ["fix table all property/atom i2_cell 7 ghost yes", *lattice(body, (2, 4, 14)), *BASIN,
+             POOL + " cells i2_cell still all", "run 8"],
+        )  # fmt: skip
+
+    first, second = wall(-5.0), wall(3.0)
+    take_up(second, state(first))
+    second.command("run 8")
+    found = cells(second) == 255
+    assert np.count_nonzero(found) == 2 * 4 * 14 and found[:14, 8:12, 13:15].all()
+    first.close()
+    second.close()
