@@ -5,10 +5,12 @@ import json
 import re
 import subprocess
 from dataclasses import replace
+from urllib.parse import unquote
 
 import pytest
 from command_line import GOOD, call, run
-from mdanim_lammps import doctor
+from mdanim_lammps import Scene, doctor
+from mdanim_lammps.run.loop import Interrupted
 from mdanim_lammps.scene.explain import MARGINS, explain, words
 from mdanim_lammps.scene.grammar import grammar
 from mdanim_lammps.scene.keywords import BLOCKS, KEYWORDS, did_you_mean, edits
@@ -141,6 +143,45 @@ def test_gallery(tmp_path):
     assert movie.stat().st_mtime_ns == before  # what is there is kept
     empty = call("gallery", tmp_path, cwd=tmp_path)
     assert empty.returncode == 7 and "holds no scenes" in empty.stderr
+
+
+def test_a_gallery_finishes_what_was_stopped(tmp_path):
+    """A run that was stopped is no finished one: it goes on, and its movie is drawn anew."""
+    folder, place = tmp_path / "scenes", tmp_path / "g" / "good"
+    folder.mkdir()
+    (folder / "good.txt").write_text(GOOD + "render { size (64, 48) }\n")
+    with pytest.raises(Interrupted):
+        Scene.load(folder / "good.txt").run(place, on_progress=lambda p: p.frame == 1 and (place / "stop").touch())
+    (place / "movie.mp4").write_text("of one frame")
+    said = call("gallery", folder, "-o", tmp_path / "g")
+    assert said.returncode == 0, said.stderr
+    assert (place / "summary.json").exists() and (place / "movie.mp4").stat().st_size > 1000
+
+
+def test_ctrl_c_ends_a_gallery(tmp_path, monkeypatch):
+    """And not one of its scenes, after which the next would begin."""
+    begun = []
+
+    def run_(scene, place, force):
+        begun.append(scene.record.name)
+        raise Interrupted("interrupted at t = 1 s")
+
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.txt").write_text(GOOD)
+    monkeypatch.setattr(Scene, "run", run_)
+    said = call("gallery", tmp_path, "-o", tmp_path / "g")
+    assert said.returncode == 130 and begun == ["a"] and "interrupted at t = 1 s" in said.stderr
+    assert not (tmp_path / "g" / "index.html").exists()
+
+
+def test_addresses_of_a_gallery_are_quoted(tmp_path):
+    """A name may have any sign."""
+    name = "50 % #1?"
+    (tmp_path / f"{name}.txt").write_text(GOOD + "render { size (64, 48) }\n")
+    said = call("gallery", tmp_path, "-o", tmp_path / "g", "--accuracy", "preview")
+    assert said.returncode == 0, said.stderr
+    (source,) = re.findall(r'<video src="([^"]+)"', (tmp_path / "g" / "index.html").read_text())
+    assert source == "50%20%25%20%231%3F/movie.mp4" and (tmp_path / "g" / unquote(source)).exists()
 
 
 def test_doctor_finds_nothing_wrong_here():

@@ -18,6 +18,7 @@ ROOMS = [
     "safe_start",
     "children",
     "processes",
+    "interrupts",
     "terminal",
     "scene",
     "model",

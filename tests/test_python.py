@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The Python interface as a researcher uses it: texts, parameters, sweeps, frames, tables, notebooks."""
 
+import os
 import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import mdanim_lammps
@@ -65,6 +67,21 @@ def test_a_sweep(tmp_path):
         f"{{'h': 0.3}} 0.3 {tmp_path}/pair.sweep/h=0.3",
         f"{{'h': 0.5}} 0.5 {tmp_path}/pair.sweep/h=0.5",
     ]
+
+
+def test_a_sweep_that_is_left_ends_its_runs(tmp_path):
+    """At once, with checkpoints, though they would go on for hours; the caller's environment is never changed."""
+    text = "let t = 0.1\n" + TEXT.replace("time 0.2 s", "time t * 1 s").split("expect")[0]
+    before = dict(os.environ)
+    runs = Scene.from_text(text, "pair", h=0.5, folder=tmp_path).sweep(tmp_path / "s", t=[0.1, 9000], processes=2)
+    next(runs)
+    assert os.environ == before
+    checkpoint, deadline = tmp_path / "s" / "t=9000" / "checkpoint", time.monotonic() + 60
+    while not checkpoint.exists() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    runs.close()
+    assert checkpoint.exists() and not (checkpoint.parent / "summary.json").exists()
+    assert not (checkpoint.parent / ".in-use").exists()
 
 
 def test_what_a_sweep_refuses(tmp_path):

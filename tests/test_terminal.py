@@ -92,6 +92,45 @@ def test_sigterm_is_told(scene):
     assert process.stderr.read() == "mdanim-lammps: interrupted\n"
 
 
+SIGNAL_WHILE_LOADING = """
+import os, sys
+class Sender:
+    def find_spec(name, path=None, target=None):
+        if name == {module!r}:
+            os.kill(os.getpid(), {number})
+sys.meta_path.insert(0, Sender)
+from mdanim_lammps.__main__ import main
+main()
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("module", ["mdanim_lammps.cli", "numpy", "cyclopts", "scipy.spatial", "mdanim_lammps.scene.parse"])
+def test_signals_while_it_is_loaded(scene, module, number):
+    """End with 130 and a word, never a traceback nor the signal's own end, whatever module is being loaded."""
+    script = SIGNAL_WHILE_LOADING.format(module=module, number=int(number))
+    done = subprocess.run([sys.executable, "-c", script, "check", scene()], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (ExitCode.INTERRUPTED, "mdanim-lammps: interrupted\n")
+
+
+def half_loaded(error):
+    """Raise an error in a command, after Ctrl-C."""
+    from mdanim_lammps import interrupts
+
+    with documented_exit(debug=False):
+        interrupts.heard.append(signal.SIGINT)
+        raise error
+
+
+def test_what_follows_an_interrupt_is_its_consequence(capsys):
+    """An error after Ctrl-C, as of a library half loaded, is no other fault."""
+    for error in (ImportError("half"), OutputError("half"), OSError("half")):
+        with pytest.raises(SystemExit) as ended:
+            half_loaded(error)
+        assert ended.value.code == ExitCode.INTERRUPTED
+    assert set(capsys.readouterr().err.splitlines()) == {"mdanim-lammps: interrupted"}
+
+
 def test_debug_keeps_the_traceback():
     """Let an error through where ``--debug`` is given."""
     with pytest.raises(OutputError), documented_exit(debug=True):

@@ -13,23 +13,18 @@ named = os.environ.get("PYTHONPATH", "")
 if named and "" in named.split(os.pathsep) and os.getcwd() in sys.path:
     sys.path.remove(os.getcwd())  # an empty part, as of "$UNSET:/opt/lib", is the current folder
 
-import signal  # noqa: E402 - not before: it may be found in the current folder
+from .interrupts import end_at_once, on_signals  # noqa: E402 - what it imports may be found in the current folder before
 
 
 def main() -> None:
-    """Run the command line. Ctrl-C and SIGTERM end it with 130 and a word, also while it is being loaded."""
-    for number in (signal.SIGINT, signal.SIGTERM):
-        if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):  # else it is to be ignored
-            signal.signal(number, _end)
+    """Run the command line. Ctrl-C and SIGTERM end it with 130 and a word, also while it is being loaded and when it is done."""
+    on_signals(end_at_once)
     from .cli import main as command_line
 
-    command_line()
-
-
-def _end(*_) -> None:
-    """End at once: no file has been opened yet."""
-    os.write(2, b"mdanim-lammps: interrupted\n")
-    os._exit(130)
+    try:
+        command_line()
+    finally:
+        on_signals(end_at_once)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, Future
@@ -104,14 +105,16 @@ class Workers(Executor):
         self._ended = True
         for _ in self._threads:
             self._tasks.put(None)
-        for child in self.children:
-            child.terminate()
-        for child in self.children:
-            try:
-                child.wait(ENDING if wait else 0.0)
-            except TimeoutExpired:
+        try:
+            for child in self.children:
+                child.terminate()
+            deadline = time.monotonic() + (ENDING if wait else 0.0)
+            for child in self.children:
+                with suppress(TimeoutExpired):
+                    child.wait(max(0.0, deadline - time.monotonic()))
+        finally:  # also where Ctrl-C comes once more
+            for child in self.children:
                 child.kill()
-                child.wait()
         for thread in self._threads:
             thread.join()
 

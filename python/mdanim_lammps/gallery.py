@@ -5,13 +5,18 @@ from __future__ import annotations
 
 import html
 import sys
+import urllib.parse
 from pathlib import Path
 
-from .api import Scene, movie_file, output_folder
+from .api import Scene, movie_file, output_folder, run_frames, stored_scene
 from .command_steps import load, with_accuracy
 from .errors import MdanimError, OutputError
 from .picture.movie import render_movie
-from .results.files import MARK, disk_errors, write_whole
+from .results.checkpoint import Checkpoint
+from .results.files import CHECKPOINT, MARK, SUMMARY, claimed, disk_errors, write_whole
+from .run.loop import Interrupted
+from .run.prepare import prepare
+from .scene.scene import SceneRecord
 
 STYLE = (
     "body{font:16px sans-serif;margin:2em;background:#f8fafb}figure{margin:0}video{width:100%}code{color:#555}"
@@ -22,8 +27,8 @@ STYLE = (
 def make_gallery(folder: Path, out: Path, *, accuracy=None, size=None, overrides=(), force=False, quiet=False) -> tuple[int, int]:
     """Run every ``NAME.txt`` of a folder into ``out``/NAME, and write ``out``/index.html; returns how many, and how many failed.
 
-    A run that is there already is kept unless ``force`` is given. A scene that fails does not stop the others: its message is
-    on the page. Raises OutputError where there are no scenes or the page cannot be written.
+    A run that is complete is kept unless ``force`` is given, one that was stopped goes on. A scene that fails does not stop the
+    others: its message is on the page. Raises Interrupted, and OutputError where there are no scenes or no page can be written.
     """
     scenes = sorted(folder.glob("*.txt"))
     if not scenes:
@@ -39,12 +44,13 @@ def make_gallery(folder: Path, out: Path, *, accuracy=None, size=None, overrides
             record = with_accuracy(load(path, overrides), accuracy)
             title = record.title or path.stem
             place = output_folder(record, out / path.stem)
-            if force or not (place / MARK).exists():
-                Scene(record).run(place, force=force)
             movie = movie_file(place, record)
-            if force or not movie.exists():
+            if _run(record, place, force=force) or not movie.exists():
                 render_movie(place, record.render, movie, size=size)
-            shown = f'<video src="{html.escape(movie.relative_to(out).as_posix())}" controls loop muted></video>'
+            address = urllib.parse.quote(movie.relative_to(out).as_posix())
+            shown = f'<video src="{address}" controls loop muted></video>'
+        except Interrupted:
+            raise
         except MdanimError as error:
             failed += 1
             print(error, file=sys.stderr)
@@ -54,3 +60,15 @@ def make_gallery(folder: Path, out: Path, *, accuracy=None, size=None, overrides
     page = f'<!doctype html><meta charset="utf-8"><title>Gallery</title><style>{STYLE}</style><main>{"".join(cells)}</main>'
     write_whole(out / "index.html", page + "\n")
     return len(scenes), failed
+
+
+def _run(record: SceneRecord, place: Path, *, force: bool) -> bool:
+    """Have a complete run of a scene in a folder; returns whether anything had to be run. Raises what `Scene.run` does."""
+    if not force and (place / SUMMARY).exists():
+        return False
+    if force or not (place / MARK).exists():
+        Scene(record).run(place, force=force)
+    else:
+        with claimed(place):
+            run_frames(prepare(stored_scene(place)), place, resume=Checkpoint.read(place / CHECKPOINT))
+    return True

@@ -56,12 +56,12 @@ def resume(
     """
     from .api import stored_scene
     from .results.checkpoint import Checkpoint
-    from .results.files import CHECKPOINT, claimed
+    from .results.files import CHECKPOINT, SUMMARY, claimed
 
     check_executors(executors)
     scene = stored_scene(folder)
     with Viewer(view) as viewer, claimed(folder):
-        if (folder / "summary.json").exists():
+        if (folder / SUMMARY).exists():
             raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
         checkpoint = Checkpoint.read(folder / CHECKPOINT)
         ready = prepare(scene, allow_unstable=allow_unstable)

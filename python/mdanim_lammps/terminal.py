@@ -6,16 +6,14 @@ from __future__ import annotations
 import gc
 import os
 import select
-import signal
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import NoReturn
 
 from .errors import ExitCode, MdanimError
-
-PROGRAM = "mdanim-lammps"
+from .interrupts import PROGRAM, heard, interrupt, on_signals
 
 
 def open_streams() -> None:
@@ -49,9 +47,8 @@ def few_collections() -> Iterator[None]:
 
 
 def stop_on_sigterm() -> None:
-    """Let SIGTERM end the program as Ctrl-C does, with a message; a run has handlers of its own while it simulates."""
-    if threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
-        signal.signal(signal.SIGTERM, signal.default_int_handler)
+    """Let Ctrl-C and SIGTERM end the program with a message; a run has handlers of its own while it simulates."""
+    on_signals(interrupt)
 
 
 def stdout_is_closed() -> bool:
@@ -77,17 +74,19 @@ def documented_exit(*, debug: bool) -> Iterator[None]:
 
     ``debug`` lets errors through, for their traceback. Raises SystemExit.
     """
+    heard.clear()
     try:
         yield
         sys.stdout.flush()
+    except KeyboardInterrupt:
+        _interrupted()
     except MdanimError as error:
         if debug:
             raise
+        if heard:
+            _interrupted()
         print(error_line(error), file=sys.stderr)
         raise SystemExit(error.exit_code) from None
-    except KeyboardInterrupt:
-        print(f"{PROGRAM}: interrupted", file=sys.stderr)
-        raise SystemExit(ExitCode.INTERRUPTED) from None
     except OSError as error:
         if isinstance(error, BrokenPipeError) and stdout_is_closed():
             # What is left in the buffer of stdout must not fail a second time when Python ends.
@@ -95,8 +94,19 @@ def documented_exit(*, debug: bool) -> Iterator[None]:
             raise SystemExit(ExitCode.DONE) from None
         if debug:
             raise
+        if heard:
+            _interrupted()
         print(error_line(error), file=sys.stderr)
         raise SystemExit(ExitCode.IO) from None
+    except Exception:
+        if heard and not debug:
+            _interrupted()
+        raise
+
+
+def _interrupted() -> NoReturn:
+    print(f"{PROGRAM}: interrupted", file=sys.stderr)
+    raise SystemExit(ExitCode.INTERRUPTED) from None
 
 
 def in_notebook() -> bool:

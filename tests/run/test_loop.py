@@ -17,6 +17,7 @@ from mdanim_lammps.errors import DivergedError, OutputError
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.ledger import Ledger
+from mdanim_lammps.run import frame_source, loop
 from mdanim_lammps.run.loop import Interrupted, simulate, write_inputs
 from scene_texts import FALL
 
@@ -272,6 +273,39 @@ def test_interrupt_during_an_impact_resumes_bit_for_bit(tmp_path):
     for term in ("kinetic", "elastic", "contact", "drag_loss"):
         np.testing.assert_allclose(resumed.ledger.array(term), whole.ledger.array(term), rtol=1e-12, atol=1e-15)
     np.testing.assert_allclose(resumed.ledger.array("damping_loss"), whole.ledger.array("damping_loss"), rtol=1e-3, atol=1e-9)
+
+
+def test_pieces_of_frames_change_no_bit(fall, tmp_path, monkeypatch):
+    """LAMMPS is left alone for a step at a time."""
+    monkeypatch.setattr(frame_source, "PIECE_SECONDS", 0.0)
+    simulate(Scene.load(fall.folder.parent / "fall.txt").prepared, tmp_path)
+    assert compare(fall.folder, tmp_path).equal
+
+
+def test_a_second_interrupt_does_not_wait_for_the_frame(tmp_path, monkeypatch):
+    """The first one asks for an end after the frame; it says how to go on, and the run does so to the same bits."""
+    (tmp_path / "fall.txt").write_text(FALL)
+    scene = Scene.load(tmp_path / "fall.txt")
+    whole, folder = scene.run(tmp_path / "whole.out"), tmp_path / "cut.out"
+    windows, run_window = [], frame_source.run_window
+    frame = scene.certificate().steps_per_frame
+
+    def window(instance, steps):
+        run_window(instance, steps)
+        windows.append(steps)
+        if len(windows) in (3 * frame + 2, 3 * frame + 5):
+            os.kill(os.getpid(), signal.SIGINT)
+
+    monkeypatch.setattr(frame_source, "run_window", window)
+    monkeypatch.setattr(frame_source, "PIECE_SECONDS", 0.0)
+    monkeypatch.setattr(loop, "CHECKPOINT_SECONDS", 0.0)
+    with pytest.raises(Interrupted, match=f"within a frame; go on with: mdanim-lammps resume {folder}"):
+        scene.run(folder)
+    assert len(windows) == 3 * frame + 5 and set(windows) == {1}
+    checkpoint = Checkpoint.read(folder / "checkpoint")
+    assert checkpoint.frame == 3
+    simulate(scene.prepared, folder, resume=checkpoint)
+    assert compare(whole.folder, folder).equal
 
 
 AT_REST = """

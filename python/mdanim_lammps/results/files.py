@@ -20,6 +20,8 @@ from .forms import Form, strict_json, table
 from .untrusted import check_room
 
 MARK = "manifest.json"
+SUMMARY = "summary.json"
+"""Written last: a folder that has it holds a complete run."""
 CHECKPOINT = "checkpoint"
 """Name of the file from which a run is resumed."""
 PROGRAM = "mdanim-lammps"

@@ -38,6 +38,10 @@ from .observe import Observation, Observer
 
 COST_SECONDS = 0.25
 """Wall time between two words on what a run has cost so far."""
+PIECE_SECONDS = 1.0
+"""Wall time for which LAMMPS is left alone: a second Ctrl-C is heard after it."""
+PER_PARTICLE = 1e-6
+"""More seconds than a step takes for a particle."""
 
 
 @dataclass(frozen=True)
@@ -171,6 +175,8 @@ class Sequential:
         self.objects = np.arange(len(plan.system.names))
         self.spent = Account()
         """On what is no effect's."""
+        self.of_step = PER_PARTICLE * plan.system.particles
+        """What a step takes [s]: a guess, until the first ones have been measured."""
 
     def __enter__(self) -> Sequential:
         self.instance = Instance(self.plan)
@@ -191,7 +197,12 @@ class Sequential:
         return self._frame(0)
 
     def advance(self, frame, steps):
-        run_window(self.instance, steps)
+        # In pieces, as no signal is heard while LAMMPS is at work. Their lengths change no bit.
+        while steps:
+            piece, begin = min(steps, max(1, int(PIECE_SECONDS / self.of_step))), time.perf_counter()
+            run_window(self.instance, piece)
+            self.of_step = max((time.perf_counter() - begin) / piece, 1e-9)
+            steps -= piece
         return self._frame(frame)
 
     def stop(self, frame):

@@ -4,9 +4,8 @@
 from __future__ import annotations
 
 import hashlib
+import shlex
 import shutil
-import signal
-import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,10 +19,11 @@ from ..effects.liquid import is_wavy, overflow
 from ..engine.commands import input_script
 from ..engine.data_file import write_bodies, write_data
 from ..errors import DivergedError, ExitCode, MdanimError, OutputError, Problem
+from ..interrupts import Interrupts
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
 from ..results.expect import Measured, Outcome, evaluate, recorded, recorded_of_liquid
-from ..results.files import CHECKPOINT, PAUSE, STOP, disk_errors, write_json, write_whole
+from ..results.files import CHECKPOINT, PAUSE, STOP, SUMMARY, disk_errors, write_json, write_whole
 from ..results.ledger import DUE, MOMENTA, Ledger
 from ..results.progress import ProgressLog
 from ..results.trajectory import Trajectory
@@ -254,22 +254,28 @@ class _Run:
                         if time.perf_counter() - told > COST_SECONDS and (so_far := self.source.account_so_far()):
                             log.cost(self._cost(so_far).parts)
                             told = time.perf_counter()
-            except BaseException:
+            except BaseException as error:
                 self._write_ledger()  # without an error the last frame has done so
+                if isinstance(error, KeyboardInterrupt):
+                    raise Interrupted(f"interrupted within a frame; {self._way_on()}") from None
                 raise
             if last < len(lengths):
-                insist = " --allow-unstable" if c.fraction > 1.0 else ""
                 when = self.ledger.rows[-1]["time"]
-                stopped = Interrupted(
-                    f"interrupted at t = {number(when, 4)} s; go on with: mdanim-lammps resume {self.folder}{insist}\n"
-                    f"  draw what is there with: mdanim-lammps render {self.folder}"
-                )
+                stopped = Interrupted(f"interrupted at t = {number(when, 4)} s; {self._way_on()}")
                 stopped.cost = self._cost(self.source.account())
                 raise stopped
             account = self.source.account()
             closing = time.perf_counter()
         self.seconds["output"] += time.perf_counter() - closing
         return account
+
+    def _way_on(self) -> str:
+        """How to go on after an interruption."""
+        if not (self.folder / CHECKPOINT).exists():
+            return "nothing was kept yet; run it again"
+        insist = " --allow-unstable" if self.certificate.fraction > 1.0 else ""
+        folder = shlex.quote(str(self.folder))
+        return f"go on with: mdanim-lammps resume {folder}{insist}\n  draw what is there with: mdanim-lammps render {folder}"
 
     def _progress(self, frame: int) -> Progress:
         c, row = self.certificate, self.ledger.rows[-1]
@@ -331,7 +337,7 @@ class _Run:
             )
         cost = self._cost(account)
         write_json(self.folder / "cost.json", cost.to_json())
-        write_json(self.folder / "summary.json", self._summary(outcomes))
+        write_json(self.folder / SUMMARY, self._summary(outcomes))
         return Result(self.folder, self.ledger, outcomes, cost, [*self.guard.warnings(self.ledger.residual), *self._overflow()])
 
     def _overflow(self) -> list[Problem]:
@@ -469,25 +475,21 @@ class _Run:
         )
 
 
-class _Stop:
+class _Stop(Interrupts):
     """Whether to stop after the frame: Ctrl-C and SIGTERM ask for it, and a file ``stop`` in the run's folder, also one that was
-    there before the first frame: it may have been made while the scene was read."""
+    there before the first frame: it may have been made while the scene was read. A second signal is a KeyboardInterrupt."""
 
     def __init__(self, folder: Path):
+        super().__init__(lambda: None, _raise_interrupt)
         self.file = folder / STOP
-        self.asked = threading.Event()
-        self.old = {}
-
-    def __enter__(self) -> _Stop:
-        if threading.current_thread() is threading.main_thread():
-            for which in (signal.SIGINT, signal.SIGTERM):
-                self.old[which] = signal.signal(which, lambda *_: self.asked.set())
-        return self
 
     def is_set(self) -> bool:
-        return self.asked.is_set() or self.file.exists()
+        return self.asked or self.file.exists()
 
     def __exit__(self, *_) -> None:
         self.file.unlink(missing_ok=True)
-        for which, handler in self.old.items():
-            signal.signal(which, handler)
+        super().__exit__()
+
+
+def _raise_interrupt() -> None:
+    raise KeyboardInterrupt

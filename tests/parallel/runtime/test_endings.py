@@ -110,6 +110,25 @@ def test_a_killed_rank_ends_the_run_within_seconds(place, control, victim):
         goes_on(place, 0, "-n", 3)
 
 
+def test_a_killed_launcher_ends_all_ranks(place):
+    """The process by which mpiexec starts ranks: without it they would go on, or hang, unseen; what is told is true."""
+    process = begun(place, LONG, "-n", 2)
+    rank = next(p for p, number in ranks_in(place).items() if number == 1)
+    proxy = int(Path(f"/proc/{rank}/stat").read_text().rsplit(")", 1)[1].split()[1])
+    assert "hydra" in Path(f"/proc/{proxy}/cmdline").read_text()
+    os.kill(proxy, signal.SIGKILL)
+    code, said = ended(process, 20.0)
+    assert code == 5 and "all others were stopped" in said and f"mdanim-lammps resume {place / 'film.out'}" in said, said
+    goes_on(place, 0)
+
+
+def test_a_run_that_is_complete_is_told_as_such(tmp_path):
+    """Where its launcher was lost at the end."""
+    (tmp_path / "checkpoint").touch()
+    (tmp_path / "summary.json").touch()
+    assert re.search(r"run is complete; draw it with: mdanim-lammps render", str(launch.lost("exit code 255", tmp_path)))
+
+
 @pytest.mark.parametrize("control", ["central", "peers"])
 def test_ctrl_c_keeps_a_checkpoint(place, control):
     """End with 130 after the frames that were under way, and go on in the sequential program, or with executors:

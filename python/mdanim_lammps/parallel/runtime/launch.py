@@ -22,8 +22,9 @@ from pathlib import Path
 from ...children import DEVNULL, PIPE, Child, start
 from ...children import command as child_command
 from ...errors import ExecutorLost, MdanimError, OutputError, SetupError
+from ...interrupts import Interrupts
 from ...results.checkpoint import Checkpoint
-from ...results.files import CHECKPOINT, JOB, STOP, claims, disk_errors
+from ...results.files import CHECKPOINT, JOB, STOP, SUMMARY, claims, disk_errors
 from ...run.loop import Progress
 from ...run.prepare import Prepared
 from ...run.result import Result
@@ -138,32 +139,27 @@ def _cause(code: int, said: list[str]) -> str:
 
 
 def lost(why: str, folder: Path) -> ExecutorLost:
-    """The one message for ranks that ended without a result."""
+    """The one message for ranks that gave no result."""
+    place = shlex.quote(str(folder))
+    if (folder / SUMMARY).exists():
+        return ExecutorLost(
+            f"mpiexec was lost ({why}) as the run ended, and the run is complete; draw it with: mdanim-lammps render {place}"
+        )
     kept = (folder / CHECKPOINT).exists()
-    go_on = f"go on with: mdanim-lammps resume {folder}" if kept else "nothing was kept yet; run it again"
+    go_on = f"go on with: mdanim-lammps resume {place}" if kept else "nothing was kept yet; run it again"
     return ExecutorLost(f"an executor was lost ({why}); all others were stopped. {go_on}")
 
 
-class _Signals:
+class _Signals(Interrupts):
     """The first Ctrl-C (or SIGTERM) asks for an end after the frame; the second one ends all ranks at once."""
 
     def __init__(self, folder: Path):
+        super().__init__(self._stop, self._end)
         self.folder = folder
         self.ranks: Child | None = None
         """To be set once there are some."""
-        self.old = {}
-        self.asked = False
 
-    def __enter__(self) -> _Signals:
-        if threading.current_thread() is threading.main_thread():
-            for number in (signal.SIGINT, signal.SIGTERM):
-                self.old[number] = signal.signal(number, self._stop)
-        return self
-
-    def _stop(self, *_) -> None:
-        if self.asked:
-            self._end()
-        self.asked = True
+    def _stop(self) -> None:
         with suppress(OSError):  # the folder may have been deleted, which ends the run by itself
             (self.folder / STOP).touch()
 
@@ -172,8 +168,7 @@ class _Signals:
             os.killpg(self.ranks.pid, signal.SIGKILL)
 
     def __exit__(self, *_) -> None:
-        for number, handler in self.old.items():
-            signal.signal(number, handler)
+        super().__exit__()
         self._end()
         if self.asked:
             (self.folder / STOP).unlink(missing_ok=True)

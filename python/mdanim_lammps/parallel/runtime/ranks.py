@@ -12,6 +12,7 @@ import json
 import os
 import pickle
 import sys
+import threading
 import time
 import traceback
 from dataclasses import asdict, replace
@@ -25,8 +26,13 @@ PATIENCE = 30.0
 """Seconds for which an executor that has failed waits for the supervisor to end all ranks, until it does so itself."""
 
 
+WATCH = 0.5
+"""Seconds between two looks whether the launcher is alive."""
+
+
 def main() -> None:
     """Be the supervisor, or an executor."""
+    threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
     from mpi4py import MPI
 
     from .messages import SUPERVISOR
@@ -51,6 +57,13 @@ def main() -> None:
         if not done:  # MPI's own end would wait for all other ranks, which may wait for this one
             sys.stderr.flush()
             world.Abort(1)
+
+
+def _end_with(launcher: int) -> None:
+    """End this rank when the process that has started it has ended: without it ranks neither give a result nor end each other."""
+    while os.getppid() == launcher:
+        time.sleep(WATCH)
+    os._exit(1)
 
 
 def share_out_cores(world) -> None:
