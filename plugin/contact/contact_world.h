@@ -137,7 +137,7 @@ class ContactWorld {
   };
   double range(int a, int b) const;
   void find_sights();
-  ContactLaw law(const ContactObject &owner, double kappa, double friction, double damping) const;
+  ContactLaw law(const ContactObject &owner, double density, double kappa, double friction, double damping) const;
   struct LawsOfPair {
     ContactLaw lower, higher;
   };

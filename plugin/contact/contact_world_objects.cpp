@@ -55,10 +55,11 @@ const ContactObject *ContactWorld::misfit(const std::vector<ContactObject> &now)
 
 // --- laws ---
 
-ContactLaw ContactWorld::law(const ContactObject &owner, double kappa, double friction, double damping) const
+// `density` is that of the lighter body that can move: it is the one that swings.
+ContactLaw ContactWorld::law(const ContactObject &owner, double density, double kappa, double friction, double damping) const
 {
   const double h = owner.body->spacing();
-  return {kappa, ONSET * h, friction, damping > 0.0 ? 2.0 * damping * std::sqrt(0.5 * kappa * owner.density * h) / kappa : 0.0};
+  return {kappa, ONSET * h, friction, damping > 0.0 ? 2.0 * damping * std::sqrt(0.5 * kappa * density * h) / kappa : 0.0};
 }
 
 ContactWorld::LawsOfPair ContactWorld::laws_of_pair(int a, int b) const
@@ -71,7 +72,9 @@ ContactWorld::LawsOfPair ContactWorld::laws_of_pair(int a, int b) const
   double friction = std::sqrt(lower.friction * higher.friction), damping = friction > 0.0 ? settings.damping : 0.0;
   if (const auto own = settings.pairs.find({lower.id, higher.id}); own != settings.pairs.end())
     friction = own->second.friction, damping = own->second.damping;
-  return {law(lower, kappa, friction, damping), law(higher, kappa, friction, damping)};
+  double density = movable[a] ? lower.density : higher.density;
+  if (movable[b]) density = std::min(density, higher.density);
+  return {law(lower, density, kappa, friction, damping), law(higher, density, kappa, friction, damping)};
 }
 
 ContactWorld::Both ContactWorld::new_pair(int a, int b)
@@ -84,7 +87,7 @@ ContactLaw ContactWorld::law_at_plane(int n) const
 {
   const ContactObject &one = all[n];
   const double kappa = (one.body->is_cuboid() ? 1.0 : ALONE) * settings.stiffness * one.young / one.body->spacing();
-  return law(one, kappa, one.friction, one.friction > 0.0 ? settings.damping : 0.0);
+  return law(one, one.density, kappa, one.friction, one.friction > 0.0 ? settings.damping : 0.0);
 }
 
 PlaneField ContactWorld::new_plane(int n, int plane) { return {all[n], plane, settings.planes[plane], law_at_plane(n)}; }

@@ -90,14 +90,14 @@ class OnSurfaces(Effect):
     def dashpots(self, scene: SceneRecord, system: System, kappa: np.ndarray) -> np.ndarray | None:
         """eta_i s_i / m_i [1/s], shape (N,), of the part of the damping that counts in the bound; None where none does.
 
-        The dashpot of a point is eta w_q with eta = 2 beta sqrt(kappa rho h/2), of an area s_i at most for a particle;
-        ``kappa`` of each solid [N/m^3], shape (M,).
+        The dashpot of a point is eta w_q with eta = 2 beta sqrt(kappa rho h/2), of an area s_i at most for a particle; rho is
+        that of the lighter of a pair, so no more than that of either. ``kappa`` of each solid [N/m^3], shape (M,).
         """
         beta = SPARE * (self.damping(scene) - USUAL_DAMPING)
         if beta <= 0.0:
             return None
-        h = np.cbrt(system.cell_volume)
-        eta = 2.0 * beta * np.sqrt(kappa * (system.density * h).max() / 2.0)
+        h = float(np.cbrt(system.cell_volume).max())
+        eta = 2.0 * beta * np.sqrt(kappa * (system.density * h) / 2.0)
         return eta[system.object] * borne_area(system) / system.mass
 
     def lost(self, readings):

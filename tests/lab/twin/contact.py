@@ -322,10 +322,9 @@ class Twin:
         self.account = Account()
         self.memory, self.laws = {}, {}
 
-        def law(a, kappa, mu, beta):
-            one = self.solids[a]
-            h = one.spacing
-            return Law(kappa, ONSET * h, mu, 2.0 * beta * np.sqrt(kappa * one.density * h / 2.0))
+        def law(a, density, kappa, mu, beta):
+            h = self.solids[a].spacing
+            return Law(kappa, ONSET * h, mu, 2.0 * beta * np.sqrt(kappa * density * h / 2.0))
 
         for a, first in enumerate(solids):
             for b, second in enumerate(solids):
@@ -334,12 +333,13 @@ class Twin:
                 mu = np.sqrt(first.friction * second.friction)
                 mu, beta = (pairs or {}).get((min(a, b), max(a, b)), (mu, damping if mu > 0.0 else 0.0))
                 kappa = stiffness * 2.0 * first.young * second.young / (first.young + second.young)
-                self.laws[a, b] = law(a, kappa / max(first.spacing, second.spacing), mu, beta)
+                lighter = min(one.density for one in (first, second) if not one.held)
+                self.laws[a, b] = law(a, lighter, kappa / max(first.spacing, second.spacing), mu, beta)
                 self.memory[a, b] = Memory.new(len(first.body["cell"]))
             for p in range(len(planes)):
                 beta = damping if first.friction > 0.0 else 0.0
                 if not first.held:
-                    self.laws[a, -1 - p] = law(a, stiffness * first.young / first.spacing, first.friction, beta)
+                    self.laws[a, -1 - p] = law(a, first.density, stiffness * first.young / first.spacing, first.friction, beta)
                     self.memory[a, -1 - p] = Memory.new(len(first.body["cell"]), 1)
 
     def forces(self, x, dt: float):
