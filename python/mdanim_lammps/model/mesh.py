@@ -7,7 +7,6 @@ pyvista (VTK) is needed only here and only for scenes that name a mesh; it is im
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -16,22 +15,17 @@ import numpy as np
 
 from ..scene.formatting import say
 from ..scene.scene import Mesh
-from .mesh_reader import UnreadableMesh, read_polygons
+from .crossings import crossings
+from .mesh_formats import UnreadableMesh
+from .mesh_reader import read_polygons
 from .nearest import Nearest, blocks
+from .orientation import MeshError, outward
 from .thickness import thickness
-from .triangles import areas, spots
+from .triangles import areas, edges, spots, volume_and_centre
 
 SUFFIXES = (".stl", ".obj", ".ply")
 SIZES = 1e-9, 1e9
 """Least and largest measure of a shape [m]."""
-
-
-class MeshError(Exception):
-    """A mesh file that cannot become a solid; ``hint`` says how to correct it."""
-
-    def __init__(self, message: str, hint: str):
-        super().__init__(message)
-        self.hint = hint
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,8 +65,8 @@ def load(shape: Mesh) -> Triangles:
 @lru_cache(maxsize=64)
 def _load(path: Path, scale: float, changed: int, size: int) -> Triangles:
     points, triangles, color = _read(path)
-    triangles = _outward(points, triangles, path.name)
-    volume, centre = _volume_and_centre(points, triangles)
+    triangles = outward(points, triangles, path.name)
+    volume, centre = volume_and_centre(points, triangles)
     size = float(np.ptp(points, axis=0).max()) * scale
     if not SIZES[0] <= size <= SIZES[1]:
         raise MeshError(
@@ -107,61 +101,6 @@ def _read(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
     return points, triangles, np.asarray(surface.point_data["color"]) if len(color) else None
 
 
-def _edges(triangles: np.ndarray) -> np.ndarray:
-    """Directed edges, shape (3 T, 2)."""
-    return triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-
-
-def _outward(points: np.ndarray, triangles: np.ndarray, name: str) -> np.ndarray:
-    """Turn triangles so that all face outward; raise MeshError where the surface is not closed."""
-    _, uses = np.unique(np.sort(_edges(triangles), axis=1), axis=0, return_counts=True)
-    if (uses == 1).any():
-        raise MeshError(
-            f"mesh {name}: not closed, {np.count_nonzero(uses == 1)} edges belong to one triangle only",
-            "fill its holes in a mesh editor (Blender: Select > Non Manifold, then Fill)",
-        )
-    if (uses > 2).any():
-        raise MeshError(
-            f"mesh {name}: {np.count_nonzero(uses > 2)} edges belong to more than two triangles",
-            "remove inner faces and doubled triangles in a mesh editor",
-        )
-    if not _consistent(triangles):
-        triangles = _reorient(points, triangles)
-    if not _consistent(triangles):
-        raise MeshError(f"mesh {name}: has no inside and outside", "a one-sided surface cannot be a solid")
-    volume, _ = _volume_and_centre(points, triangles)
-    size = np.ptp(points, axis=0).max()
-    if abs(volume) <= 1e-9 * size**3:
-        raise MeshError(f"mesh {name}: encloses no volume", "export a body, not a sheet")
-    return triangles if volume > 0 else triangles[:, ::-1].copy()
-
-
-def _consistent(triangles: np.ndarray) -> bool:
-    """Whether neighbours run along their common edge in opposite directions."""
-    edges = _edges(triangles)
-    return len(np.unique(edges, axis=0)) == len(edges)
-
-
-def _reorient(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    import pyvista
-
-    surface = pyvista.PolyData.from_regular_faces(points, triangles).compute_normals(
-        consistent_normals=True, auto_orient_normals=True, split_vertices=False, non_manifold_traversal=False
-    )
-    return np.asarray(surface.faces).reshape(-1, 4)[:, 1:].astype(np.int32)
-
-
-def _volume_and_centre(points: np.ndarray, triangles: np.ndarray) -> tuple[float, np.ndarray]:
-    """Signed volume and centre of mass, by summing the tetrahedra from one point to each triangle."""
-    origin = points.mean(axis=0)
-    a, b, c = np.moveaxis((points - origin)[triangles], 1, 0)
-    six = np.einsum("td,td->t", a, np.cross(b, c))
-    volume = six.sum() / 6
-    if volume == 0:
-        return 0.0, origin
-    return float(volume), origin + (six[:, None] * (a + b + c)).sum(axis=0) / (24 * volume)
-
-
 # --- inside or not ------------------------------------------------------------------------------------------
 
 
@@ -169,7 +108,7 @@ def contains(mesh: Triangles, points: np.ndarray) -> np.ndarray:
     """Whether points [m], shape (N, 3), are inside, bool, shape (N,): an odd number of triangles is below."""
     points = np.asarray(points, float).reshape(-1, 3)
     below = np.zeros(len(points), np.int64)
-    for line, z in _crossings(mesh, points[:, :2]):
+    for line, z, _ in crossings(mesh.points, mesh.triangles, points[:, :2]):
         below += np.bincount(line[z < points[line, 2]], minlength=len(points))
     return below % 2 == 1
 
@@ -178,7 +117,7 @@ def fill(mesh: Triangles, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.nda
     """Whether the points of the grid x (nx,), y (ny,), z (nz,) [m] are inside, bool, shape (nz, ny, nx)."""
     lines = np.stack([np.tile(x, len(y)), np.repeat(y, len(x))], axis=1)
     toggles = np.zeros((len(z) + 1, len(lines)), np.uint8)
-    for line, height in _crossings(mesh, lines):
+    for line, height, _ in crossings(mesh.points, mesh.triangles, lines):
         where = np.searchsorted(z, height) * len(lines) + line
         toggles += np.bincount(where, minlength=toggles.size).astype(np.uint8).reshape(toggles.shape)
     inside = np.add.accumulate(toggles[:-1], axis=0, dtype=np.uint8) & 1
@@ -192,64 +131,6 @@ def depth(mesh: Triangles, points: np.ndarray) -> np.ndarray:
     surface = pyvista.PolyData.from_regular_faces(mesh.points, mesh.triangles)
     cloud = pyvista.PolyData(np.asarray(points, float)).compute_implicit_distance(surface)
     return np.where(contains(mesh, points), 1.0, -1.0) * abs(np.asarray(cloud["implicit_distance"]))
-
-
-def _crossings(mesh: Triangles, lines: np.ndarray, batch: int = 2_000_000) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Where vertical lines at (x, y) [m], shape (L, 2), meet triangles: (line numbers, heights), in batches.
-
-    A line through a common edge counts for exactly one of its two triangles: both ask on which side of the
-    edge it passes, in the same arithmetic.
-    """
-    if not len(lines):
-        return
-    low, high = mesh.points[:, :2].min(axis=0), mesh.points[:, :2].max(axis=0)
-    # Slightly displaced, so that a line does not hit a vertex on a lattice of round numbers.
-    lines = lines + 1e-9 * np.array([0.5772156649, 0.3819660113]) * (high - low)
-    bins = int(np.clip(np.sqrt(len(lines)), 1, 1024))
-    to_bin = bins / np.maximum(high - low, np.finfo(float).tiny)
-    column, row = (((lines - low) * to_bin).clip(0, bins - 1).astype(np.int64)).T
-    order = np.argsort(row * bins + column, kind="stable")
-    first = np.searchsorted((row * bins + column)[order], np.arange(bins * bins + 1))
-
-    corners = mesh.points[mesh.triangles][:, :, :2]
-    c0, r0 = ((corners.min(axis=1) - low) * to_bin).clip(0, bins - 1).astype(np.int64).T
-    c1, r1 = ((corners.max(axis=1) - low) * to_bin).clip(0, bins - 1).astype(np.int64).T
-    # The bins of one row that a triangle may touch are one stretch of the sorted lines.
-    triangle, row = _ranges(r0, r1 + 1)
-    start, stop = first[row * bins + c0[triangle]], first[row * bins + c1[triangle] + 1]
-    pairs = np.cumsum(stop - start)
-    cuts = np.searchsorted(pairs, np.arange(0, pairs[-1], batch))
-    for a, b in zip(cuts, np.append(cuts[1:], len(pairs))):
-        stretch, at = _ranges(start[a:b], stop[a:b])
-        yield _hits(mesh, lines, order[at], triangle[a:b][stretch])
-
-
-def _ranges(start: np.ndarray, stop: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Write out the ranges start[k] .. stop[k] - 1: the number k of each element, and the element."""
-    length = stop - start
-    owner = np.repeat(np.arange(len(start)), length)
-    return owner, np.arange(len(owner)) - np.repeat(np.cumsum(length) - length - start, length)
-
-
-def _hits(mesh: Triangles, lines: np.ndarray, line: np.ndarray, triangle: np.ndarray):
-    """Pairs (line, triangle) that intersect: line numbers and heights [m]."""
-    corner = mesh.triangles[triangle]
-    px, py = lines[line].T
-    sides = []
-    for i, j in ((0, 1), (1, 2), (2, 0)):
-        a, b = corner[:, i], corner[:, j]
-        u, v = mesh.points[np.minimum(a, b)], mesh.points[np.maximum(a, b)]
-        left = (v[:, 0] - u[:, 0]) * (py - u[:, 1]) >= (v[:, 1] - u[:, 1]) * (px - u[:, 0])
-        sides.append(left == (a < b))
-    meets = (sides[0] == sides[1]) & (sides[1] == sides[2])
-    line, corner, px, py = line[meets], corner[meets], px[meets], py[meets]
-    a, b, c = np.moveaxis(mesh.points[corner], 1, 0)
-    n = np.cross(b - a, c - a)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        z = a[:, 2] - (n[:, 0] * (px - a[:, 0]) + n[:, 1] * (py - a[:, 1])) / n[:, 2]
-    heights = np.stack([a[:, 2], b[:, 2], c[:, 2]])
-    # An almost vertical triangle has no exact height; any height between its corners is valid.
-    return line, np.where(np.isfinite(z), z, a[:, 2]).clip(heights.min(axis=0), heights.max(axis=0))
 
 
 # --- surface ------------------------------------------------------------------------------------------------
@@ -280,7 +161,7 @@ def refined_surface(mesh: Triangles, size: float) -> tuple[np.ndarray, np.ndarra
     """Points [m] (V, 3) and triangles (T, 3) of the surface, with no edge much longer than ``size`` [m]."""
     import pyvista
 
-    edge = mesh.points[_edges(mesh.triangles)]
+    edge = mesh.points[edges(mesh.triangles)]
     if np.linalg.norm(edge[:, 0] - edge[:, 1], axis=1).max() <= 2 * size:
         return mesh.points, mesh.triangles
     # The filters' limits of lengths and areas are numbers without a unit: here the size is near 1, and no bit is lost.

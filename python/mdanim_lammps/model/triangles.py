@@ -31,3 +31,19 @@ def spots(corners: np.ndarray, first: int = 0) -> np.ndarray:
     u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
     a, b, c = np.moveaxis(corners, 1, 0)
     return a + u[:, None] * (b - a) + v[:, None] * (c - a)
+
+
+def edges(triangles: np.ndarray) -> np.ndarray:
+    """Directed edges, shape (3 T, 2)."""
+    return triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+
+
+def volume_and_centre(points: np.ndarray, triangles: np.ndarray) -> tuple[float, np.ndarray]:
+    """Signed volume and centre of mass, by summing the tetrahedra from one point to each triangle."""
+    origin = points.mean(axis=0)
+    a, b, c = np.moveaxis((points - origin)[triangles], 1, 0)
+    six = np.einsum("td,td->t", a, np.cross(b, c))
+    volume = six.sum() / 6
+    if volume == 0:
+        return 0.0, origin
+    return float(volume), origin + (six[:, None] * (a + b + c)).sum(axis=0) / (24 * volume)

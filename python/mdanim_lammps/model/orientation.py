@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Which side of a surface is outside: points [m] (V, 3), triangles (T, 3)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .boxes import box_pairs
+from .crossings import crossings
+from .triangles import edges, volume_and_centre
+
+LINES = 64
+"""Lines along x and along y that look for what is enclosed twice."""
+CROSSED = 0.01
+"""Part of the inside that may be: volume and mass count it twice, and cells leave it out."""
+
+
+class MeshError(Exception):
+    """A mesh file that cannot become a solid; ``hint`` says how to correct it."""
+
+    def __init__(self, message: str, hint: str):
+        super().__init__(message)
+        self.hint = hint
+
+
+def outward(points: np.ndarray, triangles: np.ndarray, name: str) -> np.ndarray:
+    """Turn triangles so that all face outward, whichever way they faced. A closed part inside another one is a cavity, a part
+    inside a cavity is solid again. Raise MeshError where the surface is not closed, and where its parts cross each other."""
+    _, uses = np.unique(np.sort(edges(triangles), axis=1), axis=0, return_counts=True)
+    if (uses == 1).any():
+        raise MeshError(
+            f"mesh {name}: not closed, {np.count_nonzero(uses == 1)} edges belong to one triangle only",
+            "fill its holes in a mesh editor (Blender: Select > Non Manifold, then Fill)",
+        )
+    if (uses > 2).any():
+        raise MeshError(
+            f"mesh {name}: {np.count_nonzero(uses > 2)} edges belong to more than two triangles",
+            "remove inner faces and doubled triangles in a mesh editor",
+        )
+    if not _consistent(triangles):
+        triangles = _reorient(points, triangles)
+    if not _consistent(triangles):
+        raise MeshError(f"mesh {name}: has no inside and outside", "a one-sided surface cannot be a solid")
+    triangles = _turned_by_part(points, triangles)
+    volume, _ = volume_and_centre(points, triangles)
+    if volume <= 1e-9 * np.ptp(points, axis=0).max() ** 3:
+        raise MeshError(f"mesh {name}: encloses no volume", "export a body, not a sheet")
+    if (twice := _enclosed_twice(points, triangles)) > CROSSED:
+        raise MeshError(
+            f"mesh {name}: its surface crosses itself, {100 * twice:.0f} % of the inside is enclosed more than once",
+            "unite its parts in a mesh editor (Blender: Boolean > Union, or Remesh), or write an object for each part",
+        )
+    return triangles
+
+
+def _turned_by_part(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """The triangles of each connected part turned: outward, inward where the part lies inside of an odd number of others."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    edge = np.sort(edges(triangles), axis=1)
+    # Each edge is one of two triangles; parts that touch in a corner are two.
+    first, second = (np.lexsort(edge.T) // 3).reshape(-1, 2).T
+    joined = coo_array((np.ones(len(first), bool), (first, second)), shape=(len(triangles),) * 2)
+    part = connected_components(joined, directed=False)[1]
+    parts = np.split(np.argsort(part, kind="stable"), np.cumsum(np.bincount(part))[:-1])
+    turned = triangles.copy()
+    inside = _depths(points, [triangles[rows] for rows in parts])
+    for rows, depth in zip(parts, inside):
+        volume, _ = volume_and_centre(points, triangles[rows])
+        if (volume > 0) != (depth % 2 == 0):
+            turned[rows] = turned[rows, ::-1]
+    return turned
+
+
+def _depths(points: np.ndarray, parts: list[np.ndarray]) -> np.ndarray:
+    """In how many other parts each part lies, by its first point, int, shape (K,)."""
+    depth = np.zeros(len(parts), int)
+    if len(parts) == 1:
+        return depth
+    low, high = (np.array([f(points[p].reshape(-1, 3), axis=0) for p in parts]) for f in (np.min, np.max))
+    first = points[[p[0, 0] for p in parts]]
+    for i, j in box_pairs(low, high):
+        for inner, outer in ((i, j), (j, i)):
+            within = ((low[inner] >= low[outer]) & (high[inner] <= high[outer])).all(axis=1)
+            for host in np.unique(outer[within]):
+                guest, below = inner[within & (outer == host)], np.zeros(len(parts), int)
+                for line, z, _ in crossings(points, parts[host], first[guest, :2]):
+                    below[guest] += np.bincount(line[z < first[guest][line, 2]], minlength=len(guest))
+                depth += below % 2
+    return depth
+
+
+def _enclosed_twice(points: np.ndarray, triangles: np.ndarray) -> float:
+    """Part of what vertical lines have inside that is not enclosed exactly once [-]."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    x, y = (a + (b - a) * (np.arange(LINES) + 0.5) / LINES for a, b in zip(low[:2], high[:2]))
+    lines = np.stack([np.tile(x, LINES), np.repeat(y, LINES)], axis=1)
+    found = list(crossings(points, triangles, lines))
+    if not found:
+        return 0.0  # so thin that no line meets it
+    line, height, leaves = (np.concatenate(column) for column in zip(*found))
+    order = np.lexsort((height, line))
+    line, height = line[order], height[order]
+    level = np.cumsum(np.where(leaves[order], -1, 1))  # 0 at the end of each line, as the surface is closed
+    length = np.where(line[1:] == line[:-1], np.diff(height), 0.0)
+    return float(length[(level[:-1] != 0) & (level[:-1] != 1)].sum() / max(length[level[:-1] != 0].sum(), np.finfo(float).tiny))
+
+
+def _consistent(triangles: np.ndarray) -> bool:
+    """Whether neighbours run along their common edge in opposite directions."""
+    edge = edges(triangles)
+    return len(np.unique(edge, axis=0)) == len(edge)
+
+
+def _reorient(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    import pyvista
+
+    surface = pyvista.PolyData.from_regular_faces(points, triangles).compute_normals(
+        consistent_normals=True, auto_orient_normals=True, split_vertices=False, non_manifold_traversal=False
+    )
+    return np.asarray(surface.faces).reshape(-1, 4)[:, 1:].astype(np.int32)
