@@ -55,7 +55,7 @@ def test_mass_and_cells_of_a_hollow_body_agree(tmp_path):
 def test_parts_that_cross_are_refused():
     """Two boxes that share half a box: of the inside, 1.5, a third is enclosed twice. A thousandth would do no harm."""
     points, triangles = joined([(Box((1.0,) * 3), (0.5 * k, 0.0, 0.0), False) for k in range(2)])
-    with pytest.raises(MeshError, match="3[34] % of the inside is enclosed more than once") as caught:
+    with pytest.raises(MeshError, match=r"3[34] % of the inside is enclosed more than once") as caught:
         outward(points, triangles, "boxes")
     assert "unite its parts" in caught.value.hint
     points, triangles = joined([(Box((1.0,) * 3), (0.999 * k, 0.0, 0.0), False) for k in range(2)])
