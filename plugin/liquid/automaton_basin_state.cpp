@@ -75,11 +75,11 @@ namespace {
 
 struct StateHead {
   StateKind kind;
+  Basin::Ledger ledger;
   std::int64_t nx, ny, nz;
   std::int64_t units, swept, calm;
   Basin::Wait wait;
   double travel, crossed;
-  Basin::Ledger ledger;
 };
 
 std::string number(std::int64_t n) { return std::to_string(n); }
@@ -92,7 +92,7 @@ std::string grid(std::int64_t nx, std::int64_t ny, std::int64_t nz)
 // The head, raw heights, and a byte for each cell: what it holds, or a code.
 std::vector<std::uint8_t> AutomatonBasin::state(const Ledger &ledger) const
 {
-  const StateHead head{KIND, shape.nx, shape.ny, shape.nz, units, swept, calm, wait, travel, crossed, ledger};
+  const StateHead head{KIND, ledger, shape.nx, shape.ny, shape.nz, units, swept, calm, wait, travel, crossed};
   const std::size_t heights = height.size() * sizeof(double), count = solid.codes().size();
   std::vector<std::uint8_t> bytes(sizeof head + heights + count);
   std::memcpy(bytes.data(), &head, sizeof head);

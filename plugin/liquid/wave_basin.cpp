@@ -213,8 +213,10 @@ Basin::Filled WaveBasin::fill(const Amount &amount, const std::vector<std::uint8
     wanted = (pour(level, 0) + UNITS_PER_CELL / 2) / UNITS_PER_CELL;
   } else
     wanted = static_cast<std::int64_t>(amount.value / cell_volume() + 0.5);
+  const Units room = pour(most, 0);
+  if (amount.by_level) wanted = std::min(wanted, room / UNITS_PER_CELL);    // the nearest whole number may be too much
   if (wanted < 1) return {wanted, 0};
-  const Units want = wanted * UNITS_PER_CELL, room = pour(most, 0);
+  const Units want = wanted * UNITS_PER_CELL;
   const auto highest = [&](std::int64_t low_end, std::int64_t high_end, const auto &poured_to) {    // that holds no more
     while (high_end - low_end > 1) {
       const std::int64_t middle = low_end + (high_end - low_end) / 2;

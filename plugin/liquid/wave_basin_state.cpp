@@ -23,11 +23,11 @@ constexpr double PI = 3.14159265358979323846;
 
 struct WaveBasinHead {
   StateKind kind;
+  Basin::Ledger ledger;
   std::int64_t nx, ny, nz, units, updates, stale, moving;
   std::uint64_t still_known;
   Basin::Wait wait;
   double gone, slept;
-  Basin::Ledger ledger;
   double travel, energy_at_start;
   Basin::Impulses account;
   std::uint64_t of_drops;    // bytes
@@ -166,8 +166,8 @@ void WaveBasin::contents(std::uint8_t *out) const
 std::vector<std::uint8_t> WaveBasin::state(const Ledger &ledger) const
 {
   const std::vector<std::uint8_t> of_makers = makers.state(), of_drops = drops.state(), of_waves = waves.state();
-  const WaveBasinHead head{KIND, shape.nx, shape.ny, shape.nz, units,  updates,         stale,   moving,         still_known,
-                           wait, gone,     slept,    ledger,   travel, energy_at_start, account, of_drops.size()};
+  const WaveBasinHead head{KIND,        ledger, shape.nx, shape.ny, shape.nz, units,           updates, stale,          moving,
+                           still_known, wait,   gone,     slept,    travel,   energy_at_start, account, of_drops.size()};
   std::vector<std::uint8_t> bytes;
   const auto add = [&](const void *from, std::size_t size) {
     const auto *first = static_cast<const std::uint8_t *>(from);

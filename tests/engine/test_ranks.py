@@ -34,7 +34,7 @@ MOVING = {
     "mesh": f'object a {{ shape mesh "{MESHES / "dumbbell.obj"}" scale 1/30 position (0, 0, 0) spin (3, 2, 15) rad/s {SOLID} }}',
 }
 """Scenes whose steps are taken by passes."""
-ACCOUNTS = np.s_[80:112]
+ACCOUNTS = np.s_[16:48]
 """Bytes of a liquid's state that only tell energies, in the heads of plugin/liquid/automaton_basin_state.cpp and of
 wave_basin_state.cpp."""
 

@@ -19,7 +19,7 @@ from mdanim_lammps.scene.parse import load_scene
 from mdanim_lammps.scene.scene import ContactModel
 from scene_texts import POND, SHELF
 
-ACCOUNTS = np.s_[80:112]
+ACCOUNTS = np.s_[16:48]
 """Bytes of a liquid's state that only tell energies, StateHead in plugin/liquid/basin_state.cpp."""
 
 

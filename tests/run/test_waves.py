@@ -18,8 +18,8 @@ from mdanim_lammps.run.loop import Interrupted, simulate
 
 UNIT = 2.0**-20
 """The smallest part of a cell of liquid."""
-AT = 5 * 8
-"""Where the state of the liquid tells its units at the start: after its kind and version and the cells along x, y, z."""
+AT = 9 * 8
+"""Where the state of the liquid tells its units at the start: after kind, version, energies and the cells along x, y, z."""
 SPLASH = """
 gravity (0, 0, -9.81)
 liquid water {
@@ -43,8 +43,8 @@ expect liquid.crest at 0 s = 20 cm +- 1 mm
 expect liquid.crest = 30 cm +- 3 cm
 expect liquid.waves at 0.2 s = 2.5 J +- 0.3 J
 """
-CLOCK_AT = 14 * 8
-"""Where it tells how long the liquid has gone on: after 14 words."""
+CLOCK_AT = 18 * 8
+"""Where it tells how long the liquid has gone on: after 18 words."""
 IN_THE_SPLASH = 8
 """A frame: drops fly."""
 

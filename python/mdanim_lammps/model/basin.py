@@ -14,6 +14,7 @@ from ..scene.formatting import at_least, estimate, number, say
 from ..scene.scene import Liquid, LiquidModel, Mesh, SceneRecord, Solid, Switch, Torus, Vector
 from . import shapes
 from .model import Model
+from .occupied import room
 from .spacing import available_memory, choose_spacing
 
 BYTES_PER_CELL = 20.0
@@ -210,12 +211,30 @@ def _too_snug(scene: SceneRecord, models: Sequence[Model], grid: Grid) -> list[P
     return problems
 
 
+ROUNDING = 1e-6
+"""Cells that a sum over cells may miss."""
+
+
+def _open_cells(liquid: Liquid, models: Sequence[Model], volume: np.ndarray, grid: Grid, wanted: int) -> float:
+    """Cells of liquid that find room at the start, in the part to fill and below the level [-].
+
+    Where there is more than is wanted in any case, by volumes alone: all of a solid counts that is near the part to fill, and
+    twice in an automaton, whose cells are solid from half of one on.
+    """
+    low, high = liquid.fill or (liquid.low, liquid.high)
+    top = high[2] if liquid.level is None else min(high[2], liquid.level)
+    box = (low, (high[0], high[1], top))
+    near = [tuple(edge + sign * 2.0 * max(grid.cell) for edge in side) for side, sign in zip(box, (-1.0, 1.0))]
+    solid = volume @ _within(models, *near) / grid.cell_volume
+    plenty = grid.cells_within(*box) - (1 if liquid.model is LiquidModel.WAVES else 2) * solid
+    return plenty if plenty > wanted else room(grid, models, liquid.model, low, high, liquid.level)
+
+
 def _too_full(scene: SceneRecord, models: Sequence[Model], grid: Grid) -> list[Problem]:
     """Liquid without room at the start, and bodies without room when they sink in."""
     liquid, cell = scene.liquid, grid.cell_volume
     volume = np.array([shapes.volume(s.shape) for s in scene.solids])
     low, high = liquid.fill or (liquid.low, liquid.high)
-    room = grid.cells_within(low, high) * cell - volume @ _within(models, low, high)
     if liquid.volume is not None:
         poured, amount = liquid.volume, say(liquid.volume, "m^3", 4)
     else:
@@ -223,12 +242,15 @@ def _too_full(scene: SceneRecord, models: Sequence[Model], grid: Grid) -> list[P
         poured = math.prod(b - a for a, b in zip(low, top)) - volume @ _within(models, low, top)
         amount = f"a level of {say(liquid.level, 'm', 4)}"
     place = liquid.spans.get("volume" if liquid.volume is not None else "level")
-    if grid.units(max(0.0, room)) < max(1, grid.units(poured)):
+    wanted = 1 if liquid.volume is None else grid.units(liquid.volume)
+    open_cells = _open_cells(liquid, models, volume, grid, wanted)
+    if open_cells < wanted - ROUNDING:
         where = "the basin" if liquid.fill is None else "the part that is filled"
         return [
             Problem(
                 place,
-                f"{amount} of liquid: {where} has room for {say(max(0.0, room), 'm^3', 4)} beside what stands in it at the start",
+                f"{amount} of liquid: {where} has room for {say(open_cells * cell, 'm^3', 4)} beside what stands in it at the "
+                "start",
                 "less liquid, a larger basin, or objects that start above it",
             )
         ]

@@ -54,12 +54,13 @@ HEAD = np.dtype(
     [
         ("kind", "S8"),
         ("version", "f8"),
+        *((n, "f8") for n in ("work", "lost", "work_power", "lost_power")),
         *((n, "i8") for n in ("nx", "ny", "nz", "units", "swept", "calm")),
         ("before", "f8"),
         ("waited", "i8"),
         ("dt", "f8"),
         ("looked", "i8"),
-        *((n, "f8") for n in ("travel", "crossed", "work", "lost")),
+        *((n, "f8") for n in ("travel", "crossed")),
     ]
 )
 
@@ -142,10 +143,11 @@ WAVES_HEAD = np.dtype(
     [
         ("kind", "S8"),
         ("version", "f8"),
+        *((n, "f8") for n in ("work", "lost", "work_power", "lost_power")),
         *((n, "i8") for n in ("nx", "ny", "nz", "units", "updates", "stale", "moving")),
         ("still", "u8"),
         *((n, t) for n, t in zip(("before", "steps", "dt", "looked"), ("f8", "i8", "f8", "i8"))),
-        *((n, "f8") for n in ("gone", "slept", "work", "lost", "work_power", "lost_power", "travel", "energy")),
+        *((n, "f8") for n in ("gone", "slept", "travel", "energy")),
         ("impulses", "f8", 9),
         ("drops", "u8"),
     ]
