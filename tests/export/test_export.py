@@ -449,6 +449,24 @@ def test_what_is_there_is_kept(folder, tmp_path):
     assert (tmp_path / "a.vtk" / "thesis.tex").exists()
 
 
+@pytest.mark.parametrize("name", ["notes.vtp", "surfaces-000000.vtp.vtp", "frames-000000.vtp", "surfaces-000002.vtp"])
+def test_force_deletes_no_folders(folder, tmp_path, name):
+    """Neither a folder with the name of a piece, nor a file with another name, nor what a folder of another format holds."""
+    export(folder, "vtk", tmp_path / "a.pvd", every=4)
+    inside = tmp_path / "a.vtk" / name
+    if name.startswith("surfaces"):
+        inside.mkdir()
+        inside = inside / "kept.txt"
+    inside.write_text("mine")
+    other = tmp_path / "a.csv" / "surfaces-000000.vtp"
+    other.parent.mkdir()
+    other.write_text("mine")
+    for to, place in (("vtk", "a.pvd"), ("csv", "a.csv")):
+        with pytest.raises(OutputError, match="holds files that are no export"):
+            export(folder, to, tmp_path / place, force=True)
+    assert inside.read_text() == other.read_text() == "mine"
+
+
 @pytest.mark.parametrize("to", FORMATS)
 def test_a_failed_export_leaves_nothing(folder, tmp_path, to):
     """Neither under its name nor beside it, whatever happens after the first frame."""

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-import shutil
+import re
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -28,14 +28,23 @@ class Format:
     suffixes: tuple[str, ...]
     """Of what it writes; the first one is that of the name that is asked for."""
     about: str
+    pieces: str = ""
+    """Names of the files in the folder that is written beside the file of the first suffix; empty where there is none."""
     needs: str = ""
     """Module that only ``pip install 'mdanim-lammps[export]'`` brings."""
 
 
 FORMATS = {
-    "usd": Format("usd", (".usdc",), "USD: meshes over time, materials, liquid, camera, lamp; Blender, Houdini, usdview", "pxr"),
+    "usd": Format(
+        "usd", (".usdc",), "USD: meshes over time, materials, liquid, camera, lamp; Blender, Houdini, usdview", needs="pxr"
+    ),
     "gltf": Format("gltf", (".glb",), "glTF: meshes with a morph target for each frame; browsers, slides"),
-    "vtk": Format("vtk", (".pvd", ".vtk"), "PVD series: surfaces, particles with velocity and strain, liquid; ParaView, PyVista"),
+    "vtk": Format(
+        "vtk",
+        (".pvd", ".vtk"),
+        "PVD series: surfaces, particles with velocity and strain, liquid; ParaView, PyVista",
+        r"(surfaces|particles|liquid|drops)-\d{6,}\.vtp",
+    ),
     "xyz": Format("xyz", (".xyz",), "extended XYZ in metres: particles with velocity and mass, box, time; OVITO, ASE"),
     "xtc": Format("xtc", (".xtc", ".gro"), "XTC with its GRO: particles, a tenth of the size, lengths scaled; VMD, MDAnalysis"),
     "lammpstrj": Format("lammpstrj", (".lammpstrj",), "the dump that lmp writes for the same scene, to the last digit"),
@@ -106,7 +115,7 @@ def export(
     except ImportError:
         raise SetupError(f"--to {to} needs a library that is not installed: pip install 'mdanim-lammps[export]'") from None
     targets = [path.with_suffix(suffix) for suffix in kind.suffixes]
-    _make_way(targets, force=force, delete=False)
+    _make_way(targets, kind.pieces, force=force, delete=False)
     write = import_module(f".{kind.module}", __package__).write
     total = len(cut.frames)
     with disk_errors(path), tempfile.TemporaryDirectory(prefix=".export-", dir=path.parent) as name:
@@ -114,22 +123,26 @@ def export(
         notes = write(cut, part, path.stem, lambda done: on_progress(done, total))
         for made in (p for p in part.rglob("*") if p.is_file()):
             sync(made)
-        _make_way(targets, force=force, delete=True)
+        _make_way(targets, kind.pieces, force=force, delete=True)
         for target in reversed(targets):  # the name that was asked for comes last
             os.replace(part / target.name, target)
         sync(path.parent)
     return Exported(tuple(targets), total, tuple(notes))
 
 
-def _make_way(targets: Sequence[Path], *, force: bool, delete: bool) -> None:
-    """Raises OutputError where something stands in the way that is not an export, or ``force`` is missing."""
+def _make_way(targets: Sequence[Path], pieces: str, *, force: bool, delete: bool) -> None:
+    """Raises OutputError where something stands in the way that is not an export, or ``force`` is missing. Of a folder no more is
+    deleted than files with the names of ``pieces``."""
     for target in targets:
         if not os.path.lexists(target):
             continue
         if not force:
             raise OutputError(f"{target} exists; overwrite it with --force, or write elsewhere with -o FILE")
         if target.is_dir() and not target.is_symlink():
-            if any(p.suffix != ".vtp" for p in target.iterdir()):
+            found = list(target.iterdir())
+            if not pieces or not all(re.fullmatch(pieces, p.name) and p.is_file() and not p.is_symlink() for p in found):
                 raise OutputError(f"{target} holds files that are no export; --force does not delete them: name another with -o")
             if delete:
-                shutil.rmtree(target)
+                for piece in found:
+                    piece.unlink()
+                target.rmdir()
