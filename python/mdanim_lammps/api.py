@@ -349,7 +349,7 @@ def stored_scene(folder: Path) -> SceneRecord:
         raise OutputError(f"{folder} {what}; name the folder that a run has written, NAME.out beside NAME.txt or what -o said")
     name = read_manifest(folder).get("scene")
     scene = load_scene(folder / "scene.lock.txt")
-    return replace(scene, name=Path(name).stem if isinstance(name, str) and name else folder.stem)
+    return replace(scene, name=Path(name).stem if isinstance(name, str) and name else folder.resolve().stem)
 
 
 def run_frames(

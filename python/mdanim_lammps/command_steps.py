@@ -12,6 +12,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from .children import DEVNULL, PIPE, Child, command, start
@@ -21,6 +22,8 @@ from .terminal import PROGRAM, error_line, progress_bar
 STARTED = time.perf_counter()
 """When this process began to work: reading and modelling are part of what a run costs."""
 
+OPENING = 60.0
+"""Seconds for which the file is there that leads a browser to a view."""
 LINGER = 60.0
 """Seconds for which the view of a run waits for a page when the run is over and no page is open."""
 
@@ -250,16 +253,37 @@ class Viewer:
     @staticmethod
     def _announce(process: Child) -> None:
         if line := process.stdout.readline():
-            show_address(*line.split())
+            show_address(line.strip())
 
 
-def show_address(address: str, once: str | None) -> None:
-    """Print where a view is to be seen; where there is a display, open a browser with the address that is good once."""
+def show_address(address: str, *, browser: bool = True) -> None:
+    """Print where a view is to be seen; where there is a display, and ``browser`` is wanted, open one."""
+    print(f"view     {address}", flush=True)
+    if browser and (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        open_browser(address)
+
+
+def open_browser(address: str) -> None:
+    """Open a browser by a file that leads to an address, and that its owner alone can read for a minute: every user of this
+    machine can read the arguments of a browser."""
+    import atexit
+    import html
+    import tempfile
     import webbrowser
 
-    print(f"view     {address}", flush=True)
-    if once and (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        webbrowser.open(once)
+    folder = Path(tempfile.mkdtemp(prefix="mdanim-view-"))
+    forget = partial(shutil.rmtree, folder, ignore_errors=True)
+    atexit.register(forget)
+    timer = threading.Timer(OPENING, forget)
+    timer.daemon = True
+    timer.start()
+    place = html.escape(address)
+    with open(os.open(folder / "open.html", os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf-8") as file:
+        file.write(
+            f'<!DOCTYPE html>\n<meta charset="utf-8">\n<meta name="referrer" content="no-referrer">\n'
+            f'<meta http-equiv="refresh" content="0; url={place}">\n<a href="{place}">the view</a>\n'
+        )
+    webbrowser.open((folder / "open.html").as_uri())
 
 
 def draw_movie(folder: Path, scene, path: Path, *, quiet: bool, **options) -> None:

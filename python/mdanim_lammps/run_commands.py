@@ -153,7 +153,7 @@ def view(
     if not 0 <= port <= 65535:
         raise UsageError(f"--port {port}: must be between 0 (any that is free) and 65535")
     with suppress(KeyboardInterrupt):
-        serve(folder, port=port, edit=edit, on_address=lambda address, once: show_address(address, once if open_ else None))
+        serve(folder, port=port, edit=edit, on_address=lambda address: show_address(address, browser=open_))
 
 
 def report(

@@ -72,10 +72,12 @@ def token(view: ViewServer) -> str:
     return parse_qs(urlsplit(view.address).query)["t"][0]
 
 
-def ask(view: ViewServer, path: str = "/", *, secret: bool = True, cookie: str = "", **headers: str) -> http.client.HTTPResponse:
-    """The answer to a GET, read; header names with _ for -. ``Host`` is right unless given."""
+def ask(
+    view: ViewServer, path: str = "/", *, secret: bool = True, cookie: str = "", method: str = "GET", **headers: str
+) -> http.client.HTTPResponse:
+    """The answer to a request, read; header names with _ for -. ``Host`` is right unless given."""
     link = http.client.HTTPConnection("127.0.0.1", view.port, timeout=10)
-    link.putrequest("GET", path + (f"?t={token(view)}" if secret else ""), skip_host=True)
+    link.putrequest(method, path + (f"?t={token(view)}" if secret else ""), skip_host=True)
     sent = {"Host": f"127.0.0.1:{view.port}"} | {name.replace("_", "-"): value for name, value in headers.items()}
     if cookie:
         sent["Cookie"] = cookie

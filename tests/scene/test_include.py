@@ -92,6 +92,19 @@ def test_file_that_is_no_scene(tmp_path, content, words):
     assert "bad.txt" in problems(path)[0].message
 
 
+@pytest.mark.parametrize(
+    "text",
+    ["-----BEGIN PRIVATE KEY-----\nhunter2\n", "# mine\npassword = hunter2\n", "machine a.b login c password hunter2\n",
+     '{"token": "hunter2"}\n', "root:hunter2:0:0\n"],
+)  # fmt: skip
+@pytest.mark.parametrize("within", ["{}", "object a {{ {}\n }}"], ids=["outside", "in a block"])
+def test_what_is_no_scene_is_not_quoted(write, text, within):
+    """No message shows a word of a file that a scene names and that is none: it may be private, and who asks another."""
+    path = write(main=within.format('include "secret.txt"') + "\n" + BALL + CONTROL, secret=text)
+    said = "\n".join(map(str, problems(path)))
+    assert "secret.txt is no part of a scene" in said and "hunter2" not in said and "BEGIN" not in said
+
+
 def test_missing_file_and_folder(tmp_path):
     """Name a path that is not there, or is no file."""
     assert "gone.txt is not there" in problems(tmp_path / "gone.txt")[0].message

@@ -2,10 +2,18 @@
 """A scene is edited and run again, where that was asked for; the run that was viewed keeps its results."""
 
 import json
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
 
 import pytest
-from mdanim_lammps import Scene, Trajectory
+from mdanim_lammps import Scene, Trajectory, children
+from mdanim_lammps.errors import UsageError
+from mdanim_lammps.view import check, edit
 from mdanim_lammps.view.edit import LONGEST_TEXT, Editor
+from mdanim_lammps.view.tail import Tail, in_use
 from scene_texts import FALL
 from view_lab import page, served
 from websockets.exceptions import ConnectionClosed
@@ -24,13 +32,13 @@ def ask(link, **what) -> dict:
     """The answer to a message about the text."""
     link.send(json.dumps(what))
     while "news" in (said := json.loads(link.recv(30))):
-        pass
+        link.known = getattr(link, "known", {}) | said["news"]  # for `heard`
     return said
 
 
 def heard(link, wanted) -> dict:
     """What a page knows when this holds of it."""
-    known = {}
+    known = link.__dict__.pop("known", {})
     while not wanted(known):
         said = link.recv(60)
         known |= json.loads(said).get("news", {}) if isinstance(said, str) else {}
@@ -61,7 +69,18 @@ def test_problems_have_their_lines(folder):
         lines = bad.split("\n")
         assert {lines[p["line"] - 1].split()[0] for p in found["problems"]} == {"object", "fraems"}
         assert all(p["message"] and p["severity"] == "error" for p in found["problems"])
-    assert Editor(folder).text == (folder / "scene.lock.txt").read_text()
+
+
+def test_the_text_is_that_of_the_scene(folder):
+    """Of a folder alone it is that from which the run was made, as long as that is still the same; else the lock of the run."""
+    assert (Editor(folder).text, Editor(folder).name) == (FALL, "fall")
+    lock = (folder / "scene.lock.txt").read_text()
+    (folder.parent / "fall.txt").write_text(FALL + "# changed\n")
+    assert (Editor(folder).text, Editor(folder).name) == (lock, "fall")
+    made = json.loads((folder / "manifest.json").read_text())
+    for scene in ("/dev/zero", "/etc/passwd", str(folder), "", "\0"):
+        (folder / "manifest.json").write_text(json.dumps(made | {"scene": scene}))
+        assert Editor(folder).text == lock
 
 
 def test_a_run_of_the_edited_text(folder):
@@ -117,3 +136,84 @@ def test_only_texts_of_bounded_length(folder, message):
         with pytest.raises(ConnectionClosed) as end:
             list(link)
         assert end.value.rcvd.code in (1008, 1009)
+
+
+def test_half_a_character_is_no_text(folder):
+    """JSON can hold one, UTF-8 cannot: it is a problem of its line, and no run is left in preparation."""
+    with served(folder, editor=Editor(folder)) as view, page(view) as link:
+        found = ask(link, edit=SHORT + "# \ud800\n", run=True)
+        assert not found["started"] and found["problems"][0]["line"] == SHORT.count("\n") + 1
+        assert "half of a character" in found["problems"][0]["message"]
+        assert ask(link, edit=SHORT) == {"problems": [], "started": False}
+
+
+def test_a_check_has_an_end(folder, monkeypatch):
+    """A text that takes long to be read is told; the next is checked as if nothing had been."""
+    monkeypatch.setattr(check, "CHECKING", 2.0)
+    endless = SHORT + "repeat i in 1 .. 1000 { repeat j in 1 .. 1990 { let unused = i * j } }\n"
+    with served(folder, editor=Editor(folder)) as view, page(view) as link:
+        assert ask(link, edit=SHORT) == {"problems": [], "started": False}
+        found = ask(link, edit=endless, run=True)
+        assert not found["started"] and "takes more than 2 s" in found["problems"][0]["message"]
+        monkeypatch.undo()
+        assert ask(link, edit=SHORT) == {"problems": [], "started": False}
+
+
+def test_texts_that_wait_are_not_run_when_the_server_ends(folder, monkeypatch):
+    """A dozen pages ask for a run at once: the last one is run, and the end of the server is not kept waiting by the others."""
+    started = []
+    editor = Editor(folder, folder.parent / "fall.txt")
+    monkeypatch.setattr(edit, "start", lambda *a, **more: started.append(a) or children.start(*a, **more))
+    with Tail(folder) as tail:
+        editor.run(SHORT.replace("time 0.1 s", "time 100 s"), tail)
+        threads = [threading.Thread(target=editor.run, args=(SHORT, tail)) for _ in range(12)]
+        for thread in threads:
+            thread.start()
+        editor.end()
+        for thread in threads:
+            thread.join(30)
+        assert len(started) <= 2 and editor._process.poll() is not None
+        editor.run(SHORT, tail)
+        assert len(started) <= 2
+
+
+def test_a_run_ends_with_its_server(folder, tmp_path):
+    """Also where that is killed: the run stops after its frame, with a checkpoint, and the folder is free again."""
+    program = (
+        "import sys, time; from pathlib import Path; from mdanim_lammps.view.edit import Editor; from mdanim_lammps.view.tail "
+        "import Tail\nfolder = Path(sys.argv[1])\nwith Tail(folder) as tail:\n"
+        "    Editor(folder).run(sys.stdin.read(), tail)\n    time.sleep(600)"
+    )
+    server = subprocess.Popen([sys.executable, "-c", program, str(folder)], stdin=subprocess.PIPE, text=True)
+    server.stdin.write(SHORT.replace("time 0.1 s", "time 500 s"))
+    server.stdin.close()
+    out = folder.with_name("fall.edited.out")
+    until(lambda: (out / "checkpoint").exists())
+    assert in_use(out)
+    server.kill()
+    server.wait()
+    until(lambda: not in_use(out))
+    assert '"stopped"' in (out / "progress.jsonl").read_text()
+
+
+def until(holds) -> None:
+    """Wait for something."""
+    deadline = time.monotonic() + 60
+    while not holds():
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+def test_a_text_that_is_too_long_is_told_at_once(folder):
+    """Before a page opens it, which could not send it back."""
+    (folder.parent / "fall.txt").write_text(FALL + "#" * LONGEST_TEXT)
+    with pytest.raises(UsageError, match="less than 1 MB"):
+        Editor(folder, folder.parent / "fall.txt")
+
+
+def test_the_current_folder_has_a_name(folder, monkeypatch):
+    """``view . --edit``: the scene and its edited run are called as the folder is."""
+    monkeypatch.chdir(folder)
+    (folder.parent / "fall.txt").unlink()
+    editor = Editor(Path("."))
+    assert (editor.name, editor.out) == ("fall", folder.with_name("fall.edited.out"))

@@ -12,11 +12,15 @@ import numpy as np
 import pytest
 from browser import Browser, missing
 from mdanim_lammps import Scene
+from mdanim_lammps.command_steps import show_address
+from mdanim_lammps.errors import OutputError
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.progress import PROGRESS
 from mdanim_lammps.scene.parse import load_scene
+from mdanim_lammps.view import server
 from mdanim_lammps.view.edit import Editor
 from mdanim_lammps.view.export import write_report
+from mdanim_lammps.view.tail import Tail
 from PIL import Image
 from scene_texts import FALL, MEETING
 from view_lab import HOLD, Held, served
@@ -381,6 +385,54 @@ def test_a_text_is_edited_and_run(browser, tmp_path):
         browser.until("window.mdanim && !mdanim.before && mdanim.shown && mdanim.run.state == 'done' && mdanim.run.count == 6")
         assert browser.until("document.querySelector('#editor textarea').value") == shorter
         show(browser, 5)
+
+
+def test_a_file_leads_to_the_page(browser, beam, tmp_path, monkeypatch):
+    """That with which a browser is opened; the page keeps its token when it is loaded again, and says what to do without one."""
+    opened = []
+    monkeypatch.setenv("DISPLAY", ":0")
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    with served(beam) as view:
+        show_address(view.address)
+        browser.go(opened[0])
+        browser.until(SHOWN)
+        assert browser.js("return location.href") == f"http://127.0.0.1:{view.port}/"
+        browser.js("window.mdanim = null; location.reload()")
+        browser.until(SHOWN)
+        browser.js("sessionStorage.clear(); window.mdanim = null; location.reload()")
+        browser.until("document.getElementById('message').textContent.includes('open the address')")
+        browser.messages()  # of the refused socket
+
+
+def test_a_refused_command_is_told(browser, beam, monkeypatch):
+    """While the film plays: the reason is seen, and each frame that was asked for still comes in its place."""
+
+    def refuse(folder, what):
+        raise OutputError("the folder is read-only")
+
+    monkeypatch.setattr(server, "command", refuse)
+    monkeypatch.setattr(Tail, "live", True)
+    with served(beam) as view:
+        open_page(browser, view.address)
+        browser.js("for (let n = 0; n < 9; n++) { mdanim.source.frame(n, 0).then((f) => (window.got ??= []).push([n, f.frame])); "
+                   "if (n % 3 == 0) mdanim.source.tell('pause') }")  # fmt: skip
+        browser.until("window.got && got.length == 9 && got.every(([asked, came]) => asked == came)")
+        browser.until("document.getElementById('message').textContent == 'the folder is read-only'")
+
+
+def test_curves_after_a_resume(browser, beam):
+    """Rows that are computed again take the place of those that were there, however thin these have become."""
+    with served(beam) as view:
+        open_page(browser, view.address)
+        kept = browser.js(
+            """return import("./panel.js").then(({ Energies }) => {
+            const e = new Energies(), rows = (a, b) => Array.from({ length: b - a }, (_, k) => [a + k, 1, 0]);
+            e.draw = () => {};
+            e.begin(["time", "kinetic", "residual"], 1, 0); e.add(rows(0, 9000));
+            e.begin(["time", "kinetic", "residual"], 1, 6000); e.add(rows(6000, 6010));
+            return e.rows.map(([t]) => t); })"""
+        )
+        assert kept == sorted(set(kept)) and kept[-11:] == [5998, *range(6000, 6010)]
 
 
 def test_a_run_begun_anew_is_shown_anew(browser, tmp_path):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """What the server of a view answers, what it refuses (docs/security.md), and when it ends."""
 
+import http.client
 import json
 import re
 import shutil
@@ -9,19 +10,23 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
+from urllib.parse import urlsplit
 
 import pytest
-from mdanim_lammps import Scene
-from mdanim_lammps.errors import OutputError
+from mdanim_lammps import Scene, command_steps
+from mdanim_lammps.errors import OutputError, UsageError
 from mdanim_lammps.results.files import claimed
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.progress import PROGRESS, ProgressLog
 from mdanim_lammps.view import server
+from mdanim_lammps.view.__main__ import serve
 from mdanim_lammps.view.server import LONGEST_MESSAGE, PAGES, packaged_files
 from mdanim_lammps.view.tail import MOST_ROWS, Known, Tail
 from scene_texts import FALL
 from view_lab import ask, page, served, token
 from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.sync.client import connect
 
 UPGRADE = {
     "Upgrade": "websocket",
@@ -162,31 +167,43 @@ def test_only_this_machine_reaches_it(view):
     assert "--port" in usage and "--host" not in usage
 
 
-def test_without_the_token_nothing_is_answered(view):
-    """No token, a wrong one, or that of another view: 403, for page, files and socket."""
-    for path in ("/", "/main.js", "/nothing"):
-        assert ask(view, path, secret=False).status == 403
-        assert ask(view, path + "?t=" + "x" * 32, secret=False).status == 403
-        assert ask(view, path + "?t=", secret=False).status == 403
+def test_without_the_token_nothing_of_a_run_is_answered(view):
+    """No token, a wrong one, that of another view, or one in a cookie: 403. Packaged files, which all users of this program have,
+    are what can be had without."""
     origin = f"http://127.0.0.1:{view.port}"
-    assert ask(view, "/socket", secret=False, Origin=origin, **UPGRADE).status == 403
+    for query in ("", "?t=", "?t=" + "x" * 32, f"?T={token(view)}"):
+        assert ask(view, "/socket" + query, secret=False, Origin=origin, **UPGRADE).status == 403
+    cookie = f"mdanim-{view.port}={token(view)}; t={token(view)}"
+    assert ask(view, "/socket", secret=False, cookie=cookie, Origin=origin, **UPGRADE).status == 403
     assert ask(view, "/socket", Origin=origin, **UPGRADE).status == 101
+    for path in ("/", "/main.js"):
+        assert ask(view, path, secret=False).body == packaged_files()[path][0]
+    assert ask(view, "/nothing", secret=False).status == 404
 
 
-def test_the_token_becomes_a_cookie(view):
-    """HttpOnly, for this site and port only; it then admits by itself."""
-    cookie = ask(view).headers["Set-Cookie"]
-    assert cookie == f"mdanim-{view.port}={token(view)}; HttpOnly; SameSite=Strict; Path=/"
-    assert ask(view, secret=False, cookie=cookie.split(";")[0]).status == 200
-    assert ask(view, secret=False, cookie=f"mdanim-{view.port + 1}={token(view)}").status == 403
+def test_no_other_port_is_told_the_token(view):
+    """A cookie would go to every port of this machine: no answer sets one, and the page keeps the token with its own origin."""
+    for path in ("/", "/main.js", "/nothing"):
+        answer = ask(view, path)
+        assert answer.headers["Set-Cookie"] is None and token(view).encode() not in answer.body
+    assert b"cookie" not in b"".join(body for path, (body, _) in view.files.items() if path != "/vendor.js")
     assert b'history.replaceState(null, "", "/")' in ask(view, "/main.js").body
+
+
+@pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "TRACE", "CONNECT", "OPTIONS", "HEAD", "PATCH"])
+def test_other_methods_are_refused(view, method):
+    """Nothing is sent but by GET."""
+    for path in ("/", "/socket"):
+        answer = ask(view, path, method=method)
+        assert answer.status == 405 and answer.headers["Allow"] == "GET"
 
 
 def test_tokens_are_compared_in_constant_time(view, monkeypatch):
     """All of them go through hmac.compare_digest; none is 128 bits or less."""
     compared = []
     monkeypatch.setattr(server.hmac, "compare_digest", lambda a, b: compared.append((a, b)) or False)
-    assert ask(view).status == 403 and compared == [(token(view).encode(),) * 2]
+    origin = f"http://127.0.0.1:{view.port}"
+    assert ask(view, "/socket", Origin=origin, **UPGRADE).status == 403 and compared == [(token(view).encode(),) * 2]
     assert len(token(view)) == 32
 
 
@@ -205,15 +222,29 @@ def test_the_token_is_nowhere_else(folder, view, tmp_path):
     assert secret not in process.communicate(timeout=20)[1]
 
 
-def test_an_address_for_argument_lists_is_good_once(view, monkeypatch):
-    """What a browser is started with admits one request, and only soon; the page itself has the cookie from then on."""
-    path = "/?" + view.address_once().partition("?")[2]
-    assert token(view) not in path
-    first = ask(view, path, secret=False)
-    assert first.status == 200 and token(view) in first.headers["Set-Cookie"]
-    assert ask(view, path, secret=False).status == 403
-    monkeypatch.setattr(server, "TICKET", 0.0)
-    assert ask(view, "/?" + view.address_once().partition("?")[2], secret=False).status == 403
+def test_a_browser_is_led_to_the_page_by_a_private_file(view, monkeypatch, tmp_path, capsys):
+    """What every user of this machine can read, the arguments of a browser, names a file that its owner alone can read."""
+    opened = []
+    monkeypatch.setenv("DISPLAY", ":0")
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.setattr("webbrowser.open", lambda url: opened.append(url))
+    monkeypatch.setattr(command_steps, "OPENING", 0.3)
+    command_steps.show_address(view.address)
+    assert capsys.readouterr().out == f"view     {view.address}\n"
+    assert token(view) not in opened[0]
+    file = Path(urlsplit(opened[0]).path)
+    assert f'url={view.address}"' in file.read_text()
+    assert file.stat().st_mode & 0o777 == 0o600 and file.parent.stat().st_mode & 0o777 == 0o700
+    # To a browser this is a page of another site that leads to ours.
+    led = {"Sec_Fetch_Site": "cross-site", "Sec_Fetch_Mode": "navigate", "Sec_Fetch_Dest": "document"}
+    assert ask(view, **led).status == 200
+    assert ask(view, secret=False, **led).status == 403 and ask(view, **led | {"Sec_Fetch_Dest": "iframe"}).status == 403
+    deadline = time.monotonic() + 10
+    while file.parent.exists() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    assert not list(tmp_path.iterdir()), "it is there for a while only"
+    command_steps.show_address(view.address, browser=False)
+    assert len(opened) == 1
 
 
 @pytest.mark.parametrize("host", ["", "evil.example", "127.0.0.1", "127.0.0.1:1", "localhost.evil.example:{}", "[::1]:{}"])
@@ -319,6 +350,39 @@ def test_strangers_do_not_hang_it(view):
         assert ask(view).status == 200
 
 
+def test_many_strangers_do_not_end_it(folder):
+    """More silent connections than the process has descriptors: the oldest give way, pages stay, and others are answered."""
+    program = (
+        "import resource, sys; resource.setrlimit(resource.RLIMIT_NOFILE, (128, 128));"
+        "from mdanim_lammps.view.__main__ import main; sys.argv[1:] = [sys.argv[1]]; main()"
+    )
+    process = subprocess.Popen([sys.executable, "-c", program, str(folder)], stdout=subprocess.PIPE, text=True)
+    try:
+        address = urlsplit(process.stdout.readline().strip())
+        with connect(
+            f"ws://{address.netloc}/socket?{address.query}", origin=f"http://{address.netloc}", compression=None
+        ) as link:
+            news(link)
+            silent = [socket.create_connection(("127.0.0.1", address.port)) for _ in range(400)]
+            for _ in range(3):
+                answer = http.client.HTTPConnection("127.0.0.1", address.port, timeout=20)
+                answer.request("GET", "/")
+                assert answer.getresponse().status == 200
+            link.send('{"scene": 1}')
+            assert isinstance(link.recv(20), bytes)
+            for stranger in silent:
+                stranger.close()
+    finally:
+        process.terminate()
+        process.communicate(timeout=30)
+
+
+def test_a_port_that_is_taken_is_told(view, folder, capsys):
+    """By its number, and the free one that is taken instead."""
+    with pytest.raises(UsageError, match=f"--port {view.port}"):
+        serve(folder, port=view.port)
+
+
 @pytest.mark.parametrize("make", [lambda path: path.symlink_to("/etc/passwd"), lambda path: __import__("os").mkfifo(path)])
 def test_folders_of_strangers(folder, tmp_path, make):
     """A folder with a link or a pipe in it is not served."""
@@ -342,6 +406,24 @@ def test_a_run_that_has_ended_is_not_commanded(view, folder):
         while not isinstance(link.recv(10), bytes):
             pass
     assert sorted(p.name for p in folder.iterdir()) == before
+
+
+def test_a_command_that_fails_is_no_answer(view, monkeypatch):
+    """As in a folder that is read-only: the reason is told, and the next answer is still that to the next question."""
+
+    def refuse(folder, what):
+        raise OutputError("the folder is read-only")
+
+    monkeypatch.setattr(server, "command", refuse)
+    monkeypatch.setattr(Tail, "live", True)
+    with page(view) as link:
+        link.send('{"do": "pause"}')
+        link.send('{"get": 3, "layers": 0}')
+        said = []
+        while not (said and isinstance(said[-1], bytes)):
+            said.append(link.recv(10))
+        assert {"refused": "the folder is read-only"} in [json.loads(text) for text in said[:-1]]
+        assert said[-1] == view.tail.feed().frame(3)
 
 
 def test_a_killed_run_is_told_from_one_that_goes_on(tmp_path, folder):

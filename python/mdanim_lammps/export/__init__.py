@@ -101,7 +101,7 @@ def export(
             return export(opened, to, path, objects=objects, every=every, frames=frames, force=force, on_progress=on_progress)
     cut = Cut(run, objects, every, frames)
     if path is None:
-        home = run.path.parent
+        home = run.path.parent.resolve()
         path = home / f"{home.stem}{kind.suffixes[0]}"
     path = Path(path)
     if path.suffix.lower() != kind.suffixes[0]:

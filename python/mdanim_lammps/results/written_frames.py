@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import os
+import weakref
 from pathlib import Path
 
 import numpy as np
@@ -45,9 +46,11 @@ class WrittenFrames:
         self._sums = self._tables.pop(CHECKSUM)
         self._row = {name: self._tables.pop(name) for name in (STEP, TIME)}
         try:
-            self._file: int | None = os.open(self.path, os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC)
+            self._file = os.open(self.path, os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC)
         except OSError as error:
             raise OutputError(f"{self.path}: cannot be read: {error.strerror}") from error
+        self.close = weakref.finalize(self, os.close, self._file)
+        """Close the file; else it is closed when nothing refers to this object any more."""
 
     @property
     def total(self) -> int:
@@ -84,12 +87,6 @@ class WrittenFrames:
                 f"{self.path}: frame {frame} is damaged or not there: its {name} differs from what was written (checksum)"
             )
         return found
-
-    def close(self) -> None:
-        """Close the file."""
-        if self._file is not None:
-            os.close(self._file)
-            self._file = None
 
     def __enter__(self) -> WrittenFrames:
         return self

@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from difflib import get_close_matches
 
@@ -179,6 +180,17 @@ class Named(dict):
 
     def __missing__(self, name):
         raise KeyError(f"no {self._kind} is called {name!r}; {did_you_mean(str(name), self) or f'there are {len(self)}'}")
+
+
+def foreign_line(text: str) -> int:
+    """The first line of a text that says something, where it begins with no word of the language, nor with one that is nearly
+    so; 0 for a text that may be a part of a scene. What else stands in such a text is nobody's to see."""
+    for number, line in enumerate(text.splitlines(), 1):
+        if said := line.partition("#")[0].strip():
+            word = re.match(r"[a-z-]*", said)[0]
+            known = {*BLOCKS, *STATEMENTS, *NOT_SUPPORTED, *(w for words in KEYWORDS.values() for w in words), "}"}
+            return 0 if word in known or said[0] == "}" or (word and nearest(word, known)) else number
+    return 0
 
 
 def nearest(word: str, choices) -> str | None:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from .expressions import RESERVED, Node
 from .forms import OptionalPart, Slot, Word, alternatives, literals, pieces
-from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, SYNONYMS, did_you_mean, example, nearest
+from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, SYNONYMS, did_you_mean, example, foreign_line, nearest
 from .limits import DEEPEST_INCLUDE, DEEPEST_REPEAT, MOST_BYTES, MOST_FILES
 from .reader import ODD, Reader
 from .scene import GLOBALS
@@ -340,6 +340,8 @@ class Parser(Reader):
         except (ValueError, OSError) as e:
             reason = e.strerror if isinstance(e, OSError) else str(e)
             raise Fault(t, f"cannot include {t}: {path} {reason}", "the name is relative to this file") from None
+        if line := foreign_line(text):
+            raise Fault(t, f"cannot include {t}: {path} is no part of a scene", f"its line {line} begins with no word of a scene")
         shown = str(Path(self.source.name).parent / file)
         inner = SceneFile(shown, text, path, (*self.source.included_from, self.source.span(word, t)))
         parser = Parser(inner, self.shared, self.chain)

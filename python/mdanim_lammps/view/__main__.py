@@ -17,12 +17,12 @@ def serve(
     linger: float | None = None,
     edit: bool = False,
     scene: Path | None = None,
-    on_address=lambda address, once: None,
+    on_address=lambda address: None,
 ) -> None:
     """Serve the view of an output folder until Ctrl-C, or for ``linger`` seconds after the run's end without a page.
 
     With ``edit`` pages may change the text, that of ``scene`` or of the folder's scene.lock.txt, and run it again.
-    ``on_address`` is called with the address of the page, and with one that is good once. Raises OutputError, UsageError.
+    ``on_address`` is called with the address of the page. Raises OutputError, UsageError.
     """
     from ..errors import UsageError
     from .edit import Editor
@@ -37,7 +37,7 @@ def serve(
         ahead = threading.Thread(target=tail.read_ahead, daemon=True)
         ahead.start()
         try:
-            on_address(view.address, view.address_once())
+            on_address(view.address)
             view.wait()
         finally:
             view.end()
@@ -45,7 +45,7 @@ def serve(
 
 
 def main() -> None:
-    """Serve; the first line on stdout has the address of the page, and one that is good once."""
+    """Serve; the first line on stdout is the address of the page."""
     open_streams()
     stop_on_sigterm()
     parser = argparse.ArgumentParser(prog="python -m mdanim_lammps.view")
@@ -57,7 +57,7 @@ def main() -> None:
     given = parser.parse_args()
     with documented_exit(debug=False):
         options = {"port": given.port, "linger": given.linger, "edit": given.edit, "scene": given.scene}
-        serve(given.folder, **options, on_address=lambda *addresses: print(*addresses, flush=True))
+        serve(given.folder, **options, on_address=lambda address: print(address, flush=True))
 
 
 if __name__ == "__main__":

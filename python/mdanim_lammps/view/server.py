@@ -11,7 +11,6 @@ import secrets
 import threading
 import time
 from contextlib import suppress
-from http.cookies import CookieError, SimpleCookie
 from importlib import resources
 from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
@@ -25,16 +24,16 @@ from ..errors import MdanimError
 from .control import COMMANDS, command
 from .edit import LONGEST_TEXT, Editor
 from .feed import LAYERS
+from .listener import HOST, Listener
 from .tail import Known, Tail
 
-HOST = "127.0.0.1"
 KINDS = {"html": "text/html; charset=utf-8", "css": "text/css; charset=utf-8", "js": "text/javascript; charset=utf-8"}
 PAGES = 16
 """Open at once at most."""
 LONGEST_MESSAGE = 4096
 """Bytes of a message from a page at most."""
-TICKET = 30.0
-"""Seconds within which the address that a browser is started with must be used."""
+MOST_ESCAPED = 6
+"""Bytes of JSON for a byte of text."""
 LOT = 0.05
 """Wall time between two lots of news for a page [s]."""
 POLICY = (
@@ -56,18 +55,17 @@ class ViewServer:
     def __init__(self, tail: Tail, *, port: int = 0, linger: float | None = None, editor: Editor | None = None):
         self.tail, self.linger, self.editor = tail, linger, editor
         self.token = secrets.token_urlsafe(24)
-        self._tickets: dict[str, float] = {}
         self.files = packaged_files()
         self._pages: set[ServerConnection] = set()
         self._ended = threading.Event()
         self._needed = time.monotonic()
+        self._listener = Listener(port)
         self._server: Server = serve(
             self._talk,
-            HOST,
-            port,
+            sock=self._listener,
             process_request=self._gate,
             compression=None,
-            max_size=LONGEST_TEXT if editor else LONGEST_MESSAGE,
+            max_size=MOST_ESCAPED * LONGEST_TEXT if editor else LONGEST_MESSAGE,
             server_header=None,
             open_timeout=5.0,
             logger=_quiet(),
@@ -79,20 +77,10 @@ class ViewServer:
     @property
     def address(self) -> str:
         """What opens the page: it holds the token, and works in any browser on this machine."""
-        return self._with(self.token)
-
-    def address_once(self) -> str:
-        """What opens the page one time within `TICKET` seconds: for argument lists, which every user of this machine can read."""
-        ticket = secrets.token_urlsafe(24)
-        self._tickets[ticket] = time.monotonic() + TICKET
-        return self._with(ticket)
-
-    def _with(self, secret: str) -> str:
-        return f"http://{HOST}:{self.port}/?t={secret}"
+        return f"http://{HOST}:{self.port}/?t={self.token}"
 
     def _admits(self, given: str) -> bool:
-        until = self._tickets.pop(given, 0.0)
-        return hmac.compare_digest(given.encode(), self.token.encode()) or time.monotonic() < until
+        return hmac.compare_digest(given.encode(), self.token.encode())
 
     def wait(self) -> None:
         """Return when `end` was called, or when `linger` is over."""
@@ -106,47 +94,46 @@ class ViewServer:
         """Answer no more; pages lose their connection."""
         if not self._ended.is_set():
             self._ended.set()
+            if self.editor:  # first: pages may wait for it
+                self.editor.end()
             self._server.shutdown()
             for page in self._pages.copy():
                 with suppress(OSError):
                     page.close(1001, "the server ends")
-            if self.editor:
-                self.editor.end()
 
     # --- requests -------------------------------------------------------------------------------------------------
 
     def _gate(self, connection: ServerConnection, request: Request) -> Response | None:
         """Answer what is no WebSocket; refuse what does not come from this machine's own page."""
         try:
-            return self._answer(request)
-        except (ValueError, KeyError, MultipleValuesError, CookieError):
+            answer = self._answer(request)
+        except (ValueError, KeyError, MultipleValuesError):
             return _response(http.HTTPStatus.BAD_REQUEST)
+        if answer is None:
+            self._listener.admit(connection.socket)
+        return answer
 
     def _answer(self, request: Request) -> Response | None:
         headers, url = request.headers, urlsplit(request.path)
-        here = (f"{HOST}:{self.port}", f"localhost:{self.port}")
-        cookie = SimpleCookie(headers.get("Cookie", "")).get(self._cookie)
-        given = parse_qs(url.query).get("t", [cookie.value if cookie else ""])[0]
-        if (
-            headers.get("Host") not in here
-            or headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin")
-            or not self._admits(given)
-        ):
+        if getattr(request, "method", "GET") != "GET":  # older websockets refuse other methods themselves
+            return _response(http.HTTPStatus.METHOD_NOT_ALLOWED, more=[("Allow", "GET")])
+        known = self._admits(parse_qs(url.query).get("t", [""])[0])
+        if headers.get("Host") not in (f"{HOST}:{self.port}", f"localhost:{self.port}") or not self._is_from_here(headers, known):
             return _response(http.HTTPStatus.FORBIDDEN)
         if url.path == "/socket":
-            own = headers.get("Origin") == f"http://{headers['Host']}"
-            if own and len(self._pages) >= PAGES:
-                return _response(http.HTTPStatus.SERVICE_UNAVAILABLE)
-            return None if own else _response(http.HTTPStatus.FORBIDDEN)
+            if not known or headers.get("Origin") != f"http://{headers['Host']}":
+                return _response(http.HTTPStatus.FORBIDDEN)
+            return _response(http.HTTPStatus.SERVICE_UNAVAILABLE) if len(self._pages) >= PAGES else None
         if "Upgrade" in headers or url.path not in self.files:
             return _response(http.HTTPStatus.NOT_FOUND)
-        body, kind = self.files[url.path]
-        token = f"{self._cookie}={self.token}; HttpOnly; SameSite=Strict; Path=/"
-        return _response(http.HTTPStatus.OK, body, kind, [("Set-Cookie", token)])
+        return _response(http.HTTPStatus.OK, *self.files[url.path])
 
-    @property
-    def _cookie(self) -> str:
-        return f"mdanim-{self.port}"
+    @staticmethod
+    def _is_from_here(headers: Headers, known: bool) -> bool:
+        """Whether our own page asks, or the user; a file that leads the browser to the page counts as another site."""
+        if headers.get("Sec-Fetch-Site", "none") in ("none", "same-origin"):
+            return True
+        return known and (headers.get("Sec-Fetch-Mode"), headers.get("Sec-Fetch-Dest")) == ("navigate", "document")
 
     # --- one page -------------------------------------------------------------------------------------------------
 
@@ -169,7 +156,7 @@ class ViewServer:
             while not gone.is_set():
                 seen = self.tail.changes
                 if news := self.tail.news(known):
-                    news["edit"] = self.editor is not None
+                    news["edit"] = LONGEST_TEXT if self.editor else False
                     page.send(json.dumps({"news": news}, allow_nan=False))
                     gone.wait(LOT)
                 with self.tail.changed:
@@ -193,8 +180,7 @@ class ViewServer:
                 feed = self.tail.feed()
                 page.send(json.dumps({"heights": feed.heights(whole(asked["heights"], len(feed.first)), self.tail.count)}))
             elif asked.get("do") in COMMANDS:
-                if self.tail.live:
-                    command(self.tail.folder, asked["do"])
+                self._command(page, asked["do"])
             else:
                 raise ValueError("nothing that is known")
         except MdanimError as error:
@@ -202,12 +188,20 @@ class ViewServer:
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
             page.close(1008, "what a page sends is JSON that asks for what there is")
 
+    def _command(self, page: ServerConnection, what: str) -> None:
+        """Tell the run. No answer is due: why it cannot be told is said without being asked for."""
+        try:
+            if self.tail.live:
+                command(self.tail.folder, what)
+        except MdanimError as error:
+            page.send(json.dumps({"refused": str(error)}))
+
     def _edit(self, asked: dict) -> dict:
         """The answer to a page that edits: the text, its problems; without any, a run may begin."""
         if asked["edit"] is None:
             return {"text": self.editor.text}
-        if not isinstance(asked["edit"], str):
-            raise ValueError("no text")
+        if not isinstance(asked["edit"], str) or len(asked["edit"].encode("utf-8", "surrogatepass")) >= LONGEST_TEXT:
+            raise ValueError("no text, or one that is too long")
         problems = self.editor.problems(asked["edit"])
         started = asked.get("run") is True and not [p for p in problems if p["severity"] == "error"]
         if started:

@@ -212,8 +212,7 @@ class Tail:
             self._before = None
 
     def _begin_anew(self) -> None:
-        if self._feed:
-            self._feed.close()
+        # Another thread may be reading a frame of it: its file is closed when nothing has it any more.
         self._feed, self._files, self._facts = None, self._files + 1, {}
 
     def _set(self, state: str, message: str) -> None:
@@ -247,7 +246,7 @@ class Tail:
             scene = stored_scene(self.folder)
             return scene.title or scene.name, scene.render
         except SceneError:
-            return self.folder.stem, Render()  # a scene of an older version of the language can be seen all the same
+            return self.folder.resolve().stem, Render()  # a scene of an older version of the language can be seen all the same
 
 
 def in_use(folder: Path) -> bool:

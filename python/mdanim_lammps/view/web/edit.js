@@ -4,7 +4,8 @@ import { byId, element } from "./panel.js";
 
 const QUIET = 400; // milliseconds without typing before a text is checked
 
-export async function offerEditing(source) {
+// `most`: bytes of a text below which the server takes it.
+export async function offerEditing(source, most) {
   if (byId("editor")) return;
   const text = element("textarea", { spellcheck: false, rows: 18, ariaLabel: "text of the scene" }), problems = element("div", { id: "problems" });
   const again = element("button", { id: "again", textContent: "run again", title: "Run this text into a folder of its own (Ctrl+Enter)" });
@@ -16,10 +17,15 @@ export async function offerEditing(source) {
     problems.replaceChildren(...found.map((problem) => line(problem, text)));
     if (started) again.textContent = "starting …";
   };
-  const run = () => source.edit(text.value, true).then(show);
+  const failed = ({ message }) => show({ problems: [{ line: 0, message, severity: "error" }] });
+  const send = (run) => {
+    if (new Blob([text.value]).size >= most) return failed({ message: `the text is too long for a page: run it in a terminal` });
+    return source.edit(text.value, run).then(show, failed);
+  };
+  const run = () => send(true);
   text.oninput = () => {
     clearTimeout(due);
-    due = setTimeout(() => source.edit(text.value).then(show), QUIET);
+    due = setTimeout(() => send(false), QUIET);
   };
   text.onkeydown = (event) => { if (event.key === "Enter" && event.ctrlKey && !again.disabled) run(); };
   again.onclick = run;

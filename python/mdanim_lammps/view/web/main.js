@@ -23,8 +23,11 @@ let source, scene, stage, player, shown = null, shownKey = "", picked = null, he
 async function start() {
   byId("speed").append(...SPEEDS.map((x) => element("option", { value: x, textContent: `${x} ×`, selected: x === 1 })));
   byId("keys").querySelector("table").append(...table(KEYS).children);
+  source = report ? new Embedded(report) : new Socket();
+  const opening = source.open(); // which reads the address
   if (!report) history.replaceState(null, "", "/");
-  source = await (report ? new Embedded(report) : new Socket()).open();
+  await opening;
+  source.refused = (message) => { asked = ""; run.message = message; refresh(); };
   source.lost = () => say("lost", "The server has ended: frames that are not here yet cannot be shown. View the folder again with: mdanim-lammps view DIR");
   source.listen(hear);
   while (!(scene = await source.scene().catch(() => null))) await new Promise((done) => setTimeout(done, 200)); // until the run has made its folder
@@ -64,7 +67,7 @@ function hear({ columns, keep, rows, owners, ...news }) {
 function refresh() {
   const live = LIVE.includes(run.state), share = run.total ? run.count / run.total : 0;
   say(run.state, run.message);
-  if (run.edit) offerEditing(source);
+  if (run.edit) offerEditing(source, run.edit);
   if (player) Object.assign(player, { count: run.count, live });
   byId("slider").max = Math.max(run.total, 1) - 1;
   byId("ready").style.width = `${100 * share}%`;
@@ -291,6 +294,6 @@ function keyboard(event) {
 }
 
 // For tests: what the page knows.
-const page = (window.mdanim = { run, drawn: 0, get shown() { return shown; }, get player() { return player; }, get stage() { return stage; }, get scene() { return scene; }, get ease() { return ease; }, cache });
+const page = (window.mdanim = { run, drawn: 0, get shown() { return shown; }, get player() { return player; }, get stage() { return stage; }, get scene() { return scene; }, get ease() { return ease; }, get source() { return source; }, cache });
 
 start().catch((error) => say("lost", `The page cannot be shown: ${error.message}`));

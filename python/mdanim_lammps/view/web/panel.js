@@ -80,11 +80,12 @@ export class Energies extends Lines {
 
   begin(columns, energies, keep) {
     this.names = columns.slice(1, 1 + energies);
-    this.rows = this.rows.slice(0, keep);
+    if (!keep) this.rows = []; // else rows of frames that are computed again go when these come
     this.clear();
   }
 
   add(rows) {
+    while (this.rows.length && this.rows.at(-1)[0] >= rows[0][0]) this.rows.pop();
     this.rows.push(...rows);
     if (this.rows.length > 8000) this.rows = this.rows.filter((_, k) => k % 2 === 0);
     if (this.names.length) this.due ??= setTimeout(() => this.draw(), 200);

@@ -2,25 +2,36 @@
 // Where scene and frames come from: the server of a run, or the block of data in a report.
 import { inOwnBoxes, readFrame, readScene, undoDifferences } from "./message.js";
 
-// Answers come in the order in which they were asked for.
+// What admits this page: of its address, and of the tab when it is loaded again. No other port of this machine is told of it.
+function token() {
+  const given = new URLSearchParams(location.search).get("t");
+  try {
+    if (given) sessionStorage.setItem("token", given);
+    return given ?? sessionStorage.getItem("token") ?? "";
+  } catch {
+    return given ?? ""; // a browser that keeps nothing
+  }
+}
+
+// Answers come in the order in which they were asked for. What is told without being asked for says what it is.
 export class Socket {
   constructor() {
     this.waiting = [];
     this.heard = () => {};
     this.lost = () => {};
-    this.early = [];
+    this.refused = () => {};
   }
 
   open() {
     return new Promise((done, failed) => {
-      this.socket = new WebSocket(`ws://${location.host}/socket`);
+      this.socket = new WebSocket(`ws://${location.host}/socket?t=${token()}`);
       this.socket.binaryType = "arraybuffer";
       this.socket.onopen = () => done(this);
       this.socket.onmessage = ({ data }) => this.take(data);
       this.socket.onclose = () => {
         this.waiting.splice(0).forEach(({ failed: give_up }) => give_up(new Error("the server has ended")));
         this.lost();
-        failed(new Error("the server does not answer"));
+        failed(new Error("the server does not admit it, or has ended; open the address that 'mdanim-lammps view' has printed"));
       };
     });
   }
@@ -28,8 +39,9 @@ export class Socket {
   take(data) {
     if (typeof data !== "string") return this.waiting.shift().done(data);
     const said = JSON.parse(data);
-    if (said.error) return this.waiting.shift().failed(new Error(said.error));
     if (said.news) return this.heard(said.news);
+    if (said.refused) return this.refused(said.refused);
+    if (said.error) return this.waiting.shift().failed(new Error(said.error));
     return this.waiting.shift().done(said);
   }
 
