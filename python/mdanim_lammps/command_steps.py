@@ -145,6 +145,7 @@ def print_warnings(ready) -> None:
 
 
 def announce(ready, quiet: bool, verbose: bool, executors: int = 1, control: str | None = None) -> None:
+    from .certificate import note_lines
     from .report import certificate_line, effect_line, executors_line, output_line, scene_lines
 
     print_warnings(ready)
@@ -155,7 +156,7 @@ def announce(ready, quiet: bool, verbose: bool, executors: int = 1, control: str
         for verdict in ready.verdicts.values():
             print(effect_line(verdict))
     print(certificate_line(ready))
-    print(output_line(ready))
+    print("\n".join([*note_lines(ready.certificate), output_line(ready)]))
     if line := executors_line(executors, control):
         print(line)
     sys.stdout.flush()

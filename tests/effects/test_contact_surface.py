@@ -345,6 +345,20 @@ def test_frictionless_is_told_once(prepared, text, told):
     assert len(ready.certificate.to_json()["notes"]) == len(ready.certificate.notes)
 
 
+def test_what_hops_for_ever_is_told_with_both_lines(prepared, capfd):
+    """Without friction and damping: what to write and where, before a run as in `check`; no word of damping where some is."""
+    from mdanim_lammps.command_steps import announce
+
+    ready = prepared(pile())
+    (line,) = [line for line in note_lines(ready.certificate) if FREE in line]
+    name = ready.system.names[int(np.flatnonzero(~ready.system.still)[0])]
+    assert f"friction 0.5 in control, and damping 0.2 in object {name}: without damping what lands hops for ever" in line
+    announce(ready, quiet=False, verbose=False)
+    assert line in capfd.readouterr().out
+    (line,) = [line for line in note_lines(prepared(pile(cube="damping 0.1")).certificate) if FREE in line]
+    assert "for ever" not in line
+
+
 SLOPE = """gravity ({x}, 0, -10) m/s^2
 ground z -1 m
 object slab {{ shape box (80, 80, 10) cm  position (0, 0, 0) m  orientation axis (0, 1, 0) angle {angle} deg

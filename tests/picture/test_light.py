@@ -83,6 +83,13 @@ def test_a_shadow_begins_where_a_box_stands(tmp_path, quality):
     assert line.max() < deep + 0.1 * (lit - deep)
 
 
+def test_words_of_the_language_are_taken_from_python():
+    """Quality and floor by their words, and a message for others."""
+    assert Render(quality="final", floor="none") == Render(quality=Quality.FINAL, floor=Floor.NONE)
+    with pytest.raises(UsageError, match="draft, final"):
+        Render(quality="best")
+
+
 @pytest.mark.parametrize("quality", Quality)
 def test_a_shadow_begins_at_the_foot_of_a_step(tmp_path, quality):
     """Beside a higher box that stands on the same ground the top of a lower one is dark from the foot on: no light line."""

@@ -18,6 +18,11 @@ MISTAKES = [
      "elasticity must be a pressure, found e = 3 kg", "kPa"),
     ("angle as mass", text(mass="20 deg"), 4, 8, "mass must be a mass, found 0.349066 rad", "kg"),
     ("rate as spin", text(spin="(0, 0, 2) Hz"), 6, 8, "spin must be an angular speed", "rpm"),
+    ("a word that other programs have", text(mass="1 kg bounce 0.5"), 4, 13, "bounce is not supported yet", "set damping"),
+    *((f"{word} outside of all", f"{word} a b\n" + text(), 1, 1, f"{word} is not supported yet", way_out) for word, way_out in
+      (("motion", "velocity"), ("weld", "not tied"), ("break", "parts"), ("tear", "do not tear"), ("balloon", "low density"))),
+    ("ground that is no floor", "ground y 0 m\n" + text(), 1, 8, "ground cannot be followed by 'y'", "write ground z 0 m"),
+    ("colour with a hyphen", text(color="light-blue"), 6, 9, "'light-blue' is not a colour", "did you mean 'lightblue'?"),
     ("negative", text(mass="-2 kg"), 4, 8, "mass must be > 0, found -2 kg", ""),
     ("zero", text(shape="sphere 0 m"), 2, 16, "r of sphere must be > 0, found 0 m", ""),
     ("negative edge", text(shape="box (1, -1, 1) m"), 2, 13, "ly of shape box must be > 0", ""),

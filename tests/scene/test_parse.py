@@ -381,3 +381,14 @@ def test_ten_thousand_objects_are_quick():
     begin = time.process_time()
     assert len(row(10_000)) == 10_000
     assert time.process_time() - begin < 7.0
+
+
+def test_a_large_size_without_unit_is_told():
+    """``sphere 10`` is a ball of 10 m: a note with its place and a way out; with a unit, and below 5 m, none."""
+    (note,) = parse_scene(text(shape="sphere 10")).warnings
+    assert (note.severity, note.line, note.column) == ("note", 2, 16)
+    assert "read in metres: 10 m" in note.message and "10 cm" in note.hint
+    (note,) = parse_scene(text(shape="box (0.1, 20, 0.1)")).warnings
+    assert "20 m" in note.message
+    for shape in ("sphere 10 m", "sphere 1", "box (10, 10, 10) cm"):
+        assert not parse_scene(text(shape=shape)).warnings

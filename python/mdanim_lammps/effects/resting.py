@@ -47,11 +47,15 @@ def frictionless(envelope: Envelope) -> list[Problem]:
         if not met or low[holding, 2].min() >= high[envelope.moving, 2].max():
             return []
     paper = scene.control.contact_model is ContactModel.PAPER
+    hint = f"write friction 0.5 in control{' in place of contact-model paper' if paper else ''}"
+    hops = [m for m in np.flatnonzero(envelope.moving).tolist() if scene.solids[m].damping == 0.0]
+    if len(hops) == envelope.moving.sum():
+        hint += f", and damping 0.2 in object {system.names[hops[0]]}: without damping what lands hops for ever"
     return [
         Problem(
             scene.control.spans.get("contact-model") or scene.control.spans.get("control"),
             f"contacts are frictionless{', as in the paper' if paper else ''}: what stands or lies on something slides off it",
-            f"write friction 0.5 in control{' in place of contact-model paper' if paper else ''}",
+            hint,
             severity="note",
         )
     ]

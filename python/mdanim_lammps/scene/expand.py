@@ -18,6 +18,9 @@ from .source import Fault, Problems, SceneFile
 from .statements import Shared, parse_override
 from .tree import Group, Let, Name, Repeat, SettingNode, UnreadableStatement, Value
 
+LARGE = 5.0
+"""Size of a shape [m] from which on a number without unit gets a note."""
+
 
 @dataclass(slots=True, eq=False)
 class EvaluatedSetting:
@@ -405,7 +408,7 @@ class Expander:
             raise Fault(v.first, str(e.args[0]), e.args[1], v.last) from None
 
     def _half_units(self, s: SettingNode, raw: list) -> None:
-        """``cylinder 10 20 cm`` is 10 m by 20 cm: most likely not what was meant."""
+        """``cylinder 10 20 cm`` is 10 m by 20 cm, and ``sphere 10`` a ball of 10 m: most likely not what was meant."""
         measured = [
             (v, x) for v, x in zip(s.values, raw) if v is not None and v.slot.unit not in ("1", "?") and not isinstance(x, str)
         ]
@@ -418,6 +421,11 @@ class Expander:
                 "write a unit after each value",
                 "warning",
             )
+            return
+        for v, x in measured if s.keyword.name == "shape" else ():
+            if v.slot.unit == "m" and (largest := max(_floats(x))) >= LARGE and _bare(x):
+                told = f"this size has no unit and is read in metres: {units.show(units.quantity(largest, v.slot.dim))}"
+                self.problems.add(s.source.span(v.first, v.last), told, "write its unit: 10 cm, or 10 m", "note")
         for v, x in measured:
             if v.slot.unit == "rad" and _bare(x) and max(map(abs, _floats(x))) > 2.0 * math.pi:
                 self.problems.add(

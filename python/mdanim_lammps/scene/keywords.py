@@ -101,6 +101,13 @@ STATEMENTS = {
 
 NOT_SUPPORTED = {
     "restitution": "how high objects bounce follows from elasticity and damping: set damping",
+    "bounce": "how high objects bounce follows from elasticity and damping: set damping, 0.05 for a lively ball and 0.5 for clay",
+    "motion": "give the object a velocity or a spin at the start; what is held never moves",
+    "move": "give the object a velocity or a spin at the start; what is held never moves",
+    "weld": "objects that touch are not tied to each other; a mesh of both is one object",
+    "break": "solids do not break; build it of parts that lie on each other",
+    "tear": "solids do not tear",
+    "balloon": "nothing is filled with gas; a ball of low density and elasticity comes near it",
     "rope": "a thin cylinder with hold comes near it",
     "cloth": "a thin box comes near it",
     "joint": "objects that touch are not tied to each other",
@@ -120,6 +127,12 @@ NOT_SUPPORTED = {
 }
 """Words that people look for, which the language does not have, and what to write instead."""
 
+MISPLACED = {
+    "ground x": "the ground is level, at a height z; for a wall across x write walls from (-2, -2, 0) m to (2, 2, 3) m",
+    "ground y": "up is z: write ground z 0 m; for a wall across y write walls from (-2, -2, 0) m to (2, 2, 3) m",
+}
+"""A setting with a word that people write behind it, and what to write instead."""
+
 SYNONYMS = {
     word: shape
     for shape, words in (
@@ -133,6 +146,13 @@ SYNONYMS = {
     for word in words.split()
 }
 """Other words for shapes."""
+
+
+def misplaced(keyword: Keyword, word: str, starts) -> str:
+    """What to write instead of a word that does not follow a keyword, where people mean something by it; else empty."""
+    if SYNONYMS.get(word) in starts:
+        return f"did you mean '{SYNONYMS[word]}'?"
+    return MISPLACED.get(f"{keyword.name} {word}", "")
 
 
 def all_keywords() -> list[Keyword]:

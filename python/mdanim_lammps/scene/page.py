@@ -26,9 +26,11 @@ object ball {
   position   (0, 0, 1) m
   mass       1.5 kg
   elasticity 150 kPa
+  damping    0.1
 }
 control {
   time 2 s
+  friction 0.5
 }
 ```
 

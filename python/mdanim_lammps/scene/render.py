@@ -11,7 +11,7 @@ from enum import Enum
 from pathlib import Path
 from typing import ClassVar
 
-from ..errors import Span
+from ..errors import Span, UsageError
 from .formatting import number, vector
 from .limits import PIXELS, SHADOWS, SPEED
 from .schema import Codec, Keyword, OneOf, Rule, Vector, Words, setting
@@ -127,3 +127,13 @@ class Render:
         "object. Absent: chosen so that everything is seen.",
         "from (4, -4, 2) m look (0, 0, 0.5) m", default=(), many=True, codec=OneOf(Camera))  # fmt: skip
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Take words of the language for quality and floor, as Python code writes them. Raises UsageError."""
+        for name, kind in (("quality", Quality), ("floor", Floor)):
+            said = getattr(self, name)
+            try:
+                object.__setattr__(self, name, kind(said))
+            except ValueError:
+                known = ", ".join(k.value for k in kind)
+                raise UsageError(f"Render({name}={said!r}): it is one of {known}") from None

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from .expressions import RESERVED, Node
 from .forms import OptionalPart, Slot, Word, alternatives, literals, pieces
-from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, SYNONYMS, did_you_mean, example, foreign_line, nearest
+from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, did_you_mean, example, foreign_line, misplaced, nearest
 from .limits import DEEPEST_INCLUDE, DEEPEST_REPEAT, MOST_BYTES, MOST_FILES
 from .reader import ODD, Reader
 from .scene import GLOBALS
@@ -378,9 +378,7 @@ class Parser(Reader):
             if t.type in ("NEWLINE", "END", "RBRACE"):
                 self._missing(word, t, keyword)
             hint = did_you_mean(str(t), starts) if len(starts) > 1 or mistyped else example(keyword)
-            if SYNONYMS.get(str(t)) in starts:
-                hint = f"did you mean '{SYNONYMS[str(t)]}'?"
-            raise Fault(t, f"{keyword.name} cannot be followed by {t.found()}", hint)
+            raise Fault(t, f"{keyword.name} cannot be followed by {t.found()}", misplaced(keyword, str(t), starts) or hint)
         return free[0]
 
     def _missing(self, word: Token, t: Token, keyword: Keyword) -> None:
@@ -433,8 +431,8 @@ class Parser(Reader):
                 return Value(slot, t, t, text=str(t)[1:-1])
             if t.type != "NAME":
                 raise Fault(t, f"{keyword.name} needs a colour, found {t.found()}", 'write a name such as red, or "#rrggbb"')
-            self.take()
-            return Value(slot, t, t, text=str(t))
+            name = self.word()
+            return Value(slot, t, self.tokens[self.at - 1], text=str(name))
         if slot.kind == "check":
             return self.check(slot, keyword)
         if slot.kind == "place" and t.type == "NAME":
@@ -486,6 +484,8 @@ class Parser(Reader):
             word, self.at = str(self.word()), at
             if word in settings or word in STATEMENTS:
                 return
+            if word in NOT_SUPPORTED:
+                raise Fault(t, f"{word} is not supported yet", NOT_SUPPORTED[word])
         hint = ODD.get(str(t), "")
         if t.type == "COMMA":
             hint = "a decimal number is written with a point"
