@@ -180,6 +180,15 @@ def test_what_comes_is_seen_before_it_arrives(tmp_path):
     assert seen[:, :8].all() and not seen[0, 8] and seen[13:, 8].all()
 
 
+def test_what_comes_to_hit_is_seen_from_the_start(tmp_path):
+    """A ball that swings at a row from afar is in the picture all the way, as nothing else moves; the same ball that ends beside
+    the row is not followed."""
+    for stops, followed in ((0.0, True), (0.2, False)):
+        with row_with_a_flier(tmp_path, lambda k, s=stops: (-s - 0.3 * max(0, 15 - k), 0, 0.3 + 0.1 * max(0, 15 - k))) as t:
+            seen = inside(t, automatic_view(action_of(t), 16 / 9))
+        assert seen[:, :8].all() and seen[0, 8] == followed
+
+
 def test_most_of_what_moves_is_seen_at_any_time(tmp_path):
     """Half of the objects come from afar: the picture holds them all, however large it would be without them."""
     models = [box(f"b[{i}]", (0.1, 0.1, 0.1), (1, 1, 1), (0.2 * i, 0, 0.05)) for i in range(4)]

@@ -17,10 +17,20 @@ test("the film goes at its own speed, whatever the pictures per second", () => {
   assert.equal(slow.frame, 6);
 });
 
-test("at the end it stops, and begins again when it is played", () => {
+test("at the end it waits for a second and begins again, or at once when it is played", () => {
   const p = player({ playing: true });
   p.tick(1000);
+  assert.deepEqual([p.frame, p.playing], [99, true]);
+  p.tick(0.9);
+  assert.equal(p.frame, 99);
+  p.tick(0.2);
+  assert.deepEqual([p.frame, p.playing], [0, true]);
+  p.tick(0.04);
+  assert.equal(p.frame, 1);
+  p.go(99);
   assert.deepEqual([p.frame, p.playing], [99, false]);
+  p.tick(10);
+  assert.equal(p.frame, 99); // a film that is halted stays
   p.play();
   assert.deepEqual([p.frame, p.playing], [0, true]);
 });

@@ -29,6 +29,10 @@ NEXT_SHARES = (0.995, 0.98, 0.95, 0.9, 0.8)
 """Shares of what is seen that are tried as the next to be kept."""
 MOMENT = 0.03
 """Share of the run for which the picture follows what comes and goes beyond where it is worth it."""
+LEAD = 1.0 / 3.0
+"""Share of all movement in a stretch from which on an object is what moves there."""
+NEAR = 0.1
+"""Distance at which an object meets others, in sizes of its own."""
 ALONG = 1e-6
 """Sine of the angle between two directions that are one: rounding has a part in what is at right angles to both."""
 _BOXES = 50_000
@@ -70,6 +74,8 @@ class Action:
     """Whether some object falls out of it, there being no ground."""
     free: np.ndarray
     """Objects that are not held as a whole, bool, shape (O,)."""
+    leads: np.ndarray
+    """What the picture must hold: that moves most in a stretch and meets something then or later, bool, shape (W, O)."""
 
     @property
     def size(self) -> float:
@@ -130,13 +136,42 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
         bounds = np.minimum(bounds[0], metadata.liquid.low), np.maximum(bounds[1], metadata.liquid.high)
     if metadata.ground is not None:
         bounds[0][2] = min(bounds[0][2], max(metadata.ground, start_low[2] - FAR * size))
-    return Action(low, high, bounds, bool(gone.any()), ~metadata.still)
+    basin = (metadata.liquid.low, metadata.liquid.high) if metadata.liquid is not None else None
+    leads = what_leads(low, high, basin) & ~gone
+    return Action(low, high, bounds, bool(gone.any()), ~metadata.still, leads)
+
+
+def what_leads(low: np.ndarray, high: np.ndarray, basin=None) -> np.ndarray:
+    """Objects that make most of the movement in a stretch, path times size, until they have last met another object or the basin;
+    bool, shape (W, O).
+
+    A ball that swings at a wall is one long before it is there, as nothing else moves; what flies off is none.
+
+    Args:
+        low, high: corners of each object in each stretch [m], shape (W, O, 3).
+        basin: corners of the liquid's basin.
+    """
+    leads = np.zeros(low.shape[:2], dtype=bool)
+    if len(low) < 2:
+        return leads
+    movement = np.linalg.norm(np.gradient((low + high) / 2, axis=0), axis=-1) * np.linalg.norm(high - low, axis=-1)
+    share = movement / np.maximum(movement.sum(axis=1, keepdims=True), np.finfo(float).tiny)
+    for o in np.flatnonzero((share >= LEAD).any(axis=0)):
+        near = NEAR * np.linalg.norm(high[:, [o]] - low[:, [o]], axis=-1, keepdims=True)
+        meets = ((low <= high[:, [o]] + near) & (high >= low[:, [o]] - near)).all(axis=-1)
+        meets[:, o] = False
+        met = meets.any(axis=1)
+        if basin is not None:
+            met |= ((low[:, o] <= basin[1]) & (high[:, o] >= basin[0])).all(axis=-1)
+        leads[:, o] = (share[:, o] >= LEAD) & np.logical_or.accumulate(met[::-1])[::-1]
+    return leads
 
 
 def automatic_view(action: Action, aspect: float, walls=None, basin=None) -> View:
     """A three-quarter view from slightly above that shows what happens as large as it can be; the same for all frames.
 
-    What few objects do for a short time is left out where all else becomes much larger by that (`LARGER`, `LEAST`).
+    What few objects do for a short time is left out where all else becomes much larger by that (`LARGER`, `LEAST`), but what
+    leads is not.
 
     Args:
         action: what must be seen.
@@ -158,11 +193,11 @@ def automatic_view(action: Action, aspect: float, walls=None, basin=None) -> Vie
     if basin is not None:
         fixed.append(_corners(*np.array(basin, dtype=float)))
     fixed = np.concatenate(fixed)
-    kept = worth_seeing(*boxes, action.free, fixed, -back, aspect)
+    kept = worth_seeing(*boxes, action.free, action.leads, fixed, -back, aspect)
     return fit_view(np.concatenate([_corners(boxes[0][kept], boxes[1][kept]), fixed]), -back, aspect)
 
 
-def worth_seeing(low, high, free, fixed: np.ndarray, forward: np.ndarray, aspect: float) -> np.ndarray:
+def worth_seeing(low, high, free, leads, fixed: np.ndarray, forward: np.ndarray, aspect: float) -> np.ndarray:
     """Which boxes a picture should hold so that it shows much of what happens, and shows it large; bool, shape (W, O).
 
     The score is the share of boxes that are inside times the size at which they are seen to the power of `LARGER`. From each
@@ -173,6 +208,7 @@ def worth_seeing(low, high, free, fixed: np.ndarray, forward: np.ndarray, aspect
     Args:
         low, high: corners of each object in each stretch of frames [m], shape (W, O, 3).
         free: objects that move, bool, shape (O,).
+        leads: boxes that are inside in any case, bool, shape (W, O).
         fixed: points that are inside in any case [m], shape (P, 3).
         forward: direction of view, unit length, not vertical.
         aspect: width over height.
@@ -192,7 +228,8 @@ def worth_seeing(low, high, free, fixed: np.ndarray, forward: np.ndarray, aspect
     kept = np.ones(low.shape[:2], dtype=bool)
     best = score(kept)
     while True:
-        smaller = [kept & (side[..., k] <= np.quantile(side[kept, k], share)) for k in range(4) for share in NEXT_SHARES]
+        sides = [(side[..., k], np.quantile(side[kept, k], share)) for k in range(4) for share in NEXT_SHARES]
+        smaller = [leads | (kept & (reach <= most)) for reach, most in sides]
         scores = [score(s) for s in smaller]
         if max(scores) <= best + 1e-9:
             break

@@ -276,7 +276,8 @@ def first_action(metadata, low: np.ndarray, size: np.ndarray) -> Action:
     if metadata.ground is not None:
         bounds[0][2] = min(bounds[0][2], max(metadata.ground, least[2] - 4.0 * float(np.linalg.norm(most - least))))
     corners = np.stack([bounds[0], bounds[1]])[:, None]
-    return Action(corners[:1], corners[1:], bounds, metadata.ground is None and metadata.liquid is None, np.ones(1, dtype=bool))
+    sinks, one = metadata.ground is None and metadata.liquid is None, np.ones(1, dtype=bool)
+    return Action(corners[:1], corners[1:], bounds, sinks, one, one[None])
 
 
 def packed(head: dict, buffers: Mapping[str, np.ndarray]) -> bytes:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Which frame is to be seen now, and which frames are worth asking for; nothing here touches the page.
 
+export const PAUSE = 1; // [s] for which the last frame is seen before the film begins again
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
 
 export class Player {
@@ -12,6 +13,7 @@ export class Player {
     this.playing = false;
     this.newest = false; // whether always the newest frame is shown
     this.live = false; // whether frames are still to come
+    this.ended = 0; // [s] for which the last frame has been seen
   }
 
   get last() {
@@ -22,12 +24,14 @@ export class Player {
     return Math.min(this.last, Math.floor(this.clock + 1e-6));
   }
 
-  // So many seconds have gone by. At the newest frame of a run that goes on the film waits; at the end it stops.
+  // So many seconds have gone by. At the newest frame of a run that goes on the film waits; at the end it begins again.
   tick(seconds) {
     if (this.newest) this.clock = this.last;
     else if (this.playing) {
-      this.clock = Math.min(this.last, this.clock + (seconds * this.speed) / this.frameTime);
-      if (this.clock >= this.last && !this.live && this.count) this.playing = false;
+      const over = this.clock >= this.last && !this.live && this.count;
+      this.ended = over ? this.ended + seconds : 0;
+      if (this.ended > PAUSE) this.clock = this.ended = 0;
+      else this.clock = Math.min(this.last, this.clock + (seconds * this.speed) / this.frameTime);
     }
   }
 
