@@ -402,6 +402,7 @@ def test_universe_of_what_build_writes(run, made_by_lmp, tmp_path):
     np.testing.assert_allclose(universe.atoms.velocities, run.velocity(0), rtol=1e-6, atol=1e-9)
     assert len(universe.bonds) == len(run.metadata.bond) and len(universe.residues) == 2
     assert universe.residues[1].atoms.total_mass() == pytest.approx(2.0)
+    assert list(universe.residues.resnames) == ["block[1]", "stone"] and universe.select_atoms("resname stone").n_residues == 1
     moving = Universe(made_by_lmp / "data.pond", made_by_lmp / "pond.lammpstrj")
     assert len(moving.trajectory) == len(run)
     moving.trajectory[3]

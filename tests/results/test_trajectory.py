@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+import fcntl
+import gc
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -12,12 +15,15 @@ from dataclasses import replace
 import h5py
 import numpy as np
 import pytest
+from MDAnalysis.analysis.rms import RMSD
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.model.model import Layer
 from mdanim_lammps.results.frame_rows import RowWriter
+from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.results.trajectory_file import datasets_of_frames, frame_tables, part_of, trajectory_bytes
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
+from mdanim_lammps.run.result import STAY_OPEN, Result
 from mdanim_lammps.scene.scene import Save, Walls
 from paths import LAB
 from picture_samples import KILLED, ball, falling, slab_scene, write
@@ -173,6 +179,46 @@ def test_mdanalysis_reads_it(slab, tmp_path):
             np.testing.assert_allclose(cube.center_of_mass(), t.objects["cube"].center_of_mass[ts.frame], atol=2e-7)
         assert len(universe.bonds) == sum(len(m.spring) for m in models)
         assert universe.trajectory.dt == pytest.approx(0.1)
+
+
+def test_it_goes_to_other_processes(slab, tmp_path):
+    """As MDAnalysis's backend "multiprocessing" sends a Universe: pickled, and opened anew there."""
+    scene, models, frames = slab
+    with Trajectory(write(tmp_path / "trajectory.h5", scene, models, frames)) as t:
+        universe = pickle.loads(pickle.dumps(t.universe))
+        for ts, (_, time, position, _) in zip(universe.trajectory, frames, strict=True):
+            assert ts.time == time
+            np.testing.assert_array_equal(ts.positions, position.astype(np.float32))
+        assert list(universe.residues.resnames) == list(t.names)
+        rmsd = RMSD(t.universe)
+        together = RMSD(t.universe).run(backend="multiprocessing", n_workers=2)
+        np.testing.assert_array_equal(together.results.rmsd, rmsd.run().results.rmsd)
+        np.testing.assert_array_equal(pickle.loads(pickle.dumps(t)).position(1), t.position(1))
+
+
+def test_no_lock_is_needed_to_read(slab, tmp_path):
+    """A file that something else has locked, or on a file system without locks, is read: by us, and by MDAnalysis."""
+    scene, models, frames = slab
+    path = write(tmp_path / "trajectory.h5", scene, models, frames)
+    with open(path, "rb") as other:
+        fcntl.flock(other, fcntl.LOCK_EX)
+        with Trajectory(path) as t:
+            np.testing.assert_array_equal(t.position(1), frames[1][2])
+            np.testing.assert_array_equal(t.universe.trajectory[1].positions, frames[1][2].astype(np.float32))
+
+
+def test_many_results_hold_few_files(slab, tmp_path):
+    """Trajectories of more results than a process may have files; one that is held stays what it is."""
+    scene, models, frames = slab
+    write(tmp_path / "trajectory.h5", scene, models, frames)
+    results = [Result(tmp_path, Ledger(("kinetic",))) for _ in range(3 * STAY_OPEN)]
+    held = results[0].trajectory
+    before = len(os.listdir("/proc/self/fd"))
+    assert sum(len(result.trajectory) for result in results) == len(results) * FRAMES
+    assert results[0].trajectory is held and results[-1].trajectory is results[-1].trajectory
+    gc.collect()
+    assert len(os.listdir("/proc/self/fd")) <= before + STAY_OPEN + 1
+    assert pickle.loads(pickle.dumps(results[0])).trajectory.names == held.names
 
 
 def test_bonds_are_tags_of_springs(slab, tmp_path):

@@ -443,6 +443,14 @@ def test_ledger_of_a_liquid_adds_up(splash):
     assert ledger.residual < 1e-3
 
 
+def test_frames_are_read_again_only_where_a_line_asks(tmp_path, monkeypatch):
+    """The level of a liquid needs all its frames after the run: no other line does."""
+    text = SPLASH.split("expect")[0].replace("time 1.2 s", "time 0.05 s")
+    monkeypatch.setattr(Trajectory, "liquid_height", lambda *_: pytest.fail("read"))
+    (tmp_path / "splash.txt").write_text(text + "expect liquid.volume = 0.09 +- 0.01 m^3\n")
+    assert not Scene.load(tmp_path / "splash.txt").run().missed
+
+
 def test_heights_of_a_liquid_are_stored(splash):
     """Keep both heights of every frame: flat at the start, risen by what the raft displaces at the end."""
     with Trajectory(splash.folder) as t:

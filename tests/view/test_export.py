@@ -8,6 +8,8 @@ import json
 import re
 import shutil
 import struct
+import tracemalloc
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -74,7 +76,7 @@ def unpacked(block: bytes) -> dict:
 def test_differences_can_be_undone():
     """Also where they leave the range of 16 bits."""
     rows = np.random.default_rng(1).integers(0, 65536, (7, 30)).astype("<u2")
-    np.testing.assert_array_equal(restored(differences(rows), 30, 7), rows)
+    np.testing.assert_array_equal(restored(b"".join(differences(map(bytes, [*rows, *rows]), 7)), 30, 7), rows)
 
 
 @pytest.mark.parametrize("exact", [False, True])
@@ -170,6 +172,28 @@ def test_long_runs_are_thinned(folder, tmp_path, monkeypatch):
         np.testing.assert_array_equal(found["times"], t.times[::every])
         assert found["head"]["frameTime"] == pytest.approx(every * t.dt * t.steps_per_frame)
     assert found["head"]["replay"]["news"]["count"] == len(found["times"]) and len(found["head"]["replay"]["news"]["rows"]) == 6
+
+
+def test_a_long_run_need_not_fit_in_memory(tmp_path):
+    """Of 500 frames of 4000 vertices, 12 MB as they are kept, a few are in memory at a time."""
+    x = np.random.default_rng(2).normal(size=(4000, 3))
+    values = {"position": x, "center_of_mass": np.zeros((1, 3)), "center_of_mass_velocity": np.ones((1, 3))}
+    frames = SimpleNamespace(value=lambda name, n: (1.0 + 0.001 * n) * values[name], time=float, path=tmp_path)
+    feed = SimpleNamespace(
+        frames=frames, first=np.zeros(1, int), count=np.array([4000]), vertices=np.array, liquid=lambda n: None,
+        drops=lambda n: np.zeros((0, 4)), head=lambda: {"frameTime": 0.1}, buffers=dict,
+    )  # fmt: skip
+    tracemalloc.start()
+    try:
+        with export._Frames(feed, 500, 4095, tmp_path, lambda *_: None) as kept:
+            block = export.compressed(kept.pieces({}, 1), None)
+            most = tracemalloc.get_traced_memory()[1]
+            assert export.compressed(kept.pieces({}, 1), len(block) - 1) is None
+    finally:
+        tracemalloc.stop()
+    assert most - 3 * len(block) < 2_000_000 and not list(tmp_path.iterdir())
+    size = struct.unpack_from("<I", plain := gzip.decompress(block))[0]
+    assert len(plain) == 4 + size + 500 * (8 + 24 + 6 * 4000)
 
 
 def test_only_runs_that_have_ended(folder, tmp_path):

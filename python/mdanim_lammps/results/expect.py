@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -63,8 +63,9 @@ class Measured:
     """Those at the start, and what has come since; None where none does."""
     cell_volume: float = 0.0
     """[m^3]"""
-    level: np.ndarray | None = None
-    """Mean height of the liquid over the basin at each frame [m], shape (F,); None without liquid."""
+    level: Callable[[], np.ndarray] | None = None
+    """Gives the mean height of the liquid over the basin at each frame [m], shape (F,), for which all frames are read; None
+    without liquid."""
     of_liquid: Mapping[str, np.ndarray] = field(default_factory=dict)
     """What `recorded_of_liquid` names, at each frame, each of shape (F,)."""
 
@@ -180,7 +181,7 @@ def _measure(expect: Expect, m: Measured) -> float:
         case "liquid", "volume":
             return _at(m, m.cells, expect.time) * m.cell_volume
         case "liquid", "level":
-            return _at(m, m.level, expect.time)
+            return _at(m, m.level(), expect.time)
         case "liquid", "crest":
             return float(_until(m, m.of_liquid["crest"], expect.time).max())
         case "liquid", quantity:

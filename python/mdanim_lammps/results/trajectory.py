@@ -243,6 +243,9 @@ class Trajectory:
         """Close the file."""
         self._file.close()
 
+    def __reduce__(self):
+        return Trajectory, (self.path,)  # in another process: opened anew
+
     def __enter__(self) -> Trajectory:
         return self
 

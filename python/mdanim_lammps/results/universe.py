@@ -16,7 +16,14 @@ with warnings.catch_warnings():
     # In a notebook without ipywidgets tqdm, which MDAnalysis imports, shows its own path.
     warnings.filterwarnings("ignore", "IProgress not found")
     import MDAnalysis
-    from MDAnalysis.coordinates.H5MD import H5MDReader
+    from MDAnalysis.coordinates.H5MD import H5MDReader, H5PYPicklable
+
+
+class _File(H5PYPicklable):
+    """Opened as `open_trajectory` does, in another process too."""
+
+    def __init__(self, name: str, mode: str = "r", driver: str | None = None):
+        super().__init__(name=name, mode=mode, driver=driver, locking=False)
 
 
 class _Reader(H5MDReader):
@@ -38,6 +45,11 @@ class _Reader(H5MDReader):
             raise OSError  # the end, for MDAnalysis
         self._source.check(frame)
         return super()._read_frame(frame)
+
+    def open_trajectory(self) -> None:
+        self._frame = -1
+        self._file = _File(self.filename)
+        self._particle_group = self._file["particles/all"]
 
     def close(self) -> None:
         self._source.close()
@@ -82,6 +94,7 @@ def open_data(data: str | Path, dump: str | Path | None = None) -> MDAnalysis.Un
     try:
         lines = data.read_text(encoding="ascii").splitlines()
         count = int(lines[2].split()[0])
+        names = {int(number): name for number, name in (line.split()[2:] for line in lines if line.startswith("# molecule "))}
         starts = {line.split(" #")[0]: n + 2 for n, line in enumerate(lines) if line[:1].isalpha() and n}
         springs = int(lines[3].split()[0])
         table = lambda name, rows: np.array(" ".join(lines[starts[name] : starts[name] + rows]).split(), float).reshape(rows, -1)
@@ -98,6 +111,10 @@ def open_data(data: str | Path, dump: str | Path | None = None) -> MDAnalysis.Un
     universe.add_TopologyAttr("ids", atoms[:, 0].astype(int))
     universe.add_TopologyAttr("types", atoms[:, 2].astype(int).astype(str).astype(object))
     universe.add_TopologyAttr("resids", residues)
+    if names:  # older versions did not write them
+        resnames = np.array([names.get(number, "") for number in residues.tolist()], dtype=object)
+        universe.add_TopologyAttr("resnames", resnames)
+        universe.add_TopologyAttr("names", resnames[universe.atoms.resindices])
     if springs:
         universe.add_TopologyAttr("bonds", bonds - 1)
     universe.atoms.positions, universe.atoms.velocities = atoms[:, 3:6], velocity

@@ -318,7 +318,7 @@ class _Run:
                     "cells": self.ledger.array("liquid_cells"),
                     "due": self.ledger.array(DUE) if self.fed else None,
                     "cell_volume": self.grid.cell_volume,
-                    "level": trajectory.liquid_levels,
+                    "level": lambda: trajectory.liquid_levels,
                     "of_liquid": {quantity: self.ledger.array(column) for quantity, column in self.of_liquid.items()},
                 }
             )

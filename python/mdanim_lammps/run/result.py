@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
+from collections import deque
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from weakref import ref
 
 from ..errors import MdanimError, Problem
 from ..export import Exported, export
@@ -19,6 +20,10 @@ from ..results.ledger import Ledger
 from ..results.trajectory import Trajectory
 from ..scene.formatting import number
 from ..scene.render import Render
+
+STAY_OPEN = 32
+"""Trajectories of results that stay open: a process has some 1000 files."""
+_recent: deque[Trajectory] = deque(maxlen=STAY_OPEN)
 
 
 @dataclass(repr=False)
@@ -34,15 +39,24 @@ class Result:
     """What was seen in the run that does not stop it."""
     values: dict[str, float | str] = field(default_factory=dict)
     """Values of the scene's ``let`` names that were given for this run."""
+    _opened: ref[Trajectory] | None = field(default=None, compare=False)
 
     @property
     def missed(self) -> list[Outcome]:
         return [o for o in self.outcomes if not o.met]
 
-    @cached_property
+    @property
     def trajectory(self) -> Trajectory:
-        """The frames. Raises OutputError."""
-        return Trajectory(self.folder)
+        """The frames; opened when they are first asked for, and closed with nothing left that refers to them. The last few that
+        were opened stay open. Raises OutputError."""
+        if (found := self._opened and self._opened()) is None:
+            found = Trajectory(self.folder)
+            self._opened = ref(found)
+            _recent.append(found)
+        return found
+
+    def __getstate__(self) -> dict:
+        return self.__dict__ | {"_opened": None}
 
     def export(self, to: str, path: str | Path | None = None, **options) -> Exported:
         """Write the run as a file of another program; arguments and errors are those of `mdanim_lammps.export.export`."""

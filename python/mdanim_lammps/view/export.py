@@ -12,10 +12,13 @@ import gzip
 import hashlib
 import html
 import json
+import os
 import re
 import struct
-from collections.abc import Callable, Iterable
+import zlib
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
+from tempfile import TemporaryFile
 
 import numpy as np
 
@@ -23,7 +26,7 @@ from .. import effects
 from ..api import STUDY, stored_scene
 from ..effects import resolve
 from ..errors import MdanimError, OutputError, RefusedError
-from ..results.files import read_json, write_whole
+from ..results.files import disk_errors, read_json, write_whole
 from ..results.stored import STUDY as STUDY_FILE
 from ..results.stored import read_manifest
 from ..results.untrusted import check_places, check_plain
@@ -68,84 +71,142 @@ def write_report(
         OutputError: no run there, or a damaged one; the file cannot be written.
         RefusedError: the run goes on.
     """
-    tail = Tail(folder)
-    if tail.live:
-        raise RefusedError(f"{folder}: the run goes on; wait for its end, stop it, or look at it: mdanim-lammps view {folder}")
-    feed, news = tail.feed(), _cleaned(tail.news(Known()))
-    try:
-        if not tail.count:
+    with Tail(folder) as tail:
+        if tail.live:
+            raise RefusedError(
+                f"{folder}: the run goes on; wait for its end, stop it, or look at it: mdanim-lammps view {folder}"
+            )
+        feed, news = tail.feed(), _cleaned(tail.news(Known()))
+        if not (count := tail.count):
             raise OutputError(f"{folder}: there is no frame to report on; run the scene again with --force")
-        frames = _Frames(feed, tail.count, STEPS_EXACT if exact else STEPS, on_progress)
-        every = 1
-        while len(block := gzip.compress(frames.block(news, every), 9, mtime=0)) > MOST_BYTES and every < tail.count:
-            every *= 2
-    finally:
-        feed.close()
-    page = _page(feed.title, block, [*_sections(folder, news), _kept(every)])
+        with disk_errors(path), _Frames(feed, count, STEPS_EXACT if exact else STEPS, path.parent, on_progress) as frames:
+            every = 1
+            while (block := compressed(frames.pieces(news, every), MOST_BYTES if every < count else None)) is None:
+                every *= 2
+        page = _page(feed.title, block, [*_sections(folder, news), _kept(every)])
     write_whole(path, page)
     return every
 
 
-class _Frames:
-    """All frames of a feed, as whole numbers."""
+def compressed(pieces: Iterable[bytes], most: int | None) -> bytes | None:
+    """Pieces end to end, as gzip; None where that has more bytes than ``most``."""
+    packer = zlib.compressobj(9, wbits=31)
+    packed = bytearray()
+    for piece in pieces:
+        packed += packer.compress(piece)
+        if most is not None and len(packed) > most:
+            return None
+    packed += packer.flush()
+    return None if most is not None and len(packed) > most else bytes(packed)
 
-    def __init__(self, feed: Feed, count: int, steps: int, on_progress: Callable[[int, int], None]):
+
+class _Rows:
+    """Arrays of all frames on the disk, in a file without a name that is gone with this object."""
+
+    def __init__(self, folder: Path):
+        self._file = TemporaryFile(dir=folder, buffering=0)  # noqa: SIM115 -- `close` closes it
+        self.ends = [0]
+
+    def append(self, row: np.ndarray) -> None:
+        """Add the array of one more frame. Raises OSError."""
+        data = memoryview(np.ascontiguousarray(row)).cast("B") if row.size else b""
+        while len(data):
+            data = data[self._file.write(data) :]
+        self.ends.append(self._file.tell())
+
+    def row(self, n: int) -> bytes:
+        """Of one frame. Raises OSError."""
+        return os.pread(self._file.fileno(), self.ends[n + 1] - self.ends[n], self.ends[n])
+
+    def close(self) -> None:
+        self._file.close()
+
+
+class _Frames:
+    """All frames of a feed, as whole numbers; they need not fit in memory.
+
+    Args:
+        feed: scene and frames.
+        count: of frames.
+        steps: of a coordinate in the box of its object.
+        folder: where they are kept meanwhile.
+        on_progress: called with (frames done, frames in all).
+    """
+
+    def __init__(self, feed: Feed, count: int, steps: int, folder: Path, on_progress: Callable[[int, int], None]):
         self.feed, self.steps = feed, steps
-        read = feed.frames.value
-        own = np.repeat(np.arange(len(feed.first)), feed.count)
         self.times = np.array([feed.frames.time(n) for n in range(count)])
-        self.moving = np.array(
-            [np.hstack([read("center_of_mass", n), read("center_of_mass_velocity", n)]) for n in range(count)], "<f4"
-        )
-        # Twice through the file, so that it need not fit in memory: the boxes, then what lies in them.
+        own = np.repeat(np.arange(len(feed.first)), feed.count)
+        # Twice through the file: the boxes, then what lies in them.
         low, high = np.full((len(feed.first), 3), np.inf), np.full((len(feed.first), 3), -np.inf)
-        about: Callable[[int], np.ndarray] = lambda n: feed.vertices(read("position", n)) - self.moving[n, own, :3]
         for n in range(count):
-            vertices = about(n)
+            vertices = self._about(n, own)
             low = np.minimum(low, np.minimum.reduceat(vertices, feed.first))
             high = np.maximum(high, np.maximum.reduceat(vertices, feed.first))
+            check_places(feed.frames.path, low, high, self._moving(n), frame=n)
             on_progress(n + 1, 2 * count)
-        check_places(feed.frames.path, low, high, self.moving)
         self.boxes = np.hstack([low, high - low]).astype("<f4")
         low, size = self.boxes[own, :3], self.boxes[own, 3:]
         scale = np.divide(steps, size, out=np.zeros_like(size), where=size > 0.0)
-        self.places = np.empty((count, 3 * len(own)), "<u2")
+        self.vertices = len(own)
+        self.moving, self.places, self.heights, self.states, self.drops = self._tables = [_Rows(folder) for _ in range(5)]
         for n in range(count):
-            self.places[n] = np.rint(np.clip((about(n) - low) * scale, 0, steps)).astype("<u2").ravel()
+            self.moving.append(self._moving(n))
+            self.places.append(np.rint(np.clip((self._about(n, own) - low) * scale, 0, steps)).astype("<u2").ravel())
+            if (liquid := feed.liquid(n)) is not None:
+                self.heights.append(liquid[0])
+                self.states.append(liquid[1])
+            self.drops.append(feed.drops(n).astype("<f4"))
             on_progress(count + n + 1, 2 * count)
-        liquid = [feed.liquid(n) for n in range(count)] if feed.metadata.liquid else []
-        self.heights, self.states = (np.array([frame[k] for frame in liquid]) for k in (0, 1)) if liquid else (None, None)
-        self.drops = [feed.drops(n).astype("<f4") for n in range(count)]
 
-    def block(self, news: dict, every: int) -> bytes:
+    def __enter__(self) -> _Frames:
+        return self
+
+    def __exit__(self, *_) -> None:
+        for table in self._tables:
+            table.close()
+
+    def _moving(self, n: int) -> np.ndarray:
+        """Centres of mass and their velocities in a frame, shape (O, 6)."""
+        read = self.feed.frames.value
+        return np.hstack([read("center_of_mass", n), read("center_of_mass_velocity", n)]).astype("<f4")
+
+    def _about(self, n: int, own: np.ndarray) -> np.ndarray:
+        """Vertices of a frame about the centres of mass of their objects ``own`` [m], shape (V, 3)."""
+        return self.feed.vertices(self.feed.frames.value("position", n)) - self._moving(n)[own, :3]
+
+    def pieces(self, news: dict, every: int) -> Iterator[bytes]:
         """Scene, then times, centres and velocities, positions and liquid of every n-th frame."""
-        kept = slice(None, None, every)
-        times = self.times[kept]
+        kept = range(0, len(self.times), every)
         news = news | {
-            "count": len(times),
-            "total": len(times),
+            "count": len(kept),
+            "total": len(kept),
             "owners": [(-(-frame // every), *rest) for frame, *rest in news.get("owners", ())],
         }
         head = self.feed.head()
-        head |= {"particles": 0, "springs": 0, "frames": len(times), "frameTime": head["frameTime"] * every}
-        columns = 0 if self.heights is None else self.heights.shape[1]
-        drops = self.drops[kept]
-        head["replay"] = {"news": news, "steps": self.steps, "columns": columns, "vertices": self.places.shape[1] // 3}
-        head["replay"]["drops"] = list(map(len, drops))
+        head |= {"particles": 0, "springs": 0, "frames": len(kept), "frameTime": head["frameTime"] * every}
+        columns = self.heights.ends[1] // 2 if self.heights.ends[1:] else 0
+        head["replay"] = {"news": news, "steps": self.steps, "columns": columns, "vertices": self.vertices}
+        head["replay"]["drops"] = [len(self.drops.row(n)) // 16 for n in kept]
         scene = packed(_cleaned(head), self.feed.buffers() | {"boxes": self.boxes})
-        parts = [struct.pack("<I", len(scene)), scene, times.astype("<f8").tobytes(), self.moving[kept].tobytes()]
-        parts.append(differences(self.places[kept]))
+        yield struct.pack("<I", len(scene)) + scene
+        yield self.times[::every].astype("<f8").tobytes()
+        yield from map(self.moving.row, kept)
+        yield from differences(map(self.places.row, [*kept, *kept]), len(kept))
         if columns:
-            parts += [differences(self.heights[kept]), self.states[kept].tobytes(), *(rows.tobytes() for rows in drops)]
-        return b"".join(parts)
+            yield from differences(map(self.heights.row, [*kept, *kept]), len(kept))
+            yield from map(self.states.row, kept)
+            yield from map(self.drops.row, kept)
 
 
-def differences(rows: np.ndarray) -> bytes:
-    """Rows of 16-bit numbers as differences to the row before, all low bytes first, then all high ones."""
-    change = rows.copy()
-    change[1:] -= rows[:-1]
-    pairs = change.astype("<u2").view("u1").reshape(-1, 2)
-    return pairs[:, 0].tobytes() + pairs[:, 1].tobytes()
+def differences(rows: Iterable[bytes], count: int) -> Iterator[bytes]:
+    """Rows of 16-bit numbers, given twice, as differences to the row before: the low bytes of all, then the high ones."""
+    before = None
+    for n, data in enumerate(rows):
+        row = np.frombuffer(data, "<u2")
+        change = row if n % count == 0 else row - before
+        before = row
+        yield change.view("u1")[n // count :: 2].tobytes()
 
 
 def _cleaned(data):
