@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """A keyword is one field of a record: parser, range check, message, docs and lock follow from it."""
 
+import re
 from dataclasses import dataclass, replace
 
 import pytest
-from mdanim_lammps.errors import SceneError
+from mdanim_lammps.errors import SceneError, UsageError
 from mdanim_lammps.scene import keywords as language
+from mdanim_lammps.scene import scene as records
 from mdanim_lammps.scene.limits import Limit
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.page import language_page
 from mdanim_lammps.scene.parse import parse_scene
+from mdanim_lammps.scene.render import Floor, Quality, Render
 from mdanim_lammps.scene.scene import Control, SceneRecord, Solid
 from mdanim_lammps.scene.schema import Rule, keywords, setting
 from scene_parts import CONTROL, text
@@ -139,3 +142,16 @@ def test_without_it_the_words_are_unknown():
 def test_order_of_blocks_is_free():
     """Control may stand first or last."""
     assert parse_scene(text()).control == parse_scene(CONTROL + text().replace(CONTROL, "")).control
+
+
+def test_words_of_an_enumeration_are_taken_in_python():
+    """``Render(quality="final")`` is what a scene says; another word is refused with those that there are."""
+    assert Render(quality="final", floor="none") == Render(quality=Quality.FINAL, floor=Floor.NONE)
+    control = records.Control(1.0, accuracy="preview", contact_model="paper", save="boundary")
+    assert (control.accuracy, control.save) == (records.Accuracy.PREVIEW, records.Save.BOUNDARY)
+    assert control.contact_model is records.ContactModel.PAPER and records.Control(1.0, accuracy=0.02).accuracy == 0.02
+    for wrong in ("finest", 3, None):
+        with pytest.raises(UsageError, match=re.escape(f"Render(quality={wrong!r}): it is one of draft, final")):
+            Render(quality=wrong)
+    with pytest.raises(UsageError, match="it is one of preview, balanced, reference"):
+        replace(control, accuracy="fine")

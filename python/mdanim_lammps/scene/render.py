@@ -11,10 +11,10 @@ from enum import Enum
 from pathlib import Path
 from typing import ClassVar
 
-from ..errors import Span, UsageError
+from ..errors import Span
 from .formatting import number, vector
 from .limits import PIXELS, SHADOWS, SPEED
-from .schema import Codec, Keyword, OneOf, Rule, Vector, Words, setting
+from .schema import Codec, Keyword, OneOf, Rule, Vector, Worded, Words, setting
 
 COLOR = 'a CSS name or "#rrggbb". Absent: chosen automatically.'
 LOWEST_LAMP = math.sin(math.radians(5.0))
@@ -87,7 +87,7 @@ class LampDirection(Codec):
 
 
 @dataclass(frozen=True, slots=True)
-class Render:
+class Render(Worded):
     """How the pictures look; every None is chosen automatically."""
 
     size: tuple[int, int] = setting(
@@ -127,13 +127,3 @@ class Render:
         "object. Absent: chosen so that everything is seen.",
         "from (4, -4, 2) m look (0, 0, 0.5) m", default=(), many=True, codec=OneOf(Camera))  # fmt: skip
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
-
-    def __post_init__(self) -> None:
-        """Take words of the language for quality and floor, as Python code writes them. Raises UsageError."""
-        for name, kind in (("quality", Quality), ("floor", Floor)):
-            said = getattr(self, name)
-            try:
-                object.__setattr__(self, name, kind(said))
-            except ValueError:
-                known = ", ".join(k.value for k in kind)
-                raise UsageError(f"Render({name}={said!r}): it is one of {known}") from None

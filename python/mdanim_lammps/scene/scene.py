@@ -17,7 +17,7 @@ from .formatting import vector
 from .limits import CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DROPS, FRICTION, SWEEPS
 from .render import COLOR, Camera, Render  # noqa: F401
 from .rotation import IDENTITY, departure, rotation_about, rotation_euler
-from .schema import Codec, Keyword, OneOf, Rule, Vector, Words, setting
+from .schema import Codec, Keyword, OneOf, Rule, Vector, Worded, Words, setting
 from .shapes import (
     Box,
     Cone,
@@ -205,7 +205,7 @@ class Drain:
 
 
 @dataclass(frozen=True, slots=True)
-class Liquid:
+class Liquid(Worded):
     """The one liquid of a scene."""
 
     name: str
@@ -361,7 +361,7 @@ class SaveAndPrecision(Codec):
 
 
 @dataclass(frozen=True, slots=True)
-class Control:
+class Control(Worded):
     """Duration, frames, accuracy: everything that is neither an object nor a picture."""
 
     time: float = setting("<T:s>", "Simulated duration.", "3 s", Rule.POSITIVE)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
+from ..errors import UsageError
 from .formatting import number
 from .forms import Slot, alternatives, write
 from .limits import LIMITS, Limit
@@ -97,6 +98,22 @@ class OneOf(Codec):
         kind = type(value)
         own, values = value.write() if hasattr(kind, "write") else (0, tuple(getattr(value, n) for n in fields_in_order(kind)))
         return self.rows.index(kind) + own, values
+
+
+class Worded:
+    """A record whose enumerations may be given by their words in Python: ``Render(quality="final")``. Raises UsageError."""
+
+    __slots__ = ()
+
+    def __post_init__(self):
+        for field in dataclasses.fields(self):
+            kind, value = type(field.default), getattr(self, field.name)
+            if issubclass(kind, Enum) and not isinstance(value, (kind, float)):  # an error that is aimed at is a number
+                try:
+                    object.__setattr__(self, field.name, kind(value))
+                except ValueError:
+                    words = ", ".join(member.value for member in kind)
+                    raise UsageError(f"{type(self).__name__}({field.name}={value!r}): it is one of {words}") from None
 
 
 def fields_in_order(kind: type) -> tuple[str, ...]:
