@@ -24,6 +24,8 @@ from .contact import Contact, barrier, barrier_rate, closing_speeds, largest_of_
 from .effect import Effect
 from .envelope import heights, wave_speed
 from .liquid import Basin
+from .resting import one_sided
+from .support import standing
 
 SHORT, FULL = 0.8, 1.6
 """Reach of the barrier behind the surface, over the shortest edge of its own cells: a particle inside is at least one edge below
@@ -211,18 +213,31 @@ class SurfaceContact(OnSurfaces, Contact):
         return surface_stiffness(scene, system, 2.0 * partner / (system.young + partner))
 
     def notes(self, envelope):
-        system, scene = envelope.system, envelope.scene
+        return [p for p in self.about_friction(envelope.scene, envelope.system) if p.severity == "note"]
+
+    def warnings(self, scene, system):
+        return [p for p in self.about_friction(scene, system) if p.severity == "warning"]
+
+    def about_friction(self, scene: SceneRecord, system: System) -> list[Problem]:
+        """Where it does not act, as notes and warnings."""
+        return [*self.full_reaches(scene, system), *one_sided(scene, system)]
+
+    def full_reaches(self, scene: SceneRecord, system: System) -> list[Problem]:
+        """That the barrier keeps fast objects apart: without friction, whatever was written."""
         found = np.flatnonzero(fast(scene, system))
         if not len(found):
             return []
+        spans = scene.solids[found[0]].spans
         more = f" and {len(found) - 1} more" if len(found) > 1 else ""
+        rubs = self.rubs(scene)
+        so = ": friction with others works as 0" if rubs else ""
         return [
             Problem(
-                envelope.place(int(found[0]), "velocity", "position"),
+                next((spans[k] for k in ("velocity", "position", "object") if k in spans), None),
                 f"{system.names[found[0]]}{more} may meet others at more than {SLOW:g} of the wave speed and keeps the full "
-                "reach of the barrier, which bears objects without friction",
+                f"reach of the barrier, which bears objects without friction{so}",
                 "write a lower speed or a higher elasticity where friction matters",
-                severity="note",
+                severity="warning" if rubs else "note",
             )
         ]
 
@@ -335,7 +350,10 @@ def carried_area(body: ContactBody) -> np.ndarray:
 def fast(scene: SceneRecord, system: System) -> np.ndarray:
     """Solids that may meet others at more than SLOW of the wave speed of the softest, as if through air, bool, shape (M,)."""
     g = max(0.0, -scene.gravity[2]) * on(scene, "gravity")
-    bottom, floor = heights(system, [p for p in scene_planes(scene) if on(scene, p.effect)])
+    planes = [p for p in scene_planes(scene) if on(scene, p.effect)]
+    bottom, floor = heights(system, planes)
+    if (standing(scene, system, planes) | system.still).all():  # nothing comes that might throw one of them down
+        bottom = np.full_like(bottom, floor)
     slow = np.where(needles(system), SLOW_NEEDLE, SLOW)
     return closing_speeds(system, g, bottom - floor) > slow * float(wave_speed(system).min())
 

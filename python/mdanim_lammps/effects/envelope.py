@@ -16,6 +16,7 @@ from ..model.shapes import thickness
 from ..model.system import System
 from ..scene.formatting import say
 from .margin import Margin
+from .support import standing
 
 if TYPE_CHECKING:
     from .effect import Resolved
@@ -85,12 +86,14 @@ class Envelope:
         return sum(e.pull(self.scene) for e in self.on)
 
     def fall(self) -> np.ndarray:
-        """Height of each solid's fall [m], shape (M,), down to the ground, the floor of the basin, or the lowest object.
+        """Height of each solid's fall [m], shape (M,), down to the ground, the floor of the basin, or the lowest object; none of
+        what stands still at the start.
 
         As if through air: in a liquid, heights count by what it leaves of the weight. Below the surface a light solid gains
         height; where there are others it may meet them at the surface already.
         """
         bottom, floor = heights(self.system, self.planes)
+        bottom = np.where(self.stands, np.minimum(bottom, floor), bottom)
         if self.surface is None:
             return bottom - floor
         in_air, in_liquid = np.maximum(0.0, bottom - self.surface), np.minimum(bottom, self.surface) - floor
@@ -103,6 +106,11 @@ class Envelope:
         return (
             1.0 - sum((e.lift(self.scene, self.system) for e in self.on), np.zeros(len(self.system.names))) / self.system.mass_of
         )
+
+    @cached_property
+    def stands(self) -> np.ndarray:
+        """Solids that stand still on something at the start, bool, shape (M,); see `standing`."""
+        return standing(self.scene, self.system, self.planes)
 
     @cached_property
     def cells(self) -> np.ndarray:

@@ -11,9 +11,10 @@ import numpy as np
 
 from ..errors import Problem
 from ..model.planes import Plane
+from ..model.system import System
 from ..scene.contact_pairs import any_friction, frictions, pair_rules
 from ..scene.formatting import number
-from ..scene.scene import Box, ContactModel, Ellipsoid, Sphere, Torus
+from ..scene.scene import Box, ContactModel, Ellipsoid, SceneRecord, Sphere, Torus
 from .envelope import Envelope
 
 LEVEL = 1e-6
@@ -79,6 +80,38 @@ def slopes(envelope: Envelope) -> list[Problem]:
             f"write contact {worst.word} {name} {{ friction {number(math.ceil(11.0 * worst.tangent) / 10.0, 2)} }} "
             "where it is to stay",
             severity="note",
+        )
+    ]
+
+
+def one_sided(scene: SceneRecord, system: System) -> list[Problem]:
+    """That friction of one object works as 0 against others that have none: once, for the pair that is nearest at the start.
+
+    A warning where that is within a spacing, else a note.
+    """
+    solids, own = scene.solids, np.array(frictions(scene))
+    rough = np.array([bool(s.friction) for s in solids])
+    bare = np.array([s.friction is None for s in solids]) & (own == 0.0)
+    if not rough.any() or not bare.any():
+        return []
+    told = {(i, j) for i, j, _, _ in pair_rules(scene, system.names)}
+    low, high = system.bounds(system.position)
+    nearest, pair = math.inf, (0, 0)
+    for i in np.flatnonzero(rough).tolist():
+        apart = np.maximum(np.maximum(low - high[i], low[i] - high), 0.0)
+        apart = np.where(bare & ~(system.still & system.still[i]), (apart**2).sum(1), np.inf)
+        apart[[j for pair in told if i in pair for j in pair]] = np.inf
+        if apart.min() < nearest:
+            nearest, pair = float(apart.min()), (i, int(apart.argmin()))
+    if nearest == math.inf:
+        return []
+    one, other, mu = *(solids[m].name for m in pair), number(own[pair[0]])
+    return [
+        Problem(
+            solids[pair[0]].spans.get("friction"),
+            f"friction {mu} of {one} works as 0 against {other}, which has none: two objects have the root of the product",
+            f"write friction {mu} in control, or contact {one} {other} {{ friction {mu} }}; or friction 0 in {other}",
+            severity="warning" if nearest <= float(system.spacing.max()) ** 2 else "note",
         )
     ]
 
