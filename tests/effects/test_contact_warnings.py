@@ -26,7 +26,7 @@ control { time 0.1 s  resolution 5 cm  CONTROL }
     ],
 )
 def test_friction_of_one_of_two_is_told(prepared, slab, control, more, against):
-    """It works as 0, as the root of the product: once, with the line to write, unless a 0 is written; a warning if they are near."""
+    """It works as 0, the root of the product: once, with the line to write, unless a 0 is written; a warning if near."""
     ready = prepared(ONE_SIDED.replace("SLAB", slab).replace("CONTROL", control) + more)
     found = [w for w in (*ready.warnings, *ready.certificate.notes) if "works as 0" in w.message]
     assert [w.severity for w in found] == [{"slab": "warning", "far": "note"}[against]] if against else not found
