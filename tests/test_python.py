@@ -84,6 +84,39 @@ def test_a_sweep_that_is_left_ends_its_runs(tmp_path):
     assert not (checkpoint.parent / ".in-use").exists()
 
 
+def test_names_of_a_scene_that_are_words_of_python(tmp_path):
+    """A table names them; as keywords they would mean something else, to overwrite earlier results among it."""
+    text = "let force = 0.3\nlet values = 1\nlet strict = 1\nlet self = 1\n" + TEXT.replace(
+        "position (0 m, 0 m, h)", "position (0 m, 0 m, force * 1 m)"
+    )
+    scene = Scene.from_text(text.split("expect")[0], "pair", folder=tmp_path)
+    table = {"force": [0.4, 0.5], "self": [1, 2], "values": [3]}
+    runs = list(scene.sweep(table, tmp_path / "s", processes=2))
+    assert [run.values for run in runs] == [{"force": f, "self": s, "values": 3} for f in (0.4, 0.5) for s in (1, 2)]
+    assert runs[2].trajectory.objects["ball"].center_of_mass[0, 2] == pytest.approx(0.5)
+    changed = scene.where({"strict": 7, "self": 2}, values=3)
+    assert changed.values == {"strict": 7, "self": 2, "values": 3}
+    for wrong in (
+        lambda: scene.sweep(tmp_path / "s", force=[0.4, 0.5]),
+        lambda: scene.sweep({"h": [1.0]}, force=1),
+        lambda: scene.run(tmp_path / "s" / "force=0.4,self=1,values=3", force="no"),
+        lambda: Scene.from_text(text, strict=7),
+    ):
+        with pytest.raises(UsageError, match=r"is True or False here; .* in a table, where\(\{'(force|strict)'"):
+            wrong()
+    with pytest.raises(UsageError, match="h: given twice"):
+        scene.sweep({"h": [1.0]}, h=[2.0])
+    with pytest.raises(UsageError, match="two folders"):
+        scene.sweep("a", "b", h=[1.0])
+
+
+@pytest.mark.parametrize("at", [0.7777, 0.001, 1 / 3, 1.0, 0.123456789])
+def test_a_picture_at_any_time(tmp_path, at):
+    """Also where it is no whole number of frames of the scene: nobody has asked for frames."""
+    drawn = Scene.from_text(TEXT.split("expect")[0], "pair").picture(tmp_path / "p.png", at=at, size=(64, 48))
+    assert drawn.exists()
+
+
 def test_what_a_sweep_refuses(tmp_path):
     """All problems before the first run; an error of a run comes from its process as it is."""
     scene = Scene.from_text(TEXT, "pair")

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import os
 import re
 import sys
@@ -14,6 +15,9 @@ from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import NoneType
+
+import numpy as np
 
 from .certificate import Certificate
 from .children import Workers
@@ -63,10 +67,12 @@ class Scene:
 
     @classmethod
     def load(cls, path: str | Path, *, strict: bool = False, **overrides: float | str) -> Scene:
-        """Read a scene file; keyword arguments override its ``let`` names, as ``--set`` does.
+        """Read a scene file; keyword arguments override its ``let`` names, as ``--set`` does. Names that are words of this method
+        too are given to `where`.
 
-        Raises SceneError with all problems in ``.problems``.
+        Raises SceneError with all problems in ``.problems``, UsageError for a ``strict`` that is not True or False.
         """
+        check_flags(strict=strict)
         read = partial(load_scene, path, strict=strict)
         return cls(read(overrides=overrides), read, overrides)
 
@@ -81,22 +87,24 @@ class Scene:
             name: of the scene and of its output folder.
             folder: where its includes and meshes are; None is the current folder.
             strict: refuse numbers that have a dimension but no unit.
-            overrides: values of its ``let`` names, such as ``h=0.5`` or ``h="50 cm"``.
+            overrides: values of its ``let`` names, such as ``h=0.5`` or ``h="50 cm"``. Names that are words of this method too
+                are given to `where`.
 
-        Raises SceneError with all problems in ``.problems``.
+        Raises SceneError with all problems in ``.problems``, UsageError for a ``strict`` that is not True or False.
         """
+        check_flags(strict=strict)
         read = partial(parse_scene, text, name, strict=strict, folder=folder)
         return cls(read(overrides=overrides), read, overrides)
 
-    def where(self, **values: float | str) -> Scene:
-        """The same scene with other values of its ``let`` names, such as ``h=0.5``.
+    def where(self, values: Mapping[str, float | str] | None = None, /, **named: float | str) -> Scene:
+        """The same scene with other values of its ``let`` names, such as ``h=0.5``, or ``{"h": 0.5}``, which any name can have.
 
         Raises SceneError with all problems, UsageError for a scene that was not read from a text.
         """
         if self._read is None:
             raise UsageError("this Scene was made of records; only one that was read by Scene.load or Scene.from_text has names")
-        values = self.values | values
-        return Scene(self._read(overrides=values), self._read, values)
+        together = self.values | together_of(values or {}, named)
+        return Scene(self._read(overrides=together), self._read, together)
 
     @cached_property
     def prepared(self) -> Prepared:
@@ -133,8 +141,9 @@ class Scene:
         So they are for any number of ``threads``; unless told, a process has as many as pay of all cores divided by executors.
         ``progress`` shows a bar, by default in a notebook only; ``on_progress`` is called with a Progress after every frame.
         A scene with ``accuracy error p %`` and no setting stored beside it is studied first, for two minutes at most.
-        Raises SceneError, RefusedError, DivergedError, OutputError.
+        Raises SceneError, RefusedError, DivergedError, OutputError, and UsageError for a flag that is not True or False.
         """
+        check_flags(force=force, movie=movie, progress=progress)
         started = time.perf_counter()
         settled = settle(self.record, make=True, study=output_folder(self.record, folder) / STUDY)
         ready = self.prepared if settled.scene is self.record else prepare(settled.scene)
@@ -158,34 +167,45 @@ class Scene:
 
     def sweep(
         self,
+        values: Mapping[str, Iterable[float | str]] | str | Path | None = None,
+        /,
         folder: str | Path | None = None,
         *,
         processes: int | None = None,
         force: bool = False,
         movie: bool = False,
         progress: bool | None = None,
-        **values: Iterable[float | str],
+        **named: Iterable[float | str],
     ) -> Iterator[Result]:
         """Run the scene for all combinations of values of its ``let`` names, several at a time; gives their results in order.
 
         ::
 
-            for run in scene.sweep(h=[0.5, 1.0], young=["100 kPa", "1 MPa"]):
+            for run in scene.sweep({"h": [0.5, 1.0], "young": ["100 kPa", "1 MPa"]}):
                 print(run.values, run.ledger.residual)
 
         Args:
+            values: lists of values by name. Names that are no words of this method may be keywords: ``sweep(h=[0.5, 1.0])``.
+                A path here is the folder.
             folder: of all runs, each in a folder such as ``h=0.5,young=1 MPa`` inside; None is ``NAME.sweep`` beside the scene.
             processes: how many runs at a time; None is one for each core.
             force, movie: as `run` takes them.
             progress: shows a bar of runs, by default in a notebook only.
-            values: lists of values by name.
 
-        Raises SceneError before the first run where any combination has problems, UsageError for no or equal combinations. A
-        run that fails raises what `run` does when its turn has come; runs before it keep their results.
+        Raises SceneError before the first run where any combination has problems, UsageError for no or equal combinations and
+        for flags that are not True or False. A run that fails raises what `run` does when its turn has come; runs before it keep
+        their results.
         """
-        points = [dict(zip(values, point)) for point in itertools.product(*values.values())]
+        check_flags(force=force, movie=movie, progress=progress)
+        table: Mapping = values if isinstance(values, Mapping) else {}
+        if isinstance(values, (str, Path)):
+            if folder is not None:
+                raise UsageError(f"sweep has two folders, {values} and {folder}; its first argument may be a table of values")
+            folder = values
+        lists = together_of(table, named)
+        points = [dict(zip(lists, point)) for point in itertools.product(*lists.values())]
         names = [",".join(f"{name}={value}" for name, value in point.items()) for point in points]
-        if not values or not points or len(set(names)) < len(names):
+        if not lists or not points or len(set(names)) < len(names):
             raise UsageError("sweep needs lists of different values of names of the scene, e.g. scene.sweep(h=[0.5, 1.0])")
         scenes = [self.where(**point) for point in points]
         home = default_folder(self.record).with_suffix(".sweep") if folder is None else Path(folder)
@@ -240,6 +260,23 @@ class Scene:
         return html_table(repr(self)[1:-1], ("object", "mass or density"), rows)
 
 
+def check_flags(**flags: object) -> None:
+    """Raises UsageError for one that is not True, False or None: ``force=["1 N", "2 N"]`` means a name of the scene."""
+    for name, value in flags.items():
+        if not isinstance(value, (bool, np.bool_, NoneType)):
+            raise UsageError(
+                f"{name}={value!r}: {name} is True or False here; values of a name of the scene are given in a table, "
+                f"where({{{name!r}: 1.0}}) or sweep({{{name!r}: [1.0, 2.0]}})"
+            )
+
+
+def together_of(values: Mapping, named: Mapping) -> dict:
+    """Values of a table and of keywords. Raises UsageError for a name that is in both."""
+    if both := values.keys() & named.keys():
+        raise UsageError(f"{', '.join(sorted(both))}: given twice, in the table and as a keyword; leave one out")
+    return {**values, **named}
+
+
 def _run_point(scene: Scene, folder: Path, force: bool, movie: bool) -> Result:
     """One run of a sweep, in a process of its own."""
     return scene.run(folder, force=force, movie=movie, progress=False)
@@ -265,7 +302,8 @@ def draw_picture(
     # Springs are drawn between all particles, whatever the scene stores.
     control = replace(record.control, save=Save.ALL)
     if at > 0.0:
-        frames = max(record.control.frames, 1.0 / at)
+        # The fewest frames that end at this time, at least those of the scene.
+        frames = math.ceil(record.control.frames * at * (1.0 - 1e-9)) / at
         control = replace(control, time=at, frames=frames, accuracy=Accuracy.PREVIEW, resolution=None, timestep=None)
     with TemporaryDirectory(prefix="mdanim-picture-") as name:
         folder, ready = Path(name), prepare(replace(record, control=control, expects=()))

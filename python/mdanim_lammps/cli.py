@@ -21,6 +21,7 @@ from .command_options import (
     Executors,
     Force,
     Out,
+    Overwrite,
     Quality,
     Quiet,
     Set,
@@ -175,6 +176,7 @@ def picture(
     springs: Annotated[bool, Parameter(negative=())] = False,
     boxes: Annotated[bool, Parameter(negative=())] = False,
     set_: Set = (),
+    force: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
     """Draw a scene before it is run, with the scene's camera.
@@ -201,7 +203,7 @@ def picture(
     check_size(size)
     time = 0.0 if at is None else seconds_of("--at", at)
     record = load(scene, set_)
-    path = picture_file(scene.with_suffix(".png") if out is None else out, ".png")
+    path = picture_file(scene.with_suffix(".png") if out is None else out, ".png", force=force)
     with progress_bar("preview", quiet=quiet or not time) as bar:
         draw_picture(
             with_quality(record, quality),

@@ -64,4 +64,5 @@ Quality = Annotated[
 ]
 View = Annotated[bool, Parameter(name="--view", negative=(), help="Show the run in a browser while it goes on.")]
 Edit = Annotated[bool, Parameter(negative=(), help="Let the page change the scene's text and run it again; implies --view.")]
+Overwrite = Annotated[bool, Parameter(name="--force", negative=(), help="Overwrite a file that this program has not made.")]
 Force = Annotated[bool, Parameter(negative=(), help="Overwrite an output folder of an earlier run.")]

@@ -130,12 +130,15 @@ def frame_range(text: str) -> slice:
     return slice(*(int(word) if word else None for word in match.groups()))
 
 
-def picture_file(path: Path, suffix: str) -> Path:
-    """The file that -o names for a movie or a picture. Raises UsageError."""
+def picture_file(path: Path, suffix: str, *, force: bool) -> Path:
+    """The file that -o names for a movie or a picture. Raises UsageError, and OutputError where it is not to be overwritten."""
+    from .results.overwriting import check_overwriting
+
     if path.suffix.lower() != suffix:
         raise UsageError(f"-o {path}: this file is written as {suffix}; give it a name such as {path.stem or 'movie'}{suffix}")
     if not path.parent.is_dir():
         raise OutputError(f"-o {path}: there is no folder {path.parent}; make it first, or name another")
+    check_overwriting(path, force=force)
     return path
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from .command_options import AllowUnstable, Control, Executors, Quality, Quiet, Size, Threads, View, whole_number
+from .command_options import AllowUnstable, Control, Executors, Overwrite, Quality, Quiet, Size, Threads, View, whole_number
 from .command_steps import (
     Viewer,
     adopt,
@@ -82,6 +82,7 @@ def render(
     out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
     frames: Annotated[bool, Parameter(negative=())] = False,
     scene: Path | None = None,
+    force: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
     """Draw the movie of an output folder again, with another size, rate or camera.
@@ -110,7 +111,7 @@ def render(
     if scene is not None:
         _warn_of_slow_motion(record.render, stored.control.frames)
     record = with_quality(record, quality)
-    path = movie_file(folder, record) if out is None else picture_file(out, ".mp4")
+    path = movie_file(folder, record) if out is None else picture_file(out, ".mp4", force=force)
     draw_movie(folder, record, path, quiet=quiet, size=size, fps=fps, frames=folder / "frames" if frames else None)
     if not quiet:
         print(f"movie    {path}" + (f"   pictures in {folder / 'frames'}" if frames else ""))
@@ -162,6 +163,7 @@ def report(
     *,
     out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
     exact: Annotated[bool, Parameter(negative=())] = False,
+    force: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
     """Write a run as one HTML file: replay, energies, cost, certificate, effects, scene. It opens from disk, without a network.
@@ -177,7 +179,7 @@ def report(
     """
     from .view.export import write_report
 
-    path = folder / "report.html" if out is None else picture_file(out, ".html")
+    path = folder / "report.html" if out is None else picture_file(out, ".html", force=force)
     adopt(folder, quiet=quiet)
     with progress_bar("report", quiet=quiet) as bar:
         every = write_report(folder, path, exact=exact, on_progress=lambda done, total: bar(done, total, ""))
@@ -238,7 +240,9 @@ def export(
         print(f"         {note}")
 
 
-def timeline(folder: Path, /, *, out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None) -> None:
+def timeline(
+    folder: Path, /, *, out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None, force: Overwrite = False
+) -> None:
     """Draw what each executor did, and which objects it owned, in a run with -n.
 
     Parameters
@@ -258,7 +262,7 @@ def timeline(folder: Path, /, *, out: Annotated[Path | None, Parameter(name=["-o
             f"{folder} was simulated by one process, so there is no {TIMELINE}; "
             "executors are asked for with -n: mdanim-lammps SCENE -n 2"
         )
-    path = folder / "timeline.png" if out is None else picture_file(out, ".png")
+    path = folder / "timeline.png" if out is None else picture_file(out, ".png", force=force)
     draw(Timeline.read(folder), path, scene.title or scene.name)
     print(f"picture  {path}")
 

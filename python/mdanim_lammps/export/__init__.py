@@ -5,14 +5,13 @@ from __future__ import annotations
 
 import os
 import re
-import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
 from ..errors import OutputError, SetupError, UsageError
-from ..results.files import disk_errors, sync
+from ..results.files import disk_errors, scratch, sync
 from ..results.trajectory import Trajectory
 from ..results.untrusted import check_folder
 from ..scene.keywords import did_you_mean
@@ -118,8 +117,7 @@ def export(
     _make_way(targets, kind.pieces, force=force, delete=False)
     write = import_module(f".{kind.module}", __package__).write
     total = len(cut.frames)
-    with disk_errors(path), tempfile.TemporaryDirectory(prefix=".export-", dir=path.parent) as name:
-        part = Path(name)
+    with disk_errors(path), scratch(path.parent, "export") as part:
         notes = write(cut, part, path.stem, lambda done: on_progress(done, total))
         for made in (p for p in part.rglob("*") if p.is_file()):
             sync(made)

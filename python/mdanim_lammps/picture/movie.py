@@ -17,7 +17,8 @@ import numpy as np
 from ..children import ChildLost, Workers
 from ..errors import OutputError, SetupError, UsageError
 from ..processes import cores
-from ..results.files import disk_errors, sync, write_whole
+from ..results.files import disk_errors, scratch, sync, write_whole
+from ..results.overwriting import MADE
 from ..results.trajectory import Trajectory
 from ..scene.render import Render
 from .marks import Marks
@@ -30,6 +31,7 @@ CODING = {
     "output_params": [
         *("-vf", "scale=out_color_matrix=bt709:out_range=tv", "-preset", "veryfast", "-crf", "17"),
         *("-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-movflags", "+faststart"),
+        *("-metadata", f"comment={MADE}"),
     ],
 }
 """H.264 that browsers and slides play."""
@@ -227,7 +229,7 @@ def _encoder(path: Path, size: tuple[int, int], rate: Fraction, pictures: int) -
     with ExitStack() as stack:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            part = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix=".movie-", dir=path.parent))) / "movie.mp4"
+            part = stack.enter_context(scratch(path.parent, "movie")) / "movie.mp4"
         except OSError as error:
             raise OutputError(f"{path}: cannot be written: {error.strerror}; name another file or folder") from None
         said = stack.enter_context(tempfile.TemporaryFile())
@@ -276,7 +278,10 @@ def _stderr_into(file: int) -> Iterator[None]:
 
 def _save_png(picture: np.ndarray, path: Path) -> None:
     from PIL import Image
+    from PIL.PngImagePlugin import PngInfo
 
     with disk_errors(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(path, lambda part: Image.fromarray(picture).save(part, format="png", compress_level=4))
+    words = PngInfo()
+    words.add_text("Software", MADE)
+    write_whole(path, lambda part: Image.fromarray(picture).save(part, format="png", compress_level=4, pnginfo=words))

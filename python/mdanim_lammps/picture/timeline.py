@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import OutputError
 from ..results.files import write_whole
+from ..results.overwriting import MADE
 from ..results.timeline import KINDS, Timeline
 from .palette import rgb
 from .plot import own_style
@@ -117,7 +118,7 @@ def draw(timeline: Timeline, path: Path, title: str = "") -> None:
     _draw_moves(panel(0.6 + owning, moving), timeline)
     _draw_doing(panel(1.25 + owning + moving, doing), timeline, colors, 1.0 + 0.42 / doing)
     figure.text(left / width, 1.0 - 0.15 / height, fontsize=12, va="top", s=headline(timeline, title), parse_math=False)
-    write_whole(path, lambda part: figure.savefig(part, dpi=130, format="png", metadata={"Software": None}))
+    write_whole(path, lambda part: figure.savefig(part, dpi=130, format="png", metadata={"Software": MADE}))
 
 
 def _draw_doing(axes, timeline: Timeline, colors: np.ndarray, legend_at: float) -> None:

@@ -8,6 +8,7 @@ import errno
 import fcntl
 import json
 import os
+import re
 import secrets
 import shutil
 import time
@@ -48,6 +49,26 @@ claims: set[int] = set()
 """Descriptors of the locks of this process. The ranks of a run are given them, so that a lock lasts until all have ended."""
 
 
+SCRIPT = "# Written by mdanim-lammps"
+"""Beginning of in.NAME."""
+RESULTS = (
+    *(
+        "scene.lock.txt",
+        "certificate.json",
+        "trajectory.h5",
+        "trajectory.h5.part",
+        "ledger.csv",
+        CHECKPOINT,
+        "cost.json",
+        SUMMARY,
+    ),
+    *("progress.jsonl", "timeline.json", "timeline.png", "movie.mp4", "report.html", "edited.txt", STOP, PAUSE, "log.lammps"),
+)
+"""Files of every run."""
+INSIDE = {"meshes": r"[0-9a-f]{32}\.(stl|obj|ply)", "frames": r"frame-\d+\.png"}
+"""Folders of a run, and what the names of its files in them are."""
+
+
 @contextmanager
 def disk_errors(path: Path) -> Iterator[None]:
     """Turn OSError into OutputError that names the file and a way out."""
@@ -67,36 +88,83 @@ def _way_out(path: Path, error: OSError) -> str:
 
 @contextmanager
 def open_folder(folder: Path, *, force: bool, keep: Sequence[str] = ()) -> Iterator[None]:
-    """Make an output folder that is empty but for folders named in ``keep``, and claim it.
+    """Make an output folder that holds no results but folders named in ``keep``, and claim it.
 
     Raises OutputError when something is in the way and ``force`` is not given, and when another run writes into the folder.
     """
     with disk_errors(folder):
-        _to_delete(folder, force, keep)  # refused before anything is made in a folder that is not ours
+        _check_folder(folder, force, keep)  # refused before anything is made in a folder that is not ours
         folder.mkdir(parents=True, exist_ok=True)
     with claimed(folder):
         with disk_errors(folder):
-            # The folder is no longer ours once the mark is gone: it goes last, so that a deletion that fails can be repeated.
-            for path in sorted(_to_delete(folder, force, keep), key=lambda path: path.name == MARK):
-                shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+            if _check_folder(folder, force, keep):
+                delete_results(folder)
         yield
 
 
-def _to_delete(folder: Path, force: bool, keep: Sequence[str]) -> list[Path]:
-    """What stands in the way of a new run. Raises OutputError where it is not to be deleted, and OSError."""
+def _check_folder(folder: Path, force: bool, keep: Sequence[str]) -> bool:
+    """Whether the folder holds anything. Raises OutputError where that stands in the way, and OSError."""
     if not folder.exists():
-        return []
+        return False
     if not folder.is_dir():
         raise OutputError(f"{folder} is a file; name another folder with -o DIR")
     found = [path for path in folder.iterdir() if path.name not in (*keep, IN_USE)]
     if found and not force:
         raise OutputError(f"{folder} exists; overwrite it with --force, or write elsewhere with -o DIR")
-    if found and not _ours(folder):
+    if found and not _is_ours(folder):
         raise OutputError(
             f"{folder} holds files that are no results of mdanim-lammps; --force does not delete "
             "them: name another folder with -o DIR"
         )
-    return found
+    return bool(found)
+
+
+def _is_ours(folder: Path) -> bool:
+    try:
+        return read_json(folder / MARK).get("program") == PROGRAM
+    except OutputError:
+        return False
+
+
+def delete_results(folder: Path) -> None:
+    """Delete what a run, a build, a movie, a report and a timeline have written into an output folder. The manifest goes last: a
+    deletion that fails can be repeated. Raises OSError."""
+    for path in (*_results(folder), folder / MARK):
+        path.unlink(missing_ok=True)
+    for name in INSIDE:
+        remove_empty(folder / name)
+
+
+def _results(folder: Path) -> Iterator[Path]:
+    yield from (folder / name for name in (*RESULTS, *_movie(folder)) if not _is_folder(folder / name))
+    for script in folder.glob("in.*"):
+        if script.is_file() and script.read_text(encoding="utf-8", errors="replace").startswith(SCRIPT):
+            name = script.name.removeprefix("in.")
+            # What `lmp` leaves of it too: it would be taken for the dump of the new run.
+            yield from (folder / own for own in (script.name, f"data.{name}", f"contact.{name}", f"{name}.lammpstrj"))
+    for name, own in INSIDE.items():
+        if _is_folder(folder / name):
+            yield from (path for path in (folder / name).iterdir() if re.fullmatch(own, path.name) and not _is_folder(path))
+
+
+def _movie(folder: Path) -> list[str]:
+    """Where the scene of the folder wants its movie."""
+    try:
+        name = json.loads((folder / MARK).read_text(encoding="utf-8")).get("movie")
+    except (OSError, ValueError, AttributeError):
+        return []
+    inside = isinstance(name, str) and name.endswith(".mp4") and not Path(name).is_absolute() and ".." not in Path(name).parts
+    return [name] if inside else []
+
+
+def _is_folder(path: Path) -> bool:
+    return path.is_dir() and not path.is_symlink()
+
+
+def remove_empty(folder: Path) -> None:
+    """Remove a folder that is there and holds nothing."""
+    with suppress(OSError):
+        folder.rmdir()
 
 
 @contextmanager
@@ -111,6 +179,7 @@ def claimed(folder: Path) -> Iterator[None]:
     try:
         with disk_errors(folder):
             remove_parts(folder)
+            remove_left(folder)
         yield
     finally:
         claims.remove(descriptor)
@@ -149,13 +218,6 @@ def _locked(path: Path) -> int:
 def _is_open_as(path: Path, descriptor: int) -> bool:
     """Whether a path names the file that is open."""
     return path.exists() and os.path.samestat(path.stat(), os.fstat(descriptor))
-
-
-def _ours(folder: Path) -> bool:
-    try:
-        return read_json(folder / MARK).get("program") == PROGRAM
-    except OutputError:
-        return False
 
 
 def write_whole(path: Path, write: Callable[[Path], None] | str) -> None:
@@ -197,6 +259,47 @@ def remove_parts(folder: Path) -> None:
     for pattern in (".*.????????.part", f"{JOB}*"):
         for part in folder.glob(pattern):
             part.unlink(missing_ok=True)
+
+
+@contextmanager
+def scratch(folder: Path, kind: str) -> Iterator[Path]:
+    """A folder ``.KIND-...`` in another one for what is being written; those that killed processes have left are removed.
+
+    It is locked while it is used, as `IN_USE` of an output folder. Raises OutputError.
+    """
+    remove_left(folder)
+    place = folder / f".{kind}-{secrets.token_hex(4)}"
+    with disk_errors(place):
+        place.mkdir(parents=True)
+        lock = os.open(place / IN_USE, os.O_RDWR | os.O_CREAT, 0o666)
+        with suppress(OSError):  # without locks: what is left stays
+            fcntl.flock(lock, fcntl.LOCK_EX)
+    try:
+        yield place
+    finally:
+        shutil.rmtree(place, ignore_errors=True)
+        os.close(lock)
+
+
+def remove_left(folder: Path) -> None:
+    """Remove what killed processes have left of `scratch`."""
+    for place in folder.glob(".*-????????"):
+        if not _is_folder(place) or not re.fullmatch(r"\..+-[0-9a-f]{8}", place.name):
+            continue
+        try:
+            lock = os.open(place / IN_USE, os.O_RDWR | os.O_NOFOLLOW)
+        except OSError:
+            continue
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            shutil.rmtree(place, ignore_errors=True)
+        except BlockingIOError:
+            pass
+        except OSError as error:
+            if error.errno not in NO_LOCKS:
+                raise
+        finally:
+            os.close(lock)
 
 
 def sync(path: Path) -> None:

@@ -31,6 +31,7 @@ def manifest(scene: SceneRecord, lock: str, argv: list[str]) -> dict:
         "packages": versions,
         "argv": list(argv),
         "scene": str(scene.path) if scene.path else None,
+        "movie": scene.render.movie or "movie.mp4",
         "seed": scene.control.seed,
         "sha256": {"scene": source, "scene.lock.txt": digest},
     }

@@ -3,15 +3,13 @@
 
 from __future__ import annotations
 
-import shutil
-import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from ..results.files import read_json
+from ..results.files import read_json, scratch
 from ..results.stored import SUMMARY
 from ..results.trajectory import Trajectory
 from ..run.loop import Progress, simulate
@@ -74,14 +72,11 @@ def measure(scene: SceneRecord, setting: Setting, folder: Path, *, limit: float 
             if needed > limit:
                 raise TooLong(needed)
 
-    temporary = Path(tempfile.mkdtemp(prefix=f"{setting.key}-", dir=folder))
-    try:
+    with scratch(folder, setting.key) as temporary:
         result = simulate(ready, temporary, on_progress=look)
         with Trajectory(temporary) as t:
             times, center = (np.array(a[:], float) for a in (t.times, t.centers))
         penetration = read_json(temporary / "summary.json", SUMMARY)["penetration"]
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
     c = ready.certificate
     return Sample(
         setting,
