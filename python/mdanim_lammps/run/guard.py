@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +13,9 @@ from ..effects.envelope import wave_speed
 from ..engine.geometry import Geometry
 from ..errors import DivergedError, Problem
 from ..model.system import System
+from ..results.ledger import Ledger
 from ..scene.formatting import number, say
-from ..scene.scene import Accuracy, SceneRecord
+from ..scene.scene import Accuracy, ContactModel, SceneRecord
 from .observe import Observation
 from .prepare import Prepared
 
@@ -198,7 +200,7 @@ class Guard:
     def _kept(self) -> str:
         return f"the last good frame and checkpoint are kept in {self.folder}"
 
-    def warnings(self, residual: float) -> list[Problem]:
+    def warnings(self, ledger: Ledger) -> list[Problem]:
         """Of a finished run: where bodies have got dents, and whether it has missed the class of energy of its accuracy."""
         scene, goal, found = self.ready.scene, energy_class(self.ready.scene), []
         if self.dents:
@@ -214,18 +216,25 @@ class Guard:
                     severity="warning",
                 )
             )
-        if residual > goal:
-            found.append(self._missed(residual, goal))
+        if ledger.residual > goal:
+            found.append(self._missed(ledger, goal))
         return found
 
-    def _missed(self, residual: float, goal: float) -> Problem:
-        scene = self.ready.scene
+    def _missed(self, ledger: Ledger, goal: float) -> Problem:
+        """The energies do not add up as well as they should: with the frame that most of it came in, and what happened there."""
+        scene, rows = self.ready.scene, ledger.rows
+        change = [abs(b["residual"] - a["residual"]) for a, b in pairwise(rows)]
+        worst = change.index(max(change))
+        cause, cure = "", ", a smaller timestep, or some damping: impacts add energy to undamped objects"
+        met = any(rows[k].get(term) for k in (worst, worst + 1) for term in ("contact", "wall"))
+        if met and scene.control.contact_model is ContactModel.SURFACE:
+            cause, cure = ", where surfaces met: a step is long for the onset of their contact", " or a smaller timestep"
         return Problem(
             scene.control.spans.get("accuracy"),
-            f"the energy residual {number(residual)} is above {number(goal)}, "
-            f"which 'accuracy {_accuracy(scene).value}' stands for",
-            "where it matters, write a higher accuracy, a smaller timestep, or some damping: impacts add energy to undamped "
-            "objects",
+            f"the energy residual {number(ledger.residual)} is above {number(goal)}, which 'accuracy {_accuracy(scene).value}' "
+            f"stands for; most of it came from t = {number(rows[worst]['time'], 4)} to {number(rows[worst + 1]['time'], 4)} s"
+            + cause,
+            f"where it matters, write a higher accuracy{cure}",
             severity="warning",
         )
 

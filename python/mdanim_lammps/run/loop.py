@@ -338,7 +338,7 @@ class _Run:
         cost = self._cost(account)
         write_json(self.folder / "cost.json", cost.to_json())
         write_json(self.folder / SUMMARY, self._summary(outcomes))
-        return Result(self.folder, self.ledger, outcomes, cost, [*self.guard.warnings(self.ledger.residual), *self._overflow()])
+        return Result(self.folder, self.ledger, outcomes, cost, [*self.guard.warnings(self.ledger), *self._overflow()])
 
     def _overflow(self) -> list[Problem]:
         """Of a liquid that comes in."""
