@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from campaign import rounds
 from mdanim_lammps.results.compare import compare
 
 SCENE = """
@@ -30,6 +31,19 @@ def pwrite(file, data, offset):
 os.pwrite = pwrite
 """
 """A disk that is full from some call on; put into sitecustomize.py."""
+
+SMALL = """
+import errno, os
+whole, room = os.pwrite, {room}
+def pwrite(file, data, offset):
+    global room
+    room -= memoryview(data).nbytes
+    if room < 0:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    return whole(file, data, offset)
+os.pwrite = pwrite
+"""
+"""A disk with room for so many bytes of frames; put into sitecustomize.py."""
 
 
 def command(*arguments, **options) -> subprocess.CompletedProcess:
@@ -75,6 +89,31 @@ def test_a_write_that_fails(whole, tmp_path, calls):
     )
     assert not [name for name in os.listdir(out) if name.startswith(".")]
     resumed_elsewhere(out, tmp_path / "moved.out", folder)
+
+
+@pytest.mark.soak
+@pytest.mark.timeout(3600)
+def test_a_disk_that_is_full_at_forty_sizes(whole, tmp_path):
+    """Wherever in a run the room ends: one message, nothing left of what was begun, and the bits of the whole run elsewhere, from
+    the checkpoint or from the start."""
+    scene, folder = whole
+    path = os.pathsep.join([str(tmp_path), *filter(None, [os.environ.get("PYTHONPATH")])])
+    size, count, full = (folder / "trajectory.h5").stat().st_size, rounds(40), 0
+    for k in range(count):
+        (tmp_path / "sitecustomize.py").write_text(SMALL.format(room=round(size * (k + 0.5) / count)))
+        out = tmp_path / f"{k}.out"
+        ended = command(scene, "--no-movie", "-o", out, env=os.environ | {"PYTHONPATH": path})
+        if ended.returncode == 0:
+            assert compare(out, folder).equal
+            continue
+        full += 1
+        ended_well(ended, "No space left on device; make room and ")
+        assert not [name for name in os.listdir(out) if name.startswith(".")], k
+        if (out / "checkpoint").exists():
+            resumed_elsewhere(out, tmp_path / f"{k}.moved.out", folder)
+        else:
+            assert "repeat the command" in ended.stderr, (k, ended.stderr)
+    assert full > count // 2
 
 
 @pytest.fixture
