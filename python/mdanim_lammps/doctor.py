@@ -15,8 +15,7 @@ from pathlib import Path
 from . import __version__
 from .children import command, run
 from .engine import plugin
-from .model.spacing import available_memory
-from .processes import cores
+from .processes import available_memory, cores
 from .run.manifest import PACKAGES
 
 OK, NOTE, FAIL = 0, 1, 2

@@ -177,6 +177,15 @@ class DivergedError(MdanimError):
         return f"{self.why}\n  {self.kept}" if self.kept else self.why
 
 
+_NO_ROOM = re.compile("failed to (?:re)?allocate|cannot allocate memory|bad_alloc|failed to map segment", re.IGNORECASE)
+"""Words of LAMMPS, the kernel, C++ and the loader of libraries where memory has run out."""
+
+
+def out_of_memory(error: BaseException) -> bool:
+    """Whether an error says that memory has run out, whichever library has met it."""
+    return isinstance(error, MemoryError) or _NO_ROOM.search(str(error)) is not None
+
+
 class OutputError(MdanimError):
     """Disk full, output folder in the way, file not readable."""
 

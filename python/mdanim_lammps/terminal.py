@@ -12,8 +12,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import NoReturn
 
-from .errors import ExitCode, MdanimError
+from .errors import ExitCode, MdanimError, SceneError, out_of_memory
 from .interrupts import PROGRAM, heard, interrupt, on_signals
+from .processes import available_memory
 
 
 def open_streams() -> None:
@@ -85,6 +86,8 @@ def documented_exit(*, debug: bool) -> Iterator[None]:
             raise
         if heard:
             _interrupted()
+        if not isinstance(error, SceneError) and out_of_memory(error):
+            _no_room(error)
         print(error_line(error), file=sys.stderr)
         raise SystemExit(error.exit_code) from None
     except OSError as error:
@@ -96,12 +99,26 @@ def documented_exit(*, debug: bool) -> Iterator[None]:
             raise
         if heard:
             _interrupted()
+        if out_of_memory(error):
+            _no_room(error)
         print(error_line(error), file=sys.stderr)
         raise SystemExit(ExitCode.IO) from None
-    except Exception:
+    except Exception as error:
         if heard and not debug:
             _interrupted()
+        if out_of_memory(error) and not debug:
+            _no_room(error)
         raise
+
+
+def _no_room(error: Exception) -> NoReturn:
+    words = str(error).strip().split("\n")[0] or "memory ran out"
+    print(
+        f"{PROGRAM}: error: this would not fit in memory: {words}; {available_memory() * 1e-9:.1f} GB are free\n"
+        "  write a larger `resolution`, fewer objects or smaller pictures, or allow more memory (ulimit -v, the container)",
+        file=sys.stderr,
+    )
+    raise SystemExit(ExitCode.ENVIRONMENT) from None
 
 
 def _interrupted() -> NoReturn:

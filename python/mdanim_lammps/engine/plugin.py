@@ -13,8 +13,11 @@ from functools import lru_cache
 from pathlib import Path
 
 from ..errors import SetupError
+from ..processes import address_space
 from .calibration import calibrate
 
+OPENING = 0.1e9
+"""Memory below which libraries under LAMMPS end the process [bytes]."""
 VERSION = 20250722
 """The LAMMPS version whose headers the plugin was compiled with; its ABI is that of one version."""
 ABI = 12
@@ -46,6 +49,8 @@ def open_lammps(log: Path | None = None, comm=None):
     """
     if not _FILE.exists():
         raise SetupError(f"{_FILE} is missing: the plugin was not built; reinstall with 'pip install .'")
+    if address_space() < OPENING:
+        raise SetupError(f"LAMMPS cannot be opened: it cannot allocate memory, of which it takes {OPENING * 1e-9:.1f} GB")
     # Read by LAMMPS when an instance is made.
     paths = os.environ.get("LAMMPS_PLUGIN_PATH", "").split(":")
     if folder() not in paths:

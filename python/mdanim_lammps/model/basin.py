@@ -10,12 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import Problem
+from ..processes import available_memory
 from ..scene.formatting import at_least, estimate, number, say
 from ..scene.scene import Liquid, LiquidModel, Mesh, SceneRecord, Solid, Switch, Torus, Vector
 from . import shapes
 from .model import Model
 from .occupied import room
-from .spacing import available_memory, choose_spacing
+from .spacing import choose_spacing
 
 BYTES_PER_CELL = 20.0
 """What fix mdanim/liquid keeps per cell, measured 18 to 21: content, masks, counts of samples, marks."""

@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 
 from ..errors import Problem, SceneError
+from ..processes import available_memory
 from ..scene.formatting import number, say, whole
 from ..scene.scene import Accuracy, Box, HoldAll, Mesh, SceneRecord, Shape, Solid
 from . import shapes
@@ -71,7 +70,7 @@ def plan_spacing(scene: SceneRecord) -> Spacing:
         raise SceneError(sparse)
     plan = Spacing(h, set_by, particles, sum(particles) * BYTES_PER_PARTICLE, available_memory())
     if plan.memory > plan.available:
-        raise SceneError([_too_large(scene, plan)])
+        raise SceneError([too_large(scene, plan)])
     return plan
 
 
@@ -134,26 +133,16 @@ def estimate_particles(shape: Shape, h: float) -> int:
     return int(shapes.volume(shape) / h**3 + 0.5 * 1.5 * shapes.area(shape) / h**2) + 8
 
 
-def available_memory() -> float:
-    """Memory free for this process [bytes]: of the machine, or of its container where that has less."""
-    free = [float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")]
-    try:
-        lines = Path("/proc/meminfo").read_text().splitlines()
-        free += [1024.0 * int(line.split()[1]) for line in lines if line.startswith("MemAvailable")]
-        limit, used = (Path("/sys/fs/cgroup", f"memory.{name}").read_text() for name in ("max", "current"))
-        free += [float(limit) - float(used)] if limit.strip() != "max" else []
-    except OSError:
-        pass  # not Linux, or no container: what was found so far counts
-    return min(free)
-
-
-def _too_large(scene: SceneRecord, plan: Spacing) -> Problem:
+def too_large(scene: SceneRecord, plan: Spacing) -> Problem:
+    """The problem of a scene that does not fit in memory, and how it would."""
     found = (
         f"about {whole(plan.total) if plan.total < 1e9 else number(plan.total)} particles at a spacing of {say(plan.h, 'm')} "
         f"need {_gigabytes(plan.memory)} GB, {_gigabytes(plan.available)} GB are free"
     )
+    if plan.memory <= plan.available:
+        found += ", and memory has run out all the same"
     # Particles go with 1/h^3; a tenth on top, because surfaces go with 1/h^2 only.
-    coarser = plan.h * 1.1 * (plan.memory / plan.available) ** (1 / 3)
+    coarser = plan.h * 1.1 * max(1.0, plan.memory / max(plan.available, 1e6)) ** (1 / 3)
     if plan.set_by == "resolution":
         return Problem(scene.control.spans.get("resolution"), found, f"try resolution {say(coarser, 'm')}")
     if mesh := _without_scale(scene, plan):

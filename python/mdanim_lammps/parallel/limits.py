@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 
 from ..errors import UsageError
-from ..model.spacing import available_memory
+from ..processes import available_memory
 
 MPIEXEC = "MDANIM_MPIEXEC"
 """Environment variable with the command that starts ranks, up to ``-n``: ``mpiexec -f hosts`` on a cluster, ``srun``."""

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..children import ChildLost, Workers
 from ..errors import OutputError, SetupError, UsageError
-from ..processes import cores
+from ..processes import cores, limited
 from ..results.files import disk_errors, scratch, sync, write_whole
 from ..results.overwriting import MADE
 from ..results.trajectory import Trajectory
@@ -114,7 +114,8 @@ def render_movie(
     size = (width + width % 2, height + height % 2)
     shown, rate = movie_frames(trajectory, fps, render.speed)
     processes = processes or processes_for(len(shown))
-    pictures = _draw_here if processes == 1 else _draw_apart
+    # A library that finds no memory ends its process: not this one, where that is likely.
+    pictures = _draw_here if processes == 1 and not limited() else _draw_apart
     with _encoder(Path(path), size, rate, len(shown)) as encode:
         for done, picture in enumerate(pictures(trajectory, render, size, shown, processes), start=1):
             encode(picture)

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..engine.state import Records, State, StateRecords
 from ..errors import OutputError
-from ..model.spacing import available_memory
+from ..processes import available_memory
 from .files import write_whole
 from .untrusted import check_room
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import OutputError
-from ..model.spacing import available_memory
+from ..processes import available_memory
 
 FARTHEST = 1e30
 """From the origin [m]: sums and single precision, in which pictures are drawn, hold what is nearer."""

@@ -18,6 +18,7 @@ from ..model.basin import check_basin, check_basin_memory, leaky_walls, open_hul
 from ..model.build import build_models
 from ..model.model import Model
 from ..model.overlap import check_geometry
+from ..model.spacing import plan_spacing, too_large
 from ..model.system import System, as_parts, assemble
 from ..scene.lock import lock_text
 from ..scene.meshes import mesh_files
@@ -66,8 +67,15 @@ def prepare(scene: SceneRecord, *, allow_unstable: bool = False, progress: Calla
                 )
             ]
         )
-    if too_large := check_basin_memory(scene):
-        raise SceneError(too_large)
+    if problems := check_basin_memory(scene):
+        raise SceneError(problems)
+    try:
+        return _prepare(scene, allow_unstable, progress)
+    except MemoryError:
+        raise SceneError([too_large(scene, plan_spacing(scene))]) from None
+
+
+def _prepare(scene: SceneRecord, allow_unstable: bool, progress: Callable[[int, int], None] | None) -> Prepared:
     models = build_models(scene, progress=progress)
     problems = check_geometry(scene, models) + check_basin(scene, models)
     resolved = resolve(effects.EFFECTS, scene)
