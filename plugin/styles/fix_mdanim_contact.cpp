@@ -27,6 +27,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 
 using namespace LAMMPS_NS;
@@ -97,6 +98,10 @@ int FixMdanimContact::read_word(int iarg, int narg, char **arg)
   }
   if (is("stiffness")) {
     settings.stiffness = number(iarg + 1, "stiffness", 0.0);
+    if (settings.stiffness == 0.0)
+      error->all(FLERR, iarg + 1,
+                 "fix mdanim/contact: stiffness must be above 0, got {}; leave the fix out where nothing is to touch",
+                 arg[iarg + 1]);
     return words;
   }
   if (is("damping")) {
@@ -154,8 +159,28 @@ void FixMdanimContact::init()
 {
   need_objects_in_open_box(this, lmp, "surfaces may meet");
   among.init(lmp);
+  need_molecules_of_pairs();
   threads_now = Threads();
   world_of_contact.use(nullptr, threads_now);    // until passes tell those of their instructions
+}
+
+// A rule for a molecule that there is not is a slip of the pen.
+void FixMdanimContact::need_molecules_of_pairs() const
+{
+  std::set<int> named;
+  for (const auto &[ids, law] : world_of_contact.settings.pairs) named.insert({ids.first, ids.second});
+  if (named.empty()) return;
+  const std::vector<int> ids_named(named.begin(), named.end());
+  std::vector<int> here(ids_named.size(), 0), found(ids_named.size(), 0);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const auto at = std::lower_bound(ids_named.begin(), ids_named.end(), atom->molecule[i]);
+    if (at != ids_named.end() && *at == atom->molecule[i]) here[at - ids_named.begin()] = 1;
+  }
+  MPI_Allreduce(here.data(), found.data(), static_cast<int>(here.size()), MPI_INT, MPI_MAX, world);
+  const auto missing = std::find(found.begin(), found.end(), 0);
+  if (missing != found.end())
+    error->all(FLERR, "fix {} mdanim/contact: pair names molecule {}, and no particle has this ID", id,
+               ids_named[missing - found.begin()]);
 }
 
 // --- objects ---

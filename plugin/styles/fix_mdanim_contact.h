@@ -64,6 +64,7 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
   enum class Contacts { STAY, ARE_REPLACED };
   int read_word(int iarg, int narg, char **arg);
   void read_bodies_of(const char *file);
+  void need_molecules_of_pairs() const;
   std::vector<SurveyedObject> survey() const;
   void take_objects(Contacts contacts);
   int number_of(tagint molecule) const;

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..model.planes import scene_planes
 from ..scene.scene import Save, Switch
 
 if TYPE_CHECKING:
@@ -44,6 +45,8 @@ class ContactForces:
 
     No frame holds forces. But where gravity and contact are all that acts on an object from outside, contact has brought the
     change of its momentum that gravity has not: exactly, as the leap-frog adds up forces. So the numbers cost nothing in a run.
+    A single object that is held, or has air drag, has the opposite of what contact has done to all others, where there are no
+    planes.
 
     Args:
         trajectory: of the run.
@@ -61,6 +64,9 @@ class ContactForces:
         self._gravity = np.array(scene.gravity, float) * falls
         held = np.add.reduceat(m.held, m.first[:-1]) > 0
         self._told = ~held & ~m.still & np.array([not solid.drag for solid in scene.solids])
+        self._alone = np.flatnonzero(~self._told)
+        if len(self._alone) != 1 or any(scene.effects.get(p.effect) is not Switch.OFF for p in scene_planes(scene)):
+            self._alone = self._alone[:0]
         if scene.liquid:
             self.why = "lift and drag of the liquid act as well, and frames do not tell them apart"
         elif not self._told.any():
@@ -68,12 +74,13 @@ class ContactForces:
 
     def since(self, frame: int) -> np.ndarray:
         """[N], shape (O, 3), mean from the frame before to this one; NaN in the first frame, and for objects that are held or
-        have air drag."""
+        have air drag, unless there is one of them alone and neither ground nor walls."""
         t = self._trajectory
         force = np.full((len(self._told), 3), np.nan)
         if frame and not self.why:
             change = (t.center_velocities[frame] - t.center_velocities[frame - 1]) / (t.times[frame] - t.times[frame - 1])
             force[self._told] = (t.metadata.object_mass[:, None] * (change - self._gravity))[self._told]
+            force[self._alone] = -force[self._told].sum(0)
         return force
 
 

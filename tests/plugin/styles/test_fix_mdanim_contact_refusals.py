@@ -221,3 +221,20 @@ def test_an_object_without_its_body_ends_the_run(fix):
     with pytest.raises(Exception, match=r"object 2 \(molecule ID\) has 27 particles, its body 1 has 36"):
         fix.command("run 0")
     assert len(lab.by_tag(fix, "x")) == 54
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        ("objects stiffness 0", "stiffness must be above 0, got 0"),
+        ("objects stiffness -1", "stiffness must be at least 0, got -1"),
+        ("objects pair 1 3 0.5 0.3", "pair names molecule 3, and no particle has this ID"),
+        ("objects pair 1 2 0.5 0.3 pair 7 2 0 0", "pair names molecule 7, and no particle has this ID"),
+    ],
+)
+def test_words_that_do_nothing_are_refused(tmp_path, words, why):
+    """A stiffness of 0, and rules for molecules that there are not."""
+    cubes = (Cuboid((2, 2, 2)), Cuboid((2, 2, 2), (0.1, 0, 2.1)))
+    with pytest.raises(Exception, match=why):
+        load(cubes, tmp_path, words)
+    load(cubes, tmp_path, "objects stiffness 0.5 pair 2 1 0.5 0.3").close()
