@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Every format is read back by its own library, with the numbers of the run."""
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -484,6 +485,15 @@ def test_the_command_says_what_it_wrote(folder, tmp_path):
     """Files, frames, and what the format cannot hold."""
     said = call("export", folder, "--to", "csv", "-o", tmp_path / "a.csv", "--frames", ":3").stdout
     assert said.startswith(f"export   {tmp_path}/a.csv   3 frames, ") and "contact forces are left out" in said
+
+
+def test_the_current_folder_is_exported(folder, tmp_path, monkeypatch):
+    """``export .``: the file is called as the folder is."""
+    shutil.copytree(folder, tmp_path / "here.out")
+    monkeypatch.chdir(tmp_path / "here.out")
+    done = export(Path("."), "csv")
+    assert [file.resolve() for file in done.files] == [tmp_path / "here.out" / "here.csv"]
+    assert done.files[0].exists()
 
 
 def test_types_of_particles_are_those_of_the_data_file(tmp_path):
