@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Every format is read back by its own library, with the numbers of the run."""
 
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -451,24 +450,6 @@ def test_what_is_there_is_kept(folder, tmp_path):
     assert (tmp_path / "a.vtk" / "thesis.tex").exists()
 
 
-@pytest.mark.parametrize("name", ["notes.vtp", "surfaces-000000.vtp.vtp", "frames-000000.vtp", "surfaces-000002.vtp"])
-def test_force_deletes_no_folders(folder, tmp_path, name):
-    """Neither a folder with the name of a piece, nor a file with another name, nor what a folder of another format holds."""
-    export(folder, "vtk", tmp_path / "a.pvd", every=4)
-    inside = tmp_path / "a.vtk" / name
-    if name.startswith("surfaces"):
-        inside.mkdir()
-        inside = inside / "kept.txt"
-    inside.write_text("mine")
-    other = tmp_path / "a.csv" / "surfaces-000000.vtp"
-    other.parent.mkdir()
-    other.write_text("mine")
-    for to, place in (("vtk", "a.pvd"), ("csv", "a.csv")):
-        with pytest.raises(OutputError, match="holds files that are no export"):
-            export(folder, to, tmp_path / place, force=True)
-    assert inside.read_text() == other.read_text() == "mine"
-
-
 @pytest.mark.parametrize("to", FORMATS)
 def test_a_failed_export_leaves_nothing(folder, tmp_path, to):
     """Neither under its name nor beside it, whatever happens after the first frame."""
@@ -485,15 +466,6 @@ def test_the_command_says_what_it_wrote(folder, tmp_path):
     """Files, frames, and what the format cannot hold."""
     said = call("export", folder, "--to", "csv", "-o", tmp_path / "a.csv", "--frames", ":3").stdout
     assert said.startswith(f"export   {tmp_path}/a.csv   3 frames, ") and "contact forces are left out" in said
-
-
-def test_the_current_folder_is_exported(folder, tmp_path, monkeypatch):
-    """``export .``: the file is called as the folder is."""
-    shutil.copytree(folder, tmp_path / "here.out")
-    monkeypatch.chdir(tmp_path / "here.out")
-    done = export(Path("."), "csv")
-    assert [file.resolve() for file in done.files] == [tmp_path / "here.out" / "here.csv"]
-    assert done.files[0].exists()
 
 
 def test_types_of_particles_are_those_of_the_data_file(tmp_path):

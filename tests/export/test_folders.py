@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Where exports go, and what they leave alone."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+from mdanim_lammps import Scene
+from mdanim_lammps.errors import OutputError
+from mdanim_lammps.export import export
+from scene_texts import FALL
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The output folder of a short run."""
+    place = tmp_path_factory.mktemp("run")
+    (place / "fall.txt").write_text(FALL.split("expect")[0].replace("time 0.3 s", "time 0.1 s"))
+    return Scene.load(place / "fall.txt").run().folder
+
+
+@pytest.mark.parametrize("name", ["notes.vtp", "surfaces-000000.vtp.vtp", "frames-000000.vtp", "surfaces-000002.vtp"])
+def test_force_deletes_no_folders(folder, tmp_path, name):
+    """Neither a folder with the name of a piece, nor a file with another name, nor what a folder of another format holds."""
+    export(folder, "vtk", tmp_path / "a.pvd", every=4)
+    inside = tmp_path / "a.vtk" / name
+    if name.startswith("surfaces"):
+        inside.mkdir()
+        inside = inside / "kept.txt"
+    inside.write_text("mine")
+    other = tmp_path / "a.csv" / "surfaces-000000.vtp"
+    other.parent.mkdir()
+    other.write_text("mine")
+    for to, place in (("vtk", "a.pvd"), ("csv", "a.csv")):
+        with pytest.raises(OutputError, match="holds files that are no export"):
+            export(folder, to, tmp_path / place, force=True)
+    assert inside.read_text() == other.read_text() == "mine"
+
+
+def test_the_current_folder_is_exported(folder, tmp_path, monkeypatch):
+    """``export .``: the file is called as the folder is."""
+    shutil.copytree(folder, tmp_path / "here.out")
+    monkeypatch.chdir(tmp_path / "here.out")
+    done = export(Path("."), "csv")
+    assert [file.resolve() for file in done.files] == [tmp_path / "here.out" / "here.csv"]
+    assert done.files[0].exists()
