@@ -9,7 +9,7 @@ from pathlib import Path
 
 import plugin_path
 import pytest
-from command_line import GOOD, run
+from command_line import GOOD, call, run
 
 
 @pytest.fixture
@@ -314,3 +314,19 @@ def test_check_is_quick(scenes):
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.splitlines()[-1] == "[]", done.stdout
+
+
+@pytest.mark.parametrize(
+    ("asked", "resumed", "drawn"),
+    [(["--no-movie"], [], False), (["--no-movie"], ["--movie"], True), ([], [], True), ([], ["--no-movie"], False)],
+)
+def test_a_resumed_run_draws_as_the_run_would(tmp_path, asked, resumed, drawn):
+    """Unless another wish is told."""
+    path, out = tmp_path / "cube.txt", tmp_path / "cube.out"
+    path.write_text(GOOD.replace("time 0.1 s", "time 0.1 s\n  frames 100 fps") + "render { size (64, 48) }\n")
+    loop = "mdanim_lammps.run.loop"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(f"{loop}._Stop.is_set", lambda stop: True)
+        assert call(path, *asked).returncode == 130
+    assert call("resume", out, *resumed).returncode == 0
+    assert (out / "summary.json").exists() and (out / "movie.mp4").exists() == drawn

@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The terminal: closed streams, poor encodings, signals, and how a command ends."""
 
+import io
 import os
 import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
+from pathlib import Path
 
 import pytest
 from mdanim_lammps.errors import ExitCode, OutputError
-from mdanim_lammps.terminal import documented_exit
+from mdanim_lammps.terminal import Printable, documented_exit
 
 PROGRAM = [sys.executable, "-m", "mdanim_lammps"]
 BALL = """
@@ -135,3 +138,48 @@ def test_debug_keeps_the_traceback():
     """Let an error through where ``--debug`` is given."""
     with pytest.raises(OutputError), documented_exit(debug=True):
         raise OutputError("disk full")
+
+
+def test_signs_that_command_a_terminal_are_escaped(tmp_path):
+    """Names of files too; what rich draws is drawn."""
+    import pty
+
+    name = "a\x1b]0;title\x07\x1b[31m\u202eb.txt"
+    (tmp_path / name).write_text(BALL.format(title="x"))
+    for words, told in (
+        (["check", "missing" + name], r"missinga_x1b]0;title_x07_x1b[31m_x202eb.txt is not there"),
+        (["render", name], r"a\x1b]0;title\x07\x1b[31m\u202eb.txt is a file"),
+    ):
+        ours, theirs = pty.openpty()
+        with subprocess.Popen([*PROGRAM, *words], stdout=theirs, stderr=theirs, cwd=tmp_path):
+            os.close(theirs)
+            said = b""
+            with suppress(OSError):  # the end of a terminal
+                while piece := os.read(ours, 4096):
+                    said += piece
+        os.close(ours)
+        assert told in said.decode()
+    written = io.StringIO()
+    stream = Printable(written)
+    assert stream.write("a\x1b[2J→\u3000\n\t\udcff") == 10 and written.getvalue() == "a\\x1b[2J→\u3000\n\t\\udcff"
+    assert stream.rich_proxied_file is written
+
+
+def test_a_name_that_is_not_utf_8(tmp_path):
+    """Or that has signs that cannot be printed: the scene is called by escapes, and the run can be drawn and resumed."""
+    from command_line import GOOD, call
+
+    for name, shown in ((b"k\xff", "k_xff"), (b"k\x1bb", "k_x1bb")):
+        path = Path(os.fsdecode(os.path.join(os.fsencode(tmp_path), name + b".txt")))
+        path.write_text(GOOD + "render { size (64, 48) }\n")
+        for words in (
+            ["check", path],
+            [path, "--no-movie"],
+            ["render", tmp_path / f"{shown}.out"],
+            ["report", tmp_path / f"{shown}.out"],
+        ):
+            done = call(*words)
+            assert done.returncode == 0, done.stderr
+        assert shown in call("resume", tmp_path / f"{shown}.out").stderr
+        path.write_text(GOOD.replace("kPa", "kg"))
+        assert f"{shown}.txt:8:" in call("check", path).stderr

@@ -40,7 +40,7 @@ from .run.result import Result
 from .scene.formatting import say
 from .scene.keywords import Named
 from .scene.meshes import mesh_files
-from .scene.parse import load_scene, parse_scene
+from .scene.parse import load_scene, name_of, parse_scene
 from .scene.scene import Accuracy, Save, SceneRecord
 from .study.bench import BUDGET
 from .study.study import Study, run_study
@@ -148,7 +148,7 @@ class Scene:
         settled = settle(self.record, make=True, study=output_folder(self.record, folder) / STUDY)
         ready = self.prepared if settled.scene is self.record else prepare(settled.scene)
         quiet = not (in_notebook() if progress is None else progress)
-        with open_run(ready, folder, force=force) as folder, progress_bar("run", quiet=quiet) as bar:
+        with open_run(ready, folder, force=force, draws=movie) as folder, progress_bar("run", quiet=quiet) as bar:
 
             def tell(now: Progress) -> None:
                 bar(now.frame, now.frames, progress_line(now))
@@ -344,7 +344,7 @@ def default_folder(record: SceneRecord) -> Path:
 
 
 @contextmanager
-def open_run(ready: Prepared, folder: str | Path | None, *, force: bool) -> Iterator[Path]:
+def open_run(ready: Prepared, folder: str | Path | None, *, force: bool, draws: bool = True) -> Iterator[Path]:
     """Make the output folder (None: the default one) with all that is known before the run, and keep other runs out of it.
     Raises OutputError."""
     folder = output_folder(ready.scene, folder)
@@ -352,7 +352,7 @@ def open_run(ready: Prepared, folder: str | Path | None, *, force: bool) -> Iter
     if force and (own := [p.name for p in mesh_files(ready.scene) if p.resolve().is_relative_to(folder.resolve())]):
         raise OutputError(f"{folder} holds the mesh {own[0]} of this scene and cannot be emptied; write elsewhere with -o DIR")
     with open_folder(folder, force=force, keep=(STUDY,)):
-        write_json(folder / MARK, manifest(ready.scene, ready.lock, sys.argv))
+        write_json(folder / MARK, manifest(ready.scene, ready.lock, sys.argv, draws=draws))
         write_inputs(ready, folder)
         yield folder
 
@@ -387,7 +387,7 @@ def stored_scene(folder: Path) -> SceneRecord:
         raise OutputError(f"{folder} {what}; name the folder that a run has written, NAME.out beside NAME.txt or what -o said")
     name = read_manifest(folder).get("scene")
     scene = load_scene(folder / "scene.lock.txt")
-    return replace(scene, name=Path(name).stem if isinstance(name, str) and name else folder.resolve().stem)
+    return replace(scene, name=name_of(name if isinstance(name, str) and name else str(folder.resolve())))
 
 
 def run_frames(

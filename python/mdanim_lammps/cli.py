@@ -103,7 +103,7 @@ def run(
     announce(ready, quiet, verbose, executors, control)
     if executors > 1 and not quiet:
         print("\n".join(speedup_lines(forecast_speedup(ready, executors))), flush=True)
-    with Viewer(view, scene if edit else None) as viewer, open_run(ready, out, force=force) as folder:
+    with Viewer(view, scene if edit else None) as viewer, open_run(ready, out, force=force, draws=movie) as folder:
         viewer.start(folder)
         simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, threads=threads, control=control)
 

@@ -40,6 +40,16 @@ class Span:
         return f"{self.file}:{self.line}:{self.column}"
 
 
+CONTROL = r"\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff"
+"""Signs that command a terminal or turn the direction of a text, and bytes that are not UTF-8, as in a class of a pattern."""
+_CONTROL = re.compile(f"[{CONTROL}\t\n\r]")
+
+
+def escaped(name: str) -> str:
+    """A name of a file with such signs as ``_x1b``. It is what messages, pages, files and LAMMPS's input are given."""
+    return _CONTROL.sub(lambda found: f"_x{ord(found[0]) & (0xFF if found[0] >= chr(0xD800) else 0xFFFF):02x}", name)
+
+
 _ENDLESS = re.compile(r"\S{500,}")
 """What is no word any more, as of a binary file."""
 

@@ -40,7 +40,7 @@ def resume(
     executors: Executors = 1,
     threads: Threads = None,
     control: Control = None,
-    movie: bool = True,
+    movie: bool | None = None,
     view: View = False,
     allow_unstable: AllowUnstable = False,
     quiet: Quiet = False,
@@ -52,11 +52,12 @@ def resume(
     folder
         The output folder of a run that was stopped.
     movie
-        Make movie.mp4 at the end.
+        Make movie.mp4 at the end; if left out, where the run was to make one.
     """
     from .api import stored_scene
     from .results.checkpoint import Checkpoint
     from .results.files import CHECKPOINT, SUMMARY, claimed
+    from .results.stored import read_manifest
 
     check_executors(executors)
     scene = stored_scene(folder)
@@ -67,9 +68,9 @@ def resume(
         ready = prepare(scene, allow_unstable=allow_unstable)
         announce(ready, quiet, False, executors, control)
         viewer.start(folder)
-        simulate_and_draw(
-            ready, folder, quiet=quiet, movie=movie, executors=executors, threads=threads, control=control, resume=checkpoint
-        )
+        draws = read_manifest(folder).get("draws", True) if movie is None else movie
+        options = {"executors": executors, "threads": threads, "control": control, "resume": checkpoint}
+        simulate_and_draw(ready, folder, quiet=quiet, movie=draws, **options)
 
 
 def render(

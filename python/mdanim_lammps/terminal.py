@@ -5,14 +5,15 @@ from __future__ import annotations
 
 import gc
 import os
+import re
 import select
 import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import NoReturn
+from typing import Any, NoReturn, TextIO
 
-from .errors import ExitCode, MdanimError, SceneError, out_of_memory
+from .errors import CONTROL, ExitCode, MdanimError, SceneError, out_of_memory
 from .interrupts import PROGRAM, heard, interrupt, on_signals
 from .processes import available_memory
 
@@ -32,6 +33,27 @@ def open_streams() -> None:
             setattr(sys, name, os.fdopen(number, "w" if number else "r", encoding="utf-8", closefd=False))
         if number and hasattr(getattr(sys, name), "reconfigure"):
             getattr(sys, name).reconfigure(errors="backslashreplace")
+        if number and getattr(sys, name).isatty() and not isinstance(getattr(sys, name), Printable):
+            setattr(sys, name, Printable(getattr(sys, name)))
+
+
+_CONTROL = re.compile(f"[{CONTROL}]")
+
+
+class Printable:
+    """A stream to a terminal: signs that command it, as a file's name may have, are written as escapes. rich, whose own signs
+    colour text and move the cursor, takes the stream itself, by the name that it looks for."""
+
+    def __init__(self, raw: TextIO):
+        self.rich_proxied_file = self.raw = raw
+
+    def write(self, text: str) -> int:
+        """Write a text, and return its length."""
+        self.raw.write(_CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), text))
+        return len(text)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.raw, name)
 
 
 @contextmanager

@@ -16,6 +16,8 @@ MANIFEST = record(
         "version": maybe(text),
         "python": maybe(text),
         "scene": maybe(text),
+        "movie": maybe(text),
+        "draws": flag,
         "packages": maybe(table(maybe(text))),
         "sha256": maybe(table(maybe(text))),
     },

