@@ -81,9 +81,11 @@ CHOICE = record(
                 "error": positive,
                 "cells": positive,
                 "fraction": number,
+                "contact": positive,
                 "resolution": positive,
                 "timestep": maybe(positive),
                 "reached": number,
+                "doubt": number,
                 "closed": maybe(number),
                 "seconds": number,
             }
