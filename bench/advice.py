@@ -97,7 +97,7 @@ class Checked:
     """What the finer run contradicts by more than the study's doubt."""
 
 
-def check(name: str, *, budget: float = 60.0, only: tuple[str, ...] = ()) -> Checked:
+def check(name: str, *, budget: float = 300.0, only: tuple[str, ...] = ()) -> Checked:
     """Study a scene, then run it finer in everything, and compare."""
     from mdanim_lammps.scene.parse import parse_scene
     from mdanim_lammps.study.analysis import as_good, better, worse
@@ -131,7 +131,7 @@ def check(name: str, *, budget: float = 60.0, only: tuple[str, ...] = ()) -> Che
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scenes", nargs="*", default=list(SCENES))
-    parser.add_argument("--budget", type=float, default=60.0)
+    parser.add_argument("--budget", type=float, default=300.0)
     options = parser.parse_args()
     wrong = 0
     for scene in options.scenes:

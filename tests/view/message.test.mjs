@@ -117,3 +117,9 @@ test("the camera is a line of the scene language", () => {
   assert.equal(m.cameraLine(1.43333, [1, -2.00001, 0.5], [0, 0, 1]), "camera 1.4333 s from (1, -2, 0.5) m look (0, 0, 1) m");
   assert.equal(m.cameraLine(0, [1, 2, 3], "ball"), "camera 0 s from (1, 2, 3) m look ball");
 });
+
+test("energies whose zero is arbitrary are drawn as their change, others as they are", () => {
+  const rows = [[0, 1e6, 2, 0], [0.1, 1e6 - 3, 5, 0]];
+  assert.deepEqual(m.drawn(["gravity", "kinetic"], rows), [[0, 0.1], [0, -3], [2, 5]]);
+  assert.deepEqual(m.drawn(["gravity"], []), [[], []]);
+});

@@ -16,9 +16,9 @@ from ..picture.movie import movie_frames, processes_for
 from ..results.trajectory import Trajectory
 from ..run.prepare import Prepared
 
-ENOUGH = 1.0
+ENOUGH = 0.5
 """Seconds after which no more pictures are drawn."""
-PICTURES = 2, 6
+PICTURES = 1, 4
 """Fewest and most pictures that are drawn, the first not counted."""
 
 

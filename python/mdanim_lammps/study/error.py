@@ -24,7 +24,9 @@ PARTS = 60
 PART = 0.01
 """Two runs have diverged once they differ by this share of the extent."""
 HALF_AS_FINE = 2.0
-"""A finest run without a limit is doubted by its distance from the runs at least half as fine: at order 1 that is its error."""
+"""A finest run without a limit is compared with the runs at least half as fine: at order 1 it is as far from its limit."""
+SAFETY = 2.0
+"""Over that distance, the doubt: where errors follow no power of the step, the next run may be farther off than the last was."""
 
 
 def extent(track: np.ndarray) -> float:
@@ -63,8 +65,8 @@ class Convergence:
     why: str = ""
     """Why there is no order."""
     doubt: float = 0.0
-    """How far the limit itself may be off, relative to the extent: as far as it is from the finest run; without an order, as
-    far as the finest run is from any run at least half as fine."""
+    """How far the limit itself may be off, relative to the extent: as far as it is from the finest run; without an order, twice
+    as far as the finest run is from any run at least half as fine."""
 
 
 def converge(steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float) -> Convergence:
@@ -88,7 +90,7 @@ def converge(steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float)
     near = [off for off, step in zip(plain, steps) if step <= 1.001 * HALF_AS_FINE * steps[-1]] or plain[-1:]
 
     def no_order(why: str) -> Convergence:
-        return Convergence(tracks[-1], (*plain, math.nan), None, why=why, doubt=max(near))
+        return Convergence(tracks[-1], (*plain, math.nan), None, why=why, doubt=SAFETY * max(near))
 
     if max(plain) < ROUND_OFF:
         return Convergence(tracks[-1], (*plain, 0.0), None, why="all runs agree to round-off")

@@ -165,7 +165,7 @@ def order_lines(study: Study) -> list[str]:
         told = f"; the scene's own setting is {number(100 * own, 2)} % off its limit" if own else ""
         if c.doubt and c.order is None:
             told += (
-                "; the limit is the finest run, taken to be as far off as it is from the runs half as fine, "
+                "; the limit is the finest run, which may be off by twice as much as it is from the runs half as fine, "
                 f"{number(100 * c.doubt, 2)} %"
             )
         lines.append(f"{name}: {what}{told}")

@@ -156,3 +156,10 @@ export function cameraLine(time, eye, look) {
   const point = (p) => `(${[...p].map((x) => +x.toFixed(4)).join(", ")}) m`;
   return `camera ${+time.toFixed(4)} s from ${point(eye)} look ${typeof look === "string" ? look : point(look)}`;
 }
+
+// Energies whose zero is arbitrary are drawn as their change: the weight of held bodies would flatten all other curves.
+export const RELATIVE = ["gravity", "buoyancy"];
+export function drawn(names, rows) {
+  const zero = names.map((name, k) => (rows.length && RELATIVE.includes(name) ? rows[0][k + 1] : 0));
+  return [rows.map((row) => row[0]), ...names.map((_, k) => rows.map((row) => row[k + 1] - zero[k]))];
+}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The panels beside the picture. Text from scenes is set as text, never as HTML.
 import { Plot } from "./vendor.js";
-import { number } from "./message.js";
+import { RELATIVE, drawn, number } from "./message.js";
 
 const INK = ["#e8743b", "#3b8fc4", "#4fae7b", "#d99a1c", "#d3557a", "#7a6fc9", "#2fa39d", "#b5654f", "#7f9c2e"];
 export const byId = (id) => document.getElementById(id);
@@ -98,12 +98,12 @@ export class Energies extends Lines {
 
   draw() {
     this.due = undefined;
-    const data = [0, ...this.names.map((_, k) => k + 1)].map((k) => this.rows.map((row) => row[k]));
+    const data = drawn(this.names, this.rows);
     if (!this.plot) {
       const keys = element("div", { className: "keys" }, ...this.names.map((name, k) => {
         const mark = element("i");
         mark.style.background = INK[k % INK.length];
-        return element("span", {}, mark, name.replaceAll("_", " "));
+        return element("span", {}, mark, name.replaceAll("_", " ") + (RELATIVE.includes(name) ? ", change" : ""));
       }));
       this.figure = element("div");
       byId("energies").replaceChildren(keys, this.figure);
