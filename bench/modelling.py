@@ -4,6 +4,7 @@
 python bench/modelling.py cost       seconds and peak memory of a large box, ball and mesh, and of 10 000
 objects python bench/modelling.py physics    stiffness of bars, cantilevers against Timoshenko
 python bench/modelling.py shapes     how well cells fill round bodies
+python bench/modelling.py forecast   processor seconds and memory that are told before modelling, and those it took
 """
 
 from __future__ import annotations
@@ -64,6 +65,50 @@ def cost() -> None:
         process.join()
 
 
+TOLD = {
+    "box": ("box (1, 1, 1) m", 1 / 80),
+    "plate": ("box (2, 2, 0.04) m", 0.01),
+    "ball": ("sphere 0.5 m", 1 / 80),
+    "larger ball": ("sphere 0.5 m", 1 / 120),
+    "needle": ("cone 1 cm 100 m", 0.005),
+    "rod": ("cylinder 1 cm 100 m", 0.005),
+    "ring": ("torus 1 m 0.1 m", 0.0125),
+    "lens": ("ellipsoid (0.6, 0.4, 0.1) m", 0.0125),
+    "duck": ('mesh "duck.ply" scale 0.03', 0.006),
+    "boat": ('mesh "boat.stl" scale 0.01', 0.012),
+    "bottle": ('mesh "bottle.stl" scale 0.01', 0.004),
+}
+
+
+def told(name: str) -> None:
+    """Print one row; runs in a process of its own."""
+    from mdanim_lammps.model import plan_spacing, work
+    from mdanim_lammps.run.prepare import prepare
+    from mdanim_lammps.scene.parse import parse_scene
+
+    shape, h = TOLD[name]
+    shape = shape.replace('mesh "', f'mesh "{ROOT}/scenes/meshes/')
+    case = parse_scene(
+        f"ground z 0 m\nobject a {{ shape {shape} position (0, 0, 300) m density 500 elasticity 1 MPa }}\n"
+        f"gravity (0, 0, -9.81) m/s^2\ncontrol {{ time 1 s resolution {h!r} m }}"
+    )
+    plan, start = plan_spacing(case), time.process_time()
+    particles = prepare(case).system.particles
+    took, peak = time.process_time() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
+    seconds = work.seconds(case, plan.h, plan.total)
+    print(f"| {name} | {particles:,} | {seconds:.1f} | {took:.1f} | {plan.memory * 1e-9:.2f} | {peak:.2f} |")
+
+
+def forecast() -> None:
+    print(
+        "| body | particles | told [s] | took [s] | told [GB] | peak without LAMMPS [GB] |\n|---|---|---|---|---|---|", flush=True
+    )
+    for name in TOLD:
+        process = multiprocessing.get_context("spawn").Process(target=told, args=(name,))
+        process.start()
+        process.join()
+
+
 def physics() -> None:
     from spring_lab import cantilever, stretched
 
@@ -87,7 +132,7 @@ def round_bodies() -> None:
 
 
 if __name__ == "__main__":
-    parts = {"cost": cost, "physics": physics, "shapes": round_bodies}
+    parts = {"cost": cost, "physics": physics, "shapes": round_bodies, "forecast": forecast}
     for part in sys.argv[1:] or parts:
         parts[part]()
         print()

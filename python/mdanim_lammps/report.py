@@ -11,7 +11,7 @@ from .cost.speedup_forecast import SpeedupForecast
 from .effects import Verdict
 from .engine.threads import ThreadChoice
 from .errors import DivergedError, problem_json
-from .model import plan_spacing
+from .model import plan_spacing, work
 from .results.cost import Cost
 from .results.timeline import Timeline
 from .results.trajectory_file import trajectory_bytes
@@ -66,8 +66,8 @@ def _listed(head: str, items: list[str]) -> list[str]:
 
 LARGE = 1_000_000
 """Particles from which on modelling takes so long that a line before it says so."""
-MODELLING = 4e-6
-"""Processor seconds for each particle of models, springs and time step, measured at 10^6."""
+LONG = 4.0
+"""Seconds of modelling from which on a line before it says so, however few the particles are."""
 
 
 def size_line(scene: SceneRecord) -> str | None:
@@ -76,12 +76,12 @@ def size_line(scene: SceneRecord) -> str | None:
     if not scene.solids:
         return None
     plan = plan_spacing(scene)
-    if plan.total < LARGE:
+    if plan.total < LARGE and work.seconds(scene, plan.h, plan.total) < LONG:
         return None
     return (
         f"size     about {number(plan.total / 1e6, 2)} million particles, spacing {say(plan.h, 'm')} set by {plan.set_by}: "
         f"{number(plan.memory * 1e-9, 2)} GB of {number(plan.available * 1e-9, 2)} GB free, "
-        f"about {_about(MODELLING * plan.total)} of modelling"
+        f"about {_about(work.seconds(scene, plan.h, plan.total))} of modelling"
     )
 
 

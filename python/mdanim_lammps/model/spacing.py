@@ -12,12 +12,9 @@ from ..errors import Problem, SceneError
 from ..processes import available_memory
 from ..scene.formatting import number, say, whole
 from ..scene.scene import Accuracy, Box, HoldAll, Mesh, SceneRecord, Shape, Solid
-from . import shapes
+from . import shapes, work
 from .limits import check_places, check_sparse
 from .mesh import MeshError
-
-BYTES_PER_PARTICLE = 1500.0
-"""Arrays of the model and of LAMMPS together; a particle inside a body has 18 springs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +65,7 @@ def plan_spacing(scene: SceneRecord) -> Spacing:
     particles = tuple(estimate_particles(solid.shape, h) for solid in scene.solids)
     if sparse := [p for s, n in zip(scene.solids, particles) if (p := check_sparse(s, h, n))]:
         raise SceneError(sparse)
-    plan = Spacing(h, set_by, particles, sum(particles) * BYTES_PER_PARTICLE, available_memory())
+    plan = Spacing(h, set_by, particles, work.memory(scene, h, sum(particles)), available_memory())
     if plan.memory > plan.available:
         raise SceneError([too_large(scene, plan)])
     return plan

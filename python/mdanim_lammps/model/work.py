@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What it takes to model a scene: processor time and memory, before it is done. `bench/modelling.py forecast` compares."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import ceil, hypot, pi
+
+from ..scene.scene import Box, Cone, ContactModel, Cylinder, Ellipsoid, Mesh, SceneRecord, Shape, Sphere, Torus
+from . import shapes
+from .contact_body import DENSITY
+from .distance import MOST_SAMPLES
+from .limits import bounding_cells
+
+PARTICLE_BYTES, VERTEX_BYTES, POINT_BYTES, SAMPLE_BYTES = 1500.0, 200.0, 300.0, 60.0
+"""Memory [bytes]: of a particle in models and LAMMPS together, which has up to 18 springs; of a vertex of the drawn surface; of a
+point of contact; of a sample of a mesh, from which distances are taken."""
+SAMPLES = 64
+"""Samples of a mesh for each cell of its surface."""
+PARTICLE_TIME, VERTEX_TIME, POINT_TIME, CELL_TIME = 5e-6, 1.1e-6, 3.5e-6, 0.3e-6
+"""Processor time [s] of each of them, and of a cell of the bounding box."""
+MESH_POINT_TIME, MESH_CELL_TIME = 25e-6, 11e-6
+"""The same of meshes, whose points are found among samples and whose distances to triangles are searched."""
+
+
+def memory(scene: SceneRecord, h: float, particles: int) -> float:
+    """Memory [bytes] of so many particles in all, at a spacing of h [m]; equal objects share surfaces and points of contact."""
+    return PARTICLE_BYTES * particles + sum(_bytes(shape, h, _touches(scene)) for shape in {s.shape for s in scene.solids})
+
+
+def seconds(scene: SceneRecord, h: float, particles: int) -> float:
+    """Processor time [s] of models and time step, with the same arguments."""
+    return PARTICLE_TIME * particles + sum(_seconds(shape, h, _touches(scene)) for shape in {s.shape for s in scene.solids})
+
+
+def _touches(scene: SceneRecord) -> bool:
+    """Whether there is something that an object can touch at its surface."""
+    others = len(scene.solids) > 1 or scene.ground is not None or scene.walls is not None or scene.liquid is not None
+    return others and scene.control.contact_model is ContactModel.SURFACE
+
+
+def _bytes(shape: Shape, h: float, touches: bool) -> float:
+    if isinstance(shape, Box):
+        return 0.0
+    samples = min(SAMPLES * shapes.area(shape) / h**2, MOST_SAMPLES) if isinstance(shape, Mesh) else 0.0
+    return VERTEX_BYTES * vertices(shape, h) + touches * (POINT_BYTES * _points(shape, h) + SAMPLE_BYTES * samples)
+
+
+def _seconds(shape: Shape, h: float, touches: bool) -> float:
+    if isinstance(shape, Box):
+        return 0.0
+    cells, points, mesh = bounding_cells(shape, h), _points(shape, h), isinstance(shape, Mesh)
+    contact = MESH_POINT_TIME * points + MESH_CELL_TIME * cells if mesh else POINT_TIME * points
+    return VERTEX_TIME * vertices(shape, h) + CELL_TIME * cells + touches * contact
+
+
+def _points(shape: Shape, h: float) -> float:
+    return DENSITY**2 * shapes.area(shape) / h**2
+
+
+@lru_cache(maxsize=4096)
+def vertices(shape: Shape, h: float) -> float:
+    """About how many vertices the drawn surface of a shape has at a spacing of h [m]."""
+
+    def around(radius: float, least: int = shapes.ROUND) -> int:
+        return max(least, ceil(2 * pi * radius / h))
+
+    match shape:
+        case Cylinder():
+            return around(shape.radius) * ceil((2 * shape.radius + shape.height) / h)
+        case Cone():
+            return around(shape.radius) * ceil((shape.radius + hypot(shape.radius, shape.height)) / h)
+        case Torus():
+            return around(shape.major + shape.minor) * around(shape.minor, 24)
+        case Sphere():
+            return around(shape.radius) ** 2 / 2
+        case Ellipsoid():
+            return around(max(shape.radii)) ** 2 / 2
+    return shapes.area(shape) / h**2
