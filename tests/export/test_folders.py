@@ -4,10 +4,12 @@
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 from mdanim_lammps import Scene
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.export import export
+from picture_samples import falling, slab_scene, write
 from scene_texts import FALL
 
 
@@ -44,3 +46,18 @@ def test_the_current_folder_is_exported(folder, tmp_path, monkeypatch):
     done = export(Path("."), "csv")
     assert [file.resolve() for file in done.files] == [tmp_path / "here.out" / "here.csv"]
     assert done.files[0].exists()
+
+
+@pytest.mark.parametrize(("where", "formats"), [(np.nan, ["xtc", "xyz", "lammpstrj", "vtk"]), (3e5, ["xtc"])])
+def test_what_cannot_be_held_is_refused(tmp_path, where, formats):
+    """A place that is none, and one that is farther away than XTC can say: its library would write a damaged frame."""
+    scene, models = slab_scene()
+    frames = falling(models, 3)
+    frames = [(step, time, x.copy(), v) for step, time, x, v in frames]
+    frames[2][2][0, 0] = where
+    (tmp_path / "r.out").mkdir()
+    write(tmp_path / "r.out" / "trajectory.h5", scene, models, frames)
+    for to in formats:
+        with pytest.raises(OutputError, match=r"frame 2(: a particle is 3e5 m| is damaged)"):
+            export(tmp_path / "r.out", to)
+        assert export(tmp_path / "r.out", to, frames=slice(0, 2)).frames == 2

@@ -15,6 +15,7 @@ from ..picture.palette import LIQUID, object_colors, rgb, vertex_colors
 from ..picture.surfaces import ShadedMesh, shaded_mesh
 from ..results.trajectory import Trajectory
 from ..results.trajectory_metadata import TrajectoryMetadata
+from ..results.untrusted import check_places
 from ..scene.keywords import did_you_mean
 
 
@@ -91,8 +92,10 @@ class Cut:
         return (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 else 30.0
 
     def position(self, frame: int) -> np.ndarray:
-        """Of the particles in a frame of the trajectory [m], shape (N, 3)."""
-        return self.trajectory.position(frame)[self._kept]
+        """Of the particles in a frame of the trajectory [m], shape (N, 3). Raises OutputError where one is nowhere."""
+        position = self.trajectory.position(frame)[self._kept]
+        check_places(self.trajectory.path, position, frame=frame)
+        return position
 
     def velocity(self, frame: int) -> np.ndarray:
         """[m/s], shape (N, 3)."""

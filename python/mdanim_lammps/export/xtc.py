@@ -8,10 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
+from ..errors import OutputError
+from ..scene.formatting import number
 from .cut import Cut
 
 DECIMALS = 5
 """Of the nanometres that XTC counts in: an ångström has 10 000 parts."""
+FARTHEST = 0.99 * 10.0 * 2**31 / 10**DECIMALS
+"""From the origin, and between two particles [Å]: XTC has 32 bits for these parts."""
 
 
 def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) -> list[str]:
@@ -34,6 +38,12 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
     with XTCWriter(str(folder / f"{stem}.xtc"), n_atoms=len(m.id), precision=DECIMALS) as file:
         for done, (frame, time) in enumerate(zip(cut.frames, cut.times), 1):
             x = cut.position(frame) * scale
+            if (reach := max(np.abs(x).max(initial=0.0), *np.ptp(x, axis=0))) > FARTHEST:
+                # The library would leave a damaged frame, and say nothing.
+                raise OutputError(
+                    f"frame {frame}: a particle is {number(reach / scale, 3)} m from the origin or another one, and XTC holds no "
+                    f"more than {number(FARTHEST / scale, 3)} m at this spacing; export fewer --frames, or --to xyz"
+                )
             universe.atoms.positions = x
             universe.dimensions = box(x)
             universe.trajectory.ts.time, universe.trajectory.ts.frame = time, done - 1
