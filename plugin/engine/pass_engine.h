@@ -40,7 +40,8 @@ class PassEngine {
   void keep_motion(long long build) { motion_for = build; }    // lists are new, and particles move as before
   bool is_running() const { return run.has_value(); }
   PassRun &running() { return *run; }
-  void leave();    // ends it
+  void leave();                   // ends it
+  void drop() { run.reset(); }    // ends one that an error has broken off, without taking anything from its blocks
   SimdBlocks &laid_out() { return *blocks; }
 
   long long held_back() const { return moved_alone; }    // particles, all passes together

@@ -104,7 +104,10 @@ void PassRun::take_pass()
   const std::vector<Range> &ranges = blocks.ranges();
   of_range.assign(ranges.size(), pass);
   for (std::size_t n = 0; n < ranges.size(); ++n) of_range[n].range = &ranges[n];
-  threads.each(static_cast<int>(ranges.size()), ns, [this](int n) { kernels.pass(of_range[n]); });
+  if (pass.trace && blocks.objects_are_mixed())
+    for (Pass &one : of_range) kernels.pass(one);
+  else
+    threads.each(static_cast<int>(ranges.size()), ns, [this](int n) { kernels.pass(of_range[n]); });
   blocks.end_pass(pass);
   pass.fastest = pass.squares = pass.largest_phi = 0.0;
   pass.fastest_near = -1.0;

@@ -7,6 +7,7 @@
 #include "laws/leapfrog.h"
 
 #include <algorithm>
+#include <unordered_set>
 #include <utility>
 
 namespace mdanim {
@@ -344,6 +345,10 @@ void SimdBlocks::fill_ranges(Pass &pass)
     own.shared[1] = shared(own.first + own.blocks - 1, own.first + own.blocks);
     own.shared_trace = shared_trace.data() + 2 * TRACE * n;
   }
+  mixed = false;
+  std::unordered_set<int> seen;
+  for (int n = 0; range.size() > 1 && n < active && !mixed; ++n)
+    if (n == 0 || all[n].object != all[n - 1].object) mixed = !seen.insert(all[n].object).second;
 }
 
 void SimdBlocks::begin_pass(Pass &pass)

@@ -80,7 +80,10 @@ class SimdBlocks {
   void begin_pass(Pass &pass);
   const std::vector<Range> &ranges() const { return range; }    // of the blocks that have something to do in a pass
   void end_pass(const Pass &pass);                              // of all ranges
-  void give_out_forces(double *const *f) const;                 // there they are after a pass and this
+  // Whether several ranges have blocks of an object that do not follow each other: with a trace, threads would write into one
+  // row.
+  bool objects_are_mixed() const { return mixed; }
+  void give_out_forces(double *const *f) const;    // there they are after a pass and this
   std::size_t bytes() const;
 
  private:
@@ -106,7 +109,8 @@ class SimdBlocks {
   const bool has_damped;
   bool reordered = false;    // by lay_out_at()
   std::vector<Block> all;
-  int active = 0;    // so many of them, the first ones, have something to do in a pass
+  int active = 0;        // so many of them, the first ones, have something to do in a pass
+  bool mixed = false;    // see objects_are_mixed()
   std::vector<Entry> entries;
   std::vector<int> home;       // block of each particle
   std::vector<bool> slowed;    // blocks with friction

@@ -4,18 +4,68 @@
 #include "engine/tag_order.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace mdanim {
+
+namespace {
+
+// Whether an array by tags would be far longer than what it is of: tags may have any gaps.
+bool is_sparse(int lowest, int highest, std::size_t many)
+{
+  constexpr std::int64_t SPARSE = 16, ALWAYS = 1024;
+  return static_cast<std::int64_t>(highest) - lowest > SPARSE * static_cast<std::int64_t>(many) + ALWAYS;
+}
+
+// Places of tags in ascending order, for a place for each tag from the lowest to the highest; where that were far too many, for
+// those alone that there are.
+class TagPlaces {
+ public:
+  // each_tag(visit) visits all tags.
+  template <class Each> TagPlaces(int lowest, int highest, std::size_t many, const Each &each_tag) : lowest(lowest)
+  {
+    if (is_sparse(lowest, highest, many)) {
+      each_tag([this](int tag) { tags.push_back(tag); });
+      std::sort(tags.begin(), tags.end());
+      tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
+    }
+    places = tags.empty() ? highest - lowest + 1 : static_cast<int>(tags.size());
+  }
+  int size() const { return places; }
+  int place(int tag) const
+  { return tags.empty() ? tag - lowest : static_cast<int>(std::lower_bound(tags.begin(), tags.end(), tag) - tags.begin()); }
+  int tag(int place) const { return tags.empty() ? lowest + place : tags[place]; }
+
+ private:
+  int lowest, places;
+  std::vector<int> tags;    // empty where every one has a place
+};
+
+}    // namespace
+
+// Own particles in tag order.
+void TagOrder::sort(const Bonded &known)
+{
+  const int *const tag = known.tag;
+  const auto [lowest, highest] = std::minmax_element(tag, tag + known.own);
+  ordered.clear();
+  if (known.own == 0) return;
+  if (is_sparse(*lowest, *highest, known.own)) {
+    ordered.resize(known.own);
+    std::iota(ordered.begin(), ordered.end(), 0);
+    std::sort(ordered.begin(), ordered.end(), [tag](int i, int j) { return tag[i] < tag[j]; });
+    return;
+  }
+  std::vector<int> of_tag(*highest - *lowest + 1, -1);
+  for (int i = 0; i < known.own; ++i) of_tag[tag[i] - *lowest] = i;
+  for (const int i : of_tag)
+    if (i >= 0) ordered.push_back(i);
+}
 
 void TagOrder::take(const Bonded &known)
 {
   const int *const tag = known.tag;
-  const auto [lowest, highest] = std::minmax_element(tag, tag + known.own);
-  std::vector<int> of_tag(known.own ? *highest - *lowest + 1 : 0, -1);    // no longer than LAMMPS's own map
-  for (int i = 0; i < known.own; ++i) of_tag[tag[i] - *lowest] = i;
-  ordered.clear();
-  for (const int i : of_tag)
-    if (i >= 0) ordered.push_back(i);
+  sort(known);
 
   std::vector<Run> runs;
   for (int n = 0; n < known.own; ++n) {
@@ -92,22 +142,26 @@ TagOrder::Piece TagOrder::made(const Bonded &known, const Run &run) const
     }
   };
   each_bond([&](int, int, int partner, int) { lowest = std::min(lowest, partner), highest = std::max(highest, partner); });
+  const TagPlaces places(lowest, highest, run.end - run.begin, [&](const auto &visit) {
+    for (int n = run.begin; n < run.end; ++n) visit(known.tag[ordered[n]]);
+    each_bond([&](int, int, int partner, int) { visit(partner); });
+  });
   constexpr int ABSENT = -1;
-  std::vector<int> of_tag(highest - lowest + 1, ABSENT);    // by tag: an index in LAMMPS's arrays, then a place in the piece
-  for (int n = run.begin; n < run.end; ++n) of_tag[known.tag[ordered[n]] - lowest] = ordered[n];
+  std::vector<int> of_tag(places.size(), ABSENT);    // an index in LAMMPS's arrays, then a place in the piece
+  for (int n = run.begin; n < run.end; ++n) of_tag[places.place(known.tag[ordered[n]])] = ordered[n];
   each_bond([&](int, int i, int partner, int) {
-    int &found = of_tag[partner - lowest];
+    int &found = of_tag[places.place(partner)];
     if (found == ABSENT) found = known.find(partner);
     if (found < 0) known.lost(i, partner);
   });
 
   Piece piece;
   std::vector<bool> own;
-  for (std::size_t t = 0; t < of_tag.size(); ++t) {
+  for (int t = 0; t < places.size(); ++t) {
     const int i = of_tag[t];
     if (i == ABSENT) continue;
     of_tag[t] = static_cast<int>(piece.tag.size());
-    piece.tag.push_back(lowest + static_cast<int>(t));
+    piece.tag.push_back(places.tag(t));
     piece.object.push_back(known.object[i]);
     own.push_back(i < known.own);
     if (own.back()) piece.own.push_back(piece.tag.back());
@@ -115,7 +169,7 @@ TagOrder::Piece TagOrder::made(const Bonded &known, const Run &run) const
 
   std::vector<SpringRows::Row> row(piece.tag.size());
   each_bond([&](int n, int, int partner, int type) {
-    const int here = of_tag[known.tag[ordered[n]] - lowest], there = of_tag[partner - lowest];
+    const int here = of_tag[places.place(known.tag[ordered[n]])], there = of_tag[places.place(partner)];
     if (there > here)
       row[here].link.push_back({there - here, type});
     else if (!own[there])

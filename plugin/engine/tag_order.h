@@ -53,6 +53,7 @@ class TagOrder {
   struct Run {
     int begin, end, object;    // of own particles in tag order
   };
+  void sort(const Bonded &known);
   bool take_by_objects(const Bonded &known, const std::vector<Run> &runs);
   Piece made(const Bonded &known, const Run &run) const;
   static void refuse_lost_partner(const Bonded &known, int partner);

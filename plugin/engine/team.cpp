@@ -46,13 +46,20 @@ std::uint32_t call_of(std::uint64_t state) { return static_cast<std::uint32_t>(s
 
 }    // namespace
 
+// A fork has copied no threads. What of them it did copy says that threads sleep, and cannot be destroyed: destroying a condition
+// variable waits for those. It is left as it is.
+void Team::end_of_process_that_made(Team *team)
+{
+  if (team->owner == getpid()) delete team;
+}
+
 std::shared_ptr<Team> Team::of(int threads)
 {
   static std::mutex one_at_a_time;
   static std::weak_ptr<Team> known;
   const std::lock_guard<std::mutex> lock(one_at_a_time);
   std::shared_ptr<Team> team = known.lock();
-  if (!team || team->owner != getpid()) known = team = std::make_shared<Team>();
+  if (!team || team->owner != getpid()) known = team = std::shared_ptr<Team>(new Team, end_of_process_that_made);
   team->grow(threads);
   return team;
 }
@@ -70,10 +77,6 @@ void Team::grow(int threads)
 
 Team::~Team()
 {
-  if (owner != getpid()) {    // a fork has copied no threads
-    for (std::thread &helper : helpers) helper.detach();
-    return;
-  }
   {
     const std::lock_guard<std::mutex> lock(door);
     over = true;
@@ -100,6 +103,7 @@ void Team::share_out(int tasks, Task what, void *of_whom)
   task = what;
   whose = of_whom;
   rounding = floating_point_mode();
+  failure = nullptr;
   done.store(0, std::memory_order_relaxed);
   const std::uint32_t call = call_of(state.load(std::memory_order_relaxed)) + 1;
   const std::uint64_t missing = ~std::uint64_t{0} << tasks & 0xffffffffu;
@@ -113,7 +117,9 @@ void Team::share_out(int tasks, Task what, void *of_whom)
   }
   work(call, 0);
   wait_until([&] { return done.load(std::memory_order_acquire) == tasks; });
+  const std::exception_ptr failed = failure;
   called.clear(std::memory_order_release);
+  if (failed) std::rethrow_exception(failed);
 }
 
 bool Team::take(std::uint32_t call, int preferred, int &taken)
@@ -132,7 +138,12 @@ void Team::work(std::uint32_t call, int member)
 {
   for (int taken; take(call, member, taken);) {
     if (member) set_floating_point_mode(rounding);
-    task(whose, taken);
+    try {
+      task(whose, taken);
+    } catch (...) {    // for the caller, when all tasks are done
+      const std::lock_guard<std::mutex> lock(door);
+      if (!failure) failure = std::current_exception();
+    }
     done.fetch_add(1, std::memory_order_release);
   }
 }

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -33,10 +34,12 @@ class Team {
   // they fell asleep, what is worth so many ns. So waking costs a part of what there was to share, however short each call is.
   bool is_ready(double ns, double worth);
   // Does all tasks and returns. Thread n prefers task n: what it has in its cache. Where another thread of this process is
-  // calling, or in a process that was forked, the caller does them alone.
+  // calling, or in a process that was forked, the caller does them alone. What a task throws is thrown when all are done, of
+  // several that throw one.
   void share_out(int tasks, Task task, void *whose);
 
  private:
+  static void end_of_process_that_made(Team *team);
   void grow(int threads);
   void help(int member);
   bool take(std::uint32_t call, int preferred, int &task);
@@ -52,7 +55,8 @@ class Team {
   alignas(64) std::atomic<int> done{0};
   Task task = nullptr;
   void *whose = nullptr;
-  unsigned rounding = 0;    // the caller's mode of floating-point numbers
+  unsigned rounding = 0;         // the caller's mode of floating-point numbers
+  std::exception_ptr failure;    // of a task, under `door`
 
   alignas(64) std::atomic<int> asleep{0};
   std::atomic<double> alone{0.0};    // [ns] of work that the caller has done because others slept

@@ -75,6 +75,9 @@ void BondMdanimHarmonic::init_style()
   if (force->newton_bond)
     error->all(FLERR, "bond_style mdanim/harmonic: every bond must be stored at both ends; put 'newton off' (or "
                       "'newton on off') before the box is made");
+  if (atom->molecular != Atom::MOLECULAR)
+    error->all(FLERR,
+               "bond_style mdanim/harmonic: particles must have their bonds themselves; use 'atom_style bond', not template");
   if (atom->map_style == Atom::MAP_NONE)
     error->all(FLERR, "bond_style mdanim/harmonic: needs an atom map; put 'atom_modify map array' before the box is made");
   damped = has_dashpots();

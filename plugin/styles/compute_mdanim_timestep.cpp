@@ -40,22 +40,41 @@ ComputeMdanimTimestep::ComputeMdanimTimestep(LAMMPS *lmp, int narg, char **arg) 
 
 ComputeMdanimTimestep::~ComputeMdanimTimestep() { delete[] vector; }
 
-void ComputeMdanimTimestep::init()
+static bool is_any_of(const std::string &style, std::initializer_list<const char *> names)
 {
-  const auto is_any_of = [](const std::string &style, std::initializer_list<const char *> names) {
-    return std::any_of(names.begin(), names.end(), [&](const char *name) { return style == name; });
-  };
-  bonds = dynamic_cast<const BondMdanimHarmonic *>(force->bond);
+  return std::any_of(names.begin(), names.end(), [&](const char *name) { return style == name; });
+}
+
+// Null for none. As walls(), looked up whenever they are needed: LAMMPS asks between two runs as well, when any may have been
+// deleted.
+const BondMdanimHarmonic *ComputeMdanimTimestep::springs() const
+{
+  const auto *bonds = dynamic_cast<const BondMdanimHarmonic *>(force->bond);
   if (force->bond && !bonds && !is_any_of(force->bond_style, {"none", "zero"}))
     error->all(FLERR, "compute {} mdanim/timestep: knows the springs of bond_style mdanim/harmonic only, not of {}", id,
                force->bond_style);
   if (bonds && bonds->are_given())
     error->all(FLERR, "compute {} mdanim/timestep: springs were given by a program, and particles have no bonds to look at", id);
-  walls.clear();
+  for (int type = 1; bonds && type <= atom->nbondtypes; ++type)
+    if (!bonds->setflag || !bonds->setflag[type])
+      error->all(FLERR, "compute {} mdanim/timestep: bond type {} has no coefficients yet; use bond_coeff", id, type);
+  return bonds;
+}
+
+std::vector<FixMdanimWall *> ComputeMdanimTimestep::walls() const
+{
+  std::vector<FixMdanimWall *> found;
+  for (Fix *fix : modify->get_fix_list())
+    if (auto *wall = dynamic_cast<FixMdanimWall *>(fix)) found.push_back(wall);
+  return found;
+}
+
+void ComputeMdanimTimestep::init()
+{
+  springs();
   std::string others;
   const auto name = [&others](const std::string &other) { others += (others.empty() ? "" : ", ") + other; };
   for (Fix *fix : modify->get_fix_list()) {
-    if (auto *wall = dynamic_cast<FixMdanimWall *>(fix)) walls.push_back(wall);
     if (is_any_of(fix->style, {"mdanim/barrier", "mdanim/contact", "mdanim/liquid"}))
       name(std::string("fix ") + fix->id + " " + fix->style);
   }
@@ -84,7 +103,8 @@ void ComputeMdanimTimestep::compute_vector()
     double number;
   };
   std::vector<OfWall> push;
-  for (FixMdanimWall *wall : walls) push.push_back({wall->groupbit, wall->stiffness_values(), wall->stiffness_number()});
+  const BondMdanimHarmonic *const bonds = springs();
+  for (FixMdanimWall *wall : walls()) push.push_back({wall->groupbit, wall->stiffness_values(), wall->stiffness_number()});
 
   const double infinite = stable_step(0.0, 0.0);
   std::array<double, 3> least = {infinite, infinite, infinite};    // of springs; with dashpots; with walls too

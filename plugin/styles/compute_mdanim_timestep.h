@@ -20,8 +20,8 @@ class ComputeMdanimTimestep : public Compute {
   void compute_vector() override;
 
  private:
-  const class BondMdanimHarmonic *bonds = nullptr;    // none: no springs
-  std::vector<class FixMdanimWall *> walls;
+  const class BondMdanimHarmonic *springs() const;
+  std::vector<class FixMdanimWall *> walls() const;
 };
 
 }    // namespace LAMMPS_NS

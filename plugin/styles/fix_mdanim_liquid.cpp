@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -54,7 +55,6 @@ static const std::vector<Keyword> FREE = {{"buoyancy", "V|d_NAME"}, {"drag", "ga
                                           {"faces", "i2_NAME"},     {"softness", "d_NAME"},   {"still", "GROUP"},
                                           {"sweeps", "auto|N"},     {"every", "N"},           {"stride", "s"},
                                           {"period", "p"}};
-
 static constexpr double ANYWHERE = std::numeric_limits<double>::infinity();
 
 bool FixMdanimLiquid::WorldSums::alone() const { return lmp->comm->nprocs == 1; }
@@ -242,6 +242,10 @@ int FixMdanimLiquid::modify_param(int narg, char **arg)
 {
   const int used = words_of_keyword(lmp, STYLE, FREE, 0, narg, arg);
   keyword(0, arg, basin->pace);
+  static const char *const OF_STEPS[] = {"buoyancy", "drag",  "quadratic", "lambda", "base",
+                                         "sweeps",   "every", "stride",    "period"};
+  changed_since_setup = changed_since_setup || std::none_of(std::begin(OF_STEPS), std::end(OF_STEPS),
+                                                            [&](const char *w) { return strcmp(w, arg[0]) == 0; });
   return used;
 }
 
@@ -336,18 +340,6 @@ double FixMdanimLiquid::fastest_near()
   return fastest;
 }
 
-double FixMdanimLiquid::fastest_in_arrays(const std::vector<int> &these) const
-{
-  double fastest = -1.0;
-  const double *const *x = atom->x, *const *v = atom->v;
-  const double below = top_of_near();
-  for (const int i : these)
-    if (x[i][2] < below) fastest = std::max(fastest, dot(vec3(v[i]), vec3(v[i])));
-  return fastest;
-}
-
-double FixMdanimLiquid::top_of_near() const { return top_height(basin->top() + Basin::NEAR); }
-
 void FixMdanimLiquid::update_liquid()
 {
   buoyancy->give_impulses(*basin, near);
@@ -373,7 +365,9 @@ void FixMdanimLiquid::setup_post_neighbor()
     pour();
   else if (changed)    // what never moves has been moved between two runs
     in_basin([&] { basin->settle(static_cast<std::uint64_t>(update->ntimestep)); });
+  changed_since_setup = false;
   none_near = false;    // between two runs anything may have been set
+  is_split = false;     // as it may be when an error has broken off passes
   buoyancy->forget_cells();
   asked = -1;
   post_neighbor();
@@ -423,6 +417,7 @@ void FixMdanimLiquid::setup(int)
 
 void FixMdanimLiquid::post_force(int)
 {
+  need_setup();
   if (is_due()) update_liquid();
   buoyancy->act(*basin, in_arrays(), true);
 }

@@ -108,6 +108,7 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   void add_mass(mdanim::Occupancy &into, const std::vector<int> &these, double below);
   bool by_cells() const { return lattice_cells.given() && model != Model::PAPER; }
   void pour();
+  void need_setup() const;
   double fastest_near();
   double fastest_in_arrays(const std::vector<int> &these) const;
   const std::vector<int> &in_arrays() const { return is_split ? near_in_arrays : near; }    // near the liquid
@@ -148,8 +149,9 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   std::vector<int> near_in_arrays;    // these, as far as they are near the liquid
   double fastest_in_passes = -1.0;    // of the others: square of the largest speed
 
-  bool has_looked = false;    // so that it is known what acts on particles until the next update
-  bigint asked = -1;          // step for which it is known whether an update is due
+  bool changed_since_setup = false;    // by fix_modify
+  bool has_looked = false;             // so that it is known what acts on particles until the next update
+  bigint asked = -1;                   // step for which it is known whether an update is due
   bool due_then = false;
   double look_seconds = 0.0;
 };

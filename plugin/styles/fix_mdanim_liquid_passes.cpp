@@ -3,10 +3,23 @@
 
 #include "styles/fix_mdanim_liquid.h"
 
+#include "laws/vec3.h"
+
+#include "atom.h"
+#include "error.h"
 #include "neighbor.h"
+
+#include <algorithm>
 
 using namespace LAMMPS_NS;
 using namespace mdanim;
+
+// What steps alone read may change without a setup, what solids are may not.
+void FixMdanimLiquid::need_setup() const
+{
+  if (changed_since_setup)
+    error->all(FLERR, "{}: fix_modify has changed what the setup of a run reads; leave out 'pre no' of this run", name());
+}
 
 void FixMdanimLiquid::append_required_atoms(std::vector<int> &particles) const
 {
@@ -17,6 +30,7 @@ void FixMdanimLiquid::append_required_atoms(std::vector<int> &particles) const
 
 bool FixMdanimLiquid::join(PassCrew &crew)
 {
+  need_setup();
   in_passes = false;
   if (!crew.liquid) crew.liquid = this;
   return PassParticipant::join(crew);
@@ -49,3 +63,16 @@ bool FixMdanimLiquid::needs_all_atoms() { return !in_passes && is_due(); }
 // While the liquid is level and no particle is near it, until one comes.
 double FixMdanimLiquid::safe_displacement() const
 { return lists_are_prompt && asleep() ? lowest - (listed_top + Basin::NEAR * basin->shape.cell.z) : 0.0; }
+
+// Square of the speed of the fastest of these; -1 when there is none.
+double FixMdanimLiquid::fastest_in_arrays(const std::vector<int> &these) const
+{
+  double fastest = -1.0;
+  const double *const *x = atom->x, *const *v = atom->v;
+  const double below = top_of_near();
+  for (const int i : these)
+    if (x[i][2] < below) fastest = std::max(fastest, dot(vec3(v[i]), vec3(v[i])));
+  return fastest;
+}
+
+double FixMdanimLiquid::top_of_near() const { return top_height(basin->top() + Basin::NEAR); }

@@ -43,18 +43,28 @@ FixMdanimWall::FixMdanimWall(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg,
   need_words(lmp, "fix mdanim/wall", "fix ID group mdanim/wall", "REGION k", narg - 3);
   if (narg > 5) error->all(FLERR, 5, "fix mdanim/wall: region and k are all it takes, got also {}", arg[5]);
   region_id = arg[3];
+  if (!domain->get_region_by_id(region_id))
+    error->all(FLERR, 3, "fix mdanim/wall: there is no region {}; make it before this fix", arg[3]);
+  take_region(3);
+  stiffness = ParticleValue(lmp, "fix mdanim/wall: k", 4, arg[4]);
+}
+
+// The region may have been deleted and made anew since; `iarg` is its word in the command.
+void FixMdanimWall::take_region(int iarg)
+{
   region = domain->get_region_by_id(region_id);
-  if (!region) error->all(FLERR, 3, "fix mdanim/wall: there is no region {}; make it before this fix", arg[3]);
+  if (!region) error->all(FLERR, "fix {} mdanim/wall: region {} has been deleted", id, region_id);
   if (region->openflag)
-    error->all(FLERR, 3,
+    error->all(FLERR, iarg,
                "fix mdanim/wall: region {} has open faces, it has no inside; use INF for a face that shall not "
                "be there",
-               arg[3]);
+               region_id);
   if (strcmp(region->style, "union") == 0 || strcmp(region->style, "intersect") == 0)
-    error->all(FLERR, 3, "fix mdanim/wall: region style {} cannot tell its nearest surface; use one fix per part", region->style);
+    error->all(FLERR, iarg, "fix mdanim/wall: region style {} cannot tell its nearest surface; use one fix per part",
+               region->style);
+  convex = false;
   for (const char *known : {"block", "cone", "cylinder", "ellipsoid", "plane", "prism", "sphere"})
     convex = convex || strcmp(region->style, known) == 0;
-  stiffness = ParticleValue(lmp, "fix mdanim/wall: k", 4, arg[4]);
 }
 
 int FixMdanimWall::setmask() { return POST_NEIGHBOR | POST_FORCE; }
@@ -63,8 +73,7 @@ void FixMdanimWall::init()
 {
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "fix {} mdanim/wall: run_style respa is not supported; use run_style verlet", id);
-  region = domain->get_region_by_id(region_id);
-  if (!region) error->all(FLERR, "fix {} mdanim/wall: region {} has been deleted", id, region_id);
+  take_region(Error::NOPOINTER);
   stiffness.init(lmp);
   // Lists are then rebuilt as soon as a particle has moved by half the skin.
   watching = !region->dynamic_check() && neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once;

@@ -40,6 +40,7 @@ class FixMdanimWall : public Fix, public mdanim::PassParticipant {
   double stiffness_number() const { return stiffness.number; }
 
  private:
+  void take_region(int iarg);
   bool behind(const mdanim::Vec3 &x, mdanim::Vec3 &d);
   mdanim::Box box_of_all() const;
   bool is_inside(const mdanim::Box &box);

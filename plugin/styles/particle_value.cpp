@@ -16,7 +16,8 @@ ParticleValue::ParticleValue(LAMMPS *lmp, const char *what, int iarg, const char
 {
   if (utils::strmatch(word, "^d_")) {
     name = word + 2;
-    if (find(lmp) < 0)
+    index = find(lmp);
+    if (index < 0)
       lmp->error->all(FLERR, iarg,
                       "{}: no per-particle property {} of floating-point numbers; make it with "
                       "'fix ID all property/atom {}'",

@@ -102,6 +102,7 @@ void VerletMdanim::setup_minimal(int flag)
 void VerletMdanim::begin_setup()
 {
   decided_for = local_then = -1;
+  engine.drop();    // of a run that an error has broken off, which a program has caught
   engine.forget_springs();
   budget.forget();
   spare_bond_list();

@@ -29,6 +29,7 @@ def functions() -> ctypes.CDLL:
         ("cut_ranges", i, handle, i, INTS, INTS),
         ("ranges_tell", None, handle, INTS, INTS, INTS, INTS, DOUBLES, INTS),
         ("team_count", None, i, i, i, i, INTS),
+        ("team_throws", i, i, i, i),
         ("team_wakes", None, i, i, i, i, INTS),
         ("order", i, i, i, INTS, INTS, INTS, INTS, INTS, INTS, ctypes.POINTER(i)),
         ("loss", d, i, i, DOUBLES, DOUBLES, d, i, i),

@@ -89,8 +89,9 @@ class Integrator final : public PassIntegrator {
   std::vector<double> sums;
 };
 
-// All numbers of a run, one after the other.
-std::vector<double> film(int threads)
+// All numbers of a run, one after the other. `mixed`: objects have layers by turns, so that several ranges have particles of
+// each.
+std::vector<double> film(int threads, bool mixed)
 {
   Springs springs;
   Integrator integrator;
@@ -105,7 +106,7 @@ std::vector<double> film(int threads)
   std::vector<int> object(PARTICLES);
   for (int i = 0; i < PARTICLES; ++i) {
     const int n = i % OF_ONE;
-    object[i] = 1 + i / OF_ONE;
+    object[i] = 1 + (mixed ? i / (EDGE * EDGE) % OBJECTS : i / OF_ONE);
     const double at[] = {double(n % EDGE), double(n / EDGE % EDGE), double(n / EDGE / EDGE)};
     for (int d = 0; d < 3; ++d) {
       x[i][d] = at[d] + 40.0 * (d == 0 ? i / OF_ONE : 0);
@@ -140,12 +141,14 @@ std::vector<double> film(int threads)
 int main()
 {
   give_calibration({{{&kernels_common, 50.0, 50.0}}, 1.0, 2500.0});    // 500 particles for each range
-  const std::vector<double> alone = film(1);
-  for (const int threads : {2, 4, 5}) {
-    const std::vector<double> shared = film(threads);
-    if (shared.size() != alone.size() || std::memcmp(shared.data(), alone.data(), alone.size() * sizeof(double))) {
-      std::printf("%d threads give other bits\n", threads);
-      return 1;
+  for (const bool mixed : {false, true}) {
+    const std::vector<double> alone = film(1, mixed);
+    for (const int threads : {2, 4, 5}) {
+      const std::vector<double> shared = film(threads, mixed);
+      if (shared.size() != alone.size() || std::memcmp(shared.data(), alone.data(), alone.size() * sizeof(double))) {
+        std::printf("%d threads give other bits\n", threads);
+        return 1;
+      }
     }
   }
   return 0;

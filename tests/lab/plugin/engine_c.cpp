@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cfenv>
 #include <chrono>
 #include <map>
@@ -111,6 +112,26 @@ MDANIM_EXPORT void mdanim_team_count(int threads, int tasks, int calls, int task
         },
         &work);
   }
+}
+
+// Shares out so many tasks, all of which throw, `calls` times; how many calls threw when all of their tasks had been done.
+MDANIM_EXPORT int mdanim_team_throws(int threads, int tasks, int calls)
+{
+  const std::shared_ptr<Team> team = Team::of(threads);
+  int thrown = 0;
+  for (int n = 0; n < calls; ++n) {
+    std::atomic<int> done{0};
+    const auto task = [](void *whose, int which) {
+      ++*static_cast<std::atomic<int> *>(whose);
+      throw which;
+    };
+    try {
+      team->share_out(tasks, task, &done);
+    } catch (int) {
+      thrown += done == tasks;
+    }
+  }
+  return thrown;
 }
 
 // One call after all others had time to fall asleep, with tasks that leave their processors free. How many threads took tasks,

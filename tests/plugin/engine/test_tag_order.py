@@ -48,6 +48,16 @@ def test_the_line_has_every_particle_and_spring_once_in_tag_order(seed, mixed):
         assert a < b and (a < c or (a == c and b > d))
 
 
+@pytest.mark.parametrize("mixed", [False, True], ids=["objects apart", "objects joined"])
+@pytest.mark.parametrize("seed", range(3))
+def test_tags_may_have_any_gaps(seed, mixed):
+    """The same line as without gaps, in memory for the particles that there are: tags go up to 2·10⁹."""
+    own, tags, objects, bonds = scene(seed, mixed)
+    far = {int(t): int(t) * 83_000_000 for t in {*tags.tolist(), *(p for many in bonds.values() for p in many)}}
+    spread = {far[t]: [far[p] for p in many] for t, many in bonds.items()}
+    assert order(own, np.array([far[int(t)] for t in tags]), objects, spread) == order(own, tags, objects, bonds)
+
+
 def test_no_particles_make_an_empty_line():
     """A rank may have none."""
     assert order(0, np.array([], int), [], {}) == ([], [])

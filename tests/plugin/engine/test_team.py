@@ -31,6 +31,14 @@ def test_sleeping_threads_take_their_share():
     assert threads == 3 and other_modes == 0
 
 
+@pytest.mark.parametrize("threads", [1, 3])
+def test_what_a_task_throws_is_thrown_by_the_call(threads):
+    """When all tasks are done, in each of many calls; the team goes on."""
+    calls = 200
+    assert functions().mdanim_team_throws(threads, 1 if threads == 1 else 6, calls) == calls
+    assert counts(threads, 4, 10) == [10] * 4
+
+
 def test_callers_at_once_do_not_mix():
     """Two threads of a program that call at the same time each get their own tasks done, once."""
     found = []
