@@ -5,6 +5,7 @@
 #include "liquid/columns.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 namespace mdanim {
@@ -62,25 +63,37 @@ Span cut(const SolidParts &solid, int column, int low, int high)
   return span;
 }
 
+constexpr int MOST = 5;                   // cells through which a plate passes that is tilted by 45 degrees
+constexpr double THINNEST = 7.0 / 8.0;    // cells that it holds
+
+bool holds_plate(const SolidParts &solid, int column, int from, int to)
+{
+  int sum = 0;
+  for (int z = std::max(0, from); z < std::min(solid.nz, to); ++z) sum += solid.at(column, z);
+  return share(sum) >= THINNEST;
+}
+
+bool goes_on(const SolidParts &solid, int column, int from, int to)
+{
+  for (int side = 0; side < 4; ++side)
+    if (const int other = neighbour(column, side, solid.nx, solid.ny); other >= 0 && !holds_plate(solid, other, from, to))
+      return false;
+  return true;
+}
+
+// Whether nothing goes from one column to another between two heights.
+bool is_closed(const SolidParts &solid, int column, int other, int from, int to)
+{
+  for (int z = std::max(0, from); z < std::min(solid.nz, to); ++z)
+    if (solid.open_between(column, other, z) > 0) return false;
+  return true;
+}
+
 // Whether partly solid cells [low, high) between open ones, with slivers in these, are a plate that lies across the column: of
 // one lattice cell, which may be a tenth smaller than a cell, and with as much in all columns beside it, perhaps a cell higher or
 // lower. At the rim of a body there is less on one side.
 bool is_plate(const SolidParts &solid, int column, int low, int high)
-{
-  constexpr int MOST = 5;    // cells through which one passes that is tilted by 45 degrees
-  constexpr int THINNEST = 7 * SolidParts::FULL / 8;
-  if (high - low > MOST) return false;
-  const auto holds = [&](int one, int from, int to) {
-    int sum = 0;
-    for (int z = std::max(0, from); z < std::min(solid.nz, to); ++z) sum += solid.at(one, z);
-    return sum >= THINNEST;
-  };
-  if (!holds(column, low - 1, high + 1)) return false;
-  for (int side = 0; side < 4; ++side)
-    if (const int other = neighbour(column, side, solid.nx, solid.ny); other >= 0 && !holds(other, low - 2, high + 2))
-      return false;
-  return true;
-}
+{ return high - low <= MOST && holds_plate(solid, column, low - 1, high + 1) && goes_on(solid, column, low - 2, high + 2); }
 
 // The face in such a plate below which there is nearest to half of it.
 int middle_of(const SolidParts &solid, int column, int low, int high)
@@ -94,31 +107,73 @@ int middle_of(const SolidParts &solid, int column, int low, int high)
   return face;
 }
 
-void cut_at_plates(const SolidParts &solid, int column, int low, int high, std::vector<Span> &spans)
+// The same for some cells [low, high) of a column which an upright wall fills in part, above or below the plate or on both sides:
+// of what the wall leaves open the plate takes as much. Returns the face in its middle, or 0 where there is none.
+int plate_at_wall(const SolidParts &solid, int column, int low, int high)
+{
+  const auto part = [&](int z) { return share(solid.at(column, z)); };
+  const double below = part(low - 1), above = part(high);
+  const auto under = [&](int z) { return (part(z) - below) / (1.0 - below); };
+  const auto over = [&](int z) { return (part(z) - above) / (1.0 - above); };
+  double sum = 0.0;
+  for (int z = low; z < high; ++z) sum += over(z);
+  double best = sum;
+  int first_over = low;    // from here on the wall above counts
+  for (int z = low; z + 1 < high; ++z) {
+    sum += under(z) - over(z);
+    if (sum > best) best = sum, first_over = z + 1;
+  }
+  if (best < THINNEST) return 0;
+  for (int side = 0; side < 4; ++side) {
+    const int other = neighbour(column, side, solid.nx, solid.ny);
+    if (other < 0 || holds_plate(solid, other, low - 2, high + 2)) continue;
+    if (!is_closed(solid, column, other, high - 1, high + 2) && !is_closed(solid, column, other, low - 2, low + 1)) return 0;
+  }
+  double half = 0.0, nearest = best;
+  int face = low + 1;
+  for (int z = low; z + 1 < high; ++z) {
+    half += z < first_over ? under(z) : over(z);
+    if (const double off = std::fabs(best - 2.0 * half); off < nearest) nearest = off, face = z + 1;
+  }
+  return face;
+}
+
+void cut_at_plates(const SolidParts &solid, const SolidParts &held, int column, int low, int high, std::vector<Span> &spans)
 {
   const auto part = [&](int z) { return solid.at(column, z); };
   int from = low;
+  const auto cut_at = [&](int face) {
+    spans.push_back(cut(solid, column, from, face));
+    from = face;
+  };
   for (int z = low, end = low; z < high; z = end) {
     end = z + 1;
     if (part(z) < SolidParts::SLIVER) continue;
     while (end < high && part(end) >= SolidParts::SLIVER) ++end;
-    if (z == low || end == high || !is_plate(solid, column, z, end)) continue;
-    const int face = middle_of(solid, column, z, end);
-    spans.push_back(cut(solid, column, from, face));
-    from = face;
+    if (z > low && end < high && is_plate(solid, column, z, end)) {
+      cut_at(middle_of(solid, column, z, end));
+      continue;
+    }
+    for (int first = std::max(z, low + 1); first < end; ++first)
+      for (int cells = 2; cells <= MOST && first + cells < high; ++cells)
+        if (const int face = plate_at_wall(held, column, first, first + cells); face > 0) {
+          cut_at(face);
+          first += cells - 1;
+          break;
+        }
   }
   spans.push_back(cut(solid, column, from, high));
 }
 
 }    // namespace
 
-void cut_column(const SolidParts &solid, int column, std::vector<Span> &spans)
+void cut_column(const SolidParts &solid, const SolidParts &held, int column, std::vector<Span> &spans)
 {
   for (int z = 0; z < solid.nz;) {
     const int low = z;
     while (!solid.shut(column, z)) ++z;
     if (z > low)
-      cut_at_plates(solid, column, low, z, spans);
+      cut_at_plates(solid, held, column, low, z, spans);
     else
       ++z;
   }

@@ -49,8 +49,9 @@ struct Span {
   bool overlaps(const Span &other) const { return low < other.high && other.low < high; }
 };
 
-// Appends the spans of a column, from the lowest up. They depend on the columns beside it as well.
-void cut_column(const SolidParts &solid, int column, std::vector<Span> &spans);
+// Appends the spans of a column, from the lowest up. They depend on the columns beside it as well. `held` is what never moves of
+// all that is solid: a plate below its upright walls, or above them, cuts the columns which these fill in part.
+void cut_column(const SolidParts &solid, const SolidParts &held, int column, std::vector<Span> &spans);
 
 struct Head {
   double height, slope;    // of the surface; d volume/d height there

@@ -31,13 +31,13 @@ constexpr double ANYWHERE = std::numeric_limits<double>::infinity();
 
 }    // namespace
 
-// A state, of 2 bytes a cell and some 200 a column, goes into a restart file, whose parts LAMMPS counts by an int.
+// A state, of 4 bytes a cell at most and some 200 a column, goes into a restart file, whose parts LAMMPS counts by an int.
 std::string WaveBasin::unusable(const Shape &shape)
 {
   char text[300];
   const Vec3 &c = shape.cell;
   const double longest = std::max({c.x, c.y, c.z}), shortest = std::min({c.x, c.y, c.z});
-  const double state = 2.0 * shape.nx * shape.ny * shape.nz + 200.0 * shape.nx * shape.ny;
+  const double state = 4.0 * shape.nx * shape.ny * shape.nz + 200.0 * shape.nx * shape.ny;
   if (longest > FLATTEST * shortest)
     std::snprintf(
         text, sizeof text,

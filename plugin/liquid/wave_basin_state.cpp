@@ -239,7 +239,7 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
   energy_at_start = head.energy_at_start;
   account = head.account;
   moving = static_cast<long>(head.moving);
-  still_known = head.still_known;
+  still_known = walled_for = head.still_known;
   part = waves.solids().part;
   marked = changed = CellBox();
   for (int y = 0; y < shape.ny; ++y)

@@ -28,7 +28,8 @@ double *WaveLinks::*const OF_LINKS[] = {
 
 Waves::Waves(int nx, int ny, int nz)
     : nx(nx), ny(ny), nz(nz), stride((nx / WaveKernels::SUMMED + 1) * WaveKernels::SUMMED), further_start((1 + ny) * stride),
-      solid(nx, ny, nz), kernels(best_wave_kernels()), spans_in(nx * ny, 0), further(nx * ny, 0), of_spans(std::size(OF_SPANS))
+      solid(nx, ny, nz), wall(nx, ny, nz), walled_anew(nx * ny, 0), kernels(best_wave_kernels()), spans_in(nx * ny, 0),
+      further(nx * ny, 0), of_spans(std::size(OF_SPANS))
 {
   law.height = nz;
   law.fastest = 4.0 * std::sqrt(law.height);
@@ -39,7 +40,7 @@ Waves::Waves(int nx, int ny, int nz)
   for (int column = 0; column < nx * ny; ++column) all[column] = column;
   carry_over(all, all, {});
   join(all);
-  set_walls(solid.part.data());
+  list_wall_faces();
 }
 
 // Makes room for so many rows of further spans and so many further links of each direction. What is in the grid stays.

@@ -37,7 +37,8 @@ class Waves {
   // done with the waves any more after that. `again`: the part of what has changed that will change once more in the next
   // update. Outside of a box `where` (null: nowhere) nothing has changed.
   void set_solids(const std::uint16_t *part, const double *mass, double again = 1.0, const CellBox *where = nullptr);
-  // Tells which part of each cell is held, as SolidParts has them: a wall, as the sides of the basin are.
+  // Tells which part of each cell is held, as SolidParts has them: a wall, as the sides of the basin are. Plates at such walls
+  // cut columns when solids are set next.
   void set_walls(const std::uint16_t *held);
   // Fills all spans of each column up to a height; those that are full get the pressure of that height. `from`: what would be
   // below this height is left out. `hollow`: so are these spans.
@@ -294,10 +295,12 @@ class Waves {
   double filled(const LinkPlace &link, double head, long other) const;
 
   // --- waves_walls.cpp ---
+  void list_wall_faces();
   double pressure_on(int column, int low, int high) const;
   Vec3 force_on_walls() const;
 
   // --- waves_solids.cpp, waves_links.cpp ---
+  void cut_anew(int column, std::vector<std::uint8_t> &marks) const;
   std::vector<int> differing(const std::uint16_t *part, const CellBox &where) const;
   std::vector<Homeless> carry_over(const std::vector<int> &columns, const std::vector<int> &changed,
                                    const std::vector<SpanState> &was);
@@ -344,7 +347,8 @@ class Waves {
   const long further_start;    // place of the first further span
   long links_start = 0;        // place of the first further link
   long further_rows = 0;
-  SolidParts solid;
+  SolidParts solid, wall;                   // all of it; what is held
+  std::vector<std::uint8_t> walled_anew;    // columns that are to be cut anew, as walls have changed
   const WaveKernels *kernels;
   Threads threads;
   bool all_general = false, resting = false, some_full = false;

@@ -22,6 +22,7 @@ constexpr Units MOST_OVERFULL = 2 * UNITS_PER_CELL;
 void Waves::set_solids(const std::uint16_t *part, const double *mass, double again, const CellBox *where)
 {
   const std::vector<int> changed = differing(part, where ? *where : CellBox{{0, 0, 0}, {nx, ny, nz}});
+  std::fill(walled_anew.begin(), walled_anew.end(), 0);
   if (!changed.empty()) {
     resting = false;
     std::vector<int> columns = changed;
@@ -51,17 +52,23 @@ void Waves::set_solids(const std::uint16_t *part, const double *mass, double aga
     }
 }
 
+// Spans depend on the columns beside them.
+void Waves::cut_anew(int column, std::vector<std::uint8_t> &marks) const
+{
+  marks[column] = 1;
+  for (int side = 0; side < 4; ++side)
+    if (const int other = neighbour(column, side, nx, ny); other >= 0) marks[other] = 1;
+}
+
 std::vector<int> Waves::differing(const std::uint16_t *part, const CellBox &where) const
 {
-  std::vector<std::uint8_t> near(nx * ny, 0);    // spans depend on the columns beside them
+  std::vector<std::uint8_t> near = walled_anew;
   for (int y = where.low[1]; y < where.high[1]; ++y)
     for (int x = where.low[0]; x < where.high[0]; ++x) {
       const int column = y * nx + x;
       const std::size_t lowest = static_cast<std::size_t>(column) * nz + where.low[2];
-      if (std::memcmp(&solid.part[lowest], part + lowest, (where.high[2] - where.low[2]) * sizeof *part) == 0) continue;
-      near[column] = 1;
-      for (int side = 0; side < 4; ++side)
-        if (const int other = neighbour(column, side, nx, ny); other >= 0) near[other] = 1;
+      if (std::memcmp(&solid.part[lowest], part + lowest, (where.high[2] - where.low[2]) * sizeof *part) != 0)
+        cut_anew(column, near);
     }
   std::vector<int> changed;
   for (int column = 0; column < nx * ny; ++column)
@@ -107,7 +114,7 @@ std::vector<Waves::Homeless> Waves::carry_over(const std::vector<int> &columns, 
     if (next_changed < changed.size() && changed[next_changed] == column) {
       ++next_changed;
       cut.clear();
-      cut_column(solid, column, cut);
+      cut_column(solid, wall, column, cut);
       now = share_out(old, cut, homeless);
     }
     spans_in[column] = static_cast<int>(now.size());

@@ -13,10 +13,11 @@ namespace mdanim {
 
 namespace {
 
-constexpr std::int64_t WAVES_VERSION = 3;
+constexpr std::int64_t WAVES_VERSION = 4;
+constexpr std::int64_t RESTING = 1, WALLED = 2;    // flags
 
 struct WavesStateHead {
-  std::int64_t version, nx, ny, nz, spans, links, units, resting;
+  std::int64_t version, nx, ny, nz, spans, links, units, flags;
 };
 
 struct SpanRecord {
@@ -30,7 +31,7 @@ struct LinkRecord {
 
 }    // namespace
 
-// The head, solid parts of all cells, spans, links.
+// The head, solid parts of all cells, held ones where there are any, spans, links.
 std::vector<std::uint8_t> Waves::state() const
 {
   std::vector<SpanRecord> spans;
@@ -40,9 +41,15 @@ std::vector<std::uint8_t> Waves::state() const
   });
   std::vector<LinkRecord> links;
   each_link([&](const LinkPlace &link) { links.push_back({arrays_of(link).u[link.at], arrays_of(link).q[link.at]}); });
-  const WavesStateHead head{
-      WAVES_VERSION, nx,     ny, nz, static_cast<std::int64_t>(spans.size()), static_cast<std::int64_t>(links.size()),
-      total(),       resting};
+  const bool walled = std::any_of(wall.part.begin(), wall.part.end(), [](std::uint16_t part) { return part != 0; });
+  const WavesStateHead head{WAVES_VERSION,
+                            nx,
+                            ny,
+                            nz,
+                            static_cast<std::int64_t>(spans.size()),
+                            static_cast<std::int64_t>(links.size()),
+                            total(),
+                            (resting ? RESTING : 0) | (walled ? WALLED : 0)};
   std::vector<std::uint8_t> bytes;
   const auto add = [&](const void *from, std::size_t size) {
     const auto *first = static_cast<const std::uint8_t *>(from);
@@ -50,6 +57,7 @@ std::vector<std::uint8_t> Waves::state() const
   };
   add(&head, sizeof head);
   add(solid.part.data(), solid.part.size() * sizeof solid.part[0]);
+  if (walled) add(wall.part.data(), wall.part.size() * sizeof wall.part[0]);
   add(spans.data(), spans.size() * sizeof spans[0]);
   add(links.data(), links.size() * sizeof links[0]);
   return bytes;
@@ -70,9 +78,13 @@ void Waves::set_state(const std::uint8_t *bytes, std::size_t size)
                              std::to_string(head.nz) + " cells, this one has " + std::to_string(nx) + " x " + std::to_string(ny) +
                              " x " + std::to_string(nz));
 
-  std::vector<std::uint16_t> part(solid.part.size());
+  const std::size_t of_parts = head.flags & WALLED ? 2 * parts : parts;
+  if (size < sizeof head + of_parts) throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few");
+  std::vector<std::uint16_t> part(solid.part.size()), walls(solid.part.size(), 0);
   std::memcpy(part.data(), bytes + sizeof head, parts);
+  if (head.flags & WALLED) std::memcpy(walls.data(), bytes + sizeof head + parts, parts);
   Waves cut(nx, ny, nz);    // so that a damaged state changes nothing
+  cut.set_walls(walls.data());
   cut.set_solids(part.data(), nullptr);
   std::int64_t span_count = 0, link_count = 0;
   cut.each_span([&](long) { ++span_count; });
@@ -80,12 +92,12 @@ void Waves::set_state(const std::uint8_t *bytes, std::size_t size)
   std::vector<SpanRecord> spans(span_count);
   std::vector<LinkRecord> links(link_count);
   const std::size_t of_spans = spans.size() * sizeof(SpanRecord), of_links = links.size() * sizeof(LinkRecord);
-  if (head.spans != span_count || head.links != link_count || size != sizeof head + parts + of_spans + of_links)
+  if (head.spans != span_count || head.links != link_count || size != sizeof head + of_parts + of_spans + of_links)
     throw std::runtime_error(whose + "is damaged: its solids have " + std::to_string(span_count) + " spans and " +
                              std::to_string(link_count) + " links, not " + std::to_string(head.spans) + " and " +
                              std::to_string(head.links));
-  std::memcpy(spans.data(), bytes + sizeof head + parts, of_spans);
-  std::memcpy(links.data(), bytes + sizeof head + parts + of_spans, of_links);
+  std::memcpy(spans.data(), bytes + sizeof head + of_parts, of_spans);
+  std::memcpy(links.data(), bytes + sizeof head + of_parts + of_spans, of_links);
   Units held = 0;
   bool damaged = false;
   for (const SpanRecord &record : spans) {
@@ -104,6 +116,7 @@ void Waves::set_state(const std::uint8_t *bytes, std::size_t size)
                              std::to_string(head.units));
 
   std::fill(content.begin(), content.end(), 0);    // what is empty loses nothing to solids
+  set_walls(walls.data());
   set_solids(part.data(), nullptr);
   const SpanRecord *span_record = spans.data();
   each_span([&](long i) {
@@ -124,7 +137,7 @@ void Waves::set_state(const std::uint8_t *bytes, std::size_t size)
     ++link_record;
   });
   some_full = true;    // until the next update has looked
-  resting = head.resting != 0;
+  resting = (head.flags & RESTING) != 0;
 }
 
 }    // namespace mdanim

@@ -8,11 +8,21 @@
 
 namespace mdanim {
 
-// Layers of a face with the same solid part are one. Between cells that both are shut there is no liquid.
 void Waves::set_walls(const std::uint16_t *held)
 {
-  SolidParts wall(nx, ny, nz);
-  wall.part.assign(held, held + wall.part.size());
+  for (int column = 0; column < nx * ny; ++column) {
+    std::uint16_t *const own = &wall.part[static_cast<std::size_t>(column) * nz];
+    const std::uint16_t *const now = held + static_cast<std::size_t>(column) * nz;
+    if (std::equal(now, now + nz, own)) continue;
+    std::copy_n(now, nz, own);
+    cut_anew(column, walled_anew);
+  }
+  list_wall_faces();
+}
+
+// Layers of a face with the same solid part are one. Between cells that both are shut there is no liquid.
+void Waves::list_wall_faces()
+{
   wall_faces.clear();
   for (int column = 0; column < nx * ny; ++column)
     for (int side = 0; side < 4; ++side) {

@@ -311,6 +311,24 @@ def test_liquid_that_comes_too_fast_is_refused(maker, told):
         assert found[0].hint.startswith("write at most 12 m/s")
 
 
+@pytest.mark.parametrize(("size", "told"), [((0.1, 0.8, 0.8), 1), ((0.106, 0.8, 0.8), 0), ((0.8, 0.8, 0.1), 0)], ids=str)
+def test_upright_walls_of_less_than_a_cell_are_told(size, told):
+    """A basin whose side is no multiple of the spacing has cells of 10.6 cm: a wall of 10 cm leaves some of each open, a shelf is
+    cut all the same."""
+    made = scene(
+        block(Box(size), "wall", position=(0.5, 0.5, 0.5), hold=(HoldAll(),)),
+        resolution=0.1,
+        liquid=replace(WATER, high=(1.06,) * 3),
+    )
+    found = basin.leaky_walls(made, build_models(made))
+    assert len(found) == told
+    if told:
+        assert found[0].message.startswith(
+            "wall: 10 cm thick, 0.943 cells of water, which leaks through what is thinner than a cell"
+        )
+        assert found[0].hint == "write resolution 9 cm in control, or make it 11 cm thick"
+
+
 def test_hulls_that_leak_are_told():
     """Its planks are 7 cm thick: the boat is told where cells are larger than half of that."""
     for h, told in ((0.04, 1), (0.034, 0)):

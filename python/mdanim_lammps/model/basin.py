@@ -305,6 +305,8 @@ def open_hulls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
 TIGHT = 2.0
 """Thickness in cells from which a held wall of any attitude, and a hull, holds a liquid with momentum: some cell of each of its
 columns is shut. A thinner hull may have planks of one lattice cell."""
+STANDING, LAID = 1.0, 0.9
+"""The same of held walls that stand upright, however they are turned about the vertical, and of those that lie."""
 ESTIMATE = 0.99
 """Part of it that will do: the thickness of a mesh is an estimate."""
 UPRIGHT = 1e-3
@@ -314,39 +316,50 @@ LYING = 0.76
 
 
 def leaky_walls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
-    """Warn of walls that lean, and of hulls, that are too thin for a liquid with momentum to stay on one side of them.
+    """Warn of walls, and of hulls, that are too thin for a liquid with momentum to stay on one side of them.
 
-    Held walls that stand or lie hold it at any thickness. What is thin in two directions has no sides.
+    Held walls that stand or lie hold it from one cell on, those that lean from two. What is thin in two directions has no sides.
     """
     liquid, grid = scene.liquid, scene_grid(scene)
     if liquid is None or liquid.model is not LiquidModel.WAVES:
         return []
     cell = max(grid.cell)
-    enough = TIGHT * cell
     thin: dict[tuple, list[str]] = {}  # objects of a repeat are one problem
     for solid, model in zip(scene.solids, models):
         t, still = shapes.thickness(solid.shape), bool(model.held.all())
-        if t < ESTIMATE * enough and _parts(solid, enough, still) and not (still and _misses(model, grid)):
-            thin.setdefault((solid.spans.get("shape") or solid.spans.get("object"), t), []).append(solid.name)
+        enough = _enough(solid, TIGHT * cell, still) * cell
+        if t < ESTIMATE * enough and not (still and _misses(model, grid)):
+            thin.setdefault((solid.spans.get("shape") or solid.spans.get("object"), t, enough), []).append(solid.name)
     return [
         Problem(
             span,
             f"{names[0]}{f' and {len(names) - 1} more' if names[1:] else ''}: {say(t, 'm')} thick, {number(t / cell)} cells of "
-            f"{liquid.name}, which leaks through what leans and is thinner than {number(enough / cell)} cells",
+            f"{liquid.name}, which leaks through what {_leaks(enough / cell)}",
             f"write resolution {say(0.9 * t * cell / enough, 'm')} in control, or make it {say(at_least(enough), 'm')} thick",
             severity="warning",
         )
-        for (span, t), names in thin.items()
+        for (span, t, enough), names in thin.items()
     ]
 
 
-def _parts(solid: Solid, wide: float, still: bool) -> bool:
-    """Whether a thin solid is a held wall, so wide [m] in two directions, that leans. A mesh may be a hull."""
+def _leaks(cells: float) -> str:
+    return f"leans and is thinner than {number(cells)} cells" if cells > 1.0 else "is thinner than a cell"
+
+
+def _enough(solid: Solid, wide: float, still: bool) -> float:
+    """Thickness from which a solid parts the liquid [cells]; 0 of what is not a held wall, so wide [m] in two directions.
+
+    A mesh may be a hull.
+    """
     if isinstance(solid.shape, Mesh | Torus):
-        return isinstance(solid.shape, Mesh)
+        return TIGHT if isinstance(solid.shape, Mesh) else 0.0
     low, high = shapes.extent(solid.shape)
     upward = abs(solid.rotation[2][int(np.argmin(high - low))])
-    return still and bool(np.sort(high - low)[1] >= wide) and UPRIGHT < upward < LYING
+    if not still or np.sort(high - low)[1] < wide:
+        return 0.0
+    if UPRIGHT < upward < LYING:
+        return TIGHT
+    return STANDING if upward <= UPRIGHT else LAID
 
 
 def _misses(model: Model, grid: Grid) -> bool:
