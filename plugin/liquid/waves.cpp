@@ -108,8 +108,8 @@ void Waves::set_velocities(const double *u)
     const Ends e = ends(link);
     const long upwind = *u > 0.0 ? e.a : e.b;
     const double level = std::max(head_of(solid, span[upwind], content[upwind]).height, arrays_of(link).edge[link.at]);
-    arrays_of(link).u[link.at] = limited(*u);
-    arrays_of(link).q[link.at] = limited(*u) * opening(link, level);
+    arrays_of(link).u[link.at] = *u;
+    arrays_of(link).q[link.at] = *u * opening(link, level);
     ++u;
   });
 }

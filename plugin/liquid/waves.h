@@ -46,7 +46,7 @@ class Waves {
   // Spans, by their places, that are dry at the start though they begin below a level: what floats encloses them, alone or with
   // others that they are open to below that level. `floats` is of cells that are not open.
   std::vector<std::uint8_t> hollows(double level, const std::function<bool(int column, int z)> &floats) const;
-  // Velocities of links, in the order of links().
+  // Velocities of links, in the order of links(), also faster ones than liquid may have: for tests.
   void set_velocities(const double *u);
   // Returns the time by which the liquid has gone on. `share` is the part that comes now of how far solids are still to move.
   double update(double dt, double share = 1.0);
