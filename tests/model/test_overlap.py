@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from mdanim_lammps.model import build_models, check_geometry, shapes
+from mdanim_lammps.model import build_models, check_geometry, overlap, shapes
 from mdanim_lammps.scene.scene import Box, ContactModel, Cylinder, HoldAll, Liquid, Mesh, Sphere, Torus, Walls
 from model_samples import MESHES, SHAPES, rotation, scene, shape_id, solid
 
@@ -240,3 +240,14 @@ def test_an_object_wider_than_its_room_is_told_once_an_axis(room):
     (found,) = problems(solid(Box((4.0, 3.0, 1.0)), "slab", position=(0.0, 1.0, 2.0), mass=1.0), **where)
     assert "slab is 4 m wide along x" in found.message and "only 2 m" in found.message
     assert "unit" in found.hint
+
+
+def test_a_heap_of_objects_in_each_other_is_not_looked_at_in_full(monkeypatch):
+    """40 balls at one place are 780 pairs: after 50 in each other the other 730 are counted."""
+    asked, pair = [], overlap._pair
+    monkeypatch.setattr(overlap, "MOST_PAIRS", 50)
+    monkeypatch.setattr(overlap, "_pair", lambda *args: asked.append(args) or pair(*args))
+    balls = scene(*(solid(Sphere(0.3), f"b{k}", position=(1e-3 * k, 0.0, 1.0)) for k in range(40)), resolution=0.1)
+    problems = overlap.check_geometry(balls, build_models(balls))
+    assert len(asked) == 50 and len(problems) == 51
+    assert "b1 starts inside b0" in problems[0].message and "730 more pairs" in problems[-1].message

@@ -12,7 +12,7 @@ from .contact_body import DENSITY
 from .distance import MOST_SAMPLES
 from .limits import bounding_cells
 
-PARTICLE_BYTES, VERTEX_BYTES, POINT_BYTES, SAMPLE_BYTES = 1500.0, 200.0, 300.0, 60.0
+PARTICLE_BYTES, VERTEX_BYTES, POINT_BYTES, SAMPLE_BYTES = 1500.0, 200.0, 300.0, 250.0
 """Memory [bytes]: of a particle in models and LAMMPS together, which has up to 18 springs; of a vertex of the drawn surface; of a
 point of contact; of a sample of a mesh, from which distances are taken."""
 SAMPLES = 64
