@@ -354,3 +354,16 @@ def test_a_liquid_breaks_a_fall(prepared, density, height, level, more, speed):
         assert not found
     else:
         assert f"may hit at {speed:.2g} m/s" in found[0].message
+
+
+@pytest.mark.parametrize(("time", "frames"), [(0.7777, 30), (1.00001, 24), (0.123456789, 60), (5.4321, 29.97)])
+def test_the_time_that_is_advised_is_taken(prepared, time, frames):
+    """Where no time step fits both time and frames; as a rounded decimal it would be refused again."""
+    text = (
+        "object a {{ shape sphere 10 cm  position (0, 0, 1) m  density 1000 kg/m^3  elasticity 100 kPa }}\n"
+        "control {{ {}  frames {} fps }}\n"
+    )
+    with pytest.raises(SceneError, match="no time step fits both") as refused:
+        prepared(text.format(f"time {time} s", frames))
+    advised = re.search(r"try '(time [^']+)' \((\d+) frames\)", str(refused.value))
+    assert prepared(text.format(advised[1], frames)).certificate.frames == int(advised[2])

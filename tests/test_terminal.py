@@ -183,3 +183,23 @@ def test_a_name_that_is_not_utf_8(tmp_path):
         assert shown in call("resume", tmp_path / f"{shown}.out").stderr
         path.write_text(GOOD.replace("kPa", "kg"))
         assert f"{shown}.txt:8:" in call("check", path).stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the device is that of Linux")
+def test_a_disk_that_is_full_of_words(scene):
+    """Where progress cannot be written the run goes on to its end; where results cannot be printed it says so."""
+    path = scene()
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([*PROGRAM, path, "--no-movie"], stdout=subprocess.PIPE, stderr=full, text=True)
+        assert done.returncode == 0 and (path.parent / "ball.out" / "summary.json").exists()
+        said = subprocess.run([*PROGRAM, "check", path], stdout=full, stderr=subprocess.PIPE, text=True)
+    assert said.returncode == ExitCode.IO and "stdout, or a file, cannot be written: No space left" in said.stderr
+
+
+@pytest.mark.parametrize("files", [8, 12])
+def test_few_open_files(scene, files):
+    """A message in place of words of libraries, and of an end by MPI."""
+    done = subprocess.run(
+        ["sh", "-c", f'ulimit -n {files}; "$@"', "sh", *PROGRAM, scene(), "--no-movie", "-q"], capture_output=True, text=True
+    )
+    assert done.returncode == ExitCode.ENVIRONMENT and "ulimit -n 1024" in done.stderr and "UCX" not in done.stderr, done.stderr

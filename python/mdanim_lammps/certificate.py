@@ -190,6 +190,9 @@ def fit_steps(scene: SceneRecord, longest: float) -> tuple[int, int, int]:
     ratio = Fraction(control.time * control.frames).limit_denominator(10_000)
     if abs(float(ratio) - control.time * control.frames) > 1e-9 * float(ratio or 1) or ratio.denominator > 4 * least + 100:
         whole = max(1, round(control.time * control.frames))
+        fits = number(whole / control.frames, 6)
+        if abs(float(fits) * control.frames - whole) > 1e-9 * whole:  # as a decimal it would be refused again
+            fits = f"{whole} / {number(control.frames, 6)}"
         raise SceneError(
             [
                 Problem(
@@ -197,7 +200,7 @@ def fit_steps(scene: SceneRecord, longest: float) -> tuple[int, int, int]:
                     f"time {number(control.time, 6)} s is {number(control.time * control.frames, 6)} frames at "
                     f"{number(control.frames, 6)} fps: "
                     "no time step fits both",
-                    f"try 'time {number(whole / control.frames, 6)} s' ({whole} frames)",
+                    f"try 'time {fits} s' ({whole} frames)",
                 )
             ]
         )

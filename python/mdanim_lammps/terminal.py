@@ -10,7 +10,7 @@ import select
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any, NoReturn, TextIO
 
 from .errors import CONTROL, ExitCode, MdanimError, SceneError, out_of_memory
@@ -35,6 +35,8 @@ def open_streams() -> None:
             getattr(sys, name).reconfigure(errors="backslashreplace")
         if number and getattr(sys, name).isatty() and not isinstance(getattr(sys, name), Printable):
             setattr(sys, name, Printable(getattr(sys, name)))
+    if sys.stderr is sys.__stderr__ and not sys.stderr.isatty():
+        sys.stderr = Unfailing(sys.stderr)
 
 
 _CONTROL = re.compile(f"[{CONTROL}]")
@@ -51,6 +53,27 @@ class Printable:
         """Write a text, and return its length."""
         self.raw.write(_CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), text))
         return len(text)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.raw, name)
+
+
+class Unfailing:
+    """stderr, where progress goes: a run does not end because its disk is full. ``raw`` is the stream itself."""
+
+    def __init__(self, raw: TextIO):
+        self.raw = raw
+
+    def write(self, text: str) -> int:
+        """Write a text, if that is possible, and return its length."""
+        with suppress(OSError):
+            self.raw.write(text)
+        return len(text)
+
+    def flush(self) -> None:
+        """Write what is held back, if that is possible."""
+        with suppress(OSError):
+            self.raw.flush()
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.raw, name)
@@ -123,7 +146,8 @@ def documented_exit(*, debug: bool) -> Iterator[None]:
             _interrupted()
         if out_of_memory(error):
             _no_room(error)
-        print(error_line(error), file=sys.stderr)
+        told = error if error.filename else f"stdout, or a file, cannot be written: {error.strerror or error}; write it elsewhere"
+        print(error_line(told), file=sys.stderr)
         raise SystemExit(ExitCode.IO) from None
     except Exception as error:
         if heard and not debug:

@@ -3,13 +3,16 @@
 
 import ctypes
 import os
+import re
 import shutil
 import subprocess
 from pathlib import Path
 
 import plugin_path
 import pytest
+from mdanim_lammps.engine import plugin
 from mdanim_lammps.engine.plugin import ABI, STYLES, VERSION
+from mdanim_lammps.errors import SetupError
 
 FILE = Path(plugin_path.folder()) / "mdanimplugin.so"
 
@@ -22,6 +25,24 @@ def test_styles_and_numbers_are_those_python_asks_for():
     library = ctypes.CDLL(str(FILE))
     assert library.mdanim_abi() == ABI
     assert ctypes.c_int.in_dll(library, "mdanim_built_for").value == VERSION
+
+
+@pytest.mark.parametrize("kept", [0, 10, 0.5, 0.999])
+def test_a_plugin_that_is_cut_short_is_refused(tmp_path, monkeypatch, kept):
+    """To map such a file would end the process with SIGBUS."""
+    image = FILE.read_bytes()
+    (tmp_path / "mdanimplugin.so").write_bytes(image[: int(kept * len(image)) if kept < 1 else kept])
+    assert not plugin.is_cut_short(FILE)
+    monkeypatch.setattr(plugin, "_FILE", tmp_path / "mdanimplugin.so")
+    with pytest.raises(SetupError, match="is cut short or is not a library; reinstall"):
+        plugin.open_lammps()
+
+
+def test_the_styles_are_all_that_a_scene_asks_for():
+    """What the engine's commands name, a plugin that lacks it is refused for."""
+    sources = "".join(path.read_text() for path in Path(plugin.__file__).parents[1].rglob("*.py"))
+    named = {*re.findall(r"mdanim/[a-z]+", sources)} - {"mdanim/test"}
+    assert named <= {name for _, name in STYLES}
 
 
 def test_another_lammps_version_is_refused_and_lmp_lives_on(tmp_path):

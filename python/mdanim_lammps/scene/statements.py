@@ -333,7 +333,7 @@ class Parser(Reader):
             raise Fault(t, f"more than {MOST_FILES} files are included")
         try:
             text = read_text(path, MOST_BYTES - self.shared.bytes)
-            self.shared.bytes += len(text)
+            self.shared.bytes += len(text.encode())
         except UnreadableFile as e:
             where = f" (at {e.span.line}:{e.span.column})" if e.span else ""
             raise Fault(t, f"cannot include {t}: {path} {e}{where}", "the name is relative to this file") from None
