@@ -365,5 +365,5 @@ def test_the_time_that_is_advised_is_taken(prepared, time, frames):
     )
     with pytest.raises(SceneError, match="no time step fits both") as refused:
         prepared(text.format(f"time {time} s", frames))
-    advised = re.search(r"try '(time [^']+)' \((\d+) frames\)", str(refused.value))
+    advised = re.search(r"'(time [^']+)' \((\d+) frames\)", str(refused.value))
     assert prepared(text.format(advised[1], frames)).certificate.frames == int(advised[2])

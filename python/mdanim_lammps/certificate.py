@@ -192,7 +192,7 @@ def fit_steps(scene: SceneRecord, longest: float) -> tuple[int, int, int]:
         whole = max(1, round(control.time * control.frames))
         fits = number(whole / control.frames, 6)
         if abs(float(fits) * control.frames - whole) > 1e-9 * whole:  # as a decimal it would be refused again
-            fits = f"{whole} / {number(control.frames, 6)}"
+            fits += f" s', written exactly: 'time {whole} / {number(control.frames, 6)}"
         raise SceneError(
             [
                 Problem(
