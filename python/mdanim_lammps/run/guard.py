@@ -69,6 +69,9 @@ class Guard:
         self.most_inverted = 0
         self.dents: dict[int, int] = {}
         """Most cells of a solid that have stayed inside out."""
+        self.folds: dict[int, tuple[int, np.ndarray, int]] = {}
+        """Of each solid that has folded through itself: the step at which that was seen, the place [m], shape (3,), and the most
+        particles that lay among others of it."""
         low, high = ready.system.bounds(ready.system.position)
         self.patience = RINGS * (high - low).max(1) / wave_speed(ready.system) / ready.certificate.timestep
         """Steps that a cell of each solid may stay inside out, shape (M,)."""
@@ -88,6 +91,9 @@ class Guard:
         if len(seen.inverted) or self.crumpled:
             self._look_at_cells(step, seen.inverted)
         self._look_at_sides(step, seen.reach)
+        for n in np.flatnonzero(seen.folded).tolist():
+            when, where, most = self.folds.get(m := int(seen.objects[n]), (step, seen.fold[n], 0))
+            self.folds[m] = when, where, max(most, int(seen.folded[n]))
         if seen.sunk:
             m, other = seen.sunk
             raise self.error_at(
@@ -201,7 +207,8 @@ class Guard:
         return f"the last good frame and checkpoint are kept in {self.folder}"
 
     def warnings(self, ledger: Ledger) -> list[Problem]:
-        """Of a finished run: where bodies have got dents, and whether it has missed the class of energy of its accuracy."""
+        """Of a finished run: where bodies have got dents or folded through themselves, and whether it has missed the class of
+        energy of its accuracy."""
         scene, goal, found = self.ready.scene, energy_class(self.ready.scene), []
         if self.dents:
             m = max(self.dents, key=lambda m: self.dents[m] / self.cells[m])
@@ -216,9 +223,28 @@ class Guard:
                     severity="warning",
                 )
             )
+        found += self._folded()
         if ledger.residual > goal:
             found.append(self._missed(ledger, goal))
         return found
+
+    def _folded(self) -> list[Problem]:
+        if not self.folds:
+            return []
+        scene, dt = self.ready.scene, self.ready.certificate.timestep
+        m = min(self.folds, key=lambda m: self.folds[m][0])
+        step, place, most = self.folds[m]
+        others = f" and {len(self.folds) - 1} more" if len(self.folds) > 1 else ""
+        near = "(" + ", ".join(number(c, 3) for c in place.tolist()) + ") m"
+        return [
+            Problem(
+                scene.solids[m].spans.get("elasticity"),
+                f"{self.ready.system.names[m]}{others} folds through itself, from t = {number(step * dt, 4)} s on near {near}: "
+                f"up to {most} of its particles lie among others of it; contact acts between objects, not between parts of one",
+                "write a higher elasticity, a lower density, speed or height, or several objects in place of one",
+                severity="warning",
+            )
+        ]
 
     def _missed(self, ledger: Ledger, goal: float) -> Problem:
         """The energies do not add up as well as they should: with the frame that most of it came in, and what happened there."""

@@ -13,6 +13,7 @@ from ..engine.plan import Plan
 from ..model.model import Model
 from ..model.system import centers
 from ..results.expect import record, recorded
+from .folds import Folds
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,10 @@ class Observation:
     """Lattice cells of the scene that are inside out, ascending, int64, shape (c,)."""
     sunk: tuple[int, int] | None
     """As `Geometry.sunk`."""
+    folded: np.ndarray
+    """Particles of each object that lie among others of it (folds.py), int64, shape (m,)."""
+    fold: np.ndarray
+    """Their mean place [m], shape (m, 3)."""
     recorded: dict[str, float]
     """Quantities that an ``expect`` needs at every frame, by their columns of the ledger."""
 
@@ -54,7 +59,7 @@ class Observer:
     """
 
     def __init__(self, plan: Plan, models: Sequence[Model]):
-        self.system, self.geometry = plan.system, Geometry(plan.system)
+        self.system, self.geometry, self.folds = plan.system, Geometry(plan.system), Folds(plan.system)
         self.apart = any(effect.keeps_apart for effect in plan.effects)
         model_of, number = {model.name: model for model in models}, {name: m for m, name in enumerate(plan.system.names)}
         self.recorded = [
@@ -87,6 +92,7 @@ class Observer:
             None if sound else self._not_finite(objects, x, v),
             np.flatnonzero(self.geometry.inverted(x, objects)) if found == INVERTED else np.zeros(0, np.int64),
             self.geometry.sunk(x, near) if self.apart and sound else None,
+            *self.folds.find(objects, x if sound else self.system.position),
             {
                 column: record(quantity, self.system, model, x, self.dry if height is None else height)
                 for m, quantity, model, column in self.recorded
@@ -119,5 +125,6 @@ def join(parts: Sequence[Observation]) -> Observation:
         min((part.not_finite for part in parts if part.not_finite is not None), default=None),
         np.sort(np.concatenate([part.inverted for part in parts])),
         min((part.sunk for part in parts if part.sunk), default=None),
+        *(np.concatenate([getattr(part, name) for part in parts])[order] for name in ("folded", "fold")),
         {column: value for part in parts for column, value in part.recorded.items()},
     )
