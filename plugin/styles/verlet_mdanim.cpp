@@ -20,6 +20,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
+#include "fmt/format.h"
 #include "force.h"
 #include "improper.h"
 #include "kspace.h"
@@ -102,6 +103,7 @@ void VerletMdanim::setup_minimal(int flag)
 void VerletMdanim::begin_setup()
 {
   decided_for = local_then = -1;
+  told_why.clear();
   engine.drop();    // of a run that an error has broken off, which a program has caught
   engine.forget_springs();
   budget.forget();
@@ -128,6 +130,35 @@ void VerletMdanim::spare_bond_list()
 
 // --- whether passes can be taken ---
 
+// Keeps the reason for plain steps and what to write, "" where the user can do nothing about it.
+bool VerletMdanim::plain(const std::string &reason)
+{
+  why = reason;
+  return false;
+}
+
+// Once after each setup, on one rank; a run of one step takes no pass anyway.
+void VerletMdanim::tell_why(int steps)
+{
+  if (steps < 2 || why.empty() || why == told_why) return;
+  told_why = why;
+  if (comm->me == 0)
+    utils::logmesg(lmp, "run_style verlet/mdanim: no passes, every step is that of run_style verlet, as {}\n", why);
+}
+
+// Few particles have nothing to gain, and springs that a program has given are numbered by it.
+void VerletMdanim::find_why_not_cut()
+{
+  constexpr bigint FEW = 1000;
+  HalfBonds half;
+  why.clear();
+  if (comm->nprocs == 1 && !engine.crew.springs->halves(half))
+    why = "particles do not stand in the order of their IDs; use 'atom_modify sort 0 0' before the box is made, and write them "
+          "in that order";
+  else if (atom->natoms >= FEW && atom->nbonds > 0)
+    why = "springs of particles with neighbouring IDs lead unequally far; number the particles of a lattice row by row";
+}
+
 // All that acts in a step, if it is known how each has its part in passes.
 bool VerletMdanim::find_crew()
 {
@@ -135,28 +166,46 @@ bool VerletMdanim::find_crew()
   crew = {};
   late.clear();
   strangers_have_lists = neighbor->nlist > 0;
+  why.clear();
   auto *springs = dynamic_cast<PassSprings *>(force->bond);
-  if (!springs || !springs->join(crew) || domain->triclinic || domain->dimension != 3) return false;
-  if ((force->pair && force->pair->compute_flag) || force->angle || force->dihedral || force->improper || force->kspace)
-    return false;
+  if (!springs || !springs->join(crew)) {
+    const std::string style = force->bond ? force->bond_style : "none";
+    return plain(style == "none" || style == "zero" ? "" : "bond_style is " + style + "; use mdanim/harmonic");
+  }
+  if (domain->triclinic || domain->dimension != 3)
+    return plain("the box is triclinic or has 2 dimensions; use an orthogonal one of 3");
+  if (force->pair && force->pair->compute_flag)
+    return plain(fmt::format("pair_style {} computes forces; use 'pair_style none' or zero", force->pair_style));
+  if (force->angle || force->dihedral || force->improper || force->kspace)
+    return plain("an angle, dihedral, improper or kspace style computes forces; use 'none'");
   for (int n = 0; n < modify->nfix; ++n) {
     Fix *fix = modify->fix[n];
     const int mask = modify->fmask[n];
     if (auto *member = dynamic_cast<PassMember *>(fix)) {
-      if (!member->join(crew)) return false;
+      if (!member->join(crew))
+        return plain(fmt::format("fix {} {} is the second of its kind, or comes after fixes that it must precede; use one fix "
+                                 "mdanim/leapfrog, and one fix mdanim/gravity before all others",
+                                 fix->id, fix->style));
       if (crew.late.size() > late.size()) late.push_back({fix, (mask & FixConst::END_OF_STEP) != 0});
     } else if (mask & ACTS) {
-      return false;
+      const char *const ours = utils::strmatch(fix->style, "^nve")  ? "; use mdanim/leapfrog"
+                               : strcmp(fix->style, "gravity") == 0 ? "; use mdanim/gravity"
+                               : strcmp(fix->style, "OMP") == 0     ? "; leave out '-sf omp' and 'package omp'"
+                                                                    : "; leave it out if it can be done without";
+      return plain(fmt::format("fix {} {} acts in every step{}", fix->id, fix->style, ours));
     } else if (mask & FixConst::POST_NEIGHBOR) {
       strangers_have_lists = true;
     }
   }
   const bool periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
   // Blocks do not know of images, and with several ranks no particle may go beyond the neighbours of its own unseen.
-  if (periodic || (comm->nprocs > 1 && neighbor->build_once)) return false;
+  if (periodic) return plain("the box is periodic; use 'boundary s s s' (or f)");
+  if (comm->nprocs > 1 && neighbor->build_once) return plain("lists are never rebuilt; use 'neigh_modify once no'");
   lists_matter = !neighbor->build_once && (modify->n_post_neighbor || modify->n_pre_neighbor || comm->nprocs > 1);
-  // Without that check LAMMPS does not keep where particles stood.
-  if (!crew.integrator || (lists_matter && !neighbor->dist_check)) return false;
+  if (!crew.integrator) return plain("there is no fix mdanim/leapfrog; it moves particles in passes");
+  // Without that check LAMMPS does not keep where particles stood, or not of all.
+  if (lists_matter && !neighbor->dist_check) return plain("nothing checks how far particles move; use 'neigh_modify check yes'");
+  if (lists_matter && neighbor->includegroup) return plain("lists are of one group alone; use 'neigh_modify include all'");
   if (crew.liquid && !crew.liquid->joins(crew.integrator->friction_of_particles())) crew.liquid = nullptr;
   if (springs->refresh_coefficients()) decided_for = -1;
   if (engine.begin_run(told ? *told : *calibration().fastest(springs->account() != nullptr).kernels)) decided_for = -1;
@@ -196,10 +245,12 @@ bool VerletMdanim::cut_for_ranks()
 void VerletMdanim::run(int n)
 {
   refuse_if_moved();
-  if (find_crew())
+  if (find_crew()) {
     run_passes(n);
-  else
+  } else {
+    tell_why(n);
     Verlet::run(n);
+  }
   local_then = atom->nlocal;
   ghosts_then = atom->nghost;
 }
@@ -222,7 +273,12 @@ void VerletMdanim::run_passes(int n)
       break;
     }
     begin_step();
-    if (!overflowed && cut()) i += take_steps(i, n - 1 - i);
+    if (!overflowed && cut())
+      i += take_steps(i, n - 1 - i);
+    else if (i == 0) {
+      if (!overflowed) find_why_not_cut();
+      tell_why(n);
+    }
     finish_step();
   }
 }

@@ -10,6 +10,7 @@
 #include "styles/ghosts.h"
 #include "styles/split_verlet.h"
 
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -36,6 +37,9 @@ class VerletMdanim : public SplitVerlet {
   void begin_setup();
   void spare_bond_list();
   bool find_crew();
+  bool plain(const std::string &reason);
+  void tell_why(int steps);
+  void find_why_not_cut();
   bool cut();
   bool cut_for_ranks();
   void refuse_if_moved();
@@ -70,7 +74,8 @@ class VerletMdanim : public SplitVerlet {
     class Fix *fix;
     bool acts_at_end;
   };
-  std::vector<Late> late;    // the fixes of the crew's late participants
+  std::vector<Late> late;       // the fixes of the crew's late participants
+  std::string why, told_why;    // there are no passes in this run; what was told since the last setup
   bool lists_matter = false, strangers_have_lists = false;
 };
 
