@@ -3,6 +3,7 @@
 
 python bench/modelling.py cost       seconds and peak memory of a large box, ball and mesh, and of 10 000
 objects python bench/modelling.py physics    stiffness of bars, cantilevers against Timoshenko
+python bench/modelling.py masses     moments of inertia, and what their fit costs
 python bench/modelling.py shapes     how well cells fill round bodies
 python bench/modelling.py forecast   processor seconds and memory that are told before modelling, and those it took
 """
@@ -20,6 +21,7 @@ import numpy as np
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "lab"))
 
+from mdanim_lammps.errors import SceneError  # noqa: E402
 from mdanim_lammps.model import build_models, check_geometry, shapes  # noqa: E402
 from mdanim_lammps.scene.scene import Box, Mesh, Sphere  # noqa: E402
 from model_samples import SHAPES, model, scene, shape_id, solid  # noqa: E402
@@ -119,6 +121,33 @@ def physics() -> None:
         print(f"| {cells} | {young:.6f} | {nu:.4f} | {deflection:.3f} | {frequency:.3f} |")
 
 
+def masses() -> None:
+    from mdanim_lammps.effects.springs import spring_norm
+    from mdanim_lammps.model import masses as fitting
+    from mdanim_lammps.model.system import assemble
+
+    print("| shape | cells across | error by shares | error left | least w | largest w | stable step |")
+    print("|---|---|---|---|---|---|---|")
+    for shape in (Box((1.0, 1.0, 1.0)), Box((4.0, 2.0, 1.0)), *SHAPES[1:]):
+        for cells in (1, 2, 3, 4, 5, 8):
+            h = shapes.thickness(shape) / cells
+            try:
+                case = scene(solid(shape), resolution=h)
+                system = assemble(build_models(case), case)
+            except SceneError:
+                continue
+            weight = system.mass / (system.share / system.share.sum())
+            found = np.einsum("n,na,nb->ab", system.share, system.position, system.position) / system.share.sum()
+            true = shapes.second_moments(shape)
+            ratio = np.linalg.eigvals(np.linalg.solve(fitting.inertia(true), fitting.inertia(found))).real
+            stiff = spring_norm(system, system.stiffness) / system.share
+            step = np.sqrt(stiff.max() / (stiff / weight).max())
+            print(
+                f"| {shape_id(shape)} | {cells} | {abs(ratio - 1).max():.3f} | {system.inertia_error[0]:.3f} "
+                f"| {weight.min():.2f} | {weight.max():.2f} | {step:.2f} |"
+            )
+
+
 def round_bodies() -> None:
     print("| shape | cells across | edge / spacing | volume of cells / true | particles |")
     print("|---|---|---|---|---|")
@@ -132,7 +161,7 @@ def round_bodies() -> None:
 
 
 if __name__ == "__main__":
-    parts = {"cost": cost, "physics": physics, "shapes": round_bodies, "forecast": forecast}
+    parts = {"cost": cost, "physics": physics, "masses": masses, "shapes": round_bodies, "forecast": forecast}
     for part in sys.argv[1:] or parts:
         parts[part]()
         print()

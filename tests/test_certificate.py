@@ -299,16 +299,20 @@ def test_a_held_body_breaks_no_fall(prepared, held, severity):
 
 @pytest.mark.parametrize(("model", "floor"), [("paper", 2), ("surface", 6)])
 def test_buoyancy_is_a_spring_to_the_surface(prepared, model, floor):
-    """Add (rho_l/rho_s) g over the height of a cell to every particle's rate, and no more: a rigid body bobs more slowly."""
+    """Add rho_l V_i g/m_i over the height of a cell to every particle's rate, (rho_l/rho_s) g at corners, and no more: a rigid
+    body bobs more slowly."""
     ready = prepared(pool(density=250))
     found = next(e for e in EFFECTS if e.name == "buoyancy").rate(ready.scene, ready.system)
-    np.testing.assert_allclose(found, 4 * 9.81 / 0.05, rtol=1e-12)
+    system = ready.system
+    np.testing.assert_allclose(found, 1000 * 9.81 / 0.05 * system.volume / system.mass, rtol=1e-12)
     texts = (pool(density=250, young=0.05, more=more) for more in ("", "effects { buoyancy off }"))
     soft, dry = (prepared(t.replace("control {", f"control {{ contact-model {model} ")).certificate for t in texts)
     # Corner: from springs, and from the floor: a quarter of E h on an eighth of a cell's mass is 2, the areas of three sides 6.
     springs = (CORNER + floor) * 50 / (250 * 0.05**2)
-    assert dry.bound == pytest.approx(2.0 / math.sqrt(springs), rel=1e-12)
-    assert soft.bound == pytest.approx(2.0 / math.sqrt(springs + 4 * 9.81 / 0.05), rel=1e-12)
+    # Masses on faces and edges are fitted to what springs and the usual contact leave; these bind first with weak contact.
+    near = 0.06 if model == "paper" else 0.01
+    assert dry.bound == pytest.approx(2.0 / math.sqrt(springs), rel=1e-12 if model == "surface" else near)
+    assert soft.bound == pytest.approx(2.0 / math.sqrt(springs + 4 * 9.81 / 0.05), rel=near)
 
 
 @pytest.mark.parametrize(
@@ -326,7 +330,8 @@ def test_strong_drag_of_the_liquid_is_told(prepared, gamma, drag, told):
     assert [w.message.startswith(told) for w in found] == [True] * bool(told)
     assert ("drag exp" in "\n".join(physics(ready.plan))) == bool(told)
     if told:
-        most = (gamma * 1000 + (5000 / 0.008 if drag else 0)) / 500 * ready.certificate.timestep / 2
+        lightest = (ready.system.volume / ready.system.mass).max()
+        most = (gamma * 1000 * lightest + (5000 / 0.008 / 500 if drag else 0)) * ready.certificate.timestep / 2
         assert f"phi = {most:.2g}" in found[0].message
 
 

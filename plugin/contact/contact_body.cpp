@@ -135,13 +135,7 @@ bool ContactBody::is_outer(int i, int j, int k) const
                                  is_filled(i, j + 1, k) && is_filled(i, j, k - 1) && is_filled(i, j, k + 1));
 }
 
-int ContactBody::cells_around(int node) const
-{
-  const int at = place_of_node[node], i = at % row(), j = at / row() % (cells[1] + 1), k = at / layer();
-  int sum = 0;
-  for (int corner = 0; corner < 8; ++corner) sum += is_filled(i - (corner & 1), j - (corner >> 1 & 1), k - (corner >> 2));
-  return sum;
-}
+long ContactBody::filled_cells() const { return static_cast<long>(filled.size() - std::count(filled.begin(), filled.end(), 0)); }
 
 Depth<double> ContactBody::depth(int side, const Vec3 &X) const
 {

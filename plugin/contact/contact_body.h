@@ -84,7 +84,7 @@ class ContactBody {
 
   bool is_filled(int i, int j, int k) const { return mdanim::is_filled(lattice(), i, j, k); }
   bool is_outer(int i, int j, int k) const;    // filled, and some neighbour across a face is not
-  int cells_around(int node) const;            // filled ones, of 8
+  long filled_cells() const;
 
   // Below a side; sides of a cuboid are -x, +x, -y, +y, -z, +z.
   Depth<double> depth(int side, const Vec3 &X) const;

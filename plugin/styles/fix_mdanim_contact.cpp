@@ -9,6 +9,7 @@
 #include "contact/bodies_file.h"
 #include "engine/stopwatch.h"
 #include "styles/object_box.h"
+#include "styles/object_masses.h"
 #include "styles/rank_gather.h"
 #include "styles/words.h"
 
@@ -204,7 +205,6 @@ std::vector<FixMdanimContact::SurveyedObject> FixMdanimContact::survey() const
     one.kind = kinds ? kinds[i] : kind.number;
     one.young = youngs ? youngs[i] : young.number;
     one.friction = frictions ? frictions[i] : friction.number;
-    one.mass = mass_of(atom->rmass, atom->mass, atom->type, i);
   }
   std::vector<SurveyedObject> mine_only;
   for (const auto &[object_id, one] : here) mine_only.push_back(one);
@@ -216,8 +216,12 @@ std::vector<FixMdanimContact::SurveyedObject> FixMdanimContact::survey() const
     if (one.lowest < total.lowest) total = one;
     total.particles = particles, total.moves = moves;
   }
+  const std::map<int, double> masses = object_masses(atom, world, [this](int i) { return is_among(i); });
   std::vector<SurveyedObject> all;
-  for (const auto &[object_id, one] : joined) all.push_back(one);
+  for (auto &[object_id, one] : joined) {
+    one.mass = masses.at(object_id);
+    all.push_back(one);
+  }
   return all;
 }
 
@@ -243,7 +247,7 @@ void FixMdanimContact::take_objects(Contacts contacts)
                  one.id, one.young, one.friction);
     const double volume = body.edge(0) * body.edge(1) * body.edge(2);
     const double inertia = one.mass / force->ftm2v;    // that makes a force of an acceleration
-    const double density = inertia / (volume * body.cells_around(0) / 8.0);
+    const double density = inertia / (volume * static_cast<double>(body.filled_cells()));
     objects.push_back({one.id, found->second, one.young, one.friction, density, one.lowest, {}, 0, 0, {}, {}, 0.0, false});
     moves.push_back(static_cast<char>(one.moves));
     ids.push_back(one.id);

@@ -53,7 +53,7 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
   void take_body(int kind, const mdanim::ContactBodyArrays &arrays);
 
  private:
-  // What all ranks know of an object, from its particle with the lowest tag.
+  // What all ranks know of an object, from its particle with the lowest tag; `mass` is that of all of them.
   struct SurveyedObject {
     int id, moves;
     tagint lowest;

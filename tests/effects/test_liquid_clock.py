@@ -117,7 +117,7 @@ def test_what_an_inflow_brings_is_its_rate_times_time(tmp_path, cell):
     assert levels[-1] - levels[0] == pytest.approx(5e-3 * 2.0, abs=2 * late)
 
 
-@pytest.mark.parametrize("control", ["", "timestep 0.2 ms", "accuracy preview"])
+@pytest.mark.parametrize("control", ["", "timestep 0.15 ms", "accuracy preview"])
 def test_the_clock_of_the_liquid_is_that_of_solids(control):
     """At any step, also between updates, awake and asleep."""
     text = TANK.format(

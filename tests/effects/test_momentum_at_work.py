@@ -41,7 +41,7 @@ def test_drag_along_and_across_still_water(tmp_path):
     """Mostly by drag, which the liquid takes up whole: what solids have lost is counted at updates, so up to 3 % late. Across,
     the start of a blunt side opens the account for a while."""
     _, _, solids, residual, hull = run(
-        tmp_path, LAKE.format("drag 2 1/s") + HULL.format(shape=SLENDER, v="0.1, 0.1, 0", time=0.5)
+        tmp_path, LAKE.format("drag 2 1/s") + HULL.format(shape=SLENDER, v="0.1, 0.1, 0", time=0.6)
     )
     lost = hull - hull[0]
     assert (lost[-1] < -0.4 * hull[0, 0]).all()

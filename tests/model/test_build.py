@@ -136,14 +136,15 @@ def test_elasticity_is_young_or_one_k():
 
 
 def test_damping_and_drag_are_absent_unless_asked_for():
-    """Leave no array for an effect that is off; share drag among particles by mass."""
+    """Leave no array for an effect that is off; share drag among particles by mass, and take dashpots from masses by cells."""
     plain = model(Box((2.0, 2.0, 2.0)), 1.0)
     assert plain.damping is None and plain.drag is None
     both = model(Box((2.0, 2.0, 2.0)), 1.0, damping=0.1, drag=3.0, mass=6.0)
     assert both.drag.sum() == pytest.approx(3.0)
     np.testing.assert_allclose(both.drag, both.mass / 2)
     i, j = both.spring.T
-    reduced = 1 / (1 / both.mass[i] + 1 / both.mass[j])
+    mass = 6.0 * both.share / 8.0
+    reduced = 1 / (1 / mass[i] + 1 / mass[j])
     np.testing.assert_allclose(both.damping, 0.2 * np.sqrt(both.stiffness * reduced))
 
 

@@ -11,6 +11,7 @@ from ..errors import Problem
 from ..model.basin import liquid_level
 from ..model.embed import FACES
 from ..model.system import System
+from ..model.tensors import largest_eigenvalue
 from ..scene.formatting import number, say
 from ..scene.scene import LiquidModel
 from . import air_drag
@@ -385,18 +386,7 @@ def per_length(system: System) -> np.ndarray:
     away = system.position - system.center_of_mass(system.position)[system.object]
     squares = (system.volume[:, None, None] * away[:, :, None] * away[:, None, :]).reshape(-1, 9)
     moments = (np.add.reduceat(squares, first) / total[:, None]).reshape(-1, 3, 3)
-    return (0.5 * DRAG_COEFFICIENT / np.sqrt(12.0 * _largest_eigenvalue(moments)))[system.object]
-
-
-def _largest_eigenvalue(matrices: np.ndarray) -> np.ndarray:
-    """Of positive matrices, shape (M, 3, 3), to 1 %, by their 32nd powers: LAPACK rounds as the CPU has it."""
-    trace = lambda a: a[:, 0, 0] + a[:, 1, 1] + a[:, 2, 2]
-    product = lambda a, b: sum(a[:, :, k, None] * b[:, None, k, :] for k in range(3))
-    unit = power = matrices / trace(matrices)[:, None, None]
-    for _ in range(5):
-        power = product(power, power)
-        power = power / trace(power)[:, None, None]
-    return trace(matrices) * trace(product(power, unit))
+    return (0.5 * DRAG_COEFFICIENT / np.sqrt(12.0 * largest_eigenvalue(moments)))[system.object]
 
 
 def _has_quadratic_drag(scene) -> bool:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..scene.scene import HoldAll
 from .effect import Effect, Verdict
-from .strength import amplitude, load, thinnest
+from .strength import amplitude, load, thinnest, turning
 
 DASHPOTS = 0.44
 """Part of the time of damped springs that goes to their dashpots (bench/effects.py shares)."""
@@ -59,6 +59,9 @@ class Springs(Effect):
 
     def margins(self, envelope):
         return [amplitude(envelope), *load(envelope), thinnest(envelope)]
+
+    def notes(self, envelope):
+        return turning(envelope)
 
     def energy(self, readings):
         return readings.elastic_energy()

@@ -7,6 +7,7 @@ from itertools import product
 
 import numpy as np
 
+from ..errors import Problem
 from ..model.cells import TooThin, end_share, fill_cells
 from ..model.shapes import thickness
 from ..model.system import System
@@ -33,6 +34,10 @@ CORNERS = np.array(list(product((0.0, 1.0), repeat=3)))
 """Of a unit cube, shape (8, 3)."""
 SIGNS = (-1.0) ** CORNERS.sum(axis=1)
 """1 for an even number of ones in a corner, else -1, shape (8,)."""
+INERTIA = 0.01
+"""Error of a moment of inertia that is told."""
+WELL_FITTED = 4
+"""Cells across with which all shapes turn as they should (docs/physics-solids.md)."""
 THINNEST = 2
 """Fewest cells across: one cell is 1.9 times too stiff in bending (docs/physics-solids.md)."""
 
@@ -189,6 +194,26 @@ def thinnest(env: Envelope) -> Margin:
         least=True,
         hint=f"write resolution {say(0.5 * h * cells[m], 'm')} for two cells",
     )
+
+
+def turning(env: Envelope) -> list[Problem]:
+    """What is free to turn, and whose masses could not be fitted to the moments of its shape: the worst of all."""
+    system = env.system
+    free = ~np.logical_or.reduceat(system.held, system.first[:-1])
+    error = np.where(free, system.inertia_error, 0.0)
+    m, others = int(error.argmax()), np.count_nonzero(error > INERTIA) - 1
+    if error[m] <= INERTIA:
+        return []
+    cells, h = float(env.cells[m]), float(np.cbrt(system.cell_volume[m]))
+    return [
+        Problem(
+            env.place(m, "shape"),
+            f"{system.names[m]}{f' and {others} more' if others else ''}: {number(cells, 2)} cells across, "
+            f"a moment of inertia is {number(100.0 * error[m], 2)} % off that of the shape",
+            f"write resolution {say(h * cells / WELL_FITTED, 'm')} where its spin matters",
+            severity="note",
+        )
+    ]
 
 
 def folds_on_end(filled: np.ndarray) -> float:

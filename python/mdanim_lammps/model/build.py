@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache, singledispatch
+from functools import cached_property, lru_cache, singledispatch
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from .cells import TooThin, fill_cells
 from .contact_body import BodyFrame
 from .embed import make_surface
 from .lattice import Lattice, make_lattice
+from .masses import Fit, fit_masses
 from .mesh import MeshError
 from .model import Model, Surface
 from .spacing import plan_spacing
@@ -55,13 +56,18 @@ def build_models(scene: SceneRecord, progress: Callable[[int, int], None] | None
 # --- what equal objects share -------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class _Body:
     """A lattice, its surface, and what its contact body is made from; body frame."""
 
     lattice: Lattice
     surface: Surface
     frame: BodyFrame
+
+    @cached_property
+    def fit(self) -> Fit:
+        """Factors of masses; made when they are first asked for."""
+        return fit_masses(self.lattice, shapes.second_moments(self.frame.shape))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,9 +97,11 @@ def _make_body(shape: Shape, h: float) -> _Body:
     return _Body(lattice, surface, BodyFrame(shape, lattice.cells))
 
 
-def _make_material(lattice: Lattice, mass: float, elasticity: Young | SpringConstant, damping: float, rigid: bool) -> _Material:
-    """Masses in proportion to the filled cells around a particle; no springs in a body that is all held."""
-    m = lattice.share * (mass / lattice.share.sum())
+def _make_material(body: _Body, mass: float, elasticity: Young | SpringConstant, damping: float, rigid: bool) -> _Material:
+    """Masses fitted to the moments of the shape; a body that is all held never turns, and has no springs."""
+    lattice = body.lattice
+    even = lattice.share * (mass / lattice.share.sum())
+    m = even if rigid else even * body.fit.weight
     m *= mass / m.sum()
     edge = lattice.cells.edge
     k = stiffness(lattice, elasticity)
@@ -104,7 +112,7 @@ def _make_material(lattice: Lattice, mass: float, elasticity: Young | SpringCons
     constants = np.zeros((len(k), 3))
     constants[:, 0], constants[:, 1] = k, rest_lengths(edge)[kind]
     if damping > 0:
-        constants[:, 2] = dashpots(damping, k, m, spring)
+        constants[:, 2] = dashpots(damping, k, even, spring)  # those by shares are of few kinds
     spring_type, constants = types(constants)
     _freeze(m, spring_type, constants)
     return _Material(m, spring, spring_type, constants, equivalent_modulus(edge, elasticity))
@@ -123,7 +131,7 @@ def _make_model(solid: Solid, shared: _Shared) -> Model:
     lattice = body.lattice
     held = _held(solid, lattice)
     mass = solid.mass if solid.mass is not None else solid.density * shapes.volume(solid.shape)
-    material = shared.material(lattice, mass, solid.elasticity, solid.damping, bool(held.all()))
+    material = shared.material(body, mass, solid.elasticity, solid.damping, bool(held.all()))
     arm = _rotated(solid, lattice.position)
     velocity = solid.velocity + np.cross(solid.spin, arm)
     velocity[held] = 0.0
@@ -140,6 +148,7 @@ def _make_model(solid: Solid, shared: _Shared) -> Model:
         constants=material.constants,
         drag=material.mass * (solid.drag / mass) if solid.drag > 0 else None,
         young=material.young,
+        inertia_error=0.0 if held.all() else body.fit.error,
         hexahedron=lattice.hexahedron,
         cell=tuple(lattice.cells.edge.tolist()),
         surface=body.surface,

@@ -101,6 +101,18 @@ def _read(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
     return points, triangles, np.asarray(surface.point_data["color"]) if len(color) else None
 
 
+def second_moments(mesh: Triangles) -> np.ndarray:
+    """Integral of x x' over the inside by the volume, about the centre of mass [m^2], shape (3, 3).
+
+    Over the tetrahedron from the origin to a triangle a, b, c it is V/20 (aa' + bb' + cc' + ss') with s = a + b + c.
+    """
+    corners = mesh.points[mesh.triangles]
+    a, b, c = np.moveaxis(corners, 1, 0)
+    six = np.einsum("td,td->t", a, np.cross(b, c))
+    ends = np.concatenate([corners, corners.sum(axis=1, keepdims=True)], axis=1)
+    return np.einsum("t,tkd,tke->de", six, ends, ends) / (120 * mesh.volume)
+
+
 # --- inside or not ------------------------------------------------------------------------------------------
 
 

@@ -104,6 +104,8 @@ class Model(Particles):
     """Cell edges along the body axes [m]."""
     young: float
     """Young's modulus [Pa]; for ``elasticity spring k`` that of an endless lattice of this k."""
+    inertia_error: float
+    """Largest error of a moment of inertia about an axis through the centre, over that of the shape [-]; 0 where all is held."""
     surface: Surface
     frame: BodyFrame
     """Its shape and cells; objects of equal shape share one, and with it the contact body."""

@@ -35,6 +35,10 @@ class _Box:
         return min(s.size)
 
     @staticmethod
+    def moments(s):
+        return np.array(s.size) ** 2 / 12
+
+    @staticmethod
     def extent(s):
         half = np.array(s.size) / 2
         return -half, half
@@ -64,6 +68,10 @@ class _Ellipsoid:
     @staticmethod
     def thickness(s):
         return 2 * min(_radii(s))
+
+    @staticmethod
+    def moments(s):
+        return _radii(s) ** 2 / 5
 
     @staticmethod
     def extent(s):
@@ -99,6 +107,10 @@ class _Cylinder:
         return min(2 * s.radius, s.height)
 
     @staticmethod
+    def moments(s):
+        return np.array([s.radius**2 / 4, s.radius**2 / 4, s.height**2 / 12])
+
+    @staticmethod
     def extent(s):
         high = np.array([s.radius, s.radius, s.height / 2])
         return -high, high
@@ -127,6 +139,10 @@ class _Cone:
     def thickness(s):
         # The tip has no thickness; the largest ball inside determines the size of the cells.
         return 2 * s.radius * s.height / (s.radius + hypot(s.radius, s.height))
+
+    @staticmethod
+    def moments(s):
+        return np.array([3 * s.radius**2 / 20, 3 * s.radius**2 / 20, 3 * s.height**2 / 80])
 
     @staticmethod
     def extent(s):
@@ -159,6 +175,11 @@ class _Torus:
         return 2 * s.minor
 
     @staticmethod
+    def moments(s):
+        across = s.major**2 / 2 + 3 * s.minor**2 / 8
+        return np.array([across, across, s.minor**2 / 4])
+
+    @staticmethod
     def extent(s):
         high = np.array([s.major + s.minor, s.major + s.minor, s.minor])
         return -high, high
@@ -187,6 +208,10 @@ class _Mesh:
     @staticmethod
     def thickness(s):
         return mesh.load(s).thickness
+
+    @staticmethod
+    def moments(s):
+        return mesh.second_moments(mesh.load(s))
 
     @staticmethod
     def extent(s):
@@ -227,6 +252,15 @@ def area(shape: kinds.Shape) -> float:
 def thickness(shape: kinds.Shape) -> float:
     """Thickness of the thinnest part [m]; for a mesh an estimate, for a cone the largest ball inside."""
     return LAWS[type(shape)].thickness(shape)
+
+
+def second_moments(shape: kinds.Shape) -> np.ndarray:
+    """Integral of x x' over the body by its volume, about its centre of mass, body frame [m^2], shape (3, 3).
+
+    In closed form; of a mesh exactly that of its triangles. Raises mesh.MeshError as `volume` does.
+    """
+    found = np.asarray(LAWS[type(shape)].moments(shape), float)
+    return found if found.ndim == 2 else np.diag(found)
 
 
 def extent(shape: kinds.Shape) -> tuple[np.ndarray, np.ndarray]:

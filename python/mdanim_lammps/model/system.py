@@ -30,8 +30,10 @@ class System(Particles):
     """Longest cell edge of each solid [m], shape (M,)."""
     cell_volume: np.ndarray
     """Volume of a lattice cell of each solid [m^3], shape (M,)."""
-    per_mass: np.ndarray
-    """True volume of each solid over its mass [m^3/kg], shape (M,)."""
+    per_share: np.ndarray
+    """True volume of each solid over the sum of its shares [m^3], shape (M,)."""
+    inertia_error: np.ndarray
+    """Largest error of a moment of inertia of each solid, see `Model` [-], shape (M,)."""
     contact_kind: np.ndarray
     """Kind of body of each solid as contact sees it, by which solid has it first, int32, shape (M,)."""
     frames: tuple[BodyFrame, ...]
@@ -57,8 +59,8 @@ class System(Particles):
 
     @property
     def volume(self) -> np.ndarray:
-        """Share of each particle in the true volume of its solid, V_i = m_i / rho [m^3], shape (N,)."""
-        return self.mass * self.per_mass[self.object]
+        """Share of each particle in the true volume of its solid, V_i [m^3], shape (N,): by filled cells, not by mass."""
+        return self.share * self.per_share[self.object]
 
     @cached_property
     def contact_stiffness(self) -> np.ndarray:
@@ -155,7 +157,8 @@ def assemble(models: Sequence[Model], scene: SceneRecord) -> System:
         young=np.array([m.young for m in models]),
         spacing=np.array([m.spacing for m in models]),
         cell_volume=np.array([np.prod(m.cell) for m in models]),
-        per_mass=np.array([shapes.volume(s.shape) / m.mass.sum() for m, s in zip(models, scene.solids)]),
+        per_share=np.array([shapes.volume(s.shape) / m.share.sum() for m, s in zip(models, scene.solids)]),
+        inertia_error=np.array([m.inertia_error for m in models]),
         hexahedron=join([m.hexahedron + o if o else m.hexahedron for m, o in zip(models, offsets)]),
         contact_kind=np.array([kind[id(m.frame)] for m in models], np.int32),
         frames=frames,
