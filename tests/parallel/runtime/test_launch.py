@@ -127,3 +127,20 @@ def test_no_executor_is_too_few(tmp_path, count):
     assert not (tmp_path / "fall.out").exists()
     with pytest.raises(UsageError, match="at least one"):
         Scene.load(tmp_path / "fall.txt").run(executors=count)
+
+
+def test_an_error_of_ranks_keeps_what_it_holds(capsys):
+    """Problems with their places, the cost of a run that was stopped: it is told as one process tells it."""
+    import base64
+    import pickle
+
+    from mdanim_lammps.errors import Problem, SceneError, Span
+    from mdanim_lammps.parallel.runtime.ranks import _hand_over
+    from mdanim_lammps.run.loop import Interrupted
+
+    stopped = Interrupted("at t = 1 s")
+    stopped.cost = {"wall": 1.0}
+    for error in (SceneError([Problem(Span("a.txt", 3, 4), "wrong")]), stopped):
+        _hand_over(error)
+        told = pickle.loads(base64.b64decode(capsys.readouterr().out.removeprefix(launch.RESULT_SIGN)))
+        assert type(told) is type(error) and str(told) == str(error) and vars(told) == vars(error)

@@ -9,10 +9,7 @@ from wave_sources_lab import Makers
 
 def absurd(w):
     """Ways in which a velocity comes into waves."""
-    return {
-        "an impulse": lambda u: w.add_impulse(0.5 * u, -u),
-        "an inflow": lambda u: pour_in(w, u),
-    }
+    return {"an impulse": lambda u: w.add_impulse(0.5 * u, -u), "an inflow": lambda u: pour_in(w, u)}
 
 
 def pour_in(w, u):
