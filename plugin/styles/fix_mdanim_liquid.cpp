@@ -277,6 +277,10 @@ void FixMdanimLiquid::init()
                "{}: cells names i2_{}, which is no property of 7 integers, or 8 with the layers of cells around it; make it with "
                "'fix ID all property/atom i2_{} 7 ghost yes'",
                name(), lattice_cells.name, lattice_cells.name);
+  if (lattice_cells.given() && comm->nprocs > 1 && !lattice_cells.ghosts_have_rows(lmp))
+    error->all(FLERR,
+               "{}: ghosts have no rows of i2_{}, which cells needs on several ranks; add 'ghost yes' to its fix property/atom",
+               name(), lattice_cells.name);
   if ((lattice_cells.given() || buoyancy->pressed()) && atom->map_style == Atom::MAP_NONE)
     error->all(FLERR, "{}: cells and faces need an atom map; use 'atom_modify map array'", name());
   use(Threads());    // until passes tell how many there are

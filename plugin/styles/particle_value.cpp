@@ -70,6 +70,12 @@ int *const *ParticleTable::rows(LAMMPS *lmp) const
   return lmp->atom->iarray[lmp->atom->find_custom(name.c_str(), is_double, columns)];
 }
 
+bool ParticleTable::ghosts_have_rows(LAMMPS *lmp) const
+{
+  int is_double = 0, columns = 0, ghosts = 0;
+  return lmp->atom->find_custom_ghost(name.c_str(), is_double, columns, ghosts) >= 0 && ghosts;
+}
+
 ParticleColumn::ParticleColumn(LAMMPS *lmp, const char *style, const char *keyword, int iarg, const char *word)
     : style(style), keyword(keyword)
 {

@@ -39,6 +39,7 @@ class ParticleTable {
   bool given() const { return !name.empty(); }
   int width(LAMMPS_NS::LAMMPS *lmp) const;    // of its rows; 0 when there is no such table
   int *const *rows(LAMMPS_NS::LAMMPS *lmp) const;
+  bool ghosts_have_rows(LAMMPS_NS::LAMMPS *lmp) const;
   std::string name;    // without i2_
 };
 

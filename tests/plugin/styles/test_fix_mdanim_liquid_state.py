@@ -3,6 +3,7 @@
 
 import numpy as np
 import plugin_lab as lab
+import plugin_path
 import pytest
 from liquid_lab import BASIN, FALL, POOL, block_in_pool, cells, lattice, state, take_up, value
 
@@ -275,3 +276,15 @@ def test_held_cells_of_a_state_open_where_no_body_is_held(tmp_path):
     assert np.count_nonzero(found) == 2 * 4 * 14 and found[:14, 8:12, 13:15].all()
     first.close()
     second.close()
+
+
+@pytest.mark.parametrize(("ghost", "told"), [("no", "add 'ghost yes' to its fix property/atom"), ("yes", "")])
+def test_ghosts_need_rows_of_cells_on_several_ranks(tmp_path, ghost, told):
+    """Else a lattice cell whose first corner is another rank's would be read from a row that is not its own."""
+    shape = (3, 2, 2)
+    body = lab.block(shape, (-1.5, -1.0, 8.0))
+    table = [f"fix table all property/atom i2_cell 7 ghost {ghost}", *lattice(body, shape)]
+    commands = [*table, *BASIN, POOL + " cells i2_cell buoyancy 1.0", "fix run all mdanim/leapfrog", "run 1"]
+    (tmp_path / "in.test").write_text("\n".join(lab.script(body, tmp_path, commands)) + "\n")
+    done = plugin_path.lmp(tmp_path / "in.test", 2)
+    assert (done.returncode != 0) == bool(told) and told in done.stdout + done.stderr, done.stdout + done.stderr
