@@ -308,11 +308,12 @@ def test_buoyancy_is_a_spring_to_the_surface(prepared, model, floor):
     texts = (pool(density=250, young=0.05, more=more) for more in ("", "effects { buoyancy off }"))
     soft, dry = (prepared(t.replace("control {", f"control {{ contact-model {model} ")).certificate for t in texts)
     # Corner: from springs, and from the floor: a quarter of E h on an eighth of a cell's mass is 2, the areas of three sides 6.
-    springs = (CORNER + floor) * 50 / (250 * 0.05**2)
-    # Masses on faces and edges are fitted to what springs and the usual contact leave; these bind first with weak contact.
-    near = 0.06 if model == "paper" else 0.01
-    assert dry.bound == pytest.approx(2.0 / math.sqrt(springs), rel=1e-12 if model == "surface" else near)
-    assert soft.bound == pytest.approx(2.0 / math.sqrt(springs + 4 * 9.81 / 0.05), rel=near)
+    # Middle of a face, whose fitted mass is below that of half a cell: 5.025 from springs, and 2 from the floor.
+    middle = (system.volume / system.mass * 250)[system.share == 0.5].max()
+    unit, lift = 50 / (250 * 0.05**2), 4 * 9.81 / 0.05
+    for found, by_liquid in ((dry, 0.0), (soft, lift)):
+        most = max((CORNER + floor) * unit + by_liquid, middle * (7.025 * unit + by_liquid))
+        assert found.bound == pytest.approx(2.0 / math.sqrt(most), rel=1e-12)
 
 
 @pytest.mark.parametrize(

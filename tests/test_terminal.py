@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The terminal: closed streams, poor encodings, signals, and how a command ends."""
 
+import errno
 import io
 import os
 import signal
@@ -196,7 +197,26 @@ def test_a_disk_that_is_full_of_words(scene):
     assert said.returncode == ExitCode.IO and "stdout, or a file, cannot be written: No space left" in said.stderr
 
 
-@pytest.mark.parametrize("files", [8, 12])
+@pytest.mark.parametrize(
+    "error",
+    [
+        OSError(errno.EMFILE, "Too many open files", "lammps.py"),
+        OutputError("run.out: cannot be read as HDF5 (errno = 24, error message = 'Too many open files')"),
+        ImportError("libmpi.so.12: cannot open shared object file: Too many open files"),
+    ],
+    ids=lambda error: type(error).__name__,
+)
+def test_too_few_open_files_have_a_way_out(error, capsys):
+    """The limit is met by the system, a library or the loader."""
+    with pytest.raises(SystemExit) as ended, documented_exit(debug=False):
+        raise error
+    said = capsys.readouterr().err
+    assert ended.value.code == ExitCode.ENVIRONMENT and "ulimit -n 1024" in said and "Too many open files" in said
+    with pytest.raises(OSError), documented_exit(debug=True):
+        raise OSError(errno.EMFILE, "Too many open files")
+
+
+@pytest.mark.parametrize("files", [8, 12, 22])
 def test_few_open_files(scene, files):
     """A message in place of words of libraries, and of an end by MPI."""
     done = subprocess.run(

@@ -196,6 +196,15 @@ def out_of_memory(error: BaseException) -> bool:
     return isinstance(error, MemoryError) or _NO_ROOM.search(str(error)) is not None
 
 
+_NO_FILES = re.compile("too many open files(?! in system)", re.IGNORECASE)
+"""Words of the kernel for EMFILE; libraries in C and C++ pass them on."""
+
+
+def out_of_files(error: BaseException) -> bool:
+    """Whether an error says that this process may open no more files, whichever library has met it."""
+    return _NO_FILES.search(str(error)) is not None
+
+
 class OutputError(MdanimError):
     """Disk full, output folder in the way, file not readable."""
 

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, NoReturn, TextIO
 
-from .errors import CONTROL, ExitCode, MdanimError, SceneError, out_of_memory
+from .errors import CONTROL, ExitCode, MdanimError, SceneError, out_of_files, out_of_memory
 from .interrupts import PROGRAM, heard, interrupt, on_signals
 from .processes import available_memory
 
@@ -131,8 +131,8 @@ def documented_exit(*, debug: bool) -> Iterator[None]:
             raise
         if heard:
             _interrupted()
-        if not isinstance(error, SceneError) and out_of_memory(error):
-            _no_room(error)
+        if not isinstance(error, SceneError):
+            _end_where_short(error)
         print(error_line(error), file=sys.stderr)
         raise SystemExit(error.exit_code) from None
     except OSError as error:
@@ -144,26 +144,31 @@ def documented_exit(*, debug: bool) -> Iterator[None]:
             raise
         if heard:
             _interrupted()
-        if out_of_memory(error):
-            _no_room(error)
+        _end_where_short(error)
         told = error if error.filename else f"stdout, or a file, cannot be written: {error.strerror or error}; write it elsewhere"
         print(error_line(told), file=sys.stderr)
         raise SystemExit(ExitCode.IO) from None
     except Exception as error:
         if heard and not debug:
             _interrupted()
-        if out_of_memory(error) and not debug:
-            _no_room(error)
+        if not debug:
+            _end_where_short(error)
         raise
 
 
-def _no_room(error: Exception) -> NoReturn:
-    words = str(error).strip().split("\n")[0] or "memory ran out"
-    print(
-        f"{PROGRAM}: error: this would not fit in memory: {words}; {available_memory() * 1e-9:.1f} GB are free\n"
-        "  write a larger `resolution`, fewer objects or smaller pictures, or allow more memory (ulimit -v, the container)",
-        file=sys.stderr,
-    )
+def _end_where_short(error: Exception) -> None:
+    """End the program with a way out where memory or open files have run out. Raises SystemExit."""
+    words = str(error).strip().split("\n")[0]
+    if out_of_files(error):
+        told = f"this needs more open files than the limit of the shell allows: {words}\n  raise the limit: ulimit -n 1024"
+    elif out_of_memory(error):
+        told = (
+            f"this would not fit in memory: {words or 'memory ran out'}; {available_memory() * 1e-9:.1f} GB are free\n"
+            "  write a larger `resolution`, fewer objects or smaller pictures, or allow more memory (ulimit -v, the container)"
+        )
+    else:
+        return
+    print(error_line(told), file=sys.stderr)
     raise SystemExit(ExitCode.ENVIRONMENT) from None
 
 
