@@ -7,7 +7,6 @@ Commands run on crafted folders. Each ends soon with a documented code and a mes
 import io
 import json
 import os
-import re
 import shutil
 import zlib
 

@@ -109,9 +109,9 @@ def test_damaged_files_do_not_end_the_program(tmp_path, name, content):
 
 
 def test_texture_that_is_not_there_is_passed_over(tmp_path):
-    """A corner may name texture that the file lacks, which ended the program: its triangle is told for what it is, an open surface."""
+    """A corner may name texture that the file lacks, which ended the program: the message is that of an open surface."""
     (tmp_path / "texture.obj").write_bytes(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/9 2/9 3/9\n")
-    with pytest.raises(mesh.MeshError, match="texture.obj: not closed, 3 edges belong to one triangle only") as caught:
+    with pytest.raises(mesh.MeshError, match=r"texture\.obj: not closed, 3 edges belong to one triangle only") as caught:
         mesh.load(Mesh(tmp_path / "texture.obj"))
     assert "fill its holes" in caught.value.hint
 
