@@ -162,13 +162,17 @@ def test_no_file_is_too_long_to_be_read():
     assert not {p: n for p, n in lines.items() if n > 500}
 
 
+CPP_CLASS = (
+    r"^ *(?:template <.*> )?(?:class|struct|union|enum(?: class)?) (?:alignas\((?:[^()]|\([^()]*\))*\) )?"
+    r"(\w+)\b(?!::|<)[^;(){]*\{"  # neither a member that is defined outside nor a specialization
+)
+
+
 @pytest.mark.parametrize(
     ("folder", "pattern", "known"),
     [
         pytest.param(ROOT, r"^class (\w+)", {"Scene", "SceneRecord"}, id="Python"),
-        pytest.param(
-            PLUGIN, r"^ *(?:class|struct) (?:alignas\(\d+\) )?(\w+)\b(?!::)[^;(){]*\{", {"Automaton", "Stateful"}, id="C++"
-        ),
+        pytest.param(PLUGIN, CPP_CLASS, {"Automaton", "Stateful", "DistinctRows", "PaddedVec3", "PointKind"}, id="C++"),
     ],
 )
 def test_no_two_classes_have_one_name(folder, pattern, known):

@@ -20,7 +20,7 @@ namespace {
 
 // M objects as N particles and C lattice cells; those of object m are [first[m], first[m+1]) of each. The same stands in
 // engine/geometry.py.
-struct Model {
+struct SystemArrays {
   long long count;
   const long long *first_particle;
   const unsigned char *boundary;    // whether a particle is on the surface, and not outside the drawn one, (N)
@@ -33,7 +33,7 @@ struct Model {
 };
 
 // The same where it is now.
-struct Objects : Model {
+struct Objects : SystemArrays {
   const double *x;    // (N, 3)
 
   Vec3 at(int i) const { return vec3(x + 3 * static_cast<std::size_t>(i)); }
@@ -185,7 +185,7 @@ MDANIM_EXPORT long long mdanim_inverted(long long n, const int *corner, const do
 
 // One look at n objects of a model whose x and v are (N, 3). Returns 1 when some number is not finite, 2 when some cell is inside
 // out, else 0; and, but for 1, how far each object reaches along x, y, z, -x, -y, -z: reach (n, 6), the corners of eq. (3.14).
-MDANIM_EXPORT int mdanim_glance(const Model *model, int n, const int *objects, const double *x, const double *v,
+MDANIM_EXPORT int mdanim_glance(const SystemArrays *model, int n, const int *objects, const double *x, const double *v,
                                 double *reach) noexcept
 {
   const Objects o{*model, x};
@@ -207,7 +207,7 @@ MDANIM_EXPORT int mdanim_glance(const Model *model, int n, const int *objects, c
 }
 
 // Largest component of the velocities v (N, 3) of n objects of a model, without its sign: speed (n).
-MDANIM_EXPORT void mdanim_largest_components(const Model *model, int n, const int *objects, const double *v,
+MDANIM_EXPORT void mdanim_largest_components(const SystemArrays *model, int n, const int *objects, const double *v,
                                              double *speed) noexcept
 {
   for (int k = 0; k < n; ++k) {
@@ -222,7 +222,7 @@ MDANIM_EXPORT void mdanim_largest_components(const Model *model, int n, const in
 // layer of cells of the other, or the centre of one in the body of the other. Writes the one that is inside, and the other, into
 // `pair` and returns how many of its points are; 0 where there are none, -1 without memory. Objects that never move are not
 // looked at with each other.
-MDANIM_EXPORT long long mdanim_sunk(const Model *model, int n, const int *objects, const double *x, int *pair)
+MDANIM_EXPORT long long mdanim_sunk(const SystemArrays *model, int n, const int *objects, const double *x, int *pair)
 {
   return guarded(-1LL, [=] { return deepest_pair({*model, x}, n, objects, pair); });
 }

@@ -184,7 +184,7 @@ ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, cons
       contact_push(task.law, task.dt, now.area, part, part_slope, turn, below, spot, off, shift, contact.state);
   contact.last = push.outcome;
 
-  Row *on = arrays.force();
+  PaddedVec3 *on = arrays.force();
   near.add_force(q, push.outcome.force, on);
   if (is_on_ramp(part_slope)) near.add_force_at_centre(q, push.at_centre, on);
   spread(at, weights, -1.0 * push.both, {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]}, on);

@@ -7,7 +7,7 @@
 
 #include "contact/contact_push.h"
 #include "contact/field_contact.h"
-#include "contact/row.h"
+#include "contact/padded_vec3.h"
 
 namespace mdanim {
 
@@ -25,9 +25,9 @@ struct PushTask {
   ContactLaw law;
   double dt;
   Lattice host;
-  const int *slot;     // of the host's particles by their places in the grid
-  const Row *place;    // as that of Placed
-  double longest;      // depth beyond which a contact is over [m]
+  const int *slot;            // of the host's particles by their places in the grid
+  const PaddedVec3 *place;    // as that of Placed
+  double longest;             // depth beyond which a contact is over [m]
   Ramps ramps;
   bool is_smooth;    // the map
 };
@@ -46,7 +46,7 @@ struct PushedBlock {
   const int *slots[CONTACT_LANES];    // of the host's nodes, from the first on
   int nodes;
   long step[27];    // from the first node to this one
-  Row on_node[27][CONTACT_LANES];
+  PaddedVec3 on_node[27][CONTACT_LANES];
 };
 
 struct ContactKernels {
@@ -54,7 +54,7 @@ struct ContactKernels {
   // The first `n` of the contacts from `first` on, all of points of one kind; those in `hard` stay as they are.
   void (*push)(const PushTask &, FieldContact *first, const PointNow *now, int n, PushedBlock &pushed);
   // The forces of lanes from `first` to `end` - 1 on the host's nodes.
-  void (*add_to_nodes)(const PushedBlock &pushed, int first, int end, Row *on);
+  void (*add_to_nodes)(const PushedBlock &pushed, int first, int end, PaddedVec3 *on);
 };
 
 // Those of a set of instructions that runs here; those of all processors for a name that is not known.

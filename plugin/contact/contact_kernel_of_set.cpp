@@ -196,8 +196,8 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, FieldContact *first, 
   Vec<Four> part_slope;
   Four part = constant<Four>(1.0);
   if (CUBOID) {
-    const Side<Four> side = {gather([&](int lane) { return static_cast<double>(contact(lane).side >> 1); }),
-                             gather([&](int lane) { return static_cast<double>(contact(lane).side & 1); })};
+    const CuboidSide<Four> side = {gather([&](int lane) { return static_cast<double>(contact(lane).side >> 1); }),
+                                   gather([&](int lane) { return static_cast<double>(contact(lane).side & 1); })};
     below = depth_below(side, host, X);
     part = part_that_counts(task.ramps, host, X + shift, side.axis, part_slope);
   } else {
@@ -214,7 +214,7 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, FieldContact *first, 
   spread_to_nodes<SMOOTH>(found.weights, -1.0 * push.both, {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]},
                           [&](int i, int j, int k, const Vec<Four> &force) {
                             pushed.step[pushed.nodes] = i + host.row * j + host.layer * k;
-                            Row(&row)[LANES] = pushed.on_node[pushed.nodes++];
+                            PaddedVec3(&row)[LANES] = pushed.on_node[pushed.nodes++];
                             const Four column[4] = {force.x, force.y, force.z, Four{}};
                             store_columns(column, [&](int lane) { return &row[lane].value.x; });
                           });
@@ -234,7 +234,7 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, FieldContact *first, 
   scatter_record(more, [&](int lane) { return &pushed.contact[lane]; });
 }
 
-void add_to_nodes(const PushedBlock &pushed, int first, int end, Row *on)
+void add_to_nodes(const PushedBlock &pushed, int first, int end, PaddedVec3 *on)
 {
   for (int lane = first; lane < end; ++lane) {
     const int *slots = pushed.slots[lane];

@@ -42,7 +42,7 @@ void NearPoints::add(const CarriedPoint &point)
 }
 
 // A box around where a map that is linear along each axis takes a box is that around where it takes its corners.
-static Box box_of(const PointCell &cell, const ContactObject &owner, const Row *place, bool &is_there)
+static Box box_of(const PointCell &cell, const ContactObject &owner, const PaddedVec3 *place, bool &is_there)
 {
   const int row = owner.body->row(), layer = owner.body->layer(), *const slots = owner.slot.data() + cell.place;
   Vec3 corner[8];
@@ -116,7 +116,7 @@ OuterCells::OuterCells(const ContactObject &owner, const ContactArrays &arrays)
 }
 
 // By where cells are now, so that the answer does not depend on when lists were made.
-std::array<int, 3> OuterCells::nearest(const Vec3 &x, const Row *place) const
+std::array<int, 3> OuterCells::nearest(const Vec3 &x, const PaddedVec3 *place) const
 {
   int best = -1;
   double least = std::numeric_limits<double>::infinity();

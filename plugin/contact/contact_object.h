@@ -6,7 +6,7 @@
 
 #include "contact/contact_body.h"
 #include "contact/material_map.h"
-#include "contact/row.h"
+#include "contact/padded_vec3.h"
 #include "contact/zone.h"
 
 #include <algorithm>
@@ -79,16 +79,17 @@ class ContactArrays {
     force_rows.resize(particles);
   }
   std::size_t size() const { return force_rows.size(); }
-  void clear_forces(int from, int to) { std::fill(force_rows.begin() + from, force_rows.begin() + to, Row{}); }
-  Row *place() { return place_rows.data() + 1; }    // slot -1, of what is not there, may be read
-  const Row *place() const { return place_rows.data() + 1; }
-  const Row *place_before() const { return rows_before.data() + 1; }    // renew() was called
-  Row *force() { return force_rows.data(); }
-  const Row *force() const { return force_rows.data(); }
-  std::size_t bytes() const { return (place_rows.capacity() + rows_before.capacity() + force_rows.capacity()) * sizeof(Row); }
+  void clear_forces(int from, int to) { std::fill(force_rows.begin() + from, force_rows.begin() + to, PaddedVec3{}); }
+  PaddedVec3 *place() { return place_rows.data() + 1; }    // slot -1, of what is not there, may be read
+  const PaddedVec3 *place() const { return place_rows.data() + 1; }
+  const PaddedVec3 *place_before() const { return rows_before.data() + 1; }    // renew() was called
+  PaddedVec3 *force() { return force_rows.data(); }
+  const PaddedVec3 *force() const { return force_rows.data(); }
+  std::size_t bytes() const
+  { return (place_rows.capacity() + rows_before.capacity() + force_rows.capacity()) * sizeof(PaddedVec3); }
 
  private:
-  std::vector<Row> place_rows = std::vector<Row>(1), rows_before, force_rows;
+  std::vector<PaddedVec3> place_rows = std::vector<PaddedVec3>(1), rows_before, force_rows;
 };
 
 // A particle's part in a point.
@@ -97,7 +98,7 @@ struct Carrier {
   double weight;
 };
 
-inline Vec3 weighted_sum(const Carrier *first, const Carrier *last, const Row *at)
+inline Vec3 weighted_sum(const Carrier *first, const Carrier *last, const PaddedVec3 *at)
 {
   Vec3 x = first->weight * at[first->slot].value;
   while (++first < last) x += first->weight * at[first->slot].value;
@@ -108,7 +109,7 @@ inline Vec3 weighted_sum(const Carrier *first, const Carrier *last, const Row *a
 class CarriedPoint {
  public:
   CarriedPoint(const ContactObject &owner, int number);
-  Vec3 place(const Row *at) const { return weighted_sum(carrier, carrier + middle, at); }
+  Vec3 place(const PaddedVec3 *at) const { return weighted_sum(carrier, carrier + middle, at); }
 
   int number;
   bool is_there;           // all of those particles are
@@ -133,18 +134,18 @@ class NearPoints {
   int point(std::size_t q) const { return near[q].point; }
   std::size_t bytes() const { return near.capacity() * sizeof(Near) + carriers.capacity() * sizeof(Carrier); }
 
-  Vec3 place(std::size_t q, const Row *at) const { return sum(near[q].first, near[q].middle, at); }
+  Vec3 place(std::size_t q, const PaddedVec3 *at) const { return sum(near[q].first, near[q].middle, at); }
   // From the point to the centre of its area.
-  Vec3 shift(std::size_t q, const Row *at) const
+  Vec3 shift(std::size_t q, const PaddedVec3 *at) const
   {
     const Near &n = near[q];
     return n.middle == n.last ? Vec3{} : sum(n.middle, n.last, at) - sum(n.first, n.middle, at);
   }
-  void add_force(std::size_t q, const Vec3 &force, Row *on) const
+  void add_force(std::size_t q, const Vec3 &force, PaddedVec3 *on) const
   {
     for (int c = near[q].first; c < near[q].middle; ++c) on[carriers[c].slot].value += carriers[c].weight * force;
   }
-  void add_force_at_centre(std::size_t q, const Vec3 &force, Row *on) const
+  void add_force_at_centre(std::size_t q, const Vec3 &force, PaddedVec3 *on) const
   {
     const Near &n = near[q];
     const bool own = n.middle < n.last;
@@ -153,7 +154,7 @@ class NearPoints {
   }
 
  private:
-  Vec3 sum(int first, int last, const Row *at) const { return weighted_sum(&carriers[first], &carriers[0] + last, at); }
+  Vec3 sum(int first, int last, const PaddedVec3 *at) const { return weighted_sum(&carriers[first], &carriers[0] + last, at); }
 
   std::vector<Near> near;
   std::vector<Carrier> carriers;
@@ -194,7 +195,7 @@ class OuterCells {
  public:
   OuterCells(const ContactObject &owner, const ContactArrays &arrays);
   // The one whose middle is nearest, with particles at `place` now; -1 for none of those that were within SEARCHED cells.
-  std::array<int, 3> nearest(const Vec3 &x, const Row *place) const;
+  std::array<int, 3> nearest(const Vec3 &x, const PaddedVec3 *place) const;
   std::size_t bytes() const { return cells.capacity() * (sizeof cells[0] + sizeof middle[0]); }
   static constexpr double SEARCHED = 5.0;
 

@@ -24,12 +24,12 @@ template <class Real> struct Depth {
 };
 
 // A side of a cuboid: across which axis, and 1 at its upper end, 0 at its lower one.
-template <class Real> struct Side {
+template <class Real> struct CuboidSide {
   Real axis, is_high;
 };
 
 template <class Real>
-MDANIM_ALWAYS_INLINE Depth<Real> depth_below(const Side<Real> &side, const Lattice &host, const Vec<Real> &X)
+MDANIM_ALWAYS_INLINE Depth<Real> depth_below(const CuboidSide<Real> &side, const Lattice &host, const Vec<Real> &X)
 {
   Depth<Real> found;
   Real slope[3];

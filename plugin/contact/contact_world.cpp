@@ -131,7 +131,7 @@ namespace {
 
 // The most that one of many particles has gone otherwise than `way`, which is that of the first. That of the middle between the
 // first and the last gives fewer looks, but parts of a crowd then have other bits than the whole: a look came too late.
-struct Motion {
+struct Deviation {
   Vec3 way;
   double square = 0.0;
 
@@ -179,7 +179,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
         changes.push_back(arrays.place()[from].value - arrays.place_before()[slot_before[at]].value);
     }
     one.last_slot = static_cast<int>(from);
-    Motion motion{changes.empty() ? Vec3{} : changes.front()};
+    Deviation motion{changes.empty() ? Vec3{} : changes.front()};
     for (const Vec3 &change : changes) motion.include(change);
     motion.tell(one);
   }
@@ -243,7 +243,7 @@ void ContactWorld::move_to(const Coordinates &places)
   threads.parts(static_cast<long>(arrays.size()), NS_OF_PARTICLE, [&](long from, long to) {
     for (ContactObject &one : all) {
       if (one.first_slot == one.last_slot || one.first_slot < from || one.first_slot >= to) continue;
-      Motion motion{place(places, one.first_slot) - arrays.place()[one.first_slot].value};
+      Deviation motion{place(places, one.first_slot) - arrays.place()[one.first_slot].value};
       for (int s = one.first_slot; s < one.last_slot; ++s) {
         const Vec3 x = place(places, s);
         motion.include(x - arrays.place()[s].value);

@@ -87,7 +87,7 @@ class ContactWorld {
   }
   // The forces with all particles at these places. dt = 0 at the setup of a run: nothing changes.
   void step(const Coordinates &places, double dt);
-  const Row *forces() const { return arrays.force(); }
+  const PaddedVec3 *forces() const { return arrays.force(); }
   // Whether any of those on an object's particles is not 0.
   bool is_pushed(int object) const { return all[object].is_pushed; }
 

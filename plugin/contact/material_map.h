@@ -6,7 +6,7 @@
 
 #include "contact/contact_body.h"
 #include "contact/lattice_map.h"
-#include "contact/row.h"
+#include "contact/padded_vec3.h"
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@ namespace mdanim {
 struct Placed {
   const ContactBody &body;
   const int *slot;
-  const Row *place;
+  const PaddedVec3 *place;
 };
 
 // Of the particles around a point, from the place `base` in the grid on.
@@ -65,7 +65,7 @@ inline bool evaluate(const Placed &host, const MapWeights &weights, Spot<double>
 }
 
 // Adds force N_b + dN_b/dX . moment to every particle b.
-inline void spread(const Placed &host, const MapWeights &weights, const Vec3 &force, const Vec3 (&moment)[3], Row *on)
+inline void spread(const Placed &host, const MapWeights &weights, const Vec3 &force, const Vec3 (&moment)[3], PaddedVec3 *on)
 {
   const int row = host.body.row(), layer = host.body.layer(), *const slots = host.slot + weights.base;
   const auto add = [&](int i, int j, int k, const Vec3 &part) { on[slots[i + row * j + layer * k]].value += part; };

@@ -11,13 +11,13 @@ namespace mdanim {
 
 static constexpr std::size_t PAIRS_TO_TRY = 4000;    // one by one: for so few a grid takes longer
 
-void ContactSearch::Side::clear(int room)
+void ContactSearch::ObjectParticles::clear(int room)
 {
   place.make_room(room);
   rank.clear();
 }
 
-void ContactSearch::Side::add(const double *at, int n)
+void ContactSearch::ObjectParticles::add(const double *at, int n)
 {
   place.put(rank.size(), at);
   rank.push_back(n);
@@ -70,7 +70,7 @@ void ContactSearch::search(int seeking, int guarding, bool thin_too)
     for (int s = 0; s < seekers.size(); ++s) look(s, guards, 0, guards.size(), thin_too);
     return;
   }
-  const auto place = [&](const Side &side, int k) { return near[side.rank[k]].x; };
+  const auto place = [&](const ObjectParticles &side, int k) { return near[side.rank[k]].x; };
   const Grid grid([&](int k) { return place(guards, k); }, guards.size(), set.range);
   sorted.clear(guards.size());
   for (const int k : grid.order()) sorted.add(place(guards, k), guards.rank[k]);
@@ -78,7 +78,7 @@ void ContactSearch::search(int seeking, int guarding, bool thin_too)
     grid.ranges(place(seekers, s), [&](int from, int to) { look(s, sorted, from, to, thin_too); });
 }
 
-void ContactSearch::pick(Side &side, int object, int wanted, const Box &inside) const
+void ContactSearch::pick(ObjectParticles &side, int object, int wanted, const Box &inside) const
 {
   side.clear(begin[object + 1] - begin[object]);
   for (int k = begin[object]; k < begin[object + 1]; ++k) {
@@ -88,7 +88,7 @@ void ContactSearch::pick(Side &side, int object, int wanted, const Box &inside) 
 }
 
 // One seeker and guards in a row.
-void ContactSearch::look(int seeker, const Side &side, int from, int to, bool thin_too)
+void ContactSearch::look(int seeker, const ObjectParticles &side, int from, int to, bool thin_too)
 {
   const Vec3 at = seekers.place[seeker];
   const double of_seeker[] = {at.x, at.y, at.z};

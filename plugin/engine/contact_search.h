@@ -48,7 +48,7 @@ class ContactSearch {
 
  private:
   // Particles of one object, copied one after the other.
-  struct Side {
+  struct ObjectParticles {
     Positions place;
     std::vector<int> rank;    // in `near`
 
@@ -59,8 +59,8 @@ class ContactSearch {
 
   void sort_by_object();
   void search(int seeking, int guarding, bool thin_too);
-  void pick(Side &side, int object, int wanted, const Box &inside) const;
-  void look(int seeker, const Side &side, int from, int to, bool thin_too);
+  void pick(ObjectParticles &side, int object, int wanted, const Box &inside) const;
+  void look(int seeker, const ObjectParticles &side, int from, int to, bool thin_too);
   void consider(int a, int b, double r2, bool thin_too);
   template <class Key> void sort_found(Key key);
 
@@ -71,7 +71,7 @@ class ContactSearch {
   std::vector<Particle> near;
   std::vector<int> begin, of_object;    // those of object n, by their places in `near`: of_object[begin[n]] to [begin[n + 1] - 1]
   std::vector<Pair> found;
-  Side seekers, guards, sorted;
+  ObjectParticles seekers, guards, sorted;
   std::vector<int> close;
 };
 

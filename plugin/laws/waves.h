@@ -32,17 +32,17 @@ struct WaveLaw {
 constexpr double calm_rate(double time) { return 2.0 / time; }
 
 // (W1) Head of the surface of a span with solids at its ends alone. A full span has the head of its rest.
-template <class Real> struct Surface {
+template <class Real> struct SpanSurface {
   Real full, rest, phi, head;
 };
 
 template <class Real>
-MDANIM_ALWAYS_INLINE Surface<Real> surface(const Real &volume, const Real &capacity, const Real &roof, const Real &free_head,
-                                           const Real &full, const Real &rest, const Real &phi)
+MDANIM_ALWAYS_INLINE SpanSurface<Real> surface(const Real &volume, const Real &capacity, const Real &roof, const Real &free_head,
+                                               const Real &full, const Real &rest, const Real &phi)
 {
   const Real none = constant<Real>(0.0), one = constant<Real>(1.0);
   const Real stays = pick(volume >= capacity - one, one, none), turns = pick(volume >= capacity, one, none);
-  Surface<Real> s;
+  SpanSurface<Real> s;
   s.full = pick(full > none, stays, turns);
   const auto new_full = s.full > full;
   s.phi = pick(new_full, larger(phi, roof), phi);
@@ -168,7 +168,7 @@ MDANIM_ALWAYS_INLINE Real pushing_head(const WaveLaw &law, const Real &head, con
   return smaller(larger(head + (one - part) * delta, head - constant<Real>(law.slam)), constant<Real>(law.height + law.slam));
 }
 
-template <class Real> struct Pushed {
+template <class Real> struct UpwindFlux {
   Real u, units;    // velocity; units that pass in this sub-update, a whole number
 };
 
@@ -181,8 +181,9 @@ template <class Real> MDANIM_ALWAYS_INLINE Real whole(const Real &a)
 
 // (W8) Pressure moves the liquid; the flux is that of the upwind opening, in whole units.
 template <class Real, class Opening>
-MDANIM_ALWAYS_INLINE Pushed<Real> pushed(const WaveLaw &law, const Real &u, const Real &wet, const Real &phi_a, const Real &phi_b,
-                                         const Real &level_a, const Real &level_b, const Real &edge, const Opening &opening)
+MDANIM_ALWAYS_INLINE UpwindFlux<Real> pushed(const WaveLaw &law, const Real &u, const Real &wet, const Real &phi_a,
+                                             const Real &phi_b, const Real &level_a, const Real &level_b, const Real &edge,
+                                             const Opening &opening)
 {
   const Real none = constant<Real>(0.0), most = constant<Real>(law.fastest);
   const Real faster = u - constant<Real>(law.dt) * (larger(phi_b, edge) - larger(phi_a, edge));

@@ -36,9 +36,9 @@ std::string AutomatonBasin::too_large(int nx, int ny, int nz)
   return text;
 }
 
-AutomatonBasin::AutomatonBasin(const Shape &shape, double g, std::uint64_t seed, Vertical vertical, Model model,
+AutomatonBasin::AutomatonBasin(const Shape &shape, double g, std::uint64_t seed, Vertical vertical, Immersion immersion,
                                const RankSums &ranks)
-    : Basin(shape, g), model(model), ranks(ranks), seed(seed), automaton(shape.nx, shape.ny, shape.nz, seed, vertical),
+    : Basin(shape, g), immersion(immersion), ranks(ranks), seed(seed), automaton(shape.nx, shape.ny, shape.nz, seed, vertical),
       solid(shape.nx, shape.ny, shape.nz), height(columns(), 0.0), eta(columns(), 0.0), blocked(columns(), 0)
 {
 }
@@ -148,7 +148,7 @@ void AutomatonBasin::flow(long changed, std::uint64_t when)
     most = pace.sweeps ? pace.sweeps : std::min(wanted, MOST_SWEEPS);
     for (int k = 0; k < most; ++k) automaton.sweep(when * MOST_SWEEPS + k);
     swept += most;
-    levelled = model == Model::SURFACE && moves > 0;
+    levelled = immersion == Immersion::SURFACE && moves > 0;
     for (int k = 0; levelled && k < moves; ++k)
       if (leveller.move(automaton.cells, seed, key_of(when, k), k < waves ? LEVEL_RATE * BETWEEN_MOVES : 0.0, k ? 0 : changed))
         automaton.poured();

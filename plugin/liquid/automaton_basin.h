@@ -20,13 +20,16 @@ namespace mdanim {
 // Cells of liquid that the automaton and the level rule move, and the smooth surface.
 class AutomatonBasin : public Basin {
  public:
-  enum class Model { SURFACE, PAPER };    // what immerses a particle: the height of the surface, or liquid in the cells around
+  enum class Immersion {
+    SURFACE,
+    PAPER
+  };    // what immerses a particle: the height of the surface, or liquid in the cells around
 
   // Empty when a grid can be numbered and its state be kept, else why not.
   static std::string too_large(int nx, int ny, int nz);
 
   // Throws std::bad_alloc. `ranks` stays where it is.
-  AutomatonBasin(const Shape &shape, double g, std::uint64_t seed, Vertical vertical, Model model, const RankSums &ranks);
+  AutomatonBasin(const Shape &shape, double g, std::uint64_t seed, Vertical vertical, Immersion immersion, const RankSums &ranks);
 
   long mark_still(const AddBodies &bodies) override;
   void mark_moving(const AddBodies &bodies) override;
@@ -44,8 +47,8 @@ class AutomatonBasin : public Basin {
   }
   double all_below() const override
   {
-    return model == Model::SURFACE && lowest_eta >= 1.0 ? shape.low.z + (lowest_eta - 0.5) * shape.cell.z
-                                                        : -std::numeric_limits<double>::infinity();
+    return immersion == Immersion::SURFACE && lowest_eta >= 1.0 ? shape.low.z + (lowest_eta - 0.5) * shape.cell.z
+                                                                : -std::numeric_limits<double>::infinity();
   }
   // No liquid in the first open cell before the face, and none above that.
   double pressing_depth(const Vec3 &middle, const Vec3 &area) const override;
@@ -88,13 +91,13 @@ class AutomatonBasin : public Basin {
   double immersed(const Vec3 &place) const
   {
     if (!(place.x >= 0.0 && place.x <= shape.nx && place.y >= 0.0 && place.y <= shape.ny)) return 0.0;
-    return model == Model::SURFACE ? immersed_part(surface_at(place), place.z) : liquid_around(place);
+    return immersion == Immersion::SURFACE ? immersed_part(surface_at(place), place.z) : liquid_around(place);
   }
   double surface_at(const Vec3 &place) const
   { return at_point(eta.data(), blocked.data(), shape.nx, shape.ny, place.x, place.y); }
   bool air_before(const Vec3 &middle, const Vec3 &normal) const;
 
-  const Model model;
+  const Immersion immersion;
   const RankSums &ranks;
   Threads threads;
   const std::uint64_t seed;

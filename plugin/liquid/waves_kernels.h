@@ -29,7 +29,7 @@ struct WaveArrays {
   long stride;
   std::int64_t *content;
   double *capacity, *floor, *roof;    // of spans, in cells
-  double *full, *rest, *phi;          // see Surface
+  double *full, *rest, *phi;          // see SpanSurface
   double *volume, *head, *slope;
   double *yields, *coming;    // 1/mass of what floats above, 0 where it is held; change of the capacity, see (W6)
   double *rhs, *beside_full;

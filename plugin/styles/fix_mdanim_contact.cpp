@@ -397,7 +397,7 @@ Coordinates FixMdanimContact::places_of_all(const Coordinates &of_mine)
 // add(n, force) on those of `mine` that may move.
 template <class Add> void FixMdanimContact::give_forces(const Add &add) const
 {
-  const Row *forces = world_of_contact.forces();
+  const PaddedVec3 *forces = world_of_contact.forces();
   threads_now.parts(static_cast<long>(mine.size()), NS_OF_PARTICLE, [&](long first, long end) {
     for (long n = first; n < end; ++n) {
       if (!world_of_contact.is_pushed(object[mine[n]])) continue;

@@ -194,7 +194,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, n
     } else
       basin = std::make_unique<AutomatonBasin>(
           shape, g, static_cast<std::uint64_t>(seed), vertical,
-          model == Model::PAPER ? AutomatonBasin::Model::PAPER : AutomatonBasin::Model::SURFACE, sums);
+          model == Model::PAPER ? AutomatonBasin::Immersion::PAPER : AutomatonBasin::Immersion::SURFACE, sums);
   } catch (const std::bad_alloc &) {
     error->one(FLERR, "fix mdanim/liquid: no memory for a grid of {:.3g} cells; use fewer, larger cells",
                1.0 * n[0] * n[1] * n[2]);

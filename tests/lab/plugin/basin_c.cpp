@@ -35,7 +35,7 @@ struct TestBasin {
 
   TestBasin(int nx, int ny, int nz, int ranks_count)
       : ranks(ranks_count),
-        basin({nx, ny, nz, {}, {1.0, 1.0, 1.0}}, 1.0, 1, mdanim::Vertical::LOWER, AutomatonBasin::Model::SURFACE, ranks)
+        basin({nx, ny, nz, {}, {1.0, 1.0, 1.0}}, 1.0, 1, mdanim::Vertical::LOWER, AutomatonBasin::Immersion::SURFACE, ranks)
   {
   }
 };

@@ -2,14 +2,14 @@
 // A place of a particle or a force on it, as wide as a vector, which the kernels read and write at once. Plain data, for the
 // reason told in engine/kernels_of_set.cpp.
 
-#ifndef MDANIM_ROW_H
-#define MDANIM_ROW_H
+#ifndef MDANIM_PADDED_VEC3_H
+#define MDANIM_PADDED_VEC3_H
 
 #include "laws/vec3.h"
 
 namespace mdanim {
 
-struct alignas(4 * sizeof(double)) Row {
+struct alignas(4 * sizeof(double)) PaddedVec3 {
   Vec3 value;
   double unused = 0.0;
 };
