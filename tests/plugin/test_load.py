@@ -94,19 +94,74 @@ HOSTS = {
 }
 
 
-@pytest.mark.parametrize("host", HOSTS)
+# Parts of run_style verlet, of which the headers tell nothing, as another build of the library may have them. That of the wheel
+# has 344 bytes: lists up to 320, flags from 328 on.
+VERLET = """
+extern "C" {
+void integrate(void *, void *, int, char **) __asm__("_ZN9LAMMPS_NS9IntegrateC2EPNS_6LAMMPSEiPPc");
+void verlet(void *, void *, int, char **) __asm__("_ZN9LAMMPS_NS6VerletC2EPNS_6LAMMPSEiPPc");
+void init(char *) __asm__("_ZN9LAMMPS_NS6Verlet4initEv");
+extern const void *const table[12] __asm__("_ZTVN9LAMMPS_NS6VerletE");
+"""
+TABLE = "".join(
+    f'extern const char {name}[] __asm__("{symbol}");\n'
+    for name, symbol in {
+        "type": "_ZTIN9LAMMPS_NS6VerletE",
+        "end": "_ZN9LAMMPS_NS6VerletD1Ev",
+        "remove": "_ZN9LAMMPS_NS6VerletD0Ev",
+        "start": "_ZN9LAMMPS_NS6Verlet4initEv",
+        "setup": "_ZN9LAMMPS_NS6Verlet5setupEi",
+        "minimal": "_ZN9LAMMPS_NS6Verlet13setup_minimalEi",
+        "run": "_ZN9LAMMPS_NS6Verlet3runEi",
+        "clear": "_ZN9LAMMPS_NS6Verlet11force_clearEv",
+        "clean": "_ZN9LAMMPS_NS6Verlet7cleanupEv",
+        "reset": "_ZN9LAMMPS_NS9Integrate8reset_dtEv",
+        "memory": "_ZN9LAMMPS_NS9Integrate12memory_usageEv",
+    }.items()
+)
+VERLETS = {
+    "a longer one": "void verlet(void *to, void *l, int n, char **a) { integrate(to, l, n, a); ((char *)to)[344 + 24] = 0; }",
+    "no list where one is": "void verlet(void *to, void *l, int n, char **a) { integrate(to, l, n, a); ((char *)to)[312] = 1; }",
+    "functions in another order": TABLE
+    + "const void *const table[12] = {0, type, end, remove, start, setup, minimal, run, clear, reset, clean, memory};",
+}
+INITS = {
+    "flags elsewhere": "void init(char *) {}",
+    "more flags": "void init(char *to) { for (int n = 328; n <= 344; n += 4) *(int *)(to + n) = 0; }",
+}
+
+
+def preloaded(folder: Path, code: str) -> str:
+    """LD_PRELOAD with a library of such functions; a sanitizer stays first."""
+    (folder / "host.cpp").write_text(code)
+    compiler = os.environ.get("CXX", "c++")
+    subprocess.run([compiler, "-shared", "-fPIC", "-o", folder / "host.so", folder / "host.cpp"], check=True)
+    return ":".join(filter(None, (os.environ.get("LD_PRELOAD"), str(folder / "host.so"))))
+
+
+@pytest.mark.parametrize("host", [*HOSTS, *VERLETS])
 def test_another_binary_interface_of_the_same_version_is_refused(tmp_path, host):
     """Load no style into a build of the right date that differs in what styles rely on, and say in what."""
-    code, message = HOSTS[host]
-    (tmp_path / "host.cpp").write_text(f'extern "C" {{ {code} }}\n')
-    compiler = os.environ.get("CXX", "c++")
-    subprocess.run([compiler, "-shared", "-fPIC", "-o", tmp_path / "host.so", tmp_path / "host.cpp"], check=True)
+    another = "was built for another update of LAMMPS version 20250722 or with another standard library: run_style verlet"
+    code, message = HOSTS[host] if host in HOSTS else (VERLETS[host], another)
     (tmp_path / "in.info").write_text("info styles fix\nprint 'alive'\n")
-    preload = os.environ.get("LD_PRELOAD"), str(tmp_path / "host.so")  # a sanitizer is to come first
-    done = plugin_path.bare_lmp(tmp_path / "in.info", FILE.parent, LD_PRELOAD=":".join(filter(None, preload)))
+    preload = preloaded(tmp_path, f'extern "C" {{ {code} }}\n' if host in HOSTS else f"{VERLET}{code}}}\n")
+    done = plugin_path.bare_lmp(tmp_path / "in.info", FILE.parent, LD_PRELOAD=preload)
     assert done.returncode == 0 and "alive" in done.stdout, done.stderr
     assert "mdanim/leapfrog" not in done.stdout
     assert message in done.stderr
+
+
+@pytest.mark.parametrize("host", INITS)
+def test_flags_of_another_verlet_are_an_error_before_the_first_step(tmp_path, host):
+    """The library's constructor does not write them, its init() does: where it writes elsewhere, it does so in other members."""
+    (tmp_path / "in.run").write_text(
+        "region all block 0 1 0 1 0 1\ncreate_box 1 all\nmass 1 1.0\nrun_style verlet/mdanim\nrun 0\nprint 'alive'\n"
+    )
+    preload = preloaded(tmp_path, f"{VERLET}{INITS[host]}}}\n")
+    done = plugin_path.bare_lmp(tmp_path / "in.run", FILE.parent, LD_PRELOAD=preload)
+    assert done.returncode != 0 and "alive" not in done.stdout
+    assert "run_style verlet of this LAMMPS has another layout" in done.stdout + done.stderr
 
 
 def test_lammps_hears_what_its_styles_were_built_for(tmp_path):
