@@ -25,6 +25,7 @@ from ..plan.orders import Order, Report
 from .bundle import Bundle, Wanted, wanted_bundles
 from .control import Controller, make_control
 from .messages import SUPERVISOR, Aborted, Ended, Failure, Job, Kept, Mail, Moved, Share, Tag, gathered, scatter
+from .team_communicators import TeamCommunicators
 
 ABORT_SECONDS = 2.0
 """Seconds within which mpiexec ends all ranks after one has died."""
@@ -86,7 +87,7 @@ class Executor:
         """What it follows."""
         self.next: Order | None = None
         """What it is to follow in the next window."""
-        self.teams: dict[tuple[int, ...], MPI.Comm] = {}
+        self.teams = TeamCommunicators(comm)
         self.account = Account()
         self.told = 0.0
         """When it last told of its account, as ``time.perf_counter()``; 0 until it first waits for leave to simulate: what came
@@ -125,6 +126,7 @@ class Executor:
         for bundle in self.bundles:
             self._close(bundle)
         self.cache.close()
+        self.teams.close()
         self.rows.close()
         self.mail.send(SUPERVISOR, Tag.ENDED, Ended(self.account, self.spans, time.process_time() - self.cpu_origin))
         self.mail.flush()
@@ -176,6 +178,7 @@ class Executor:
                 if bundle not in live.values():
                     bundle.share_state(self.x, self.v, self.f)
                     self._close(bundle)
+            self.teams.follow([team.members for team in order.plan.teams])
             if before is None:
                 self.records = self._records_of(np.flatnonzero(order.plan.owner == self.me))
             else:
@@ -242,7 +245,7 @@ class Executor:
                 moved = self.mail.take(Tag.TEAM, key.ranks[0], self.comm)
                 scatter(self._places(everything), (self.x, moved.x), (self.v, moved.v), (self.f, moved.f))
                 records = moved.records
-        bundle = Bundle(self.parts, wanted, self._team(key.ranks), self.cache)
+        bundle = Bundle(self.parts, wanted, self.teams.of(key.ranks), self.cache)
         self._start(bundle, records)
         return bundle
 
@@ -250,14 +253,6 @@ class Executor:
         """Give a bundle the state of the last frame."""
         x_v_f = gathered(bundle.places, self.x, self.v, self.f)
         bundle.start(self.step, State(*x_v_f, bundle.records_from(records)) if self.started else None)
-
-    def _team(self, members: tuple[int, ...]) -> MPI.Comm | None:
-        """The communicator of a team, its leader first; None for one executor alone."""
-        if len(members) == 1:
-            return None
-        if members not in self.teams:
-            self.teams[members] = self.comm.Create_group(self.comm.group.Incl(members))
-        return self.teams[members]
 
     def _close(self, bundle: Bundle) -> None:
         add_clocks(self.account, bundle.instance)
