@@ -292,6 +292,17 @@ def test_a_movie_is_forecast_from_some_pictures(pond, monkeypatch):
     assert movie_forecast.movie_seconds(ready, result.folder) is None
 
 
+def test_drawing_that_ends_the_process_leaves_the_cost(pond, monkeypatch):
+    """Libraries of OpenGL may end a process, as on hosts without a display; only the movie is not known then."""
+    from mdanim_lammps.cost import forecast as forecasting
+
+    cost = Cost(1.0, 1, 1, {}, {"setup": 0.0})
+    monkeypatch.setattr(forecasting, "whole", lambda ready, folder, setup: cost)
+    for ends in (lambda ready, folder: os._exit(9), lambda ready, folder: os.kill(os.getpid(), signal.SIGKILL)):
+        monkeypatch.setattr(forecasting, "movie_seconds", ends)
+        assert forecast(pond[0]) == cost and cost.movie is None
+
+
 def test_first_steps_that_end_badly(pond, monkeypatch, tmp_path):
     """Tell where and why they are stopped, nothing where they take too long, pass on that LAMMPS cannot be used, and outlive an
     end of the process. No file stays."""

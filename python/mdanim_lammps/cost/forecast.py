@@ -47,6 +47,8 @@ def forecast(ready: Prepared, *, setup: float = 0.0) -> Cost | DivergedError | N
         send.close()
         try:
             found = answer.recv() if answer.poll(PATIENCE) else None
+            if isinstance(found, Cost):
+                found = _with_movie(found, answer)
         except EOFError:
             raise SetupError("the first steps cannot be run: LAMMPS ended the process") from None
         finally:
@@ -57,15 +59,23 @@ def forecast(ready: Prepared, *, setup: float = 0.0) -> Cost | DivergedError | N
     return found
 
 
+def _with_movie(cost: Cost, answer: Connection) -> Cost | MdanimError:
+    """The cost with that of the movie, which is not known where drawing takes longer than PATIENCE or has ended the process."""
+    try:
+        movie = answer.recv() if answer.poll(PATIENCE) else None
+    except EOFError:
+        movie = None
+    return movie if isinstance(movie, MdanimError) else replace(cost, movie=movie)
+
+
 def _tell(send: Connection, ready: Prepared, folder: Path, setup: float) -> None:
-    """Send the cost or the error through a pipe."""
+    """Send the cost, then that of the movie, or the error through a pipe."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the caller's, which ends this process
     try:
-        found: Cost | MdanimError = whole(ready, folder, setup=setup)
-        found = replace(found, movie=movie_seconds(ready, folder))
+        send.send(whole(ready, folder, setup=setup))
+        send.send(movie_seconds(ready, folder))
     except MdanimError as error:
-        found = error
-    send.send(found)
+        send.send(error)
 
 
 def whole(ready: Prepared, folder: Path, *, setup: float = 0.0) -> Cost:
