@@ -57,7 +57,7 @@ def run(arguments: Sequence[str], *, text: bool = True, more: Mapping[str, str] 
 
 def _settings(text: bool, more: Mapping[str, str], options: Mapping[str, Any]) -> dict[str, Any]:
     read = text and (options.get("stderr") == PIPE or options.get("capture_output"))
-    # What goes to the terminal has the terminal's encoding.
+    # Text for the terminal has the terminal's encoding.
     encoded = {"PYTHONIOENCODING": "utf-8:backslashreplace"} if read else {}
     return {"env": environment({**encoded, **more}), **({"encoding": "utf-8", "errors": "replace"} if text else {})}
 
@@ -137,7 +137,7 @@ class Workers(Executor):
 
     @staticmethod
     def _ask(child: Child, task: tuple) -> Any:
-        """What comes of a task. Raises what it raises, and ChildLost."""
+        """The result of a task. Raises what it raises, and ChildLost."""
         packed = pickle.dumps(task, protocol=pickle.HIGHEST_PROTOCOL)
         try:
             child.stdin.write(packed)
@@ -151,7 +151,7 @@ class Workers(Executor):
 
 
 def main() -> None:
-    """What a process that shares work does: take tasks from stdin, and put what comes of them on what was stdout."""
+    """Be a process that shares work: take tasks from stdin, and put what comes of them on what was stdout."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with open(os.dup(0), "rb") as ask, open(os.dup(1), "wb") as tell:
         os.dup2(os.open(os.devnull, os.O_RDONLY), 0)

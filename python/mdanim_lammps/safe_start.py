@@ -14,7 +14,7 @@ def is_safe() -> bool:
 
 if __name__ == "__main__":
     if not is_safe():
-        del sys.path[0]  # the folder of this file, whose modules are no modules of Python
+        del sys.path[0]  # the folder of this file, whose modules are not those of Python
     from importlib import import_module
     from importlib.util import module_from_spec, spec_from_file_location
 

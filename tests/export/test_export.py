@@ -445,7 +445,7 @@ def test_what_is_there_is_kept(folder, tmp_path):
     export(folder, "vtk", tmp_path / "a.pvd", every=4, force=True)
     assert len(list((tmp_path / "a.vtk").iterdir())) == 6
     (tmp_path / "a.vtk" / "thesis.tex").touch()
-    with pytest.raises(OutputError, match="holds files that are no export"):
+    with pytest.raises(OutputError, match="holds files that are not of an export"):
         export(folder, "vtk", tmp_path / "a.pvd", force=True)
     assert (tmp_path / "a.vtk" / "thesis.tex").exists()
 

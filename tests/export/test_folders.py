@@ -34,7 +34,7 @@ def test_force_deletes_no_folders(folder, tmp_path, name):
     other.parent.mkdir()
     other.write_text("mine")
     for to, place in (("vtk", "a.pvd"), ("csv", "a.csv")):
-        with pytest.raises(OutputError, match="holds files that are no export"):
+        with pytest.raises(OutputError, match="holds files that are not of an export"):
             export(folder, to, tmp_path / place, force=True)
     assert inside.read_text() == other.read_text() == "mine"
 

@@ -102,7 +102,7 @@ def test_an_export_deletes_no_folders_inside_of_it(tmp_path):
     theirs = run.folder / "good.vtk" / "theirs.vtp"
     theirs.mkdir()
     (theirs / "thesis.tex").write_text("years of work")
-    with pytest.raises(OutputError, match="holds files that are no export"):
+    with pytest.raises(OutputError, match="holds files that are not of an export"):
         export(run.folder, "vtk", force=True)
     assert (theirs / "thesis.tex").exists()
     (theirs / "thesis.tex").unlink()

@@ -102,7 +102,7 @@ def test_what_is_no_scene_is_not_quoted(write, text, within):
     """No message shows a word of a file that a scene names and that is none: it may be private, and who asks another."""
     path = write(main=within.format('include "secret.txt"') + "\n" + BALL + CONTROL, secret=text)
     said = "\n".join(map(str, problems(path)))
-    assert "secret.txt is no part of a scene" in said and "hunter2" not in said and "BEGIN" not in said
+    assert "secret.txt is not a part of a scene" in said and "hunter2" not in said and "BEGIN" not in said
 
 
 def test_missing_file_and_folder(tmp_path):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What begins later than the first steps: the run in coarse cells, whose surfaces touch when those of the run will."""
+"""Costs that begin later than the first steps, by the run in coarse cells: its surfaces touch when those of the run will."""
 
 from __future__ import annotations
 

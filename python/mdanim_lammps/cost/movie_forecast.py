@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the movie of a run will cost: some pictures of its first steps are drawn, and all others are taken to cost as much."""
+"""The cost of the movie of a run: some pictures of its first steps are drawn, and all others are taken to cost as much."""
 
 from __future__ import annotations
 

@@ -139,7 +139,9 @@ def _make_way(targets: Sequence[Path], pieces: str, *, force: bool, delete: bool
         if target.is_dir() and not target.is_symlink():
             found = list(target.iterdir())
             if not pieces or not all(re.fullmatch(pieces, p.name) and p.is_file() and not p.is_symlink() for p in found):
-                raise OutputError(f"{target} holds files that are no export; --force does not delete them: name another with -o")
+                raise OutputError(
+                    f"{target} holds files that are not of an export; --force does not delete them: name another with -o"
+                )
             if delete:
                 for piece in found:
                     piece.unlink()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What it takes to model a scene: processor time and memory, before it is done. `bench/modelling.py forecast` compares."""
+"""Processor time and memory that it takes to model a scene, before it is done. `bench/modelling.py forecast` compares."""
 
 from __future__ import annotations
 

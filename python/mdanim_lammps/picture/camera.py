@@ -75,7 +75,7 @@ class Action:
     free: np.ndarray
     """Objects that are not held as a whole, bool, shape (O,)."""
     leads: np.ndarray
-    """What the picture must hold: that moves most in a stretch and meets something then or later, bool, shape (W, O)."""
+    """Objects that the picture must hold: they move most in a stretch and meet something then or later, bool, shape (W, O)."""
 
     @property
     def size(self) -> float:

@@ -143,7 +143,7 @@ def _results(folder: Path) -> Iterator[Path]:
     for script in folder.glob("in.*"):
         if script.is_file() and _is_script(script):
             name = script.name.removeprefix("in.")
-            # What `lmp` leaves of it too: it would be taken for the dump of the new run.
+            # Also the dump that `lmp` leaves of it: it would be taken for the dump of the new run.
             yield from (folder / own for own in (script.name, f"data.{name}", f"contact.{name}", f"{name}.lammpstrj"))
     for name, own in INSIDE.items():
         if _is_folder(folder / name):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What data of a stranger may look like: forms that the values of a JSON file are held to before anything uses them.
+"""Forms of data of strangers, to which the values of a JSON file are held before anything uses them.
 
 A form is a function of a value. It gives the value back, with only those names in it that it knows, or raises `Misfit`, a
 ValueError that says where something else stands, and what.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the JSON files of an output folder hold: one form for each, which its readers share. Names that older versions did not
+"""Contents of the JSON files of an output folder: one form for each, which its readers share. Names that older versions did not
 write are not needed."""
 
 from __future__ import annotations

@@ -134,7 +134,7 @@ def check_metadata(path: Path, m: TrajectoryMetadata) -> None:
         must((np.isfinite(mass) & (mass > 0.0)).all(), "a mass is not above 0, NaN or infinite")
     must(m.ground is None or np.isfinite(m.ground), "the ground is NaN or infinite")
     walls = np.zeros((2, 3)) if m.walls is None else np.array(m.walls)
-    must(walls.shape == (2, 3) and np.isfinite(walls).all(), "the walls are no box")
+    must(walls.shape == (2, 3) and np.isfinite(walls).all(), "the walls are not a box")
     if m.liquid is not None:
         low, high, shape = (np.array(getattr(m.liquid, name)) for name in ("low", "high", "shape"))
         must(low.shape == high.shape == shape.shape == (3,), "the basin is no box")

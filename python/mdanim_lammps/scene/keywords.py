@@ -149,7 +149,7 @@ SYNONYMS = {
 
 
 def misplaced(keyword: Keyword, word: str, starts) -> str:
-    """What to write instead of a word that does not follow a keyword, where people mean something by it; else empty."""
+    """Hint for a word that does not follow a keyword, where people mean something by it; else empty."""
     if SYNONYMS.get(word) in starts:
         return f"did you mean '{SYNONYMS[word]}'?"
     return MISPLACED.get(f"{keyword.name} {word}", "")

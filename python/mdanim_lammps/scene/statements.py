@@ -341,7 +341,9 @@ class Parser(Reader):
             reason = e.strerror if isinstance(e, OSError) else str(e)
             raise Fault(t, f"cannot include {t}: {path} {reason}", "the name is relative to this file") from None
         if line := foreign_line(text):
-            raise Fault(t, f"cannot include {t}: {path} is no part of a scene", f"its line {line} begins with no word of a scene")
+            raise Fault(
+                t, f"cannot include {t}: {path} is not a part of a scene", f"its line {line} begins with no word of a scene"
+            )
         shown = str(Path(self.source.name).parent / file)
         inner = SceneFile(shown, text, path, (*self.source.included_from, self.source.span(word, t)))
         parser = Parser(inner, self.shared, self.chain)

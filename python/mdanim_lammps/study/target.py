@@ -93,7 +93,7 @@ def stored_choice(scene: SceneRecord) -> Choice | None:
     try:
         data = read_json(path, CHOICE)
     except OutputError as error:
-        raise OutputError(f"{path} is no stored accuracy: delete it, and the next run makes a new one\n  {error}") from error
+        raise OutputError(f"{path} is not a stored accuracy: delete it, and the next run makes a new one\n  {error}") from error
     choice = Choice(**data["choice"])
     return choice if data["scene"] == _digest(scene) and choice.error == scene.control.accuracy else None
 

@@ -35,7 +35,7 @@ class Checker:
         """What is wrong with a text, each with its line (0 where it has none), message, way out and severity."""
         if half := _SURROGATE.search(text):
             line = text.count("\n", 0, half.start()) + 1
-            return [_problem(line, "half of a character of two parts stands here, which is no text", "delete it")]
+            return [_problem(line, "half of a character of two parts stands here, which is not text", "delete it")]
         with self._turn:
             if self._closed:
                 return [_problem(0, "the server ends")]
