@@ -216,10 +216,14 @@ def test_too_few_open_files_have_a_way_out(error, capsys):
         raise error
 
 
-@pytest.mark.parametrize("files", [8, 12, 22])
-def test_few_open_files(scene, files):
+@pytest.mark.parametrize(
+    ("files", "executors"), [(8, 1), (12, 1), (22, 1), *(pytest.param(n, 2, marks=pytest.mark.mpi) for n in (20, 30))]
+)
+def test_few_open_files(scene, files, executors):
     """A message in place of words of libraries, and of an end by MPI."""
     done = subprocess.run(
-        ["sh", "-c", f'ulimit -n {files}; "$@"', "sh", *PROGRAM, scene(), "--no-movie", "-q"], capture_output=True, text=True
+        ["sh", "-c", f'ulimit -n {files}; "$@"', "sh", *PROGRAM, scene(), "-n", str(executors), "--no-movie", "-q"],
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == ExitCode.ENVIRONMENT and "ulimit -n 1024" in done.stderr and "UCX" not in done.stderr, done.stderr

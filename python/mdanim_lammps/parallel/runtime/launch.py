@@ -21,6 +21,7 @@ from pathlib import Path
 
 from ...children import DEVNULL, PIPE, Child, start
 from ...children import command as child_command
+from ...engine.plugin import has_descriptors
 from ...errors import ExecutorLost, MdanimError, OutputError, SetupError
 from ...interrupts import Interrupts
 from ...results.checkpoint import Checkpoint
@@ -33,6 +34,8 @@ from ..plan.frame_plan import PlannerOptions
 
 RESULT_SIGN = "result:"
 """Start of the line on stdout in which the supervisor gives the result; mpiexec's own words begin with "=" or "YOUR"."""
+DESCRIPTORS = 32
+"""Files and sockets that a rank opens before it can tell that it has too few."""
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 """Environment of ranks: one thread for each rank's linear algebra."""
 
@@ -113,6 +116,10 @@ def launcher() -> list[str]:
 
 def _started(command: list[str]) -> Child:
     """The process that starts all ranks, in a session of its own: Ctrl-C is for this process. Raises SetupError."""
+    if not has_descriptors(DESCRIPTORS):
+        raise SetupError(
+            f"executors cannot start: MPI needs {DESCRIPTORS} more open files than the limit allows; raise it: ulimit -n 1024"
+        )
     try:
         return start(command, more=ONE_THREAD, stdin=DEVNULL, stdout=PIPE, stderr=PIPE, start_new_session=True, pass_fds=claims)
     except OSError as error:
