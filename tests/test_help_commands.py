@@ -141,6 +141,10 @@ def test_gallery(tmp_path):
     before = movie.stat().st_mtime_ns
     call("gallery", folder, "-o", tmp_path / "g")
     assert movie.stat().st_mtime_ns == before  # what is there is kept
+    (tmp_path / "g" / "index.html").write_text("precious")
+    refused = call("gallery", folder, "-o", tmp_path / "g")
+    assert refused.returncode == 7 and "write elsewhere with -o DIR" in refused.stderr
+    assert (tmp_path / "g" / "index.html").read_text() == "precious"
     empty = call("gallery", tmp_path, cwd=tmp_path)
     assert empty.returncode == 7 and "holds no scenes" in empty.stderr
 

@@ -122,6 +122,9 @@ def test_what_a_sweep_refuses(tmp_path):
     scene = Scene.from_text(TEXT, "pair")
     with pytest.raises(UsageError, match="lists of different values"):
         scene.sweep(h=[0.3, 0.3])
+    for no_list in (0.3, "12", "30 cm"):
+        with pytest.raises(UsageError, match="needs a list of values for h, found"):
+            next(scene.sweep({"h": no_list}, tmp_path / "s"))
     with pytest.raises(SceneError):
         scene.sweep(tmp_path / "s", h=[0.3, "soft"])
     assert not (tmp_path / "s").exists()

@@ -203,6 +203,7 @@ class Scene:
                 raise UsageError(f"sweep has two folders, {values} and {folder}; its first argument may be a table of values")
             folder = values
         lists = together_of(table, named)
+        check_lists(lists)
         points = [dict(zip(lists, point)) for point in itertools.product(*lists.values())]
         names = [",".join(f"{name}={value}" for name, value in point.items()) for point in points]
         if not lists or not points or len(set(names)) < len(names):
@@ -275,6 +276,13 @@ def together_of(values: Mapping, named: Mapping) -> dict:
     if both := values.keys() & named.keys():
         raise UsageError(f"{', '.join(sorted(both))}: given twice, in the table and as a keyword; leave one out")
     return {**values, **named}
+
+
+def check_lists(lists: Mapping) -> None:
+    """Raises UsageError for values of a sweep that are no list: a text would be taken for a list of its letters."""
+    for name, values in lists.items():
+        if isinstance(values, str) or not isinstance(values, Iterable):
+            raise UsageError(f"sweep needs a list of values for {name}, found {values!r}; write [{values!r}]")
 
 
 def _run_point(scene: Scene, folder: Path, force: bool, movie: bool) -> Result:

@@ -142,6 +142,16 @@ def picture_file(path: Path, suffix: str, *, force: bool) -> Path:
     return path
 
 
+def made_file(default: Path, out: Path | None, suffix: str, *, force: bool) -> Path:
+    """The file of -o, or that of a folder of results. Raises UsageError, and OutputError where it is not to be overwritten."""
+    from .results.overwriting import check_overwriting
+
+    if out is not None:
+        return picture_file(out, suffix, force=force)
+    check_overwriting(default, force=force)
+    return default
+
+
 def print_warnings(ready) -> None:
     for warning in ready.warnings:
         print(warning, file=sys.stderr)

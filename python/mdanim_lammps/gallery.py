@@ -14,6 +14,7 @@ from .errors import MdanimError, OutputError
 from .picture.movie import render_movie
 from .results.checkpoint import Checkpoint
 from .results.files import CHECKPOINT, MARK, SUMMARY, claimed, disk_errors, write_whole
+from .results.overwriting import MADE, check_overwriting
 from .run.loop import Interrupted
 from .run.prepare import prepare
 from .scene.scene import SceneRecord
@@ -33,6 +34,7 @@ def make_gallery(folder: Path, out: Path, *, accuracy=None, size=None, overrides
     scenes = sorted(folder.glob("*.txt"))
     if not scenes:
         raise OutputError(f"{folder} holds no scenes, files NAME.txt; name a folder that does")
+    check_overwriting(out / "index.html", force=force, other="DIR")
     with disk_errors(out):
         out.mkdir(parents=True, exist_ok=True)
     cells, failed = [], 0
@@ -57,7 +59,8 @@ def make_gallery(folder: Path, out: Path, *, accuracy=None, size=None, overrides
             shown = f"<pre>{html.escape(str(error))}</pre>"
         words = f"{html.escape(title)} <code>{html.escape(path.name)}</code>"
         cells.append(f"<figure>{shown}<figcaption>{words}</figcaption></figure>")
-    page = f'<!doctype html><meta charset="utf-8"><title>Gallery</title><style>{STYLE}</style><main>{"".join(cells)}</main>'
+    head = f'<meta charset="utf-8"><meta name="generator" content="{MADE}"><title>Gallery</title><style>{STYLE}</style>'
+    page = f"<!doctype html>{head}<main>{''.join(cells)}</main>"
     write_whole(out / "index.html", page + "\n")
     return len(scenes), failed
 

@@ -20,7 +20,7 @@ from .command_steps import (
     check_size,
     draw_movie,
     frame_range,
-    picture_file,
+    made_file,
     prepare,
     show_address,
     simulate_and_draw,
@@ -112,7 +112,7 @@ def render(
     if scene is not None:
         _warn_of_slow_motion(record.render, stored.control.frames)
     record = with_quality(record, quality)
-    path = movie_file(folder, record) if out is None else picture_file(out, ".mp4", force=force)
+    path = made_file(movie_file(folder, record), out, ".mp4", force=force)
     draw_movie(folder, record, path, quiet=quiet, size=size, fps=fps, frames=folder / "frames" if frames else None)
     if not quiet:
         print(f"movie    {path}" + (f"   pictures in {folder / 'frames'}" if frames else ""))
@@ -180,7 +180,7 @@ def report(
     """
     from .view.export import write_report
 
-    path = folder / "report.html" if out is None else picture_file(out, ".html", force=force)
+    path = made_file(folder / "report.html", out, ".html", force=force)
     adopt(folder, quiet=quiet)
     with progress_bar("report", quiet=quiet) as bar:
         every = write_report(folder, path, exact=exact, on_progress=lambda done, total: bar(done, total, ""))
@@ -263,7 +263,7 @@ def timeline(
             f"{folder} was simulated by one process, so there is no {TIMELINE}; "
             "executors are asked for with -n: mdanim-lammps SCENE -n 2"
         )
-    path = folder / "timeline.png" if out is None else picture_file(out, ".png", force=force)
+    path = made_file(folder / "timeline.png", out, ".png", force=force)
     draw(Timeline.read(folder), path, scene.title or scene.name)
     print(f"picture  {path}")
 

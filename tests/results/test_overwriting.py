@@ -82,6 +82,20 @@ def test_files_of_others_ask_for_force(tmp_path, command, suffix):
     assert made.stat().st_size > 100
 
 
+def test_files_of_others_in_a_folder_of_results(scene):
+    """They are asked for, too, where no -o names them: a movie, a page."""
+    out = scene.parent / "mine.out"
+    assert call(scene if scene.exists() else scene.with_name("other.txt"), "-o", out, "--no-movie").returncode == 0
+    (out / "films").mkdir()
+    for command, name in (("render", "films/a.mp4"), ("report", "report.html")):
+        (out / name).write_text("precious")
+        refused = call(command, out)
+        assert refused.returncode == 7 and "overwrite it with --force" in refused.stderr
+        assert (out / name).read_text() == "precious"
+        assert call(command, out, "--force").returncode == 0
+        assert call(command, out).returncode == 0
+
+
 def test_what_cannot_be_overwritten(tmp_path):
     """A folder, a link to a file of others; an empty file is none of ours."""
     (tmp_path / "folder.png").mkdir()

@@ -494,7 +494,7 @@ class Parser(Reader):
         elif t.type == "RPAR":
             hint = "this ) closes nothing"
         elif t.type == "NAME":
-            hint = "one setting per line"
+            hint = did_you_mean(str(t), settings) or "one setting per line"
         elif t.type == "LBRACE":
             hint = f"{what} is a setting, not a block"
         raise Fault(t, f"{t.found()} cannot follow here; {what} is complete", hint)

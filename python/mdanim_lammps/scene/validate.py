@@ -453,7 +453,7 @@ class Validator:
             return None
         if (kind, quantity) not in QUANTITIES:
             self.problem(
-                s.span(0), f"{quantity} is no quantity of {subject} that expect can check", did_you_mean(quantity, known)
+                s.span(0), f"{quantity} is not a quantity of {subject} that expect can check", did_you_mean(quantity, known)
             )
             return None
         if (kind == "liquid" or quantity in IMMERSION) and not self.blocks("liquid") and not self.out.excused("liquid"):
