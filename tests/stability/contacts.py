@@ -74,7 +74,7 @@ IMPACTS = [
     )
     for speed, overlap in ((0.2, 0.2), (0.5, 0.45), (0.8, 0.6), (1.0, 0.8))
 ]
-PASSES_AT = {2: 0.7, 3: 1.2, 4: 1.45, 5: 1.65}
+PASSES_AT = {2: 0.65, 3: 1.2, 4: 1.4, 5: 1.65}
 """Cells across a cube, and the closing speed over C from which two of them pass through each other (bench/stability.py)."""
 WORST = (0.5, 0.5)
 """Sideways displacement at which they do first: every corner on the middle of a face of the lattice."""
@@ -339,7 +339,7 @@ PLATES += [
     )
     for cells, fast in PLATE_PASSES_AT.items()
 ]
-NEEDLES = struck("needle", (20, 1, 1), 3, (0.1, 0.8), "thin both ways: every particle of it is an edge")
+NEEDLES = struck("needle", (20, 1, 1), 3, (0.1, 0.75), "thin both ways: every particle of it is an edge")
 
 
 def crossed(speed: float) -> str:

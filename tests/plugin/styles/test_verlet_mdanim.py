@@ -26,7 +26,7 @@ def test_blocks_give_the_bits_of_verlet(name):
     """Compare positions, velocities, forces and traces with those of the plain step, for all widths that run here."""
     text = (SHAPES | EFFECTS)[name]
     plain, energies, trace, none = film(text, "verlet")
-    assert none == 0 and np.abs(plain[-1, 0] - plain[0, 0]).max() > 0.002
+    assert none == 0 and np.abs(plain[-1, 0] - plain[0, 0]).max() > 0.001
     widths = [w for w in WIDTHS if supported(w)]
     assert "common" in widths
     for width in widths:
