@@ -112,9 +112,15 @@ ContactBody read_body(Words &words)
   if (!depth.empty() && static_cast<double>(depth.size()) != (count[0] + 5.0) * (count[1] + 5.0) * (count[2] + 5.0))
     words.fail("a body of these counts has another number of depths");
   for (double &value : depth) value = words.number<double>("a depth");
+
+  words.expect("open");
+  const int parts = words.many("open parts of sides", OPEN_NUMBERS);
+  std::vector<double> open(OPEN_NUMBERS * static_cast<std::size_t>(parts));
+  for (double &value : open) value = words.number<double>("a number of an open part");
   try {
     return ContactBody({count, edge, static_cast<int>(node.size()), node.data(), filled.data(), points, cell.data(), at.data(),
-                        centre.data(), normal.data(), area.data(), kind.data(), depth.empty() ? nullptr : depth.data()});
+                        centre.data(), normal.data(), area.data(), kind.data(), depth.empty() ? nullptr : depth.data(), parts,
+                        open.data()});
   } catch (const std::runtime_error &problem) {
     words.fail(problem.what(), line);
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -66,7 +67,19 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
                        given.area[p],
                        static_cast<PointKind>(given.kind[p])});
   }
+  take_open_parts(given);
   sort_points();
+}
+
+void ContactBody::take_open_parts(const ContactBodyArrays &given)
+{
+  need(given.open >= 0 && (given.open == 0 || is_cuboid()), "sides of a cuboid alone are covered");
+  for (int n = 0; n < given.open; ++n) {
+    const double *const part = given.open_part + OPEN_NUMBERS * n;
+    need(are_finite(part, OPEN_NUMBERS), "an open part is nowhere");
+    need(part[0] >= 0.0 && part[0] <= 5.0 && part[0] == std::floor(part[0]), "a side is of no number from 0 to 5");
+    open_parts.push_back({static_cast<int>(part[0]), {part[1], part[3]}, {part[2], part[4]}});
+  }
 }
 
 bool ContactBody::operator==(const ContactBody &other) const
@@ -76,8 +89,12 @@ bool ContactBody::operator==(const ContactBody &other) const
     return std::equal(a.cell, a.cell + 3, b.cell) && same(a.at, b.at) && same(a.centre, b.centre) && same(a.normal, b.normal) &&
            a.area == b.area && a.kind == b.kind;
   };
+  const auto same_parts = [](const OpenPart &a, const OpenPart &b) {
+    return a.side == b.side && std::equal(a.low, a.low + 2, b.low) && std::equal(a.high, a.high + 2, b.high);
+  };
   return std::equal(cells, cells + 3, other.cells) && std::equal(edges, edges + 3, other.edges) &&
          place_of_node == other.place_of_node && filled == other.filled && depth_grid == other.depth_grid &&
+         std::equal(open_parts.begin(), open_parts.end(), other.open_parts.begin(), other.open_parts.end(), same_parts) &&
          std::equal(surface.begin(), surface.end(), other.surface.begin(), other.surface.end(), same_points);
 }
 
@@ -153,11 +170,23 @@ Depth<double> ContactBody::depth(int side, const Vec3 &X) const
   return depth_by_splines(weights, [&](int j, int k) { return vec3(first + nx * (j + ny * k)); });
 }
 
+double ContactBody::covered(int side, const Vec3 &X) const
+{
+  constexpr double FAR = std::numeric_limits<double>::infinity();
+  double least = FAR;
+  for (const OpenPart &part : open_parts) {
+    if (part.side != side) continue;
+    const double a = side < 2 ? X.y : X.x, b = side < 4 ? X.z : X.y;
+    least = std::min(least, std::max({part.low[0] - a, a - part.high[0], part.low[1] - b, b - part.high[1]}));
+  }
+  return least < FAR ? least : -FAR;
+}
+
 std::size_t ContactBody::bytes() const
 {
   return place_of_node.capacity() * sizeof(int) + filled.capacity() + surface.capacity() * sizeof(SurfacePoint) +
-         depth_grid.capacity() * sizeof(double) + carriers.capacity() * sizeof(PointCell) + by_cell.capacity() * sizeof(int) +
-         is_carrier.capacity();
+         depth_grid.capacity() * sizeof(double) + open_parts.capacity() * sizeof(OpenPart) +
+         carriers.capacity() * sizeof(PointCell) + by_cell.capacity() * sizeof(int) + is_carrier.capacity();
 }
 
 }    // namespace mdanim

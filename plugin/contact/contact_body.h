@@ -34,6 +34,14 @@ struct PointCell {
   Vec3 low, high;     // a box around their X, from that corner
 };
 
+// What is open of a side that other bodies cover, in X along the first and the second axis across it; none where low is beyond
+// high.
+struct OpenPart {
+  int side;
+  double low[2], high[2];
+};
+constexpr int OPEN_NUMBERS = 5;    // of one: side, low and high along the first axis, then the second
+
 // As mdanim_contact_body() is given them.
 struct ContactBodyArrays {
   const std::int32_t *count;
@@ -46,6 +54,8 @@ struct ContactBodyArrays {
   const double *at, *centre, *normal, *area;
   const std::uint8_t *kind;
   const double *depth;    // null for a cuboid
+  int open = 0;
+  const double *open_part = nullptr;    // OPEN_NUMBERS of each
 };
 
 class ContactBody {
@@ -88,10 +98,13 @@ class ContactBody {
 
   // Below a side; sides of a cuboid are -x, +x, -y, +y, -z, +z.
   Depth<double> depth(int side, const Vec3 &X) const;
+  // How far X is outside of what is open of a side, in cells; below 0 where the side acts.
+  double covered(int side, const Vec3 &X) const;
   std::size_t bytes() const;
 
  private:
   void need_particles_of_cells() const;
+  void take_open_parts(const ContactBodyArrays &given);
   void sort_points();
 
   int cells[3];
@@ -103,7 +116,8 @@ class ContactBody {
   std::vector<int> by_cell;    // numbers of points, cell by cell, ascending in each
   std::vector<char> is_carrier;
   double stands_out = 0.0, lever = 1.0;
-  std::vector<double> depth_grid;    // coefficients of quadratic B-splines on nodes -2 to n + 2
+  std::vector<OpenPart> open_parts;    // sides without any act everywhere
+  std::vector<double> depth_grid;      // coefficients of quadratic B-splines on nodes -2 to n + 2
 };
 
 }    // namespace mdanim

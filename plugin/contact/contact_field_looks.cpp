@@ -181,9 +181,12 @@ ContactField::Verdict ContactField::judge(const SurfacePoint &point, const Vec3 
       }
     if (apart <= 0.0 || turned > apart) verdict.open |= static_cast<std::uint8_t>(1u << s);
     verdict.is_sure &= std::fabs(apart - std::max(0.0, turned)) > (turned > 0.0 ? turn : far);
+    const double covered = host->body->covered(s, X);
+    verdict.is_sure &= std::fabs(covered) > far + off;
+    slack = std::min(slack, PRESSED * h * std::max({apart, turned, depth - DEEPEST_BIRTH}));
+    if (covered >= 0.0) continue;    // another held body is there, and nothing comes to this side
     is_surely_shut |= turned < -turn && depth < -far;
     may_face |= turned < turn && apart < far && depth < DEEPEST_BIRTH + far;
-    slack = std::min(slack, PRESSED * h * std::max({apart, turned, depth - DEEPEST_BIRTH}));
     if (cosine < LEAST_COSINE) continue;
     if (depth <= 0.0) {
       is_shut = true;

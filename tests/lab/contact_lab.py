@@ -18,7 +18,7 @@ from mdanim_lammps.model.contact_body import make_contact_body
 from mdanim_lammps.model.lattice import Cells
 from mdanim_lammps.scene.shapes import Box
 
-ARRAYS = ("count", "edge", "node", "filled", "cell", "at", "centre", "normal", "area", "kind", "depth")
+ARRAYS = ("count", "edge", "node", "filled", "cell", "at", "centre", "normal", "area", "kind", "depth", "open")
 COLUMNS = ("body", "young", "friction", "moves")
 MEMORY = [
     ("offset", "f8"),
@@ -98,7 +98,9 @@ def give_body(lmp, fix: str, kind: int, arrays: dict) -> None:
     """Hand a contact body over; RuntimeError with the plugin's message."""
     library = ctypes.CDLL(f"{folder()}/mdanimplugin.so")
     kept = {name: None if arrays[name] is None else np.ascontiguousarray(arrays[name]) for name in ARRAYS}
-    count, edge, node, filled, *of_points = (a if a is None else a.ctypes.data_as(ctypes.c_void_p) for a in kept.values())
+    count, edge, node, filled, *of_points, open_parts = (
+        a if a is None else a.ctypes.data_as(ctypes.c_void_p) for a in kept.values()
+    )
     sizes = ctypes.c_int(len(kept["node"])), ctypes.c_int(len(kept["cell"]))
     error = ctypes.create_string_buffer(1024)
     handle = ctypes.c_void_p(ctypes.cast(lmp.lmp, ctypes.c_void_p).value)
@@ -113,6 +115,8 @@ def give_body(lmp, fix: str, kind: int, arrays: dict) -> None:
         filled,
         sizes[1],
         *of_points,
+        ctypes.c_int(len(kept["open"])),
+        open_parts,
         error,
         ctypes.c_int(1024),
     ):

@@ -286,7 +286,7 @@ def made(monkeypatch) -> list:
     """The shapes of which contact bodies are made, in this order."""
     made = []
     make = contact_body.make_contact_body
-    monkeypatch.setattr(contact_body, "make_contact_body", lambda shape, cells: made.append(shape) or make(shape, cells))
+    monkeypatch.setattr(contact_body, "make_contact_body", lambda shape, *rest: made.append(shape) or make(shape, *rest))
     return made
 
 

@@ -25,4 +25,6 @@ def body_arguments(kind: int, body: ContactBody) -> list:
         ctypes.c_int(len(body.cell)),
         *map(pointer, (body.cell, body.at, body.centre, body.normal, body.area, body.kind)),
         None if body.depth is None else pointer(body.depth),
+        ctypes.c_int(len(body.open)),
+        pointer(body.open),
     ]

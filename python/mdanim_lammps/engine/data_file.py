@@ -71,6 +71,8 @@ def bodies_text(bodies: Mapping[int, ContactBody]) -> Iterator[str]:
         depth = np.zeros(0) if body.depth is None else body.depth
         yield f"depth {len(depth)}\n"
         yield from rows("%r\n", depth)
+        yield f"open {len(body.open)}  # side, low and high along the first and the second axis across\n"
+        yield from rows("%d" + " %r" * 4 + "\n", *body.open.T)
 
 
 def write_bodies(plan: Plan, path: Path) -> None:

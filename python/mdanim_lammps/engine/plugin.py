@@ -23,7 +23,7 @@ OPENING = 0.1e9
 """Memory below which libraries under LAMMPS end the process [bytes]."""
 VERSION = 20250722
 """The LAMMPS version whose headers the plugin was compiled with; its ABI is that of one version."""
-ABI = 12
+ABI = 13
 """Number of the plugin's own C interface, `mdanim_abi`."""
 STYLES = (
     ("bond", "mdanim/harmonic"),

@@ -15,6 +15,7 @@ from ..scene.scene import HoldAll, HoldFaces, HoldWithin, SceneRecord, Shape, So
 from . import shapes
 from .cells import TooThin, fill_cells
 from .contact_body import BodyFrame
+from .cover import with_covers
 from .embed import make_surface
 from .lattice import Lattice, make_lattice
 from .masses import Fit, fit_masses
@@ -50,7 +51,7 @@ def build_models(scene: SceneRecord, progress: Callable[[int, int], None] | None
             progress(done, len(scene.solids))
     if problems:
         raise SceneError(problems)
-    return tuple(models)
+    return with_covers(models, scene.solids)
 
 
 # --- what equal objects share -------------------------------------------------------------------------------

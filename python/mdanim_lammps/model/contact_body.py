@@ -60,6 +60,10 @@ class ContactBody:
     depth: np.ndarray | None
     """Depth below the drawn surface [m], the distance to it, negative outside: coefficients of centred quadratic B-splines on the
     nodes -2 .. n + 2 of each axis, shape ((nz + 5)(ny + 5)(nx + 5),). None for a cuboid: the distance to its six sides."""
+    open: np.ndarray
+    """What is open of sides of a cuboid that others cover (model/cover.py): rows of a side, 0 to 5 for -x, +x, -y, +y, -z, +z,
+    and a rectangle, low and high along the first and the second axis across, X, shape (R, 5). A side acts in its rectangles
+    alone, one without any everywhere."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,11 +72,13 @@ class BodyFrame:
 
     shape: Shape
     cells: Cells
+    open: np.ndarray | None = None
+    """As that of ContactBody; None where nothing is covered."""
 
     @cached_property
     def contact(self) -> ContactBody:
         """The same object at every call."""
-        return make_contact_body(self.shape, self.cells)
+        return make_contact_body(self.shape, self.cells, self.open)
 
     @cached_property
     def drawn(self) -> np.ndarray:
@@ -87,13 +93,15 @@ class BodyFrame:
         return contains(self.shape, self.cells.low + place * self.cells.edge)
 
 
-def make_contact_body(shape: Shape, cells: Cells) -> ContactBody:
+def make_contact_body(shape: Shape, cells: Cells, open_parts: np.ndarray | None = None) -> ContactBody:
     """Points and depth of a shape that fills these cells, both about its centre of mass.
 
     A cuboid has a point for every boundary particle and side, in the order FLAT, SHARP, then sides -x, +x, -y, +y, -z, +z, then
-    particles. Any other shape has points of its true surface, 1 / DENSITY of a cell apart, each carried by the nearest cell.
+    particles; none on covered parts of its sides (``open_parts`` as ContactBody.open). Any other shape has points of its true
+    surface, 1 / DENSITY of a cell apart, each carried by the nearest cell.
     """
-    points = _cuboid(cells) if isinstance(shape, Box) else _dense(shape, cells)
+    open_parts = np.zeros((0, 5)) if open_parts is None else open_parts
+    points = _cuboid(cells, open_parts) if isinstance(shape, Box) else _dense(shape, cells)
     points = {name: np.ascontiguousarray(field) for name, field in points.items()}  # row by row, as C functions read them
     body = ContactBody(
         count=cells.count.astype(np.int32),
@@ -102,6 +110,7 @@ def make_contact_body(shape: Shape, cells: Cells) -> ContactBody:
         filled=cells.filled.astype(np.uint8).ravel(),
         **points,
         depth=None if isinstance(shape, Box) else _depth(shape, cells),
+        open=open_parts,
     )
     for name in body.__slots__:
         if (array := getattr(body, name)) is not None:
@@ -112,10 +121,17 @@ def make_contact_body(shape: Shape, cells: Cells) -> ContactBody:
 # --- cuboids ----------------------------------------------------------------------------------------------------------
 
 
-def _cuboid(cells: Cells) -> dict[str, np.ndarray]:
-    """Fields of the points of a cuboid."""
+def _cuboid(cells: Cells, open_parts: np.ndarray) -> dict[str, np.ndarray]:
+    """Fields of the points of a cuboid on what is open of its sides."""
     count, edge = cells.count, cells.edge
-    rows = [_side(count, edge, axis, end) for axis, end in product(range(3), (0, 1))]
+    rows = []
+    for side, (axis, end) in enumerate(product(range(3), (0, 1))):
+        row = _side(count, edge, axis, end)
+        if len(parts := open_parts[open_parts[:, 0] == side, 1:]):
+            a, b = np.delete(row["at"], axis, axis=1).T[:, :, None]
+            acts = ((parts[:, 0] < a) & (a < parts[:, 1]) & (parts[:, 2] < b) & (b < parts[:, 3])).any(axis=1)
+            row = {name: field[acts] for name, field in row.items()}
+        rows.append(row)
     points = {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
     order = np.argsort(points["kind"], kind="stable")
     return {name: field[order] for name, field in points.items()}

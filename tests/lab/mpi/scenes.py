@@ -93,3 +93,16 @@ APART = (
     + "control { time 0.1 s  frames 100 fps  resolution 2.5 cm }\n"
 )
 """One that moves fast, onto one that hardly moves, and another of these."""
+SEAMS = """
+gravity (0, 0, -9.81) m/s^2
+repeat j in 0 .. 1 {
+  repeat i in 0 .. 1 {
+    object slab[2*j + i] { shape box (60, 40, 10) cm  position (0.6*i - 0.3, j, -0.05) m  density 1000
+      elasticity 2 MPa  hold all }
+  }
+  object box[j] { shape box (20, 20, 20) cm  position (-0.12, j, 0.1) m  velocity (0.5, 0, 0) m/s  density 500
+    elasticity 2 MPa }
+}
+control { time 0.16 s  frames 50 fps  resolution 5 cm }
+"""
+"""Two boxes that slide over the seams of held slabs, far from each other."""

@@ -199,6 +199,21 @@ def test_a_run_goes_on_with_other_executors(scene):
     assert spread[0] == 5 and 7 <= spread[-1] < len(timeline.frames) - 1
 
 
+def test_covered_sides_are_the_same_for_every_executor(scene):
+    """Whatever neighbours it has of a slab, and after a resume on a seam."""
+    peers = {"executors": 2, "control": "peers"}
+    cases = {
+        "spread": peers,
+        "a": SEQUENTIAL | {"stop": 4},
+        "a spread": peers | {"resume": True, "in": "a"},
+        "b": peers | {"stop": 4},
+        "b alone": SEQUENTIAL | {"resume": True, "in": "b"},
+    }
+    found = ways(scene(films.SEAMS), cases)
+    for way in ("spread", "a", "b"):
+        same(found["sequential"], found[way])
+
+
 @pytest.mark.parametrize("text", [pytest.param(films.POOL, id="surface"), pytest.param(films.WAVES, id="waves")])
 def test_a_liquid_goes_on_with_other_executors(scene, text):
     """Stop while bodies splash; the state of the liquid goes to the executor that has it next."""

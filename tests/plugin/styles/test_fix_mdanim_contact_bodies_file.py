@@ -49,6 +49,7 @@ BAD = {
     "far too many points": (at("points"), "points 100000", "the rest of the file cannot hold 100000 points"),
     "other cells": (at("filled"), "filled 5", "a body of these counts has another number of cells"),
     "other depths": (at("depth"), "depth 3", "a body of these counts has another number of depths"),
+    "other open parts": (at("open"), "open -1", "the rest of the file cannot hold -1 open parts of sides"),
     "unknown kind": (
         at("points") + 1,
         re.sub(r"^(\d+) \d", r"\1 7", LINES[at("points") + 1]),

@@ -178,6 +178,10 @@ BAD = {
     "infinite area": with_entry("area", 3, np.inf),
     "unknown kind": with_entry("kind", 3, 3),
     "depth that is no number": {**CUBE, "depth": np.full(7**3, np.nan)},
+    "open part of no side": {**CUBE, "open": np.array([[6.0, 0, 1, 0, 1]])},
+    "open part of half a side": {**CUBE, "open": np.array([[0.5, 0, 1, 0, 1]])},
+    "open part that is nowhere": {**CUBE, "open": np.array([[0.0, 0, np.nan, 0, 1]])},
+    "covered side of no cuboid": {**CUBE, "depth": np.ones(7**3), "open": np.array([[0.0, 0, 1, 0, 1]])},
 }
 
 

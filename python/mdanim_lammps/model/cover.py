@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Where sides of held cuboids are covered by other held cuboids, flush: nothing can come there, and nothing of them acts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+
+from ..scene.scene import Box, Solid
+from .boxes import box_pairs
+from .contact_body import BodyFrame
+from .model import Model
+
+FLUSH = 0.01
+"""Gap between two sides, or step between two edges, that is not felt, over the spacing: about the depth of what lies there."""
+AROUND = 0.5
+"""Cells by which a side acts beyond its open part: what lies on a neighbour is sunk in a little."""
+BEYOND = 8.0
+"""Cells by which an open part reaches beyond an edge of its side: farther than any contact."""
+NOTHING = (1.0, -1.0, 1.0, -1.0)
+"""The open part of a side that is covered as a whole."""
+DIGITS = 6
+"""Of what is left open, in cells, so that rounding makes no bodies of its own."""
+
+
+def with_covers(models: Sequence[Model], solids: Sequence[Solid]) -> tuple[Model, ...]:
+    """The models of a scene; held cuboids that are covered in part have contact bodies that know of it.
+
+    Decided from the poses of the whole scene, so it is the same for every part of it.
+    """
+    held = [n for n, model in enumerate(models) if isinstance(model.frame.shape, Box) and model.held.all()]
+    if len(held) < 2:
+        return tuple(models)
+    gap = FLUSH * max(models[n].spacing for n in held)
+    low = np.array([models[n].position.min(axis=0) for n in held])
+    high = np.array([models[n].position.max(axis=0) for n in held])
+    beside: dict[int, list[int]] = {n: [] for n in held}
+    for one, other in box_pairs(low - gap, high + gap):
+        for i, j in zip(one.tolist(), other.tolist()):
+            beside[held[i]].append(held[j])
+            beside[held[j]].append(held[i])
+    corners = {n: _corners(models[n].frame) @ np.array(solids[n].rotation).T + solids[n].position for n in held if beside[n]}
+    frames: dict[tuple[int, bytes], BodyFrame] = {}
+    found = list(models)
+    for n in corners:
+        frame, turn = models[n].frame, np.array(solids[n].rotation)
+        others = [(corners[k] - solids[n].position) @ turn for k in sorted(beside[n])]
+        if len(left := open_parts(frame, others)):
+            key = (id(frame), left.tobytes())
+            found[n] = replace(models[n], frame=frames.setdefault(key, replace(frame, open=left)))
+    return tuple(found)
+
+
+def _corners(frame: BodyFrame) -> np.ndarray:
+    """Of a cuboid, body frame [m], shape (8, 3)."""
+    return frame.cells.low + np.array(list(product((0, 1), repeat=3))) * frame.cells.count * frame.cells.edge
+
+
+def open_parts(frame: BodyFrame, others: Sequence[np.ndarray]) -> np.ndarray:
+    """What is left open of the sides of a cuboid that others cover, rows as `ContactBody.open`, shape (R, 5).
+
+    ``others`` are the corners of cuboids in the body frame [m], each of shape (8, 3). Those whose axes are not along its own
+    cover nothing.
+    """
+    cells = frame.cells
+    hair = FLUSH * np.cbrt(cells.edge.prod()) / cells.edge
+    spans = []
+    for corner in others:
+        at = (corner - cells.low) / cells.edge
+        low, high = at.min(axis=0), at.max(axis=0)
+        if (np.minimum(at - low, high - at) <= hair).all():
+            spans.append((low, high))
+    rows = []
+    for side, (axis, end) in enumerate(product(range(3), (0, 1))):
+        across = [a for a in range(3) if a != axis]
+        layer = end * cells.count[axis] + (2 * end - 1) * hair[axis]  # just outside of the side
+        covers = []
+        for low, high in spans:
+            if low[axis] <= layer <= high[axis]:
+                covers.append((low[across] - hair[across], high[across] + hair[across]))
+        left = _left(covers, cells.count[across].astype(float), hair[across])
+        if left is not None:
+            rows += [(side, *part) for part in left or [NOTHING]]
+    return np.round(np.array(rows, float).reshape(-1, 5), DIGITS)
+
+
+def _left(covers: list[tuple[np.ndarray, np.ndarray]], size: np.ndarray, hair: np.ndarray) -> list[tuple[float, ...]] | None:
+    """Rectangles that covers leave of a side of this size, shape (2,), and what is around them; None where nothing is covered.
+
+    A cover counts that comes to an edge of the side: what stands in its middle is met from above alone.
+    """
+    left, touched = [(0.0, size[0], 0.0, size[1])], False
+    for low, high in covers:
+        (a, c), (b, d) = np.maximum(low, 0.0), np.minimum(high, size)
+        if (np.array([b - a, d - c]) <= 2.0 * hair).any() or ((low > AROUND) & (high < size - AROUND)).all():
+            continue
+        touched = True
+        left = [part for one in left for part in _without(one, a, b, c, d)]
+    if not touched:
+        return None
+    return [part for one in left for part in _with_around(one, size.tolist())]
+
+
+def _with_around(one: tuple[float, ...], size: list[float]) -> list[tuple[float, ...]]:
+    """An open part, and strips of what is AROUND it where that is not at an edge of the side: there it slides over the edges of
+    both bodies, which are flush."""
+    span = [one[:2], one[2:]]
+    core = [(a - BEYOND * (a <= 0.0), b + BEYOND * (b >= n)) for (a, b), n in zip(span, size)]
+    parts = [(*core[0], *core[1])]
+    for axis in (0, 1):
+        a, b = span[axis]
+        low, high = max(span[1 - axis][0], AROUND), min(span[1 - axis][1], size[1 - axis] - AROUND)
+        if low < high and (a > 0.0 or b < size[axis]):
+            strip = [(low, high), (low, high)]
+            strip[axis] = (a - (AROUND if a > 0.0 else BEYOND), b + (AROUND if b < size[axis] else BEYOND))
+            parts.append((*strip[0], *strip[1]))
+    return parts
+
+
+def _without(one: tuple[float, ...], a: float, b: float, c: float, d: float) -> list[tuple[float, ...]]:
+    """A rectangle (low, high, low, high) without that from (a, c) to (b, d), in pieces."""
+    low, high, under, over = one
+    if a >= high or b <= low or c >= over or d <= under:
+        return [one]
+    inner, outer = max(low, a), min(high, b)
+    parts = [(low, a, under, over), (b, high, under, over), (inner, outer, under, c), (inner, outer, d, over)]
+    return [(p, q, r, s) for p, q, r, s in parts if p < q and r < s]
