@@ -66,7 +66,7 @@ def _listed(head: str, items: list[str]) -> list[str]:
 
 LARGE = 1_000_000
 """Particles from which on modelling takes so long that a line before it says so."""
-LONG = 4.0
+LONG_MODELLING = 4.0
 """Seconds of modelling from which on a line before it says so, however few the particles are."""
 
 
@@ -76,7 +76,7 @@ def size_line(scene: SceneRecord) -> str | None:
     if not scene.solids:
         return None
     plan = plan_spacing(scene)
-    if plan.total < LARGE and work.seconds(scene, plan.h, plan.total) < LONG:
+    if plan.total < LARGE and work.seconds(scene, plan.h, plan.total) < LONG_MODELLING:
         return None
     return (
         f"size     about {number(plan.total / 1e6, 2)} million particles, spacing {say(plan.h, 'm')} set by {plan.set_by}: "

@@ -13,11 +13,11 @@ import gc
 import math
 import os
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -116,18 +116,32 @@ def find_trajectory(path: Path) -> Path:
     raise OutputError(f"{file}: no such trajectory; run the scene first, or name the folder that a run wrote")
 
 
+def without_need_of_a_lock(open_file: Callable) -> Any:
+    """Open an HDF5 file for reading: ``open_file(locking)`` with a lock as other readers of this process take it, since HDF5
+    opens a file twice in one way only; without one where the lock is refused: what is read is checked."""
+    try:
+        return open_file("best-effort")
+    except OSError as error:
+        if "lock" not in str(error):
+            raise
+        return open_file(False)
+
+
 def open_trajectory(path: Path) -> h5py.File:
-    """Open a file for reading, without a lock: what is read is checked, and file systems may have none. Raises OutputError."""
+    """Open a file for reading; file systems may have no locks. Raises OutputError."""
     import h5py
+
+    def opened():
+        return without_need_of_a_lock(lambda locking: h5py.File(path, "r", locking=locking))
 
     try:
         try:
-            return h5py.File(path, "r", locking=False)
+            return opened()
         except OSError as error:
             if error.errno != errno.EMFILE and "Too many open files" not in str(error):
                 raise
             gc.collect()  # files of trajectories that nothing refers to any more
-            return h5py.File(path, "r", locking=False)
+            return opened()
     except (OSError, RuntimeError, ValueError) as error:
         raise OutputError(f"{path}: cannot be read as HDF5, it is no trajectory or it is damaged ({error})") from None
 

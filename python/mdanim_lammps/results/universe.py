@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import OutputError
 from .dump import read_dump
 from .trajectory import Trajectory
+from .trajectory_file import without_need_of_a_lock
 
 with warnings.catch_warnings():
     # In a notebook without ipywidgets tqdm, which MDAnalysis imports, shows its own path.
@@ -23,7 +24,8 @@ class _File(H5PYPicklable):
     """Opened as `open_trajectory` does, in another process too."""
 
     def __init__(self, name: str, mode: str = "r", driver: str | None = None):
-        super().__init__(name=name, mode=mode, driver=driver, locking=False)
+        start = super().__init__
+        without_need_of_a_lock(lambda locking: start(name=name, mode=mode, driver=driver, locking=locking))
 
 
 class _Reader(H5MDReader):

@@ -47,6 +47,7 @@ export class Socket {
 
   ask(what) {
     return new Promise((done, failed) => {
+      if (this.socket.readyState !== WebSocket.OPEN) return; // no answer comes any more
       this.waiting.push({ done, failed });
       this.socket.send(JSON.stringify(what));
     });
