@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <vector>
 
 using namespace mdanim;
@@ -115,13 +116,15 @@ void place_all(int step, std::vector<double> (&x)[3], std::vector<Box> &boxes)
   }
 }
 
+using Body = std::shared_ptr<const ContactBody>;
+
 struct Told {
   std::vector<double> numbers;
   std::vector<char> remembered;
   double most = 0.0;
 };
 
-Told film(int threads, const ContactKernels *kernels, const ContactBody &cube, const ContactBody &round)
+Told film(int threads, const ContactKernels *kernels, const Body &cube, const Body &round)
 {
   ContactWorld world;
   world.settings.objects = true;
@@ -131,7 +134,7 @@ Told film(int threads, const ContactKernels *kernels, const ContactBody &cube, c
   std::vector<ContactObject> objects;
   for (int o = 0; o < OBJECTS; ++o) {
     ContactObject one{};
-    one.id = o + 1, one.body = o % 3 ? &cube : &round, one.young = 1e5, one.friction = 0.4, one.density = 1000.0;
+    one.id = o + 1, one.body = o % 3 ? cube : round, one.young = 1e5, one.friction = 0.4, one.density = 1000.0;
     objects.push_back(one);
   }
   world.take(objects, std::vector<char>(OBJECTS, 1));
@@ -174,7 +177,8 @@ Told film(int threads, const ContactKernels *kernels, const ContactBody &cube, c
 
 int main()
 {
-  const ContactBody cube = cuboid().body(), round = ball().body();
+  const auto cube = std::make_shared<const ContactBody>(cuboid().body()),
+             round = std::make_shared<const ContactBody>(ball().body());
   const Told alone = film(1, nullptr, cube, round);
   if (!(alone.most > 500.0)) return 2;
   const auto is_same = [&](int threads, const ContactKernels *kernels) {
