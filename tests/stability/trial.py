@@ -12,7 +12,7 @@ from mdanim_lammps.engine.state import State
 from mdanim_lammps.errors import DivergedError
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.run.energy import energies as energies_of
-from mdanim_lammps.run.energy import ledger_terms, potential_terms, rounding_energy
+from mdanim_lammps.run.energy import least_energy, ledger_terms, potential_terms
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
@@ -31,7 +31,7 @@ class Trial:
         self.instance = Instance(self.ready.plan)
         self.ledger = Ledger(
             ledger_terms(self.ready.plan),
-            floor=rounding_energy(self.ready.scene, self.system),
+            floor=least_energy(self.ready.scene, self.system),
             potentials=potential_terms(self.ready.plan),
         )
         self.lost_cells = 0.0

@@ -30,7 +30,7 @@ from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
 from ..scene.formatting import exact, number
 from ..scene.meshes import mesh_files
-from .energy import ledger_terms, loss_terms, potential_terms, rounding_energy
+from .energy import least_energy, ledger_terms, loss_terms, potential_terms
 from .frame_source import COST_SECONDS, Account, Frame, FrameSource, LammpsFailure, Sequential, clock
 from .guard import Guard
 from .prepare import Prepared
@@ -196,7 +196,7 @@ class _Run:
                 *(column for column in self.of_liquid.values() if column not in terms),
                 *(MOMENTA if is_wavy(ready.scene) else ()),
             ),
-            rounding_energy(ready.scene, ready.system),
+            least_energy(ready.scene, ready.system),
             potential_terms(ready.plan),
         )
 
