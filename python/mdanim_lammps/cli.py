@@ -51,7 +51,7 @@ from .command_steps import (
     with_quality,
 )
 from .errors import ExitCode, Problem, RefusedError, SceneError, UsageError, problem_json
-from .terminal import PROGRAM, documented_exit, few_collections, open_streams, progress_bar, stop_on_sigterm
+from .terminal import PROGRAM, documented_exit, open_streams, progress_bar, stop_on_sigterm
 
 app = App(
     name=PROGRAM,
@@ -325,7 +325,7 @@ def main(argv: list[str] | None = None) -> None:
     arguments = list(sys.argv[1:] if argv is None else argv)
     debug = "--debug" in arguments
     arguments = [a for a in arguments if a != "--debug"]
-    with few_collections(), documented_exit(debug=debug):
+    with documented_exit(debug=debug):
         refuse_mistyped(arguments, [name for name in app if not name.startswith("-")])
         if not arguments:
             app.help_print([])

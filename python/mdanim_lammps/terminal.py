@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import gc
 import os
 import re
 import select
@@ -77,19 +76,6 @@ class Unfailing:
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.raw, name)
-
-
-@contextmanager
-def few_collections() -> Iterator[None]:
-    """Look for garbage a tenth as often, and not when the program ends.
-
-    Nearly all that a short command makes are modules, which stay: this is a tenth of the time of ``mdanim-lammps picture``.
-    """
-    gc.set_threshold(10_000)
-    try:
-        yield
-    finally:
-        gc.freeze()
 
 
 def stop_on_sigterm() -> None:

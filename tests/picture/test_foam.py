@@ -120,9 +120,9 @@ def test_a_front_leaves_foam_behind():
     """White where the front is, less where it was; the same from any frame to start with; gone when all is level for long."""
     heights = [bore(0.15, -0.5 + 0.04 * n) if n < 20 else np.full((35, 50), 0.6) for n in range(100)]
     read = lambda n: (heights[n], heights[n], NO_DROPS)
-    in_order, alone = Foam(GRID, 1 / 30, read), Foam(GRID, 1 / 30, read)
-    found = [in_order.at(n) for n in range(100)]
-    np.testing.assert_array_equal(alone.at(15), found[15])
+    in_order, alone = Foam(GRID, 1 / 30), Foam(GRID, 1 / 30)
+    found = [in_order.at(n, read) for n in range(100)]
+    np.testing.assert_array_equal(alone.at(15, read), found[15])
     row = found[15][17]
     front = int(np.abs(column_centres(GRID)[0][0] - 0.1).argmin())
     assert row[front] == 1.0 and row[front - 2] > row[front - 6] > 0.0 and not row[front + 5 :].any()

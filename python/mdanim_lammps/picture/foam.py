@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import lru_cache
 
 import numpy as np
 
@@ -30,6 +29,8 @@ LOW = 1.5
 """Cells above the surface up to which drops whiten it."""
 WHITE = 12.0
 """Columns that drops whiten which would fill one cell."""
+KEPT = 64
+"""Frames of which is known what foam they make: pictures that follow look at the same ones."""
 
 Liquid = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Smooth and raw heights [m], shape (ny, nx), and middles and radii of drops [m], shape (D, 4), of a frame."""
@@ -41,19 +42,18 @@ class Foam:
     Args:
         grid: the columns.
         frame_time: between two frames [s].
-        read: the liquid of a frame.
     """
 
-    def __init__(self, grid: Grid, frame_time: float, read: Callable[[int], Liquid]):
-        self._grid, self._frame_time, self._read = grid, frame_time, read
-        # The same frames are looked at for the pictures that follow.
-        self._looked = lru_cache(maxsize=64)(self._look)
+    def __init__(self, grid: Grid, frame_time: float):
+        self._grid, self._frame_time = grid, frame_time
+        self._made: dict[int, tuple[np.ndarray | None, np.ndarray, np.ndarray]] = {}
 
-    def at(self, frame: int) -> np.ndarray:
-        """How white each column is, 0 to 1, shape (ny, nx); none where a solid hides the liquid."""
+    def at(self, frame: int, read: Callable[[int], Liquid]) -> np.ndarray:
+        """How white each column is, 0 to 1, shape (ny, nx); none where a solid hides the liquid. ``read`` is called for frames
+        that have not been looked at."""
         foam, before = None, 0
         for n in looked_at(frame, self._frame_time):
-            made, smooth, raw = self._looked(n)
+            made, smooth, raw = self._look(n, read)
             if foam is not None and foam.any():
                 # Where there is foam, and two columns around.
                 some = (np.flatnonzero(foam.any(axis=k)) for k in (1, 0))
@@ -66,11 +66,15 @@ class Foam:
             before = n
         return np.zeros(self._grid.shape[1::-1], np.float32) if foam is None else np.minimum(foam, 1.0)
 
-    def _look(self, frame: int) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
+    def _look(self, frame: int, read: Callable[[int], Liquid]) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
         """What foam a frame makes, None for none, and its heights."""
-        smooth, raw, drops = self._read(frame)
-        made = breaking(self._grid, smooth, raw, drops)
-        return made if made.any() else None, smooth, raw
+        if frame not in self._made:
+            smooth, raw, drops = read(frame)
+            made = breaking(self._grid, smooth, raw, drops)
+            self._made[frame] = made if made.any() else None, smooth, raw
+            if len(self._made) > KEPT:
+                del self._made[next(iter(self._made))]
+        return self._made[frame]
 
 
 def looked_at(frame: int, frame_time: float) -> range:

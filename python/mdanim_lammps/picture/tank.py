@@ -52,7 +52,7 @@ class Tank:
         self.plate = lit_actor(plane(self._low, self._high, pool.low[2]), shading.FRAGMENT_SOLID, liquid=True, sky=sky)
         """The tank's floor, opaque."""
         self.plate.GetProperty().SetColor((0.28, 0.33, 0.37) if dark else (0.74, 0.78, 0.81))
-        self._foam = Foam(pool.grid, trajectory.dt * trajectory.steps_per_frame, self._liquid) if look == "smooth" else None
+        self._foam = Foam(pool.grid, trajectory.dt * trajectory.steps_per_frame) if look == "smooth" else None
         self._white = Field(*pool.shape[:2], smooth=True)
         self._dry, self._beside_ponds = (Field(FINER * pool.shape[0], FINER * pool.shape[1], smooth=True) for _ in range(2))
         self._pond = MovingMesh(1, np.zeros((0, 3)))
@@ -161,7 +161,7 @@ class Tank:
         level, bottom = (ponds.level, ponds.bottom) if ponds else (top, np.full(top.shape, np.inf))
         self._heights.fill(np.stack([top, level, np.minimum(bottom, self._high[2])], axis=-1))
         if self._foam:
-            self._white.fill(self._foam.at(frame))
+            self._white.fill(self._foam.at(frame, self._liquid))
         for actor in (*self.inner, *self.outer):
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
             uniforms.SetUniformf("foamMost", float(self._white.numbers.max()))

@@ -85,8 +85,7 @@ class Feed:
         self.first = np.searchsorted(of, np.arange(len(m.names)))
         self.count = np.diff(np.append(self.first, len(of)))
         frame_time = self.frames.dt * self.frames.steps_per_frame
-        read = lambda n: (*without_puddles(m.liquid.grid, *self._liquid(n)[:2]), self.drops(n))
-        self._foam = Foam(m.liquid.grid, frame_time, read) if m.liquid else None
+        self._foam = Foam(m.liquid.grid, frame_time) if m.liquid else None
 
     def close(self) -> None:
         """Close the trajectory."""
@@ -224,12 +223,13 @@ class Feed:
         if self._foam is None:
             return None
         grid, (smooth, raw, _) = self.metadata.liquid.grid, self._liquid(n)
+        read = lambda k: (*without_puddles(grid, *self._liquid(k)[:2]), self.drops(k))
         vertices = self.vertices(self.frames.value("position", n))
         smooth, cut = one_sheet(grid, *without_puddles(grid, smooth, raw), vertices, self.triangle)
         low, high = self.metadata.liquid.low[2], self.metadata.liquid.high[2]
         height = np.rint(np.clip((smooth - low) / (high - low), 0.0, 1.0) * STEPS).astype("<u2")
         state = np.where(cut, DRY, np.where(np.isfinite(raw), OPEN, HIDDEN)).astype("u1")
-        foam = np.rint(MOST_FOAM * self._foam.at(n)).astype("u1")
+        foam = np.rint(MOST_FOAM * self._foam.at(n, read)).astype("u1")
         return height.ravel(), (state + 4 * foam).ravel()
 
     def drops(self, n: int) -> np.ndarray:
